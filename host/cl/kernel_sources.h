@@ -1,0 +1,9 @@
+// The text of every file in kernels/, put into the program at build time.
+#pragma once
+#include <map>
+#include <string>
+
+namespace mcdem {
+/// File name -> content.
+const std::map<std::string, std::string>& embedded_kernel_sources();
+}

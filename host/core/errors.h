@@ -1,0 +1,33 @@
+// The errors that reach a user. Everything else is a defect and ends the program.
+#pragma once
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace mcdem {
+
+/// What the user gave is wrong: a scene, a packing, an experiment, an option (exit code 2).
+/// Carries every problem found, each as `where: what must be, what was got`.
+class InputError : public std::runtime_error {
+public:
+    explicit InputError(std::vector<std::string> problems)
+        : std::runtime_error(join(problems)), problems_(std::move(problems)) {}
+    explicit InputError(const std::string& problem)
+        : InputError(std::vector<std::string>{problem}) {}
+    const std::vector<std::string>& problems() const { return problems_; }
+
+private:
+    static std::string join(const std::vector<std::string>& lines) {
+        std::string all;
+        for (const auto& line : lines) all += (all.empty() ? "" : "\n") + line;
+        return all;
+    }
+    std::vector<std::string> problems_;
+};
+
+/// The work could not be done although the input was good: no device, disk full (exit code 1).
+class RunError : public std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+}  // namespace mcdem

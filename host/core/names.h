@@ -1,0 +1,81 @@
+// The closed sets of words that scenes, results and pictures share: contact models, friction laws,
+// walls, phases. One table each; `name` and `parse` read the same table.
+#pragma once
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace mcdem {
+
+/// How the contacts of one grain feel one another (shared with kernels/replica.h by value).
+enum class ContactModel {
+    independent,            ///< Hertz, contacts independent
+    point_force_on_sphere,  ///< exact elastic sphere under point forces, no self term
+    sphere_to_sphere,       ///< Gonzalez & Cuitino 2012
+    elastic_half_space,     ///< paper, Eq. 1 with gamma = 1
+    mc_dem,                 ///< paper, Eq. 1 with fitted gamma
+    elastic_sphere,         ///< exact elastic sphere with self term and finite contacts; nothing fitted
+};
+
+enum class FrictionLaw {
+    saturated,  ///< |F_t| = mu F_n against the sliding velocity
+    mindlin,    ///< tangential spring with history, cut at mu F_n
+};
+
+enum class Wall { x_min, x_max, y_min, y_max, floor, plate };
+inline constexpr int wall_count = 6;
+
+enum class Phase { load, unload };
+
+enum class Precision { single_precision, double_precision };
+
+template <class Enum>
+struct Names;
+template <>
+struct Names<ContactModel> {
+    static constexpr std::array<std::string_view, 6> list{"independent",        "point_force_on_sphere",
+                                                          "sphere_to_sphere",   "elastic_half_space",
+                                                          "mc_dem",             "elastic_sphere"};
+};
+template <>
+struct Names<FrictionLaw> {
+    static constexpr std::array<std::string_view, 2> list{"saturated", "mindlin"};
+};
+template <>
+struct Names<Wall> {
+    static constexpr std::array<std::string_view, 6> list{"x_min", "x_max", "y_min",
+                                                          "y_max", "floor", "plate"};
+};
+template <>
+struct Names<Phase> {
+    static constexpr std::array<std::string_view, 2> list{"load", "unload"};
+};
+template <>
+struct Names<Precision> {
+    static constexpr std::array<std::string_view, 2> list{"float", "double"};
+};
+
+/// The word that stands for `value` in scenes, files and pictures.
+template <class Enum>
+constexpr std::string_view name(Enum value) {
+    return Names<Enum>::list[static_cast<std::size_t>(value)];
+}
+
+/// The value that `word` stands for, if any.
+template <class Enum>
+std::optional<Enum> parse(std::string_view word) {
+    for (std::size_t i = 0; i < Names<Enum>::list.size(); ++i)
+        if (Names<Enum>::list[i] == word) return static_cast<Enum>(i);
+    return std::nullopt;
+}
+
+/// All words of a set, for messages: "a, b, c".
+template <class Enum>
+std::string all_names() {
+    std::string text;
+    for (auto word : Names<Enum>::list) text += (text.empty() ? "" : ", ") + std::string(word);
+    return text;
+}
+
+}  // namespace mcdem

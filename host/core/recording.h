@@ -1,0 +1,80 @@
+// What a run or an experiment leaves behind, as plain values: the meeting point of simulator, files,
+// metrics and pictures. Measured and simulated data have the same form.
+#pragma once
+#include <array>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/names.h"
+#include "core/packing.h"
+
+namespace mcdem {
+
+/// One contact as seen from `grain`. A contact between two grains is listed once, with grain < partner.
+struct Contact {
+    int grain = 0;
+    int partner = 0;    ///< a grain, or wall_partner(wall) < 0
+    Vec3 point;         ///< where it is [m]
+    Vec3 force;         ///< on `grain`, normal and tangential together [N]
+    double overlap = 0; ///< corrected overlap delta [m]; not-a-number where not known (measured data)
+};
+constexpr int wall_partner(Wall wall) { return -1 - static_cast<int>(wall); }
+constexpr bool is_wall(int partner) { return partner < 0; }
+constexpr Wall wall_of(int partner) { return static_cast<Wall>(-1 - partner); }
+
+/// The packing at one plate position. Averages not measured are not-a-number; empty vectors where
+/// positions or contacts were not recorded.
+struct Scan {
+    int frame = 0;  ///< counts the scans of one recording from 0
+    int cycle = 0;  ///< compression cycle, from 0
+    Phase phase = Phase::load;
+    double time = 0;     ///< [s]
+    double plate_z = 0;  ///< [m]
+    std::array<Vec3, wall_count> wall_force{};  ///< on each wall by the grains [N]
+    double kinetic_energy = 0;                  ///< [J]
+    double elastic_energy = 0;                  ///< [J]
+    bool settled = false;                       ///< the settling criterion was met
+    double coordination_number = 0;             ///< Z: contacts per grain, walls counted, above the scene's threshold
+    double mean_force = 0;        ///< <f>: mean |force| of those contacts [N]
+    double packing_fraction = 0;  ///< phi, more than a mean diameter from every wall
+    double branch_length = 0;     ///< <b>: mean distance of centres of touching grains [m]
+    std::vector<Vec3> position;   ///< by grain [m]
+    std::vector<Contact> contacts;
+
+    /// Upward force on the plate [N].
+    double top_force() const { return wall_force[static_cast<int>(Wall::plate)].z(); }
+};
+
+/// Why a replica stopped before its protocol ended.
+struct Failure {
+    long step = 0;
+    int grain = -1;  ///< the user's grain number, -1 where none is to blame
+    std::string cause;
+};
+
+/// One packing taken through its protocol: a replica of a run, or an experiment.
+struct Recording {
+    std::string label;                              ///< what sets it apart in its run, e.g. "mc_dem, packing 3"
+    std::map<std::string, std::string> parameters;  ///< every scene key as it held for this replica
+    Box box;
+    double plate_start = 0;  ///< plate position that counts as displacement zero [m]
+    std::vector<double> diameter;  ///< [m]
+    std::vector<Scan> scans;
+    std::optional<Failure> failure;
+
+    double displacement(const Scan& scan) const { return plate_start - scan.plate_z; }
+};
+
+/// A whole run: its provenance and its recordings.
+struct Run {
+    std::string name;
+    std::string scene;      ///< the scene's text, overrides applied
+    std::string program;    ///< version and commit
+    std::string device;     ///< device and driver
+    std::string precision;  ///< float or double
+    std::vector<Recording> recordings;
+};
+
+}  // namespace mcdem

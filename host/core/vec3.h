@@ -1,0 +1,7 @@
+// Double-precision vectors of the host side.
+#pragma once
+#include <Eigen/Core>
+
+namespace mcdem {
+using Vec3 = Eigen::Vector3d;
+}

@@ -1,0 +1,113 @@
+// A scene as plain values: what to simulate, in SI units. A test can build one without a file.
+#pragma once
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/names.h"
+#include "core/packing.h"
+
+namespace mcdem {
+
+struct GrainMaterial {
+    double youngs_modulus = 23.3e3;  ///< E [Pa]
+    double poisson_ratio = 0.5;      ///< nu
+    double density = 11.5;           ///< inertial [kg/m3]
+    double excess_density = 11.5;    ///< over the fluid, gives the weight [kg/m3]
+    double friction = 0.03;          ///< mu, grain on grain
+    double restitution = 0.95;       ///< e
+    double drag = 0;                 ///< background drag, force = -drag * mass * velocity [1/s]
+};
+
+struct WallMaterial {
+    double youngs_modulus = 50e6;  ///< [Pa]
+    double poisson_ratio = 0.5;
+    double friction = 0.03;    ///< mu, grain on wall
+    double restitution = 0.95; ///< e
+};
+
+struct ContactLaw {
+    ContactModel model = ContactModel::mc_dem;
+    double gamma = 1.125;  ///< prefactor of Eq. 1, used by mc_dem only
+    FrictionLaw friction_law = FrictionLaw::saturated;
+    double sliding_velocity = 1e-3;  ///< below it saturated friction fades to zero [m/s]
+};
+
+/// Read from a LIGGGHTS/LAMMPS data file (.data) or a CSV (x_m,y_m,z_m,diameter_m).
+struct PackingFile {
+    std::string path;
+};
+
+/// Drawn at random: truncated normal diameters, grown and relaxed without weight or friction.
+struct GeneratedPacking {
+    int count = 514;
+    double diameter_mean = 21.490e-3;     ///< [m]
+    double diameter_sd = 1.199e-3;        ///< [m]
+    double diameter_min = 18.167e-3;      ///< [m]
+    double diameter_max = 24.561e-3;      ///< [m]
+    double packing_fraction = 0.60;       ///< fills the box up to the height that gives this
+};
+
+struct PackingSource {
+    std::variant<PackingFile, GeneratedPacking> source = GeneratedPacking{};
+    double position_jitter = 0;  ///< sd of a normal displacement of every coordinate [m]
+    std::uint64_t seed = 1;      ///< of generation and jitter
+};
+
+struct Plate {
+    double start = 0.167643;  ///< highest position of its lower face [m]
+    double end = 0.137517;    ///< lowest position [m]
+    double speed = 0.1;       ///< [m/s]
+};
+
+struct Protocol {
+    int cycles = 1;
+    int discard = 0;             ///< first cycles left out of metrics
+    int scans_per_stroke = 30;   ///< equally spaced; the last of each stroke at its end
+    bool stop_at_scans = true;   ///< false: one continuous stroke, recorded in passing
+    double settle_kinetic_over_elastic = 1e-6;  ///< a scan is taken when the ratio falls below this
+    double settle_time = 1.0;                   ///< .. or, marked unsettled, after this long [s]
+    double relax_time = 1.0;                    ///< longest relaxation before the first stroke [s]
+    double force_threshold = 0;                 ///< contacts below it do not count in Z and <f> [N]
+};
+
+struct Numerics {
+    double time_step = 0.1;      ///< fraction of the Rayleigh time of the smallest grain
+    double skin = 0.1;           ///< neighbour list margin, over the mean radius
+    double probe_gap = 0.15;     ///< gap up to which surfaces are probed, over the mean radius
+    double overlap_limit = 0.5;  ///< corrected overlap over the sum of radii beyond which no static solution is assumed
+};
+
+/// Everything that one replica is made of.
+struct Replica {
+    std::string label;                              ///< what sets it apart, e.g. "mc_dem #3"
+    std::map<std::string, std::string> parameters;  ///< every scene key and its value here, as text
+    Box box{0.165191, 0.165834};
+    GrainMaterial grains;
+    WallMaterial walls;
+    ContactLaw contact;
+    PackingSource packing;
+    Plate plate;
+    Protocol protocol;
+    Numerics numerics;
+};
+
+struct Output {
+    bool positions = true;           ///< record positions at scans
+    bool contacts = true;            ///< record contacts at scans
+    double checkpoint_minutes = 1;   ///< wall-clock time between checkpoints
+};
+
+struct Scene {
+    std::string name = "scene";
+    std::string text;  ///< TOML with overrides applied: what a result file keeps
+    Precision precision = Precision::single_precision;
+    int slots = 16;  ///< neighbour slots per grain: 16, 32, 48 or 64
+    Output output;
+    std::vector<Replica> replicas;
+};
+
+}  // namespace mcdem
