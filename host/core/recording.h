@@ -16,13 +16,20 @@ namespace mcdem {
 struct Contact {
     int grain = 0;
     int partner = 0;    ///< a grain, or wall_partner(wall) < 0
-    Vec3 point;         ///< where it is [m]
-    Vec3 force;         ///< on `grain`, normal and tangential together [N]
+    Vec3 point = Vec3::Zero();  ///< where it is [m]
+    Vec3 force = Vec3::Zero();  ///< on `grain`, normal and tangential together [N]
     double overlap = 0; ///< corrected overlap delta [m]; not-a-number where not known (measured data)
 };
 constexpr int wall_partner(Wall wall) { return -1 - static_cast<int>(wall); }
 constexpr bool is_wall(int partner) { return partner < 0; }
 constexpr Wall wall_of(int partner) { return static_cast<Wall>(-1 - partner); }
+
+/// Zeros: a Vec3 by itself starts undefined.
+inline std::array<Vec3, wall_count> no_wall_forces() {
+    std::array<Vec3, wall_count> forces;
+    forces.fill(Vec3::Zero());
+    return forces;
+}
 
 /// The packing at one plate position. Averages not measured are not-a-number; empty vectors where
 /// positions or contacts were not recorded.
@@ -32,7 +39,7 @@ struct Scan {
     Phase phase = Phase::load;
     double time = 0;     ///< [s]
     double plate_z = 0;  ///< [m]
-    std::array<Vec3, wall_count> wall_force{};  ///< on each wall by the grains [N]
+    std::array<Vec3, wall_count> wall_force = no_wall_forces();  ///< on each wall by the grains [N]
     double kinetic_energy = 0;                  ///< [J]
     double elastic_energy = 0;                  ///< [J]
     bool settled = false;                       ///< the settling criterion was met

@@ -1,0 +1,31 @@
+// The paper's table: one setting's replicas against reference recordings, measured or simulated.
+#pragma once
+#include "metrics/contact_forces.h"
+#include "metrics/levels.h"
+
+namespace mcdem {
+
+struct CompareOptions {
+    LevelOptions levels;
+    WallContacts walls_in_coordination = WallContacts::counted;
+    WallContacts walls_in_distribution = WallContacts::left_out;  ///< the paper: "interparticle" forces
+    std::optional<double>
+        touch_force;  ///< errf leaves out levels where the reference's force is not above it [N]
+};
+
+struct Comparison {
+    std::string setting;
+    Estimate Rtop;  ///< top force at maximum compression over the reference's
+    Estimate errf;  ///< RMS error of the top force over all levels [N]
+    Estimate errZ;  ///< RMS error of Z over all levels, at tau
+    Estimate tau;   ///< force below which contacts are ignored, chosen to minimise errZ [N]
+    Estimate bhat;  ///< -log of the mean over levels of Bhattacharyya's coefficient
+    int replicas = 0;
+    int reference_levels = 0;
+    int levels_errf = 0, levels_errZ = 0, levels_bhat = 0;  ///< of those levels, how many were used
+    std::vector<std::string> notes;  ///< what was not available, and what was done instead
+};
+
+Comparison compare(const Setting& simulated, const Replicas& reference, const CompareOptions& options = {});
+
+}  // namespace mcdem

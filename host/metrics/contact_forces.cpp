@@ -1,0 +1,26 @@
+#include "metrics/contact_forces.h"
+
+#include <cmath>
+
+namespace mcdem {
+
+bool contacts_known(const Scan& scan) { return !scan.contacts.empty() || scan.coordination_number == 0; }
+
+ForceLists contact_forces(const std::vector<const Scan*>& scans, WallContacts walls) {
+    ForceLists forces;
+    for (const auto* scan : scans) {
+        if (!contacts_known(*scan)) continue;
+        ++forces.scans;
+        for (const auto& contact : scan->contacts) {
+            const double magnitude = contact.force.norm();
+            if (!std::isfinite(magnitude)) continue;
+            if (!is_wall(contact.partner))
+                forces.grain_grain.push_back(magnitude);
+            else if (walls == WallContacts::counted)
+                forces.grain_wall.push_back(magnitude);
+        }
+    }
+    return forces;
+}
+
+}  // namespace mcdem

@@ -1,0 +1,46 @@
+#include "metrics/model_table.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/errors.h"
+#include "metrics/top_force.h"
+
+namespace mcdem {
+namespace {
+
+const Setting& reference_of(const std::vector<Setting>& settings, const std::optional<std::string>& label) {
+    const auto found = std::find_if(settings.begin(), settings.end(), [&](const Setting& setting) {
+        return label ? setting.label == *label : model_of(setting.replicas) == ContactModel::mc_dem;
+    });
+    if (found != settings.end()) return *found;
+    if (!label) return settings.front();
+    std::string known;
+    for (const auto& setting : settings) known += (known.empty() ? "" : ", ") + setting.label;
+    throw InputError(fmt::format("reference setting: must be one of {}; got {}", known, *label));
+}
+
+}  // namespace
+
+ModelTable model_table(const std::vector<Setting>& settings, const LevelOptions& options,
+                       const std::optional<std::string>& reference) {
+    ModelTable table;
+    if (settings.empty()) return table;
+    const auto& over = reference_of(settings, reference);
+    const auto over_levels = group_levels(over.replicas, options);
+    table.reference = over.label;
+    table.displacement = full_stroke(over_levels, over.replicas);
+    const auto below = top_force_at(over_levels, over.replicas, table.displacement, options.tolerance);
+    for (const auto& setting : settings) {
+        const auto levels = group_levels(setting.replicas, options);
+        const auto above = top_force_at(levels, setting.replicas, table.displacement, options.tolerance);
+        ModelRow row{setting.label, model_of(setting.replicas), mean_over_replicas(above.value),
+                     ratio_of_means(above, below), static_cast<int>(setting.replicas.size())};
+        for (const auto* recording : setting.replicas) row.failed += recording->failure.has_value();
+        table.rows.push_back(row);
+    }
+    return table;
+}
+
+}  // namespace mcdem

@@ -1,0 +1,27 @@
+// Top force of each setting at full stroke over a reference setting's: the paper's Rtop column without
+// measured data.
+#pragma once
+#include "metrics/levels.h"
+
+namespace mcdem {
+
+struct ModelRow {
+    std::string setting;
+    std::optional<ContactModel> model;
+    Estimate top_force;  ///< at full stroke [N]
+    Estimate ratio;      ///< over the reference setting's; paired over packing seeds where they match
+    int replicas = 0;
+    int failed = 0;  ///< replicas that stopped before the end of their protocol
+};
+
+struct ModelTable {
+    std::vector<ModelRow> rows;           ///< in the order of the settings
+    std::string reference;                ///< label of the setting that ratios are taken over
+    double displacement = not_available;  ///< full stroke of the reference setting [m]
+};
+
+/// The reference is the setting of that label; none: the first of model mc_dem, else the first.
+ModelTable model_table(const std::vector<Setting>& settings, const LevelOptions& options = {},
+                       const std::optional<std::string>& reference = std::nullopt);
+
+}  // namespace mcdem

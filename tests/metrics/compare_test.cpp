@@ -1,0 +1,121 @@
+#include "metrics/compare.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/errors.h"
+#include "metrics/model_table.h"
+#include "metrics/synthetic.h"
+
+namespace mcdem {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+TEST(Compare, with_itself_is_a_perfect_fit) {
+    const auto run = synthetic::run({{.cycles = 2, .scatter = 0.05, .contacts = 500}}, 4);
+    const auto c = compare(group_by_setting(run)[0], replicas_of(run.recordings));
+    EXPECT_DOUBLE_EQ(c.Rtop.value, 1);
+    EXPECT_NEAR(c.Rtop.standard_error, 0, 1e-12);  // paired by seed
+    EXPECT_EQ(c.errf.value, 0);
+    EXPECT_EQ(c.errZ.value, 0);
+    EXPECT_LT(c.bhat.value, 1e-3);
+    EXPECT_EQ(c.levels_errf, 20);
+    EXPECT_EQ(c.replicas, 4);
+    EXPECT_THAT(c.notes, IsEmpty());
+}
+
+TEST(Compare, with_known_answers) {
+    const auto simulated = synthetic::run({{.top = 6, .hysteresis = 0, .touch = 0}}, 2);
+    const auto measured = synthetic::recording({.top = 15, .hysteresis = 0, .touch = 0});
+    const auto c = compare(group_by_setting(simulated)[0], {&measured});
+    EXPECT_NEAR(c.Rtop.value, 0.4, 1e-12);
+    // 9 N (i/10)^(3/2) at i = 1 .. 10 and 9 .. 0: mean square 81 (2 * 2025 + 1000) / 1000 / 20
+    EXPECT_NEAR(c.errf.value, std::sqrt(81 * (2 * 2025 + 1000) / 1000.0 / 20), 1e-12);
+}
+
+TEST(Compare, standard_error_of_rtop_is_the_scatter_of_replicas) {
+    const auto simulated = synthetic::run({{.scatter = 0.05}}, 32);
+    const auto measured = synthetic::recording({});
+    const auto c = compare(group_by_setting(simulated)[0], {&measured});
+    EXPECT_NEAR(c.Rtop.standard_error, 0.05 / std::sqrt(32.0), 0.004);
+    EXPECT_GT(c.errf.standard_error, 0);
+}
+
+TEST(Compare, says_what_was_not_available) {
+    auto run = synthetic::run({{.levels = 7}}, 2);
+    run.recordings[1].failure = Failure{4711, 42, "overlap past the limit"};
+    run.recordings[1].scans.resize(3);
+    auto measured = synthetic::recording({});
+    const auto c = compare(group_by_setting(run)[0], {&measured});
+    EXPECT_THAT(c.notes, Contains(HasSubstr("1 of 2 replicas stopped early")));
+    EXPECT_THAT(c.notes, Contains(HasSubstr("step 4711, grain 42: overlap past the limit")));
+    EXPECT_THAT(c.notes, Contains(HasSubstr("16 of 20 levels of the reference lie between")));
+    EXPECT_THAT(c.notes, Contains(HasSubstr("2 of 20 levels of the reference are outside")));
+    EXPECT_THAT(c.notes, Contains(HasSubstr("errZ is without threshold")));
+    EXPECT_THAT(c.notes, Contains(HasSubstr("bhat: contacts are not recorded")));
+    EXPECT_FALSE(c.bhat.available());
+    EXPECT_TRUE(c.Rtop.available());
+}
+
+TEST(Compare, discarding_everything_is_told) {
+    const auto run = synthetic::run({{}}, 1);
+    CompareOptions options;
+    options.levels.discard = 1;
+    EXPECT_THROW(compare(group_by_setting(run)[0], {&run.recordings[0]}, options), InputError);
+    auto measured = synthetic::recording({.cycles = 2});
+    EXPECT_THAT(compare(group_by_setting(run)[0], {&measured}, options).notes,
+                Contains(HasSubstr("no scans after the discarded cycles")));
+}
+
+TEST(ModelTable, ratios_are_over_mc_dem_and_paired_by_seed) {
+    const auto run = synthetic::run({{.model = "independent", .top = 6.45, .scatter = 0.1},
+                                     {.model = "mc_dem", .top = 15, .scatter = 0.1}},
+                                    5);
+    const auto table = model_table(group_by_setting(run));
+    EXPECT_EQ(table.reference, "mc_dem");
+    EXPECT_NEAR(table.displacement, 30e-3, 1e-12);
+    ASSERT_EQ(table.rows.size(), 2u);
+    EXPECT_NEAR(table.rows[0].ratio.value, 0.43, 1e-12);
+    EXPECT_NEAR(table.rows[0].ratio.standard_error, 0, 1e-12);  // the same scatter on both sides
+    EXPECT_GT(table.rows[0].top_force.standard_error, 0.05);
+    EXPECT_DOUBLE_EQ(table.rows[1].ratio.value, 1);
+}
+
+TEST(ModelTable, other_seeds_are_independent) {
+    auto run = synthetic::run(
+        {{.model = "independent", .top = 6, .scatter = 0.1}, {.model = "mc_dem", .top = 15, .scatter = 0.1}},
+        5);
+    for (int i = 5; i < 10; ++i) run.recordings[i].parameters["packing.seed"] = std::to_string(100 + i);
+    EXPECT_GT(model_table(group_by_setting(run)).rows[0].ratio.standard_error, 0.01);
+}
+
+TEST(ModelTable, replicas_that_stopped_early_do_not_count) {
+    auto run = synthetic::run({{.model = "elastic_half_space", .top = 12}, {.model = "mc_dem"}}, 3);
+    run.recordings[0].scans.resize(5);
+    run.recordings[0].failure = Failure{1, 2, "ran away"};
+    const auto table = model_table(group_by_setting(run));
+    EXPECT_EQ(table.rows[0].failed, 1);
+    EXPECT_EQ(table.rows[0].top_force.count, 2);
+    EXPECT_NEAR(table.rows[0].ratio.value, 0.8, 1e-12);
+}
+
+TEST(ModelTable, reference_may_be_named_or_is_the_first) {
+    const auto run =
+        synthetic::run({{.model = "sphere_to_sphere", .top = 10}, {.model = "independent", .top = 5}}, 1);
+    const auto settings = group_by_setting(run);
+    EXPECT_EQ(model_table(settings).reference, "sphere_to_sphere");
+    EXPECT_NEAR(model_table(settings, {}, "independent").rows[0].ratio.value, 2, 1e-12);
+    try {
+        model_table(settings, {}, "hertz");
+        FAIL() << "an unknown reference must be refused";
+    } catch (const InputError& error) {
+        EXPECT_THAT(error.what(), HasSubstr("sphere_to_sphere, independent; got hertz"));
+    }
+}
+
+}  // namespace
+}  // namespace mcdem

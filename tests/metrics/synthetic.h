@@ -1,0 +1,94 @@
+// Recordings with known answers: forces, contacts and averages follow simple laws of the displacement.
+#pragma once
+#include <cmath>
+#include <random>
+#include <string>
+
+#include "core/recording.h"
+
+namespace mcdem::synthetic {
+
+struct Law {
+    std::string model = "mc_dem";
+    int seed = 1;
+    int cycles = 1;
+    int levels = 10;          ///< a stroke's scans, the last at full stroke
+    double stroke = 30e-3;    ///< [m]
+    double top = 15;          ///< top force at full stroke while loading [N]
+    double hysteresis = 0.1;  ///< share of the force lost while unloading
+    double touch = 5e-3;      ///< displacement at first touch [m]
+    double scatter = 0;       ///< relative sd of the force between seeds
+    int grains = 100;
+    int contacts = 0;           ///< between grains, at each scan; 0: none recorded
+    double mean_force = 50e-3;  ///< of contacts at full stroke [N]
+    double shape = 1;           ///< of the gamma law of contact forces
+};
+
+inline double share_of_stroke(const Law& law, double displacement) {
+    return std::max(0.0, (displacement - law.touch) / (law.stroke - law.touch));
+}
+
+inline void add_contacts(const Law& law, double strain, std::mt19937_64& random, Scan& scan) {
+    std::gamma_distribution<double> draw(law.shape, 1 / law.shape);
+    const double mean = law.mean_force * (0.1 + 0.9 * strain);
+    for (int c = 0; c < law.contacts; ++c) {
+        Contact contact;
+        contact.grain = c % law.grains;
+        contact.partner = c % 10 == 9 ? wall_partner(Wall::floor) : (c + 1) % law.grains;
+        contact.force = {0, 0, mean * draw(random)};
+        scan.contacts.push_back(contact);
+    }
+}
+
+inline Scan scan_at(const Law& law, Phase phase, double displacement, double factor,
+                    std::mt19937_64& random) {
+    Scan scan;
+    scan.phase = phase;
+    scan.plate_z = 0.17 - displacement;
+    const double strain = share_of_stroke(law, displacement);
+    const double lost = phase == Phase::unload ? 1 - law.hysteresis : 1;
+    const double force = law.top * factor * lost * std::pow(strain, 1.5);
+    scan.wall_force[static_cast<int>(Wall::plate)] = {0, 0, force};
+    scan.coordination_number = 6 + 2 * strain;
+    scan.packing_fraction = 0.6 + 0.1 * strain;
+    scan.branch_length = 0.0215 - 0.001 * strain;
+    scan.mean_force =
+        0.1 * force / (scan.coordination_number * scan.packing_fraction * scan.branch_length * 15);
+    add_contacts(law, strain, random, scan);
+    return scan;
+}
+
+inline Recording recording(const Law& law) {
+    std::mt19937_64 random(law.seed * 7919 + 17);
+    Recording made;
+    made.label = law.model + ", packing " + std::to_string(law.seed);
+    made.parameters = {{"contact.model", law.model}, {"packing.seed", std::to_string(law.seed)}};
+    made.plate_start = 0.17;
+    made.diameter.assign(law.grains, 0.0215);
+    const double factor = 1 + law.scatter * std::normal_distribution<double>()(random);
+    for (int cycle = 0; cycle < law.cycles; ++cycle)
+        for (int i = 1; i <= 2 * law.levels; ++i) {
+            const bool loading = i <= law.levels;
+            const double share = (loading ? i : 2 * law.levels - i) / static_cast<double>(law.levels);
+            auto scan =
+                scan_at(law, loading ? Phase::load : Phase::unload, law.stroke * share, factor, random);
+            scan.frame = static_cast<int>(made.scans.size());
+            scan.cycle = cycle;
+            made.scans.push_back(std::move(scan));
+        }
+    return made;
+}
+
+/// One run: `replicas` seeds of each law.
+inline Run run(const std::vector<Law>& laws, int replicas) {
+    Run made;
+    made.name = "synthetic";
+    for (auto law : laws)
+        for (int seed = 1; seed <= replicas; ++seed) {
+            law.seed = seed;
+            made.recordings.push_back(recording(law));
+        }
+    return made;
+}
+
+}  // namespace mcdem::synthetic
