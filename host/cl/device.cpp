@@ -1,0 +1,102 @@
+#include "cl/device.h"
+
+#include <algorithm>
+#include <cstdlib>
+
+#include <fmt/format.h>
+
+#include "core/errors.h"
+
+namespace mcdem {
+namespace {
+
+struct Found {
+    DeviceInfo info;
+    cl::Device handle;
+};
+
+/// OpenCL strings may end in a null byte or blanks.
+std::string trimmed(std::string text) {
+    while (!text.empty() && (text.back() == '\0' || text.back() == ' ')) text.pop_back();
+    return text;
+}
+
+DeviceInfo describe(const cl::Platform& platform, const cl::Device& device) {
+    DeviceInfo info;
+    info.name = trimmed(device.getInfo<CL_DEVICE_NAME>());
+    info.platform = trimmed(platform.getInfo<CL_PLATFORM_NAME>());
+    info.version = trimmed(device.getInfo<CL_DEVICE_VERSION>()) + ", driver " +
+                   trimmed(device.getInfo<CL_DRIVER_VERSION>());
+    info.gpu = device.getInfo<CL_DEVICE_TYPE>() & CL_DEVICE_TYPE_GPU;
+    info.double_precision =
+        device.getInfo<CL_DEVICE_EXTENSIONS>().find("cl_khr_fp64") != std::string::npos;
+    info.compute_units = static_cast<int>(device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>());
+    info.memory = device.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>();
+    return info;
+}
+
+std::vector<Found> find_devices() {
+    std::vector<Found> found;
+    std::vector<cl::Platform> platforms;
+    try {
+        cl::Platform::get(&platforms);
+    } catch (const cl::Error&) {
+        return found;  // the loader reports "no platform" as an error
+    }
+    for (const auto& platform : platforms) {
+        std::vector<cl::Device> devices;
+        try {
+            platform.getDevices(CL_DEVICE_TYPE_ALL, &devices);
+        } catch (const cl::Error&) {
+            continue;  // a platform without devices
+        }
+        for (const auto& device : devices) found.push_back({describe(platform, device), device});
+    }
+    std::stable_sort(found.begin(), found.end(),
+                     [](const Found& a, const Found& b) { return a.info.gpu > b.info.gpu; });
+    for (std::size_t i = 0; i < found.size(); ++i) found[i].info.index = static_cast<int>(i);
+    return found;
+}
+
+Found choose(const std::string& choice) {
+    const auto found = find_devices();
+    if (found.empty())
+        throw RunError(
+            "no OpenCL device found: install a driver (the package pocl-opencl-icd runs on any CPU)");
+    std::string wanted = choice;
+    if (wanted.empty())
+        if (const char* variable = std::getenv("MCDEM_DEVICE")) wanted = variable;
+    if (wanted.empty()) return found.front();
+    std::string known;
+    for (const auto& device : found) {
+        if (wanted == std::to_string(device.info.index)) return device;
+        known += fmt::format("\n  {}  {}", device.info.index, device.info.name);
+    }
+    for (const auto& device : found)
+        if ((device.info.platform + " " + device.info.name).find(wanted) != std::string::npos) return device;
+    throw InputError(
+        fmt::format("--device: must be the number or part of the name of a device, got '{}'; there are:{}",
+                    wanted, known));
+}
+
+}  // namespace
+
+std::vector<DeviceInfo> list_devices() {
+    std::vector<DeviceInfo> infos;
+    for (const auto& device : find_devices()) infos.push_back(device.info);
+    return infos;
+}
+
+Device::Device(const std::string& choice) {
+    const Found found = choose(choice);
+    info_ = found.info;
+    handle_ = found.handle;
+    context_ = cl::Context(handle_);
+    queue_ = cl::CommandQueue(context_, handle_);
+}
+
+std::string Device::description() const {
+    return fmt::format("{} ({}, {})", info_.name, info_.platform, info_.version);
+}
+
+}  // namespace mcdem

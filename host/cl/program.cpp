@@ -1,0 +1,82 @@
+#include "cl/program.h"
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <sstream>
+
+#include <fmt/format.h>
+
+#include "cl/kernel_sources.h"
+#include "core/errors.h"
+
+namespace mcdem {
+namespace {
+
+std::string kernel_source(const std::string& name) {
+    if (const char* folder = std::getenv("MCDEM_KERNELS")) {
+        std::ifstream file(std::filesystem::path(folder) / name);
+        if (!file) throw RunError(fmt::format("MCDEM_KERNELS: cannot read {} in {}", name, folder));
+        return {std::istreambuf_iterator<char>(file), {}};
+    }
+    return embedded_kernel_sources().at(name);
+}
+
+/// Puts every `#include "name"` in, once, with #line so that the compiler's messages name the file.
+void append_source(const std::string& name, std::set<std::string>& seen, std::string& text) {
+    if (!seen.insert(name).second) return;
+    std::istringstream lines(kernel_source(name));
+    std::string line;
+    const std::string directive = "#include \"";
+    text += fmt::format("#line 1 \"{}\"\n", name);
+    for (int number = 1; std::getline(lines, line); ++number) {
+        if (!line.starts_with(directive)) {
+            text += line + "\n";
+            continue;
+        }
+        append_source(line.substr(directive.size(), line.rfind('"') - directive.size()), seen, text);
+        text += fmt::format("#line {} \"{}\"\n", number + 1, name);
+    }
+}
+
+}  // namespace
+
+KernelBuild kernel_build(const Device& device, Precision precision, int slots) {
+    KernelBuild build;
+    build.precision = precision;
+    build.slots = slots;
+    build.lanes = device.info().gpu ? 1 : 16;
+    if (const char* lanes = std::getenv("MCDEM_LANES")) {
+        build.lanes = std::atoi(lanes);
+        if (build.lanes != 1 && build.lanes != 16)
+            throw InputError(fmt::format("MCDEM_LANES: must be 1 or 16, got '{}'", lanes));
+    }
+    if (precision == Precision::double_precision && !device.info().double_precision)
+        throw InputError(fmt::format("numerics.precision: must be float on {}, which has no double",
+                                     device.info().name));
+    return build;
+}
+
+std::string program_text() {
+    std::set<std::string> seen;
+    std::string text;
+    append_source("mcdem.cl", seen, text);
+    return text;
+}
+
+cl::Program build_program(const Device& device, const KernelBuild& build) {
+    const auto options =
+        fmt::format("-cl-std=CL1.2 -DMCDEM_DOUBLE={} -DLANES={} -DSLOTS={} -DBLOCK={}",
+                    build.precision == Precision::double_precision ? 1 : 0, build.lanes, build.slots, build.block);
+    cl::Program program(device.context(), program_text());
+    try {
+        program.build({device.handle()}, options.c_str());
+    } catch (const cl::Error&) {
+        throw RunError(fmt::format("the kernels do not compile on {} with {}:\n{}", device.info().name, options,
+                                   program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device.handle())));
+    }
+    return program;
+}
+
+}  // namespace mcdem

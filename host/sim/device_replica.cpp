@@ -1,0 +1,117 @@
+#include "sim/device_replica.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "core/surface_displacement.h"
+
+namespace mcdem {
+namespace {
+
+constexpr double gravity = 9.81;  // [m/s2]
+constexpr double pi = std::numbers::pi;
+
+double shear_modulus(double youngs_modulus, double poisson_ratio) {
+    return youngs_modulus / (2 * (1 + poisson_ratio));
+}
+
+/// 1/E* = (1 - nu_i^2)/E_i + (1 - nu_j^2)/E_j
+double reduced_modulus(double e_i, double nu_i, double e_j, double nu_j) {
+    return 1 / ((1 - nu_i * nu_i) / e_i + (1 - nu_j * nu_j) / e_j);
+}
+
+/// 1/G* = (2 - nu_i)/G_i + (2 - nu_j)/G_j  (Mindlin 1949)
+double reduced_shear_modulus(double e_i, double nu_i, double e_j, double nu_j) {
+    return 1 / ((2 - nu_i) / shear_modulus(e_i, nu_i) + (2 - nu_j) / shear_modulus(e_j, nu_j));
+}
+
+/// 2 sqrt(5/6) beta with beta = -ln e / sqrt(ln^2 e + pi^2): constant restitution with a Hertz contact.
+double damping_factor(double restitution) {
+    const double log_e = std::log(restitution);
+    return 2 * std::sqrt(5.0 / 6.0) * -log_e / std::sqrt(log_e * log_e + pi * pi);
+}
+
+template <class DeviceReplica>
+void set_materials(DeviceReplica& d, const Replica& replica) {
+    const auto& g = replica.grains;
+    const auto& w = replica.walls;
+    d.density = g.density;
+    d.weight_density = g.excess_density * gravity;
+    d.drag = g.drag;
+    d.modulus_grain = reduced_modulus(g.youngs_modulus, g.poisson_ratio, g.youngs_modulus, g.poisson_ratio);
+    d.modulus_wall = reduced_modulus(g.youngs_modulus, g.poisson_ratio, w.youngs_modulus, w.poisson_ratio);
+    d.shear_grain = reduced_shear_modulus(g.youngs_modulus, g.poisson_ratio, g.youngs_modulus, g.poisson_ratio);
+    d.shear_wall = reduced_shear_modulus(g.youngs_modulus, g.poisson_ratio, w.youngs_modulus, w.poisson_ratio);
+    d.damping_grain = damping_factor(g.restitution);
+    d.damping_wall = damping_factor(w.restitution);
+    d.friction_grain = g.friction;
+    d.friction_wall = w.friction;
+    d.sliding_velocity = replica.contact.sliding_velocity;
+    d.mindlin = replica.contact.friction_law == FrictionLaw::mindlin;
+}
+
+template <class DeviceReplica>
+void set_surface(DeviceReplica& d, const Replica& replica) {
+    const auto surface = surface_law(replica.contact.model, replica.grains.poisson_ratio, replica.contact.gamma);
+    const double nu = replica.grains.poisson_ratio;
+    const double e = replica.grains.youngs_modulus;
+    d.surface = static_cast<int>(surface.shape);
+    d.half_space_scale = -surface.gamma * (1 + nu) / (2 * pi * e);
+    d.half_space_normal = 3 - 4 * nu;
+    d.half_space_shear = 1 - 2 * nu;
+    d.sphere_scale = 1 / e;
+    std::copy(surface.point.begin(), surface.point.end(), d.sphere_point);
+    std::copy(surface.size.begin(), surface.size.end(), d.sphere_size);
+    std::copy(surface.self.begin(), surface.self.end(), d.sphere_self);
+    d.finite_contacts = surface.self[0] != 0;
+}
+
+template <class DeviceReplica>
+void set_space(DeviceReplica& d, const Replica& replica, const Packing& packing) {
+    const double mean_radius =
+        0.5 * std::accumulate(packing.diameter.begin(), packing.diameter.end(), 0.0) / packing.size();
+    const double largest = *std::max_element(packing.diameter.begin(), packing.diameter.end());
+    const double skin = replica.numerics.skin * mean_radius;
+    const double probe_gap = replica.numerics.probe_gap * mean_radius;
+    d.skin = skin;
+    d.probe_gap = probe_gap;
+    d.overlap_limit = replica.numerics.overlap_limit;
+    d.wall_position[1] = replica.box.size_x;
+    d.wall_position[3] = replica.box.size_y;
+    d.wall_position[5] = replica.plate.start;
+    const double cell = (largest + probe_gap + skin) * 1.001;  // no neighbour is lost to rounding
+    d.cell_size = cell;
+    d.cells_x = std::max(1, static_cast<int>(replica.box.size_x / cell));
+    d.cells_y = std::max(1, static_cast<int>(replica.box.size_y / cell));
+    d.cells_z = std::max(1, static_cast<int>(replica.plate.start / cell));
+}
+
+}  // namespace
+
+double time_step(const Replica& replica, const Packing& packing) {
+    const auto& g = replica.grains;
+    const double smallest = 0.5 * *std::min_element(packing.diameter.begin(), packing.diameter.end());
+    const double rayleigh = pi * smallest * std::sqrt(g.density / shear_modulus(g.youngs_modulus, g.poisson_ratio)) /
+                            (0.163 * g.poisson_ratio + 0.8766);
+    return replica.numerics.time_step * rayleigh;
+}
+
+template <class DeviceReplica>
+DeviceReplica device_replica(const Replica& replica, const Packing& packing, const Place& place) {
+    DeviceReplica d{};
+    d.time_step = time_step(replica, packing);
+    set_materials(d, replica);
+    set_surface(d, replica);
+    set_space(d, replica, packing);
+    d.first_grain = place.first_grain;
+    d.grain_count = place.grain_count;
+    d.first_cell = place.first_cell;
+    return d;
+}
+
+template f32::Replica device_replica(const Replica&, const Packing&, const Place&);
+template f64::Replica device_replica(const Replica&, const Packing&, const Place&);
+
+}  // namespace mcdem

@@ -1,0 +1,30 @@
+// A replica's parameters in the form the kernels read: every constant of the contact law worked out once.
+#pragma once
+#include <vector>
+
+#include "scene/scene.h"
+#include "sim/device_types.h"
+
+namespace mcdem {
+
+/// Fraction of the Rayleigh time of the smallest grain, pi R sqrt(rho / G) / (0.163 nu + 0.8766) [s].
+double time_step(const Replica& replica, const Packing& packing);
+
+/// Where a replica lies in the device's arrays.
+struct Place {
+    int first_grain = 0;
+    int grain_count = 0;
+    int first_cell = 0;
+};
+
+/// DeviceReplica: f32::Replica or f64::Replica. The plate stands still at its start.
+template <class DeviceReplica>
+DeviceReplica device_replica(const Replica& replica, const Packing& packing, const Place& place);
+
+/// Cells of one replica's grid.
+template <class DeviceReplica>
+int cell_count(const DeviceReplica& replica) {
+    return replica.cells_x * replica.cells_y * replica.cells_z;
+}
+
+}  // namespace mcdem

@@ -1,0 +1,16 @@
+// The structs that host and device share, once for each precision of the kernels.
+#pragma once
+
+namespace mcdem {
+namespace f32 {
+using real = float;
+#include "kernels/replica.h"
+#include "kernels/report.h"
+}  // namespace f32
+namespace f64 {
+using real = double;
+#include "kernels/replica.h"
+#include "kernels/report.h"
+}  // namespace f64
+#include "kernels/status.h"
+}  // namespace mcdem

@@ -1,0 +1,231 @@
+#include "sim/engine.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "core/errors.h"
+#include "sim/device_replica.h"
+
+namespace mcdem {
+namespace {
+
+/// A list is made anew when a grain or the plate has moved this part of the margin. Half the margin is the
+/// limit that the kernels enforce step by step.
+constexpr double relist_at = 0.3;
+/// The plate moves at most this part of the margin in a stretch: relist_at + plate_stretch <= 1/2.
+constexpr double plate_stretch = 0.2;
+constexpr int longest_stretch_steps = 60;
+
+template <class DeviceReplica>
+std::vector<DeviceReplica> device_replicas(const std::vector<Replica>& replicas, const std::vector<Packing>& packings,
+                                           const Layout& layout) {
+    std::vector<DeviceReplica> all;
+    int cells = 0;
+    for (int r = 0; r < layout.replicas(); ++r) {
+        all.push_back(device_replica<DeviceReplica>(replicas[r], packings[r],
+                                                    {layout.first_grain[r], layout.grain_count[r], cells}));
+        cells += cell_count(all.back());
+    }
+    return all;
+}
+
+int total_cells(const auto& device_replicas) {
+    return device_replicas.back().first_cell + cell_count(device_replicas.back());
+}
+
+FieldNeeds needs_of(const std::vector<Replica>& replicas) {
+    FieldNeeds needs;
+    for (const auto& replica : replicas) {
+        needs.bulges |= replica.contact.model != ContactModel::independent;
+        needs.springs |= replica.contact.friction_law == FrictionLaw::mindlin;
+    }
+    return needs;
+}
+
+std::variant<std::vector<f32::Replica>, std::vector<f64::Replica>> any_device_replicas(
+    const KernelBuild& build, const std::vector<Replica>& replicas, const std::vector<Packing>& packings,
+    const Layout& layout) {
+    if (build.precision == Precision::double_precision)
+        return device_replicas<f64::Replica>(replicas, packings, layout);
+    return device_replicas<f32::Replica>(replicas, packings, layout);
+}
+
+}  // namespace
+
+Engine::Engine(Device& device, const KernelBuild& build, std::vector<Replica> replicas,
+               std::vector<Packing> packings)
+    : build_(build),
+      replicas_(std::move(replicas)),
+      layout_(make_layout(packings, build.block)),
+      relist_(replicas_.size(), 1),
+      plate_moved_(replicas_.size(), 0),
+      plate_z_(replicas_.size(), 0),
+      device_replicas_(any_device_replicas(build, replicas_, packings, layout_)),
+      fields_(device, build, layout_,
+              std::visit([](const auto& all) { return sizeof(all[0]); }, device_replicas_),
+              build.precision == Precision::double_precision ? sizeof(f64::Report) : sizeof(f32::Report),
+              std::visit([](const auto& all) { return total_cells(all); }, device_replicas_),
+              needs_of(replicas_)),
+      kernels_(device, build) {
+    for (int r = 0; r < layout_.replicas(); ++r) {
+        time_step_.push_back(mcdem::time_step(replicas_[r], packings[r]));
+        skin_.push_back(std::visit([&](const auto& all) { return double(all[r].skin); }, device_replicas_));
+    }
+    upload_packings(packings);
+}
+
+void Engine::upload_packings(const std::vector<Packing>& packings) {
+    std::vector<double> values(4 * layout_.grains(), 0.0);
+    for (int r = 0; r < layout_.replicas(); ++r)
+        for (int k = 0; k < layout_.grain_count[r]; ++k) {
+            const int grain = layout_.order[r][k];
+            double* at = &values[4 * (layout_.first_grain[r] + k)];
+            for (int axis = 0; axis < 3; ++axis) at[axis] = packings[r].position[grain][axis];
+            at[3] = 0.5 * packings[r].diameter[grain];
+        }
+    for (auto& copy : fields_.position.copies) write_reals(copy, 0, values);
+}
+
+int Engine::longest_stretch(int replica, double plate_velocity) const {
+    const double step = std::abs(plate_velocity) * time_step_[replica];
+    const double steps = step > 0 ? plate_stretch * skin_[replica] / step : longest_stretch_steps;
+    return std::clamp(static_cast<int>(std::min(steps, 1e6)), 1, longest_stretch_steps);
+}
+
+Engine::Part Engine::part(const std::vector<char>& wanted) const {
+    Part part;
+    for (int r = 0; r < layout_.replicas(); ++r) {
+        if (!wanted[r]) continue;
+        part.replicas.push_back(r);
+        for (int block = layout_.first_block(r); block < layout_.first_block(r + 1); ++block)
+            part.blocks.push_back(block);
+    }
+    return part;
+}
+
+std::vector<StretchResult> Engine::advance(const std::vector<Stretch>& stretches) {
+    std::vector<char> active(layout_.replicas());
+    int most = 0;
+    for (int r = 0; r < layout_.replicas(); ++r) {
+        active[r] = stretches[r].steps > 0;
+        most = std::max(most, stretches[r].steps);
+    }
+    if (most == 0) return std::vector<StretchResult>(stretches.size());
+    const Part working = part(active);
+    upload_stretches(stretches);
+    find_neighbours();
+    fields_.blocks.write(working.blocks.data(), 0, working.blocks.size() * sizeof(int));
+    make_steps(most, working.blocks.size());
+    measure(working);
+    return read_reports(stretches);
+}
+
+void Engine::upload_stretches(const std::vector<Stretch>& stretches) {
+    std::vector<int> steps;
+    for (const auto& stretch : stretches) steps.push_back(stretch.steps);
+    fields_.stop_at.write(steps.data());
+    std::visit(
+        [&](auto& all) {
+            for (std::size_t r = 0; r < all.size(); ++r) {
+                if (stretches[r].steps == 0) continue;
+                all[r].wall_position[5] = stretches[r].plate_z;
+                all[r].plate_velocity = stretches[r].plate_velocity;
+            }
+            fields_.replicas.write(all.data());
+        },
+        device_replicas_);
+}
+
+void Engine::find_neighbours() {
+    const Part stale = part(relist_);
+    if (stale.replicas.empty()) return;
+    const std::size_t blocks = stale.blocks.size();
+    const std::size_t block = build_.block;
+    auto& f = fields_;
+    f.relisted.write(stale.replicas.data(), 0, stale.replicas.size() * sizeof(int));
+    f.relisted_blocks.write(stale.blocks.data(), 0, blocks * sizeof(int));
+    kernels_.empty_cells(stale.replicas.size(), 64, f.replicas, f.relisted, f.cell_head);
+    kernels_.fill_cells(blocks, block, f.replicas, f.relisted_blocks, f.replica_of_block, f.position.now(0),
+                        f.cell_head, f.cell_next);
+    kernels_.list_neighbours(blocks, block, f.replicas, f.relisted_blocks, f.replica_of_block, f.position.now(0),
+                             f.cell_head, f.cell_next, f.partner, f.bulge.now(0), f.bulge_before,
+                             f.bulge_two_before, f.spring_x, f.spring_y, f.spring_z, f.listed_position, f.status);
+    kernels_.link_mirrors(blocks, block, f.relisted_blocks, f.partner, f.mirror);
+    for (int r : stale.replicas) {
+        relist_[r] = 0;
+        plate_moved_[r] = 0;
+    }
+}
+
+/// An even number of launches, so that every field ends in the copy in which it began; a replica that has
+/// made its steps waits.
+void Engine::make_steps(int steps, std::size_t blocks) {
+    auto& f = fields_;
+    for (int s = 0; s < steps + steps % 2; ++s) {
+        const int p = s % 2;
+        kernels_.advance(blocks, build_.work_items(), s, f.replicas, f.blocks, f.replica_of_block, f.stop_at,
+                         f.position.now(p), f.velocity.now(p), f.angular_velocity.now(p), f.position.next(p),
+                         f.velocity.next(p), f.angular_velocity.next(p), f.partner, f.mirror, f.bulge.now(p),
+                         f.bulge.next(p), f.bulge_before, f.bulge_two_before, f.spring_x, f.spring_y, f.spring_z,
+                         f.listed_position, f.status);
+    }
+}
+
+void Engine::measure(const Part& working) {
+    auto& f = fields_;
+    kernels_.measure(working.blocks.size(), build_.work_items(), f.replicas, f.blocks, f.replica_of_block, f.stop_at,
+                     f.position.now(0), f.velocity.now(0), f.angular_velocity.now(0), f.partner, f.mirror,
+                     f.bulge.now(0), f.spring_x, f.spring_y, f.spring_z, f.listed_position, f.force_x, f.force_y,
+                     f.force_z, f.overlap, f.arm, f.energy);
+    f.chosen.write(working.replicas.data(), 0, working.replicas.size() * sizeof(int));
+    kernels_.reduce(working.replicas.size(), 64, f.replicas, f.chosen, f.partner, f.force_x, f.force_y, f.force_z,
+                    f.energy, f.status, f.reports);
+}
+
+namespace {
+
+template <class Report>
+StretchResult to_result(const Report& report) {
+    StretchResult result;
+    result.kinetic_energy = report.kinetic_energy;
+    result.elastic_energy = report.elastic_energy;
+    result.deepest_overlap = report.deepest_overlap;
+    for (int w = 0; w < wall_count; ++w)
+        result.wall_force[w] = {report.wall_force[3 * w], report.wall_force[3 * w + 1], report.wall_force[3 * w + 2]};
+    result.status = report.status;
+    result.failed_grain = report.failed_grain;
+    return result;
+}
+
+}  // namespace
+
+std::vector<StretchResult> Engine::read_reports(const std::vector<Stretch>& stretches) {
+    std::vector<int> made(layout_.replicas());
+    fields_.stop_at.read(made.data());
+    std::vector<StretchResult> results(layout_.replicas());
+    std::visit(
+        [&]<class DeviceReplica>(const std::vector<DeviceReplica>& all) {
+            using Report = std::conditional_t<std::is_same_v<DeviceReplica, f64::Replica>, f64::Report, f32::Report>;
+            std::vector<Report> reports(all.size());
+            fields_.reports.read(reports.data());
+            for (int r = 0; r < layout_.replicas(); ++r) {
+                if (stretches[r].steps == 0) continue;
+                auto& result = results[r] = to_result(reports[r]);
+                result.steps = made[r];
+                if (result.failed_grain >= 0)
+                    result.failed_grain = layout_.order[r][result.failed_grain - layout_.first_grain[r]];
+                const double plate_move = stretches[r].plate_velocity * time_step_[r] * made[r];
+                plate_moved_[r] += std::abs(plate_move);
+                plate_z_[r] = stretches[r].plate_z + plate_move;
+                const double limit = relist_at * skin_[r];
+                relist_[r] = made[r] < stretches[r].steps || plate_moved_[r] > limit ||
+                             !(reports[r].moved_squared <= limit * limit);
+            }
+        },
+        device_replicas_);
+    return results;
+}
+
+}  // namespace mcdem

@@ -1,0 +1,99 @@
+// Advances a batch of replicas on a device, stretch by stretch. A stretch is a number of steps, each
+// replica's own, with the plate at constant velocity; between stretches the host may look and decide.
+#pragma once
+#include <array>
+#include <map>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/recording.h"
+#include "scene/scene.h"
+#include "sim/device_types.h"
+#include "sim/fields.h"
+
+namespace mcdem {
+
+/// What a replica is to do next.
+struct Stretch {
+    int steps = 0;              ///< 0: nothing, the replica is left as it is
+    double plate_z = 0;         ///< when the stretch begins [m]
+    double plate_velocity = 0;  ///< [m/s]
+};
+
+/// What became of it.
+struct StretchResult {
+    int steps = 0;  ///< made; fewer than asked for where the neighbour list had to be made anew
+    double kinetic_energy = 0;    ///< [J]
+    double elastic_energy = 0;    ///< [J]
+    double deepest_overlap = 0;   ///< corrected overlap over the sum of radii
+    std::array<Vec3, wall_count> wall_force{};  ///< on the walls [N]
+    int status = 0;               ///< STATUS_* bits
+    int failed_grain = -1;        ///< the user's grain number
+};
+
+/// A replica as it stands: by the user's grain numbers.
+struct ReplicaState {
+    std::vector<Vec3> position, velocity, angular_velocity;
+    std::vector<Contact> contacts;
+};
+
+class Engine {
+public:
+    /// `replicas[r]` starts from `packings[r]` at rest.
+    Engine(Device& device, const KernelBuild& build, std::vector<Replica> replicas, std::vector<Packing> packings);
+
+    int replicas() const { return layout_.replicas(); }
+    double time_step(int replica) const { return time_step_[replica]; }
+    /// The most steps a stretch of `replica` may have with the plate at this velocity, so that the plate
+    /// does not outrun the neighbour list.
+    int longest_stretch(int replica, double plate_velocity) const;
+    /// Device memory in use [bytes].
+    std::size_t bytes() const { return fields_.bytes(); }
+
+    /// One stretch of every replica; returns when done.
+    std::vector<StretchResult> advance(const std::vector<Stretch>& stretches);
+
+    /// Positions and contacts as the last stretch of `replica` left them.
+    ReplicaState state(int replica) const;
+    /// For tests: sets velocities by the user's grain numbers.
+    void set_velocities(int replica, const std::vector<Vec3>& velocity, const std::vector<Vec3>& angular_velocity);
+
+    /// Everything that continues the run bit for bit, as named bytes.
+    std::map<std::string, std::vector<std::byte>> save();
+    /// Throws RunError when `saved` does not belong to this batch.
+    void restore(const std::map<std::string, std::vector<std::byte>>& saved);
+
+private:
+    /// Some replicas of the batch and the blocks that hold their grains.
+    struct Part {
+        std::vector<int> replicas, blocks;
+    };
+    Part part(const std::vector<char>& wanted) const;
+    void upload_packings(const std::vector<Packing>& packings);
+    void upload_stretches(const std::vector<Stretch>& stretches);
+    void find_neighbours();
+    void make_steps(int steps, std::size_t blocks);
+    void measure(const Part& active);
+    std::vector<StretchResult> read_reports(const std::vector<Stretch>& stretches);
+    StretchResult result_of(int replica, const double* reals, int status, int failed_place) const;
+    template <class Quantity>
+    std::vector<double> read_reals(const Field<Quantity>& field, std::size_t first, std::size_t count) const;
+    template <class Quantity>
+    void write_reals(Field<Quantity>& field, std::size_t first, const std::vector<double>& values);
+    std::vector<Contact> contacts(int replica, const std::vector<Vec3>& position) const;
+
+    KernelBuild build_;
+    std::vector<Replica> replicas_;
+    Layout layout_;
+    std::vector<double> time_step_;
+    std::vector<double> skin_;            ///< [m]
+    std::vector<char> relist_;            ///< 1: the neighbour list is to be made anew
+    std::vector<double> plate_moved_;     ///< since the list was made [m]
+    std::vector<double> plate_z_;         ///< where the last stretch left it [m]
+    std::variant<std::vector<f32::Replica>, std::vector<f64::Replica>> device_replicas_;
+    Fields fields_;
+    Kernels kernels_;
+};
+
+}  // namespace mcdem

@@ -1,0 +1,139 @@
+// What the host reads of a replica between stretches, and what a restart needs.
+#include <algorithm>
+#include <cstring>
+
+#include <fmt/format.h>
+
+#include "core/errors.h"
+#include "sim/engine.h"
+
+namespace mcdem {
+namespace {
+
+std::vector<Vec3> by_grain(const std::vector<double>& values, const std::vector<int>& order) {
+    std::vector<Vec3> vectors(order.size());
+    for (std::size_t k = 0; k < order.size(); ++k)
+        vectors[order[k]] = {values[4 * k], values[4 * k + 1], values[4 * k + 2]};
+    return vectors;
+}
+
+}  // namespace
+
+template <class Quantity>
+std::vector<double> Engine::read_reals(const Field<Quantity>& field, std::size_t first, std::size_t count) const {
+    std::vector<double> values(count);
+    if (build_.precision == Precision::double_precision) {
+        field.read(values.data(), first * sizeof(double), count * sizeof(double));
+    } else {
+        std::vector<float> reals(count);
+        field.read(reals.data(), first * sizeof(float), count * sizeof(float));
+        values.assign(reals.begin(), reals.end());
+    }
+    return values;
+}
+
+template <class Quantity>
+void Engine::write_reals(Field<Quantity>& field, std::size_t first, const std::vector<double>& values) {
+    if (build_.precision == Precision::double_precision) {
+        field.write(values.data(), first * sizeof(double), values.size() * sizeof(double));
+    } else {
+        const std::vector<float> reals(values.begin(), values.end());
+        field.write(reals.data(), first * sizeof(float), reals.size() * sizeof(float));
+    }
+}
+
+template void Engine::write_reals(Field<Position>&, std::size_t, const std::vector<double>&);
+
+ReplicaState Engine::state(int replica) const {
+    const auto& order = layout_.order[replica];
+    const std::size_t first = 4 * std::size_t(layout_.first_grain[replica]);
+    const std::size_t count = 4 * order.size();
+    ReplicaState state;
+    state.position = by_grain(read_reals(fields_.position.now(0), first, count), order);
+    state.velocity = by_grain(read_reals(fields_.velocity.now(0), first, count), order);
+    state.angular_velocity = by_grain(read_reals(fields_.angular_velocity.now(0), first, count), order);
+    state.contacts = contacts(replica, state.position);
+    return state;
+}
+
+std::vector<Contact> Engine::contacts(int replica, const std::vector<Vec3>& position) const {
+    const auto& order = layout_.order[replica];
+    const std::size_t first = std::size_t(layout_.first_grain[replica]) * build_.slots;
+    const std::size_t count = order.size() * build_.slots;
+    const auto x = read_reals(fields_.force_x, first, count), y = read_reals(fields_.force_y, first, count),
+               z = read_reals(fields_.force_z, first, count), overlap = read_reals(fields_.overlap, first, count),
+               arm = read_reals(fields_.arm, first, count);
+    std::vector<int> partner(count);
+    fields_.partner.read(partner.data(), first * sizeof(int), count * sizeof(int));
+    std::vector<Contact> found;
+    for (std::size_t slot = 0; slot < count; ++slot) {
+        if (!(overlap[slot] > 0)) continue;
+        Contact contact;
+        contact.grain = order[slot / build_.slots];
+        Vec3 direction;
+        if (partner[slot] < -1) {
+            const int wall = -2 - partner[slot];
+            contact.partner = wall_partner(static_cast<Wall>(wall));
+            direction = Vec3::Zero();
+            direction[wall / 2] = wall % 2 ? 1 : -1;
+        } else {
+            contact.partner = order[partner[slot] - layout_.first_grain[replica]];
+            if (contact.partner < contact.grain) continue;  // listed from the other side
+            direction = (position[contact.partner] - position[contact.grain]).normalized();
+        }
+        contact.point = position[contact.grain] + arm[slot] * direction;
+        if (contact.partner == wall_partner(Wall::plate)) contact.point.z() = plate_z_[replica];
+        contact.force = {x[slot], y[slot], z[slot]};
+        contact.overlap = overlap[slot];
+        found.push_back(contact);
+    }
+    std::sort(found.begin(), found.end(), [](const Contact& a, const Contact& b) {
+        return a.grain != b.grain ? a.grain < b.grain : a.partner < b.partner;
+    });
+    return found;
+}
+
+void Engine::set_velocities(int replica, const std::vector<Vec3>& velocity, const std::vector<Vec3>& angular_velocity) {
+    const auto& order = layout_.order[replica];
+    std::vector<double> v(4 * order.size()), w(4 * order.size());
+    for (std::size_t k = 0; k < order.size(); ++k)
+        for (int axis = 0; axis < 3; ++axis) {
+            v[4 * k + axis] = velocity[order[k]][axis];
+            w[4 * k + axis] = angular_velocity[order[k]][axis];
+        }
+    const std::size_t first = 4 * std::size_t(layout_.first_grain[replica]);
+    write_reals(fields_.velocity.copies[0], first, v);
+    write_reals(fields_.angular_velocity.copies[0], first, w);
+}
+
+std::map<std::string, std::vector<std::byte>> Engine::save() {
+    std::map<std::string, std::vector<std::byte>> saved;
+    fields_.visit_state([&](const char* name, auto& field) {
+        auto& bytes = saved[name];
+        bytes.resize(field.bytes());
+        field.read(bytes.data());
+    });
+    const auto keep = [&](const char* name, const auto& values) {
+        const auto* begin = reinterpret_cast<const std::byte*>(values.data());
+        saved[name].assign(begin, begin + values.size() * sizeof(values[0]));
+    };
+    keep("relist", relist_);
+    keep("plate_moved", plate_moved_);
+    return saved;
+}
+
+void Engine::restore(const std::map<std::string, std::vector<std::byte>>& saved) {
+    const auto bytes_of = [&](const char* name, std::size_t size) -> const std::byte* {
+        const auto found = saved.find(name);
+        if (found == saved.end() || found->second.size() != size)
+            throw RunError(fmt::format("the checkpoint does not belong to this scene: '{}' must have {} bytes, has {}",
+                                       name, size, found == saved.end() ? 0 : found->second.size()));
+        return found->second.data();
+    };
+    fields_.visit_state([&](const char* name, auto& field) { field.write(bytes_of(name, field.bytes())); });
+    std::memcpy(relist_.data(), bytes_of("relist", relist_.size()), relist_.size());
+    std::memcpy(plate_moved_.data(), bytes_of("plate_moved", plate_moved_.size() * sizeof(double)),
+                plate_moved_.size() * sizeof(double));
+}
+
+}  // namespace mcdem

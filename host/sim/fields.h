@@ -1,0 +1,143 @@
+// The device memory of a batch, one field a quantity, and the kernels that work on it.
+#pragma once
+#include <cstddef>
+#include <functional>
+#include <string>
+
+#include "cl/kernel.h"
+#include "cl/program.h"
+#include "sim/layout.h"
+
+namespace mcdem {
+
+// Quantities: names only.
+struct Replicas;
+struct Blocks;
+struct ReplicaOfBlock;
+struct Chosen;
+struct StopAt;
+struct Position;
+struct Velocity;
+struct AngularVelocity;
+struct Partner;
+struct Mirror;
+struct Bulge;
+struct BulgeBefore;
+struct BulgeTwoBefore;
+struct SpringX;
+struct SpringY;
+struct SpringZ;
+struct ListedPosition;
+struct Status;
+struct CellHead;
+struct CellNext;
+struct ForceX;
+struct ForceY;
+struct ForceZ;
+struct Overlap;
+struct Arm;
+struct Energy;
+struct Reports;
+
+/// Two copies of what neighbours read while a step writes: `now` and `next` change places every step.
+template <class Quantity>
+struct Pair {
+    Field<Quantity> copies[2];
+    const Field<Quantity>& now(int parity) const { return copies[parity]; }
+    const Field<Quantity>& next(int parity) const { return copies[1 - parity]; }
+};
+
+/// Which of the optional fields a batch needs.
+struct FieldNeeds {
+    bool bulges = false;   ///< some replica has interacting contacts
+    bool springs = false;  ///< some replica has friction with history
+};
+
+/// Fields of a grain (padded, all replicas) unless another extent is named.
+struct Fields {
+    Fields(Device& device, const KernelBuild& build, const Layout& layout, std::size_t replica_bytes,
+           std::size_t report_bytes, int cells, FieldNeeds needs);
+
+    Field<Replicas> replicas;               ///< a replica
+    Field<StopAt> stop_at;                  ///< a replica: steps it makes in this stretch
+    Field<Reports> reports;                 ///< a replica
+    Field<Chosen> chosen, relisted;         ///< replicas in work
+    Field<Blocks> blocks, relisted_blocks;  ///< blocks in work
+    Field<ReplicaOfBlock> replica_of_block;
+    Pair<Position> position;                ///< x y z radius
+    Pair<Velocity> velocity;
+    Pair<AngularVelocity> angular_velocity;
+    Field<ListedPosition> listed_position;
+    Field<Status> status;
+    Field<Energy> energy;
+    Field<Partner> partner;                 ///< a slot, as all below
+    Field<Mirror> mirror;
+    Pair<Bulge> bulge;
+    Field<BulgeBefore> bulge_before;
+    Field<BulgeTwoBefore> bulge_two_before;
+    Field<SpringX> spring_x;
+    Field<SpringY> spring_y;
+    Field<SpringZ> spring_z;
+    Field<ForceX> force_x;
+    Field<ForceY> force_y;
+    Field<ForceZ> force_z;
+    Field<Overlap> overlap;
+    Field<Arm> arm;
+    Field<CellHead> cell_head;              ///< a cell
+    Field<CellNext> cell_next;
+
+    /// Calls visit(name, field) for every field that a restart must bring back.
+    template <class Visit>
+    void visit_state(Visit visit) {
+        visit("position", position.copies[0]);
+        visit("velocity", velocity.copies[0]);
+        visit("angular_velocity", angular_velocity.copies[0]);
+        visit("listed_position", listed_position);
+        visit("status", status);
+        visit("partner", partner);
+        visit("mirror", mirror);
+        visit("bulge", bulge.copies[0]);
+        visit("bulge_before", bulge_before);
+        visit("bulge_two_before", bulge_two_before);
+        visit("spring_x", spring_x);
+        visit("spring_y", spring_y);
+        visit("spring_z", spring_z);
+    }
+    std::size_t bytes() const { return bytes_; }
+
+private:
+    std::size_t bytes_ = 0;
+};
+
+/// The kernels, with the quantities that each works on, in the kernels' order.
+struct Kernels {
+    Kernels(Device& device, const KernelBuild& build);
+
+    Kernel<Field<Replicas>, Field<Chosen>, Field<CellHead>> empty_cells;
+    Kernel<Field<Replicas>, Field<Blocks>, Field<ReplicaOfBlock>, Field<Position>, Field<CellHead>,
+           Field<CellNext>>
+        fill_cells;
+    Kernel<Field<Replicas>, Field<Blocks>, Field<ReplicaOfBlock>, Field<Position>, Field<CellHead>, Field<CellNext>,
+           Field<Partner>, Field<Bulge>, Field<BulgeBefore>, Field<BulgeTwoBefore>, Field<SpringX>, Field<SpringY>,
+           Field<SpringZ>, Field<ListedPosition>, Field<Status>>
+        list_neighbours;
+    Kernel<Field<Blocks>, Field<Partner>, Field<Mirror>> link_mirrors;
+    Kernel<int, Field<Replicas>, Field<Blocks>, Field<ReplicaOfBlock>, Field<StopAt>, Field<Position>,
+           Field<Velocity>, Field<AngularVelocity>, Field<Position>, Field<Velocity>, Field<AngularVelocity>,
+           Field<Partner>, Field<Mirror>, Field<Bulge>, Field<Bulge>, Field<BulgeBefore>, Field<BulgeTwoBefore>,
+           Field<SpringX>, Field<SpringY>, Field<SpringZ>, Field<ListedPosition>, Field<Status>>
+        advance;
+    Kernel<Field<Replicas>, Field<Blocks>, Field<ReplicaOfBlock>, Field<StopAt>, Field<Position>, Field<Velocity>,
+           Field<AngularVelocity>, Field<Partner>, Field<Mirror>, Field<Bulge>, Field<SpringX>, Field<SpringY>,
+           Field<SpringZ>, Field<ListedPosition>, Field<ForceX>, Field<ForceY>, Field<ForceZ>, Field<Overlap>,
+           Field<Arm>, Field<Energy>>
+        measure;
+    Kernel<Field<Replicas>, Field<Chosen>, Field<Partner>, Field<ForceX>, Field<ForceY>, Field<ForceZ>,
+           Field<Energy>, Field<Status>, Field<Reports>>
+        reduce;
+
+private:
+    Kernels(Device& device, const cl::Program& program);
+};
+
+}  // namespace mcdem

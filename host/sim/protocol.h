@@ -1,0 +1,73 @@
+// The experiment of one replica as a sequence of stretches: relax, then cycles of load and unload strokes
+// with scans on the way. It depends on its own replica's results only, so that a replica does the same
+// alone and in any batch.
+#pragma once
+#include <optional>
+
+#include "scene/scene.h"
+#include "sim/engine.h"
+
+namespace mcdem {
+
+/// The plate's program and how far it has come: plain values, so that a checkpoint can hold them.
+struct ProtocolState {
+    enum class Stage : int { relax, move, settle, finished };
+    Stage stage = Stage::relax;
+    int cycle = 0;
+    Phase phase = Phase::load;
+    int level = 0;               ///< scans of this stroke taken or under way
+    int frame = 0;               ///< scans taken
+    long step = 0;               ///< since the start
+    long stage_step = 0;         ///< since this stage began
+    int settle_stretches = 0;    ///< in a row that met the settling criterion
+};
+
+class ProtocolRunner {
+public:
+    /// `time_step` [s]
+    ProtocolRunner(const Replica& replica, double time_step);
+
+    /// What to do next, at most `longest(plate_velocity)` steps; no steps when finished or stopped.
+    template <class Longest>
+    Stretch next(Longest longest) const {
+        if (state_.stage == ProtocolState::Stage::finished) return {};
+        const double velocity = plate_velocity();
+        const long steps = std::min<long>(steps_left(), longest(velocity));
+        return {static_cast<int>(steps), plate_z(), velocity};
+    }
+
+    /// A scan to be taken of the state that a stretch has led to.
+    struct ScanTag {
+        int frame, cycle;
+        Phase phase;
+        double plate_z, time;
+        bool settled;
+    };
+    /// Takes note of a stretch.
+    std::optional<ScanTag> made(const StretchResult& result);
+
+    void stop() { state_.stage = ProtocolState::Stage::finished; }
+    bool finished() const { return state_.stage == ProtocolState::Stage::finished; }
+    double plate_z() const;   ///< now [m]
+    double progress() const;  ///< part of the protocol that is done, 0 to 1
+    const ProtocolState& state() const { return state_; }
+    void set_state(const ProtocolState& state) { state_ = state; }
+
+private:
+    double stroke_begin() const;
+    double stroke_end() const;
+    double level_z(int level) const;
+    long move_steps() const;
+    double plate_velocity() const;
+    long steps_left() const;
+    bool settled(const StretchResult& result);
+    std::optional<ScanTag> arrive(bool settled);
+    void begin(ProtocolState::Stage stage);
+
+    Plate plate_;
+    Protocol protocol_;
+    double time_step_;
+    ProtocolState state_;
+};
+
+}  // namespace mcdem

@@ -1,0 +1,135 @@
+#include "sim/simulation.h"
+
+#include <cstring>
+
+#include <fmt/format.h>
+
+#include "core/errors.h"
+#include "sim/averages.h"
+
+namespace mcdem {
+namespace {
+
+/// What a user can do about each way in which a replica stops (kernels/status.h).
+std::string cause_of(const StretchResult& result, const Replica& replica, int slots) {
+    std::string cause;
+    const auto add = [&](int bit, const std::string& text) {
+        if (result.status & bit) cause += (cause.empty() ? "" : "; ") + text;
+    };
+    add(STATUS_OVERLAP,
+        fmt::format("a corrected overlap passed {} of the sum of the radii: no static solution at this compression, "
+                    "the force runs away (compress less, or lower contact.gamma)",
+                    replica.numerics.overlap_limit));
+    add(STATUS_NOT_A_NUMBER, "a position is not a number: the time step is too long (lower numerics.time_step)");
+    add(STATUS_LOST,
+        "the centre of a grain left the box: too fast a plate or too long a time step (lower plate.speed or "
+        "numerics.time_step)");
+    add(STATUS_SLOTS, fmt::format("a grain has more than {} near neighbours (raise numerics.slots)", slots));
+    add(STATUS_UNPROBED, fmt::format("a free surface moved out by more than numerics.probe_gap = {} mean radii: "
+                                     "contacts could be missed (raise numerics.probe_gap)",
+                                     replica.numerics.probe_gap));
+    return cause;
+}
+
+}  // namespace
+
+Simulation::Simulation(Device& device, const Scene& scene, std::vector<Packing> packings)
+    : scene_(scene),
+      diameter_([&] {
+          std::vector<std::vector<double>> all;
+          for (const auto& packing : packings) all.push_back(packing.diameter);
+          return all;
+      }()),
+      engine_(device, kernel_build(device, scene.precision, scene.slots), scene.replicas, std::move(packings)) {
+    for (int r = 0; r < engine_.replicas(); ++r) runners_.emplace_back(scene_.replicas[r], engine_.time_step(r));
+}
+
+bool Simulation::advance(const ScanSink& on_scan, const FailureSink& on_failure) {
+    std::vector<Stretch> stretches;
+    bool any = false;
+    for (int r = 0; r < engine_.replicas(); ++r) {
+        stretches.push_back(
+            runners_[r].next([&](double plate_velocity) { return engine_.longest_stretch(r, plate_velocity); }));
+        any |= stretches.back().steps > 0;
+    }
+    if (!any) return false;
+    const auto results = engine_.advance(stretches);
+    for (int r = 0; r < engine_.replicas(); ++r) {
+        if (stretches[r].steps == 0) continue;
+        grain_steps_ += static_cast<long>(results[r].steps) * static_cast<long>(diameter_[r].size());
+        const auto tag = runners_[r].made(results[r]);
+        if (results[r].status) {
+            on_failure(r, failure(r, results[r]));
+            runners_[r].stop();
+        } else if (tag) {
+            on_scan(r, scan(r, *tag, results[r]));
+        }
+    }
+    return true;
+}
+
+Scan Simulation::scan(int replica, const ProtocolRunner::ScanTag& tag, const StretchResult& result) const {
+    Scan scan;
+    scan.frame = tag.frame;
+    scan.cycle = tag.cycle;
+    scan.phase = tag.phase;
+    scan.time = tag.time;
+    scan.plate_z = tag.plate_z;
+    scan.settled = tag.settled;
+    scan.wall_force = result.wall_force;
+    scan.kinetic_energy = result.kinetic_energy;
+    scan.elastic_energy = result.elastic_energy;
+    auto state = engine_.state(replica);
+    scan.position = std::move(state.position);
+    scan.contacts = std::move(state.contacts);
+    const auto& spec = scene_.replicas[replica];
+    fill_averages(scan, spec.box, diameter_[replica], spec.protocol.force_threshold);
+    if (!scene_.output.positions) scan.position.clear();
+    if (!scene_.output.contacts) scan.contacts.clear();
+    return scan;
+}
+
+Failure Simulation::failure(int replica, const StretchResult& result) const {
+    return {runners_[replica].state().step, result.failed_grain,
+            cause_of(result, scene_.replicas[replica], scene_.slots)};
+}
+
+double Simulation::progress() const {
+    double sum = 0;
+    for (const auto& runner : runners_) sum += runner.progress();
+    return sum / runners_.size();
+}
+
+std::map<std::string, std::vector<std::byte>> Simulation::save() {
+    auto saved = engine_.save();
+    auto& bytes = saved["protocol"];
+    for (const auto& runner : runners_) {
+        const auto* begin = reinterpret_cast<const std::byte*>(&runner.state());
+        bytes.insert(bytes.end(), begin, begin + sizeof(ProtocolState));
+    }
+    return saved;
+}
+
+void Simulation::restore(const std::map<std::string, std::vector<std::byte>>& saved) {
+    engine_.restore(saved);
+    const auto found = saved.find("protocol");
+    if (found == saved.end() || found->second.size() != runners_.size() * sizeof(ProtocolState))
+        throw RunError("the checkpoint does not belong to this scene: it holds another number of replicas");
+    for (std::size_t r = 0; r < runners_.size(); ++r) {
+        ProtocolState state;
+        std::memcpy(&state, found->second.data() + r * sizeof(ProtocolState), sizeof state);
+        runners_[r].set_state(state);
+    }
+}
+
+Recording begin_recording(const Replica& replica, const Packing& packing) {
+    Recording recording;
+    recording.label = replica.label;
+    recording.parameters = replica.parameters;
+    recording.box = replica.box;
+    recording.plate_start = replica.plate.start;
+    recording.diameter = packing.diameter;
+    return recording;
+}
+
+}  // namespace mcdem

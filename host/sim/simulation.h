@@ -1,0 +1,46 @@
+// A whole batch from its first packing to its last scan. Knows nothing of files: scans go to the caller,
+// and the state between two rounds can be taken out and put back as bytes.
+#pragma once
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "sim/engine.h"
+#include "sim/protocol.h"
+
+namespace mcdem {
+
+class Simulation {
+public:
+    /// `packings[r]` is where `scene.replicas[r]` starts.
+    Simulation(Device& device, const Scene& scene, std::vector<Packing> packings);
+
+    using ScanSink = std::function<void(int replica, Scan scan)>;
+    using FailureSink = std::function<void(int replica, const Failure& failure)>;
+
+    /// One stretch of every replica that is not finished. Returns false when none is left.
+    bool advance(const ScanSink& on_scan, const FailureSink& on_failure);
+
+    double progress() const;       ///< mean over the replicas, 0 to 1
+    long grain_steps() const { return grain_steps_; }  ///< made by this object
+    const Engine& engine() const { return engine_; }
+
+    std::map<std::string, std::vector<std::byte>> save();
+    void restore(const std::map<std::string, std::vector<std::byte>>& saved);
+
+private:
+    Scan scan(int replica, const ProtocolRunner::ScanTag& tag, const StretchResult& result) const;
+    Failure failure(int replica, const StretchResult& result) const;
+
+    Scene scene_;
+    std::vector<std::vector<double>> diameter_;
+    Engine engine_;
+    std::vector<ProtocolRunner> runners_;
+    long grain_steps_ = 0;
+};
+
+/// A recording of replica `r` without scans yet.
+Recording begin_recording(const Replica& replica, const Packing& packing);
+
+}  // namespace mcdem

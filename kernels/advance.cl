@@ -1,0 +1,82 @@
+/* One time step of every grain: see the neighbours, contact forces, displace the surfaces, integrate. */
+
+/* Where the contacts of this step push the surface at every slot, extrapolated to the next step from this
+   one and the one before the last: 3/2 b(t) - 1/2 b(t - 2 dt). Second order in the time step, so that the
+   delay pumps no energy, and stable wherever the plain delayed iteration is (ARCHITECTURE.md). */
+static inline void displace_surfaces(global const Replica* restrict replica, EXCHANGE const ContactTable* table,
+                                     real radius, size_t row, global real* restrict bulge_next,
+                                     global real* restrict bulge_1, global real* restrict bulge_2) {
+    for (int v = 0; v < VECTORS; ++v) {
+        const lanes now = surface_displacement(replica, table, radius, v);
+        STORE_LANES(R(1.5) * now - R(0.5) * LOAD_LANES(bulge_2 + row, v), bulge_next + row, v);
+        STORE_LANES(LOAD_LANES(bulge_1 + row, v), bulge_2 + row, v);
+        STORE_LANES(now, bulge_1 + row, v);
+    }
+}
+
+kernel void advance(const int s, global const Replica* restrict replicas, global const int* restrict blocks,
+                    global const int* restrict replica_of_block, global volatile int* restrict stop_at,
+                    global const real4* restrict position, global const real4* restrict velocity,
+                    global const real4* restrict angular_velocity, global real4* restrict position_next,
+                    global real4* restrict velocity_next, global real4* restrict angular_velocity_next,
+                    global const int* restrict partner, global const int* restrict mirror,
+                    global const real* restrict bulge, global real* restrict bulge_next,
+                    global real* restrict bulge_1, global real* restrict bulge_2,
+                    global real* restrict spring_x, global real* restrict spring_y, global real* restrict spring_z,
+                    global const real4* restrict listed_position, global int* restrict status) {
+    GRAIN_OF_WORK_ITEM
+    global const Replica* restrict replica = replicas + replica_of_block[block];
+    const real4 own = position[grain];
+    const real4 own_velocity = velocity[grain];
+    const real4 own_spin = angular_velocity[grain];
+    if (s >= stop_at[replica_of_block[block]]) { /* this replica waits: keep its state in both copies */
+        position_next[grain] = own;
+        velocity_next[grain] = own_velocity;
+        angular_velocity_next[grain] = own_spin;
+        if (replica->surface != SURFACE_RIGID)
+            for (int v = 0; v < VECTORS; ++v) STORE_LANES(LOAD_LANES(bulge + row, v), bulge_next + row, v);
+        return;
+    }
+
+    const real plate_z = plate_position(replica, s);
+    lanes3 force = {R(0), R(0), R(0)}, torque = {R(0), R(0), R(0)};
+    mask too_deep = 0, unprobed = 0;
+    for (int v = 0; v < VECTORS; ++v) {
+        const Neighbours seen = see_neighbours(replica, plate_z, grain, LOAD_LANES(partner + row, v), position,
+                                               velocity, angular_velocity);
+        lanes here, there;
+        load_bulges(replica, row, v, mirror, bulge, &here, &there);
+        lanes3 spring = load_springs(replica, row, v, spring_x, spring_y, spring_z);
+        const Contacts c = contact_forces(replica, own.w, own_spin.xyz, seen, here, there, replica->time_step, &spring);
+        if (replica->mindlin) {
+            STORE_LANES(spring.x, spring_x + row, v);
+            STORE_LANES(spring.y, spring_y + row, v);
+            STORE_LANES(spring.z, spring_z + row, v);
+        }
+        add_contacts(c, seen.normal, &force, &torque);
+        /* Asked this way round, a bulge that is not a number counts as too deep as well. */
+        too_deep |= ~AS_MASK(c.approach <= replica->overlap_limit * (own.w + seen.radius)) & seen.occupied;
+        unprobed |= AS_MASK(here > replica->probe_gap) & ~c.touching;
+        tabulate(c, seen.normal, v, table);
+    }
+    SYNCHRONISE();
+    if (replica->surface != SURFACE_RIGID)
+        displace_surfaces(replica, table, own.w, row, bulge_next, bulge_1, bulge_2);
+
+    const real3 total_force = (real3)(sum_lanes(force.x, scratch), sum_lanes(force.y, scratch), sum_lanes(force.z, scratch));
+    const real3 total_torque = (real3)(sum_lanes(torque.x, scratch), sum_lanes(torque.y, scratch), sum_lanes(torque.z, scratch));
+    const real deep = max_lanes(WHERE(too_deep, R(1), R(0)), scratch);
+    const real far = max_lanes(WHERE(unprobed, R(1), R(0)), scratch);
+    if (!IS_LEADER || !(own.w > R(0))) return;
+
+    const Motion after = integrate(replica, own, own_velocity, own_spin, total_force, total_torque);
+    position_next[grain] = after.position;
+    velocity_next[grain] = after.velocity;
+    angular_velocity_next[grain] = after.angular_velocity;
+    const int bits = (deep > R(0) ? STATUS_OVERLAP : 0) | (far > R(0) ? STATUS_UNPROBED : 0) |
+                     motion_status(replica, after, plate_z);
+    const real3 moved = after.position.xyz - listed_position[grain].xyz;
+    if (bits) status[grain] |= bits;
+    if (bits || dot(moved, moved) > R(0.25) * replica->skin * replica->skin)
+        atomic_min(stop_at + replica_of_block[block], s + 1);
+}

@@ -1,0 +1,65 @@
+/* Where a grain meets each of its neighbours: direction, distance and gap, for grains and walls alike. */
+
+/* A row's entry: a grain's index, EMPTY, or a wall. */
+#define EMPTY (-1)
+#define WALL_PARTNER(w) (-2 - (w))
+
+/* What the slots of one grain see of the other side. A wall is a neighbour of radius zero at the foot of
+   the perpendicular. */
+typedef struct {
+    mask occupied;
+    mask wall;
+    lanes3 normal;    /* e, from this grain's centre to the neighbour */
+    lanes distance;   /* to the neighbour's centre, or to the wall [m] */
+    lanes radius;     /* the neighbour's, zero for a wall [m] */
+    lanes3 velocity;  /* the neighbour's less this grain's [m/s] */
+    lanes3 spin;      /* the neighbour's angular velocity [1/s] */
+} Neighbours;
+
+/* Replaces the wall entries of a gathered row. Walls do not turn; the plate alone moves, along z. */
+static inline void insert_walls(global const Replica* restrict replica, real plate_z, real4 own, slots partner,
+                         lanes4* restrict position, lanes4* restrict velocity, lanes4* restrict spin) {
+    for (int w = 0; w < 6; ++w) {
+        const mask here = AS_MASK(partner == WALL_PARTNER(w));
+        if (!ANY(here)) continue;
+        const real wall = w == 5 ? plate_z : replica->wall_position[w];
+        position->x = WHERE(here, w / 2 == 0 ? wall : own.x, position->x);
+        position->y = WHERE(here, w / 2 == 1 ? wall : own.y, position->y);
+        position->z = WHERE(here, w / 2 == 2 ? wall : own.z, position->z);
+        position->w = WHERE(here, R(0), position->w);
+        velocity->x = WHERE(here, R(0), velocity->x);
+        velocity->y = WHERE(here, R(0), velocity->y);
+        velocity->z = WHERE(here, w == 5 ? replica->plate_velocity : R(0), velocity->z);
+        spin->x = WHERE(here, R(0), spin->x);
+        spin->y = WHERE(here, R(0), spin->y);
+        spin->z = WHERE(here, R(0), spin->z);
+    }
+}
+
+static inline Neighbours see_neighbours(global const Replica* restrict replica, real plate_z, int grain, slots partner,
+                                 global const real4* restrict position,
+                                 global const real4* restrict velocity,
+                                 global const real4* restrict angular_velocity) {
+    const real4 own = position[grain];
+    const real4 own_velocity = velocity[grain];
+    const slots index = select((slots)(grain), partner, partner >= 0);
+    lanes4 there = gather4(position, index);
+    lanes4 moving = gather4(velocity, index);
+    lanes4 turning = gather4(angular_velocity, index);
+    const mask wall = AS_MASK(partner < EMPTY);
+    if (ANY(wall)) insert_walls(replica, plate_z, own, partner, &there, &moving, &turning);
+
+    Neighbours seen;
+    seen.occupied = AS_MASK(partner != EMPTY);
+    seen.wall = wall;
+    const lanes3 apart = {there.x - own.x, there.y - own.y, there.z - own.z};
+    /* An empty slot is given a distance of one, so that nothing is divided by zero. */
+    const lanes squared = WHERE(seen.occupied, dot3(apart, apart), R(1));
+    seen.distance = sqrt(squared);
+    const lanes inverse = R(1) / seen.distance;
+    seen.normal = (lanes3){apart.x * inverse, apart.y * inverse, apart.z * inverse};
+    seen.radius = there.w;
+    seen.velocity = (lanes3){moving.x - own_velocity.x, moving.y - own_velocity.y, moving.z - own_velocity.z};
+    seen.spin = (lanes3){turning.x, turning.y, turning.z};
+    return seen;
+}

@@ -1,0 +1,111 @@
+/* The state between two stretches of steps: contact forces slot by slot, energies grain by grain, and
+   their sums replica by replica, each in one fixed order. */
+
+kernel void measure(global const Replica* restrict replicas, global const int* restrict blocks,
+                    global const int* restrict replica_of_block, global const int* restrict steps,
+                    global const real4* restrict position, global const real4* restrict velocity,
+                    global const real4* restrict angular_velocity, global const int* restrict partner,
+                    global const int* restrict mirror, global const real* restrict bulge,
+                    global const real* restrict spring_x, global const real* restrict spring_y,
+                    global const real* restrict spring_z, global const real4* restrict listed_position,
+                    global real* restrict force_x, global real* restrict force_y, global real* restrict force_z,
+                    global real* restrict overlap, global real* restrict arm, global real4* restrict energy) {
+    GRAIN_OF_WORK_ITEM
+    global const Replica* restrict replica = replicas + replica_of_block[block];
+    const real4 own = position[grain];
+    const real4 own_velocity = velocity[grain];
+    const real4 own_spin = angular_velocity[grain];
+    const real plate_z = plate_position(replica, steps[replica_of_block[block]]);
+    lanes elastic_energy = R(0), deepest = R(0);
+    for (int v = 0; v < VECTORS; ++v) {
+        const slots partners = LOAD_LANES(partner + row, v);
+        const Neighbours seen = see_neighbours(replica, plate_z, grain, partners, position, velocity, angular_velocity);
+        lanes here, there;
+        load_bulges(replica, row, v, mirror, bulge, &here, &there);
+        lanes3 spring = load_springs(replica, row, v, spring_x, spring_y, spring_z);
+        const Contacts c = contact_forces(replica, own.w, own_spin.xyz, seen, here, there, R(0), &spring);
+        /* Hertz energy 2/5 F delta, half of it this grain's, less the work of its own bulge */
+        elastic_energy += c.elastic * (WHERE(seen.wall, R(0.4), R(0.2)) * c.overlap - R(0.5) * c.bulge);
+        deepest = fmax(deepest, WHERE(seen.occupied, c.overlap / (own.w + seen.radius), R(0)));
+        STORE_LANES(c.force.x, force_x + row, v);
+        STORE_LANES(c.force.y, force_y + row, v);
+        STORE_LANES(c.force.z, force_z + row, v);
+        STORE_LANES(c.overlap, overlap + row, v);
+        STORE_LANES(c.arm, arm + row, v);
+    }
+    const real stored = sum_lanes(elastic_energy, scratch);
+    const real deepest_slot = max_lanes(deepest, scratch);
+    if (IS_LEADER && own.w > R(0)) {
+        const real mass = sphere_mass(replica, own.w);
+        const real moving = R(0.5) * mass * (dot(own_velocity.xyz, own_velocity.xyz) +
+                                             R(0.4) * own.w * own.w * dot(own_spin.xyz, own_spin.xyz));
+        const real3 moved = own.xyz - listed_position[grain].xyz;
+        energy[grain] = (real4)(moving, stored, dot(moved, moved), deepest_slot);
+    }
+}
+
+/* One work-group a replica: each work-item sums every 64th grain, then a fixed tree. */
+#define REDUCERS 64
+#define SUMS 20 /* kinetic, elastic, 18 wall force components */
+
+static inline void add_wall_forces(global const int* partner, global const real* x, global const real* y,
+                                   global const real* z, real* sums) {
+    for (int c = 0; c < SLOTS; ++c)
+        if (partner[c] < EMPTY) {
+            const int wall = WALL_PARTNER(0) - partner[c];
+            sums[2 + 3 * wall] -= x[c];
+            sums[3 + 3 * wall] -= y[c];
+            sums[4 + 3 * wall] -= z[c];
+        }
+}
+
+kernel void reduce(global const Replica* restrict replicas, global const int* restrict chosen,
+                   global const int* restrict partner, global const real* restrict force_x,
+                   global const real* restrict force_y, global const real* restrict force_z,
+                   global const real4* restrict energy, global const int* restrict status,
+                   global Report* restrict reports) {
+    local real shared_sums[REDUCERS][SUMS];
+    local real shared_most[REDUCERS][2];
+    local int shared_status[REDUCERS][2];
+    const int r = chosen[get_group_id(0)];
+    const int lane = get_local_id(0);
+    global const Replica* restrict replica = replicas + r;
+    real sums[SUMS];
+    for (int q = 0; q < SUMS; ++q) sums[q] = R(0);
+    real moved = R(0), deepest = R(0);
+    int bits = 0, failed = INT_MAX;
+    for (int k = lane; k < replica->grain_count; k += REDUCERS) {
+        const int grain = replica->first_grain + k;
+        const size_t row = (size_t)grain * SLOTS;
+        sums[0] += energy[grain].x;
+        sums[1] += energy[grain].y;
+        moved = fmax(moved, energy[grain].z);
+        deepest = fmax(deepest, energy[grain].w);
+        bits |= status[grain];
+        if (status[grain]) failed = min(failed, grain);
+        add_wall_forces(partner + row, force_x + row, force_y + row, force_z + row, sums);
+    }
+    for (int q = 0; q < SUMS; ++q) shared_sums[lane][q] = sums[q];
+    shared_most[lane][0] = moved;
+    shared_most[lane][1] = deepest;
+    shared_status[lane][0] = bits;
+    shared_status[lane][1] = failed;
+    for (int half_way = REDUCERS / 2; half_way > 0; half_way /= 2) {
+        barrier(CLK_LOCAL_MEM_FENCE);
+        if (lane < half_way) {
+            for (int q = 0; q < SUMS; ++q) shared_sums[lane][q] += shared_sums[lane + half_way][q];
+            for (int q = 0; q < 2; ++q) shared_most[lane][q] = fmax(shared_most[lane][q], shared_most[lane + half_way][q]);
+            shared_status[lane][0] |= shared_status[lane + half_way][0];
+            shared_status[lane][1] = min(shared_status[lane][1], shared_status[lane + half_way][1]);
+        }
+    }
+    if (lane > 0) return;
+    global Report* restrict report = reports + r;
+    report->kinetic_energy = shared_sums[0][0];
+    report->elastic_energy = shared_sums[0][1];
+    for (int q = 0; q < 18; ++q) report->wall_force[q] = shared_sums[0][2 + q];
+    report->moved_squared = shared_most[0][0];
+    report->deepest_overlap = shared_most[0][1];
+    report->status = shared_status[0][0];
+    report->failed_grain = shared_status[0][1] == INT_MAX ? -1 : shared_status[0][1];
+}

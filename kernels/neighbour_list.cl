@@ -1,0 +1,115 @@
+/* Who is near whom: each grain's row of grains and walls within the probed gap plus the margin, grains
+   first in order of index. What a slot remembers (bulges, springs) moves with its neighbour. */
+
+/* Puts `entry` into the sorted grains of a row; `count` goes on counting past a full row. */
+static inline int insert_sorted(int* row, int count, int entry) {
+    if (count < SLOTS) {
+        int at = count;
+        for (; at > 0 && row[at - 1] > entry; --at) row[at] = row[at - 1];
+        row[at] = entry;
+    }
+    return count + 1;
+}
+
+static inline int near_grains(global const Replica* restrict replica, int grain, global const real4* restrict position,
+                              global const int* restrict cell_head, global const int* restrict cell_next, int* row) {
+    const real4 own = position[grain];
+    const real reach = replica->probe_gap + replica->skin;
+    const int x = cell_along(own.x, replica->cell_size, replica->cells_x);
+    const int y = cell_along(own.y, replica->cell_size, replica->cells_y);
+    const int z = cell_along(own.z, replica->cell_size, replica->cells_z);
+    int count = 0;
+    for (int k = max(z - 1, 0); k <= min(z + 1, replica->cells_z - 1); ++k)
+        for (int j = max(y - 1, 0); j <= min(y + 1, replica->cells_y - 1); ++j)
+            for (int i = max(x - 1, 0); i <= min(x + 1, replica->cells_x - 1); ++i) {
+                const int cell = replica->first_cell + (k * replica->cells_y + j) * replica->cells_x + i;
+                for (int other = cell_head[cell]; other >= 0; other = cell_next[other]) {
+                    if (other == grain) continue;
+                    const real4 there = position[other];
+                    const real3 apart = there.xyz - own.xyz;
+                    const real within = own.w + there.w + reach;
+                    if (dot(apart, apart) < within * within) count = insert_sorted(row, count, other);
+                }
+            }
+    return count;
+}
+
+static inline int near_walls(global const Replica* restrict replica, real4 own, int* row, int count) {
+    const real reach = own.w + replica->probe_gap + replica->skin;
+    for (int w = 0; w < 6; ++w) {
+        const real coordinate = w / 2 == 0 ? own.x : w / 2 == 1 ? own.y : own.z;
+        const real wall = replica->wall_position[w];
+        if ((w % 2 ? wall - coordinate : coordinate - wall) >= reach) continue;
+        if (count < SLOTS) row[count] = WALL_PARTNER(w);
+        ++count;
+    }
+    return count;
+}
+
+/* Rearranges one remembered row: the value that went with a neighbour stays with it, new neighbours get zero. */
+static inline void carry(const int* before, const int* after, global real* restrict values) {
+    real kept[SLOTS];
+    for (int c = 0; c < SLOTS; ++c) kept[c] = values[c];
+    for (int c = 0; c < SLOTS; ++c) {
+        real value = R(0);
+        for (int k = 0; k < SLOTS; ++k)
+            if (after[c] != EMPTY && before[k] == after[c]) value = kept[k];
+        values[c] = value;
+    }
+}
+
+kernel void list_neighbours(global const Replica* restrict replicas, global const int* restrict blocks,
+                            global const int* restrict replica_of_block, global const real4* restrict position,
+                            global const int* restrict cell_head, global const int* restrict cell_next,
+                            global int* restrict partner, global real* restrict bulge,
+                            global real* restrict bulge_1, global real* restrict bulge_2,
+                            global real* restrict spring_x, global real* restrict spring_y,
+                            global real* restrict spring_z, global real4* restrict listed_position,
+                            global int* restrict status) {
+    const int block = blocks[get_group_id(0)];
+    const int grain = block * BLOCK + get_local_id(0);
+    global const Replica* restrict replica = replicas + replica_of_block[block];
+    const size_t row = (size_t)grain * SLOTS;
+    const real4 own = position[grain];
+    listed_position[grain] = own;
+    if (!(own.w > R(0))) return;
+
+    int before[SLOTS], after[SLOTS];
+    for (int c = 0; c < SLOTS; ++c) {
+        before[c] = partner[row + c];
+        after[c] = EMPTY;
+    }
+    int count = near_grains(replica, grain, position, cell_head, cell_next, after);
+    count = near_walls(replica, own, after, count);
+    if (count > SLOTS) status[grain] |= STATUS_SLOTS;
+
+    bool same = true;
+    for (int c = 0; c < SLOTS; ++c) same = same && before[c] == after[c];
+    if (same) return;
+    for (int c = 0; c < SLOTS; ++c) partner[row + c] = after[c];
+    if (replica->surface != SURFACE_RIGID) {
+        carry(before, after, bulge + row);
+        carry(before, after, bulge_1 + row);
+        carry(before, after, bulge_2 + row);
+    }
+    if (replica->mindlin) {
+        carry(before, after, spring_x + row);
+        carry(before, after, spring_y + row);
+        carry(before, after, spring_z + row);
+    }
+}
+
+/* mirror: where the same contact stands in the neighbour's row, -1 for walls and empty slots. */
+kernel void link_mirrors(global const int* restrict blocks, global const int* restrict partner,
+                         global int* restrict mirror) {
+    const int grain = blocks[get_group_id(0)] * BLOCK + get_local_id(0);
+    const size_t row = (size_t)grain * SLOTS;
+    for (int c = 0; c < SLOTS; ++c) {
+        const int other = partner[row + c];
+        int found = -1;
+        if (other >= 0)
+            for (int k = 0; k < SLOTS; ++k)
+                if (partner[(size_t)other * SLOTS + k] == grain) found = other * SLOTS + k;
+        mirror[row + c] = found;
+    }
+}

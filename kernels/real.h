@@ -1,0 +1,19 @@
+/* The number types of a kernel build. Options: -DMCDEM_DOUBLE=0|1, -DLANES=16|1, -DSLOTS=16n.
+   LANES = 16: one work-item a grain, the contacts of the grain side by side in vectors (CPU).
+   LANES = 1: one work-item a slot, the slots of a grain in one work-group (GPU). */
+#if MCDEM_DOUBLE
+#pragma OPENCL EXTENSION cl_khr_fp64 : enable
+typedef double real;
+typedef double2 real2;
+typedef double3 real3;
+typedef double4 real4;
+typedef double8 real8;
+#else
+typedef float real;
+typedef float2 real2;
+typedef float3 real3;
+typedef float4 real4;
+typedef float8 real8;
+#endif
+#define R(x) ((real)(x))
+#define PI R(3.14159265358979323846)

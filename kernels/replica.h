@@ -1,0 +1,47 @@
+/* What the kernels know of one replica. Shared by host and device; `real` is the
+   includer's. Scalars and arrays of scalars only, widest first. Units in brackets, SI. */
+#define POINT_TERMS 9
+#define SIZE_TERMS 7
+#define SELF_TERMS 5
+
+typedef struct {
+    real time_step;           /* dt [s] */
+    real density;             /* inertial [kg/m3] */
+    real weight_density;      /* (density - fluid density) g [N/m3] */
+    real drag;                /* [1/s] */
+    real modulus_grain;       /* E*, grain on grain [Pa] */
+    real modulus_wall;        /* E*, grain on wall [Pa] */
+    real shear_grain;         /* G*, grain on grain [Pa] */
+    real shear_wall;          /* G*, grain on wall [Pa] */
+    real damping_grain;       /* 2 sqrt(5/6) beta */
+    real damping_wall;
+    real friction_grain;      /* mu */
+    real friction_wall;
+    real sliding_velocity;    /* regularises saturated friction [m/s] */
+    real half_space_scale;    /* -gamma (1 + nu) / (2 pi E) [1/Pa] */
+    real half_space_normal;   /* 3 - 4 nu */
+    real half_space_shear;    /* 1 - 2 nu */
+    real sphere_scale;        /* 1 / E [1/Pa] */
+    real sphere_point[POINT_TERMS]; /* P: a point force moves the surface by P(s)/s, s = sin(theta/2) */
+    real sphere_size[SIZE_TERMS];   /* T: contact radii add (2/5 a_k^2 + 2/3 a_c^2)/R^2 T(s)/s^3 */
+    real sphere_self[SELF_TERMS];   /* S0 + S1 ln(a/R) + S2 a/R + ..: the loaded contact itself */
+    real skin;                /* neighbour list margin [m] */
+    real probe_gap;           /* gap up to which surfaces are probed [m] */
+    real overlap_limit;       /* over the sum of radii */
+    real cell_size;           /* [m] */
+    real wall_position[6];    /* x_min x_max y_min y_max floor plate, at the chunk's start [m] */
+    real plate_velocity;      /* along z [m/s] */
+    int first_grain;          /* of the padded arrays */
+    int grain_count;
+    int first_cell;
+    int cells_x;
+    int cells_y;
+    int cells_z;
+    int surface;              /* SURFACE_* below */
+    int finite_contacts;      /* 1: the sphere's size and self terms are not zero */
+    int mindlin;              /* 1: friction with history */
+} Replica;
+
+#define SURFACE_RIGID 0      /* independent contacts */
+#define SURFACE_HALF_SPACE 1 /* paper, Eq. 1, at the deformed contact points */
+#define SURFACE_SPHERE 2     /* displacement of a sphere, a polynomial in sin(theta / 2) */

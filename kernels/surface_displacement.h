@@ -1,0 +1,90 @@
+/* delta_kc: how far the surface of a grain moves outward at (or towards) neighbour c because of the
+   force at contact k. The sum over k other than c of one grain, at every slot: touching or only near. */
+
+/* The contacts of one grain as every slot of it must see them. */
+typedef struct {
+    real x[SLOTS], y[SLOTS], z[SLOTS];  /* direction e */
+    real arm[SLOTS];                    /* distance of the contact or probed point [m] */
+    real elastic[SLOTS];                /* force, zero where there is no contact [N] */
+    real radius[SLOTS];                 /* of the contact [m] */
+} ContactTable;
+
+/* Paper, Eq. 1, from contact k with unit force and unit prefactor, at the deformed contact points. With
+   n = -e at both, all products follow from cos(theta) = e_k . e_c and the two arms. */
+static inline lanes half_space_displacement(global const Replica* restrict replica, lanes cosine, lanes arm, real arm_k) {
+    const lanes squared = arm * arm + arm_k * arm_k - R(2) * arm * arm_k * cosine;
+    const lanes inverse = R(1) / sqrt(squared);
+    const lanes along_k = (arm_k - arm * cosine) * inverse;  /* n_k . u */
+    const lanes along_c = (arm_k * cosine - arm) * inverse;  /* n_c . u */
+    lanes bracket = along_k * along_c + replica->half_space_normal * cosine;
+    if (replica->half_space_shear != R(0))
+        bracket -= replica->half_space_shear * (cosine + along_c) / (R(1) + along_k);
+    return bracket * inverse;
+}
+
+#define SMALLEST_SINE R(0.15) /* the polynomials hold from here on: contacts 17 degrees apart */
+
+static inline lanes polynomial(global const real* coefficient, int terms, lanes x) {
+    lanes value = coefficient[terms - 1];
+    for (int n = terms - 2; n >= 0; --n) value = value * x + coefficient[n];
+    return value;
+}
+
+/* Displacement of an elastic sphere, in F/(E R), at the angle whose cosine is given; `spread` is
+   (2/5 a_k^2 + 2/3 a_c^2)/R^2 of the two contact radii. */
+static inline lanes sphere_displacement(global const Replica* restrict replica, lanes cosine, lanes spread) {
+    const lanes squared = fmax(R(0.5) - R(0.5) * cosine, (lanes)(SMALLEST_SINE * SMALLEST_SINE));
+    const lanes inverse = R(1) / sqrt(squared);
+    const lanes s = squared * inverse;
+    lanes value = polynomial(replica->sphere_point, POINT_TERMS, s);
+    if (replica->finite_contacts)
+        value += spread * inverse * inverse * polynomial(replica->sphere_size, SIZE_TERMS, s);
+    return value * inverse;
+}
+
+static inline void tabulate(Contacts c, lanes3 normal, int v, EXCHANGE ContactTable* table) {
+    STORE_LANES(normal.x, table->x, v);
+    STORE_LANES(normal.y, table->y, v);
+    STORE_LANES(normal.z, table->z, v);
+    STORE_LANES(c.arm, table->arm, v);
+    STORE_LANES(c.elastic, table->elastic, v);
+    STORE_LANES(c.radius, table->radius, v);
+}
+
+/* The sum over the contacts k of the grain, for its slots v. */
+static inline lanes half_space_sum(global const Replica* restrict replica, EXCHANGE const ContactTable* table,
+                                   lanes3 direction, int v) {
+    const lanes arm = LOAD_LANES(table->arm, v);
+    lanes sum = R(0);
+    for (int k = 0; k < SLOTS; ++k) {
+        const real force = table->elastic[k];
+        if (!(force > R(0))) continue;
+        const lanes cosine = direction.x * table->x[k] + direction.y * table->y[k] + direction.z * table->z[k];
+        const lanes term = half_space_displacement(replica, cosine, arm, table->arm[k]) * force;
+        sum += WHERE(AS_MASK(SLOT_NUMBERS(v) == k), R(0), term);
+    }
+    return sum * replica->half_space_scale;
+}
+
+static inline lanes sphere_sum(global const Replica* restrict replica, EXCHANGE const ContactTable* table,
+                               real radius, lanes3 direction, int v) {
+    const lanes relative = LOAD_LANES(table->radius, v) / radius;
+    const lanes receiving = (R(2) / R(3)) * relative * relative;
+    lanes sum = R(0);
+    for (int k = 0; k < SLOTS; ++k) {
+        const real force = table->elastic[k];
+        if (!(force > R(0))) continue;
+        const lanes cosine = direction.x * table->x[k] + direction.y * table->y[k] + direction.z * table->z[k];
+        const real source = table->radius[k] / radius;
+        const lanes term = sphere_displacement(replica, cosine, receiving + R(0.4) * source * source) * force;
+        sum += WHERE(AS_MASK(SLOT_NUMBERS(v) == k), R(0), term);
+    }
+    return sum * (replica->sphere_scale / radius);
+}
+
+static inline lanes surface_displacement(global const Replica* restrict replica, EXCHANGE const ContactTable* table,
+                                         real radius, int v) {
+    const lanes3 direction = {LOAD_LANES(table->x, v), LOAD_LANES(table->y, v), LOAD_LANES(table->z, v)};
+    return replica->surface == SURFACE_HALF_SPACE ? half_space_sum(replica, table, direction, v)
+                                                  : sphere_sum(replica, table, radius, direction, v);
+}
