@@ -48,7 +48,7 @@ struct GeneratedPacking {
     double diameter_sd = 1.199e-3;        ///< [m]
     double diameter_min = 18.167e-3;      ///< [m]
     double diameter_max = 24.561e-3;      ///< [m]
-    double packing_fraction = 0.60;       ///< fills the box up to the height that gives this
+    double packing_fraction = 0.59;  ///< fills the box up to the height that gives this
 };
 
 struct PackingSource {
@@ -68,8 +68,9 @@ struct Protocol {
     int discard = 0;             ///< first cycles left out of metrics
     int scans_per_stroke = 30;   ///< equally spaced; the last of each stroke at its end
     bool stop_at_scans = true;   ///< false: one continuous stroke, recorded in passing
-    double settle_kinetic_over_elastic = 1e-6;  ///< a scan is taken when the ratio falls below this
-    double settle_time = 1.0;                   ///< .. or, marked unsettled, after this long [s]
+    double settle_kinetic_over_elastic = 1e-4;  ///< a scan is taken when the ratio falls below this
+    double settle_time = 0.5;                   ///< .. or, marked unsettled, after this long [s]
+    double settle_drag = 100;    ///< background drag while the plate stands still, on top of grains.drag [1/s]
     double relax_time = 1.0;                    ///< longest relaxation before the first stroke [s]
     double force_threshold = 0;                 ///< contacts below it do not count in Z and <f> [N]
 };

@@ -132,6 +132,7 @@ void Engine::upload_stretches(const std::vector<Stretch>& stretches) {
                 if (stretches[r].steps == 0) continue;
                 all[r].wall_position[5] = stretches[r].plate_z;
                 all[r].plate_velocity = stretches[r].plate_velocity;
+                all[r].drag = replicas_[r].grains.drag + stretches[r].extra_drag;
             }
             fields_.replicas.write(all.data());
         },

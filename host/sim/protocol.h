@@ -33,7 +33,8 @@ public:
         if (state_.stage == ProtocolState::Stage::finished) return {};
         const double velocity = plate_velocity();
         const long steps = std::min<long>(steps_left(), longest(velocity));
-        return {static_cast<int>(steps), plate_z(), velocity};
+        const double extra_drag = state_.stage == ProtocolState::Stage::move ? 0 : protocol_.settle_drag;
+        return {static_cast<int>(steps), plate_z(), velocity, extra_drag};
     }
 
     /// A scan to be taken of the state that a stretch has led to.
