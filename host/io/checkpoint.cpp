@@ -1,0 +1,122 @@
+#include "io/checkpoint.h"
+
+#include <zlib.h>
+
+#include "core/atomic_file.h"
+#include "core/errors.h"
+#include "io/hdf5.h"
+
+namespace mcdem {
+namespace {
+
+namespace fs = std::filesystem;
+constexpr long checkpoint_format = 1;
+
+fs::path newest(const fs::path& folder) { return folder / "checkpoint.h5"; }
+fs::path previous(const fs::path& folder) { return folder / "checkpoint.previous.h5"; }
+
+/// CRC-32 over everything, sizes too, so that bytes cannot move from one field to the next unnoticed.
+class Checksum {
+public:
+    void add(const void* data, std::size_t size) {
+        const unsigned long length = size;
+        sum_ = crc32_z(sum_, reinterpret_cast<const Bytef*>(&length), sizeof length);
+        if (size > 0) sum_ = crc32_z(sum_, static_cast<const Bytef*>(data), size);
+    }
+    void add(const std::string& text) { add(text.data(), text.size()); }
+    long value() const { return static_cast<long>(sum_); }
+
+private:
+    unsigned long sum_ = crc32_z(0, nullptr, 0);
+};
+
+long checksum(const Checkpoint& checkpoint) {
+    Checksum sum;
+    sum.add(checkpoint.scene_text);
+    sum.add(checkpoint.device);
+    sum.add(&checkpoint.segments, sizeof checkpoint.segments);
+    for (const auto& [name, bytes] : checkpoint.fields) {
+        sum.add(name);
+        sum.add(bytes.data(), bytes.size());
+    }
+    return sum.value();
+}
+
+void write_file(const fs::path& path, const Checkpoint& checkpoint) {
+    h5::File file = h5::File::create(path);
+    file.make_group("/checkpoint/fields");
+    file.set_attribute("/checkpoint", "format", std::vector<long>{checkpoint_format});
+    file.set_attribute("/checkpoint", "device", checkpoint.device);
+    file.set_attribute("/checkpoint", "segments", std::vector<long>{checkpoint.segments});
+    file.set_attribute("/checkpoint", "crc32", std::vector<long>{checksum(checkpoint)});
+    file.write_texts("/checkpoint/scene", {checkpoint.scene_text});
+    const h5::Handle byte = h5::number_type<unsigned char>();
+    for (const auto& [name, bytes] : checkpoint.fields) {
+        if (name.empty() || name.find('/') != std::string::npos)
+            throw RunError(path.string() + ": checkpoint field '" + name + "' cannot be a name");
+        // Plain: state of floating-point bits hardly packs, and a checkpoint must not hold up the run.
+        file.create_rows("/checkpoint/fields/" + name, byte, {}, h5::Storage::plain)
+            .append(byte, bytes.data(), bytes.size());
+    }
+    file.close();
+}
+
+Checkpoint read_file(const fs::path& path) {
+    const h5::File file = h5::File::open(path);
+    const long format = file.integer_attribute("/checkpoint", "format");
+    if (format != checkpoint_format)
+        throw InputError(path.string() + ": has layout " + std::to_string(format) + ", expected " +
+                         std::to_string(checkpoint_format) + ": resume with the version that wrote it");
+    Checkpoint checkpoint;
+    checkpoint.device = file.text_attribute("/checkpoint", "device");
+    checkpoint.segments = static_cast<int>(file.integer_attribute("/checkpoint", "segments"));
+    const auto scene = file.read_texts("/checkpoint/scene");
+    if (!scene.empty()) checkpoint.scene_text = scene.front();
+    for (const auto& name : file.members("/checkpoint/fields")) {
+        const h5::Dataset table = file.dataset("/checkpoint/fields/" + name);
+        table.expect_row({});
+        auto& bytes = checkpoint.fields[name];
+        bytes.resize(table.rows());
+        table.read(h5::number_type<unsigned char>(), bytes.data(), 0, bytes.size());
+    }
+    if (checksum(checkpoint) != file.integer_attribute("/checkpoint", "crc32"))
+        throw InputError(path.string() + ": the checksum does not match; the file is damaged");
+    return checkpoint;
+}
+
+}  // namespace
+
+void write_checkpoint(const fs::path& folder, const Checkpoint& checkpoint) {
+    replace_file(newest(folder), [&](const fs::path& temporary) {
+        write_file(temporary, checkpoint);
+        // A crash between this move and the next leaves the previous one alone, which is read then.
+        if (fs::exists(newest(folder))) move_file(newest(folder), previous(folder));
+    });
+}
+
+std::optional<Checkpoint> read_checkpoint(const fs::path& folder) {
+    std::vector<std::string> problems;
+    for (const auto& path : {newest(folder), previous(folder)}) {
+        if (!fs::exists(path)) continue;
+        try {
+            Checkpoint checkpoint = read_file(path);
+            if (!problems.empty())
+                checkpoint.warning = problems.front() + "; going on from " + path.filename().string();
+            return checkpoint;
+        } catch (const InputError& error) {
+            problems.push_back(error.what());
+        } catch (const std::bad_alloc&) {
+            problems.push_back(path.string() + ": needs more memory than there is");
+        }
+    }
+    if (problems.empty()) return std::nullopt;
+    problems.push_back(folder.string() + ": no checkpoint can be read: start the run anew in another folder");
+    throw InputError(problems);
+}
+
+void remove_checkpoints(const fs::path& folder) {
+    fs::remove(newest(folder));
+    fs::remove(previous(folder));
+}
+
+}  // namespace mcdem

@@ -1,0 +1,69 @@
+#include "io/csv.h"
+
+#include <fmt/format.h>
+
+#include <iterator>
+
+#include "core/atomic_file.h"
+
+namespace mcdem {
+namespace {
+
+constexpr const char* header =
+    "replica,label,frame,cycle,phase,time_s,plate_z_m,displacement_m,top_force_N,floor_force_N,"
+    "x_min_force_N,x_max_force_N,y_min_force_N,y_max_force_N,coordination_number,mean_force_N,"
+    "packing_fraction,branch_length_m,kinetic_energy_J,elastic_energy_J,settled\n";
+
+std::string quoted(const std::string& text) {
+    std::string result = "\"";
+    for (char c : text) {
+        if (c == '"') result += '"';
+        result += c == '\n' ? ' ' : c;
+    }
+    return result + '"';
+}
+
+/// The force that presses the wall outwards [N].
+double pressing(const Scan& scan, Wall wall) {
+    const Vec3& force = scan.wall_force[static_cast<std::size_t>(wall)];
+    switch (wall) {
+        case Wall::x_min:
+            return -force.x();
+        case Wall::x_max:
+            return force.x();
+        case Wall::y_min:
+            return -force.y();
+        case Wall::y_max:
+            return force.y();
+        case Wall::floor:
+            return -force.z();
+        case Wall::plate:
+            return force.z();
+    }
+    return 0;
+}
+
+}  // namespace
+
+void write_csv(const Run& run, const std::filesystem::path& folder) {
+    fmt::memory_buffer text;
+    auto out = std::back_inserter(text);
+    fmt::format_to(out, header);
+    for (std::size_t r = 0; r < run.recordings.size(); ++r) {
+        const Recording& recording = run.recordings[r];
+        const std::string label = quoted(recording.label);
+        for (const Scan& scan : recording.scans) {
+            // "{}" prints the shortest digits that read back as the same number.
+            fmt::format_to(out, "{},{},{},{},{},{},{},{},", r, label, scan.frame, scan.cycle,
+                           name(scan.phase), scan.time, scan.plate_z, recording.displacement(scan));
+            for (Wall wall : {Wall::plate, Wall::floor, Wall::x_min, Wall::x_max, Wall::y_min, Wall::y_max})
+                fmt::format_to(out, "{},", pressing(scan, wall));
+            fmt::format_to(out, "{},{},{},{},{},{},{:d}\n", scan.coordination_number, scan.mean_force,
+                           scan.packing_fraction, scan.branch_length, scan.kinetic_energy,
+                           scan.elastic_energy, scan.settled);
+        }
+    }
+    replace_file(folder / "plate.csv", std::string_view(text.data(), text.size()));
+}
+
+}  // namespace mcdem

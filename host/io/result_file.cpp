@@ -1,0 +1,163 @@
+#include "io/result_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/errors.h"
+
+namespace mcdem {
+
+ResultFile::ResultFile(const std::filesystem::path& file) : file_(h5::File::open(file)) {
+    if (!file_.has_attribute("/parameters", "format"))
+        throw InputError(file.string() +
+                         ": is HDF5 but not a result of this program: give a run.h5 or the "
+                         "folder of a run");
+    const long format = file_.integer_attribute("/parameters", "format");
+    if (format < 1 || format > result_format)
+        throw InputError(fmt::format("{}: has layout {}, this program reads up to {}: use a newer version",
+                                     file.string(), format, result_format));
+    is_double_ = file_.text_attribute("/parameters", "precision") == name(Precision::double_precision);
+}
+
+Run ResultFile::header() const {
+    Run run;
+    run.name = file_.text_attribute("/parameters", "name");
+    run.program = file_.text_attribute("/parameters", "program");
+    run.device = file_.text_attribute("/parameters", "device");
+    run.precision = file_.text_attribute("/parameters", "precision");
+    const auto scene = file_.read_texts("/parameters/scene");
+    if (!scene.empty()) run.scene = scene.front();
+    const long replicas = file_.integer_attribute("/parameters", "replicas");
+    if (replicas != static_cast<long>(file_.members("/observables").size()))
+        throw InputError(file_.where("/observables") + ": must hold " + std::to_string(replicas) +
+                         " replicas");
+    for (long r = 0; r < replicas; ++r)
+        run.recordings.push_back(recording_header(static_cast<std::size_t>(r)));
+    return run;
+}
+
+Recording ResultFile::recording_header(std::size_t replica) const {
+    const std::string particles = particles_path(replica);
+    Recording recording;
+    recording.label = file_.text_attribute(particles, "label");
+    const auto edges = file_.numbers_attribute(particles + "/box", "edges");
+    if (edges.size() != 3)
+        throw InputError(file_.where(particles + "/box") + ": edges must be 3 numbers [m]");
+    recording.box = {edges[0], edges[1]};
+    recording.plate_start = edges[2];
+    const auto diameter = file_.dataset(particles + "/diameter");
+    diameter.expect_row({});
+    recording.diameter = diameter.read_all<double>();
+    const auto parameters = file_.read_texts(parameters_path(replica));
+    if (parameters.size() % 2 != 0)
+        throw InputError(file_.where(parameters_path(replica)) + ": must be pairs");
+    for (std::size_t i = 0; i < parameters.size(); i += 2)
+        recording.parameters[parameters[i]] = parameters[i + 1];
+    if (file_.has_attribute(particles, "failure_cause"))
+        recording.failure = Failure{file_.integer_attribute(particles, "failure_step"),
+                                    static_cast<int>(file_.integer_attribute(particles, "failure_grain")),
+                                    file_.text_attribute(particles, "failure_cause")};
+    return recording;
+}
+
+std::vector<Scan> ResultFile::scans(const Recording& recording, std::size_t replica, ReadWhat what) const {
+    const h5::Dataset table = file_.dataset(observables_path(replica));
+    const h5::Handle type = scan_row_type();
+    table.expect_row({});
+    expect_fields(table, type);
+    std::vector<ScanRow> rows(table.rows());
+    table.read(type, rows.data(), 0, rows.size());
+    std::vector<Scan> scans;
+    scans.reserve(rows.size());
+    for (const ScanRow& row : rows) scans.push_back(scan_of(row, table.where()));
+    const std::size_t grains = recording.diameter.size();
+    if (what == ReadWhat::positions || what == ReadWhat::everything) read_positions(scans, grains, replica);
+    if (what == ReadWhat::contacts || what == ReadWhat::everything) read_contacts(scans, grains, replica);
+    return scans;
+}
+
+namespace {
+
+std::vector<Vec3> positions(const double* value, std::size_t grains) {
+    std::vector<Vec3> position(grains);
+    for (std::size_t i = 0; i < grains; ++i) position[i] = Eigen::Map<const Vec3>(value + 3 * i);
+    return position;
+}
+
+template <class Real>
+std::vector<Contact> read_contact_rows(const h5::Dataset& table, std::size_t grains, long first, long last) {
+    const h5::Handle type = contact_row_type<Real>();
+    std::vector<ContactRow<Real>> rows(static_cast<std::size_t>(last - first));
+    table.read(type, rows.data(), static_cast<hsize_t>(first), rows.size());
+    std::vector<Contact> contacts;
+    contacts.reserve(rows.size());
+    for (const auto& row : rows) contacts.push_back(contact_of(row, grains, table.where()));
+    return contacts;
+}
+
+}  // namespace
+
+void ResultFile::read_positions(std::vector<Scan>& scans, std::size_t grains, std::size_t replica) const {
+    if (grains == 0) return;
+    const std::string group = particles_path(replica) + "/position";
+    const h5::Dataset table = file_.dataset(group + "/value");
+    table.expect_row({grains, 3});
+    const auto step = file_.dataset(group + "/step").read_all<long>();
+    if (step.size() != table.rows()) throw InputError(table.where() + ": must have one row for each of step");
+    std::vector<double> value(3 * grains);
+    for (std::size_t k = 0; k < step.size(); ++k) {
+        if (step[k] < 0 || step[k] >= static_cast<long>(scans.size()))
+            throw InputError(fmt::format("{}: step {} must be the row of a scan, 0 to {}", table.where(),
+                                         step[k], static_cast<long>(scans.size()) - 1));
+        table.read(h5::number_type<double>(), value.data(), k, 1);
+        scans[static_cast<std::size_t>(step[k])].position = positions(value.data(), grains);
+    }
+}
+
+std::vector<Contact> ResultFile::contact_rows(const h5::Dataset& table, std::size_t grains, long first,
+                                              long last) const {
+    return is_double_ ? read_contact_rows<double>(table, grains, first, last)
+                      : read_contact_rows<float>(table, grains, first, last);
+}
+
+void ResultFile::read_contacts(std::vector<Scan>& scans, std::size_t grains, std::size_t replica) const {
+    const h5::Dataset table = file_.dataset(contacts_path(replica) + "/contact");
+    table.expect_row({});
+    expect_fields(table, contact_row_type<double>());
+    const auto offset = file_.dataset(contacts_path(replica) + "/offset").read_all<long>();
+    if (offset.size() != scans.size() + 1 || offset.front() != 0 ||
+        !std::is_sorted(offset.begin(), offset.end()) || offset.back() != static_cast<long>(table.rows()))
+        throw InputError(table.where() +
+                         ": offset must rise from 0 to the number of contacts, one entry a scan "
+                         "and one more");
+    // One scan at a time: the rows of a whole replica would double the memory.
+    for (std::size_t s = 0; s < scans.size(); ++s)
+        scans[s].contacts = contact_rows(table, grains, offset[s], offset[s + 1]);
+}
+
+void ResultFile::fill(Scan& scan, std::size_t grains, std::size_t replica, std::size_t row) const {
+    const h5::Dataset contacts = file_.dataset(contacts_path(replica) + "/contact");
+    const h5::Dataset offset = file_.dataset(contacts_path(replica) + "/offset");
+    contacts.expect_row({});
+    offset.expect_row({});
+    expect_fields(contacts, contact_row_type<double>());
+    long bounds[2] = {0, 0};
+    offset.read(h5::number_type<long>(), bounds, row, 2);
+    if (bounds[0] < 0 || bounds[1] < bounds[0] || bounds[1] > static_cast<long>(contacts.rows()))
+        throw InputError(offset.where() + ": must rise from 0 to the number of contacts");
+    scan.contacts = contact_rows(contacts, grains, bounds[0], bounds[1]);
+    scan.position.clear();
+    if (grains == 0) return;
+    const std::string group = particles_path(replica) + "/position";
+    const auto step = file_.dataset(group + "/step").read_all<long>();
+    const auto found = std::find(step.begin(), step.end(), static_cast<long>(row));
+    if (found == step.end()) return;
+    const h5::Dataset table = file_.dataset(group + "/value");
+    table.expect_row({grains, 3});
+    std::vector<double> value(3 * grains);
+    table.read(h5::number_type<double>(), value.data(), static_cast<hsize_t>(found - step.begin()), 1);
+    scan.position = positions(value.data(), grains);
+}
+
+}  // namespace mcdem

@@ -1,0 +1,185 @@
+#include "io/result_folder.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <map>
+#include <optional>
+
+#include "core/atomic_file.h"
+#include "core/errors.h"
+#include "io/result_file.h"
+
+namespace mcdem {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path segment_file(const fs::path& folder, int index) {
+    return folder / fmt::format("segment-{:06}.h5", index);
+}
+
+std::optional<int> segment_index(const fs::path& file) {
+    const std::string name = file.filename().string();
+    int index = -1, length = 0;
+    if (std::sscanf(name.c_str(), "segment-%6d.h5%n", &index, &length) != 1 || index < 0 ||
+        length != static_cast<int>(name.size()))
+        return std::nullopt;
+    return index;
+}
+
+bool belongs_to_a_run(const fs::path& file) {
+    const std::string name = file.filename().string();
+    return name == "run.h5" || name.starts_with("checkpoint.") || segment_index(file);
+}
+
+int lock_folder(const fs::path& folder) {
+    const int lock = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (lock < 0)
+        throw RunError(folder.string() + ": cannot be opened: " + std::generic_category().message(errno));
+    // Where the file system has no locks (ENOLCK, EBADF on some network disks) go on without.
+    if (::flock(lock, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+        ::close(lock);
+        throw InputError(folder.string() +
+                         ": another program is writing a run there: wait for it, or give "
+                         "another folder");
+    }
+    return lock;
+}
+
+/// What a write that was cut short has left.
+void remove_temporaries(const fs::path& folder) {
+    for (const auto& entry : fs::directory_iterator(folder))
+        if (entry.path().extension() == ".tmp" && belongs_to_a_run(entry.path().stem()))
+            fs::remove(entry.path());
+}
+
+/// The segments of a run, kept open as long as they are not too many.
+class Segments {
+public:
+    explicit Segments(std::vector<fs::path> files) : files_(std::move(files)), open_(files_.size()) {}
+    std::size_t size() const { return files_.size(); }
+    template <class Use>
+    void with(std::size_t index, Use use) {
+        if (files_.size() > most_open) return use(ResultFile(files_[index]));
+        if (!open_[index]) open_[index].emplace(files_[index]);
+        use(*open_[index]);
+    }
+
+private:
+    static constexpr std::size_t most_open = 200;
+    std::vector<fs::path> files_;
+    std::vector<std::optional<ResultFile>> open_;
+};
+
+/// Replica by replica, so that memory holds one replica of one segment.
+void merge(const std::vector<fs::path>& files, const fs::path& merged) {
+    const Run run = read_run_header(files);
+    Segments segments(files);
+    ResultWriter writer(merged, run);
+    for (std::size_t r = 0; r < run.recordings.size(); ++r) {
+        for (std::size_t k = 0; k < segments.size(); ++k)
+            segments.with(k, [&](const ResultFile& file) {
+                for (Scan& scan : file.scans(run.recordings[r], r, ReadWhat::everything))
+                    writer.append(r, std::move(scan));
+            });
+        writer.end(r, run.recordings[r].failure);
+    }
+    writer.close();
+}
+
+}  // namespace
+
+fs::path run_file(const fs::path& folder) { return folder / "run.h5"; }
+
+std::vector<fs::path> segment_files(const fs::path& folder) {
+    std::map<int, fs::path> found;
+    for (const auto& entry : fs::directory_iterator(folder))
+        if (const auto index = segment_index(entry.path())) found[*index] = entry.path();
+    std::vector<fs::path> files;
+    for (const auto& [index, file] : found) {
+        if (index != static_cast<int>(files.size()))
+            throw InputError(fmt::format("{}: is missing, though later segments are there",
+                                         segment_file(folder, static_cast<int>(files.size())).string()));
+        files.push_back(file);
+    }
+    return files;
+}
+
+std::vector<fs::path> result_files(const fs::path& file_or_folder) {
+    if (!fs::is_directory(file_or_folder)) return {file_or_folder};
+    if (fs::exists(run_file(file_or_folder))) return {run_file(file_or_folder)};
+    const auto segments = segment_files(file_or_folder);
+    if (segments.empty())
+        throw InputError(file_or_folder.string() + ": holds no run (neither run.h5 nor segment-000000.h5)");
+    return segments;
+}
+
+ResultFolder ResultFolder::create(const fs::path& folder) {
+    std::error_code error;
+    if (fs::exists(folder) && !fs::is_directory(folder))
+        throw InputError(folder.string() + ": is a file; give a folder for the results");
+    fs::create_directories(folder, error);
+    if (error) throw RunError(folder.string() + ": cannot be made: " + error.message());
+    ResultFolder made(folder, lock_folder(folder));
+    for (const auto& entry : fs::directory_iterator(folder))
+        if (belongs_to_a_run(entry.path()))
+            throw InputError(
+                fmt::format("{}: holds another run ({}): give another folder, remove it, or go on with "
+                            "--resume",
+                            folder.string(), entry.path().filename().string()));
+    return made;
+}
+
+ResultFolder ResultFolder::open_for_resume(const fs::path& folder) {
+    if (!fs::is_directory(folder))
+        throw InputError(folder.string() + ": no such folder, so nothing to resume");
+    ResultFolder found(folder, lock_folder(folder));
+    remove_temporaries(folder);
+    if (found.is_finished()) {
+        found.remove_segments();  // a finish() cut short after its last write
+    } else {
+        found.segments_ = static_cast<int>(segment_files(folder).size());
+    }
+    return found;
+}
+
+ResultFolder::ResultFolder(ResultFolder&& other) noexcept
+    : folder_(std::move(other.folder_)), lock_(std::exchange(other.lock_, -1)), segments_(other.segments_) {}
+
+ResultFolder::~ResultFolder() {
+    if (lock_ >= 0) ::close(lock_);
+}
+
+bool ResultFolder::is_finished() const { return fs::exists(run_file(folder_)); }
+
+int ResultFolder::append_segment(const Run& scans_since_last) {
+    write_run(segment_file(folder_, segments_), scans_since_last);
+    return segments_++;
+}
+
+void ResultFolder::drop_segments_from(int index) {
+    // The last first: a crash in between leaves no gap.
+    for (; segments_ > index; --segments_) fs::remove(segment_file(folder_, segments_ - 1));
+}
+
+void ResultFolder::remove_segments() {
+    for (const auto& entry : fs::directory_iterator(folder_))
+        if (segment_index(entry.path())) fs::remove(entry.path());
+    segments_ = 0;
+}
+
+void ResultFolder::finish() {
+    const auto segments = segment_files(folder_);
+    if (segments.empty()) throw RunError(folder_.string() + ": nothing was recorded");
+    if (segments.size() == 1)
+        move_file(segments.front(), run_file(folder_));
+    else
+        replace_file(run_file(folder_), [&](const fs::path& temporary) { merge(segments, temporary); });
+    remove_segments();
+}
+
+}  // namespace mcdem

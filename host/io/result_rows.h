@@ -1,0 +1,46 @@
+// The rows of the tables in a result file, and where each of their fields lies in memory.
+#pragma once
+#include "core/recording.h"
+#include "io/hdf5.h"
+
+namespace mcdem {
+
+/// One scan without positions and contacts.
+struct ScanRow {
+    int frame, cycle;
+    signed char phase, settled;
+    double time, plate_z;
+    double wall_force[wall_count][3];
+    double kinetic_energy, elastic_energy;
+    double coordination_number, mean_force, packing_fraction, branch_length;
+};
+
+/// Real is what the file keeps, float or double: rows go to and from it without conversion.
+template <class Real>
+struct ContactRow {
+    int grain, partner;
+    Real point[3], force[3], overlap;
+};
+
+ScanRow scan_row(const Scan& scan);
+/// Throws InputError naming `where` when the row says what cannot be.
+Scan scan_of(const ScanRow& row, const std::string& where);
+template <class Real>
+ContactRow<Real> contact_row(const Contact& contact);
+template <class Real>
+Contact contact_of(const ContactRow<Real>& row, std::size_t grains, const std::string& where);
+
+/// The fields of the rows as one HDF5 type, at the offsets of the struct.
+h5::Handle scan_row_type();
+template <class Real>
+h5::Handle contact_row_type();
+/// The same fields as a file keeps them: without gaps.
+h5::Handle packed(const h5::Handle& row_type);
+/// Throws unless the table has every field of `row_type`: a missing one would be left uninitialised.
+void expect_fields(const h5::Dataset& table, const h5::Handle& row_type);
+
+/// Field names and their units, for the attributes of the tables.
+std::vector<std::pair<std::string, std::string>> scan_row_units();
+std::vector<std::pair<std::string, std::string>> contact_row_units();
+
+}  // namespace mcdem

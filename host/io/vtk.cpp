@@ -1,0 +1,192 @@
+#include "io/vtk.h"
+
+#include <fmt/format.h>
+
+#include "core/atomic_file.h"
+#include "core/errors.h"
+#include "io/hdf5.h"
+#include "io/results.h"
+
+namespace mcdem {
+namespace {
+
+// Cell types of VTK.
+constexpr unsigned char vtk_vertex = 1, vtk_line = 3;
+
+constexpr const char* readme = R"(Grains and contacts for ParaView
+================================
+
+replica_00000/grains_000000.hdf, ..     grains of replica 0, one file a scan
+replica_00000/contacts_000000.hdf, ..   its contacts
+
+1. Start ParaView (5.10 or later), File > Open, choose the group `grains_..hdf` of a replica (ParaView shows the
+   numbered files as one time series), reader `VTKHDF`, Apply.
+2. Grains: Filters > Glyph; Glyph Type `Sphere` with Radius 0.5, Orientation Array `No orientation array`,
+   Scale Array `diameter`, Scale Factor 1, Glyph Mode `All Points`. Colour by `coordination_number` or `force_magnitude`.
+3. Contacts: open `contacts_..hdf`, Filters > Tube; Scalars `force_magnitude`, Vary Radius `By Scalar`. Colour by
+   `force_magnitude`: the force chains.
+
+Lengths in metres, forces in newtons. Each file carries frame, time, plate_z and top_force as field data.
+Walls are partners -1 to -6: x_min, x_max, y_min, y_max, floor, plate.
+)";
+
+/// The parts of a VTKHDF unstructured grid, version 1.0, in one piece.
+class Grid {
+public:
+    Grid(const std::filesystem::path& path, unsigned char cell_type, long points_per_cell,
+         const std::vector<double>& points)
+        : file_(h5::File::create(path)) {
+        const long count = static_cast<long>(points.size() / 3), cells = count / points_per_cell;
+        file_.make_group("/VTKHDF");
+        file_.set_attribute("/VTKHDF", "Version", std::vector<long>{1, 0});
+        file_.set_attribute("/VTKHDF", "Type", std::string_view("UnstructuredGrid"));
+        file_.write("/VTKHDF/NumberOfPoints", std::vector<long>{count});
+        file_.write("/VTKHDF/NumberOfCells", std::vector<long>{cells});
+        file_.write("/VTKHDF/NumberOfConnectivityIds", std::vector<long>{count});
+        file_.write("/VTKHDF/Points", points, {3});
+        std::vector<long> connectivity, offsets;
+        for (long i = 0; i < count; ++i) connectivity.push_back(i);
+        for (long c = 0; c <= cells; ++c) offsets.push_back(c * points_per_cell);
+        file_.write("/VTKHDF/Connectivity", connectivity);
+        file_.write("/VTKHDF/Offsets", offsets);
+        file_.write("/VTKHDF/Types", std::vector<unsigned char>(static_cast<std::size_t>(cells), cell_type));
+        for (const char* group : {"/VTKHDF/PointData", "/VTKHDF/CellData", "/VTKHDF/FieldData"})
+            file_.make_group(group);
+    }
+    template <class Number>
+    void point_data(const std::string& name, const std::vector<Number>& values) {
+        file_.write("/VTKHDF/PointData/" + name, values);
+    }
+    template <class Number>
+    void cell_data(const std::string& name, const std::vector<Number>& values, const h5::Extent& row = {}) {
+        file_.write("/VTKHDF/CellData/" + name, values, row);
+    }
+    void close_with(const Scan& scan) {
+        field_data("frame", scan.frame);
+        field_data("time", scan.time);
+        field_data("plate_z", scan.plate_z);
+        field_data("top_force", scan.top_force());
+        file_.close();
+    }
+
+private:
+    void field_data(const std::string& name, double value) {
+        file_.write("/VTKHDF/FieldData/" + name, std::vector<double>{value});
+    }
+    h5::File file_;
+};
+
+void add(std::vector<double>& values, const Vec3& v) { values.insert(values.end(), {v.x(), v.y(), v.z()}); }
+
+Vec3 foot(const Vec3& centre, Wall wall, const Box& box, double plate_z) {
+    switch (wall) {
+        case Wall::x_min:
+            return {0, centre.y(), centre.z()};
+        case Wall::x_max:
+            return {box.size_x, centre.y(), centre.z()};
+        case Wall::y_min:
+            return {centre.x(), 0, centre.z()};
+        case Wall::y_max:
+            return {centre.x(), box.size_y, centre.z()};
+        case Wall::floor:
+            return {centre.x(), centre.y(), 0};
+        case Wall::plate:
+            return {centre.x(), centre.y(), plate_z};
+    }
+    return centre;
+}
+
+int export_scan(const Recording& recording, std::size_t replica, const Scan& scan,
+                const std::filesystem::path& folder) {
+    if (scan.position.empty()) return 0;
+    const auto sub = folder / fmt::format("replica_{:05}", replica);
+    std::filesystem::create_directories(sub);
+    write_vtk_grains(sub / fmt::format("grains_{:06}.hdf", scan.frame), recording, scan);
+    write_vtk_contacts(sub / fmt::format("contacts_{:06}.hdf", scan.frame), recording, scan);
+    return 2;
+}
+
+void start_folder(const std::filesystem::path& folder) {
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    if (error) throw RunError(folder.string() + ": cannot be made: " + error.message());
+    replace_file(folder / "README.txt", readme);
+}
+
+}  // namespace
+
+void write_vtk_grains(const std::filesystem::path& file, const Recording& recording, const Scan& scan) {
+    const std::size_t grains = scan.position.size();
+    std::vector<double> points, force(grains, 0.0);
+    std::vector<int> number(grains), contacts(grains, 0);
+    for (std::size_t i = 0; i < grains; ++i) {
+        add(points, scan.position[i]);
+        number[i] = static_cast<int>(i);
+    }
+    for (const Contact& contact : scan.contacts)
+        for (int grain : {contact.grain, contact.partner}) {
+            if (is_wall(grain)) continue;
+            contacts[static_cast<std::size_t>(grain)] += 1;
+            force[static_cast<std::size_t>(grain)] += contact.force.norm();
+        }
+    replace_file(file, [&](const std::filesystem::path& temporary) {
+        Grid grid(temporary, vtk_vertex, 1, points);
+        grid.point_data("grain", number);
+        grid.point_data("diameter", recording.diameter);
+        grid.point_data("coordination_number", contacts);
+        grid.point_data("force_magnitude", force);
+        grid.close_with(scan);
+    });
+}
+
+void write_vtk_contacts(const std::filesystem::path& file, const Recording& recording, const Scan& scan) {
+    std::vector<double> points, force, magnitude, overlap, end_magnitude;
+    std::vector<int> grain, partner;
+    for (const Contact& contact : scan.contacts) {
+        const Vec3& from = scan.position[static_cast<std::size_t>(contact.grain)];
+        add(points, from);
+        add(points, is_wall(contact.partner)
+                        ? foot(from, wall_of(contact.partner), recording.box, scan.plate_z)
+                        : scan.position[static_cast<std::size_t>(contact.partner)]);
+        add(force, contact.force);
+        magnitude.push_back(contact.force.norm());
+        end_magnitude.insert(end_magnitude.end(), 2, contact.force.norm());
+        overlap.push_back(contact.overlap);
+        grain.push_back(contact.grain);
+        partner.push_back(contact.partner);
+    }
+    replace_file(file, [&](const std::filesystem::path& temporary) {
+        Grid grid(temporary, vtk_line, 2, points);
+        grid.point_data("force_magnitude",
+                        end_magnitude);  // at the ends too: tubes take their radius from points
+        grid.cell_data("grain", grain);
+        grid.cell_data("partner", partner);
+        grid.cell_data("force", force, {3});
+        grid.cell_data("force_magnitude", magnitude);
+        grid.cell_data("overlap", overlap);
+        grid.close_with(scan);
+    });
+}
+
+int export_vtk(const Run& run, const std::filesystem::path& folder) {
+    start_folder(folder);
+    int files = 0;
+    for (std::size_t r = 0; r < run.recordings.size(); ++r)
+        for (const Scan& scan : run.recordings[r].scans)
+            files += export_scan(run.recordings[r], r, scan, folder);
+    return files;
+}
+
+int export_vtk(const std::filesystem::path& file_or_folder, const std::filesystem::path& folder) {
+    RunReader reader(file_or_folder);
+    start_folder(folder);
+    int files = 0;
+    for (std::size_t r = 0; r < reader.run().recordings.size(); ++r) {
+        const Recording& recording = reader.run().recordings[r];
+        for (std::size_t s = 0; s < recording.scans.size(); ++s)
+            files += export_scan(recording, r, reader.read_scan(r, s), folder);
+    }
+    return files;
+}
+
+}  // namespace mcdem

@@ -1,0 +1,99 @@
+#include "io/checkpoint.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "core/errors.h"
+#include "io/synthetic_run.h"
+
+namespace mcdem::test {
+namespace {
+
+using ::testing::HasSubstr;
+
+Checkpoint example(int segments) {
+    Checkpoint checkpoint{"name = 1\n", "a device", segments, {}, ""};
+    std::mt19937 random(static_cast<unsigned>(segments));
+    for (const auto& [name, size] :
+         {std::pair("positions", 100000), std::pair("status", 3), std::pair("none", 0)})
+        for (int i = 0; i < size; ++i) checkpoint.fields[name].push_back(static_cast<std::byte>(random()));
+    checkpoint.fields["none"];
+    return checkpoint;
+}
+
+void expect_same(const Checkpoint& a, const Checkpoint& b) {
+    EXPECT_EQ(a.scene_text, b.scene_text);
+    EXPECT_EQ(a.device, b.device);
+    EXPECT_EQ(a.segments, b.segments);
+    EXPECT_TRUE(a.fields == b.fields);
+}
+
+TEST(checkpoint, comes_back_bit_for_bit) {
+    TemporaryFolder folder;
+    EXPECT_FALSE(read_checkpoint(folder.path()).has_value());
+    write_checkpoint(folder.path(), example(3));
+    const auto found = read_checkpoint(folder.path());
+    ASSERT_TRUE(found.has_value());
+    expect_same(example(3), *found);
+    EXPECT_EQ(found->warning, "");
+}
+
+TEST(checkpoint, damaged_newest_gives_the_previous_with_a_warning) {
+    TemporaryFolder folder;
+    write_checkpoint(folder.path(), example(3));
+    write_checkpoint(folder.path(), example(4));
+    const std::string whole = read_bytes(folder / "checkpoint.h5");
+    write_bytes(folder / "checkpoint.h5", whole.substr(0, whole.size() / 2));
+    const auto found = read_checkpoint(folder.path());
+    ASSERT_TRUE(found.has_value());
+    expect_same(example(3), *found);
+    EXPECT_THAT(found->warning, HasSubstr("checkpoint.h5"));
+    EXPECT_THAT(found->warning, HasSubstr("going on from checkpoint.previous.h5"));
+}
+
+TEST(checkpoint, missing_newest_gives_the_previous) {
+    TemporaryFolder folder;
+    write_checkpoint(folder.path(), example(3));
+    std::filesystem::rename(folder / "checkpoint.h5", folder / "checkpoint.previous.h5");
+    ASSERT_TRUE(read_checkpoint(folder.path()).has_value());
+    remove_checkpoints(folder.path());
+    EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+}
+
+TEST(checkpoint, both_damaged_is_an_error_that_names_both) {
+    TemporaryFolder folder;
+    write_bytes(folder / "checkpoint.h5", "no");
+    write_bytes(folder / "checkpoint.previous.h5", "");
+    try {
+        read_checkpoint(folder.path());
+        FAIL();
+    } catch (const InputError& error) {
+        EXPECT_EQ(error.problems().size(), 3u);
+        EXPECT_THAT(error.what(), HasSubstr("checkpoint.previous.h5"));
+    }
+}
+
+TEST(checkpoint, any_flipped_bit_is_noticed_or_harmless) {
+    TemporaryFolder folder;
+    const Checkpoint written = example(5);
+    write_checkpoint(folder.path(), written);
+    const std::string whole = read_bytes(folder / "checkpoint.h5");
+    std::mt19937_64 random(7);
+    int noticed = 0;
+    for (int trial = 0; trial < 200; ++trial) {
+        std::string bytes = whole;
+        bytes[random() % bytes.size()] ^= static_cast<char>(1 << random() % 8);
+        write_bytes(folder / "checkpoint.h5", bytes);
+        try {
+            expect_same(written, read_checkpoint(folder.path()).value());  // a bit in a gap between objects
+        } catch (const InputError&) {
+            ++noticed;
+        }
+    }
+    EXPECT_GT(noticed, 100);
+}
+
+}  // namespace
+}  // namespace mcdem::test

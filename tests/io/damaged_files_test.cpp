@@ -1,0 +1,212 @@
+// Damaged, foreign and half-written result files: a clear error, never a crash, never wrong numbers.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <random>
+
+#include "core/atomic_file.h"
+#include "core/errors.h"
+#include "io/hdf5.h"
+#include "io/result_file.h"
+#include "io/results.h"
+#include "io/synthetic_run.h"
+
+namespace mcdem::test {
+namespace {
+
+using ::testing::HasSubstr;
+
+std::string read_error(const std::filesystem::path& file) {
+    try {
+        read_run(file);
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "no error";
+}
+
+TEST(damaged_files, truncated_at_every_tenth) {
+    TemporaryFolder folder;
+    const auto file = folder / "run.h5";
+    write_run(file, synthetic_run());
+    const std::string whole = read_bytes(file);
+    for (int tenth = 0; tenth < 10; ++tenth) {
+        write_bytes(file, whole.substr(0, whole.size() * static_cast<std::size_t>(tenth) / 10));
+        EXPECT_THAT(read_error(file), HasSubstr("run.h5: cannot be opened as HDF5")) << tenth;
+    }
+}
+
+TEST(damaged_files, flipped_bits_are_noticed_or_harmless) {
+    TemporaryFolder folder;
+    const auto file = folder / "run.h5";
+    const auto run = synthetic_run();
+    write_run(file, run);
+    const std::string whole = read_bytes(file);
+    std::mt19937_64 random(11);
+    int noticed = 0;
+    for (int trial = 0; trial < 400; ++trial) {
+        std::string bytes = whole;
+        bytes[random() % bytes.size()] ^= static_cast<char>(1 << random() % 8);
+        write_bytes(file, bytes);
+        try {
+            expect_same(run, read_run(file));
+        } catch (const InputError& error) {
+            EXPECT_THAT(error.what(), HasSubstr("run.h5"));
+            ++noticed;
+        }
+        ASSERT_FALSE(HasFailure()) << "trial " << trial;
+    }
+    EXPECT_GT(noticed, 100);
+}
+
+TEST(damaged_files, scrambled_stretches_are_noticed) {
+    TemporaryFolder folder;
+    const auto file = folder / "run.h5";
+    const auto run = synthetic_run();
+    write_run(file, run);
+    const std::string whole = read_bytes(file);
+    std::mt19937_64 random(13);
+    for (int trial = 0; trial < 100; ++trial) {
+        std::string bytes = whole;
+        const std::size_t first = random() % bytes.size(),
+                          last = std::min(bytes.size(), first + random() % 4096);
+        for (std::size_t i = first; i < last; ++i) bytes[i] = static_cast<char>(random());
+        write_bytes(file, bytes);
+        try {
+            expect_same(run, read_run(file));
+        } catch (const InputError&) {
+        }
+        ASSERT_FALSE(HasFailure()) << "trial " << trial;
+    }
+}
+
+TEST(damaged_files, foreign_files_are_named_as_such) {
+    TemporaryFolder folder;
+    write_bytes(folder / "text.h5", "frame,cycle\n0,0\n");
+    EXPECT_THAT(read_error(folder / "text.h5"), HasSubstr("cannot be opened as HDF5"));
+    auto other = h5::File::create(folder / "other.h5");
+    other.write("/measurement/height", std::vector<double>{1, 2});
+    other.close();
+    EXPECT_THAT(read_error(folder / "other.h5"), HasSubstr("not a result of this program"));
+}
+
+TEST(damaged_files, missing_tables_are_named) {
+    for (const std::string object :
+         {"/observables/replica_00000", "/contacts/replica_00000/offset", "/contacts/replica_00000/contact",
+          "/particles/replica_00000/diameter", "/particles/replica_00000/position/value",
+          "/parameters/replica_00000"}) {
+        TemporaryFolder folder;
+        write_run(folder / "run.h5", synthetic_run({.replicas = 1, .scans = 2}));
+        {
+            const h5::Handle file(H5Fopen((folder / "run.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose);
+            H5Lmove(file, object.c_str(), file, "/elsewhere", H5P_DEFAULT, H5P_DEFAULT);
+        }
+        const bool is_replica = object.starts_with("/observables");
+        EXPECT_THAT(read_error(folder / "run.h5"), HasSubstr(is_replica ? "/observables: must hold 1 replicas"
+                                                                        : object + ": cannot be found"));
+    }
+}
+
+/// Writes a result file, replaces the object `path` by `values` and returns the error of reading it.
+template <class Number>
+std::string error_with(const std::string& path, const std::vector<Number>& values) {
+    TemporaryFolder folder;
+    write_run(folder / "run.h5", synthetic_run({.replicas = 1, .scans = 2}));
+    {
+        const h5::Handle file(H5Fopen((folder / "run.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose);
+        H5Ldelete(file, path.c_str(), H5P_DEFAULT);
+        const hsize_t size = values.size();
+        const h5::Handle space(H5Screate_simple(1, &size, nullptr), H5Sclose);
+        const h5::Handle type = h5::number_type<Number>();
+        const h5::Handle table(
+            H5Dcreate2(file, path.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Dclose);
+        H5Dwrite(table, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
+    }
+    return read_error(folder / "run.h5");
+}
+
+TEST(damaged_files, wrong_types_and_sizes_are_named) {
+    EXPECT_THAT(error_with("/observables/replica_00000", std::vector<double>{1, 2}),
+                HasSubstr("named fields"));
+    EXPECT_THAT(error_with("/parameters/scene", std::vector<double>{1}),
+                HasSubstr("/parameters/scene: must hold texts"));
+    EXPECT_THAT(error_with("/contacts/replica_00000/offset", std::vector<long>{0, 5}),
+                HasSubstr("offset must rise"));
+    EXPECT_THAT(error_with("/contacts/replica_00000/offset", std::vector<long>{0, 1000000000, 36}),
+                HasSubstr("offset must rise"));
+    EXPECT_THAT(error_with("/particles/replica_00000/diameter", std::vector<double>{0.02}),
+                HasSubstr("position/value: has rows of another size"));
+    EXPECT_THAT(error_with("/particles/replica_00000/position/step", std::vector<long>{0, 2}),
+                HasSubstr("must be the row of a scan"));
+    EXPECT_THAT(error_with("/particles/replica_00000/position/step", std::vector<long>{0}),
+                HasSubstr("one row for each of step"));
+}
+
+TEST(damaged_files, a_contact_of_a_grain_that_is_not_there_is_refused) {
+    TemporaryFolder folder;
+    auto run = synthetic_run();
+    run.recordings[1].scans[0].contacts[0].partner = 27;
+    write_run(folder / "run.h5", run);
+    EXPECT_THAT(read_error(folder / "run.h5"), HasSubstr("contact of grain 0 with partner 27"));
+}
+
+TEST(damaged_files, killed_while_writing_leaves_the_old_file) {
+    TemporaryFolder folder;
+    const auto file = folder / "run.h5";
+    write_run(file, synthetic_run());
+    const std::string before = read_bytes(file);
+    const pid_t child = fork();
+    ASSERT_GE(child, 0);
+    if (child == 0) {
+        replace_file(file, [](const std::filesystem::path& temporary) {
+            ResultWriter writer(temporary, synthetic_run({.replicas = 9}));
+            raise(SIGKILL);
+        });
+        _exit(0);
+    }
+    int status = 0;
+    waitpid(child, &status, 0);
+    ASSERT_TRUE(WIFSIGNALED(status));
+    EXPECT_TRUE(std::filesystem::exists(folder / "run.h5.tmp"));
+    EXPECT_EQ(read_bytes(file), before);
+    write_run(file, synthetic_run({.replicas = 1}));  // the left-over does not stand in the way
+    EXPECT_EQ(read_run(file).recordings.size(), 1u);
+}
+
+TEST(damaged_files, full_disk_is_an_error_and_leaves_the_old_file) {
+    TemporaryFolder folder;
+    const auto file = folder / "run.h5";
+    write_run(file, synthetic_run({.replicas = 1}));
+    const std::string before = read_bytes(file);
+    const pid_t child = fork();
+    ASSERT_GE(child, 0);
+    if (child == 0) {
+        signal(SIGXFSZ, SIG_IGN);
+        const rlimit limit{20000, 20000};
+        setrlimit(RLIMIT_FSIZE, &limit);
+        try {
+            write_run(file, synthetic_run({.replicas = 9, .grains = 1000}));
+        } catch (const RunError& error) {
+            _exit(std::string(error.what()).find("run.h5") != std::string::npos ? 7 : 8);
+        }
+        _exit(9);
+    }
+    int status = 0;
+    waitpid(child, &status, 0);
+    ASSERT_TRUE(WIFEXITED(status));
+    EXPECT_EQ(WEXITSTATUS(status), 7);
+    EXPECT_EQ(read_bytes(file), before);
+    EXPECT_FALSE(std::filesystem::exists(folder / "run.h5.tmp"));
+}
+
+TEST(damaged_files, unwritable_folder_is_named) {
+    EXPECT_THROW(write_run("/proc/nowhere/run.h5", synthetic_run()), RunError);
+    EXPECT_THROW(replace_file("/proc/nowhere/text", "text"), RunError);
+}
+
+}  // namespace
+}  // namespace mcdem::test

@@ -1,0 +1,154 @@
+// CSV, ParaView files and example scripts, read by the programs that users read them with.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <sstream>
+
+#include "core/errors.h"
+#include "io/csv.h"
+#include "io/result_folder.h"
+#include "io/results.h"
+#include "io/synthetic_run.h"
+#include "io/vtk.h"
+
+namespace mcdem::test {
+namespace {
+
+using ::testing::HasSubstr;
+constexpr int module_missing = 77;
+const std::string source = MCDEM_SOURCE_DIR;
+
+std::vector<std::string> cells(const std::string& line) {
+    std::vector<std::string> words;
+    std::stringstream text(line);
+    for (std::string word; std::getline(text, word, ',');) words.push_back(word);
+    return words;
+}
+
+TEST(csv, a_row_per_scan_reads_back_exactly) {
+    TemporaryFolder folder;
+    auto run = synthetic_run();
+    run.recordings[0].label = "plain \"quoted\"";
+    write_csv(run, folder.path());
+    std::ifstream in(folder / "plate.csv");
+    std::string header, first, line;
+    std::getline(in, header);
+    std::getline(in, first);
+    int rows = 1;
+    while (std::getline(in, line)) ++rows;
+    EXPECT_EQ(rows, 12);
+    const auto names = cells(header), values = cells(first);
+    ASSERT_EQ(names.size(), values.size());
+    const Scan& scan = run.recordings[0].scans[0];
+    const auto value = [&](const std::string& column) {
+        const auto found = std::find(names.begin(), names.end(), column);
+        return found == names.end() ? "no column " + column
+                                    : values[static_cast<std::size_t>(found - names.begin())];
+    };
+    EXPECT_EQ(value("label"), "\"plain \"\"quoted\"\"\"");
+    EXPECT_EQ(value("phase"), "load");
+    EXPECT_EQ(std::stod(value("plate_z_m")), scan.plate_z);
+    EXPECT_EQ(std::stod(value("displacement_m")), 0);
+    EXPECT_EQ(std::stod(value("top_force_N")), scan.top_force());
+    EXPECT_EQ(std::stod(value("floor_force_N")), -scan.wall_force[static_cast<int>(Wall::floor)].z());
+    EXPECT_EQ(std::stod(value("x_min_force_N")), -scan.wall_force[static_cast<int>(Wall::x_min)].x());
+    EXPECT_EQ(std::stod(value("y_max_force_N")), scan.wall_force[static_cast<int>(Wall::y_max)].y());
+    EXPECT_EQ(std::stod(value("mean_force_N")), scan.mean_force);
+    EXPECT_EQ(value("packing_fraction"), "nan");
+    EXPECT_EQ(value("settled"), "1");
+}
+
+TEST(vtk, vtk_reads_grains_and_contacts) {
+    TemporaryFolder folder;
+    const auto run = synthetic_run({.replicas = 2, .scans = 3});
+    EXPECT_EQ(export_vtk(run, folder / "view"), 12);
+    EXPECT_TRUE(std::filesystem::exists(folder / "view/README.txt"));
+    const Scan& scan = run.recordings[1].scans[2];
+    const Contact& last = scan.contacts.back();
+    std::stringstream command;
+    command.precision(17);
+    command << "/usr/bin/python3 " << source << "/tests/io/read_vtk.py "
+            << (folder / "view/replica_00001").string() << " 000002 " << scan.position.size() << ' '
+            << scan.contacts.size() << ' ' << last.force.z() << ' ' << scan.plate_z;
+    const Finished finished = run_command(command.str());
+    if (finished.exit_code == module_missing) GTEST_SKIP() << "python3-vtk9 is not installed";
+    EXPECT_EQ(finished.exit_code, 0) << finished.output;
+}
+
+TEST(vtk, export_from_files_equals_export_from_memory_and_leaves_out_scans_without_positions) {
+    TemporaryFolder folder;
+    auto run = synthetic_run({.replicas = 1, .scans = 4});
+    run.recordings[0].scans[1].position.clear();
+    auto results = ResultFolder::create(folder / "out");
+    results.append_segment(part_of(run, 0, 2));
+    results.append_segment(part_of(run, 2, 4));
+    EXPECT_EQ(export_vtk(folder / "out", folder / "a"), 6);
+    EXPECT_EQ(export_vtk(run, folder / "b"), 6);
+    EXPECT_FALSE(std::filesystem::exists(folder / "a/replica_00000/grains_000001.hdf"));
+    for (const std::string name : {"grains_000003.hdf", "contacts_000003.hdf"})
+        EXPECT_EQ(read_bytes(folder / ("a/replica_00000/" + name)),
+                  read_bytes(folder / ("b/replica_00000/" + name)));
+}
+
+TEST(vtk, a_scan_without_contacts_still_makes_files) {
+    TemporaryFolder folder;
+    auto run = synthetic_run({.replicas = 1, .scans = 1});
+    run.recordings[0].scans[0].contacts.clear();
+    EXPECT_EQ(export_vtk(run, folder / "view"), 2);
+    std::stringstream command;
+    command << "/usr/bin/python3 " << source << "/tests/io/read_vtk.py "
+            << (folder / "view/replica_00000").string() << " 000000 27 0 0 "
+            << run.recordings[0].scans[0].plate_z;
+    const Finished finished = run_command(command.str());
+    if (finished.exit_code == module_missing) GTEST_SKIP() << "python3-vtk9 is not installed";
+    EXPECT_EQ(finished.exit_code, 0) << finished.output;
+}
+
+class examples : public ::testing::Test {
+protected:
+    void SetUp() override {
+        if (run_command("/usr/bin/python3 -c 'import h5py, numpy, matplotlib'").exit_code != 0)
+            GTEST_SKIP() << "python3-h5py, python3-numpy or python3-matplotlib is not installed";
+        write_run(folder / "run.h5", synthetic_run({.precision = "float"}));
+    }
+    Finished example(const std::string& script, const std::string& arguments) {
+        return run_command("MPLCONFIGDIR=" + folder.path().string() + " /usr/bin/python3 " + source +
+                           "/examples/" + script + " " + arguments);
+    }
+    void expect_picture(const std::string& script) {
+        const auto picture = folder / (script + ".png");
+        const Finished finished = example(script, folder.path().string() + " " + picture.string());
+        EXPECT_EQ(finished.exit_code, 0) << finished.output;
+        EXPECT_THAT(read_bytes(picture).substr(0, 8), HasSubstr("PNG"));
+        EXPECT_GT(read_bytes(picture).size(), 5000u);
+    }
+    TemporaryFolder folder;
+};
+
+TEST_F(examples, read_run_prints_a_row_for_each_replica_and_phase) {
+    for (const auto& place : {folder.path(), folder / "run.h5"}) {
+        const Finished finished = example("read_run.py", place.string());
+        EXPECT_EQ(finished.exit_code, 0) << finished.output;
+        EXPECT_THAT(finished.output, HasSubstr("mc_dem, packing 1"));
+        EXPECT_THAT(finished.output, HasSubstr("1.10"));  // largest top force of replica 1: 0.5 * 2 * 1.1 N
+    }
+}
+
+TEST_F(examples, scripts_make_pictures) {
+    expect_picture("plot_top_force.py");
+    expect_picture("force_chains.py");
+}
+
+TEST_F(examples, scripts_say_what_is_wrong) {
+    for (const std::string script : {"read_run.py", "plot_top_force.py", "force_chains.py"}) {
+        EXPECT_THAT(example(script, "").output, HasSubstr("usage")) << script;
+        const Finished finished = example(script, "/nowhere");
+        EXPECT_NE(finished.exit_code, 0);
+        EXPECT_THAT(finished.output, HasSubstr("/nowhere: no run")) << script;
+        EXPECT_THAT(finished.output, ::testing::Not(HasSubstr("Traceback"))) << script;
+    }
+}
+
+}  // namespace
+}  // namespace mcdem::test

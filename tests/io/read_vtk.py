@@ -1,0 +1,49 @@
+"""Reads one exported scan as ParaView would and compares it with what the test says.
+
+read_vtk.py FOLDER SCAN GRAINS CONTACTS FORCE_Z_OF_LAST_CONTACT PLATE_Z; exit code 77: no VTK for Python.
+"""
+import sys
+
+try:
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+    from vtkmodules.vtkIOHDF import vtkHDFReader
+except ImportError:
+    sys.exit(77)
+
+
+def read(name):
+    reader = vtkHDFReader()
+    assert reader.CanReadFile(name), f"{name}: not readable"
+    reader.SetFileName(name)
+    reader.Update()
+    return reader.GetOutput()
+
+
+def arrays(data):
+    return {data.GetArrayName(i): vtk_to_numpy(data.GetArray(i)) for i in range(data.GetNumberOfArrays())}
+
+
+folder, scan = sys.argv[1], sys.argv[2]
+grains, contacts = int(sys.argv[3]), int(sys.argv[4])
+force_z, plate_z = float(sys.argv[5]), float(sys.argv[6])
+
+grid = read(f"{folder}/grains_{scan}.hdf")
+assert grid.GetNumberOfPoints() == grid.GetNumberOfCells() == grains, grid
+points = arrays(grid.GetPointData())
+assert set(points) == {"grain", "diameter", "coordination_number", "force_magnitude"}, points
+assert (points["grain"] == range(grains)).all() and (points["diameter"] > 0).all()
+assert points["coordination_number"].sum() >= contacts
+
+if contacts == 0:
+    sys.exit(0)
+grid = read(f"{folder}/contacts_{scan}.hdf")
+assert grid.GetNumberOfCells() == contacts and grid.GetNumberOfPoints() == 2 * contacts, grid
+cells = arrays(grid.GetCellData())
+assert set(cells) == {"grain", "partner", "force", "force_magnitude", "overlap"}, cells
+assert cells["force"].shape == (contacts, 3) and cells["force"][-1, 2] == force_z
+line = grid.GetCell(contacts - 1)
+ends = [line.GetPoints().GetPoint(i) for i in range(2)]
+assert line.GetCellType() == 3 and line.GetNumberOfPoints() == 2
+assert cells["partner"][-1] == -6 and ends[1][2] == plate_z and ends[0][:2] == ends[1][:2], ends
+field = arrays(grid.GetFieldData())
+assert field["plate_z"][0] == plate_z, field

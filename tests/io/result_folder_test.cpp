@@ -1,0 +1,148 @@
+#include "io/result_folder.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/errors.h"
+#include "io/results.h"
+#include "io/synthetic_run.h"
+
+namespace mcdem::test {
+namespace {
+
+using ::testing::HasSubstr;
+
+std::string message_of(const std::function<void()>& call) {
+    try {
+        call();
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "no error";
+}
+
+/// Appends `run` in segments that end at the given scans.
+void append_in_parts(ResultFolder& folder, const Run& run, const std::vector<std::size_t>& ends) {
+    std::size_t first = 0;
+    for (std::size_t end : ends) {
+        folder.append_segment(part_of(run, first, end));
+        first = end;
+    }
+}
+
+TEST(result_folder, segments_read_like_the_merged_run_and_like_the_run_itself) {
+    TemporaryFolder place;
+    auto run = synthetic_run({.replicas = 3, .scans = 8});
+    run.recordings[1].scans.resize(3);  // a replica that stopped
+    run.recordings[1].failure = Failure{77, 3, "lost a grain"};
+    auto folder = ResultFolder::create(place / "out");
+    append_in_parts(folder, run, {2, 2, 5, 8});
+    EXPECT_EQ(folder.segments(), 4);
+    expect_same(run, read_run(place / "out"));
+    RunReader reader(place / "out");
+    for (std::size_t s = 0; s < 8; ++s)
+        EXPECT_EQ(reader.read_scan(2, s).position, run.recordings[2].scans[s].position) << s;
+
+    folder.finish();
+    expect_same(run, read_run(place / "out"));
+    EXPECT_TRUE(folder.is_finished());
+    EXPECT_TRUE(segment_files(place / "out").empty());
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(place / "out"), {}), 1);
+}
+
+TEST(result_folder, the_merged_file_is_the_same_to_the_byte_however_the_run_was_cut) {
+    TemporaryFolder place;
+    auto run = synthetic_run({.replicas = 3, .grains = 600, .scans = 120});  // more than a block of scans
+    run.recordings[1].failure = Failure{77, 3, "lost a grain"};
+    write_run(place / "whole.h5", run);
+    const std::vector<std::vector<std::size_t>> cuts{{120}, {1, 2, 120}, {60, 119, 119, 120}};
+    for (std::size_t k = 0; k < cuts.size(); ++k) {
+        const std::string name = std::to_string(k);
+        auto folder = ResultFolder::create(place / name);
+        append_in_parts(folder, run, cuts[k]);
+        folder.finish();
+        EXPECT_TRUE(read_bytes(place / "whole.h5") == read_bytes(run_file(place / name))) << k;
+    }
+}
+
+TEST(result_folder, one_segment_becomes_the_run) {
+    TemporaryFolder place;
+    const auto run = synthetic_run({.precision = "float"});
+    auto folder = ResultFolder::create(place / "out");
+    folder.append_segment(run);
+    folder.finish();
+    expect_same(run, read_run(run_file(place / "out")), 6e-8);
+}
+
+TEST(result_folder, resuming_drops_segments_newer_than_the_checkpoint) {
+    TemporaryFolder place;
+    const auto run = synthetic_run();
+    {
+        auto folder = ResultFolder::create(place / "out");
+        append_in_parts(folder, run, {1, 2, 4});
+    }
+    write_bytes(place / "out/segment-000003.h5.tmp", "cut short");
+    auto folder = ResultFolder::open_for_resume(place / "out");
+    EXPECT_FALSE(std::filesystem::exists(place / "out/segment-000003.h5.tmp"));
+    EXPECT_EQ(folder.segments(), 3);
+    folder.drop_segments_from(1);
+    EXPECT_EQ(folder.append_segment(part_of(run, 1, 6)), 1);
+    folder.finish();
+    expect_same(run, read_run(place / "out"));
+}
+
+TEST(result_folder, finish_cut_short_after_its_last_write_is_completed_on_resuming) {
+    TemporaryFolder place;
+    const auto run = synthetic_run();
+    { ResultFolder::create(place / "out").append_segment(run); }
+    write_run(place / "out/run.h5", run);
+    const auto folder = ResultFolder::open_for_resume(place / "out");
+    EXPECT_TRUE(folder.is_finished());
+    EXPECT_FALSE(std::filesystem::exists(place / "out/segment-000000.h5"));
+}
+
+TEST(result_folder, refuses_to_mix_runs) {
+    TemporaryFolder place;
+    const auto run = synthetic_run();
+    { ResultFolder::create(place / "out").append_segment(run); }
+    EXPECT_THAT(message_of([&] { ResultFolder::create(place / "out"); }), HasSubstr("holds another run"));
+    { ResultFolder::open_for_resume(place / "out").finish(); }
+    EXPECT_THAT(message_of([&] { ResultFolder::create(place / "out"); }), HasSubstr("run.h5"));
+    write_bytes(place / "file", "");
+    EXPECT_THAT(message_of([&] { ResultFolder::create(place / "file"); }), HasSubstr("is a file"));
+    EXPECT_THAT(message_of([&] { ResultFolder::open_for_resume(place / "none"); }),
+                HasSubstr("nothing to resume"));
+    std::filesystem::create_directories(place / "notes");
+    write_bytes(place / "notes/mine.txt", "keep");
+    EXPECT_NO_THROW(ResultFolder::create(place / "notes"));
+}
+
+TEST(result_folder, refuses_a_second_writer) {
+    TemporaryFolder place;
+    const auto first = ResultFolder::create(place / "out");
+    EXPECT_THAT(message_of([&] { ResultFolder::open_for_resume(place / "out"); }),
+                HasSubstr("another program"));
+}
+
+TEST(result_folder, names_a_missing_or_foreign_segment) {
+    TemporaryFolder place;
+    const auto run = synthetic_run();
+    {
+        auto folder = ResultFolder::create(place / "out");
+        append_in_parts(folder, run, {1, 2, 4});
+    }
+    write_run(place / "out/segment-000001.h5", synthetic_run({.replicas = 1}));
+    EXPECT_THAT(message_of([&] { read_run(place / "out"); }),
+                HasSubstr("segment-000001.h5: belongs to another run"));
+    std::filesystem::remove(place / "out/segment-000001.h5");
+    EXPECT_THAT(message_of([&] { read_run(place / "out"); }), HasSubstr("segment-000001.h5: is missing"));
+}
+
+TEST(result_folder, finishing_nothing_fails_and_leaves_the_folder) {
+    TemporaryFolder place;
+    auto folder = ResultFolder::create(place / "out");
+    EXPECT_THROW(folder.finish(), RunError);
+}
+
+}  // namespace
+}  // namespace mcdem::test

@@ -1,0 +1,139 @@
+#include "io/results.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest-spi.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <thread>
+
+#include "core/errors.h"
+#include "io/synthetic_run.h"
+
+namespace mcdem::test {
+namespace {
+
+TEST(results, double_run_comes_back_bit_for_bit) {
+    TemporaryFolder folder;
+    const auto run = synthetic_run();
+    write_run(folder / "run.h5", run);
+    expect_same(run, read_run(folder / "run.h5"));
+}
+
+TEST(results, float_run_keeps_observables_exactly_and_geometry_to_float) {
+    TemporaryFolder folder;
+    const auto run = synthetic_run({.precision = "float"});
+    write_run(folder / "run.h5", run);
+    const auto found = read_run(folder / "run.h5");
+    expect_same(run, found, 6e-8);
+    EXPECT_NE(run.recordings[0].scans[1].position[1].x(), found.recordings[0].scans[1].position[1].x());
+}
+
+TEST(results, comparison_notices_a_changed_bit) {
+    const auto run = synthetic_run();
+    auto other = run;
+    double& x = other.recordings[1].scans[2].contacts[3].force.x();
+    x = std::nextafter(x, 1.0);
+    ::testing::TestPartResultArray failures;
+    {
+        ::testing::ScopedFakeTestPartResultReporter reporter(
+            ::testing::ScopedFakeTestPartResultReporter::INTERCEPT_ONLY_CURRENT_THREAD, &failures);
+        expect_same(run, other);
+    }
+    EXPECT_EQ(failures.size(), 1);
+}
+
+TEST(results, ragged_and_missing_parts_come_back) {
+    TemporaryFolder folder;
+    auto run = synthetic_run({.replicas = 4});
+    run.recordings[0].scans.clear();
+    run.recordings[0].failure = Failure{1234567890123, 17, "overlap past the limit"};
+    run.recordings[1].scans[0].position.clear();
+    run.recordings[1].scans[3].position.clear();
+    run.recordings[1].scans[2].contacts.clear();
+    run.recordings[2].scans.resize(1);
+    run.recordings[3].diameter.clear();
+    run.recordings[3].parameters.clear();
+    for (auto& scan : run.recordings[3].scans) {
+        scan.position.clear();
+        scan.contacts.clear();
+    }
+    write_run(folder / "run.h5", run);
+    expect_same(run, read_run(folder / "run.h5"));
+}
+
+TEST(results, empty_run_comes_back) {
+    TemporaryFolder folder;
+    write_run(folder / "run.h5", mcdem::Run{});
+    expect_same(mcdem::Run{}, read_run(folder / "run.h5"));
+}
+
+TEST(results, light_reading_leaves_out_what_was_not_asked_for) {
+    TemporaryFolder folder;
+    const auto run = synthetic_run();
+    write_run(folder / "run.h5", run);
+    for (ReadWhat what : {ReadWhat::observables, ReadWhat::positions, ReadWhat::contacts}) {
+        auto expected = run;
+        for (auto& recording : expected.recordings)
+            for (auto& scan : recording.scans) {
+                if (what != ReadWhat::positions) scan.position.clear();
+                if (what != ReadWhat::contacts) scan.contacts.clear();
+            }
+        expect_same(expected, read_run(folder / "run.h5", what));
+    }
+}
+
+TEST(results, reader_gives_single_scans) {
+    TemporaryFolder folder;
+    auto run = synthetic_run();
+    run.recordings[0].scans[2].position.clear();
+    write_run(folder / "run.h5", run);
+    RunReader reader(folder / "run.h5");
+    auto found = reader.run();
+    EXPECT_TRUE(found.recordings[0].scans[1].position.empty());
+    for (std::size_t r = 0; r < found.recordings.size(); ++r)
+        for (std::size_t s = found.recordings[r].scans.size(); s-- > 0;)
+            found.recordings[r].scans[s] = reader.read_scan(r, s);
+    expect_same(run, found);
+}
+
+TEST(results, positions_of_another_number_of_grains_are_refused_and_nothing_is_written) {
+    TemporaryFolder folder;
+    auto run = synthetic_run();
+    run.recordings[1].scans[3].position.pop_back();
+    EXPECT_THROW(write_run(folder / "run.h5", run), RunError);
+    EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+}
+
+TEST(results, missing_file_and_folder_without_a_run_say_so) {
+    TemporaryFolder folder;
+    for (const auto& path : {folder / "nowhere", folder.path()}) {
+        try {
+            read_run(path);
+            ADD_FAILURE() << path;
+        } catch (const InputError& error) {
+            EXPECT_THAT(error.what(), ::testing::HasSubstr(path.string()));
+        }
+    }
+}
+
+TEST(results, the_same_run_gives_the_same_bytes_at_another_time) {
+    TemporaryFolder folder;
+    write_run(folder / "a.h5", synthetic_run());
+    std::this_thread::sleep_for(std::chrono::milliseconds(1100));  // times in files are in seconds
+    write_run(folder / "b.h5", synthetic_run());
+    EXPECT_TRUE(read_bytes(folder / "a.h5") == read_bytes(folder / "b.h5"));
+}
+
+TEST(results, long_texts_come_back) {
+    TemporaryFolder folder;
+    auto run = synthetic_run({.replicas = 1});
+    run.scene = std::string(300000, 'x') + "end";
+    run.recordings[0].parameters["packing.file"] = std::string(5000, 'y');
+    write_run(folder / "run.h5", run);
+    expect_same(run, read_run(folder / "run.h5"));
+}
+
+}  // namespace
+}  // namespace mcdem::test
