@@ -1,0 +1,97 @@
+#include "report/tables.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "metrics/synthetic.h"
+
+namespace mcdem {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+TEST(TextTable, terminal_is_aligned_by_characters) {
+    const TextTable table{
+        {{"name", Align::left}, {"F"}}, {{"φ", "1.5"}, {"long name", "10 ± 2"}}, {"a note"}};
+    EXPECT_EQ(to_text(table, TableFormat::terminal),
+              "name            F\n"
+              "─────────  ──────\n"
+              "φ             1.5\n"
+              "long name  10 ± 2\n"
+              "\n"
+              "  a note\n");
+}
+
+TEST(TextTable, markdown) {
+    const TextTable table{{{"name", Align::left}, {"F"}}, {{"a|b", "1"}}, {"a note"}};
+    EXPECT_EQ(to_text(table, TableFormat::markdown),
+              "| name |   F |\n"
+              "| :--- | --: |\n"
+              "| a\\|b |   1 |\n"
+              "\n"
+              "- a note\n");
+}
+
+TEST(TextTable, cells_cannot_steer_the_terminal_or_break_the_row) {
+    const TextTable table{{{"n", Align::left}}, {{"a\x1b[31m\nb"}}, {}};
+    EXPECT_THAT(to_text(table, TableFormat::terminal), HasSubstr("a [31m b\n"));
+}
+
+TEST(WithError, shows_what_is_known) {
+    EXPECT_EQ(with_error({0.43, 0.0123, 8}, 2), "0.43 ± 0.01");
+    EXPECT_EQ(with_error({0.004, not_available, 1}, 2, 1e-3), "4.00");
+    EXPECT_EQ(with_error({}, 2), "–");
+}
+
+TEST(TableOfModels, names_reference_stroke_and_failures) {
+    auto run = synthetic::run({{.model = "independent", .top = 6.45}, {.model = "mc_dem"}}, 2);
+    auto text = to_text(table_of_models(model_table(group_by_setting(run))), TableFormat::terminal);
+    EXPECT_THAT(text, HasSubstr("top force at 30.00 mm [N]"));
+    EXPECT_THAT(text, HasSubstr("over MC-DEM"));
+    EXPECT_THAT(text, HasSubstr("0.430 ± 0.000"));
+    EXPECT_THAT(text, Not(HasSubstr("stopped early")));
+    run.recordings[0].failure = Failure{};
+    run.recordings[0].scans.resize(3);
+    text = to_text(table_of_models(model_table(group_by_setting(run))), TableFormat::terminal);
+    EXPECT_THAT(text, HasSubstr("stopped early"));
+}
+
+TEST(TableOfComparisons, has_the_papers_columns_and_units) {
+    Comparison c;
+    c.setting = "mc_dem";
+    c.Rtop = {1, 0.004, 32};
+    c.errf = {0.41, 0.02, 32};
+    c.errZ = {0.26, 0.01, 32};
+    c.bhat = {0.0098, 0.0004, 32};
+    c.tau = {4e-3, 1e-4, 32};
+    c.levels_errf = 50;
+    c.reference_levels = 60;
+    const auto text = to_text(table_of_comparisons({c}), TableFormat::terminal);
+    EXPECT_THAT(text, HasSubstr("Rtop"));
+    EXPECT_THAT(
+        text,
+        HasSubstr(
+            "MC-DEM       1.000 ± 0.004  0.41 ± 0.02  0.26 ± 0.01  0.98 ± 0.04  4.00 ± 0.10  50 of 60"));
+}
+
+TEST(TableOfComparisons, a_note_that_all_share_comes_once) {
+    Comparison a, b;
+    a.setting = "independent";
+    b.setting = "mc_dem";
+    a.notes = {"shared", "its own"};
+    b.notes = {"shared"};
+    const auto table = table_of_comparisons({a, b});
+    EXPECT_EQ(table.notes, (std::vector<std::string>{"shared", "Independent contacts: its own"}));
+}
+
+TEST(TableOfScaling, one_row_a_phase) {
+    const auto run = synthetic::run({{}}, 1);
+    const auto table = table_of_scaling(group_by_setting(run));
+    ASSERT_EQ(table.rows.size(), 2u);
+    EXPECT_EQ(table.rows[1],
+              (std::vector<std::string>{"MC-DEM", "unload", "150.0", "1.0000", "-0.000", "10"}));
+}
+
+}  // namespace
+}  // namespace mcdem
