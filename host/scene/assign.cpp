@@ -1,0 +1,79 @@
+#include "scene/assign.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "scene/problems.h"
+
+namespace mcdem {
+namespace {
+
+/// One overload a type of member; true where the value was taken.
+struct Assign {
+    const Key& key;
+    const toml::node& value;
+    Settings& settings;
+
+    bool operator()(double& (*get)(Settings&)) const {
+        const auto number = value.is_number() ? value.value<double>() : std::nullopt;
+        if (!number || !std::isfinite(*number) || !key.range.contains(*number)) return false;
+        get(settings) = *number;
+        return true;
+    }
+    bool operator()(int& (*get)(Settings&)) const { return whole(get); }
+    bool operator()(std::uint64_t& (*get)(Settings&)) const { return whole(get); }
+    bool operator()(bool& (*get)(Settings&)) const {
+        if (!value.is_boolean()) return false;
+        get(settings) = value.as_boolean()->get();
+        return true;
+    }
+    bool operator()(std::string& (*get)(Settings&)) const {
+        constexpr std::size_t longest = 4096;
+        if (!value.is_string()) return false;
+        const std::string& text = value.as_string()->get();
+        const bool printable = std::ranges::none_of(text, [](unsigned char c) { return c < 32 || c == 127; });
+        if (text.empty() || text.size() > longest || !printable) return false;
+        get(settings) = text;
+        return true;
+    }
+    template <class Enum>
+    bool operator()(Enum& (*get)(Settings&)) const {
+        const auto word = value.is_string() ? parse<Enum>(value.as_string()->get()) : std::nullopt;
+        if (word) get(settings) = *word;
+        return word.has_value();
+    }
+
+private:
+    template <class Whole>
+    bool whole(Whole& (*get)(Settings&)) const {
+        if (!value.is_integer()) return false;
+        const std::int64_t number = value.as_integer()->get();
+        if (!key.range.contains(static_cast<double>(number))) return false;
+        get(settings) = static_cast<Whole>(number);
+        return true;
+    }
+};
+
+}  // namespace
+
+std::optional<std::string> assign(const Key& key, const toml::node& value, Settings& settings) {
+    if (std::visit(Assign{key, value, settings}, key.member)) return std::nullopt;
+    return fmt::format("must be {}, got {}", description(key), shown(value));
+}
+
+std::string shown(const toml::node& value) {
+    if (value.is_table()) return "a table";
+    if (value.is_array()) return "a list";
+    if (value.is_string()) return fmt::format("\"{}\"", shortened(value.as_string()->get()));
+    if (value.is_floating_point()) return fmt::format("{}", value.as_floating_point()->get());
+    std::ostringstream out;
+    value.visit([&](const auto& concrete) {
+        if constexpr (toml::is_value<decltype(concrete)>) out << concrete;
+    });
+    return shortened(out.str());
+}
+
+}  // namespace mcdem

@@ -1,0 +1,84 @@
+// Pairs of near spheres in a closed box, by a cell list.
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "core/vec3.h"
+
+namespace mcdem {
+
+/// Grains sorted by the cubic cell that holds their centre.
+class CellList {
+public:
+    /// `edge`: the longest distance asked for; cells are larger where they would far outnumber the grains.
+    CellList(const std::vector<Vec3>& position, const std::array<double, 3>& size, double edge) {
+        const double volume = size[0] * size[1] * size[2];
+        const double fewest = std::cbrt(volume / (8.0 * static_cast<double>(position.size()) + 64.0));
+        edge = std::max(edge, fewest);
+        for (int axis = 0; axis < 3; ++axis) {
+            cells_[axis] = std::max(1, static_cast<int>(size[axis] / edge));
+            edge_[axis] = size[axis] / cells_[axis];
+        }
+        sort(position);
+    }
+
+    /// Calls `visit(i, j)` once for every two grains of the same or touching cells.
+    template <class Visit>
+    void for_each_pair(const Visit& visit) const {
+        for (int z = 0; z < cells_[2]; ++z)
+            for (int y = 0; y < cells_[1]; ++y)
+                for (int x = 0; x < cells_[0]; ++x) visit_cell({x, y, z}, visit);
+    }
+
+private:
+    using Cell = std::array<int, 3>;
+
+    std::size_t index(const Cell& cell) const {
+        return (static_cast<std::size_t>(cell[2]) * cells_[1] + cell[1]) * cells_[0] + cell[0];
+    }
+
+    Cell cell_of(const Vec3& position) const {
+        Cell cell;
+        for (int axis = 0; axis < 3; ++axis)
+            cell[axis] = static_cast<int>(std::clamp(position[axis] / edge_[axis], 0.0, cells_[axis] - 1.0));
+        return cell;
+    }
+
+    void sort(const std::vector<Vec3>& position) {
+        first_.assign(static_cast<std::size_t>(cells_[0]) * cells_[1] * cells_[2] + 1, 0);
+        for (const Vec3& p : position) ++first_[index(cell_of(p)) + 1];
+        for (std::size_t c = 1; c < first_.size(); ++c) first_[c] += first_[c - 1];
+        std::vector<int> next(first_.begin(), first_.end() - 1);
+        sorted_.resize(position.size());
+        for (std::size_t i = 0; i < position.size(); ++i)
+            sorted_[next[index(cell_of(position[i]))]++] = static_cast<int>(i);
+    }
+
+    template <class Visit>
+    void visit_cell(const Cell& cell, const Visit& visit) const {
+        // Half of the 26 neighbours, so that each pair of cells comes once.
+        static constexpr int half[13][3] = {{1, 0, 0},  {-1, 1, 0}, {0, 1, 0},  {1, 1, 0}, {-1, -1, 1},
+                                            {0, -1, 1}, {1, -1, 1}, {-1, 0, 1}, {0, 0, 1}, {1, 0, 1},
+                                            {-1, 1, 1}, {0, 1, 1},  {1, 1, 1}};
+        const std::size_t here = index(cell);
+        for (int a = first_[here]; a < first_[here + 1]; ++a)
+            for (int b = a + 1; b < first_[here + 1]; ++b) visit(sorted_[a], sorted_[b]);
+        for (const auto& step : half) {
+            const Cell other{cell[0] + step[0], cell[1] + step[1], cell[2] + step[2]};
+            if (other[0] < 0 || other[0] >= cells_[0] || other[1] < 0 || other[1] >= cells_[1] ||
+                other[2] >= cells_[2])
+                continue;
+            const std::size_t there = index(other);
+            for (int a = first_[here]; a < first_[here + 1]; ++a)
+                for (int b = first_[there]; b < first_[there + 1]; ++b) visit(sorted_[a], sorted_[b]);
+        }
+    }
+
+    std::array<int, 3> cells_{};
+    std::array<double, 3> edge_{};
+    std::vector<int> first_, sorted_;
+};
+
+}  // namespace mcdem

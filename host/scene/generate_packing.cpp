@@ -1,0 +1,81 @@
+#include "scene/generate_packing.h"
+
+#include <algorithm>
+#include <numbers>
+#include <tuple>
+
+#include "scene/overlap_relaxation.h"
+#include "scene/random.h"
+
+namespace mcdem {
+namespace {
+
+TruncatedNormal size_distribution(const GeneratedPacking& wanted) {
+    return {wanted.diameter_mean, wanted.diameter_sd, wanted.diameter_min, wanted.diameter_max};
+}
+
+double volume(double diameter) { return std::numbers::pi / 6 * diameter * diameter * diameter; }
+
+double height_for(double grain_volume, double packing_fraction, const Box& box) {
+    return grain_volume / (packing_fraction * box.size_x * box.size_y);
+}
+
+std::vector<double> draw_diameters(const GeneratedPacking& wanted, std::uint64_t seed) {
+    Random random(seed, Stream::diameters);
+    std::vector<double> diameter(wanted.count);
+    for (int i = 0; i < wanted.count; ++i)
+        diameter[i] = size_distribution(wanted).quantile((i + random.uniform()) / wanted.count);
+    random.shuffle(diameter);
+    return diameter;
+}
+
+/// Uniform in the box, sorted into bars of four mean diameters, so that grains near in space are near in
+/// memory.
+std::vector<Vec3> draw_positions(const GeneratedPacking& wanted, const Box& box, double height,
+                                 std::uint64_t seed) {
+    Random random(seed, Stream::positions);
+    const double margin = std::min({wanted.diameter_max, box.size_x, box.size_y, height}) / 2;
+    std::vector<Vec3> position(wanted.count);
+    for (Vec3& p : position)
+        for (int axis = 0; axis < 3; ++axis) {
+            const double size = axis == 0 ? box.size_x : axis == 1 ? box.size_y : height;
+            p[axis] = random.uniform(margin, size - margin);
+        }
+    const double bar = 4 * wanted.diameter_mean;
+    const auto place = [bar](const Vec3& p) { return std::tuple(int(p.z() / bar), int(p.y() / bar), p.x()); };
+    std::sort(position.begin(), position.end(),
+              [&](const Vec3& a, const Vec3& b) { return place(a) < place(b); });
+    return position;
+}
+
+}  // namespace
+
+double expected_height(const GeneratedPacking& wanted, const Box& box) {
+    const int samples = 200;
+    double mean_volume = 0;
+    for (int i = 0; i < samples; ++i)
+        mean_volume += volume(size_distribution(wanted).quantile((i + 0.5) / samples)) / samples;
+    return height_for(mean_volume * wanted.count, wanted.packing_fraction, box);
+}
+
+Packing generate_packing(const GeneratedPacking& wanted, const Box& box, std::uint64_t seed) {
+    // Growing gently lets grains find room; more stages or iterations change little.
+    constexpr int stages = 10, iterations_of_stage = 200, last_iterations = 2000;
+    constexpr double smallest_scale = 0.7;
+
+    Packing packing;
+    packing.diameter = draw_diameters(wanted, seed);
+    double grain_volume = 0;
+    for (double d : packing.diameter) grain_volume += volume(d);
+    const double height = height_for(grain_volume, wanted.packing_fraction, box);
+    packing.position = draw_positions(wanted, box, height, seed);
+
+    OverlapRelaxation relaxation(packing, box, height);
+    for (int stage = 0; stage < stages; ++stage)
+        relaxation.relax(smallest_scale + (1 - smallest_scale) * stage / stages, iterations_of_stage);
+    relaxation.relax(1, last_iterations);
+    packing.position = relaxation.position();
+    return packing;
+}
+
+}  // namespace mcdem

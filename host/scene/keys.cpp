@@ -1,0 +1,126 @@
+#include "scene/keys.h"
+
+#include <algorithm>
+
+namespace mcdem {
+namespace {
+
+/// The member at the end of a path of pointers to members, starting from Settings.
+template <auto... path>
+auto& follow(Settings& settings) {
+    return (settings.*....*path);
+}
+
+template <auto... path>
+constexpr auto run = &follow<&Settings::run, path...>;
+template <auto... path>
+constexpr auto replica = &follow<&Settings::replica, path...>;
+template <auto member>
+constexpr auto generated = &follow<&Settings::generated, member>;
+
+constexpr Range above_zero_to(double high) { return {0, high, Range::Low::excluded}; }
+constexpr Range between(double low, double high) { return {low, high, Range::Low::included}; }
+constexpr Range none{};
+
+// Limits are wide: they keep out what is impossible or would overflow, not what is unusual.
+constexpr Range length = above_zero_to(1000), stiffness = above_zero_to(1e13),
+                mass_density = above_zero_to(1e5);
+constexpr Range poisson = between(0, 0.5), friction = between(0, 10), bounce = above_zero_to(1);
+constexpr Range grain_size = between(1e-7, 10), duration = above_zero_to(1e6);
+
+constexpr Scope one_run = Scope::run, each = Scope::replica;
+
+// clang-format off
+const Key table[] = {
+    {"name", run<&Scene::name>, "", none, one_run, "what the run is called; without it, the file's name"},
+
+    {"box.size_x", replica<&Replica::box, &Box::size_x>, "m", length, each, "distance of the walls x_min and x_max"},
+    {"box.size_y", replica<&Replica::box, &Box::size_y>, "m", length, each, "distance of the walls y_min and y_max; the floor is at z = 0"},
+
+    {"grains.youngs_modulus", replica<&Replica::grains, &GrainMaterial::youngs_modulus>, "Pa", stiffness, each, "E"},
+    {"grains.poisson_ratio", replica<&Replica::grains, &GrainMaterial::poisson_ratio>, "", poisson, each, "nu"},
+    {"grains.density", replica<&Replica::grains, &GrainMaterial::density>, "kg/m3", mass_density, each, "gives the inertia; quasi-static results do not depend on it, the time step does"},
+    {"grains.excess_density", replica<&Replica::grains, &GrainMaterial::excess_density>, "kg/m3", between(-1e5, 1e5), each, "over the fluid's, gives the weight; 0: weightless"},
+    {"grains.friction", replica<&Replica::grains, &GrainMaterial::friction>, "", friction, each, "mu, grain on grain"},
+    {"grains.restitution", replica<&Replica::grains, &GrainMaterial::restitution>, "", bounce, each, "e, grain on grain: rebound over approach speed of a lone pair"},
+    {"grains.drag", replica<&Replica::grains, &GrainMaterial::drag>, "1/s", between(0, 1e6), each, "background drag, force = -drag * mass * velocity"},
+
+    {"walls.youngs_modulus", replica<&Replica::walls, &WallMaterial::youngs_modulus>, "Pa", stiffness, each, "E of the five walls and the plate"},
+    {"walls.poisson_ratio", replica<&Replica::walls, &WallMaterial::poisson_ratio>, "", poisson, each, "nu"},
+    {"walls.friction", replica<&Replica::walls, &WallMaterial::friction>, "", friction, each, "mu, grain on wall"},
+    {"walls.restitution", replica<&Replica::walls, &WallMaterial::restitution>, "", bounce, each, "e, grain on wall"},
+
+    {"contact.model", replica<&Replica::contact, &ContactLaw::model>, "", none, each, "how the contacts of one grain feel one another"},
+    {"contact.gamma", replica<&Replica::contact, &ContactLaw::gamma>, "", between(0, 10), each, "prefactor of the surface displacements of mc_dem; other models do not use it"},
+    {"contact.friction_law", replica<&Replica::contact, &ContactLaw::friction_law>, "", none, each, "saturated: always mu times the normal force, against sliding; mindlin: a spring with history, cut there"},
+    {"contact.sliding_velocity", replica<&Replica::contact, &ContactLaw::sliding_velocity>, "m/s", above_zero_to(100), each, "below it saturated friction fades to zero"},
+
+    {"packing.file", &follow<&Settings::packing_file>, "", none, each, "LIGGGHTS/LAMMPS data file, or .csv with columns x_m,y_m,z_m,diameter_m; relative to the scene file (in --set: to the current folder). Without it the packing is generated"},
+    {"packing.count", generated<&GeneratedPacking::count>, "", between(1, 1e7), each, "grains generated"},
+    {"packing.diameter_mean", generated<&GeneratedPacking::diameter_mean>, "m", grain_size, each, "of a normal distribution"},
+    {"packing.diameter_sd", generated<&GeneratedPacking::diameter_sd>, "m", between(0, 10), each, "its standard deviation"},
+    {"packing.diameter_min", generated<&GeneratedPacking::diameter_min>, "m", grain_size, each, "where it is cut below"},
+    {"packing.diameter_max", generated<&GeneratedPacking::diameter_max>, "m", grain_size, each, "where it is cut above"},
+    {"packing.packing_fraction", generated<&GeneratedPacking::packing_fraction>, "", between(0.01, 0.75), each, "grains' volume over the box's volume up to the height that is filled"},
+    {"packing.position_jitter", replica<&Replica::packing, &PackingSource::position_jitter>, "m", between(0, 10), each, "standard deviation of a random displacement of every coordinate"},
+    {"packing.seed", replica<&Replica::packing, &PackingSource::seed>, "", between(0, 1e15), each, "of generation and jitter; copy n has seed + n - 1"},
+
+    {"plate.start", replica<&Replica::plate, &Plate::start>, "m", length, each, "highest position of its lower face"},
+    {"plate.end", replica<&Replica::plate, &Plate::end>, "m", length, each, "lowest position"},
+    {"plate.speed", replica<&Replica::plate, &Plate::speed>, "m/s", above_zero_to(1000), each, "between scans"},
+
+    {"protocol.cycles", replica<&Replica::protocol, &Protocol::cycles>, "", between(1, 10000), each, "strokes down to plate.end and back"},
+    {"protocol.discard", replica<&Replica::protocol, &Protocol::discard>, "", between(0, 9999), each, "first cycles left out of metrics"},
+    {"protocol.scans_per_stroke", replica<&Replica::protocol, &Protocol::scans_per_stroke>, "", between(1, 10000), each, "equally spaced plate positions at which everything is recorded, the last at the stroke's end"},
+    {"protocol.stop_at_scans", replica<&Replica::protocol, &Protocol::stop_at_scans>, "", none, each, "the plate waits at each scan until the packing settles; false: recorded in passing"},
+    {"protocol.settle_kinetic_over_elastic", replica<&Replica::protocol, &Protocol::settle_kinetic_over_elastic>, "", above_zero_to(1), each, "kinetic over elastic energy below which the packing counts as settled"},
+    {"protocol.settle_time", replica<&Replica::protocol, &Protocol::settle_time>, "s", duration, each, "longest wait; a scan taken then is marked unsettled"},
+    {"protocol.settle_drag", replica<&Replica::protocol, &Protocol::settle_drag>, "1/s", between(0, 1e6), each, "background drag while the plate stands still, on top of grains.drag"},
+    {"protocol.relax_time", replica<&Replica::protocol, &Protocol::relax_time>, "s", between(0, 1e6), each, "longest relaxation before the first stroke, the plate at plate.start"},
+    {"protocol.force_threshold", replica<&Replica::protocol, &Protocol::force_threshold>, "N", between(0, 1e9), each, "contacts below it do not count in Z and the mean force"},
+
+    {"numerics.time_step", replica<&Replica::numerics, &Numerics::time_step>, "", above_zero_to(1), each, "fraction of the Rayleigh time of the smallest grain"},
+    {"numerics.skin", replica<&Replica::numerics, &Numerics::skin>, "", above_zero_to(2), each, "margin of the neighbour list, over the mean radius"},
+    {"numerics.probe_gap", replica<&Replica::numerics, &Numerics::probe_gap>, "", between(0, 2), each, "gap up to which surfaces are probed for contacts made by bulging, over the mean radius"},
+    {"numerics.overlap_limit", replica<&Replica::numerics, &Numerics::overlap_limit>, "", above_zero_to(1), each, "corrected overlap over the sum of radii beyond which no static solution is assumed and the replica stops"},
+    {"numerics.precision", run<&Scene::precision>, "", none, one_run, "of the device's arithmetic"},
+    {"numerics.slots", run<&Scene::slots>, "", Range{16, 64, Range::Low::included, 16}, one_run, "neighbours that a grain can have"},
+
+    {"output.positions", run<&Scene::output, &Output::positions>, "", none, one_run, "record every grain's position at scans"},
+    {"output.contacts", run<&Scene::output, &Output::contacts>, "", none, one_run, "record every contact's force at scans"},
+    {"output.checkpoint_minutes", run<&Scene::output, &Output::checkpoint_minutes>, "min", above_zero_to(1e5), one_run, "time on the clock between checkpoints"},
+
+    {"batch.replicas", &follow<&Settings::copies>, "", between(1, 10000), one_run, "copies of every setting, each with its own packing seed"},
+};
+// clang-format on
+
+}  // namespace
+
+bool Range::contains(double value) const {
+    if (value < low || (value == low && low_end == Low::excluded)) return false;
+    return value <= high && (multiple_of == 1 || static_cast<long>(value) % multiple_of == 0);
+}
+
+std::span<const Key> keys() { return table; }
+
+const Key* find_key(std::string_view name) {
+    const auto found = std::ranges::find(table, name, &Key::name);
+    return found == std::end(table) ? nullptr : found;
+}
+
+bool is_table(std::string_view name) {
+    constexpr std::string_view vary = "batch.vary";
+    if (name == vary) return true;
+    if (name.starts_with(vary) && name.size() > vary.size() && name[vary.size()] == '.')
+        name.remove_prefix(vary.size() + 1);
+    return std::ranges::any_of(table, [&](const Key& key) {
+        return key.name.size() > name.size() && key.name.starts_with(name) && key.name[name.size()] == '.';
+    });
+}
+
+bool is_generator_key(std::string_view name) {
+    return name == "packing.count" || name == "packing.packing_fraction" ||
+           name.starts_with("packing.diameter_");
+}
+
+}  // namespace mcdem

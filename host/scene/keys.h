@@ -1,0 +1,71 @@
+// The table of scene keys. Reading, checking, defaults, what results say of a replica, and the reference
+// in scenes/README.md all come from it: a new key is one row, and a member in scene.h.
+#pragma once
+#include <limits>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "scene/scene.h"
+
+namespace mcdem {
+
+/// Everything that keys can set, before copies are made: the run, and one replica of it.
+struct Settings {
+    Scene run;
+    Replica replica;
+    GeneratedPacking generated;
+    std::string packing_file;  ///< empty: generated
+    int copies = 1;
+};
+
+/// What a number may be.
+struct Range {
+    enum class Low { included, excluded };
+    double low = 0;
+    double high = 0;
+    Low low_end = Low::included;
+    int multiple_of = 1;
+    bool contains(double value) const;
+};
+
+/// Where a key's value is kept; its type is the key's type.
+using Member = std::variant<double& (*)(Settings&), int& (*)(Settings&), std::uint64_t& (*)(Settings&),
+                            bool& (*)(Settings&), std::string& (*)(Settings&), ContactModel& (*)(Settings&),
+                            FrictionLaw& (*)(Settings&), Precision& (*)(Settings&)>;
+
+/// Whether the replicas of one run may differ in it.
+enum class Scope { run, replica };
+
+struct Key {
+    std::string_view name;  ///< "grains.friction"
+    Member member;
+    std::string_view unit;  ///< empty for pure numbers and words
+    Range range;            ///< of numbers
+    Scope scope;
+    std::string_view meaning;
+};
+
+std::span<const Key> keys();
+
+/// The key of that name, or null.
+const Key* find_key(std::string_view name);
+
+/// True for "grains", "packing" and the other tables that keys live in, "batch.vary" included.
+bool is_table(std::string_view name);
+
+/// True for the keys of a generated packing, which a packing file replaces.
+bool is_generator_key(std::string_view name);
+
+/// " (did you mean ..?)", or nothing where no key (or table) comes near.
+std::string suggestion(std::string_view unknown);
+
+/// What the key takes: "a number > 0 and <= 10 [m]", "one of saturated, mindlin".
+std::string description(const Key& key);
+
+/// The key's value as text; numbers so that they read back exactly.
+std::string value_text(const Key& key, const Settings& settings);
+
+}  // namespace mcdem

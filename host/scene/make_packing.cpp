@@ -1,0 +1,78 @@
+#include "scene/make_packing.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/errors.h"
+#include "scene/generate_packing.h"
+#include "scene/random.h"
+#include "scene/read_packing.h"
+
+namespace mcdem {
+namespace {
+
+constexpr std::size_t most_problems = 10;
+
+double median(std::vector<double> values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+}  // namespace
+
+void apply_jitter(Packing& packing, double sd, std::uint64_t seed) {
+    if (sd == 0) return;
+    Random random(seed, Stream::jitter);
+    for (Vec3& position : packing.position)
+        for (int axis = 0; axis < 3; ++axis) position[axis] += sd * random.normal();
+}
+
+std::vector<std::string> packing_problems(const Packing& packing, const Box& box, double top,
+                                          const std::string& source) {
+    if (packing.size() == 0)
+        return {fmt::format("{}: a packing must have at least 1 grain, got none", source)};
+    const double widest = std::min(box.size_x, box.size_y);
+    const double typical = median(packing.diameter);
+    if (typical > widest)
+        return {fmt::format(
+            "{}: lengths must be in metres and fit the box of {} x {} m, got a median diameter of {}{}",
+            source, box.size_x, box.size_y, typical,
+            typical * 1e-3 <= widest ? "; millimetres? divide by 1000" : "")};
+    std::vector<std::string> problems;
+    std::size_t outside = 0;
+    for (std::size_t i = 0; i < packing.size(); ++i) {
+        const Vec3& p = packing.position[i];
+        const bool inside = p.x() >= 0 && p.x() <= box.size_x && p.y() >= 0 && p.y() <= box.size_y &&
+                            p.z() >= 0 && p.z() <= top;
+        if (inside || ++outside > most_problems) continue;
+        problems.push_back(
+            fmt::format("{}: the centre of grain {} must be in the box of {} x {} m below the plate at {} m, "
+                        "got {}, {}, {}",
+                        source, i, box.size_x, box.size_y, top, p.x(), p.y(), p.z()));
+    }
+    if (outside > most_problems)
+        problems.push_back(
+            fmt::format("{}: .. and {} more grains out of the box", source, outside - most_problems));
+    return problems;
+}
+
+Packing make_packing(const Replica& replica) {
+    const PackingSource& from = replica.packing;
+    Packing packing;
+    std::string source = "generated packing";
+    if (const auto* file = std::get_if<PackingFile>(&from.source)) {
+        packing = read_packing(file->path);
+        source = file->path;
+    } else {
+        packing = generate_packing(std::get<GeneratedPacking>(from.source), replica.box, from.seed);
+    }
+    apply_jitter(packing, from.position_jitter, from.seed);
+    // A generated packing may be a little higher than the plate, never so high that a centre is above it.
+    const auto problems = packing_problems(packing, replica.box, replica.plate.start, source);
+    if (!problems.empty()) throw InputError(problems);
+    return packing;
+}
+
+}  // namespace mcdem

@@ -1,0 +1,23 @@
+// The packing that a replica starts from.
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scene/scene.h"
+
+namespace mcdem {
+
+/// Read or generated, then jittered. Throws InputError where the file is bad or a grain is out of the box.
+Packing make_packing(const Replica& replica);
+
+/// Moves every coordinate of every centre by a normal random length with standard deviation `sd` [m].
+void apply_jitter(Packing& packing, double sd, std::uint64_t seed);
+
+/// What is wrong with a packing in this box, below `top` [m]: centres outside, sizes that cannot be metres.
+/// Each is `source: ..`; empty where all is well.
+std::vector<std::string> packing_problems(const Packing& packing, const Box& box, double top,
+                                          const std::string& source);
+
+}  // namespace mcdem

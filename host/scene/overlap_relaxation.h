@@ -1,0 +1,52 @@
+// Spheres in a closed box that push each other apart where they overlap: each pair and each wall stores
+// half the square of its overlap, and the sum is minimised with FIRE. No weight, no friction.
+#pragma once
+#include <array>
+#include <vector>
+
+#include "core/packing.h"
+
+namespace mcdem {
+
+/// Largest overlap of any two grains, or of a grain with one of the six walls, over the radius of the
+/// smaller grain.
+double largest_overlap(const Packing& packing, const Box& box, double height);
+
+class OverlapRelaxation {
+public:
+    /// The packing's diameters are the final ones; its positions are the start.
+    OverlapRelaxation(const Packing& packing, const Box& box, double height);
+
+    /// Minimises with all radii multiplied by `scale`, until the overlaps are gone (below a thousandth
+    /// of the mean radius), or forces balance, or `iterations` are spent. Returns the iterations used.
+    int relax(double scale, int iterations);
+
+    const std::vector<Vec3>& position() const { return position_; }
+
+private:
+    struct Pair {
+        int i, j;
+    };
+    struct Sums {
+        double power = 0;         ///< force . velocity
+        double force_square = 0;  ///< of net forces
+        double speed_square = 0;
+        double largest = 0;         ///< overlap
+        double overlap_square = 0;  ///< of every pair and wall
+    };
+
+    Sums push_apart(double scale);
+    void push_from_walls(int grain, double radius, Sums& sums);
+    void move(double time_step);
+    void find_pairs_when_needed();
+    void find_pairs();
+
+    std::vector<double> radius_;
+    std::array<double, 3> size_;  ///< of the box [m]
+    double mean_radius_ = 0;
+    double margin_ = 0;  ///< gap up to which pairs are listed [m]
+    std::vector<Vec3> position_, velocity_, force_, listed_position_;
+    std::vector<Pair> pairs_;
+};
+
+}  // namespace mcdem

@@ -1,0 +1,30 @@
+#include "scene/problems.h"
+
+#include <fmt/format.h>
+
+#include "core/errors.h"
+
+namespace mcdem {
+
+void Problems::add(const Place& place, const std::string& what) {
+    found_.insert({{place.line, place.column}, place.text + ": " + what});
+}
+
+void Problems::report() const {
+    constexpr std::size_t most = 100;  // a page or two; nobody reads more
+    if (found_.empty()) return;
+    std::vector<std::string> lines;
+    for (const auto& [order, text] : found_)
+        if (lines.size() < most) lines.push_back(text);
+    if (found_.size() > most) lines.push_back(fmt::format(".. and {} problems more", found_.size() - most));
+    throw InputError(lines);
+}
+
+std::string shortened(const std::string& text) {
+    constexpr std::size_t longest = 80;
+    std::string shown;
+    for (char c : text.substr(0, longest)) shown += static_cast<unsigned char>(c) < 32 || c == 127 ? '?' : c;
+    return text.size() > longest ? shown + ".." : shown;
+}
+
+}  // namespace mcdem

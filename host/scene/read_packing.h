@@ -1,0 +1,26 @@
+// Packings from files. Every problem is reported as `file:line: must be .., got ..`.
+#pragma once
+#include <filesystem>
+#include <istream>
+#include <string>
+
+#include "core/packing.h"
+
+namespace mcdem {
+
+/// The most grains that a file may hold.
+inline constexpr long largest_packing = 10'000'000;
+
+/// By its name's end: `.csv`, anything else a LIGGGHTS/LAMMPS data file. Throws InputError.
+Packing read_packing(const std::filesystem::path& file);
+
+/// LIGGGHTS/LAMMPS data file, atom style sphere or granular: lines `id type diameter density x y z` in
+/// its `Atoms` section, in metres. Grains are numbered from 0 in the order of the file's ids. Type,
+/// density, bounds and velocities are left aside: the scene says what they are.
+Packing read_lammps_packing(std::istream& input, const std::string& source);
+
+/// CSV with the columns x_m, y_m, z_m, diameter_m in any order; others, such as `grain`, are left aside.
+/// Grains are numbered from 0 in the order of the lines.
+Packing read_csv_packing(std::istream& input, const std::string& source);
+
+}  // namespace mcdem

@@ -1,0 +1,193 @@
+#include "scene/read_scene.h"
+
+#include <fmt/format.h>
+
+#include <fstream>
+#include <sstream>
+
+#include "core/errors.h"
+#include "scene/assign.h"
+#include "scene/replicas.h"
+#include "scene/scene_checks.h"
+#include "scene/scene_document.h"
+
+namespace mcdem {
+namespace {
+
+/// Goes through a document once, collecting settings, variations and every problem.
+class SceneReader {
+public:
+    SceneReader(std::string_view text, const std::string& source, const std::vector<std::string>& overrides)
+        : document_(text, source, overrides, problems_) {
+        settings_.run.name = std::filesystem::path(source).stem().string();
+    }
+
+    Scene read() {
+        for (const Entry& entry : document_.entries()) read_entry(entry);
+        check_packing_source();
+        check_size(1);
+        if (problems_.empty() || combination_count(variations_) <= most_replicas) check_combinations();
+        problems_.report();
+        Scene scene = settings_.run;
+        scene.text = document_.text();
+        scene.replicas = make_replicas(combinations_);
+        return scene;
+    }
+
+private:
+    void read_entry(const Entry& entry) {
+        const bool varied = entry.key.starts_with(vary_prefix);
+        const std::string key_name = varied ? entry.key.substr(vary_prefix.size()) : entry.key;
+        const Key* key = find_key(key_name);
+        if (!key) {
+            refuse_unknown(entry, key_name);
+        } else if (varied) {
+            read_variation(entry, *key);
+        } else if (const auto problem = assign(*key, *entry.value, settings_)) {
+            problems_.add(entry.place, fmt::format("{} {}", key->name, *problem));
+            bad_.insert(key_name);
+        }
+    }
+
+    void refuse_unknown(const Entry& entry, const std::string& key_name) {
+        const std::string shown_name = shortened(entry.key);
+        if (is_table(entry.key))
+            problems_.add(entry.place,
+                          fmt::format("{} must be a table, got {}", shown_name, shown(*entry.value)));
+        else
+            problems_.add(entry.place,
+                          fmt::format("{} must be a {} of a scene, got an unknown one{}", shown_name,
+                                      entry.value->is_table() ? "table" : "key", suggestion(key_name)));
+    }
+
+    void read_variation(const Entry& entry, const Key& key) {
+        const std::string name = fmt::format("batch.vary.\"{}\"", key.name);
+        bad_.insert(std::string(key.name));  // until all its values are known to be good
+        if (key.scope == Scope::run) {
+            problems_.add(entry.place,
+                          name + " must be a key of which replicas have their own, got one of the whole run");
+            return;
+        }
+        const toml::array* list = entry.value->as_array();
+        if (!list || list->empty()) {
+            problems_.add(entry.place, fmt::format("{} must be a list of values, got {}", name,
+                                                   list ? "an empty one" : shown(*entry.value)));
+            return;
+        }
+        Variation variation{&key, {}};
+        bool good = true;
+        for (const toml::node& value : *list) {
+            Settings trial;
+            if (const auto problem = assign(key, value, trial)) {
+                problems_.add(document_.place_of(entry, value), fmt::format("{} {}", name, *problem));
+                good = false;
+            }
+            variation.values.push_back(&value);
+        }
+        if (!good) return;
+        bad_.erase(std::string(key.name));
+        variations_.push_back(std::move(variation));
+        check_said_once(entry, key);
+    }
+
+    void check_said_once(const Entry& entry, const Key& key) {
+        for (const Entry& other : document_.entries())
+            if (other.key == key.name)
+                problems_.add(
+                    entry.place,
+                    fmt::format("batch.vary.\"{}\" must be the only place of {}, got a value too at {}",
+                                key.name, key.name, other.place.text));
+    }
+
+    bool varies(std::string_view key) const {
+        for (const Variation& variation : variations_)
+            if (variation.key->name == key) return true;
+        return false;
+    }
+
+    /// A packing file and generated grains exclude each other.
+    void check_packing_source() {
+        const bool from_file = !settings_.packing_file.empty() || varies("packing.file");
+        for (const Entry& entry : document_.entries()) {
+            const bool varied = entry.key.starts_with(vary_prefix);
+            const std::string key = varied ? entry.key.substr(vary_prefix.size()) : entry.key;
+            if (from_file && is_generator_key(key))
+                problems_.add(entry.place, key + " must be left out where packing.file is given");
+        }
+        if (settings_.copies > 1 && varies("packing.seed"))
+            problems_.add(
+                document_.place_of("batch.replicas"),
+                "batch.replicas must be 1 where packing.seed varies: it gives every copy its own seed");
+    }
+
+    void check_size(double grains) {
+        const double replicas = combination_count(variations_) * settings_.copies;
+        const Place place = document_.place_of("batch.replicas");
+        if (replicas > most_replicas)
+            problems_.add(place,
+                          fmt::format("batch.replicas must leave at most {:.9g} replicas in all, got {:.9g}",
+                                      most_replicas, replicas));
+        else if (replicas * grains > most_grains)
+            problems_.add(place, fmt::format("batch.replicas must leave at most {:.9g} grains in all, got "
+                                             "{:.9g} replicas of up to {:.9g}",
+                                             most_grains, replicas, grains));
+    }
+
+    void check_combinations() {
+        CheckedFiles files;
+        std::size_t grains = 1;
+        combinations_ = combinations(settings_, variations_);
+        for (const Combination& combination : combinations_) {
+            const Settings& settings = combination.settings;
+            for (const CrossProblem& problem : cross_problems(settings, bad_))
+                problems_.add(document_.place_of(problem.key),
+                              fmt::format("{} {}", problem.key, problem.what));
+            if (!bad_.contains("packing.file"))
+                for (const std::string& problem : packing_file_problems(settings, files))
+                    problems_.add(document_.place_of("packing.file"), problem);
+            if (!settings.packing_file.empty() && settings.copies > 1 &&
+                settings.replica.packing.position_jitter == 0)
+                problems_.add(
+                    document_.place_of("batch.replicas"),
+                    "batch.replicas must be 1 where packing.file is given without packing.position_jitter: "
+                    "copies would be alike");
+            grains = std::max(grains, grain_count(settings, files));
+            if (static_cast<double>(grains * combinations_.size()) > most_grains) break;
+        }
+        check_size(static_cast<double>(grains));
+    }
+
+    Problems problems_;
+    SceneDocument document_;
+    Settings settings_;
+    std::set<std::string, std::less<>> bad_;  ///< keys with problems of their own
+    std::vector<Variation> variations_;
+    std::vector<Combination> combinations_;
+};
+
+}  // namespace
+
+Scene parse_scene(std::string_view toml_text, std::string source_name,
+                  const std::vector<std::string>& overrides) {
+    return SceneReader(toml_text, source_name, overrides).read();
+}
+
+Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(file, error))
+        throw InputError(fmt::format(
+            "{}: must be a scene, got {}", file.string(),
+            std::filesystem::exists(file, error) ? "something that is not a file" : "no such file"));
+    std::ifstream input(file, std::ios::binary);
+    if (!input)
+        throw InputError(fmt::format("{}: must be a scene, got a file that cannot be opened", file.string()));
+    constexpr std::uintmax_t largest_file = 1 << 20;
+    if (std::filesystem::file_size(file, error) > largest_file)
+        throw InputError(
+            fmt::format("{}: a scene must be at most {} bytes long", file.string(), largest_file));
+    std::ostringstream text;
+    text << input.rdbuf();
+    return parse_scene(text.str(), file.string(), overrides);
+}
+
+}  // namespace mcdem

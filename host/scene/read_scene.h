@@ -1,0 +1,20 @@
+// Scenes from TOML. scenes/README.md documents every key.
+#pragma once
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "scene/scene.h"
+
+namespace mcdem {
+
+/// Reads, overrides (`key=value`, the value as TOML or a bare word), checks and makes all replicas. Throws
+/// InputError with every problem as `file:line: key must be .., got ..`; for overrides `--set key: ..`.
+Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
+
+/// The same from text. `source_name` stands in messages, and the packing file is relative to its folder.
+Scene parse_scene(std::string_view toml_text, std::string source_name,
+                  const std::vector<std::string>& overrides = {});
+
+}  // namespace mcdem

@@ -1,0 +1,84 @@
+#include "scene/replicas.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "scene/assign.h"
+
+namespace mcdem {
+namespace {
+
+std::string_view last_part(std::string_view name) { return name.substr(name.rfind('.') + 1); }
+
+/// Words stand for themselves, numbers need their key; its table too where two keys would look the same.
+std::string label_part(const Key& key, const Settings& settings, const std::vector<Variation>& variations) {
+    const std::string value = value_text(key, settings);
+    if (std::holds_alternative<ContactModel& (*)(Settings&)>(key.member) ||
+        std::holds_alternative<FrictionLaw& (*)(Settings&)>(key.member))
+        return value;
+    if (key.name == "packing.file") return std::filesystem::path(value).filename().string();
+    const auto alike = std::ranges::count_if(variations, [&](const Variation& other) {
+        return last_part(other.key->name) == last_part(key.name);
+    });
+    return fmt::format("{}={}", alike > 1 ? key.name : last_part(key.name), value);
+}
+
+std::map<std::string, std::string> parameters(const Settings& settings) {
+    std::map<std::string, std::string> all;
+    for (const Key& key : keys()) {
+        const bool applies = settings.packing_file.empty() || !is_generator_key(key.name);
+        all[std::string(key.name)] = applies ? value_text(key, settings) : "";
+    }
+    return all;
+}
+
+}  // namespace
+
+double combination_count(const std::vector<Variation>& variations) {
+    double count = 1;
+    for (const Variation& variation : variations) count *= static_cast<double>(variation.values.size());
+    return count;
+}
+
+std::vector<Combination> combinations(const Settings& base, const std::vector<Variation>& variations) {
+    std::vector<Combination> all{{base, ""}};
+    for (const Variation& variation : variations) {
+        std::vector<Combination> next;
+        for (const Combination& before : all)
+            for (const toml::node* value : variation.values) {
+                Combination one = before;
+                assign(*variation.key, *value, one.settings);
+                one.label +=
+                    (one.label.empty() ? "" : ", ") + label_part(*variation.key, one.settings, variations);
+                next.push_back(std::move(one));
+            }
+        all = std::move(next);
+    }
+    return all;
+}
+
+std::vector<Replica> make_replicas(const std::vector<Combination>& combinations) {
+    std::vector<Replica> replicas;
+    for (const Combination& combination : combinations) {
+        const std::string label = combination.label.empty()
+                                      ? std::string(name(combination.settings.replica.contact.model))
+                                      : combination.label;
+        for (int copy = 0; copy < combination.settings.copies; ++copy) {
+            Settings settings = combination.settings;
+            settings.replica.packing.seed += static_cast<std::uint64_t>(copy);
+            Replica replica = settings.replica;
+            replica.label = settings.copies > 1 ? fmt::format("{} #{}", label, copy + 1) : label;
+            replica.parameters = parameters(settings);
+            if (settings.packing_file.empty())
+                replica.packing.source = settings.generated;
+            else
+                replica.packing.source = PackingFile{settings.packing_file};
+            replicas.push_back(std::move(replica));
+        }
+    }
+    return replicas;
+}
+
+}  // namespace mcdem

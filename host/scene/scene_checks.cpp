@@ -1,0 +1,126 @@
+#include "scene/scene_checks.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/errors.h"
+#include "scene/generate_packing.h"
+#include "scene/make_packing.h"
+#include "scene/read_packing.h"
+
+namespace mcdem {
+namespace {
+
+using Found = std::optional<std::string>;
+
+Found unless(bool good, std::string problem) { return good ? Found{} : Found{std::move(problem)}; }
+
+struct Check {
+    std::vector<std::string_view> keys;  ///< the first is to blame
+    enum class Packing { any, generated } applies;
+    Found (*find)(const Settings&);
+};
+
+// clang-format off
+const std::vector<Check> checks{
+    {{"plate.end", "plate.start"}, Check::Packing::any, [](const Settings& s) {
+        const auto& plate = s.replica.plate;
+        return unless(plate.end < plate.start, fmt::format("must be below plate.start = {}, got {}", plate.start, plate.end));
+    }},
+    {{"protocol.discard", "protocol.cycles"}, Check::Packing::any, [](const Settings& s) {
+        const auto& protocol = s.replica.protocol;
+        return unless(protocol.discard < protocol.cycles,
+                      fmt::format("must be less than protocol.cycles = {}, got {}", protocol.cycles, protocol.discard));
+    }},
+    {{"protocol.scans_per_stroke", "protocol.cycles"}, Check::Packing::any, [](const Settings& s) {
+        const long scans = 2L * s.replica.protocol.cycles * s.replica.protocol.scans_per_stroke;
+        return unless(scans <= 1'000'000, fmt::format("must leave at most 1000000 scans in all, got {}", scans));
+    }},
+    {{"packing.diameter_min", "packing.diameter_mean"}, Check::Packing::generated, [](const Settings& s) {
+        const auto& g = s.generated;
+        return unless(g.diameter_min <= g.diameter_mean,
+                      fmt::format("must be at most packing.diameter_mean = {}, got {}", g.diameter_mean, g.diameter_min));
+    }},
+    {{"packing.diameter_max", "packing.diameter_mean"}, Check::Packing::generated, [](const Settings& s) {
+        const auto& g = s.generated;
+        return unless(g.diameter_max >= g.diameter_mean,
+                      fmt::format("must be at least packing.diameter_mean = {}, got {}", g.diameter_mean, g.diameter_max));
+    }},
+    {{"packing.diameter_max", "packing.diameter_min"}, Check::Packing::generated, [](const Settings& s) {
+        const auto& g = s.generated;
+        return unless(g.diameter_max <= 10 * g.diameter_min,
+                      fmt::format("must be at most 10 times packing.diameter_min = {}, got {}", g.diameter_min, g.diameter_max));
+    }},
+    {{"box.size_x", "packing.diameter_max"}, Check::Packing::generated, [](const Settings& s) {
+        return unless(s.replica.box.size_x >= s.generated.diameter_max,
+                      fmt::format("must be at least packing.diameter_max = {}, got {}", s.generated.diameter_max, s.replica.box.size_x));
+    }},
+    {{"box.size_y", "packing.diameter_max"}, Check::Packing::generated, [](const Settings& s) {
+        return unless(s.replica.box.size_y >= s.generated.diameter_max,
+                      fmt::format("must be at least packing.diameter_max = {}, got {}", s.generated.diameter_max, s.replica.box.size_y));
+    }},
+    {{"packing.position_jitter", "packing.diameter_mean"}, Check::Packing::generated, [](const Settings& s) {
+        const double jitter = s.replica.packing.position_jitter;
+        return unless(jitter <= 0.1 * s.generated.diameter_mean,
+                      fmt::format("must be at most a tenth of packing.diameter_mean = {}, got {}", s.generated.diameter_mean, jitter));
+    }},
+    {{"packing.packing_fraction", "packing.count", "packing.diameter_mean", "packing.diameter_sd", "packing.diameter_min",
+      "packing.diameter_max", "box.size_x", "box.size_y", "plate.start"}, Check::Packing::generated, [](const Settings& s) {
+        const auto& g = s.generated;
+        if (g.diameter_min > g.diameter_mean || g.diameter_max < g.diameter_mean) return Found{};
+        const double height = expected_height(g, s.replica.box);
+        if (height < g.diameter_max)
+            return Found{fmt::format("must leave room for the largest grain, got {}: the grains would fill the box up to {:.6g} m only; "
+                                     "lower it, or take more grains or a smaller box", g.packing_fraction, height)};
+        return unless(height <= 1.01 * s.replica.plate.start,
+                      fmt::format("must keep the grains below plate.start = {}, got {}: they would fill the box up to {:.6g} m; "
+                                  "raise it or plate.start", s.replica.plate.start, g.packing_fraction, height));
+    }},
+};
+// clang-format on
+
+}  // namespace
+
+std::vector<CrossProblem> cross_problems(const Settings& settings,
+                                         const std::set<std::string, std::less<>>& bad) {
+    std::vector<CrossProblem> problems;
+    for (const Check& check : checks) {
+        if (check.applies == Check::Packing::generated && !settings.packing_file.empty()) continue;
+        if (std::ranges::any_of(check.keys, [&](auto key) { return bad.contains(key); })) continue;
+        if (const Found problem = check.find(settings))
+            problems.push_back({std::string(check.keys.front()), *problem});
+    }
+    return problems;
+}
+
+std::vector<std::string> packing_file_problems(const Settings& settings, CheckedFiles& files) {
+    if (settings.packing_file.empty()) return {};
+    const auto [place, is_new] = files.try_emplace(settings.packing_file);
+    CheckedFile& file = place->second;
+    if (is_new) {
+        try {
+            file.packing = read_packing(settings.packing_file);
+            file.count = file.packing.size();
+            file.smallest = *std::ranges::min_element(file.packing.diameter);
+        } catch (const InputError& error) {
+            file.problems = error.problems();
+        }
+    }
+    if (!file.problems.empty()) return file.problems;
+    auto problems = packing_problems(file.packing, settings.replica.box, settings.replica.plate.start,
+                                     settings.packing_file);
+    if (settings.replica.packing.position_jitter > 0.1 * file.smallest)
+        problems.push_back(fmt::format(
+            "{}: packing.position_jitter must be at most a tenth of the smallest diameter {}, got {}",
+            settings.packing_file, file.smallest, settings.replica.packing.position_jitter));
+    return problems;
+}
+
+std::size_t grain_count(const Settings& settings, const CheckedFiles& files) {
+    if (settings.packing_file.empty()) return static_cast<std::size_t>(settings.generated.count);
+    const auto found = files.find(settings.packing_file);
+    return found == files.end() ? 0 : found->second.count;
+}
+
+}  // namespace mcdem

@@ -1,0 +1,209 @@
+#include "scene/scene_document.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <sstream>
+
+#include "core/errors.h"
+#include "scene/keys.h"
+
+namespace mcdem {
+namespace {
+
+constexpr std::size_t largest_text = 1 << 20;
+
+/// Dots that may be of dotted names rather than of decimal numbers. The parser recurses over the parts of a
+/// name, so that a few hundred thousand would overflow the stack.
+std::size_t dots_of_names(std::string_view text) {
+    const auto digit = [&](std::size_t i) { return i < text.size() && text[i] >= '0' && text[i] <= '9'; };
+    std::size_t count = 0;
+    bool in_number = false;  // since the dot before there were digits only
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        if (text[i] == '.') {
+            const bool decimal = i > 0 && digit(i - 1) && digit(i + 1) && !in_number;
+            if (!decimal) ++count;
+            in_number = true;
+        } else if (!digit(i)) {
+            in_number = false;
+        }
+    }
+    return count;
+}
+
+std::string bare(std::string key) {
+    std::erase(key, '"');
+    return key;
+}
+
+/// The value of an override as TOML; a bare word stands for itself. Nothing where it is neither.
+std::optional<toml::table> parse_override(const std::string& value) {
+    const bool one_line = std::ranges::none_of(value, [](unsigned char c) { return c < 32 || c == 127; });
+    if (!one_line || dots_of_names(value) > 100) return std::nullopt;
+    try {
+        return toml::parse("value = " + value);
+    } catch (const toml::parse_error&) {
+        if (value.empty() || value.find_first_of("\"'[]{}=#,") != value.npos) return std::nullopt;
+        return toml::table{{"value", value}};
+    }
+}
+
+}  // namespace
+
+SceneDocument::SceneDocument(std::string_view text, std::string source,
+                             const std::vector<std::string>& overrides, Problems& problems)
+    : source_(std::move(source)), text_(text) {
+    parse(text);
+    flatten(tables_.front(), "", entries_);
+    for (const std::string& one : overrides) apply(one, problems);
+    sort_entries(problems);
+    resolve_packing_files();
+}
+
+void SceneDocument::parse(std::string_view text) {
+    if (text.size() > largest_text)
+        throw InputError(fmt::format("{}: a scene must be at most {} bytes long, got {}", source_,
+                                     largest_text, text.size()));
+    constexpr std::size_t most_dots = 5000;
+    if (const std::size_t dots = dots_of_names(text); dots > most_dots)
+        throw InputError(fmt::format("{}: a scene must have at most {} dots besides those of numbers, got {}",
+                                     source_, most_dots, dots));
+    try {
+        tables_.push_back(toml::parse(text, source_));
+    } catch (const toml::parse_error& error) {
+        const auto& at = error.source().begin;
+        throw InputError(fmt::format("{}:{}:{}: must be TOML, got: {}", source_, at.line, at.column,
+                                     shortened(std::string(error.description()))));
+    }
+}
+
+void SceneDocument::flatten(toml::table& table, const std::string& prefix, std::vector<Entry>& into) const {
+    for (auto&& [key, node] : table) {
+        const std::string name = prefix + std::string(key.str());
+        if (node.is_table() && is_table(name)) {
+            flatten(*node.as_table(), name + ".", into);
+            continue;
+        }
+        const auto& at = node.source().begin;
+        into.push_back({name, &node, {fmt::format("{}:{}", source_, at.line), int(at.line), int(at.column)}});
+    }
+}
+
+void SceneDocument::sort_entries(Problems& problems) {
+    std::ranges::stable_sort(
+        entries_, {}, [](const Entry& entry) { return std::pair(entry.place.line, entry.place.column); });
+    std::map<std::string_view, const Entry*> first;
+    for (const Entry& entry : entries_) {
+        const auto [earlier, is_new] = first.emplace(entry.key, &entry);
+        if (is_new) continue;
+        problems.add(entry.place, fmt::format("{} must be given once, got it again after {}",
+                                              shortened(entry.key), earlier->second->place.text));
+    }
+}
+
+void SceneDocument::apply(const std::string& override_text, Problems& problems) {
+    changed_ = true;
+    const auto equals = override_text.find('=');
+    if (equals == override_text.npos || equals == 0) {
+        problems.add(Place::override_of(shortened(override_text)), "an override must be key=value");
+        return;
+    }
+    std::string key = bare(override_text.substr(0, equals));
+    std::erase(key, ' ');
+    const Place place = Place::override_of(shortened(key));
+    auto parsed = parse_override(override_text.substr(equals + 1));
+    if (!parsed) {
+        problems.add(place, fmt::format("the value must be TOML or one word, got {}",
+                                        shortened(override_text.substr(equals + 1))));
+        return;
+    }
+    tables_.push_back(std::move(*parsed));
+    std::vector<Entry> given;
+    toml::node& value = *tables_.back().get("value");
+    if (value.is_table() && is_table(key))
+        flatten(*value.as_table(), key + ".", given);
+    else
+        given.push_back({key, &value, {}});
+    for (Entry& entry : given) {
+        entry.place = place;
+        put(entry);
+    }
+}
+
+/// What an override says takes the place of what it contradicts: the same key, its variation or the value
+/// that it varies, and a packing file or generated grains.
+void SceneDocument::put(const Entry& entry) {
+    const bool varied = entry.key.starts_with(vary_prefix);
+    const std::string key = varied ? entry.key.substr(vary_prefix.size()) : entry.key;
+    const auto contradicted = [&](const Entry& other) {
+        const bool is_variation = other.key.starts_with(vary_prefix);
+        const std::string other_key = is_variation ? other.key.substr(vary_prefix.size()) : other.key;
+        if (other_key == key) return true;
+        if (other.place.line == entry.place.line)
+            return false;  // overrides may contradict each other: an error
+        return (key == "packing.file" && is_generator_key(other_key)) ||
+               (is_generator_key(key) && other_key == "packing.file");
+    };
+    std::erase_if(entries_, contradicted);
+    entries_.push_back(entry);
+}
+
+void SceneDocument::resolve_packing_files() {
+    const auto resolve = [&](toml::node& node, const Place& place) {
+        auto* path = node.as_string();
+        if (!path || path->get().empty()) return;
+        std::filesystem::path full(path->get());
+        if (place.line != INT_MAX) full = std::filesystem::path(source_).parent_path() / full;
+        *path = std::filesystem::absolute(full).lexically_normal().string();
+        changed_ = true;
+    };
+    for (Entry& entry : entries_) {
+        if (entry.key == "packing.file") resolve(*entry.value, entry.place);
+        if (entry.key == std::string(vary_prefix) + "packing.file" && entry.value->is_array())
+            for (auto& element : *entry.value->as_array()) resolve(element, entry.place);
+    }
+}
+
+const Entry* SceneDocument::find(std::string_view key) const {
+    const auto found = std::ranges::find(entries_, key, &Entry::key);
+    return found == entries_.end() ? nullptr : &*found;
+}
+
+Place SceneDocument::place_of(std::string_view key) const {
+    if (const Entry* entry = find(key)) return entry->place;
+    if (const Entry* entry = find(std::string(vary_prefix) + std::string(key))) return entry->place;
+    return {source_, 0, 0};
+}
+
+Place SceneDocument::place_of(const Entry& entry, const toml::node& element) const {
+    if (entry.place.line == INT_MAX) return entry.place;
+    const auto& at = element.source().begin;
+    return {fmt::format("{}:{}", source_, at.line), int(at.line), int(at.column)};
+}
+
+std::string SceneDocument::text() const {
+    if (!changed_) return text_;
+    toml::table whole;
+    const auto inner = [](toml::table& table, std::string_view name) -> toml::table& {
+        return *table.insert(name, toml::table{}).first->second.as_table();
+    };
+    for (const Entry& entry : entries_) {
+        toml::table* table = &whole;
+        std::string key = entry.key;
+        if (key.starts_with(vary_prefix)) {
+            table = &inner(inner(whole, "batch"), "vary");
+            key = key.substr(vary_prefix.size());
+        } else if (const auto dot = key.find('.'); dot != key.npos) {
+            table = &inner(whole, key.substr(0, dot));
+            key = key.substr(dot + 1);
+        }
+        entry.value->visit([&](const auto& value) { table->insert_or_assign(key, value); });
+    }
+    std::ostringstream out;
+    out << whole << '\n';
+    return out.str();
+}
+
+}  // namespace mcdem

@@ -1,0 +1,58 @@
+// A scene's TOML text and overrides as a flat list of dotted keys, each with its value and its place.
+#pragma once
+#include <toml++/toml.h>
+
+#include <deque>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "scene/problems.h"
+
+namespace mcdem {
+
+/// "batch.vary.contact.model" is the variation of "contact.model".
+inline constexpr std::string_view vary_prefix = "batch.vary.";
+
+struct Entry {
+    std::string key;
+    toml::node* value = nullptr;  ///< owned by the document
+    Place place;
+};
+
+class SceneDocument {
+public:
+    /// Throws InputError where the text is not TOML. Bad overrides are added to `problems`.
+    SceneDocument(std::string_view text, std::string source, const std::vector<std::string>& overrides,
+                  Problems& problems);
+    SceneDocument(const SceneDocument&) = delete;
+    SceneDocument& operator=(const SceneDocument&) = delete;
+
+    /// In the order of the file, overrides last.
+    const std::vector<Entry>& entries() const { return entries_; }
+    /// Where the key, or its variation, was said; the whole file where it was not.
+    Place place_of(std::string_view key) const;
+    /// The place of one value of a list.
+    Place place_of(const Entry& entry, const toml::node& element) const;
+    /// The text as given, or, where overrides or files' full paths change it, TOML that says the same
+    /// without its comments.
+    std::string text() const;
+
+private:
+    void parse(std::string_view text);
+    void flatten(toml::table& table, const std::string& prefix, std::vector<Entry>& into) const;
+    void sort_entries(Problems& problems);
+    void apply(const std::string& override_text, Problems& problems);
+    void put(const Entry& entry);
+    void resolve_packing_files();
+    const Entry* find(std::string_view key) const;
+
+    std::string source_;
+    std::string text_;
+    bool changed_ = false;
+    std::deque<toml::table> tables_;  ///< the file's, then one an override
+    std::vector<Entry> entries_;
+};
+
+}  // namespace mcdem

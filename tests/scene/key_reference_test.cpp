@@ -1,0 +1,125 @@
+// The table of keys: complete, consistent with itself, and what scenes/README.md says.
+#include "scene/key_reference.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <set>
+#include <sstream>
+
+#include "scene/assign.h"
+#include "scene/keys.h"
+#include "scene_test_tools.h"
+
+namespace mcdem {
+namespace {
+
+const std::string begin_mark =
+    "<!-- keys: written by the program, see tests/scene/key_reference_test.cpp -->\n";
+const std::string end_mark = "<!-- end of keys -->\n";
+
+std::vector<std::string> lines(const std::string& text) {
+    std::vector<std::string> all;
+    std::istringstream input(text);
+    for (std::string line; std::getline(input, line);) all.push_back(line);
+    return all;
+}
+
+/// MCDEM_UPDATE_REFERENCE=1 writes the reference instead of comparing it.
+TEST(KeyReference, StandsInTheReadme) {
+    const std::string file = std::string(MCDEM_SOURCE_DIR) + "/scenes/README.md";
+    std::ostringstream read;
+    read << std::ifstream(file).rdbuf();
+    const std::string text = read.str();
+    const auto begin = text.find(begin_mark), end = text.find(end_mark);
+    ASSERT_NE(begin, text.npos);
+    ASSERT_NE(end, text.npos);
+    const auto inside = begin + begin_mark.size();
+    if (std::getenv("MCDEM_UPDATE_REFERENCE")) {
+        std::ofstream(file) << text.substr(0, inside) << key_reference() << text.substr(end);
+        return;
+    }
+    const std::vector<std::string> stands = lines(text.substr(inside, end - inside)),
+                                   wanted = lines(key_reference());
+    EXPECT_EQ(stands.size(), wanted.size()) << "run this test once with MCDEM_UPDATE_REFERENCE=1";
+    for (std::size_t i = 0; i < std::min(stands.size(), wanted.size()); ++i)
+        ASSERT_EQ(stands[i], wanted[i]) << "run this test once with MCDEM_UPDATE_REFERENCE=1";
+}
+
+TEST(KeyReference, NamesEveryKey) {
+    const std::string reference = key_reference();
+    for (const Key& key : keys()) {
+        const std::string last(key.name.substr(key.name.rfind('.') + 1));
+        EXPECT_NE(reference.find("| `" + last + "` |"), std::string::npos) << key.name;
+    }
+    EXPECT_NE(reference.find("### [protocol]\n"), std::string::npos);
+    EXPECT_NE(reference.find("| `poisson_ratio` | a number between 0 and 0.5 | `0.5` | nu |"),
+              std::string::npos);
+}
+
+TEST(Keys, HaveNamesOfTheirOwn) {
+    std::set<std::string_view> names;
+    for (const Key& key : keys()) EXPECT_TRUE(names.insert(key.name).second) << key.name;
+}
+
+TEST(Keys, ReachMembersOfTheirOwn) {
+    Settings settings;
+    std::set<const void*> members;
+    for (const Key& key : keys())
+        std::visit([&](auto get) { EXPECT_TRUE(members.insert(&get(settings)).second) << key.name; },
+                   key.member);
+}
+
+std::size_t count_keys(std::string_view table) {
+    return static_cast<std::size_t>(
+        std::ranges::count_if(keys(), [&](const Key& key) { return key.name.starts_with(table); }));
+}
+
+/// Does not compile where a member is added to a structure: give it a row in host/scene/keys.cpp, then a
+/// name here.
+TEST(Keys, CoverEveryMember) {
+    [[maybe_unused]] const auto [b1, b2] = Box{};
+    [[maybe_unused]] const auto [g1, g2, g3, g4, g5, g6, g7] = GrainMaterial{};
+    [[maybe_unused]] const auto [w1, w2, w3, w4] = WallMaterial{};
+    [[maybe_unused]] const auto [c1, c2, c3, c4] = ContactLaw{};
+    [[maybe_unused]] const auto [d1, d2, d3, d4, d5, d6] = GeneratedPacking{};
+    [[maybe_unused]] const auto [p1, p2, p3] = Plate{};
+    [[maybe_unused]] const auto [r1, r2, r3, r4, r5, r6, r7, r8, r9] = Protocol{};
+    [[maybe_unused]] const auto [n1, n2, n3, n4] = Numerics{};
+    [[maybe_unused]] const auto [o1, o2, o3] = Output{};
+    EXPECT_EQ(count_keys("box."), 2u);
+    EXPECT_EQ(count_keys("grains."), 7u);
+    EXPECT_EQ(count_keys("walls."), 4u);
+    EXPECT_EQ(count_keys("contact."), 4u);
+    EXPECT_EQ(count_keys("packing."), 6u + 3) << "file, jitter and seed too";
+    EXPECT_EQ(count_keys("plate."), 3u);
+    EXPECT_EQ(count_keys("protocol."), 9u);
+    EXPECT_EQ(count_keys("numerics."), 4u + 2) << "precision and slots too";
+    EXPECT_EQ(count_keys("output."), 3u);
+}
+
+TEST(Keys, AcceptTheirOwnDefaults) {
+    const Settings defaults;
+    for (const Key& key : keys()) {
+        std::string text = value_text(key, defaults);
+        if (text.empty()) continue;  // no default
+        if (!std::holds_alternative<double& (*)(Settings&)>(key.member) && text != "true" &&
+            text != "false" && text.find_first_not_of("0123456789") != text.npos)
+            text = '"' + text + '"';
+        const toml::table parsed = toml::parse("value = " + text);
+        Settings settings;
+        EXPECT_EQ(assign(key, *parsed.get("value"), settings), std::nullopt) << key.name;
+        EXPECT_EQ(value_text(key, settings), value_text(key, defaults)) << key.name;
+    }
+}
+
+TEST(Keys, SuggestWhatWasMeant) {
+    EXPECT_EQ(suggestion("grains.fricton"), " (did you mean grains.friction?)");
+    EXPECT_EQ(suggestion("contact.poisson_ratio"), " (did you mean grains.poisson_ratio?)");
+    EXPECT_EQ(suggestion("grain"), " (did you mean grains?)");
+    EXPECT_EQ(suggestion("scans_per_stroke"), " (did you mean protocol.scans_per_stroke?)");
+    EXPECT_EQ(suggestion("colour"), "");
+    EXPECT_EQ(suggestion(std::string(100000, 'x')), "");
+}
+
+}  // namespace
+}  // namespace mcdem

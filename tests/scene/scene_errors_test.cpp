@@ -1,0 +1,245 @@
+// Scenes that are wrong: every problem at once, each with its place, what must be and what was got.
+#include "scene/read_scene.h"
+#include "scene_test_tools.h"
+
+namespace mcdem {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::SizeIs;
+using testing::StartsWith;
+
+std::vector<std::string> problems_in(const std::string& text,
+                                     const std::vector<std::string>& overrides = {}) {
+    return problems_of([&] { parse_scene(text, "bad.toml", overrides); });
+}
+
+TEST(SceneErrors, OfEveryKindAreReportedTogether) {
+    const auto problems = problems_in(R"(speed = 3
+[grains]
+youngs_modulus = -23.3e3
+poisson_ratio = 0.7
+friction = "low"
+fricton = 0.03
+[contact]
+model = "mcdem"
+[plate]
+start = 0.1
+end = 0.2
+[protocol]
+cycles = 2.5
+stop_at_scans = 1
+scans_per_stroke = 0
+[numerics]
+slots = 17
+[wall]
+friction = 0.1
+[batch.vary]
+"contact.gamma" = [1, "high"]
+"output.contacts" = [true, false]
+)",
+                                      {"packing.count=0"});
+    EXPECT_THAT(
+        problems,
+        ElementsAre(
+            "bad.toml:1: speed must be a key of a scene, got an unknown one (did you mean plate.speed?)",
+            "bad.toml:3: grains.youngs_modulus must be a number > 0 and <= 1e+13 [Pa], got -23300",
+            "bad.toml:4: grains.poisson_ratio must be a number between 0 and 0.5, got 0.7",
+            "bad.toml:5: grains.friction must be a number between 0 and 10, got \"low\"",
+            "bad.toml:6: grains.fricton must be a key of a scene, got an unknown one (did you mean "
+            "grains.friction?)",
+            "bad.toml:8: contact.model must be one of independent, point_force_on_sphere, sphere_to_sphere, "
+            "elastic_half_space, mc_dem, elastic_sphere, got \"mcdem\"",
+            "bad.toml:11: plate.end must be below plate.start = 0.1, got 0.2",
+            "bad.toml:13: protocol.cycles must be a whole number between 1 and 10000, got 2.5",
+            "bad.toml:14: protocol.stop_at_scans must be true or false, got 1",
+            "bad.toml:15: protocol.scans_per_stroke must be a whole number between 1 and 10000, got 0",
+            "bad.toml:17: numerics.slots must be a whole number between 16 and 64, a multiple of 16, got 17",
+            "bad.toml:18: wall must be a table of a scene, got an unknown one (did you mean walls?)",
+            "bad.toml:21: batch.vary.\"contact.gamma\" must be a number between 0 and 10, got \"high\"",
+            "bad.toml:22: batch.vary.\"output.contacts\" must be a key of which replicas have their own, got "
+            "one of the "
+            "whole run",
+            "--set packing.count: packing.count must be a whole number between 1 and 10000000, got 0"));
+}
+
+TEST(SceneErrors, SayLineAndColumnOfBadSyntax) {
+    EXPECT_THAT(problems_in("[grains]\nfriction = = 2\n"),
+                ElementsAre(StartsWith("bad.toml:2:12: must be TOML, got: ")));
+    EXPECT_THAT(problems_in("[grains\nfriction = 2\n"),
+                ElementsAre(StartsWith("bad.toml:1:8: must be TOML")));
+    EXPECT_THAT(problems_in("a = 1\na = 2\n"), ElementsAre(StartsWith("bad.toml:2:")));
+    EXPECT_THAT(problems_in("name = \"\xff\xfe\"\n"), ElementsAre(StartsWith("bad.toml:1:")));
+}
+
+struct Wrong {
+    const char* text;
+    const char* problem;  ///< the only one
+};
+
+class CrossErrors : public testing::TestWithParam<Wrong> {};
+
+TEST_P(CrossErrors, NameTheKeyAndTheOther) {
+    EXPECT_THAT(problems_in(GetParam().text), ElementsAre(StartsWith(GetParam().problem)));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, CrossErrors,
+    testing::Values(
+        Wrong{"[plate]\nend = 0.2\n", "bad.toml:2: plate.end must be below plate.start = 0.167643, got 0.2"},
+        Wrong{"[protocol]\ncycles = 3\ndiscard = 3\n",
+              "bad.toml:3: protocol.discard must be less than protocol.cycles = 3, got 3"},
+        Wrong{"[protocol]\ncycles = 10000\nscans_per_stroke = 1000",
+              "bad.toml:3: protocol.scans_per_stroke must leave at most 1000000 scans"},
+        Wrong{"[packing]\ndiameter_min = 0.0215\n",
+              "bad.toml:2: packing.diameter_min must be at most packing.diameter_mean = 0.02149"},
+        Wrong{"[packing]\ndiameter_max = 0.02\n",
+              "bad.toml:2: packing.diameter_max must be at least packing.diameter_mean = 0.02149"},
+        Wrong{"[packing]\ndiameter_min = 0.002\n",
+              "bad.toml: packing.diameter_max must be at most 10 times packing.diameter_min"},
+        Wrong{"[packing]\nposition_jitter = 0.003\n",
+              "bad.toml:2: packing.position_jitter must be at most a tenth of packing.diameter_mean"},
+        Wrong{"[packing]\ncount = 600\n",
+              "bad.toml: packing.packing_fraction must keep the grains below plate.start"},
+        Wrong{"[packing]\ncount = 1\n",
+              "bad.toml: packing.packing_fraction must leave room for the largest grain"},
+        Wrong{"[packing]\nfile = \"no_such.csv\"\n", "bad.toml:2: "},
+        Wrong{"[contact]\ngamma = 1\n[batch.vary]\n\"contact.gamma\" = [1, 2]\n",
+              "bad.toml:4: batch.vary.\"contact.gamma\" must be the only place of contact.gamma, got a value "
+              "too at bad.toml:2"},
+        Wrong{"[batch]\nreplicas = 2\n[batch.vary]\n\"packing.seed\" = [1, 2]\n",
+              "bad.toml:2: batch.replicas must be 1 where packing.seed varies"},
+        Wrong{"[batch.vary]\n\"grains.friction\" = []\n",
+              "bad.toml:2: batch.vary.\"grains.friction\" must be a list of values, got an empty one"},
+        Wrong{"[batch.vary]\n\"grains.friction\" = 0.1\n",
+              "bad.toml:2: batch.vary.\"grains.friction\" must be a list of values, got 0.1"},
+        Wrong{"[batch.vary]\n\"grains.fricton\" = [0.1]\n",
+              "bad.toml:2: batch.vary.grains.fricton must be a key of a scene, got an unknown one (did you "
+              "mean grains.friction?)"},
+        Wrong{"[batch]\nreplicas = 1000\n[batch.vary]\n\"contact.gamma\" = [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, "
+              "0]\n",
+              "bad.toml:2: batch.replicas must leave at most 10000 replicas in all, got 11000"},
+        Wrong{"grains = 5\n", "bad.toml:1: grains must be a table, got 5"},
+        Wrong{"[grains.friction]\nx = 1\n",
+              "bad.toml:1: grains.friction must be a number between 0 and 10, got a table"},
+        Wrong{"[[grains]]\nfriction = 1\n", "bad.toml:1: grains must be a table, got a list"},
+        Wrong{"\"grains.friction\" = 1\n[grains]\nfriction = 1\n",
+              "bad.toml:3: grains.friction must be given once, got it again after bad.toml:1"},
+        Wrong{"name = \"\"\n", "bad.toml:1: name must be text, got \"\""},
+        Wrong{"name = \"a\\u0000b\"\n", "bad.toml:1: name must be text, got \"a?b\""},
+        Wrong{"[grains]\nfriction = nan\n",
+              "bad.toml:2: grains.friction must be a number between 0 and 10, got nan"},
+        Wrong{"[grains]\nyoungs_modulus = inf\n", "bad.toml:2: grains.youngs_modulus must be a number > 0"},
+        Wrong{"[plate]\nspeed = 2020-01-01\n",
+              "bad.toml:2: plate.speed must be a number > 0 and <= 1000 [m/s], got 2020-01-01"},
+        Wrong{"[packing]\nseed = -1\n", "bad.toml:2: packing.seed must be a whole number between 0"}));
+
+TEST(SceneErrors, TooManyGrainsInAll) {
+    EXPECT_THAT(problems_in("[packing]\ncount = 5000000\npacking_fraction = 0.6\n[box]\nsize_x = 30\nsize_y "
+                            "= 30\n[batch]\nreplicas = 3\n"),
+                ElementsAre("bad.toml:8: batch.replicas must leave at most 10000000 grains in all, got 3 "
+                            "replicas of up to 5000000"));
+}
+
+TEST(SceneErrors, OneBadKeyDoesNotBlameOthers) {
+    EXPECT_THAT(problems_in("[plate]\nstart = \"high\"\nend = 0.2\n"),
+                ElementsAre(StartsWith("bad.toml:2: plate.start")));
+}
+
+TEST(SceneErrors, VariationsAreCheckedAgainstOtherKeys) {
+    EXPECT_THAT(problems_in("[batch.vary]\n\"plate.end\" = [0.15, 0.16, 0.18]\n"),
+                ElementsAre("bad.toml:2: plate.end must be below plate.start = 0.167643, got 0.18"));
+}
+
+TEST(OverrideErrors, NameTheOption) {
+    EXPECT_THAT(problems_in("", {"grains.friction"}),
+                ElementsAre("--set grains.friction: an override must be key=value"));
+    EXPECT_THAT(problems_in("", {"=3"}), ElementsAre(HasSubstr("an override must be key=value")));
+    EXPECT_THAT(problems_in("", {"grains.friction="}),
+                ElementsAre(StartsWith("--set grains.friction: the value must be TOML or one word, got ")));
+    EXPECT_THAT(problems_in("", {"contact.model=[1,"}),
+                ElementsAre(StartsWith("--set contact.model: the value must be TOML")));
+    EXPECT_THAT(problems_in("", {"grains.friction=1\nplate.end=2"}),
+                ElementsAre(StartsWith("--set grains.friction: the value must be TOML")));
+    EXPECT_THAT(problems_in("", {"grains.friktion=1"}),
+                ElementsAre(AllOf(StartsWith("--set grains.friktion: "),
+                                  HasSubstr("did you mean grains.friction?"))));
+    EXPECT_THAT(problems_in("", {"plate.end=0.3"}),
+                ElementsAre("--set plate.end: plate.end must be below plate.start = 0.167643, got 0.3"));
+    EXPECT_THAT(problems_in("", {"grains=5"}), ElementsAre("--set grains: grains must be a table, got 5"));
+}
+
+TEST(PackingFileErrors, ComeWithTheScenes) {
+    const TestFolder folder;
+    folder.write("bad.csv", "x_m,y_m,z_m,diameter_m\n0.05,0.05,low,0.02\n0.05,0.05,0.05,-0.02\n");
+    const auto scene = folder.write("scene.toml", "[packing]\nfile = \"bad.csv\"\n[grains]\nfriction = -1\n");
+    const auto problems = problems_of([&] { read_scene(scene); });
+    EXPECT_THAT(problems, ElementsAre(HasSubstr("bad.csv:2: z must be a finite number [m], got \"low\""),
+                                      HasSubstr("bad.csv:3: diameter must be > 0 [m], got -0.02"),
+                                      AllOf(HasSubstr("scene.toml:4: "), HasSubstr("got -1"))));
+}
+
+TEST(PackingFileErrors, GeneratedGrainsBesideAFile) {
+    const TestFolder folder;
+    folder.write("one.csv", "x_m,y_m,z_m,diameter_m\n0.05,0.05,0.05,0.02\n");
+    const auto both = folder.write("both.toml", "[packing]\nfile = \"one.csv\"\ncount = 4\n");
+    EXPECT_THAT(
+        problems_of([&] { read_scene(both); }),
+        ElementsAre(HasSubstr("both.toml:3: packing.count must be left out where packing.file is given")));
+    EXPECT_THAT(problems_of([&] {
+                    parse_scene(
+                        "", "a.toml",
+                        {"packing.count=400", "packing.file=" + (folder.path() / "one.csv").string()});
+                }),
+                ElementsAre(HasSubstr("--set packing.count: packing.count must be left out")));
+}
+
+TEST(PackingFileErrors, CopiesThatWouldBeAlike) {
+    const TestFolder folder;
+    folder.write("one.csv", "x_m,y_m,z_m,diameter_m\n0.05,0.05,0.05,0.02\n");
+    const std::string text = "[packing]\nfile = \"one.csv\"\n[batch]\nreplicas = 2\n";
+    const auto alike = folder.write("alike.toml", text);
+    EXPECT_THAT(problems_of([&] { read_scene(alike); }),
+                ElementsAre(HasSubstr("alike.toml:4: batch.replicas must be 1 where packing.file")));
+    EXPECT_EQ(read_scene(alike, {"packing.position_jitter=1e-5"}).replicas.size(), 2u);
+    EXPECT_THAT(problems_of([&] { read_scene(alike, {"packing.position_jitter=0.01"}); }),
+                ElementsAre(HasSubstr("at most a tenth of the smallest diameter 0.02")));
+}
+
+TEST(SceneFileErrors, AreToldApart) {
+    const TestFolder folder;
+    EXPECT_THAT(problems_of([&] { read_scene(folder.path() / "none.toml"); }),
+                ElementsAre(HasSubstr("got no such file")));
+    EXPECT_THAT(problems_of([&] { read_scene(folder.path()); }), ElementsAre(HasSubstr("not a file")));
+}
+
+TEST(HostileScenes, AreRefusedInPlainWords) {
+    EXPECT_THAT(problems_in(std::string(2 << 20, ' ')),
+                ElementsAre(HasSubstr("must be at most 1048576 bytes")));
+    EXPECT_THAT(problems_in(std::string(100000, '[')), ElementsAre(HasSubstr("must be TOML")));
+    std::string nested = "a";
+    for (int depth = 0; depth < 300000; ++depth) nested += ".a";
+    EXPECT_THAT(problems_in(nested + " = 1"), ElementsAre(HasSubstr("must have at most 5000 dots")));
+    for (char& c : nested) c = c == 'a' ? '0' : c;
+    EXPECT_THAT(problems_in(nested + " = 1"), ElementsAre(HasSubstr("must have at most 5000 dots")));
+    EXPECT_THAT(problems_in(nested.substr(0, 9999) + " = 1"),
+                ElementsAre(HasSubstr("must be a table of a scene")));
+    EXPECT_THAT(problems_in("", {"grains={" + nested + "=1}"}), SizeIs(1));
+    std::string many;
+    for (int i = 0; i < 20000; ++i) many += "key" + std::to_string(i) + " = 1\n";
+    EXPECT_THAT(problems_in(many), SizeIs(101)) << "a hundred, and how many more";
+    EXPECT_LT(problems_in("\"" + std::string(500000, 'k') + "\" = 1").at(0).size(), 300u);
+    std::string variations = "[batch.vary]\n";
+    for (const char* key : {"grains.friction", "walls.friction", "contact.gamma", "grains.drag"}) {
+        variations.append("\"").append(key).append("\" = [");
+        for (int i = 0; i < 5000; ++i) variations += "1,";
+        variations += "]\n";
+    }
+    EXPECT_THAT(problems_in(variations),
+                ElementsAre(HasSubstr("at most 10000 replicas in all, got 6.25e+14")));
+}
+
+}  // namespace
+}  // namespace mcdem
