@@ -1,0 +1,40 @@
+// Measured compressions: a folder with experiment.toml, plate.csv and, where measured, grains.csv and
+// contacts.csv (README.md beside this file), read into the same form as simulations.
+#pragma once
+#include <filesystem>
+#include <map>
+#include <string>
+
+#include "core/recording.h"
+
+namespace mcdem {
+
+/// How well it was measured; a simulation seen through the same instrument is comparable.
+struct Measurement {
+    double position_error = 0;   ///< sigma of every coordinate of a centre [m]
+    double diameter_error = 0;   ///< sigma [m]
+    double force_error = 0;      ///< relative sigma of a contact force
+    double force_threshold = 0;  ///< contact forces below it are not seen [N]
+};
+
+struct Experiment {
+    std::string name;
+    /// Positions, contacts, top force by scan. Z, <f> and <b> come from the contacts above the force
+    /// threshold; what was not measured is not-a-number or empty.
+    Recording recording;
+    std::map<std::string, double> materials;    ///< scene keys that were measured: "grains.youngs_modulus"
+    std::map<std::string, double> uncertainty;  ///< one sigma of some of them, by the same key
+    Measurement measurement;
+};
+
+/// Throws InputError with every problem found (the first 20), each as file:line and what to do.
+Experiment read_experiment(const std::filesystem::path& folder);
+
+enum class Packed { plain, gzip };
+
+/// Writes the folder, so that read_experiment gives back what it holds: the forces above the threshold and
+/// numbers to the last digit. Averages are left to the reader.
+void write_experiment(const std::filesystem::path& folder, const Experiment& experiment,
+                      Packed packed = Packed::plain);
+
+}  // namespace mcdem

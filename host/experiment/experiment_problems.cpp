@@ -1,0 +1,28 @@
+#include "experiment/experiment_problems.h"
+
+#include "core/errors.h"
+
+namespace mcdem {
+namespace {
+constexpr std::size_t most_told = 20;
+}
+
+void ExperimentProblems::add(const std::string& where, const std::string& what) {
+    if (first_.size() < most_told) first_.push_back(where + ": " + what);
+    ++count_;
+}
+
+void ExperimentProblems::add_once(const std::string& topic, const std::string& where,
+                                  const std::string& what) {
+    if (told_.insert(topic).second) add(where, what);
+}
+
+void ExperimentProblems::report() const {
+    if (empty()) return;
+    auto problems = first_;
+    const long more = count_ - static_cast<long>(first_.size());
+    if (more > 0) problems.push_back(".. and " + std::to_string(more) + " more");
+    throw InputError(problems);
+}
+
+}  // namespace mcdem

@@ -1,0 +1,26 @@
+// Everything wrong with one experiment folder, up to a number beyond which more would not help.
+#pragma once
+#include <set>
+#include <string>
+#include <vector>
+
+namespace mcdem {
+
+class ExperimentProblems {
+public:
+    /// `where` is a file, or file:line.
+    void add(const std::string& where, const std::string& what);
+    /// The same, told once for each `topic`: a column in millimetres is one problem, not one for each line.
+    void add_once(const std::string& topic, const std::string& where, const std::string& what);
+    bool empty() const { return count_ == 0; }
+    long count() const { return count_; }
+    /// Throws InputError where there are any.
+    void report() const;
+
+private:
+    std::vector<std::string> first_;
+    std::set<std::string> told_;
+    long count_ = 0;
+};
+
+}  // namespace mcdem

@@ -1,0 +1,129 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "experiment/measurements.h"
+
+namespace mcdem {
+namespace {
+
+struct GrainRow {
+    long grain;
+    Vec3 position;    ///< [m]
+    double diameter;  ///< [m]
+    std::string where;
+};
+
+/// Collects the rows of one frame, then checks that they are all the grains.
+class Frames {
+public:
+    Frames(Table& table, Recording& recording) : table_(table), recording_(recording) {}
+
+    void add(long frame, GrainRow row) {
+        if (frame != frame_) {
+            end_frame();
+            frame_ = frame;
+        }
+        check_units(row);
+        rows_.push_back(std::move(row));
+    }
+
+    void end_frame() {
+        if (frame_ < 0) return;
+        const std::size_t grains = recording_.diameter.empty() ? rows_.size() : recording_.diameter.size();
+        std::vector<Vec3> position(grains, Vec3::Zero());
+        std::vector<double> diameter(grains, 0.0);
+        std::vector<bool> seen(grains, false);
+        for (const GrainRow& row : rows_) place(row, grains, position, diameter, seen);
+        const auto missing = std::find(seen.begin(), seen.end(), false);
+        if (missing != seen.end())
+            table_.problem_at(
+                rows_.front().where,
+                fmt::format("frame {} must list all {} grains, but grain {} is missing: add it, or leave "
+                            "the whole frame out",
+                            frame_, grains, missing - seen.begin()));
+        if (recording_.diameter.empty()) recording_.diameter = std::move(diameter);
+        recording_.scans[static_cast<std::size_t>(frame_)].position = std::move(position);
+        rows_.clear();
+    }
+
+    long frame() const { return frame_; }
+
+private:
+    void check_units(const GrainRow& row) {
+        const Box& box = recording_.box;
+        const double width = std::max(box.size_x, box.size_y);
+        if (!(row.diameter > 0))
+            table_.problem(fmt::format("diameter_m must be > 0 [m], got {}", row.diameter));
+        else if (width > 0 && row.diameter > width)
+            table_.problem_once(
+                "diameter", fmt::format("diameter_m must be in metres: {} is more than the box's width of {} "
+                                        "m; divide by 1000 if it is in millimetres",
+                                        row.diameter, width));
+        const double margin = width + std::max(row.diameter, 0.0);
+        const bool far_off = row.position.x() < -margin || row.position.x() > box.size_x + margin ||
+                             row.position.y() < -margin || row.position.y() > box.size_y + margin;
+        if (width > 0 && far_off)
+            table_.problem_once(
+                "position",
+                fmt::format("x_m and y_m must lie in the box of {} by {} m, walls at 0, got {} and "
+                            "{}: divide by 1000 if they are in millimetres, shift them if the "
+                            "origin is elsewhere",
+                            box.size_x, box.size_y, row.position.x(), row.position.y()));
+    }
+
+    void place(const GrainRow& row, std::size_t grains, std::vector<Vec3>& position,
+               std::vector<double>& diameter, std::vector<bool>& seen) {
+        const auto i = static_cast<std::size_t>(row.grain);
+        if (i >= grains)
+            return table_.problem_at(
+                row.where, fmt::format("grain must be 0 to {}, got {}: grains count from 0, the same in "
+                                       "every frame",
+                                       grains - 1, row.grain));
+        if (seen[i])
+            return table_.problem_at(row.where,
+                                     fmt::format("grain {} is there twice in frame {}", row.grain, frame_));
+        seen[i] = true;
+        position[i] = row.position;
+        diameter[i] = row.diameter;
+    }
+
+    Table& table_;
+    Recording& recording_;
+    std::vector<GrainRow> rows_;
+    long frame_ = -1;
+};
+
+}  // namespace
+
+const std::vector<std::string>& grain_columns() {
+    static const std::vector<std::string> columns{"frame", "grain", "x_m", "y_m", "z_m", "diameter_m"};
+    return columns;
+}
+
+void read_grains(Table& table, Recording& recording) {
+    Frames frames(table, recording);
+    const long last = static_cast<long>(recording.scans.size()) - 1;
+    while (table.next()) {
+        const auto frame = table.whole_number(0, 0), grain = table.whole_number(1, 0);
+        const auto x = table.number(2), y = table.number(3), z = table.number(4), diameter = table.number(5);
+        if (!frame || !grain || !x || !y || !z || !diameter) continue;
+        if (frames.frame() < 0 && *frame != 0)
+            table.problem_once(
+                "first",
+                fmt::format("the first frame must be 0, which says what grains there are, got {}", *frame));
+        if (*frame > last)
+            table.problem_once("last",
+                               fmt::format("frame must be one of plate.csv, 0 to {}, got {}", last, *frame));
+        else if (*frame < frames.frame())
+            table.problem_once("order",
+                               fmt::format("frames must be in order, got {} after {}: sort the rows by frame",
+                                           *frame, frames.frame()));
+        else
+            frames.add(*frame, {*grain, Vec3(*x, *y, *z), *diameter, table.where()});
+    }
+    frames.end_frame();
+    if (recording.diameter.empty()) table.problem_once("none", "must list the grains of frame 0, got none");
+}
+
+}  // namespace mcdem

@@ -1,0 +1,69 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "experiment/measurements.h"
+#include "scene/packing_fields.h"
+
+namespace mcdem {
+namespace {
+
+constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
+constexpr double largest_height = 20;  // plate height over the box's width; beyond it is not in metres
+
+Scan unknown_scan() {
+    Scan scan;
+    scan.time = not_known;
+    scan.kinetic_energy = scan.elastic_energy = not_known;
+    scan.coordination_number = scan.mean_force = scan.packing_fraction = scan.branch_length = not_known;
+    scan.settled = true;  // measured at rest
+    for (Vec3& force : scan.wall_force) force.setConstant(not_known);
+    return scan;
+}
+
+}  // namespace
+
+const std::vector<std::string>& plate_columns() {
+    static const std::vector<std::string> columns{"frame", "cycle", "phase", "plate_z_m", "top_force_N"};
+    return columns;
+}
+
+void read_plate(Table& table, Recording& recording) {
+    const double width = std::max(recording.box.size_x, recording.box.size_y);
+    int cycle_before = 0;
+    for (int row = 0; table.next(); ++row) {
+        Scan scan = unknown_scan();
+        scan.frame = row;
+        const auto frame = table.whole_number(0, 0), cycle = table.whole_number(1, 0);
+        if (frame && *frame != row)
+            table.problem(
+                fmt::format("frame must be {}, got {}: frames count from 0, one a row, in the order of the "
+                            "measurement",
+                            row, *frame));
+        if (cycle && *cycle < cycle_before)
+            table.problem(fmt::format("cycle must not fall, got {} after {}: sort the rows by time", *cycle,
+                                      cycle_before));
+        cycle_before = scan.cycle = static_cast<int>(cycle.value_or(cycle_before));
+        const auto phase = parse<Phase>(table.text(2));
+        if (!phase)
+            table.problem(
+                fmt::format("phase must be one of {}, got {}", all_names<Phase>(), quoted(table.text(2))));
+        scan.phase = phase.value_or(Phase::load);
+        const auto plate_z = table.number(3), force = table.number(4);
+        if (plate_z && *plate_z <= 0)
+            table.problem(fmt::format(
+                "plate_z_m must be > 0 [m], the height of the plate over the floor, got {}", *plate_z));
+        if (plate_z && width > 0 && *plate_z > largest_height * width)
+            table.problem_once(
+                "unit",
+                fmt::format("plate_z_m must be in metres: {} is more than {} times the box's width of {} m; "
+                            "divide by 1000 if it is in millimetres",
+                            *plate_z, largest_height, width));
+        scan.plate_z = plate_z.value_or(1);
+        scan.wall_force[static_cast<std::size_t>(Wall::plate)].z() = force.value_or(0);
+        recording.scans.push_back(scan);
+    }
+}
+
+}  // namespace mcdem

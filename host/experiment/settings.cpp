@@ -1,0 +1,184 @@
+#include "experiment/settings.h"
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <cmath>
+#include <limits>
+#include <span>
+#include <sstream>
+
+namespace mcdem {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// What a number in experiment.toml may be.
+struct Setting {
+    std::string_view key;
+    double low, high;
+    bool low_excluded;
+    std::string_view unit;
+};
+
+constexpr Setting materials[] = {
+    {"grains.youngs_modulus", 0, 1e15, true, "Pa"},
+    {"grains.poisson_ratio", 0, 0.5, false, ""},
+    {"grains.excess_density", -1e5, 1e5, false, "kg/m3"},
+    {"grains.friction", 0, 10, false, ""},
+    {"grains.restitution", 0, 1, true, ""},
+    {"walls.youngs_modulus", 0, 1e15, true, "Pa"},
+    {"walls.friction", 0, 10, false, ""},
+};
+constexpr Setting measurements[] = {
+    {"measurement.position_error", 0, 1, false, "m"},
+    {"measurement.diameter_error", 0, 1, false, "m"},
+    {"measurement.force_error", 0, 10, false, ""},
+    {"measurement.force_threshold", 0, infinity, false, "N"},
+};
+constexpr Setting plate_start{"plate.start", 0, 100, true, "m"};
+constexpr double largest_box = 20;  // [m]; a larger one was given in millimetres
+
+std::string range_text(const Setting& setting) {
+    return fmt::format("a number {} {}{}{}", setting.low_excluded ? ">" : ">=", setting.low,
+                       std::isinf(setting.high) ? "" : fmt::format(" and <= {}", setting.high),
+                       setting.unit.empty() ? "" : fmt::format(" [{}]", setting.unit));
+}
+
+class Reader {
+public:
+    Reader(std::string file, ExperimentProblems& problems) : file_(std::move(file)), problems_(problems) {}
+
+    void read(const toml::table& root, Experiment& experiment) {
+        const auto name = root.get("name");
+        if (name && !name->is_string()) problem(*name, "name must be a text");
+        experiment.name =
+            name ? name->value_or(std::string()) : std::filesystem::path(file_).parent_path().stem().string();
+        read_box(root, experiment.recording.box);
+        experiment.recording.plate_start = number(root, plate_start).value_or(std::nan(""));
+        for (const Setting& setting : materials)
+            if (const auto value = number(root, setting))
+                experiment.materials[std::string(setting.key)] = *value;
+        double* const errors[] = {&experiment.measurement.position_error,
+                                  &experiment.measurement.diameter_error, &experiment.measurement.force_error,
+                                  &experiment.measurement.force_threshold};
+        for (std::size_t i = 0; i < std::size(errors); ++i)
+            *errors[i] = number(root, measurements[i]).value_or(0);
+        for (const Setting& setting : materials) read_sigma(root, setting, experiment);
+        report_unknown(root, "");
+    }
+
+private:
+    void problem(const toml::node& node, const std::string& what) {
+        problems_.add(fmt::format("{}:{}", file_, node.source().begin.line), what);
+    }
+
+    void known(std::string_view key) { known_.insert(std::string(key)); }
+
+    std::optional<double> number(const toml::table& root, const Setting& setting) {
+        known(setting.key);
+        const auto node = root.at_path(setting.key);
+        if (!node) return std::nullopt;
+        const auto value = node.is_number() ? node.value<double>() : std::nullopt;
+        if (value && std::isfinite(*value) && *value <= setting.high &&
+            (setting.low_excluded ? *value > setting.low : *value >= setting.low))
+            return value;
+        problem(*node.node(), fmt::format("{} must be {}", setting.key, range_text(setting)));
+        return std::nullopt;
+    }
+
+    void read_box(const toml::table& root, Box& box) {
+        known("box.size");
+        const auto node = root.at_path("box.size");
+        const auto* size = node.as_array();
+        if (!size || size->size() != 2 || !size->is_homogeneous<double>()) {
+            const std::string where =
+                node ? fmt::format("{}:{}", file_, node.node()->source().begin.line) : file_;
+            problems_.add(
+                where,
+                "box.size must be the inner width and depth of the box, two decimal numbers [m], such as "
+                "[0.165, 0.166]");
+            return;
+        }
+        box = {size->get_as<double>(0)->get(), size->get_as<double>(1)->get()};
+        for (double length : {box.size_x, box.size_y})
+            if (!(length > 0 && length <= largest_box))
+                problem(*node.node(),
+                        fmt::format("box.size must be > 0 and <= {} [m], got {}: divide by 1000 if it is in "
+                                    "millimetres",
+                                    largest_box, length));
+    }
+
+    /// `[uncertainty]` names the keys in full ("walls.friction"), or for grains their last word ("friction").
+    void read_sigma(const toml::table& root, const Setting& setting, Experiment& experiment) {
+        std::vector<std::string> names{fmt::format("uncertainty.{}", setting.key)};
+        if (setting.key.starts_with("grains."))
+            names.push_back(fmt::format("uncertainty.{}", setting.key.substr(7)));
+        for (const std::string& name : names)
+            if (const auto sigma = number(root, {name, 0, infinity, false, setting.unit}))
+                experiment.uncertainty[std::string(setting.key)] = *sigma;
+    }
+
+    void report_unknown(const toml::table& table, const std::string& prefix) {
+        for (const auto& [key, node] : table) {
+            const std::string name = prefix + std::string(key.str());
+            const auto first = known_.lower_bound(name + ".");
+            const bool is_group = first != known_.end() && first->starts_with(name + ".");
+            if (is_group && node.is_table())
+                report_unknown(*node.as_table(), name + ".");
+            else if (name != "name" && !known_.count(name))
+                problem(node,
+                        fmt::format(
+                            "{} is not a key of an experiment: remove it, or see its README for the names",
+                            name));
+        }
+    }
+
+    std::string file_;
+    ExperimentProblems& problems_;
+    std::set<std::string> known_;
+};
+
+}  // namespace
+
+void read_settings(const std::filesystem::path& file, Experiment& experiment, ExperimentProblems& problems) {
+    try {
+        const toml::table root = toml::parse_file(file.string());
+        Reader(file.string(), problems).read(root, experiment);
+    } catch (const toml::parse_error& error) {
+        problems.add(fmt::format("{}:{}", file.string(), error.source().begin.line),
+                     std::string(error.description()));
+    }
+    for (const auto& [key, value] : experiment.materials)
+        experiment.recording.parameters[key] = fmt::format("{}", value);
+}
+
+std::string settings_text(const Experiment& experiment) {
+    const Recording& recording = experiment.recording;
+    const Measurement& errors = experiment.measurement;
+    toml::table grains, walls, sigma_grains, sigma_walls;
+    const auto insert = [](toml::table& of_grains, toml::table& of_walls,
+                           const std::map<std::string, double>& values) {
+        for (const auto& [key, value] : values) {
+            const auto dot = key.find('.');
+            (key.starts_with("walls.") ? of_walls : of_grains).insert(key.substr(dot + 1), value);
+        }
+    };
+    insert(grains, walls, experiment.materials);
+    insert(sigma_grains, sigma_walls, experiment.uncertainty);
+    toml::table root{{"name", experiment.name},
+                     {"box", toml::table{{"size", toml::array{recording.box.size_x, recording.box.size_y}}}},
+                     {"plate", toml::table{{"start", recording.plate_start}}},
+                     {"grains", grains},
+                     {"walls", walls},
+                     {"uncertainty", toml::table{{"grains", sigma_grains}, {"walls", sigma_walls}}},
+                     {"measurement", toml::table{{"position_error", errors.position_error},
+                                                 {"diameter_error", errors.diameter_error},
+                                                 {"force_error", errors.force_error},
+                                                 {"force_threshold", errors.force_threshold}}}};
+    std::stringstream text;
+    text << root << '\n';
+    return text.str();
+}
+
+}  // namespace mcdem

@@ -1,0 +1,55 @@
+// One CSV table of an experiment, plain or packed with gzip, read row by row.
+#pragma once
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "experiment/experiment_problems.h"
+
+namespace mcdem {
+
+/// `<folder>/<name>` or `<name>.gz`; nothing where neither is there. Both is a problem: which counts?
+std::optional<std::filesystem::path> find_table(const std::filesystem::path& folder, const std::string& name,
+                                                ExperimentProblems& problems);
+
+class Table {
+public:
+    /// Opens the file and reads its header, which must name all `columns`, in any order; others are left
+    /// aside.
+    Table(const std::filesystem::path& file, const std::vector<std::string>& columns,
+          ExperimentProblems& problems);
+    ~Table();
+    /// Goes on to the next row that has as many columns as the header; false at the end or where the header
+    /// is unusable. Lines that are empty or start with # are skipped.
+    bool next();
+
+    std::string_view text(std::size_t column) const { return words_[column]; }
+    /// The number in a column; anything else is reported, and nothing given.
+    std::optional<double> number(std::size_t column);
+    std::optional<long> whole_number(std::size_t column, long least);
+    /// "plate.csv:12", the present row.
+    std::string where() const;
+    void problem(const std::string& what) { problem_at(where(), what); }
+    void problem_at(const std::string& where, const std::string& what) { problems_.add(where, what); }
+    /// The same, told once for each topic in this table.
+    void problem_once(const std::string& topic, const std::string& what) {
+        problems_.add_once(name_ + topic, where(), what);
+    }
+    std::string name() const { return name_; }
+
+private:
+    class Lines;
+    void read_header();
+    std::string name_;
+    std::vector<std::string> columns_;
+    ExperimentProblems& problems_;
+    std::unique_ptr<Lines> lines_;
+    std::vector<int> column_of_word_;  ///< by word of a line; -1: left aside
+    std::vector<std::string_view> words_;
+    long line_ = 1;
+};
+
+}  // namespace mcdem

@@ -1,0 +1,33 @@
+// A small experiment folder as texts, so that a test can spoil one line of it.
+#pragma once
+#include <filesystem>
+#include <map>
+#include <string>
+
+#include "core/errors.h"
+#include "experiment/experiment.h"
+
+namespace mcdem::test {
+
+/// Two grains side by side on the floor of a box 40 mm wide, pressed by the plate in three frames.
+class ExperimentFolder {
+public:
+    ExperimentFolder();
+    ~ExperimentFolder();
+    std::string& operator[](const std::string& name) { return texts_[name]; }
+    void remove(const std::string& name) { texts_.erase(name); }
+    /// Replaces the first `from` in a file; the test fails where there is none.
+    void replace(const std::string& name, const std::string& from, const std::string& to);
+    /// Writes the files and reads the folder.
+    Experiment read();
+    /// The message of the error that reading gives, without the folder's path; "no error" where it reads.
+    std::string error();
+    const std::filesystem::path& path() const { return path_; }
+
+private:
+    void write() const;
+    std::map<std::string, std::string> texts_;
+    std::filesystem::path path_;
+};
+
+}  // namespace mcdem::test
