@@ -1,0 +1,21 @@
+# Run at every build: writes the program's version, with the commit it was built from where git knows it.
+# The file changes only when they do.
+find_package(Git QUIET)
+set(commit "")
+if(Git_FOUND)
+  execute_process(COMMAND ${GIT_EXECUTABLE} -C ${SOURCE} describe --always --dirty --abbrev=12 --match=no-tag
+    OUTPUT_VARIABLE commit OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+endif()
+if(commit)
+  set(version "${VERSION} (${commit})")
+else()
+  set(version "${VERSION}")
+endif()
+set(text "namespace mcdem {\nextern const char* const version_text;\nconst char* const version_text = \"${version}\";\n}  // namespace mcdem\n")
+set(before "")
+if(EXISTS ${OUTPUT})
+  file(READ ${OUTPUT} before)
+endif()
+if(NOT text STREQUAL before)
+  file(WRITE ${OUTPUT} "${text}")
+endif()

@@ -1,0 +1,56 @@
+#include "cli/cli.h"
+
+#include "cli/commands.h"
+#include "cli/messages.h"
+#include "cli/version.h"
+
+namespace mcdem {
+namespace {
+
+const char* const about =
+    "Simulates dense packings of soft elastic grains whose contacts feel one another (MC-DEM),\n"
+    "on any OpenCL device.";
+
+const char* const first_steps =
+    "First steps:\n"
+    "  mcdem devices                                      what it can run on\n"
+    "  mcdem run scenes/small.toml --out out/small        a first run, done in seconds\n"
+    "  mcdem run scenes/compression.toml --out out/first  the experiment, six contact models\n"
+    "  mcdem table out/first                              the models side by side, again\n"
+    "  mcdem COMMAND --help                               more on a command, with examples\n"
+    "\n"
+    "Exit codes: 0 done, 1 failed, 2 bad input, 130 interrupted (go on with --resume).\n"
+    "Environment: MCDEM_DEVICE chooses the device where --device does not.";
+
+/// What is wrong with the command line, and where to read how it should be.
+int report_usage(const CLI::App& app, const CLI::ParseError& error) {
+    std::string command = "mcdem";
+    for (const auto* sub : app.get_subcommands()) command += " " + sub->get_name();
+    spdlog::error("{}", error.what());
+    spdlog::error("`{} --help` tells more", command);
+    return exit_bad_input;
+}
+
+}  // namespace
+
+int run_cli(int argc, const char* const* argv) {
+    set_up_messages();
+    CLI::App app(about, "mcdem");
+    app.footer(first_steps);
+    app.require_subcommand(1);
+    app.set_version_flag("--version", std::string("mcdem ") + version_text);
+    int exit_code = exit_done;
+    for (const auto add : {add_devices, add_validate, add_run, add_table, add_compare, add_figures,
+                           add_calibrate, add_export})
+        add(app, exit_code);
+    try {
+        app.parse(argc, argv);
+        return exit_code;
+    } catch (const CLI::ParseError& error) {
+        return error.get_exit_code() == 0 ? app.exit(error) : report_usage(app, error);
+    } catch (const std::exception& error) {
+        return report_error(error);
+    }
+}
+
+}  // namespace mcdem

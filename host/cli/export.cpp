@@ -1,0 +1,2 @@
+#include "cli/commands.h"
+namespace mcdem { void add_export(CLI::App&, int&) {} }

@@ -1,0 +1,29 @@
+#include "cli/interrupt.h"
+
+#include <atomic>
+
+namespace mcdem {
+namespace {
+
+std::atomic<bool> asked{false};
+static_assert(std::atomic<bool>::is_always_lock_free, "or a signal handler must not touch it");
+
+}  // namespace
+
+Interrupt::Interrupt() {
+    asked = false;
+    struct sigaction action{};
+    action.sa_handler = [](int) { asked = true; };
+    action.sa_flags = static_cast<int>(SA_RESETHAND);  // the next one does what signals do
+    sigaction(SIGINT, &action, &before_int_);
+    sigaction(SIGTERM, &action, &before_term_);
+}
+
+Interrupt::~Interrupt() {
+    sigaction(SIGINT, &before_int_, nullptr);
+    sigaction(SIGTERM, &before_term_, nullptr);
+}
+
+bool Interrupt::wanted() { return asked; }
+
+}  // namespace mcdem

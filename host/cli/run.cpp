@@ -1,0 +1,143 @@
+// mcdem run
+#include <fmt/format.h>
+
+#include "cli/commands.h"
+#include "cli/interrupt.h"
+#include "cli/messages.h"
+#include "cli/pictures.h"
+#include "cli/progress.h"
+#include "cli/scene_options.h"
+#include "cli/version.h"
+#include "core/errors.h"
+#include "ensemble/run_scene.h"
+#include "io/result_folder.h"
+#include "io/results.h"
+#include "metrics/model_table.h"
+#include "report/tables.h"
+
+namespace mcdem {
+namespace {
+
+struct RunCommand {
+    SceneOptions scene;
+    std::string out, device;
+    bool resume = false, no_figures = false;
+};
+
+/// A word as a shell takes it.
+std::string shell_word(const std::string& word) {
+    const auto plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./=:+,-";
+    if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) return word;
+    std::string quoted = "'";
+    for (const char c : word) quoted += c == '\'' ? "'\\''" : std::string(1, c);
+    return quoted + "'";
+}
+
+std::string resume_command(const RunCommand& command) {
+    std::string text = "mcdem run " + shell_word(command.scene.file);
+    for (const auto& setting : command.scene.overrides) text += " --set " + shell_word(setting);
+    text += " --out " + shell_word(command.out);
+    if (!command.device.empty()) text += " --device " + shell_word(command.device);
+    return text + " --resume";
+}
+
+RunSummary run_with_progress(Device& device, const Scene& scene, const RunCommand& command) {
+    const Interrupt interrupt;
+    Progress progress(stderr, progress_style(stderr));
+    RunOptions options;
+    options.folder = command.out;
+    options.start = command.resume ? Start::resume : Start::fresh;
+    options.program = version_text;
+    options.on_progress = [&](double fraction) { progress.show(fraction); };
+    options.on_failure = [&](const Replica& replica, const Failure& failure) {
+        progress.clear();
+        spdlog::warn("replica {} stopped at step {}{}: {}", replica.label.empty() ? "1" : replica.label,
+                     failure.step, failure.grain < 0 ? "" : fmt::format(", grain {}", failure.grain),
+                     failure.cause);
+    };
+    options.on_warning = [&](const std::string& message) {
+        progress.clear();
+        spdlog::warn("{}", message);
+    };
+    options.stop_wanted = Interrupt::wanted;
+    return run_scene(device, scene, options);
+}
+
+bool models_vary(const ModelTable& table) {
+    for (const auto& row : table.rows)
+        if (row.model != table.rows.front().model) return true;
+    return false;
+}
+
+void print_summary(const Run& run, const RunSummary& summary, std::size_t failed) {
+    const std::size_t replicas = run.recordings.size();
+    fmt::print("{}: {} of {} replica{} done", run.name, replicas - failed, replicas, replicas == 1 ? "" : "s");
+    if (failed > 0) fmt::print(", {} stopped early", failed);
+    if (summary.grain_steps > 0)
+        fmt::print("; {:.1f} million grain-steps in {} ({:.1f} million/s)", summary.grain_steps * 1e-6,
+                   duration_text(summary.seconds), summary.grain_steps * 1e-6 / summary.seconds);
+    fmt::print("\n");
+    const auto models = model_table(group_by_setting(run));
+    if (models_vary(models)) fmt::print("\n{}", to_text(table_of_models(models), TableFormat::terminal));
+}
+
+void print_paths(const RunCommand& command, const std::vector<std::filesystem::path>& pictures) {
+    const std::filesystem::path folder = command.out;
+    fmt::print("\nwrote\n");
+    for (const auto& file : {run_file(folder), folder / "plate.csv"}) fmt::print("  {}\n", file.string());
+    for (const auto& file : pictures) fmt::print("  {}\n", file.string());
+}
+
+/// The exit code of a run whose results lie in the folder.
+int report_run(const RunCommand& command, const RunSummary& summary) {
+    const Run run = read_run(command.out, ReadWhat::observables);
+    std::size_t failed = 0;
+    for (const auto& recording : run.recordings) failed += recording.failure.has_value();
+    print_summary(run, summary, failed);
+    std::vector<std::filesystem::path> pictures;
+    if (!command.no_figures) pictures = draw_run(command.out);
+    print_paths(command, pictures);
+    if (failed < run.recordings.size()) return exit_done;
+    spdlog::error("no replica came to its end");
+    return exit_failed;
+}
+
+int run(const RunCommand& command) {
+    const Scene scene = command.scene.read();
+    Device device(command.device);
+    spdlog::info("{}: {} on {}", scene.name, size_text(scene), device.info().name);
+    const auto summary = run_with_progress(device, scene, command);
+    if (summary.end == RunEnd::interrupted) {
+        spdlog::warn("interrupted; go on with\n  {}", resume_command(command));
+        return exit_interrupted;
+    }
+    if (summary.end == RunEnd::was_done) spdlog::info("{}: this run is done already", command.out);
+    return report_run(command, summary);
+}
+
+}  // namespace
+
+void add_run(CLI::App& app, int& exit_code) {
+    auto* sub = app.add_subcommand("run", "Run a scene into a result folder");
+    auto command = std::make_shared<RunCommand>();
+    add_scene_options(*sub, command->scene);
+    sub->add_option("--out", command->out, "Folder for the results; made where it is missing")
+        ->required()
+        ->type_name("DIR");
+    add_device_option(*sub, command->device);
+    sub->add_flag("--resume", command->resume, "Go on with the interrupted run in DIR");
+    sub->add_flag("--no-figures", command->no_figures, "Draw no pictures at the end");
+    sub->footer(
+        "Writes run.h5 (everything, HDF5), plate.csv (forces and averages) and pictures into DIR. A replica that\n"
+        "cannot go on is named and recorded; the others go on. The exit code is 1 only where all failed.\n"
+        "Interrupted by Ctrl-C, a crash or a power cut, a run loses no more than the time since its last\n"
+        "checkpoint (output.checkpoint_minutes) and ends, resumed, with the same bits.\n"
+        "Examples:\n"
+        "  mcdem run scenes/small.toml --out out/small\n"
+        "  mcdem run scenes/compression.toml --out out/soft --set grains.youngs_modulus=10e3\n"
+        "  mcdem run scenes/compression.toml --out out/one --set contact.model=elastic_sphere\n"
+        "  mcdem run scenes/compression.toml --out out/one --set contact.model=elastic_sphere --resume");
+    sub->callback([command, &exit_code] { exit_code = run(*command); });
+}
+
+}  // namespace mcdem

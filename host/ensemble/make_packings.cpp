@@ -1,0 +1,82 @@
+#include "ensemble/make_packings.h"
+
+#include <fmt/format.h>
+
+#include <atomic>
+#include <exception>
+#include <map>
+#include <thread>
+
+#include "core/errors.h"
+#include "scene/make_packing.h"
+
+namespace mcdem {
+namespace {
+
+/// Everything that make_packing looks at, so that equal texts mean equal packings.
+std::string start_of(const Replica& replica) {
+    const PackingSource& from = replica.packing;
+    std::string text = fmt::format("{} {} {} {} {}", replica.box.size_x, replica.box.size_y,
+                                   replica.plate.start, from.position_jitter, from.seed);
+    if (const auto* file = std::get_if<PackingFile>(&from.source)) return text + " file " + file->path;
+    const auto& drawn = std::get<GeneratedPacking>(from.source);
+    return text + fmt::format(" drawn {} {} {} {} {} {}", drawn.count, drawn.diameter_mean,
+                              drawn.diameter_sd, drawn.diameter_min, drawn.diameter_max,
+                              drawn.packing_fraction);
+}
+
+/// Calls work(i) for i below `count` on as many threads as there are cores.
+template <class Work>
+void in_parallel(std::size_t count, Work work) {
+    std::atomic<std::size_t> next{0};
+    const auto take_turns = [&] {
+        for (std::size_t i = next++; i < count; i = next++) work(i);
+    };
+    const std::size_t cores = std::max(1u, std::thread::hardware_concurrency());
+    std::vector<std::jthread> threads;
+    for (std::size_t t = 1; t < std::min(count, cores); ++t) threads.emplace_back(take_turns);
+    take_turns();
+}
+
+/// Throws the first error that is not about input; else all problems of input, each once.
+void report(const std::vector<std::exception_ptr>& errors) {
+    std::vector<std::string> problems;
+    for (const auto& error : errors) try {
+            if (error) std::rethrow_exception(error);
+        } catch (const InputError& found) {
+            for (const auto& problem : found.problems())
+                if (std::find(problems.begin(), problems.end(), problem) == problems.end())
+                    problems.push_back(problem);
+        }
+    if (!problems.empty()) throw InputError(problems);
+}
+
+}  // namespace
+
+std::vector<Packing> make_packings(const Scene& scene, const std::function<bool()>& stop_wanted) {
+    std::vector<const Replica*> different;
+    std::vector<std::size_t> which;  // by replica
+    std::map<std::string, std::size_t> seen;
+    for (const auto& replica : scene.replicas) {
+        const auto [place, is_new] = seen.try_emplace(start_of(replica), different.size());
+        if (is_new) different.push_back(&replica);
+        which.push_back(place->second);
+    }
+    std::vector<Packing> made(different.size());
+    std::vector<std::exception_ptr> errors(different.size());
+    in_parallel(different.size(), [&](std::size_t i) {
+        if (stop_wanted && stop_wanted()) return;
+        try {
+            made[i] = make_packing(*different[i]);
+        } catch (...) {
+            errors[i] = std::current_exception();
+        }
+    });
+    if (stop_wanted && stop_wanted()) return {};
+    report(errors);
+    std::vector<Packing> packings;
+    for (const std::size_t i : which) packings.push_back(made[i]);
+    return packings;
+}
+
+}  // namespace mcdem

@@ -1,0 +1,146 @@
+#include "ensemble/run_scene.h"
+
+#include <chrono>
+
+#include "core/errors.h"
+#include "ensemble/make_packings.h"
+#include "ensemble/run_state.h"
+#include "io/csv.h"
+#include "io/results.h"
+#include "sim/simulation.h"
+
+namespace mcdem {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+double seconds_since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// Scans held in memory at most; past it they go to the disk, whatever the clock says.
+constexpr std::size_t most_bytes_held = std::size_t{256} << 20;
+
+std::size_t bytes_of(const Scan& scan) {
+    return sizeof(Scan) + scan.position.size() * sizeof(Vec3) + scan.contacts.size() * sizeof(Contact);
+}
+
+/// A run under way: the simulation, its folder, and what was recorded since the last segment.
+class RunUnderWay {
+public:
+    RunUnderWay(Device& device, const Scene& scene, const std::vector<Packing>& packings,
+                const RunOptions& options, ResultFolder folder)
+        : scene_(scene),
+          options_(options),
+          identity_(identity_of(device, scene, options.program, packings)),
+          folder_(std::move(folder)),
+          simulation_(device, scene, packings) {
+        pending_ = {scene.name,      scene.text, options.program, device.description(),
+                    std::string(name(scene.precision)), {}};
+        for (std::size_t r = 0; r < packings.size(); ++r)
+            pending_.recordings.push_back(begin_recording(scene.replicas[r], packings[r]));
+    }
+
+    /// Goes back to the last checkpoint, or to the beginning where there is none.
+    void resume() {
+        const auto checkpoint = find_checkpoint(folder_, identity_);
+        folder_.drop_segments_from(checkpoint ? checkpoint->segments : 0);
+        if (!checkpoint) return;
+        if (!checkpoint->warning.empty()) options_.on_warning(checkpoint->warning);
+        simulation_.restore(checkpoint->fields);
+    }
+
+    RunSummary go_on() {
+        const auto start = Clock::now();
+        last_checkpoint_ = start;
+        bool more = true, stop = false;
+        while (more && !stop) {
+            more = simulation_.advance([this](int r, Scan scan) { keep(r, std::move(scan)); },
+                                       [this](int r, const Failure& failure) { note(r, failure); });
+            options_.on_progress(simulation_.progress());
+            stop = options_.stop_wanted();
+            if (checkpoint_due() || !more || stop) write_checkpoint();
+        }
+        if (!more) folder_.finish();
+        return {more ? RunEnd::interrupted : RunEnd::done, simulation_.grain_steps(), seconds_since(start)};
+    }
+
+private:
+    void keep(int replica, Scan scan) {
+        bytes_held_ += bytes_of(scan);
+        anything_new_ = true;
+        pending_.recordings[replica].scans.push_back(std::move(scan));
+    }
+
+    void note(int replica, const Failure& failure) {
+        anything_new_ = true;
+        pending_.recordings[replica].failure = failure;
+        options_.on_failure(scene_.replicas[replica], failure);
+    }
+
+    /// Large runs write for long: they do it less often, so that it stays a small part of the time.
+    bool checkpoint_due() const {
+        const double interval = std::max(60 * scene_.output.checkpoint_minutes, 20 * checkpoint_seconds_);
+        return seconds_since(last_checkpoint_) >= interval || bytes_held_ >= most_bytes_held;
+    }
+
+    /// The segment first, then the checkpoint that names it: a crash in between leaves a segment too many,
+    /// which resume() drops.
+    void write_checkpoint() {
+        const auto start = Clock::now();
+        if (anything_new_ || folder_.segments() == 0) {
+            folder_.append_segment(pending_);
+            for (auto& recording : pending_.recordings) {
+                recording.scans.clear();
+                recording.failure.reset();
+            }
+            anything_new_ = false;
+            bytes_held_ = 0;
+        }
+        mcdem::write_checkpoint(folder_.path(),
+                                make_checkpoint(identity_, folder_.segments(), simulation_.save()));
+        checkpoint_seconds_ = seconds_since(start);
+        last_checkpoint_ = Clock::now();
+    }
+
+    const Scene& scene_;
+    const RunOptions& options_;
+    RunIdentity identity_;
+    ResultFolder folder_;
+    Simulation simulation_;
+    Run pending_;  ///< provenance, and the scans since the last segment
+    bool anything_new_ = false;
+    std::size_t bytes_held_ = 0;
+    Clock::time_point last_checkpoint_;
+    double checkpoint_seconds_ = 0;  ///< that the last one took
+};
+
+/// What is left to do once run.h5 is there, and safe to do twice.
+void close_folder(const std::filesystem::path& folder) {
+    write_csv(read_run(folder, ReadWhat::observables), folder);
+    remove_checkpoints(folder);
+}
+
+ResultFolder open_folder(const RunOptions& options) {
+    return options.start == Start::fresh ? ResultFolder::create(options.folder)
+                                         : ResultFolder::open_for_resume(options.folder);
+}
+
+}  // namespace
+
+RunSummary run_scene(Device& device, const Scene& scene, const RunOptions& options) {
+    ResultFolder folder = open_folder(options);
+    if (folder.is_finished()) {
+        expect_scene_of(folder.path(), scene);
+        close_folder(folder.path());
+        return {RunEnd::was_done};
+    }
+    const auto packings = make_packings(scene, options.stop_wanted);
+    if (options.stop_wanted()) return {RunEnd::interrupted};
+    RunUnderWay run(device, scene, packings, options, std::move(folder));
+    if (options.start == Start::resume) run.resume();
+    const auto summary = run.go_on();
+    if (summary.end == RunEnd::done) close_folder(options.folder);
+    return summary;
+}
+
+}  // namespace mcdem

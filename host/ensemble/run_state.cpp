@@ -1,0 +1,127 @@
+#include "ensemble/run_state.h"
+
+#include <fmt/format.h>
+
+#include <cstring>
+
+#include "cl/program.h"
+#include "core/errors.h"
+#include "io/result_file.h"
+
+namespace mcdem {
+namespace {
+
+const std::string program_field = "program";
+const std::string packings_field = "packings";
+
+std::vector<std::byte> bytes_of(const std::string& text) {
+    const auto* begin = reinterpret_cast<const std::byte*>(text.data());
+    return {begin, begin + text.size()};
+}
+
+std::string text_of(const Checkpoint& checkpoint, const std::string& field) {
+    const auto found = checkpoint.fields.find(field);
+    if (found == checkpoint.fields.end()) return "";
+    return {reinterpret_cast<const char*>(found->second.data()), found->second.size()};
+}
+
+/// FNV-1a over 64 bits, number by number.
+class Digest {
+public:
+    void add(double value) {
+        std::uint64_t bits;
+        std::memcpy(&bits, &value, sizeof bits);
+        sum_ = (sum_ ^ bits) * 0x100000001b3;
+        sum_ ^= sum_ >> 29;  // high bits come back down, or the last sign would count for little
+    }
+    std::string text() const { return fmt::format("{:016x}", sum_); }
+
+private:
+    std::uint64_t sum_ = 0xcbf29ce484222325;
+};
+
+std::string digest_of(const std::vector<Packing>& packings) {
+    Digest digest;
+    for (const auto& packing : packings) {
+        digest.add(static_cast<double>(packing.size()));
+        for (const Vec3& position : packing.position)
+            for (int axis = 0; axis < 3; ++axis) digest.add(position[axis]);
+        for (const double diameter : packing.diameter) digest.add(diameter);
+    }
+    return digest.text();
+}
+
+/// The first line in which two scenes differ, as "now has .., had ..".
+std::string first_difference(const std::string& now, const std::string& then) {
+    const auto line_of = [](const std::string& text, std::size_t begin) {
+        return begin < text.size() ? text.substr(begin, text.find('\n', begin) - begin) : "nothing";
+    };
+    std::size_t begin = 0;
+    for (std::size_t i = 0; i < std::min(now.size(), then.size()) && now[i] == then[i]; ++i)
+        if (now[i] == '\n') begin = i + 1;
+    return fmt::format("it now says `{}`, then `{}`", line_of(now, begin), line_of(then, begin));
+}
+
+void expect_same_scene(const std::string& now, const std::string& then, const std::string& folder) {
+    if (now != then)
+        throw InputError(fmt::format("{}: must be resumed with the scene it was begun with, overrides "
+                                     "included; {}: give that one, or another folder",
+                                     folder, first_difference(now, then)));
+}
+
+}  // namespace
+
+RunIdentity identity_of(const Device& device, const Scene& scene, const std::string& program,
+                        const std::vector<Packing>& packings) {
+    const auto build = kernel_build(device, scene.precision, scene.slots);
+    return {scene.text, fmt::format("{}, {} lanes", device.description(), build.lanes), program,
+            digest_of(packings)};
+}
+
+void expect_scene_of(const std::filesystem::path& folder, const Scene& scene) {
+    expect_same_scene(scene.text, read_run_header({run_file(folder)}).scene, folder.string());
+}
+
+Checkpoint make_checkpoint(const RunIdentity& identity, int segments,
+                           std::map<std::string, std::vector<std::byte>> fields) {
+    Checkpoint checkpoint;
+    checkpoint.scene_text = identity.scene_text;
+    checkpoint.device = identity.device;
+    checkpoint.segments = segments;
+    checkpoint.fields = std::move(fields);
+    checkpoint.fields[program_field] = bytes_of(identity.program);
+    checkpoint.fields[packings_field] = bytes_of(identity.packings);
+    return checkpoint;
+}
+
+std::optional<Checkpoint> find_checkpoint(const ResultFolder& folder, const RunIdentity& identity) {
+    const std::string where = folder.path().string();
+    auto checkpoint = read_checkpoint(folder.path());
+    if (!checkpoint) {
+        // Stopped before its first checkpoint. Segments, if any, still say whose they are.
+        if (folder.segments() > 0)
+            expect_same_scene(identity.scene_text, read_run_header(segment_files(folder.path())).scene, where);
+        return std::nullopt;
+    }
+    expect_same_scene(identity.scene_text, checkpoint->scene_text, where);
+    if (checkpoint->device != identity.device)
+        throw InputError(fmt::format("{}: must be resumed on the device it was begun on, {}; got {}: choose it "
+                                     "with --device, or start anew in another folder",
+                                     where, checkpoint->device, identity.device));
+    if (text_of(*checkpoint, packings_field) != identity.packings)
+        throw InputError(where + ": must be resumed with the packing it was begun with: the packing file "
+                                 "has changed since, or this program draws other packings");
+    if (checkpoint->segments > folder.segments())
+        throw InputError(fmt::format("{}: must hold the {} segments that its checkpoint names, has {}: the "
+                                     "run cannot go on; start it anew in another folder",
+                                     where, checkpoint->segments, folder.segments()));
+    const auto program = text_of(*checkpoint, program_field);
+    if (program != identity.program)
+        checkpoint->warning += fmt::format("{}{}: was begun by {}, goes on with {}: results may differ from "
+                                           "those of an uninterrupted run",
+                                           checkpoint->warning.empty() ? "" : "; ", where, program,
+                                           identity.program);
+    return checkpoint;
+}
+
+}  // namespace mcdem
