@@ -26,14 +26,30 @@ std::vector<Placed> scans_of_phase(const Replicas& replicas, Phase phase, const 
     return placed;
 }
 
+/// Median distance of neighbouring scans of one recording, phase and cycle [m]; infinite where none has two.
+double median_spacing(const Replicas& replicas) {
+    std::vector<double> spacings;
+    for (const auto* recording : replicas)
+        for (std::size_t s = 1; s < recording->scans.size(); ++s) {
+            const auto &a = recording->scans[s - 1], &b = recording->scans[s];
+            const double spacing = std::abs(a.plate_z - b.plate_z);
+            if (a.phase == b.phase && a.cycle == b.cycle && spacing > 0) spacings.push_back(spacing);
+        }
+    if (spacings.empty()) return std::numeric_limits<double>::infinity();
+    const auto middle = spacings.begin() + static_cast<std::ptrdiff_t>(spacings.size() / 2);
+    std::nth_element(spacings.begin(), middle, spacings.end());
+    return *middle;
+}
+
 }  // namespace
 
 Levels group_levels(const Replicas& replicas, const LevelOptions& options) {
+    const double tolerance = std::min(options.tolerance, median_spacing(replicas) / 3);
     Levels levels;
     for (Phase phase : {Phase::load, Phase::unload}) {
         int in_level = 0;
         for (const auto& [displacement, replica, scan] : scans_of_phase(replicas, phase, options)) {
-            if (in_level == 0 || displacement - levels.back().displacement > options.tolerance) {
+            if (in_level == 0 || displacement - levels.back().displacement > tolerance) {
                 levels.push_back({phase, 0, std::vector<std::vector<const Scan*>>(replicas.size())});
                 in_level = 0;
             }
@@ -85,7 +101,8 @@ std::vector<LevelMatch> match_levels(const Levels& simulated, const Levels& refe
                          : std::abs(simulated[s].displacement - wanted.displacement);
         };
         const int nearest = distance(below) <= distance(above) ? below : above;
-        if (distance(nearest) <= tolerance)
+        const bool dense = below >= 0 && above >= 0 && distance(below) + distance(above) < 4 * tolerance;
+        if (distance(nearest) <= tolerance && (!dense || below == above))
             matches.push_back({nearest, nearest, 0});
         else if (below >= 0 && above >= 0)
             matches.push_back({below, above, distance(below) / (distance(below) + distance(above))});

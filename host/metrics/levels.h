@@ -11,8 +11,10 @@ namespace mcdem {
 
 struct LevelOptions {
     std::optional<int> discard =
-        std::nullopt;           ///< first cycles left out; none: each recording's own `protocol.discard`
-    double tolerance = 0.1e-3;  ///< displacements closer than this to a level's mean belong to it [m]
+        std::nullopt;  ///< first cycles left out; none: each recording's own `protocol.discard`
+    /// Displacements closer than this to a level's mean belong to it [m]. Where a recording's own scans lie
+    /// closer (recorded in passing), a third of their median spacing takes its place.
+    double tolerance = 0.1e-3;
 };
 
 struct Level {
@@ -48,7 +50,8 @@ struct LevelMatch {
 };
 
 /// One match for each reference level: its own level where one lies within the tolerance, else linear
-/// between the two neighbours of the same phase. Never beyond the outermost levels.
+/// between the two neighbours of the same phase (always so where simulated levels lie close together).
+/// Never beyond the outermost levels.
 std::vector<LevelMatch> match_levels(const Levels& simulated, const Levels& reference, double tolerance);
 
 /// Columns of `values` (by replica and simulated level) brought onto the reference's levels.

@@ -78,6 +78,18 @@ TEST(CalibrateGamma, a_runaway_above_the_root_does_no_harm) {
     EXPECT_GE(found.runs_away_at, 1.2);
 }
 
+TEST(CalibrateGamma, explores_below_a_runaway_without_asking_twice) {
+    Simulator simulator{.limit = 1.2};
+    const auto found = calibrate_gamma(std::ref(simulator), force(1.125), {1.0, 5.0});
+    EXPECT_NEAR(found.gamma, 1.125, 1e-3);
+    ASSERT_GE(found.rounds.size(), 2u);
+    EXPECT_TRUE(std::isnan(found.rounds[0].root));
+    for (double gamma : found.rounds[1].gamma) {
+        EXPECT_GT(gamma, 1.0);
+        EXPECT_LT(gamma, 1.8);  // the lowest of the first round that ran away
+    }
+}
+
 TEST(CalibrateGamma, what_survives_above_a_runaway_is_not_believed) {
     const auto found = calibrate_gamma(
         [](const std::vector<double>& gammas) {

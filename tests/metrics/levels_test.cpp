@@ -38,6 +38,11 @@ TEST(GroupLevels, displacements_within_the_tolerance_are_one_level) {
     EXPECT_EQ(group_levels({&recording}, {.tolerance = 0.05e-3}).size(), 12u);
 }
 
+TEST(GroupLevels, scans_recorded_in_passing_keep_their_own_levels) {
+    const auto recording = synthetic::recording({.cycles = 2, .levels = 1000});  // 0.03 mm apart
+    EXPECT_EQ(group_levels({&recording}).size(), 2000u);
+}
+
 TEST(GroupLevels, a_scan_without_a_plate_position_is_left_out) {
     auto recording = synthetic::recording({.levels = 2});
     recording.scans[0].plate_z = not_available;
@@ -75,6 +80,15 @@ TEST(MatchLevels, hits_levels_within_the_tolerance) {
         EXPECT_EQ(matches[i].below, static_cast<int>(i));
         EXPECT_EQ(matches[i].above, static_cast<int>(i));
     }
+}
+
+TEST(MatchLevels, dense_levels_are_interpolated_not_rounded) {
+    const auto dense = synthetic::recording({.levels = 1000}), wanted = synthetic::recording({.levels = 7});
+    const auto levels = group_levels({&dense});
+    const auto displacement = [&](const Scan& scan) { return dense.displacement(scan); };
+    const auto at =
+        at_reference(by_replica(levels, displacement), match_levels(levels, group_levels({&wanted}), 0.1e-3));
+    for (int l = 0; l < 7; ++l) EXPECT_NEAR(at(0, l), 30e-3 * (l + 1) / 7, 1e-9);
 }
 
 TEST(MatchLevels, interpolates_linearly_within_a_phase_and_never_beyond) {
