@@ -1,7 +1,7 @@
 /* Which grains are in which cell: a linked list a cell. The order in a list is left to chance; the
    neighbour list sorts what it finds. */
 
-static inline int cell_along(real coordinate, real cell_size, int cells) {
+INLINE int cell_along(real coordinate, real cell_size, int cells) {
     return clamp((int)floor(coordinate / cell_size), 0, cells - 1);
 }
 

@@ -16,13 +16,13 @@ typedef struct {
 /* Tangential springs of Mindlin friction, one a slot, as seen from this grain [m]. */
 typedef struct { global real* restrict x; global real* restrict y; global real* restrict z; } Springs;
 
-static inline real sphere_mass(global const Replica* restrict replica, real radius) {
+INLINE real sphere_mass(global const Replica* restrict replica, real radius) {
     return replica->density * (R(4) / R(3)) * PI * radius * radius * radius;
 }
 
 /* Always saturated [paper]: mu F_n against the sliding. Below `sliding_velocity`, and where a step's
    friction could do more than stop the sliding, it fades to a viscous force so that it cannot chatter. */
-static inline lanes3 saturated_friction(lanes limit, lanes3 sliding, real sliding_velocity, lanes most_viscosity) {
+INLINE lanes3 saturated_friction(lanes limit, lanes3 sliding, real sliding_velocity, lanes most_viscosity) {
     const lanes speed = sqrt(dot3(sliding, sliding) + sliding_velocity * sliding_velocity);
     const lanes viscosity = fmin(limit / speed, most_viscosity);
     return (lanes3){viscosity * sliding.x, viscosity * sliding.y, viscosity * sliding.z};
@@ -30,7 +30,7 @@ static inline lanes3 saturated_friction(lanes limit, lanes3 sliding, real slidin
 
 /* Mindlin spring of stiffness k = 8 G* a with damping, cut at the Coulomb limit; a slipping spring keeps
    the stretch that carries the limit. Updates `spring`. */
-static inline lanes3 mindlin_friction(lanes limit, lanes3 sliding, lanes3 normal, lanes stiffness, lanes damping,
+INLINE lanes3 mindlin_friction(lanes limit, lanes3 sliding, lanes3 normal, lanes stiffness, lanes damping,
                                real time_step, mask touching, lanes3* restrict spring) {
     lanes3 s = {spring->x + sliding.x * time_step, spring->y + sliding.y * time_step,
                 spring->z + sliding.z * time_step};
@@ -52,22 +52,36 @@ static inline lanes3 mindlin_friction(lanes limit, lanes3 sliding, lanes3 normal
     return force;
 }
 
-static inline Contacts contact_forces(global const Replica* restrict replica, real radius, real3 spin, Neighbours seen,
+/* R* and m* of each pair from one division; both sides of a pair get the same bits. */
+typedef struct { lanes radius, mass; } Reduced;
+
+INLINE Reduced reduced(global const Replica* restrict replica, real radius, lanes radius_there, mask wall) {
+    const lanes sum = radius + radius_there, product = radius * radius_there;
+    const lanes cubes = radius * radius * radius + radius_there * radius_there * radius_there;
+    const lanes part = product / (sum * cubes);
+    const real density = replica->density * (R(4) / R(3)) * PI;
+    Reduced r;
+    r.radius = WHERE(wall, radius, part * cubes);
+    r.mass = WHERE(wall, density * radius * radius * radius, density * (part * sum) * product * product);
+    return r;
+}
+
+INLINE Contacts contact_forces(global const Replica* restrict replica, real radius, real3 spin, Neighbours seen,
                                lanes bulge, lanes bulge_there, real elapsed, lanes3* restrict spring) {
     Contacts c;
     const lanes gap = seen.distance - (radius + seen.radius);
-    const lanes reduced_radius = WHERE(seen.wall, radius, radius * seen.radius / (radius + seen.radius));
+    const Reduced pair = reduced(replica, radius, seen.radius, seen.wall);
     const lanes modulus = WHERE(seen.wall, replica->modulus_wall, replica->modulus_grain);
     c.approach = (bulge + bulge_there) - gap;
     c.touching = AS_MASK(c.approach > R(0)) & seen.occupied;
     c.overlap = WHERE(c.touching, c.approach, R(0));
     if (replica->finite_contacts) {
-        c.overlap = self_consistent_overlap(replica, c.overlap, reduced_radius, modulus, radius, seen.radius, seen.wall);
+        c.overlap = self_consistent_overlap(replica, c.overlap, pair.radius, modulus, radius, seen.radius, seen.wall);
         c.approach = WHERE(c.touching, c.overlap, c.approach);
     }
 
-    /* Hertz: F = 4/3 E* a delta, stiffness S = 2 E* a */
-    c.radius = sqrt(reduced_radius * c.overlap);
+    /* Hertz: F = 4/3 E* a delta, stiffness S = 2 E* a. Without overlap every force below is zero by itself. */
+    c.radius = sqrt(pair.radius * c.overlap);
     const lanes stiffness = R(2) * modulus * c.radius;
     c.elastic = (R(2) / R(3)) * stiffness * c.overlap;
     if (replica->finite_contacts) {
@@ -77,13 +91,9 @@ static inline Contacts contact_forces(global const Replica* restrict replica, re
     }
     c.bulge = bulge;
 
-    const real mass = sphere_mass(replica, radius);
-    const lanes ratio = seen.radius / radius;
-    const lanes mass_there = mass * ratio * ratio * ratio;
-    const lanes reduced_mass = WHERE(seen.wall, mass, mass * mass_there / (mass + mass_there));
     const lanes damping = WHERE(seen.wall, replica->damping_wall, replica->damping_grain);
     const lanes separating = dot3(seen.velocity, seen.normal);
-    const lanes push = c.elastic - damping * sqrt(stiffness * reduced_mass) * separating;
+    const lanes push = c.elastic - damping * sqrt(stiffness * pair.mass) * separating;
 
     /* The contact point lies midway between the two displaced surfaces [paper]. */
     const lanes midway = R(0.5) * (seen.distance + (radius + bulge) - (seen.radius + bulge_there));
@@ -97,25 +107,20 @@ static inline Contacts contact_forces(global const Replica* restrict replica, re
                             seen.velocity.y - separating * n.y - (turn.z * n.x - turn.x * n.z),
                             seen.velocity.z - separating * n.z - (turn.x * n.y - turn.y * n.x)};
     const lanes limit = WHERE(seen.wall, replica->friction_wall, replica->friction_grain) * fmax(push, (lanes)(R(0)));
-    lanes3 friction;
     if (replica->mindlin) {
         const lanes shear = R(8) * WHERE(seen.wall, replica->shear_wall, replica->shear_grain) * c.radius;
-        friction = mindlin_friction(limit, sliding, n, shear, damping * sqrt(shear * reduced_mass),
-                                    elapsed, c.touching, spring);
+        c.tangential = mindlin_friction(limit, sliding, n, shear, damping * sqrt(shear * pair.mass), elapsed,
+                                        c.touching, spring);
     } else {
-        friction = saturated_friction(limit, sliding, replica->sliding_velocity,
-                                      R(0.1) * reduced_mass / replica->time_step);
+        c.tangential = saturated_friction(limit, sliding, replica->sliding_velocity,
+                                          pair.mass * (R(0.1) / replica->time_step));
     }
-    c.tangential = (lanes3){WHERE(c.touching, friction.x, R(0)), WHERE(c.touching, friction.y, R(0)),
-                            WHERE(c.touching, friction.z, R(0))};
-    const lanes normal_force = WHERE(c.touching, push, R(0));
-    c.force = (lanes3){c.tangential.x - normal_force * n.x, c.tangential.y - normal_force * n.y,
-                       c.tangential.z - normal_force * n.z};
+    c.force = (lanes3){c.tangential.x - push * n.x, c.tangential.y - push * n.y, c.tangential.z - push * n.z};
     return c;
 }
 
 /* Adds a row's forces and torques r_i x F_t, lane by lane. */
-static inline void add_contacts(Contacts c, lanes3 n, lanes3* restrict force, lanes3* restrict torque) {
+INLINE void add_contacts(Contacts c, lanes3 n, lanes3* restrict force, lanes3* restrict torque) {
     const lanes3 t = c.tangential;
     force->x += c.force.x; force->y += c.force.y; force->z += c.force.z;
     torque->x += c.arm * (n.y * t.z - n.z * t.y);

@@ -17,26 +17,25 @@ typedef struct {
 } Neighbours;
 
 /* Replaces the wall entries of a gathered row. Walls do not turn; the plate alone moves, along z. */
-static inline void insert_walls(global const Replica* restrict replica, real plate_z, real4 own, slots partner,
-                         lanes4* restrict position, lanes4* restrict velocity, lanes4* restrict spin) {
-    for (int w = 0; w < 6; ++w) {
-        const mask here = AS_MASK(partner == WALL_PARTNER(w));
-        if (!ANY(here)) continue;
-        const real wall = w == 5 ? plate_z : replica->wall_position[w];
-        position->x = WHERE(here, w / 2 == 0 ? wall : own.x, position->x);
-        position->y = WHERE(here, w / 2 == 1 ? wall : own.y, position->y);
-        position->z = WHERE(here, w / 2 == 2 ? wall : own.z, position->z);
-        position->w = WHERE(here, R(0), position->w);
-        velocity->x = WHERE(here, R(0), velocity->x);
-        velocity->y = WHERE(here, R(0), velocity->y);
-        velocity->z = WHERE(here, w == 5 ? replica->plate_velocity : R(0), velocity->z);
-        spin->x = WHERE(here, R(0), spin->x);
-        spin->y = WHERE(here, R(0), spin->y);
-        spin->z = WHERE(here, R(0), spin->z);
-    }
+INLINE void insert_walls(global const Replica* restrict replica, real plate_z, real4 own, slots partner,
+                                lanes4* restrict position, lanes4* restrict velocity, lanes4* restrict spin) {
+    const mask wall = AS_MASK(partner < EMPTY);
+    lanes along[3] = {WHERE(wall, own.x, position->x), WHERE(wall, own.y, position->y), WHERE(wall, own.z, position->z)};
+    for (int w = 0; w < 6; ++w)
+        along[w / 2] = WHERE(AS_MASK(partner == WALL_PARTNER(w)), w == 5 ? plate_z : replica->wall_position[w], along[w / 2]);
+    position->x = along[0];
+    position->y = along[1];
+    position->z = along[2];
+    position->w = WHERE(wall, R(0), position->w);
+    velocity->x = WHERE(wall, R(0), velocity->x);
+    velocity->y = WHERE(wall, R(0), velocity->y);
+    velocity->z = WHERE(wall, WHERE(AS_MASK(partner == WALL_PARTNER(5)), replica->plate_velocity, R(0)), velocity->z);
+    spin->x = WHERE(wall, R(0), spin->x);
+    spin->y = WHERE(wall, R(0), spin->y);
+    spin->z = WHERE(wall, R(0), spin->z);
 }
 
-static inline Neighbours see_neighbours(global const Replica* restrict replica, real plate_z, int grain, slots partner,
+INLINE Neighbours see_neighbours(global const Replica* restrict replica, real plate_z, int grain, slots partner,
                                  global const real4* restrict position,
                                  global const real4* restrict velocity,
                                  global const real4* restrict angular_velocity) {

@@ -21,55 +21,65 @@
     EXCHANGE real* scratch = &scratches[get_local_id(0) / SLOTS * SLOTS];
 #endif
 
-/* combine(..) over the slots of a grain in a fixed tree: one order on every device. */
+/* Sums over the slots of a grain, four at a time, and the largest: fixed trees, one order on every device. */
 #if LANES == 16
-#define REDUCE_LANES(name, combine)                                       \
-    static inline real name(lanes value, EXCHANGE real* scratch) {        \
-        (void)scratch;                                                    \
-        const real8 eight = combine(value.lo, value.hi);                  \
-        const real4 four = combine(eight.lo, eight.hi);                   \
-        const real2 two = combine(four.lo, four.hi);                      \
-        return combine(two.x, two.y);                                     \
-    }
+INLINE real4 fold(lanes value) {
+    const real8 eight = value.lo + value.hi;
+    return eight.lo + eight.hi;
+}
+INLINE real4 sum_lanes(lanes a, lanes b, lanes c, lanes d, EXCHANGE real* scratch) {
+    (void)scratch;
+    const real4 p = fold(a), q = fold(b), r = fold(c), s = fold(d);
+    return ((real4)(p.x, q.x, r.x, s.x) + (real4)(p.z, q.z, r.z, s.z)) +
+           ((real4)(p.y, q.y, r.y, s.y) + (real4)(p.w, q.w, r.w, s.w));
+}
+INLINE real max_lanes(lanes value, EXCHANGE real* scratch) {
+    (void)scratch;
+    const real8 eight = fmax(value.lo, value.hi);
+    const real4 four = fmax(eight.lo, eight.hi);
+    return fmax(fmax(four.x, four.z), fmax(four.y, four.w));
+}
 #else
-#define REDUCE_LANES(name, combine)                                                                     \
-    static inline real name(lanes value, EXCHANGE real* scratch) {                                      \
-        const int lane = get_local_id(0) % SLOTS;                                                       \
-        SYNCHRONISE();                                                                                  \
-        scratch[lane] = value;                                                                          \
-        SYNCHRONISE();                                                                                  \
-        if (lane < 16)                                                                                  \
-            for (int other = lane + 16; other < SLOTS; other += 16)                                     \
-                scratch[lane] = combine(scratch[lane], scratch[other]);                                 \
-        for (int half_way = 8; half_way > 0; half_way /= 2) {                                           \
-            SYNCHRONISE();                                                                              \
-            if (lane < half_way) scratch[lane] = combine(scratch[lane], scratch[lane + half_way]);      \
-        }                                                                                               \
-        SYNCHRONISE();                                                                                  \
-        return scratch[0];                                                                              \
+#define TREE(name, combine)                                                                         \
+    INLINE real name(lanes value, EXCHANGE real* scratch) {                                         \
+        const int lane = get_local_id(0) % SLOTS;                                                   \
+        SYNCHRONISE();                                                                              \
+        scratch[lane] = value;                                                                      \
+        SYNCHRONISE();                                                                              \
+        if (lane < 16)                                                                              \
+            for (int other = lane + 16; other < SLOTS; other += 16)                                 \
+                scratch[lane] = combine(scratch[lane], scratch[other]);                             \
+        for (int half_way = 8; half_way > 0; half_way /= 2) {                                       \
+            SYNCHRONISE();                                                                          \
+            if (lane < half_way) scratch[lane] = combine(scratch[lane], scratch[lane + half_way]);  \
+        }                                                                                           \
+        SYNCHRONISE();                                                                              \
+        return scratch[0];                                                                          \
     }
-#endif
 #define PLUS(a, b) ((a) + (b))
-REDUCE_LANES(sum_lanes, PLUS)
-REDUCE_LANES(max_lanes, fmax)
+TREE(sum_one, PLUS)
+TREE(max_lanes, fmax)
+INLINE real4 sum_lanes(lanes a, lanes b, lanes c, lanes d, EXCHANGE real* scratch) {
+    return (real4)(sum_one(a, scratch), sum_one(b, scratch), sum_one(c, scratch), sum_one(d, scratch));
+}
+#endif
 
-static inline real plate_position(global const Replica* restrict replica, int steps) {
+INLINE real plate_position(global const Replica* restrict replica, int steps) {
     return replica->wall_position[5] + replica->plate_velocity * (replica->time_step * steps);
 }
 
 /* The surface displacements of both sides of a row's contacts, predicted for this step. */
-static inline void load_bulges(global const Replica* restrict replica, size_t row, int v,
+INLINE void load_bulges(global const Replica* restrict replica, size_t row, int v,
                                global const int* restrict mirror, global const real* restrict bulge,
                                lanes* here, lanes* there) {
     *here = R(0);
     *there = R(0);
     if (replica->surface == SURFACE_RIGID) return;
-    const slots mirrors = LOAD_LANES(mirror + row, v);
     *here = LOAD_LANES(bulge + row, v);
-    *there = WHERE(AS_MASK(mirrors >= 0), gather(bulge, max(mirrors, 0)), R(0));
+    *there = gather(bulge, LOAD_LANES(mirror + row, v));
 }
 
-static inline lanes3 load_springs(global const Replica* restrict replica, size_t row, int v,
+INLINE lanes3 load_springs(global const Replica* restrict replica, size_t row, int v,
                                   global const real* restrict x, global const real* restrict y,
                                   global const real* restrict z) {
     if (!replica->mindlin) return (lanes3){R(0), R(0), R(0)};

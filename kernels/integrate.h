@@ -3,7 +3,7 @@
 
 typedef struct { real4 position, velocity, angular_velocity; } Motion;
 
-static inline Motion integrate(global const Replica* restrict replica, real4 position, real4 velocity,
+INLINE Motion integrate(global const Replica* restrict replica, real4 position, real4 velocity,
                                real4 angular_velocity, real3 force, real3 torque) {
     const real dt = replica->time_step;
     const real mass = sphere_mass(replica, position.w);
@@ -16,7 +16,7 @@ static inline Motion integrate(global const Replica* restrict replica, real4 pos
     return after;
 }
 
-static inline int motion_status(global const Replica* restrict replica, Motion after, real plate_z) {
+INLINE int motion_status(global const Replica* restrict replica, Motion after, real plate_z) {
     const real4 x = after.position, w = after.angular_velocity;
     if (!isfinite(x.x + x.y + x.z + w.x + w.y + w.z)) return STATUS_NOT_A_NUMBER;
     const bool inside = x.x > replica->wall_position[0] && x.x < replica->wall_position[1] &&

@@ -1,4 +1,5 @@
 /* Contacts side by side: one spelling for a vector of 16 slots (CPU) and for one slot a work-item (GPU).
+   WHERE(condition, yes, no) chooses lane by lane.
    A grain's slots are SLOTS reals in a row; `lanes` holds LANES of them. What the slots of one grain must
    know of one another goes through an EXCHANGE array: private memory on a CPU, local memory on a GPU. */
 #if LANES == 16
@@ -12,18 +13,20 @@ typedef int16 mask;
 #define AS_MASK(integers) (integers)
 #endif
 typedef int16 slots;
+#define WHERE(condition, yes, no) select((lanes)(no), (lanes)(yes), (condition))
 #define EXCHANGE private
 #define VECTORS (SLOTS / 16)
 #define SYNCHRONISE()
 #define LOAD_LANES(row, v) vload16(v, row)
 #define STORE_LANES(value, row, v) vstore16(value, v, row)
-#define ANY(m) any(m)
+#define ANY(m) any_lane(m)
 #define SLOT_NUMBERS(v) ((int16)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15) + (v) * 16)
 #else
 typedef real lanes;
 typedef int mask;
 typedef int slots;
 #define AS_MASK(integers) (integers)
+#define WHERE(condition, yes, no) ((condition) ? (lanes)(yes) : (lanes)(no))
 #define EXCHANGE local
 #define VECTORS 1
 #define SYNCHRONISE() barrier(CLK_LOCAL_MEM_FENCE)
@@ -33,35 +36,54 @@ typedef int slots;
 #define SLOT_NUMBERS(v) ((int)(get_local_id(0) % SLOTS))
 #endif
 
-/* condition ? yes : no, lane by lane */
-#define WHERE(condition, yes, no) select((lanes)(no), (lanes)(yes), (condition))
-
 typedef struct { lanes x, y, z; } lanes3;
 typedef struct { lanes x, y, z, w; } lanes4;
 
-static inline lanes dot3(lanes3 a, lanes3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+INLINE lanes dot3(lanes3 a, lanes3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+
+#if LANES == 16
+/* any() by halves: PoCL's own branches lane by lane. */
+INLINE bool any_lane(mask m) {
+#if MCDEM_DOUBLE
+    const long8 eight = m.lo | m.hi;
+    const long4 four = eight.lo | eight.hi;
+    const long2 two = four.lo | four.hi;
+#else
+    const int8 eight = m.lo | m.hi;
+    const int4 four = eight.lo | eight.hi;
+    const int2 two = four.lo | four.hi;
+#endif
+    return (two.x | two.y) != 0;
+}
+
+/* Sixteen rows of four turned into four vectors of sixteen: every fourth row lies in one vector, so that
+   two rounds of interleaving within quarters bring the lanes into order. */
+#define INTERLEAVE_LOW(a, b) (lanes)(a.s0, b.s0, a.s1, b.s1, a.s4, b.s4, a.s5, b.s5, a.s8, b.s8, a.s9, b.s9, a.sc, b.sc, a.sd, b.sd)
+#define INTERLEAVE_HIGH(a, b) (lanes)(a.s2, b.s2, a.s3, b.s3, a.s6, b.s6, a.s7, b.s7, a.sa, b.sa, a.sb, b.sb, a.se, b.se, a.sf, b.sf)
+#define LOW_PAIRS(a, b) (lanes)(a.s01, b.s01, a.s45, b.s45, a.s89, b.s89, a.scd, b.scd)
+#define HIGH_PAIRS(a, b) (lanes)(a.s23, b.s23, a.s67, b.s67, a.sab, b.sab, a.sef, b.sef)
 
 /* field[index], lane by lane */
-#if LANES == 16
-#define ROW(k) const real4 f##k = field[index.s##k]
-#define ALL(c) (lanes)(f0.c, f1.c, f2.c, f3.c, f4.c, f5.c, f6.c, f7.c, f8.c, f9.c, fa.c, fb.c, fc.c, fd.c, fe.c, ff.c)
-static inline lanes4 gather4(global const real4* restrict field, slots index) {
-    ROW(0); ROW(1); ROW(2); ROW(3); ROW(4); ROW(5); ROW(6); ROW(7);
-    ROW(8); ROW(9); ROW(a); ROW(b); ROW(c); ROW(d); ROW(e); ROW(f);
-    return (lanes4){ALL(x), ALL(y), ALL(z), ALL(w)};
+INLINE lanes4 gather4(global const real4* restrict field, slots i) {
+    const lanes a = (lanes)(field[i.s0], field[i.s4], field[i.s8], field[i.sc]);
+    const lanes b = (lanes)(field[i.s1], field[i.s5], field[i.s9], field[i.sd]);
+    const lanes c = (lanes)(field[i.s2], field[i.s6], field[i.sa], field[i.se]);
+    const lanes d = (lanes)(field[i.s3], field[i.s7], field[i.sb], field[i.sf]);
+    const lanes ab_low = INTERLEAVE_LOW(a, b), ab_high = INTERLEAVE_HIGH(a, b);
+    const lanes cd_low = INTERLEAVE_LOW(c, d), cd_high = INTERLEAVE_HIGH(c, d);
+    return (lanes4){LOW_PAIRS(ab_low, cd_low), HIGH_PAIRS(ab_low, cd_low), LOW_PAIRS(ab_high, cd_high),
+                    HIGH_PAIRS(ab_high, cd_high)};
 }
-static inline lanes gather(global const real* restrict field, slots index) {
+INLINE lanes gather(global const real* restrict field, slots index) {
     return (lanes)(field[index.s0], field[index.s1], field[index.s2], field[index.s3], field[index.s4],
                    field[index.s5], field[index.s6], field[index.s7], field[index.s8], field[index.s9],
                    field[index.sa], field[index.sb], field[index.sc], field[index.sd], field[index.se],
                    field[index.sf]);
 }
-#undef ROW
-#undef ALL
 #else
-static inline lanes4 gather4(global const real4* restrict field, slots index) {
+INLINE lanes4 gather4(global const real4* restrict field, slots index) {
     const real4 f = field[index];
     return (lanes4){f.x, f.y, f.z, f.w};
 }
-static inline lanes gather(global const real* restrict field, slots index) { return field[index]; }
+INLINE lanes gather(global const real* restrict field, slots index) { return field[index]; }
 #endif

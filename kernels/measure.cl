@@ -33,7 +33,7 @@ kernel void measure(global const Replica* restrict replicas, global const int* r
         STORE_LANES(c.overlap, overlap + row, v);
         STORE_LANES(c.arm, arm + row, v);
     }
-    const real stored = sum_lanes(elastic_energy, scratch);
+    const real stored = sum_lanes(elastic_energy, elastic_energy, elastic_energy, elastic_energy, scratch).x;
     const real deepest_slot = max_lanes(deepest, scratch);
     if (IS_LEADER && own.w > R(0)) {
         const real mass = sphere_mass(replica, own.w);
@@ -48,7 +48,7 @@ kernel void measure(global const Replica* restrict replicas, global const int* r
 #define REDUCERS 64
 #define SUMS 20 /* kinetic, elastic, 18 wall force components */
 
-static inline void add_wall_forces(global const int* partner, global const real* x, global const real* y,
+INLINE void add_wall_forces(global const int* partner, global const real* x, global const real* y,
                                    global const real* z, real* sums) {
     for (int c = 0; c < SLOTS; ++c)
         if (partner[c] < EMPTY) {

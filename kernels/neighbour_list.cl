@@ -2,7 +2,7 @@
    first in order of index. What a slot remembers (bulges, springs) moves with its neighbour. */
 
 /* Puts `entry` into the sorted grains of a row; `count` goes on counting past a full row. */
-static inline int insert_sorted(int* row, int count, int entry) {
+INLINE int insert_sorted(int* row, int count, int entry) {
     if (count < SLOTS) {
         int at = count;
         for (; at > 0 && row[at - 1] > entry; --at) row[at] = row[at - 1];
@@ -11,7 +11,7 @@ static inline int insert_sorted(int* row, int count, int entry) {
     return count + 1;
 }
 
-static inline int near_grains(global const Replica* restrict replica, int grain, global const real4* restrict position,
+INLINE int near_grains(global const Replica* restrict replica, int grain, global const real4* restrict position,
                               global const int* restrict cell_head, global const int* restrict cell_next, int* row) {
     const real4 own = position[grain];
     const real reach = replica->probe_gap + replica->skin;
@@ -34,7 +34,7 @@ static inline int near_grains(global const Replica* restrict replica, int grain,
     return count;
 }
 
-static inline int near_walls(global const Replica* restrict replica, real4 own, int* row, int count) {
+INLINE int near_walls(global const Replica* restrict replica, real4 own, int* row, int count) {
     const real reach = own.w + replica->probe_gap + replica->skin;
     for (int w = 0; w < 6; ++w) {
         const real coordinate = w / 2 == 0 ? own.x : w / 2 == 1 ? own.y : own.z;
@@ -47,7 +47,7 @@ static inline int near_walls(global const Replica* restrict replica, real4 own, 
 }
 
 /* Rearranges one remembered row: the value that went with a neighbour stays with it, new neighbours get zero. */
-static inline void carry(const int* before, const int* after, global real* restrict values) {
+INLINE void carry(const int* before, const int* after, global real* restrict values) {
     real kept[SLOTS];
     for (int c = 0; c < SLOTS; ++c) kept[c] = values[c];
     for (int c = 0; c < SLOTS; ++c) {
@@ -58,11 +58,10 @@ static inline void carry(const int* before, const int* after, global real* restr
     }
 }
 
-kernel void list_neighbours(global const Replica* restrict replicas, global const int* restrict blocks,
+kernel void list_neighbours(const int slot_count, global const Replica* restrict replicas, global const int* restrict blocks,
                             global const int* restrict replica_of_block, global const real4* restrict position,
                             global const int* restrict cell_head, global const int* restrict cell_next,
-                            global int* restrict partner, global real* restrict bulge,
-                            global real* restrict bulge_1, global real* restrict bulge_2,
+                            global int* restrict partner, global real* restrict bulge, global real* restrict history,
                             global real* restrict spring_x, global real* restrict spring_y,
                             global real* restrict spring_z, global real4* restrict listed_position,
                             global int* restrict status) {
@@ -89,8 +88,7 @@ kernel void list_neighbours(global const Replica* restrict replicas, global cons
     for (int c = 0; c < SLOTS; ++c) partner[row + c] = after[c];
     if (replica->surface != SURFACE_RIGID) {
         carry(before, after, bulge + row);
-        carry(before, after, bulge_1 + row);
-        carry(before, after, bulge_2 + row);
+        for (int turn = 0; turn < 4; ++turn) carry(before, after, history + (size_t)turn * slot_count + row);
     }
     if (replica->mindlin) {
         carry(before, after, spring_x + row);
@@ -99,14 +97,15 @@ kernel void list_neighbours(global const Replica* restrict replicas, global cons
     }
 }
 
-/* mirror: where the same contact stands in the neighbour's row, -1 for walls and empty slots. */
-kernel void link_mirrors(global const int* restrict blocks, global const int* restrict partner,
+/* mirror: where the same contact stands in the neighbour's row. For walls and empty slots, the one place past
+   all rows, where bulges are always zero. */
+kernel void link_mirrors(const int slot_count, global const int* restrict blocks, global const int* restrict partner,
                          global int* restrict mirror) {
     const int grain = blocks[get_group_id(0)] * BLOCK + get_local_id(0);
     const size_t row = (size_t)grain * SLOTS;
     for (int c = 0; c < SLOTS; ++c) {
         const int other = partner[row + c];
-        int found = -1;
+        int found = slot_count;
         if (other >= 0)
             for (int k = 0; k < SLOTS; ++k)
                 if (partner[(size_t)other * SLOTS + k] == grain) found = other * SLOTS + k;

@@ -15,5 +15,7 @@ typedef float3 real3;
 typedef float4 real4;
 typedef float8 real8;
 #endif
+/* Every function is put in place: a call would pass vectors through memory. */
+#define INLINE static inline __attribute__((always_inline))
 #define R(x) ((real)(x))
 #define PI R(3.14159265358979323846)

@@ -37,6 +37,7 @@ typedef struct {
     int cells_x;
     int cells_y;
     int cells_z;
+    int steps_before;         /* this stretch, modulo 4: turns the ring of surface displacements */
     int surface;              /* SURFACE_* below */
     int finite_contacts;      /* 1: the sphere's size and self terms are not zero */
     int mindlin;              /* 1: friction with history */

@@ -5,7 +5,7 @@
 #define LARGEST_RADIUS R(0.64)
 
 /* In F/(E R); `relative` is a/R. */
-static inline lanes self_displacement(global const Replica* restrict replica, lanes relative) {
+INLINE lanes self_displacement(global const Replica* restrict replica, lanes relative) {
     const lanes x = clamp(relative, (lanes)(SMALLEST_RADIUS), (lanes)(LARGEST_RADIUS));
     global const real* s = replica->sphere_self;
     const lanes value = s[0] + x * (s[2] + x * (s[3] + x * s[4]));
@@ -15,7 +15,7 @@ static inline lanes self_displacement(global const Replica* restrict replica, la
 /* What a force moves the contact by on this side and on the other, per newton [m/N]. */
 typedef struct { lanes here, there; } SelfCompliance;
 
-static inline SelfCompliance self_compliance(global const Replica* restrict replica, lanes contact_radius, real radius,
+INLINE SelfCompliance self_compliance(global const Replica* restrict replica, lanes contact_radius, real radius,
                                              lanes radius_there, mask wall) {
     const lanes inverse_there = WHERE(wall, R(0), R(1) / radius_there);
     SelfCompliance c;
@@ -28,7 +28,7 @@ static inline SelfCompliance self_compliance(global const Replica* restrict repl
 /* Solves overlap = given + compliance F(overlap), F = 4/3 E* sqrt(R* overlap) overlap, by Newton's method; the
    compliance goes with the latest contact radius. Three steps leave less than rounding at any overlap for
    which the contact is stable (compliance dF/d overlap < 1/2). */
-static inline lanes self_consistent_overlap(global const Replica* restrict replica, lanes given, lanes reduced_radius,
+INLINE lanes self_consistent_overlap(global const Replica* restrict replica, lanes given, lanes reduced_radius,
                                             lanes modulus, real radius, lanes radius_there, mask wall) {
     lanes overlap = given;
     for (int step = 0; step < 3; ++step) {

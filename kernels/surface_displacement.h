@@ -11,7 +11,7 @@ typedef struct {
 
 /* Paper, Eq. 1, from contact k with unit force and unit prefactor, at the deformed contact points. With
    n = -e at both, all products follow from cos(theta) = e_k . e_c and the two arms. */
-static inline lanes half_space_displacement(global const Replica* restrict replica, lanes cosine, lanes arm, real arm_k) {
+INLINE lanes half_space_displacement(global const Replica* restrict replica, lanes cosine, lanes arm, real arm_k) {
     const lanes squared = arm * arm + arm_k * arm_k - R(2) * arm * arm_k * cosine;
     const lanes inverse = R(1) / sqrt(squared);
     const lanes along_k = (arm_k - arm * cosine) * inverse;  /* n_k . u */
@@ -24,7 +24,7 @@ static inline lanes half_space_displacement(global const Replica* restrict repli
 
 #define SMALLEST_SINE R(0.15) /* the polynomials hold from here on: contacts 17 degrees apart */
 
-static inline lanes polynomial(global const real* coefficient, int terms, lanes x) {
+INLINE lanes polynomial(global const real* coefficient, int terms, lanes x) {
     lanes value = coefficient[terms - 1];
     for (int n = terms - 2; n >= 0; --n) value = value * x + coefficient[n];
     return value;
@@ -32,7 +32,7 @@ static inline lanes polynomial(global const real* coefficient, int terms, lanes 
 
 /* Displacement of an elastic sphere, in F/(E R), at the angle whose cosine is given; `spread` is
    (2/5 a_k^2 + 2/3 a_c^2)/R^2 of the two contact radii. */
-static inline lanes sphere_displacement(global const Replica* restrict replica, lanes cosine, lanes spread) {
+INLINE lanes sphere_displacement(global const Replica* restrict replica, lanes cosine, lanes spread) {
     const lanes squared = fmax(R(0.5) - R(0.5) * cosine, (lanes)(SMALLEST_SINE * SMALLEST_SINE));
     const lanes inverse = R(1) / sqrt(squared);
     const lanes s = squared * inverse;
@@ -42,7 +42,7 @@ static inline lanes sphere_displacement(global const Replica* restrict replica, 
     return value * inverse;
 }
 
-static inline void tabulate(Contacts c, lanes3 normal, int v, EXCHANGE ContactTable* table) {
+INLINE void tabulate(Contacts c, lanes3 normal, int v, EXCHANGE ContactTable* table) {
     STORE_LANES(normal.x, table->x, v);
     STORE_LANES(normal.y, table->y, v);
     STORE_LANES(normal.z, table->z, v);
@@ -52,7 +52,7 @@ static inline void tabulate(Contacts c, lanes3 normal, int v, EXCHANGE ContactTa
 }
 
 /* The sum over the contacts k of the grain, for its slots v. */
-static inline lanes half_space_sum(global const Replica* restrict replica, EXCHANGE const ContactTable* table,
+INLINE lanes half_space_sum(global const Replica* restrict replica, EXCHANGE const ContactTable* table,
                                    lanes3 direction, int v) {
     const lanes arm = LOAD_LANES(table->arm, v);
     lanes sum = R(0);
@@ -66,7 +66,7 @@ static inline lanes half_space_sum(global const Replica* restrict replica, EXCHA
     return sum * replica->half_space_scale;
 }
 
-static inline lanes sphere_sum(global const Replica* restrict replica, EXCHANGE const ContactTable* table,
+INLINE lanes sphere_sum(global const Replica* restrict replica, EXCHANGE const ContactTable* table,
                                real radius, lanes3 direction, int v) {
     const lanes relative = LOAD_LANES(table->radius, v) / radius;
     const lanes receiving = (R(2) / R(3)) * relative * relative;
@@ -82,7 +82,7 @@ static inline lanes sphere_sum(global const Replica* restrict replica, EXCHANGE 
     return sum * (replica->sphere_scale / radius);
 }
 
-static inline lanes surface_displacement(global const Replica* restrict replica, EXCHANGE const ContactTable* table,
+INLINE lanes surface_displacement(global const Replica* restrict replica, EXCHANGE const ContactTable* table,
                                          real radius, int v) {
     const lanes3 direction = {LOAD_LANES(table->x, v), LOAD_LANES(table->y, v), LOAD_LANES(table->z, v)};
     return replica->surface == SURFACE_HALF_SPACE ? half_space_sum(replica, table, direction, v)

@@ -62,6 +62,7 @@ Engine::Engine(Device& device, const KernelBuild& build, std::vector<Replica> re
       relist_(replicas_.size(), 1),
       plate_moved_(replicas_.size(), 0),
       plate_z_(replicas_.size(), 0),
+      steps_made_(replicas_.size(), 0),
       device_replicas_(any_device_replicas(build, replicas_, packings, layout_)),
       fields_(device, build, layout_,
               std::visit([](const auto& all) { return sizeof(all[0]); }, device_replicas_),
@@ -115,7 +116,7 @@ std::vector<StretchResult> Engine::advance(const std::vector<Stretch>& stretches
     if (most == 0) return std::vector<StretchResult>(stretches.size());
     const Part working = part(active);
     upload_stretches(stretches);
-    find_neighbours();
+    find_neighbours(active);
     fields_.blocks.write(working.blocks.data(), 0, working.blocks.size() * sizeof(int));
     make_steps(most, working.blocks.size());
     measure(working);
@@ -132,6 +133,7 @@ void Engine::upload_stretches(const std::vector<Stretch>& stretches) {
                 if (stretches[r].steps == 0) continue;
                 all[r].wall_position[5] = stretches[r].plate_z;
                 all[r].plate_velocity = stretches[r].plate_velocity;
+                all[r].steps_before = static_cast<int>(steps_made_[r] % 4);
                 all[r].drag = replicas_[r].grains.drag + stretches[r].extra_drag;
             }
             fields_.replicas.write(all.data());
@@ -139,8 +141,10 @@ void Engine::upload_stretches(const std::vector<Stretch>& stretches) {
         device_replicas_);
 }
 
-void Engine::find_neighbours() {
-    const Part stale = part(relist_);
+void Engine::find_neighbours(const std::vector<char>& active) {
+    std::vector<char> wanted(active);
+    for (int r = 0; r < layout_.replicas(); ++r) wanted[r] = active[r] && relist_[r];
+    const Part stale = part(wanted);
     if (stale.replicas.empty()) return;
     const std::size_t blocks = stale.blocks.size();
     const std::size_t block = build_.block;
@@ -150,10 +154,10 @@ void Engine::find_neighbours() {
     kernels_.empty_cells(stale.replicas.size(), 64, f.replicas, f.relisted, f.cell_head);
     kernels_.fill_cells(blocks, block, f.replicas, f.relisted_blocks, f.replica_of_block, f.position.now(0),
                         f.cell_head, f.cell_next);
-    kernels_.list_neighbours(blocks, block, f.replicas, f.relisted_blocks, f.replica_of_block, f.position.now(0),
-                             f.cell_head, f.cell_next, f.partner, f.bulge.now(0), f.bulge_before,
-                             f.bulge_two_before, f.spring_x, f.spring_y, f.spring_z, f.listed_position, f.status);
-    kernels_.link_mirrors(blocks, block, f.relisted_blocks, f.partner, f.mirror);
+    kernels_.list_neighbours(blocks, block, f.slot_count, f.replicas, f.relisted_blocks, f.replica_of_block, f.position.now(0),
+                             f.cell_head, f.cell_next, f.partner, f.bulge.now(0), f.bulge_history,
+                             f.spring_x, f.spring_y, f.spring_z, f.listed_position, f.status);
+    kernels_.link_mirrors(blocks, block, f.slot_count, f.relisted_blocks, f.partner, f.mirror);
     for (int r : stale.replicas) {
         relist_[r] = 0;
         plate_moved_[r] = 0;
@@ -166,10 +170,10 @@ void Engine::make_steps(int steps, std::size_t blocks) {
     auto& f = fields_;
     for (int s = 0; s < steps + steps % 2; ++s) {
         const int p = s % 2;
-        kernels_.advance(blocks, build_.work_items(), s, f.replicas, f.blocks, f.replica_of_block, f.stop_at,
+        kernels_.advance(blocks, build_.work_items(), s, f.slot_count, f.replicas, f.blocks, f.replica_of_block, f.stop_at,
                          f.position.now(p), f.velocity.now(p), f.angular_velocity.now(p), f.position.next(p),
                          f.velocity.next(p), f.angular_velocity.next(p), f.partner, f.mirror, f.bulge.now(p),
-                         f.bulge.next(p), f.bulge_before, f.bulge_two_before, f.spring_x, f.spring_y, f.spring_z,
+                         f.bulge.next(p), f.bulge_history, f.spring_x, f.spring_y, f.spring_z,
                          f.listed_position, f.status);
     }
 }
@@ -219,6 +223,7 @@ std::vector<StretchResult> Engine::read_reports(const std::vector<Stretch>& stre
                     result.failed_grain = layout_.order[r][result.failed_grain - layout_.first_grain[r]];
                 const double plate_move = stretches[r].plate_velocity * time_step_[r] * made[r];
                 plate_moved_[r] += std::abs(plate_move);
+                steps_made_[r] += made[r];
                 plate_z_[r] = stretches[r].plate_z + plate_move;
                 const double limit = relist_at * skin_[r];
                 relist_[r] = made[r] < stretches[r].steps || plate_moved_[r] > limit ||

@@ -73,7 +73,7 @@ private:
     Part part(const std::vector<char>& wanted) const;
     void upload_packings(const std::vector<Packing>& packings);
     void upload_stretches(const std::vector<Stretch>& stretches);
-    void find_neighbours();
+    void find_neighbours(const std::vector<char>& active);
     void make_steps(int steps, std::size_t blocks);
     void measure(const Part& active);
     std::vector<StretchResult> read_reports(const std::vector<Stretch>& stretches);
@@ -92,6 +92,7 @@ private:
     std::vector<char> relist_;            ///< 1: the neighbour list is to be made anew
     std::vector<double> plate_moved_;     ///< since the list was made [m]
     std::vector<double> plate_z_;         ///< where the last stretch left it [m]
+    std::vector<long> steps_made_;
     std::variant<std::vector<f32::Replica>, std::vector<f64::Replica>> device_replicas_;
     Fields fields_;
     Kernels kernels_;

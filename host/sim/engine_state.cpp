@@ -119,6 +119,7 @@ std::map<std::string, std::vector<std::byte>> Engine::save() {
     };
     keep("relist", relist_);
     keep("plate_moved", plate_moved_);
+    keep("steps_made", steps_made_);
     return saved;
 }
 
@@ -131,9 +132,13 @@ void Engine::restore(const std::map<std::string, std::vector<std::byte>>& saved)
         return found->second.data();
     };
     fields_.visit_state([&](const char* name, auto& field) { field.write(bytes_of(name, field.bytes())); });
-    std::memcpy(relist_.data(), bytes_of("relist", relist_.size()), relist_.size());
-    std::memcpy(plate_moved_.data(), bytes_of("plate_moved", plate_moved_.size() * sizeof(double)),
-                plate_moved_.size() * sizeof(double));
+    const auto bring_back = [&](const char* name, auto& values) {
+        const std::size_t size = values.size() * sizeof(values[0]);
+        std::memcpy(values.data(), bytes_of(name, size), size);
+    };
+    bring_back("relist", relist_);
+    bring_back("plate_moved", plate_moved_);
+    bring_back("steps_made", steps_made_);
 }
 
 }  // namespace mcdem

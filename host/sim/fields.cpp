@@ -34,9 +34,9 @@ Fields::Fields(Device& device, const KernelBuild& build, const Layout& layout, s
     make(partner, slots, sizeof(int));
     make(mirror, slots, sizeof(int));
     const std::size_t bulge_slots = needs.bulges ? slots : 1;
-    make_pair(bulge, bulge_slots, real);
-    make(bulge_before, bulge_slots, real);
-    make(bulge_two_before, bulge_slots, real);
+    slot_count = static_cast<int>(bulge_slots);
+    make_pair(bulge, bulge_slots + 1, real);
+    make(bulge_history, 4 * bulge_slots, real);
     const std::size_t spring_slots = needs.springs ? slots : 1;
     make(spring_x, spring_slots, real);
     make(spring_y, spring_slots, real);
@@ -48,9 +48,8 @@ Fields::Fields(Device& device, const KernelBuild& build, const Layout& layout, s
     make(arm, slots, real);
     make(cell_head, cells, sizeof(int));
     make(cell_next, grains, sizeof(int));
-    const std::vector<int> empty(slots, -1);
-    partner.write(empty.data());
-    mirror.write(empty.data());
+    partner.write(std::vector<int>(slots, -1).data());
+    mirror.write(std::vector<int>(slots, slot_count).data());
 }
 
 Kernels::Kernels(Device& device, const KernelBuild& build) : Kernels(device, build_program(device, build)) {}

@@ -22,8 +22,7 @@ struct AngularVelocity;
 struct Partner;
 struct Mirror;
 struct Bulge;
-struct BulgeBefore;
-struct BulgeTwoBefore;
+struct BulgeHistory;
 struct SpringX;
 struct SpringY;
 struct SpringZ;
@@ -71,10 +70,9 @@ struct Fields {
     Field<Status> status;
     Field<Energy> energy;
     Field<Partner> partner;                 ///< a slot, as all below
-    Field<Mirror> mirror;
-    Pair<Bulge> bulge;
-    Field<BulgeBefore> bulge_before;
-    Field<BulgeTwoBefore> bulge_two_before;
+    Field<Mirror> mirror;                   ///< into bulge; slot_count where there is none
+    Pair<Bulge> bulge;                      ///< and one more, always zero, at slot_count
+    Field<BulgeHistory> bulge_history;      ///< a slot, for each of the last four steps
     Field<SpringX> spring_x;
     Field<SpringY> spring_y;
     Field<SpringZ> spring_z;
@@ -97,13 +95,13 @@ struct Fields {
         visit("partner", partner);
         visit("mirror", mirror);
         visit("bulge", bulge.copies[0]);
-        visit("bulge_before", bulge_before);
-        visit("bulge_two_before", bulge_two_before);
+        visit("bulge_history", bulge_history);
         visit("spring_x", spring_x);
         visit("spring_y", spring_y);
         visit("spring_z", spring_z);
     }
     std::size_t bytes() const { return bytes_; }
+    int slot_count = 0;  ///< of all grains that have surface displacements; 1 if none
 
 private:
     std::size_t bytes_ = 0;
@@ -117,14 +115,14 @@ struct Kernels {
     Kernel<Field<Replicas>, Field<Blocks>, Field<ReplicaOfBlock>, Field<Position>, Field<CellHead>,
            Field<CellNext>>
         fill_cells;
-    Kernel<Field<Replicas>, Field<Blocks>, Field<ReplicaOfBlock>, Field<Position>, Field<CellHead>, Field<CellNext>,
-           Field<Partner>, Field<Bulge>, Field<BulgeBefore>, Field<BulgeTwoBefore>, Field<SpringX>, Field<SpringY>,
+    Kernel<int, Field<Replicas>, Field<Blocks>, Field<ReplicaOfBlock>, Field<Position>, Field<CellHead>, Field<CellNext>,
+           Field<Partner>, Field<Bulge>, Field<BulgeHistory>, Field<SpringX>, Field<SpringY>,
            Field<SpringZ>, Field<ListedPosition>, Field<Status>>
         list_neighbours;
-    Kernel<Field<Blocks>, Field<Partner>, Field<Mirror>> link_mirrors;
-    Kernel<int, Field<Replicas>, Field<Blocks>, Field<ReplicaOfBlock>, Field<StopAt>, Field<Position>,
+    Kernel<int, Field<Blocks>, Field<Partner>, Field<Mirror>> link_mirrors;
+    Kernel<int, int, Field<Replicas>, Field<Blocks>, Field<ReplicaOfBlock>, Field<StopAt>, Field<Position>,
            Field<Velocity>, Field<AngularVelocity>, Field<Position>, Field<Velocity>, Field<AngularVelocity>,
-           Field<Partner>, Field<Mirror>, Field<Bulge>, Field<Bulge>, Field<BulgeBefore>, Field<BulgeTwoBefore>,
+           Field<Partner>, Field<Mirror>, Field<Bulge>, Field<Bulge>, Field<BulgeHistory>,
            Field<SpringX>, Field<SpringY>, Field<SpringZ>, Field<ListedPosition>, Field<Status>>
         advance;
     Kernel<Field<Replicas>, Field<Blocks>, Field<ReplicaOfBlock>, Field<StopAt>, Field<Position>, Field<Velocity>,
