@@ -40,8 +40,8 @@ int run_cli(int argc, const char* const* argv) {
     app.require_subcommand(1);
     app.set_version_flag("--version", std::string("mcdem ") + version_text);
     int exit_code = exit_done;
-    for (const auto add : {add_devices, add_validate, add_run, add_table, add_compare, add_figures,
-                           add_calibrate, add_export})
+    for (const auto add :
+         {add_devices, add_validate, add_run, add_table, add_compare, add_figures, add_calibrate, add_export})
         add(app, exit_code);
     try {
         app.parse(argc, argv);

@@ -1,2 +1,106 @@
+// mcdem compare and mcdem figures: runs against a reference, in numbers and in pictures.
+#include <fmt/format.h>
+
 #include "cli/commands.h"
-namespace mcdem { void add_compare(CLI::App&, int&) {} }
+#include "cli/pictures.h"
+#include "cli/results.h"
+#include "core/errors.h"
+#include "report/tables.h"
+
+namespace mcdem {
+namespace {
+
+struct CompareCommand {
+    std::vector<std::string> runs;
+    ReferenceOptions reference;
+    std::string out;
+    std::optional<double> touch_force;
+    FigureOptions figures;
+    bool markdown = false;
+};
+
+void print_pictures(const std::vector<std::filesystem::path>& pictures) {
+    for (const auto& picture : pictures) fmt::print("{}\n", picture.string());
+}
+
+void print_comparison(const CompareCommand& command) {
+    const auto reference = load_reference(command.reference, ReadWhat::contacts);
+    const auto loaded = load_runs(command.runs, ReadWhat::contacts);
+    FigureOptions options = command.figures;
+    options.compare.touch_force = command.touch_force;
+    for (const auto& setting : loaded.settings)
+        options.comparisons.push_back(compare(setting, reference.setting.replicas, options.compare));
+    fmt::print("against {}\n\n{}", reference.setting.label,
+               to_text(table_of_comparisons(options.comparisons),
+                       command.markdown ? TableFormat::markdown : TableFormat::terminal));
+    if (command.out.empty()) return;
+    fmt::print("\n");
+    print_pictures(draw_into(command.out, loaded.settings, reference.setting, options));
+}
+
+void print_figures(const CompareCommand& command) {
+    const auto loaded = load_runs(command.runs, ReadWhat::contacts);
+    std::optional<LoadedReference> reference;
+    std::optional<Setting> setting;
+    if (!command.reference.paths.empty()) {
+        reference = load_reference(command.reference, ReadWhat::contacts);
+        setting = reference->setting;
+    }
+    print_pictures(draw_into(command.out, loaded.settings, setting, command.figures));
+}
+
+void add_figure_options(CLI::App& sub, FigureOptions& figures) {
+    sub.add_option("--displacement", figures.distribution_displacement,
+                   "Force distribution at the level nearest to this plate displacement [m]")
+        ->type_name("M")
+        ->capture_default_str();
+    sub.add_option("--threshold", figures.threshold,
+                   "Contact forces below it do not count in the picture of Z, without a reference [N]")
+        ->type_name("N")
+        ->capture_default_str();
+}
+
+}  // namespace
+
+void add_compare(CLI::App& app, int&) {
+    auto* sub =
+        app.add_subcommand("compare", "Hold runs against an experiment or another run: the paper's table");
+    auto command = std::make_shared<CompareCommand>();
+    add_runs_option(*sub, command->runs);
+    add_reference_options(*sub, command->reference, "--against",
+                          "Experiment folder or run; several are taken together");
+    sub->get_option("--against")->required();
+    sub->add_option("--out", command->out, "Folder for the four figures; none: no figures")->type_name("DIR");
+    sub->add_option("--touch-force", command->touch_force,
+                    "errf leaves out levels where the reference's top force is not above it [N]")
+        ->type_name("N");
+    add_figure_options(*sub, command->figures);
+    sub->add_flag("--markdown", command->markdown, "Print Markdown");
+    sub->footer(
+        "Rtop: top force at maximum compression over the reference's. errf: RMS error of the top force.\n"
+        "errZ: RMS error of the coordination number, contacts below tau ignored. bhat: distance of the\n"
+        "distributions of contact forces. An experiment folder is described in host/experiment/README.md.\n"
+        "Examples:\n"
+        "  mcdem compare out/first --against data/hydrogel --discard 5 --out out/comparison\n"
+        "  mcdem compare out/small --against out/small --setting mc_dem");
+    sub->callback([command] { print_comparison(*command); });
+}
+
+void add_figures(CLI::App& app, int&) {
+    auto* sub = app.add_subcommand("figures", "Draw the paper's four figures of runs");
+    auto command = std::make_shared<CompareCommand>();
+    add_runs_option(*sub, command->runs);
+    sub->add_option("--out", command->out, "Folder for the figures")->required()->type_name("DIR");
+    add_reference_options(*sub, command->reference, "--against",
+                          "Experiment folder or run, drawn as points; several are taken together");
+    add_figure_options(*sub, command->figures);
+    sub->footer(
+        "PNG and SVG of the top force, the force distribution at one level, Z after thresholding and the\n"
+        "scaling law; beside each its data (CSV) and the gnuplot script, to draw it in another style.\n"
+        "Examples:\n"
+        "  mcdem figures out/small --out out/pictures\n"
+        "  mcdem figures out/small --out out/pictures --against out/small --setting mc_dem");
+    sub->callback([command] { print_figures(*command); });
+}
+
+}  // namespace mcdem

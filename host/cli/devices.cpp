@@ -14,11 +14,11 @@ namespace {
 void print_devices() {
     const auto devices = list_devices();
     if (devices.empty())
-        throw RunError("no OpenCL device found: install a driver (the package pocl-opencl-icd runs on any CPU)");
+        throw RunError(
+            "no OpenCL device found: install a driver (the package pocl-opencl-icd runs on any CPU)");
     TextTable table;
-    table.columns = {{"", Align::right},       {"device", Align::left}, {"kind", Align::left},
-                     {"units"},                {"memory"},              {"double", Align::left},
-                     {"platform", Align::left}};
+    table.columns = {{"", Align::right}, {"device", Align::left}, {"kind", Align::left},    {"units"},
+                     {"memory"},         {"double", Align::left}, {"platform", Align::left}};
     for (const auto& device : devices)
         table.rows.push_back({std::to_string(device.index), device.name, device.gpu ? "GPU" : "CPU",
                               std::to_string(device.compute_units),

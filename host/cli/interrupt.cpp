@@ -12,7 +12,7 @@ static_assert(std::atomic<bool>::is_always_lock_free, "or a signal handler must 
 
 Interrupt::Interrupt() {
     asked = false;
-    struct sigaction action{};
+    struct sigaction action {};
     action.sa_handler = [](int) { asked = true; };
     action.sa_flags = static_cast<int>(SA_RESETHAND);  // the next one does what signals do
     sigaction(SIGINT, &action, &before_int_);

@@ -14,7 +14,8 @@ public:
     static bool wanted();
 
 private:
-    struct sigaction before_int_{}, before_term_{};
+    struct sigaction before_int_ {
+    }, before_term_{};
 };
 
 }  // namespace mcdem

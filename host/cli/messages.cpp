@@ -19,7 +19,8 @@ void say_lines(const std::string& text) {
 }  // namespace
 
 void set_up_messages() {
-    auto logger = std::make_shared<spdlog::logger>("mcdem", std::make_shared<spdlog::sinks::stderr_sink_mt>());
+    auto logger =
+        std::make_shared<spdlog::logger>("mcdem", std::make_shared<spdlog::sinks::stderr_sink_mt>());
     logger->set_pattern("mcdem: %v");
     spdlog::set_default_logger(logger);
 }
@@ -30,10 +31,11 @@ int report_error(const std::exception& error) {
         return exit_bad_input;
     }
     if (const auto* opencl = dynamic_cast<const cl::Error*>(&error))
-        spdlog::error("OpenCL: {} failed with code {}{}", opencl->what(), opencl->err(),
-                      opencl->err() == CL_MEM_OBJECT_ALLOCATION_FAILURE || opencl->err() == CL_OUT_OF_RESOURCES
-                          ? ": the device has not enough memory; run fewer replicas at a time"
-                          : "");
+        spdlog::error(
+            "OpenCL: {} failed with code {}{}", opencl->what(), opencl->err(),
+            opencl->err() == CL_MEM_OBJECT_ALLOCATION_FAILURE || opencl->err() == CL_OUT_OF_RESOURCES
+                ? ": the device has not enough memory; run fewer replicas at a time"
+                : "");
     else if (dynamic_cast<const std::bad_alloc*>(&error))
         spdlog::error("needs more memory than there is");
     else

@@ -32,7 +32,8 @@ std::vector<std::filesystem::path> draw_into(const std::filesystem::path& folder
 
 std::vector<std::filesystem::path> draw_run(const std::filesystem::path& folder) {
     if (std::filesystem::file_size(run_file(folder)) > most_bytes_read) {
-        spdlog::info("no pictures of so large a run: `mcdem figures {} --out DIR` draws them", folder.string());
+        spdlog::info("no pictures of so large a run: `mcdem figures {} --out DIR` draws them",
+                     folder.string());
         return {};
     }
     try {

@@ -71,7 +71,8 @@ bool models_vary(const ModelTable& table) {
 
 void print_summary(const Run& run, const RunSummary& summary, std::size_t failed) {
     const std::size_t replicas = run.recordings.size();
-    fmt::print("{}: {} of {} replica{} done", run.name, replicas - failed, replicas, replicas == 1 ? "" : "s");
+    fmt::print("{}: {} of {} replica{} done", run.name, replicas - failed, replicas,
+               replicas == 1 ? "" : "s");
     if (failed > 0) fmt::print(", {} stopped early", failed);
     if (summary.grain_steps > 0)
         fmt::print("; {:.1f} million grain-steps in {} ({:.1f} million/s)", summary.grain_steps * 1e-6,
@@ -128,7 +129,8 @@ void add_run(CLI::App& app, int& exit_code) {
     sub->add_flag("--resume", command->resume, "Go on with the interrupted run in DIR");
     sub->add_flag("--no-figures", command->no_figures, "Draw no pictures at the end");
     sub->footer(
-        "Writes run.h5 (everything, HDF5), plate.csv (forces and averages) and pictures into DIR. A replica that\n"
+        "Writes run.h5 (everything, HDF5), plate.csv (forces and averages) and pictures into DIR. A replica "
+        "that\n"
         "cannot go on is named and recorded; the others go on. The exit code is 1 only where all failed.\n"
         "Interrupted by Ctrl-C, a crash or a power cut, a run loses no more than the time since its last\n"
         "checkpoint (output.checkpoint_minutes) and ends, resumed, with the same bits.\n"

@@ -17,7 +17,9 @@ void add_scene_options(CLI::App& command, SceneOptions& options) {
 }
 
 void add_device_option(CLI::App& command, std::string& choice) {
-    command.add_option("--device", choice, "Number or part of the name of a device, as `mcdem devices` lists them")
+    command
+        .add_option("--device", choice,
+                    "Number or part of the name of a device, as `mcdem devices` lists them")
         ->type_name("DEVICE");
 }
 

@@ -1,7 +1,6 @@
 // What every command that reads a scene takes.
 #pragma once
 #include <CLI/CLI.hpp>
-
 #include <string>
 #include <vector>
 

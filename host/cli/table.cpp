@@ -1,2 +1,45 @@
+// mcdem table
+#include <fmt/format.h>
+
 #include "cli/commands.h"
-namespace mcdem { void add_table(CLI::App&, int&) {} }
+#include "cli/results.h"
+#include "report/tables.h"
+
+namespace mcdem {
+namespace {
+
+struct TableCommand {
+    std::vector<std::string> runs;
+    std::string over;
+    bool markdown = false;
+};
+
+void print_tables(const TableCommand& command) {
+    const auto loaded = load_runs(command.runs, ReadWhat::observables);
+    const auto format = command.markdown ? TableFormat::markdown : TableFormat::terminal;
+    const auto over = command.over.empty() ? std::nullopt : std::optional(command.over);
+    fmt::print("{}\n", to_text(table_of_models(model_table(loaded.settings, {}, over)), format));
+    fmt::print("{}", to_text(table_of_scaling(loaded.settings), format));
+}
+
+}  // namespace
+
+void add_table(CLI::App& app, int&) {
+    auto* sub =
+        app.add_subcommand("table", "Top forces of a run's settings side by side, and the scaling law");
+    auto command = std::make_shared<TableCommand>();
+    add_runs_option(*sub, command->runs);
+    sub->add_option("--over", command->over, "Label of the setting that ratios are taken over (else mc_dem)")
+        ->type_name("LABEL");
+    sub->add_flag("--markdown", command->markdown, "Print Markdown");
+    sub->footer(
+        "Ratios are over replicas that start from the same packing, where there are; ± is the standard "
+        "error\n"
+        "over replicas.\n"
+        "Examples:\n"
+        "  mcdem table out/small\n"
+        "  mcdem table out/small --over independent --markdown");
+    sub->callback([command] { print_tables(*command); });
+}
+
+}  // namespace mcdem

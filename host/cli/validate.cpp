@@ -13,8 +13,9 @@ void print_scene(const SceneOptions& options) {
     const Scene scene = options.read();
     const Protocol& protocol = scene.replicas.front().protocol;
     fmt::print("{}: good\n", options.file);
-    fmt::print("{}, {} precision; {} cycle{} with {} scans a stroke\n", size_text(scene), name(scene.precision),
-               protocol.cycles, protocol.cycles == 1 ? "" : "s", protocol.scans_per_stroke);
+    fmt::print("{}, {} precision; {} cycle{} with {} scans a stroke\n", size_text(scene),
+               name(scene.precision), protocol.cycles, protocol.cycles == 1 ? "" : "s",
+               protocol.scans_per_stroke);
     std::size_t shown = 0;
     for (const auto& replica : scene.replicas) {
         if (++shown > most_labels) {

@@ -20,9 +20,8 @@ std::string start_of(const Replica& replica) {
                                    replica.plate.start, from.position_jitter, from.seed);
     if (const auto* file = std::get_if<PackingFile>(&from.source)) return text + " file " + file->path;
     const auto& drawn = std::get<GeneratedPacking>(from.source);
-    return text + fmt::format(" drawn {} {} {} {} {} {}", drawn.count, drawn.diameter_mean,
-                              drawn.diameter_sd, drawn.diameter_min, drawn.diameter_max,
-                              drawn.packing_fraction);
+    return text + fmt::format(" drawn {} {} {} {} {} {}", drawn.count, drawn.diameter_mean, drawn.diameter_sd,
+                              drawn.diameter_min, drawn.diameter_max, drawn.packing_fraction);
 }
 
 /// Calls work(i) for i below `count` on as many threads as there are cores.

@@ -34,8 +34,9 @@ public:
           identity_(identity_of(device, scene, options.program, packings)),
           folder_(std::move(folder)),
           simulation_(device, scene, packings) {
-        pending_ = {scene.name,      scene.text, options.program, device.description(),
-                    std::string(name(scene.precision)), {}};
+        pending_ = {
+            scene.name, scene.text, options.program, device.description(), std::string(name(scene.precision)),
+            {}};
         for (std::size_t r = 0; r < packings.size(); ++r)
             pending_.recordings.push_back(begin_recording(scene.replicas[r], packings[r]));
     }

@@ -20,8 +20,8 @@ struct RunOptions {
     /// Called after every round; `fraction` of the whole run is done.
     std::function<void(double fraction)> on_progress = [](double) {};
     /// A replica stopped; the others go on.
-    std::function<void(const Replica& replica, const Failure& failure)> on_failure =
-        [](const Replica&, const Failure&) {};
+    std::function<void(const Replica& replica, const Failure& failure)> on_failure = [](const Replica&,
+                                                                                        const Failure&) {};
     /// Something that the user should know and that does not stop the run.
     std::function<void(const std::string& message)> on_warning = [](const std::string&) {};
     /// Asked after every round, and by several threads while packings are made: true ends the run in good

@@ -64,9 +64,10 @@ std::string first_difference(const std::string& now, const std::string& then) {
 
 void expect_same_scene(const std::string& now, const std::string& then, const std::string& folder) {
     if (now != then)
-        throw InputError(fmt::format("{}: must be resumed with the scene it was begun with, overrides "
-                                     "included; {}: give that one, or another folder",
-                                     folder, first_difference(now, then)));
+        throw InputError(
+            fmt::format("{}: must be resumed with the scene it was begun with, overrides "
+                        "included; {}: give that one, or another folder",
+                        folder, first_difference(now, then)));
 }
 
 }  // namespace
@@ -100,27 +101,31 @@ std::optional<Checkpoint> find_checkpoint(const ResultFolder& folder, const RunI
     if (!checkpoint) {
         // Stopped before its first checkpoint. Segments, if any, still say whose they are.
         if (folder.segments() > 0)
-            expect_same_scene(identity.scene_text, read_run_header(segment_files(folder.path())).scene, where);
+            expect_same_scene(identity.scene_text, read_run_header(segment_files(folder.path())).scene,
+                              where);
         return std::nullopt;
     }
     expect_same_scene(identity.scene_text, checkpoint->scene_text, where);
     if (checkpoint->device != identity.device)
-        throw InputError(fmt::format("{}: must be resumed on the device it was begun on, {}; got {}: choose it "
-                                     "with --device, or start anew in another folder",
-                                     where, checkpoint->device, identity.device));
+        throw InputError(
+            fmt::format("{}: must be resumed on the device it was begun on, {}; got {}: choose it "
+                        "with --device, or start anew in another folder",
+                        where, checkpoint->device, identity.device));
     if (text_of(*checkpoint, packings_field) != identity.packings)
-        throw InputError(where + ": must be resumed with the packing it was begun with: the packing file "
-                                 "has changed since, or this program draws other packings");
+        throw InputError(where +
+                         ": must be resumed with the packing it was begun with: the packing file "
+                         "has changed since, or this program draws other packings");
     if (checkpoint->segments > folder.segments())
-        throw InputError(fmt::format("{}: must hold the {} segments that its checkpoint names, has {}: the "
-                                     "run cannot go on; start it anew in another folder",
-                                     where, checkpoint->segments, folder.segments()));
+        throw InputError(
+            fmt::format("{}: must hold the {} segments that its checkpoint names, has {}: the "
+                        "run cannot go on; start it anew in another folder",
+                        where, checkpoint->segments, folder.segments()));
     const auto program = text_of(*checkpoint, program_field);
     if (program != identity.program)
-        checkpoint->warning += fmt::format("{}{}: was begun by {}, goes on with {}: results may differ from "
-                                           "those of an uninterrupted run",
-                                           checkpoint->warning.empty() ? "" : "; ", where, program,
-                                           identity.program);
+        checkpoint->warning += fmt::format(
+            "{}{}: was begun by {}, goes on with {}: results may differ from "
+            "those of an uninterrupted run",
+            checkpoint->warning.empty() ? "" : "; ", where, program, identity.program);
     return checkpoint;
 }
 

@@ -12,9 +12,9 @@ namespace mcdem {
 /// What must be the same for a run to go on as if it had not stopped.
 struct RunIdentity {
     std::string scene_text;
-    std::string device;   ///< with the build of the kernels: both decide the bits
-    std::string program;  ///< version and commit
-    std::string packings; ///< digest: a packing file may change while its name does not
+    std::string device;    ///< with the build of the kernels: both decide the bits
+    std::string program;   ///< version and commit
+    std::string packings;  ///< digest: a packing file may change while its name does not
 };
 RunIdentity identity_of(const Device& device, const Scene& scene, const std::string& program,
                         const std::vector<Packing>& packings);

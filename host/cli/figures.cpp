@@ -1,2 +1,0 @@
-#include "cli/commands.h"
-namespace mcdem { void add_figures(CLI::App&, int&) {} }

@@ -1,0 +1,141 @@
+#include "ensemble/calibrate_scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "core/errors.h"
+#include "ensemble/make_packings.h"
+#include "ensemble/simulate.h"
+#include "metrics/top_force.h"
+
+namespace mcdem {
+namespace {
+
+const std::set<std::string> left_aside{"contact.model", "contact.gamma", "packing.seed"};
+
+/// The keys whose values differ between two replicas of the scene, without those left aside.
+std::set<std::string> keys_that_vary(const Scene& scene) {
+    std::set<std::string> keys;
+    const auto& first = scene.replicas.front().parameters;
+    for (const auto& replica : scene.replicas)
+        for (const auto& [key, value] : replica.parameters) {
+            const auto found = first.find(key);
+            if (!left_aside.contains(key) && (found == first.end() || found->second != value))
+                keys.insert(key);
+        }
+    return keys;
+}
+
+/// All gammas and all packings go through one simulation, so that a device is filled.
+class GammaBatch {
+public:
+    GammaBatch(Device& device, const Scene& scene, double displacement)
+        : device_(device), scene_(scene), displacement_(displacement) {
+        scene_.replicas = calibration_replicas(scene);
+        scene_.output.positions = scene_.output.contacts = false;
+        packings_ = make_packings(scene_);
+    }
+
+    std::size_t replicas() const { return packings_.size(); }
+    double stroke() const { return scene_.replicas.front().plate.start - scene_.replicas.front().plate.end; }
+
+    /// Mean top force at the displacement for each gamma [N]; not-a-number where it ran away.
+    std::vector<double> top_forces(const std::vector<double>& gammas,
+                                   const std::function<void(double)>& on_progress) {
+        const auto recordings = simulate_all(gammas, on_progress);
+        std::vector<double> forces;
+        for (std::size_t g = 0; g < gammas.size(); ++g) {
+            Replicas replicas;
+            for (std::size_t r = 0; r < packings_.size(); ++r)
+                replicas.push_back(&recordings[g * packings_.size() + r]);
+            forces.push_back(mean_top_force(replicas));
+        }
+        return forces;
+    }
+
+private:
+    std::vector<Recording> simulate_all(const std::vector<double>& gammas,
+                                        const std::function<void(double)>& on_progress) {
+        Scene batch = scene_;
+        batch.replicas.clear();
+        std::vector<Packing> packings;
+        for (const double gamma : gammas)
+            for (std::size_t r = 0; r < packings_.size(); ++r) {
+                batch.replicas.push_back(scene_.replicas[r]);
+                batch.replicas.back().contact.gamma = gamma;
+                packings.push_back(packings_[r]);
+            }
+        // The last unloading is not looked at.
+        const auto& protocol = scene_.replicas.front().protocol;
+        const int strokes = 2 * protocol.cycles - 1;
+        return simulate(device_, batch, packings, std::size_t(strokes) * protocol.scans_per_stroke,
+                        [&](double fraction) { on_progress(fraction * (strokes + 1) / strokes); });
+    }
+
+    double mean_top_force(const Replicas& replicas) const {
+        const LevelOptions options;
+        const auto forces =
+            top_force_at(group_levels(replicas, options), replicas, displacement_, options.tolerance);
+        const auto mean = mean_over_replicas(forces.value);
+        return 2 * std::size_t(mean.count) > replicas.size() ? mean.value : not_available;
+    }
+
+    Device& device_;
+    Scene scene_;
+    double displacement_;
+    std::vector<Packing> packings_;
+};
+
+}  // namespace
+
+std::vector<Replica> calibration_replicas(const Scene& scene) {
+    std::vector<std::string> problems;
+    for (const auto& key : keys_that_vary(scene))
+        problems.push_back(
+            fmt::format("calibrate: {} must be the same for all replicas: give one value with "
+                        "--set {}=..",
+                        key, key));
+    if (!problems.empty()) throw InputError(problems);
+    std::vector<Replica> chosen;
+    std::set<std::uint64_t> seeds;
+    for (Replica replica : scene.replicas) {
+        if (!seeds.insert(replica.packing.seed).second) continue;
+        replica.contact.model = ContactModel::mc_dem;
+        chosen.push_back(std::move(replica));
+    }
+    return chosen;
+}
+
+SceneCalibration calibrate_scene(Device& device, const Scene& scene, const Replicas& reference,
+                                 const CalibrateOptions& options) {
+    const LevelOptions levels;
+    const auto reference_levels = group_levels(reference, levels);
+    SceneCalibration result;
+    result.displacement = full_stroke(reference_levels, reference);
+    if (!std::isfinite(result.displacement))
+        throw InputError(
+            "calibrate: the reference must have a scan, got none (all cycles discarded, or all "
+            "replicas failed)");
+    result.target = mean_over_replicas(
+        top_force_at(reference_levels, reference, result.displacement, levels.tolerance).value);
+    GammaBatch batch(device, scene, result.displacement);
+    if (batch.stroke() < result.displacement - levels.tolerance)
+        throw InputError(
+            fmt::format("calibrate: plate.start - plate.end must reach the reference's greatest "
+                        "displacement of {:.3f} mm, got {:.3f} mm",
+                        result.displacement * 1e3, batch.stroke() * 1e3));
+    result.replicas = static_cast<int>(batch.replicas());
+    int round = 0;
+    const auto top_forces = [&](const std::vector<double>& gammas) {
+        const auto forces =
+            batch.top_forces(gammas, [&](double fraction) { options.on_progress(round, fraction); });
+        ++round;
+        return forces;
+    };
+    result.found = calibrate_gamma(top_forces, result.target.value, options.bracket, options.search);
+    return result;
+}
+
+}  // namespace mcdem
