@@ -1,0 +1,94 @@
+"""LIGGGHTS and LAMMPS on the packing that the step benchmarks run on: grain-steps a second of each."""
+import json
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+
+from programs import Failed, environment
+
+HERE = pathlib.Path(__file__).resolve().parent
+GAMMA = 1.125
+TIME_LIMIT = 3600  # [s] a run
+
+# skin [m]: the fastest of 1, 2.7 and 4 mm for each; LIGGGHTS's own example of its multi-contact model has 4 mm.
+CODES = [
+    {"code": "LAMMPS", "contacts": "independent", "program": "lmp", "input": "lammps.in",
+     "variables": {"skin": 0.001, "warm_up": 100, "steps": 400}},
+    {"code": "LIGGGHTS", "contacts": "independent", "program": "liggghts", "input": "liggghts.in",
+     "variables": {"skin": 0.001, "warm_up": 100, "steps": 400, "surface": "default", "multicontact": 0}},
+    {"code": "LIGGGHTS", "contacts": "multi-contact", "program": "liggghts", "input": "liggghts.in",
+     "variables": {"skin": 0.004, "warm_up": 20, "steps": 60, "surface": "multicontact", "multicontact": 1}},
+]
+LEAST_CONTACTS, MOST_CONTACTS = 4, 8  # a grain, walls not counted
+
+
+def write_plate(folder, parameters):
+    """The plate as two triangles at height 0, a little wider than the box."""
+    low = -0.005
+    high_x, high_y = parameters["size_x"] + 0.005, parameters["size_y"] + 0.005
+    corners = [(low, low), (high_x, low), (high_x, high_y), (low, high_y)]
+    text = "solid plate\n"
+    for triangle in ((0, 1, 2), (0, 2, 3)):
+        vertices = "".join(f"  vertex {corners[n][0]} {corners[n][1]} 0\n" for n in triangle)
+        text += f"facet normal 0 0 1\n outer loop\n{vertices} endloop\nendfacet\n"
+    (folder / "plate.stl").write_text(text + "endsolid plate\n")
+
+
+def export(build, folder, grains):
+    """Writes the packing into `folder`; returns its parameters."""
+    subprocess.run([build / "bench" / "export_packing", str(grains), folder], check=True)
+    parameters = json.loads((folder / "parameters.json").read_text())
+    write_plate(folder, parameters)
+    return parameters
+
+
+def command_of(code, folder, parameters, processes):
+    variables = {**parameters, **code["variables"], "folder": folder, "gamma": GAMMA}
+    command = ["mpirun", "--oversubscribe", "-n", str(processes)] if processes > 1 else []
+    command += [code["program"], "-log", "none", "-in", HERE / code["input"]]
+    for name, value in variables.items():
+        command += ["-var", name, str(value)]
+    return command
+
+
+def parse(output, returncode, grains):
+    """Grain-steps a second of the last run in `output`, and Z at its end; Failed where there is none."""
+    if returncode != 0:
+        raise Failed("crashed: " + (re.findall(r"MPI_ERR_\w+|ERROR.*", output) or [f"code {returncode}"])[0])
+    loops = re.findall(r"Loop time of (\S+) on \d+ procs for (\d+) steps", output)
+    thermo = re.findall(r"^ *\d+ +\d+ +(\S+) +\S+ *$", output, re.MULTILINE)
+    if len(loops) < 2 or not thermo:
+        raise Failed("no result")
+    contacts = float(thermo[-1])
+    if not LEAST_CONTACTS < contacts < MOST_CONTACTS:
+        raise Failed(f"Z = {contacts}: not the packing it should be")
+    seconds, steps = float(loops[-1][0]), int(loops[-1][1])
+    return grains * steps / seconds, contacts
+
+
+def run_code(code, folder, parameters, processes):
+    result = {"code": code["code"], "contacts": code["contacts"], "processes": processes}
+    missing = [p for p in [code["program"]] + ["mpirun"] * (processes > 1) if not shutil.which(p)]
+    if missing:
+        return {**result, "note": f"{missing[0]} is not installed"}
+    env = environment(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
+    try:
+        done = subprocess.run(command_of(code, folder, parameters, processes), env=env, cwd=folder, timeout=TIME_LIMIT,
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace")
+        (folder / f"{code['code']}_{code['contacts']}_{processes}.log").write_text(done.stdout)
+        rate, contacts = parse(done.stdout, done.returncode, parameters["grains"])
+    except subprocess.TimeoutExpired:
+        return {**result, "note": f"not done after {TIME_LIMIT} s"}
+    except Failed as problem:
+        return {**result, "note": str(problem)}
+    return {**result, "grain_steps_per_s": rate, "contacts_per_grain": contacts}
+
+
+def measure(build, grains=50_000):
+    """Every code on one process and on as many as there are cores."""
+    folder = build / f"bench_peers_{grains}"
+    parameters = export(build, folder, grains)
+    counts = sorted({1, os.cpu_count() or 1})
+    return [run_code(code, folder, parameters, processes) for code in CODES for processes in counts]

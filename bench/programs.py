@@ -1,0 +1,65 @@
+"""Builds the benchmark programs, runs them and reads what they print."""
+import json
+import os
+import pathlib
+import subprocess
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+PROGRAMS = ["step_bench", "machine_bench", "compile_bench", "export_packing"]
+
+
+class Failed(Exception):
+    """A program did not do what it should; the message is for the user."""
+
+
+def build(folder):
+    """Configures and builds in `folder`; `mcdem` too where there is one."""
+    configure = ["cmake", "-S", ROOT, "-B", folder, "-DMCDEM_BENCH=ON", "-DMCDEM_TESTS=OFF", "-DCMAKE_BUILD_TYPE=Release"]
+    subprocess.run(configure, check=True, stdout=subprocess.DEVNULL)
+    targets = PROGRAMS + (["mcdem"] if (ROOT / "host/main.cpp").exists() else [])
+    subprocess.run(["cmake", "--build", folder, "--parallel", "--target", *targets], check=True)
+
+
+def environment(one_core=False, **more):
+    """`one_core` holds for PoCL's CPU device."""
+    variables = dict(os.environ, OMP_NUM_THREADS="1", **more)
+    if one_core:
+        variables["POCL_MAX_PTHREAD_COUNT"] = "1"
+    return variables
+
+
+def run_benchmark(folder, program, only="", min_time=1.0, env=None):
+    """A Google Benchmark program's output as {"context": .., "benchmarks": [..]}; Failed where a check failed."""
+    command = [folder / "bench" / program, "--benchmark_format=json", f"--benchmark_min_time={min_time}"]
+    if only:
+        command.append(f"--benchmark_filter={only}")
+    done = subprocess.run(command, env=env or environment(), capture_output=True, text=True)
+    if done.returncode != 0:
+        raise Failed(f"{program} ended with {done.returncode}: {done.stderr.strip()[-2000:]}")
+    output = json.loads(done.stdout)
+    errors = [f"{b['name']}: {b['error_message']}" for b in output["benchmarks"] if b.get("error_occurred")]
+    if errors:
+        raise Failed(f"{program}: not timed, since the check before failed:\n" + "\n".join(errors))
+    return output
+
+
+def commit():
+    command = ["git", "-C", ROOT, "describe", "--always", "--dirty=, changed since", "--exclude=*"]
+    done = subprocess.run(command, capture_output=True, text=True)
+    return done.stdout.strip() or "unknown"
+
+
+def processor():
+    for line in open("/proc/cpuinfo"):
+        if line.startswith("model name"):
+            return line.split(":", 1)[1].strip()
+    return "unknown processor"
+
+
+def cold_and_warm_compile(folder):
+    """Seconds from start to the first steps, with an empty kernel cache and with a full one, by precision."""
+    with tempfile.TemporaryDirectory() as cache:
+        env = environment(POCL_CACHE_DIR=cache, CUDA_CACHE_PATH=cache)
+        runs = [run_benchmark(folder, "compile_bench", env=env) for _ in range(2)]
+    return [{b["name"].split("/")[0]: b["real_time"] / 1e3 for b in run["benchmarks"]} for run in runs]
