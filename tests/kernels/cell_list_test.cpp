@@ -1,0 +1,112 @@
+// The two kernels of the cell list by themselves: every grain is in the list of its cell, once.
+#include <cmath>
+
+#include "reference/test_scene.h"
+#include "sim/device_replica.h"
+
+namespace reference {
+namespace {
+
+/// A batch's fields with positions and replicas uploaded (float).
+struct CellScene {
+    explicit CellScene(const std::vector<Start>& starts)
+        : kernels(build(Precision::single_precision)), layout(mcdem::make_layout(packings(starts), kernels.block)) {
+        int cells = 0;
+        for (int r = 0; r < layout.replicas(); ++r) {
+            replicas.push_back(mcdem::device_replica<mcdem::f32::Replica>(
+                starts[r].replica, starts[r].packing, {layout.first_grain[r], layout.grain_count[r], cells}));
+            cells += mcdem::cell_count(replicas.back());
+        }
+        cell_head.assign(cells, 12345);
+        cell_next.assign(layout.grains(), 12345);
+        position.assign(4 * layout.grains(), 0);
+        for (int r = 0; r < layout.replicas(); ++r)
+            for (int k = 0; k < layout.grain_count[r]; ++k) {
+                const int grain = layout.order[r][k];
+                float* at = &position[4 * (layout.first_grain[r] + k)];
+                for (int axis = 0; axis < 3; ++axis) at[axis] = float(starts[r].packing.position[grain][axis]);
+                at[3] = float(starts[r].packing.diameter[grain] / 2);
+            }
+    }
+
+    void fill(const std::vector<int>& chosen) {
+        mcdem::Fields fields(device(), kernels, layout, sizeof(mcdem::f32::Replica), sizeof(mcdem::f32::Report),
+                             int(cell_head.size()), {});
+        mcdem::Kernels program(device(), kernels);
+        fields.replicas.write(replicas.data());
+        fields.position.copies[0].write(position.data());
+        fields.cell_head.write(cell_head.data());
+        fields.cell_next.write(cell_next.data());
+        std::vector<int> blocks;
+        for (int r : chosen)
+            for (int b = layout.first_block(r); b < layout.first_block(r + 1); ++b) blocks.push_back(b);
+        fields.relisted.write(chosen.data(), 0, chosen.size() * sizeof(int));
+        fields.relisted_blocks.write(blocks.data(), 0, blocks.size() * sizeof(int));
+        program.empty_cells(chosen.size(), 64, fields.replicas, fields.relisted, fields.cell_head);
+        program.fill_cells(blocks.size(), kernels.block, fields.replicas, fields.relisted_blocks,
+                           fields.replica_of_block, fields.position.now(0), fields.cell_head, fields.cell_next);
+        fields.cell_head.read(cell_head.data());
+        fields.cell_next.read(cell_next.data());
+    }
+
+    static std::vector<Packing> packings(const std::vector<Start>& starts) {
+        std::vector<Packing> all;
+        for (const auto& start : starts) all.push_back(start.packing);
+        return all;
+    }
+
+    KernelBuild kernels;
+    mcdem::Layout layout;
+    std::vector<mcdem::f32::Replica> replicas;
+    std::vector<int> cell_head, cell_next;
+    std::vector<float> position;
+};
+
+int cell_along(float x, float size, int cells) {
+    return std::min(std::max(int(std::floor(x / size)), 0), cells - 1);
+}
+
+void expect_cells(const CellScene& scene, int r) {
+    const auto& replica = scene.replicas[r];
+    std::vector<int> seen(scene.layout.grains(), 0);
+    for (int cell = 0; cell < mcdem::cell_count(replica); ++cell)
+        for (int grain = scene.cell_head[replica.first_cell + cell]; grain >= 0; grain = scene.cell_next[grain]) {
+            ASSERT_LT(grain, scene.layout.grains());
+            ASSERT_EQ(seen[grain]++, 0) << "grain " << grain << " is in a cell twice";
+            const float* x = &scene.position[4 * grain];
+            const int expected =
+                (cell_along(x[2], replica.cell_size, replica.cells_z) * replica.cells_y +
+                 cell_along(x[1], replica.cell_size, replica.cells_y)) *
+                    replica.cells_x +
+                cell_along(x[0], replica.cell_size, replica.cells_x);
+            EXPECT_EQ(cell, expected) << "grain " << grain;
+        }
+    for (int k = 0; k < replica.grain_count; ++k) EXPECT_EQ(seen[replica.first_grain + k], 1) << "grain " << k;
+}
+
+TEST(CellList, HoldsEveryGrainOnceInItsCell) {
+    std::vector<Start> starts;
+    for (int count : {1, 63, 64, 65, 1000}) starts.push_back(jittered_lattice(test_replica(), count, count));
+    starts[1].packing.position[5].x() = -0.001;  // outside the box: the nearest cell
+    starts[1].packing.position[6].z() = 0.5;
+    CellScene scene(starts);
+    scene.fill({0, 1, 2, 3, 4});
+    for (int r = 0; r < 5; ++r) expect_cells(scene, r);
+}
+
+TEST(CellList, LeavesOtherReplicasAlone) {
+    std::vector<Start> starts;
+    for (int r = 0; r < 3; ++r) starts.push_back(jittered_lattice(test_replica(), 65, r));
+    CellScene scene(starts);
+    scene.fill({1});
+    expect_cells(scene, 1);
+    const auto& replica = scene.replicas[1];
+    for (int cell = 0; cell < int(scene.cell_head.size()); ++cell) {
+        const bool elsewhere = cell < replica.first_cell || cell >= scene.replicas[2].first_cell;
+        EXPECT_TRUE(!elsewhere || scene.cell_head[cell] == 12345) << "cell " << cell;
+    }
+    for (int k = 0; k < scene.layout.first_grain[1]; ++k) EXPECT_EQ(scene.cell_next[k], 12345);
+}
+
+}  // namespace
+}  // namespace reference

@@ -1,0 +1,172 @@
+// Cells, neighbour rows and mirrors against every pair looked at, and what slots remember when rows are
+// made anew.
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <set>
+
+#include "kernels/saved_rows.h"
+
+namespace reference {
+namespace {
+
+/// Neighbours of a grain by looking at every pair. `unsure`: within rounding of the reach.
+struct Near {
+    std::vector<int> sure, unsure;
+};
+
+Near near_by_brute_force(const StepReference& reference, const Start& start, int grain) {
+    Near near;
+    const auto sort_in = [&](int partner, double gap) {
+        const double margin = 1e-6 * 0.02;
+        if (gap < reference.reach() - margin) near.sure.push_back(partner);
+        else if (gap < reference.reach() + margin) near.unsure.push_back(partner);
+    };
+    const auto& x = reference.position[grain];
+    const double radius = start.packing.diameter[grain] / 2;
+    for (std::size_t j = 0; j < start.packing.size(); ++j)
+        if (int(j) != grain)
+            sort_in(j, (reference.position[j] - x).norm() - radius - start.packing.diameter[j] / 2);
+    const Vec3 far(start.replica.box.size_x, start.replica.box.size_y, start.replica.plate.start);
+    for (int w = 0; w < mcdem::wall_count; ++w)
+        sort_in(mcdem::wall_partner(static_cast<mcdem::Wall>(w)),
+                (w % 2 ? far[w / 2] - x[w / 2] : x[w / 2]) - radius);
+    return near;
+}
+
+void expect_row(const SavedRows& rows, const StepReference& reference, const Start& start, int r, int grain) {
+    const std::vector<int> row = rows.row(r, grain);
+    const std::string where = fmt::format("replica {} grain {}", r, grain);
+    const auto end = std::find(row.begin(), row.end(), empty_slot);
+    EXPECT_EQ(std::count(end, row.end(), empty_slot), row.end() - end) << where << ": no holes";
+    const auto walls = std::find_if(row.begin(), end, [](int entry) { return entry < empty_slot; });
+    EXPECT_TRUE(std::is_sorted(row.begin(), walls)) << where;
+    EXPECT_TRUE(std::is_sorted(walls, end, std::greater<>())) << where << ": walls last, in their order";
+    std::vector<int> found;
+    for (auto entry = row.begin(); entry != end; ++entry) found.push_back(rows.user_partner(r, *entry));
+    EXPECT_EQ(std::set<int>(found.begin(), found.end()).size(), found.size()) << where << ": none twice";
+    const Near near = near_by_brute_force(reference, start, grain);
+    for (int partner : near.sure)
+        EXPECT_EQ(std::count(found.begin(), found.end(), partner), 1) << where << " misses " << partner;
+    EXPECT_LE(found.size(), near.sure.size() + near.unsure.size()) << where << ": one too many";
+}
+
+void expect_mirrors(const SavedRows& rows, int slots) {
+    const auto& partners = rows.partners();
+    const auto mirrors = rows.mirrors();
+    ASSERT_EQ(mirrors.size(), partners.size());
+    for (std::size_t slot = 0; slot < partners.size(); ++slot) {
+        if (partners[slot] < 0) {
+            EXPECT_FALSE(0 <= mirrors[slot] && mirrors[slot] < int(partners.size())) << "slot " << slot;
+            continue;
+        }
+        ASSERT_EQ(mirrors[slot] / slots, partners[slot]) << "slot " << slot;
+        ASSERT_EQ(partners[mirrors[slot]], int(slot) / slots) << "slot " << slot;
+    }
+}
+
+void expect_lists(const KernelBuild& build, const std::vector<Start>& starts) {
+    Batch batch(build, starts);
+    std::vector<StepReference> references;
+    for (std::size_t r = 0; r < starts.size(); ++r) references.push_back(reference_of(batch.engine(), r, starts[r]));
+    const auto results = batch.advance(1);
+    const SavedRows rows(batch, build, starts);
+    for (std::size_t r = 0; r < starts.size(); ++r) {
+        EXPECT_EQ(results[r].status & STATUS_SLOTS, 0);
+        for (std::size_t i = 0; i < starts[r].packing.size(); ++i) expect_row(rows, references[r], starts[r], r, i);
+    }
+    expect_mirrors(rows, build.slots);
+}
+
+Replica with_probe_gap(double gap) {
+    Replica replica = test_replica();
+    replica.numerics.probe_gap = gap;
+    return replica;
+}
+
+TEST(NeighbourList, HoldsEveryPairAtAwkwardSizes) {
+    std::vector<Start> starts;
+    for (int count : {1, 63, 64, 65, 1000, 2}) starts.push_back(jittered_lattice(test_replica(), count, count));
+    expect_lists(build(Precision::single_precision), starts);
+    if (has_double()) expect_lists(build(Precision::double_precision), starts);
+    expect_lists(other_way(build(Precision::single_precision)), {starts[0], starts[3]});
+}
+
+TEST(NeighbourList, HoldsEveryPairWithLongRowsAndFewCells) {
+    // 0.85 mean radii of gap: 18 neighbours; the whole box is one cell, or two a side
+    expect_lists(build(Precision::single_precision, 32), {jittered_lattice(with_probe_gap(0.85), 8, 1),
+                                                          jittered_lattice(with_probe_gap(0.85), 27, 2),
+                                                          jittered_lattice(with_probe_gap(0.85), 125, 3)});
+}
+
+TEST(NeighbourList, HoldsEveryPairOfVeryDifferentGrains) {
+    // a gas of small grains about large ones, in a flat box: cells as large as the largest pair
+    Uniform uniform(4);
+    Start start{test_replica(), {}};
+    start.replica.box = {0.3, 0.2};
+    start.replica.plate.start = 0.05;
+    for (int i = 0; i < 150; ++i) {
+        start.packing.position.push_back({uniform(0.005, 0.295), uniform(0.005, 0.195), uniform(0.005, 0.045)});
+        start.packing.diameter.push_back(i % 10 ? uniform(0.004, 0.008) : uniform(0.02, 0.03));
+    }
+    expect_lists(build(Precision::single_precision, 64), {start});
+}
+
+/// A loose cluster whose grains move past one another by a radius or so.
+Start mixing(FrictionLaw law, ContactModel model) {
+    Replica replica = test_replica(model);
+    replica.contact.friction_law = law;
+    replica.numerics.skin = 0.05;
+    Start start = jittered_lattice(replica, 27, 31);
+    start.replica.box.size_x *= 1.1;
+    return start;
+}
+
+// Rows are made anew many times; values that went to the wrong neighbour would show in the next forces. The
+// motion is chaotic: rounding, 1e-16, grows a hundredfold or two, but not to 1e-9.
+void expect_memory_moves_with_neighbours(const Start& start, const char* quantity) {
+    const KernelBuild kernels = build(Precision::double_precision);
+    Batch batch(kernels, start);
+    Uniform uniform(5);
+    batch.engine().set_velocities(0, uniform.vectors(27, 0.5), uniform.vectors(27, 20));
+    StepReference reference = reference_of(batch.engine(), 0, start);
+    int relisted = 0, changed = 0;
+    for (int step = 0; step < 120; ++step) {
+        const auto result = batch.advance(1).front();
+        ASSERT_EQ(result.status, 0) << "step " << step;
+        reference.step();
+        const auto state = batch.engine().state(0);
+        ASSERT_LT(relative_difference(state.position, reference.position), 1e-9) << "step " << step;
+        ASSERT_LT(relative_difference(state.velocity, reference.velocity), 1e-9) << "step " << step;
+        const SavedRows rows(batch, kernels, {start});
+        for (int grain = 0; grain < 27; ++grain) {
+            ASSERT_EQ(rows.by_partner(quantity, 0, grain).size(), reference.memory[grain].size());
+            for (const auto& [partner, value] : rows.by_partner(quantity, 0, grain)) {
+                const Memory& memory = reference.memory[grain].at(partner);
+                const double expected = quantity[0] == 's' ? memory.spring.x() : memory.predicted;
+                ASSERT_NEAR(value, expected, 1e-9 * 0.01) << "step " << step;
+            }
+        }
+        if (!rows.relisting(0)) continue;
+        const auto before = reference.memory;
+        reference.list_neighbours();
+        ++relisted;
+        for (int grain = 0; grain < 27; ++grain)
+            for (const auto& [partner, memory] : before[grain]) changed += !reference.memory[grain].count(partner);
+    }
+    EXPECT_GT(relisted, 10);
+    EXPECT_GT(changed, 10) << "neighbours that were lost";
+}
+
+TEST(NeighbourList, BulgesMoveWithTheirNeighbours) {
+    if (!has_double()) GTEST_SKIP() << "the device has no double precision";
+    expect_memory_moves_with_neighbours(mixing(FrictionLaw::saturated, ContactModel::mc_dem), "bulge");
+}
+
+TEST(NeighbourList, SpringsMoveWithTheirNeighbours) {
+    if (!has_double()) GTEST_SKIP() << "the device has no double precision";
+    expect_memory_moves_with_neighbours(mixing(FrictionLaw::mindlin, ContactModel::independent), "spring_x");
+}
+
+}  // namespace
+}  // namespace reference

@@ -1,0 +1,81 @@
+// What an engine remembers slot by slot, taken from its saved state, by the user's grain numbers.
+#pragma once
+#include <cstring>
+#include <map>
+#include <vector>
+
+#include "core/recording.h"
+#include "reference/test_scene.h"
+#include "sim/layout.h"
+
+namespace reference {
+
+inline constexpr int empty_slot = -1;  ///< EMPTY of kernels/contact_geometry.h
+
+template <class T>
+std::vector<T> saved_values(const std::map<std::string, std::vector<std::byte>>& saved, const std::string& name) {
+    const auto& bytes = saved.at(name);
+    std::vector<T> values(bytes.size() / sizeof(T));
+    if (!values.empty()) std::memcpy(values.data(), bytes.data(), values.size() * sizeof(T));
+    return values;
+}
+
+/// Saved reals of either precision.
+inline std::vector<double> saved_reals(const std::map<std::string, std::vector<std::byte>>& saved,
+                                       const std::string& name, Precision precision) {
+    if (precision == Precision::double_precision) return saved_values<double>(saved, name);
+    const auto reals = saved_values<float>(saved, name);
+    return {reals.begin(), reals.end()};
+}
+
+class SavedRows {
+public:
+    SavedRows(Batch& batch, const KernelBuild& build, const std::vector<Start>& starts)
+        : build_(build), saved_(batch.engine().save()), layout_(mcdem::make_layout(packings(starts), build.block)) {
+        partner_ = saved_values<int>(saved_, "partner");
+    }
+
+    /// The row of one of the user's grains, as the kernels number grains and walls.
+    std::vector<int> row(int replica, int grain) const {
+        const auto begin = partner_.begin() + std::ptrdiff_t(first_slot(replica, grain));
+        return {begin, begin + build_.slots};
+    }
+    std::size_t first_slot(int replica, int grain) const {
+        return std::size_t(index(replica, grain)) * build_.slots;
+    }
+    /// A grain's place in the device's arrays.
+    int index(int replica, int grain) const {
+        return layout_.first_grain[replica] + layout_.places(replica)[grain];
+    }
+    /// An entry of a row in the user's numbers.
+    int user_partner(int replica, int entry) const {
+        if (entry < empty_slot) return mcdem::wall_partner(static_cast<mcdem::Wall>(-2 - entry));
+        return layout_.order[replica][entry - layout_.first_grain[replica]];
+    }
+    /// partner -> value of a remembered quantity, for one grain.
+    std::map<int, double> by_partner(const std::string& name, int replica, int grain) const {
+        const auto values = saved_reals(saved_, name, build_.precision);
+        std::map<int, double> found;
+        const auto entries = row(replica, grain);
+        for (int c = 0; c < build_.slots; ++c)
+            if (entries[c] != empty_slot)
+                found[user_partner(replica, entries[c])] = values[first_slot(replica, grain) + c];
+        return found;
+    }
+    std::vector<int> mirrors() const { return saved_values<int>(saved_, "mirror"); }
+    const std::vector<int>& partners() const { return partner_; }
+    bool relisting(int replica) const { return saved_values<char>(saved_, "relist")[replica] != 0; }
+
+private:
+    static std::vector<Packing> packings(const std::vector<Start>& starts) {
+        std::vector<Packing> all;
+        for (const auto& start : starts) all.push_back(start.packing);
+        return all;
+    }
+    KernelBuild build_;
+    std::map<std::string, std::vector<std::byte>> saved_;
+    mcdem::Layout layout_;
+    std::vector<int> partner_;
+};
+
+}  // namespace reference

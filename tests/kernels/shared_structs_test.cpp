@@ -1,0 +1,84 @@
+// Host and device must lay out the structs they share in the same way.
+#include <cstddef>
+
+#include "reference/test_scene.h"
+#include "sim/device_types.h"
+
+namespace reference {
+namespace {
+
+constexpr const char* offsets_kernel = R"(
+#define AT(type, member) (int)((size_t)&(((type*)0)->member))
+#define REPLICA(member) offsets[count++] = AT(Replica, member);
+#define REPORT(member) offsets[count++] = AT(Report, member);
+kernel void write_offsets(global int* offsets) {
+    int count = 0;
+    offsets[count++] = sizeof(Replica);
+    offsets[count++] = sizeof(Report);
+    MEMBERS
+}
+)";
+
+#define MEMBERS_OF_REPLICA(MEMBER)                                                                                \
+    MEMBER(time_step) MEMBER(density) MEMBER(weight_density) MEMBER(drag) MEMBER(modulus_grain)                   \
+    MEMBER(modulus_wall) MEMBER(shear_grain) MEMBER(shear_wall) MEMBER(damping_grain) MEMBER(damping_wall)        \
+    MEMBER(friction_grain) MEMBER(friction_wall) MEMBER(sliding_velocity) MEMBER(half_space_scale)                \
+    MEMBER(half_space_normal) MEMBER(half_space_shear) MEMBER(sphere_scale) MEMBER(sphere_point)                  \
+    MEMBER(sphere_size) MEMBER(sphere_self) MEMBER(skin) MEMBER(probe_gap) MEMBER(overlap_limit)                  \
+    MEMBER(cell_size) MEMBER(wall_position) MEMBER(plate_velocity) MEMBER(first_grain) MEMBER(grain_count)        \
+    MEMBER(first_cell) MEMBER(cells_x) MEMBER(cells_y) MEMBER(cells_z) MEMBER(surface) MEMBER(finite_contacts)    \
+    MEMBER(mindlin) MEMBER(steps_before)
+#define MEMBERS_OF_REPORT(MEMBER)                                                                                 \
+    MEMBER(kinetic_energy) MEMBER(elastic_energy) MEMBER(moved_squared) MEMBER(deepest_overlap) MEMBER(wall_force) \
+    MEMBER(status) MEMBER(failed_grain)
+
+#define NAME_REPLICA(member) "REPLICA(" #member ")"
+#define NAME_REPORT(member) "REPORT(" #member ")"
+#define OFFSET_REPLICA(member) static_cast<int>(offsetof(Replica, member)),
+#define OFFSET_REPORT(member) static_cast<int>(offsetof(Report, member)),
+
+template <class Replica, class Report>
+std::vector<int> host_offsets() {
+    return {static_cast<int>(sizeof(Replica)), static_cast<int>(sizeof(Report)),
+            MEMBERS_OF_REPLICA(OFFSET_REPLICA) MEMBERS_OF_REPORT(OFFSET_REPORT)};
+}
+
+std::vector<int> device_offsets(Precision precision, std::size_t count) {
+    const auto kernels = build(precision);
+    std::string source = mcdem::program_text() + offsets_kernel;
+    const std::string members = MEMBERS_OF_REPLICA(NAME_REPLICA) MEMBERS_OF_REPORT(NAME_REPORT);
+    source.replace(source.rfind("MEMBERS"), 7, members);
+    cl::Program program(device().context(), source);
+    const std::string options = "-cl-std=CL1.2 -DLANES=" + std::to_string(kernels.lanes) +
+                                " -DSLOTS=16 -DBLOCK=16 -DMCDEM_DOUBLE=" +
+                                (precision == Precision::double_precision ? "1" : "0");
+    program.build({device().handle()}, options.c_str());
+    struct Offsets;
+    mcdem::Field<Offsets> field(device(), count, sizeof(int));
+    mcdem::Kernel<mcdem::Field<Offsets>>(device(), program, "write_offsets")(1, 1, field);
+    std::vector<int> offsets(count);
+    field.read(offsets.data());
+    return offsets;
+}
+
+TEST(SharedStructs, HaveTheSameLayoutInFloat) {
+    const auto host = host_offsets<mcdem::f32::Replica, mcdem::f32::Report>();
+    EXPECT_EQ(device_offsets(Precision::single_precision, host.size()), host);
+}
+
+TEST(SharedStructs, HaveTheSameLayoutInDouble) {
+    if (!has_double()) GTEST_SKIP() << "the device has no double precision";
+    const auto host = host_offsets<mcdem::f64::Replica, mcdem::f64::Report>();
+    EXPECT_EQ(device_offsets(Precision::double_precision, host.size()), host);
+}
+
+// Every member is listed above: their sizes leave no room for another. (The last int may be padded.)
+TEST(SharedStructs, AreListedWhole) {
+    const auto host = host_offsets<mcdem::f32::Replica, mcdem::f32::Report>();
+    std::size_t replica_words = sizeof(mcdem::f32::Replica) / 4, report_words = sizeof(mcdem::f32::Report) / 4;
+    const std::size_t arrays = (POINT_TERMS - 1) + (SIZE_TERMS - 1) + (SELF_TERMS - 1) + (6 - 1);
+    EXPECT_EQ(host.size() - 2, (replica_words - arrays) + (report_words - 17));
+}
+
+}  // namespace
+}  // namespace reference

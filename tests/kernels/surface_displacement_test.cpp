@@ -1,0 +1,122 @@
+// The surface displacements that the kernels remember: against the reference at every slot, touching or
+// only near, and at the angles whose values are known.
+#include <fmt/core.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "core/names.h"
+#include "kernels/saved_rows.h"
+
+namespace reference {
+namespace {
+
+using std::numbers::pi;
+
+/// Of every slot after six steps, which fill its whole history, over the largest.
+double worst_displacement(const KernelBuild& kernels, const Start& start) {
+    Batch batch(kernels, start);
+    StepReference reference = reference_of(batch.engine(), 0, start);
+    batch.advance(6);
+    for (int step = 0; step < 6; ++step) reference.step();
+    const SavedRows rows(batch, kernels, {start});
+    double worst = 0, largest = 0;
+    for (std::size_t grain = 0; grain < start.packing.size(); ++grain) {
+        const auto found = rows.by_partner("bulge", 0, grain);
+        EXPECT_EQ(found.size(), reference.memory[grain].size());
+        for (const auto& [partner, memory] : reference.memory[grain]) {
+            worst = std::max(worst, std::abs(found.at(partner) - memory.predicted));
+            largest = std::max(largest, std::abs(memory.predicted));
+        }
+    }
+    EXPECT_GT(largest, 1e-5);
+    return worst / largest;
+}
+
+// Float: a force is known to some 3e-5 (step_test.cpp), and the extrapolation in time adds up errors with the
+// weights 10/6, 5/6 and 1/6.
+TEST(SurfaceDisplacement, FollowsTheReferenceAtEverySlot) {
+    for (ContactModel model : all_models) {
+        if (model == ContactModel::independent) continue;
+        for (double nu : {0.0, 0.3, 0.5}) {
+            Replica replica = test_replica(model);
+            replica.grains.poisson_ratio = nu;
+            replica.numerics.probe_gap = 0.2;
+            const Start start = jittered_lattice(replica, 65, 3);
+            const std::string where = fmt::format("{} nu {}", name(model), nu);
+            EXPECT_LT(worst_displacement(build(Precision::single_precision), start), 1e-4) << where;
+            if (!has_double()) continue;
+            const double allowed = model == ContactModel::elastic_sphere ? 1e-5 : 1e-12;
+            EXPECT_LT(worst_displacement(build(Precision::double_precision), start), allowed) << where;
+        }
+    }
+}
+
+/// One grain pressed on the floor, small ones floating near it at 60, 90, 120 and 180 degrees from the
+/// loaded point.
+Start pressed_grain(ContactModel model, double overlap) {
+    constexpr double radius = 0.01, small = 0.003, gap = 0.0005;
+    Replica replica = test_replica(model);
+    replica.grains.poisson_ratio = 0.5;
+    replica.grains.excess_density = 0;
+    replica.walls.youngs_modulus = 1e12;
+    replica.numerics.time_step = 1e-3;
+    replica.box = {0.1, 0.1};
+    replica.plate.start = 0.1;
+    const Vec3 centre(0.05, 0.05, radius - overlap);
+    Packing packing{{centre}, {2 * radius}};
+    for (int k = 0; k < 4; ++k) {
+        const double angle = std::array{60, 90, 120, 180}[k] * pi / 180, turn = k * pi / 2;
+        const Vec3 direction(std::sin(angle) * std::cos(turn), std::sin(angle) * std::sin(turn), -std::cos(angle));
+        packing.position.push_back(centre + (radius + small + gap) * direction);
+        packing.diameter.push_back(2 * small);
+    }
+    return {replica, packing};
+}
+
+/// In F/(E R), at 60, 90, 120 and 180 degrees.
+std::array<double, 4> displacements(ContactModel model) {
+    constexpr double radius = 0.01, overlap = 1e-6;
+    const KernelBuild kernels = build(has_double() ? Precision::double_precision : Precision::single_precision);
+    const Start start = pressed_grain(model, overlap);
+    Batch batch(kernels, start);
+    // long enough for the surfaces to have a past, too short for the grain to move
+    const double force = batch.advance(8).front().wall_force[int(mcdem::Wall::floor)].z();
+    const double modulus = start.replica.grains.youngs_modulus;
+    const double hertz = 4.0 / 3 * modulus / 0.75 * std::sqrt(radius) * std::pow(overlap, 1.5);
+    EXPECT_NEAR(-force / hertz, 1, 0.01);
+    const auto bulge = SavedRows(batch, kernels, {start}).by_partner("bulge", 0, 0);
+    std::array<double, 4> found;
+    for (int k = 0; k < 4; ++k) found[k] = bulge.at(k + 1) / (hertz / (modulus * radius));
+    return found;
+}
+
+// The exact sphere at nu = 1/2; the kernels' polynomial is within 1e-4 of the series.
+TEST(SurfaceDisplacement, PointForceOnSphereAtKnownAngles) {
+    const std::array expected{0.1420, 0.1036, -0.0171, -0.1765};
+    const auto found = displacements(ContactModel::point_force_on_sphere);
+    for (int k = 0; k < 4; ++k) EXPECT_NEAR(found[k], expected[k], 2e-4) << k;
+}
+
+TEST(SurfaceDisplacement, SphereToSphereAtKnownAngles) {
+    const auto found = displacements(ContactModel::sphere_to_sphere);
+    for (int k = 0; k < 4; ++k) {
+        const double s = std::sin(std::array{60, 90, 120, 180}[k] * pi / 360);
+        EXPECT_NEAR(found[k], 3 / (8 * pi) * (3 * s * s - 1) / s, 1e-4) << k;
+    }
+}
+
+// With the contact points all but on the sphere the half space is the same formula; the small grains'
+// slots are probed at R, the contact is at R less the overlap, 1e-4 R.
+TEST(SurfaceDisplacement, HalfSpaceOnTheSphereIsSphereToSphere) {
+    const auto half_space = displacements(ContactModel::elastic_half_space);
+    const auto sphere = displacements(ContactModel::sphere_to_sphere);
+    const auto fitted = displacements(ContactModel::mc_dem);
+    for (int k = 0; k < 4; ++k) {
+        EXPECT_NEAR(half_space[k], sphere[k], 2e-4) << k;
+        EXPECT_NEAR(fitted[k], 1.1 * half_space[k], 1e-6) << k;
+    }
+}
+
+}  // namespace
+}  // namespace reference

@@ -1,0 +1,36 @@
+// A kernel's argument carries its quantity: calls with swapped or missing fields do not compile.
+#include <gtest/gtest.h>
+
+#include <type_traits>
+
+#include "sim/fields.h"
+
+namespace mcdem {
+namespace {
+
+using FillCells = decltype(Kernels::fill_cells);
+template <class... Arguments>
+constexpr bool callable = std::is_invocable_v<FillCells&, std::size_t, std::size_t, const Arguments&...>;
+
+static_assert(callable<Field<Constants>, Field<Blocks>, Field<ReplicaOfBlock>, Field<Position>, Field<CellHead>,
+                       Field<CellNext>>);
+static_assert(!callable<Field<Constants>, Field<Blocks>, Field<ReplicaOfBlock>, Field<Velocity>, Field<CellHead>,
+                        Field<CellNext>>,
+              "a velocity is no position");
+static_assert(!callable<Field<Constants>, Field<Blocks>, Field<ReplicaOfBlock>, Field<Position>, Field<CellNext>,
+                        Field<CellHead>>,
+              "swapped");
+static_assert(!callable<Field<Constants>, Field<Blocks>, Field<ReplicaOfBlock>, Field<Position>, Field<CellHead>>,
+              "one is missing");
+static_assert(!callable<Field<Constants>, Field<Blocks>, Field<ReplicaOfBlock>, int, Field<CellHead>, Field<CellNext>>,
+              "a number is no field");
+
+template <class A, class B>
+constexpr bool assignable = std::is_assignable_v<Field<A>&, const Field<B>&>;
+static_assert(assignable<Velocity, Velocity> && !assignable<Velocity, AngularVelocity>,
+              "fields of one form and another quantity do not mix");
+
+TEST(TypedArguments, AreCheckedWhenThisFileIsCompiled) {}
+
+}  // namespace
+}  // namespace mcdem

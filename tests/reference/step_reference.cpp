@@ -1,0 +1,261 @@
+#include "reference/step_reference.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "core/recording.h"
+#include "reference/grain_reference.h"
+
+namespace reference {
+namespace {
+
+using std::numbers::pi;
+
+double shear_modulus(double youngs_modulus, double poisson_ratio) {
+    return youngs_modulus / (2 * (1 + poisson_ratio));
+}
+
+/// The part of `v` across the unit vector e.
+Vec3 across(const Vec3& v, const Vec3& e) { return v - v.dot(e) * e; }
+
+}  // namespace
+
+StepReference::StepReference(const mcdem::Replica& scene, const mcdem::Packing& packing)
+    : position(packing.position),
+      velocity(packing.size(), Vec3::Zero()),
+      angular_velocity(packing.size(), Vec3::Zero()),
+      memory(packing.size()),
+      scene_(scene),
+      law_(mcdem::surface_law(scene.contact.model, scene.grains.poisson_ratio, scene.contact.gamma)) {
+    for (double diameter : packing.diameter) radius_.push_back(diameter / 2);
+    const auto& g = scene.grains;
+    const double smallest = *std::min_element(radius_.begin(), radius_.end());
+    const double rayleigh_speed = 0.163 * g.poisson_ratio + 0.8766;  // over sqrt(G / rho)
+    time_step_ = scene.numerics.time_step * pi * smallest *
+                 std::sqrt(g.density / shear_modulus(g.youngs_modulus, g.poisson_ratio)) / rayleigh_speed;
+    const double mean = std::accumulate(radius_.begin(), radius_.end(), 0.0) / radius_.size();
+    reach_ = (scene.numerics.probe_gap + scene.numerics.skin) * mean;
+    begin(scene.plate.start);
+}
+
+double StepReference::mass(int grain) const {
+    return scene_.grains.density * 4 / 3 * pi * std::pow(radius_[grain], 3);
+}
+
+void StepReference::begin(double plate_z, double plate_velocity, double extra_drag) {
+    plate_z_ = plate_z;
+    plate_velocity_ = plate_velocity;
+    drag_ = scene_.grains.drag + extra_drag;
+}
+
+StepReference::Body StepReference::body(int grain) const {
+    return {position[grain], velocity[grain], angular_velocity[grain], radius_[grain], mass(grain)};
+}
+
+/// A wall is a body of no radius at the foot of the perpendicular.
+StepReference::Body StepReference::partner_of(int grain, int partner) const {
+    if (!mcdem::is_wall(partner)) return body(partner);
+    const int wall = static_cast<int>(mcdem::wall_of(partner));
+    const std::array<double, 6> at{0, scene_.box.size_x, 0, scene_.box.size_y, 0, plate_z_};
+    Body foot{position[grain], Vec3::Zero(), Vec3::Zero(), 0, 0};
+    foot.position[wall / 2] = at[wall];
+    if (mcdem::wall_of(partner) == mcdem::Wall::plate) foot.velocity.z() = plate_velocity_;
+    return foot;
+}
+
+double StepReference::distance_to(int grain, int partner) const {
+    return (partner_of(grain, partner).position - position[grain]).norm();
+}
+
+void StepReference::list_neighbours() {
+    const int count = static_cast<int>(position.size());
+    auto before = std::move(memory);
+    memory.assign(count, {});
+    for (int i = 0; i < count; ++i)
+        for (int j = -mcdem::wall_count; j < count; ++j) {
+            const double there = mcdem::is_wall(j) ? 0 : radius_[j];
+            if (j == i || distance_to(i, j) >= radius_[i] + there + reach_) continue;
+            const auto found = before[i].find(j);
+            memory[i][j] = found == before[i].end() ? Memory{} : found->second;
+        }
+}
+
+StepReference::Joint StepReference::joint(const Body& a, const Body& b) const {
+    const auto& g = scene_.grains;
+    const auto& w = scene_.walls;
+    const bool wall = b.radius == 0;
+    const double nu = g.poisson_ratio, nu_there = wall ? w.poisson_ratio : nu;
+    const double e = g.youngs_modulus, e_there = wall ? w.youngs_modulus : e;
+    Joint joint;
+    joint.modulus = 1 / ((1 - nu * nu) / e + (1 - nu_there * nu_there) / e_there);
+    joint.shear_modulus = 1 / ((2 - nu) / shear_modulus(e, nu) + (2 - nu_there) / shear_modulus(e_there, nu_there));
+    joint.radius = wall ? a.radius : 1 / (1 / a.radius + 1 / b.radius);
+    joint.mass = wall ? a.mass : 1 / (1 / a.mass + 1 / b.mass);
+    const double log_e = std::log(wall ? w.restitution : g.restitution);
+    joint.damping = 2 * std::sqrt(5.0 / 6) * -log_e / std::sqrt(log_e * log_e + pi * pi);
+    joint.friction = wall ? w.friction : g.friction;
+    return joint;
+}
+
+/// What a force moves its own point by beyond Hertz [m/N]; nothing on a wall.
+double StepReference::self_compliance(double contact_radius, const Body& body) const {
+    if (body.radius == 0) return 0;
+    const Grain grain{body.radius, scene_.grains.youngs_modulus, scene_.grains.poisson_ratio, {}};
+    return self_displacement(law_, grain, {Vec3::Zero(), body.radius, 1, contact_radius}) /
+           (grain.youngs_modulus * grain.radius);
+}
+
+/// The smallest overlap = given + compliance(overlap) F(overlap), by bisection.
+double StepReference::self_consistent_overlap(double given, const Body& a, const Body& b,
+                                              const Joint& joint) const {
+    const auto excess = [&](double overlap) {
+        const double contact_radius = std::sqrt(joint.radius * overlap);
+        const double force = 4.0 / 3 * joint.modulus * contact_radius * overlap;
+        const double compliance = self_compliance(contact_radius, a) + self_compliance(contact_radius, b);
+        return given + compliance * force - overlap;
+    };
+    double low = given * 1e-3;
+    while (excess(1.02 * low) > 0 && low < a.radius) low *= 1.02;
+    double high = 1.02 * low;
+    for (int i = 0; i < 60; ++i) {
+        const double middle = (low + high) / 2;
+        (excess(middle) > 0 ? low : high) = middle;
+    }
+    return (low + high) / 2;
+}
+
+Seen StepReference::see(int i, int partner, double elapsed, Vec3& spring) const {
+    const bool wall = mcdem::is_wall(partner);
+    const Body a = body(i), b = partner_of(i, partner);
+    const Joint joint = this->joint(a, b);
+    const double distance = (b.position - a.position).norm();
+    const double bulge_there = wall ? 0 : memory[partner].at(i).predicted;
+    Seen seen;
+    seen.grain = i;
+    seen.partner = partner;
+    seen.direction = (b.position - a.position) / distance;
+    seen.bulge = memory[i].at(partner).predicted;
+    const double geometric = a.radius + b.radius - distance;
+    const double overlap = geometric + seen.bulge + bulge_there;
+    if (!(overlap > 0)) {
+        spring.setZero();
+        seen.arm = a.radius + seen.bulge;
+        return seen;
+    }
+    const bool self_term = law_.self[0] != 0;
+    seen.overlap = self_term ? self_consistent_overlap(overlap, a, b, joint) : overlap;
+    seen.contact_radius = std::sqrt(joint.radius * seen.overlap);
+    seen.elastic = 4.0 / 3 * joint.modulus * std::sqrt(joint.radius) * std::pow(seen.overlap, 1.5);
+    const double own = self_term ? self_compliance(seen.contact_radius, a) * seen.elastic : 0;
+    const double other = self_term ? self_compliance(seen.contact_radius, b) * seen.elastic : 0;
+    seen.bulge += own;
+    const double outer = a.radius + seen.bulge, outer_there = b.radius + bulge_there + other;
+    seen.arm = wall ? a.radius - geometric : (outer + distance - outer_there) / 2;
+    push(seen, a, b, joint, elapsed, spring);
+    return seen;
+}
+
+/// Normal force with damping, and friction, at a contact.
+void StepReference::push(Seen& seen, const Body& a, const Body& b, const Joint& joint, double elapsed,
+                         Vec3& spring) const {
+    const Vec3& e = seen.direction;
+    const double distance = (b.position - a.position).norm();
+    const Vec3 r_a = seen.arm * e, r_b = (seen.arm - distance) * e;
+    // the other side's material at the contact point as this side's sees it move
+    const Vec3 relative =
+        (b.velocity + b.angular_velocity.cross(r_b)) - (a.velocity + a.angular_velocity.cross(r_a));
+    const double stiffness = 2 * joint.modulus * std::sqrt(joint.radius * seen.overlap);
+    const double approaching = -relative.dot(e);
+    const double normal = seen.elastic + joint.damping * std::sqrt(stiffness * joint.mass) * approaching;
+    const double limit = joint.friction * std::max(normal, 0.0);
+    seen.tangential = friction(limit, across(relative, e), seen, joint, elapsed, spring);
+    seen.force = -normal * e + seen.tangential;
+}
+
+Vec3 StepReference::friction(double limit, const Vec3& sliding, const Seen& seen, const Joint& joint,
+                             double elapsed, Vec3& spring) const {
+    if (scene_.contact.friction_law == mcdem::FrictionLaw::saturated) {
+        // fades to a viscous force below the sliding velocity, and never does more in a step than a tenth
+        // of what would stop the sliding
+        const double smooth_speed = std::hypot(sliding.norm(), scene_.contact.sliding_velocity);
+        return std::min(limit / smooth_speed, 0.1 * joint.mass / time_step_) * sliding;
+    }
+    const double stiffness = 8 * joint.shear_modulus * seen.contact_radius;
+    spring = across(spring + sliding * elapsed, seen.direction);
+    const Vec3 force = stiffness * spring + joint.damping * std::sqrt(stiffness * joint.mass) * sliding;
+    if (force.norm() <= limit) return force;
+    spring *= limit / force.norm();
+    return force * (limit / force.norm());
+}
+
+std::vector<Seen> StepReference::neighbours() const {
+    std::vector<Seen> all;
+    for (std::size_t i = 0; i < memory.size(); ++i)
+        for (const auto& [partner, remembered] : memory[i]) {
+            Vec3 spring = remembered.spring;
+            all.push_back(see(static_cast<int>(i), partner, 0, spring));
+        }
+    return all;
+}
+
+/// Surfaces as this step's forces move them, extrapolated to the next:
+/// b(t + dt) = (10 b(t) - 5 b(t - 2 dt) + b(t - 4 dt)) / 6.
+void StepReference::displace_surfaces(const std::vector<std::vector<Seen>>& seen) {
+    mcdem::SurfaceLaw by_others = law_;
+    by_others.self.fill(0);  // a contact's own term is part of its overlap
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+        Grain grain{radius_[i], scene_.grains.youngs_modulus, scene_.grains.poisson_ratio, {}};
+        for (const Seen& c : seen[i]) grain.slots.push_back({c.direction, c.arm, c.elastic, c.contact_radius});
+        const auto moved = surface_displacement(by_others, grain);
+        for (std::size_t c = 0; c < moved.size(); ++c) {
+            Memory& m = memory[i].at(seen[i][c].partner);
+            m.predicted = (10 * moved[c] - 5 * m.past[1] + m.past[3]) / 6;
+            m.past = {moved[c], m.past[0], m.past[1], m.past[2]};
+        }
+    }
+}
+
+void StepReference::step() {
+    const double dt = time_step_;
+    std::vector<std::vector<Seen>> seen(position.size());
+    for (std::size_t i = 0; i < position.size(); ++i)
+        for (auto& [partner, remembered] : memory[i])
+            seen[i].push_back(see(static_cast<int>(i), partner, dt, remembered.spring));
+    displace_surfaces(seen);
+    for (std::size_t i = 0; i < position.size(); ++i) {
+        const double m = mass(static_cast<int>(i)), inertia = 0.4 * m * radius_[i] * radius_[i];
+        Vec3 force = -drag_ * m * velocity[i], torque = Vec3::Zero();
+        force.z() -= scene_.grains.excess_density / scene_.grains.density * m * 9.81;
+        for (const Seen& c : seen[i]) {
+            force += c.force;
+            torque += (c.arm * c.direction).cross(c.tangential);
+        }
+        velocity[i] += force / m * dt;
+        angular_velocity[i] += torque / inertia * dt;
+    }
+    for (std::size_t i = 0; i < position.size(); ++i) position[i] += velocity[i] * dt;
+    plate_z_ += plate_velocity_ * dt;
+}
+
+Totals StepReference::totals() const {
+    Totals totals;
+    totals.wall_force.fill(Vec3::Zero());
+    for (std::size_t i = 0; i < position.size(); ++i) {
+        const double m = mass(static_cast<int>(i));
+        totals.kinetic_energy += 0.5 * m * velocity[i].squaredNorm() +
+                                 0.5 * 0.4 * m * radius_[i] * radius_[i] * angular_velocity[i].squaredNorm();
+    }
+    for (const Seen& c : neighbours()) {
+        const bool wall = mcdem::is_wall(c.partner);
+        // Hertz energy 2/5 F delta, half of it on each side of two grains, less the work of the grain's bulge
+        totals.elastic_energy += (wall ? 1 : 0.5) * 0.4 * c.elastic * c.overlap - 0.5 * c.elastic * c.bulge;
+        totals.deepest_overlap = std::max(totals.deepest_overlap,
+                                          c.overlap / (radius_[c.grain] + (wall ? 0 : radius_[c.partner])));
+        if (wall) totals.wall_force[static_cast<int>(mcdem::wall_of(c.partner))] -= c.force;
+    }
+    return totals;
+}
+
+}  // namespace reference

@@ -1,0 +1,201 @@
+// What the tests of kernels and simulation share: the device, packings made on the spot, an engine with
+// its scene at hand, and the comparison of an engine with the reference.
+#pragma once
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "cl/program.h"
+#include "reference/step_reference.h"
+#include "sim/engine.h"
+
+namespace reference {
+
+using mcdem::ContactModel;
+using mcdem::Engine;
+using mcdem::FrictionLaw;
+using mcdem::KernelBuild;
+using mcdem::Packing;
+using mcdem::Precision;
+using mcdem::Replica;
+
+inline constexpr ContactModel all_models[] = {
+    ContactModel::independent,        ContactModel::point_force_on_sphere, ContactModel::sphere_to_sphere,
+    ContactModel::elastic_half_space, ContactModel::mc_dem,                ContactModel::elastic_sphere};
+
+/// The device that MCDEM_DEVICE names; one for the whole program.
+inline mcdem::Device& device() {
+    static mcdem::Device the_device;
+    return the_device;
+}
+
+inline KernelBuild build(Precision precision, int slots = 16) {
+    return mcdem::kernel_build(device(), precision, slots);
+}
+
+/// The other way of treating contacts: the GPU's on a CPU, the CPU's on a GPU.
+inline KernelBuild other_way(KernelBuild build) {
+    build.lanes = build.lanes == 16 ? 1 : 16;
+    return build;
+}
+
+inline bool has_double() { return device().info().double_precision; }
+
+/// Reproducible with every standard library.
+class Uniform {
+public:
+    explicit Uniform(unsigned seed) : engine_(seed) {}
+    double operator()(double low, double high) {
+        return low + (high - low) * static_cast<double>(engine_() >> 11) * 0x1p-53;
+    }
+    Vec3 vector(double size) {
+        const double x = (*this)(-size, size), y = (*this)(-size, size), z = (*this)(-size, size);
+        return {x, y, z};
+    }
+    std::vector<Vec3> vectors(std::size_t count, double size) {
+        std::vector<Vec3> all;
+        for (std::size_t i = 0; i < count; ++i) all.push_back(vector(size));
+        return all;
+    }
+
+private:
+    std::mt19937_64 engine_;
+};
+
+/// One material for grains and walls that shows every effect in few steps.
+inline Replica test_replica(ContactModel model = ContactModel::mc_dem) {
+    Replica replica;
+    replica.grains = {23.3e3, 0.45, 1000, 300, 0.3, 0.7, 0.5};
+    replica.walls = {2e5, 0.4, 0.2, 0.8};
+    replica.contact.model = model;
+    replica.contact.gamma = 1.1;
+    return replica;
+}
+
+/// A replica and where its grains start.
+struct Start {
+    Replica replica;
+    Packing packing;
+};
+
+/// Grains of 10 mm radius (5 % either way), out of line on a cubic lattice whose neighbours overlap by
+/// about 5 % of a diameter, in a box whose walls press on the outer ones.
+inline Start jittered_lattice(Replica replica, int count, unsigned seed) {
+    constexpr double radius = 0.01, spacing = 0.019, wall_gap = 0.0095;
+    Uniform uniform(seed);
+    const int side = static_cast<int>(std::ceil(std::cbrt(count)));
+    Packing packing;
+    for (int i = 0; i < count; ++i) {
+        const Vec3 site(i % side, i / side % side, i / (side * side));
+        packing.position.push_back(spacing * site + Vec3::Constant(wall_gap) + uniform.vector(3e-4));
+        packing.diameter.push_back(2 * radius * uniform(0.95, 1.05));
+    }
+    const double size = (side - 1) * spacing + 2 * wall_gap;
+    replica.box = {size, size};
+    replica.plate.start = ((count - 1) / (side * side)) * spacing + 2 * wall_gap;
+    replica.plate.end = 0.9 * replica.plate.start;
+    return {replica, packing};
+}
+
+/// A box so wide that no grain reaches a wall, its grains moved to the middle.
+inline Start free_cluster(Replica replica, std::vector<Vec3> position, std::vector<double> diameter) {
+    constexpr double box = 1;
+    for (auto& x : position) x += Vec3::Constant(box / 2);
+    replica.box = {box, box};
+    replica.plate.start = box;
+    replica.plate.end = box / 2;
+    return {replica, {std::move(position), std::move(diameter)}};
+}
+
+/// An engine of some starts, its plates standing still at plate.start unless told otherwise.
+class Batch {
+public:
+    Batch(const KernelBuild& build, const std::vector<Start>& starts)
+        : engine_(device(), build, replicas(starts), packings(starts)), starts_(starts) {}
+    explicit Batch(const KernelBuild& build, const Start& start) : Batch(build, std::vector<Start>{start}) {}
+
+    Engine& engine() { return engine_; }
+    const Start& start(int replica = 0) const { return starts_[replica]; }
+
+    /// `steps` of every replica, in as many stretches as it takes. Returns the last stretch's results.
+    std::vector<mcdem::StretchResult> advance(int steps, double extra_drag = 0) {
+        std::vector<int> left(starts_.size(), steps);
+        std::vector<mcdem::StretchResult> last(starts_.size());
+        for (bool any = steps > 0; any;) {
+            std::vector<mcdem::Stretch> stretches;
+            for (std::size_t r = 0; r < starts_.size(); ++r)
+                stretches.push_back({std::min(left[r], 60), starts_[r].replica.plate.start, 0, extra_drag});
+            const auto results = engine_.advance(stretches);
+            any = false;
+            for (std::size_t r = 0; r < starts_.size(); ++r) {
+                if (left[r] == 0) continue;
+                last[r] = results[r];
+                left[r] = results[r].status ? 0 : left[r] - results[r].steps;
+                any |= left[r] > 0;
+            }
+        }
+        return last;
+    }
+
+private:
+    static std::vector<Replica> replicas(const std::vector<Start>& starts) {
+        std::vector<Replica> all;
+        for (const auto& start : starts) all.push_back(start.replica);
+        return all;
+    }
+    static std::vector<Packing> packings(const std::vector<Start>& starts) {
+        std::vector<Packing> all;
+        for (const auto& start : starts) all.push_back(start.packing);
+        return all;
+    }
+    Engine engine_;
+    std::vector<Start> starts_;
+};
+
+/// The reference of one replica, standing where the engine's rounded numbers stand.
+inline StepReference reference_of(const Engine& engine, int r, const Start& start) {
+    StepReference reference(start.replica, start.packing);
+    const auto state = engine.state(r);
+    reference.position = state.position;
+    reference.velocity = state.velocity;
+    reference.angular_velocity = state.angular_velocity;
+    reference.list_neighbours();
+    return reference;
+}
+
+/// Largest distance of two sets of vectors over the largest vector of the second.
+inline double relative_difference(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+    EXPECT_EQ(a.size(), b.size());
+    double size = 0, difference = 0;
+    for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
+        size = std::max(size, b[i].norm());
+        const double d = (a[i] - b[i]).norm();
+        difference = d <= difference ? difference : d;  // a not-a-number stays
+    }
+    return difference == 0 ? 0 : difference / size;
+}
+
+inline double relative_difference(double a, double b) { return a == b ? 0 : std::abs(a - b) / std::abs(b); }
+
+inline std::vector<Vec3> wall_forces(const std::array<Vec3, 6>& forces) { return {forces.begin(), forces.end()}; }
+
+/// The same bits in every number.
+inline bool same_bits(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+    return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(Vec3)) == 0);
+}
+
+inline bool same_bits(const mcdem::ReplicaState& a, const mcdem::ReplicaState& b) {
+    const auto forces = [](const mcdem::ReplicaState& state) {
+        std::vector<Vec3> all;
+        for (const auto& contact : state.contacts)
+            all.insert(all.end(), {contact.force, contact.point, Vec3(contact.grain, contact.partner, contact.overlap)});
+        return all;
+    };
+    return same_bits(a.position, b.position) && same_bits(a.velocity, b.velocity) &&
+           same_bits(a.angular_velocity, b.angular_velocity) && same_bits(forces(a), forces(b));
+}
+
+}  // namespace reference
