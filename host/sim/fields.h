@@ -11,7 +11,7 @@
 namespace mcdem {
 
 // Quantities: names only.
-struct Replicas;
+struct Constants;
 struct Blocks;
 struct ReplicaOfBlock;
 struct Chosen;
@@ -57,7 +57,7 @@ struct Fields {
     Fields(Device& device, const KernelBuild& build, const Layout& layout, std::size_t replica_bytes,
            std::size_t report_bytes, int cells, FieldNeeds needs);
 
-    Field<Replicas> replicas;               ///< a replica
+    Field<Constants> replicas;               ///< a replica
     Field<StopAt> stop_at;                  ///< a replica: steps it makes in this stretch
     Field<Reports> reports;                 ///< a replica
     Field<Chosen> chosen, relisted;         ///< replicas in work
@@ -111,26 +111,26 @@ private:
 struct Kernels {
     Kernels(Device& device, const KernelBuild& build);
 
-    Kernel<Field<Replicas>, Field<Chosen>, Field<CellHead>> empty_cells;
-    Kernel<Field<Replicas>, Field<Blocks>, Field<ReplicaOfBlock>, Field<Position>, Field<CellHead>,
+    Kernel<Field<Constants>, Field<Chosen>, Field<CellHead>> empty_cells;
+    Kernel<Field<Constants>, Field<Blocks>, Field<ReplicaOfBlock>, Field<Position>, Field<CellHead>,
            Field<CellNext>>
         fill_cells;
-    Kernel<int, Field<Replicas>, Field<Blocks>, Field<ReplicaOfBlock>, Field<Position>, Field<CellHead>, Field<CellNext>,
+    Kernel<int, Field<Constants>, Field<Blocks>, Field<ReplicaOfBlock>, Field<Position>, Field<CellHead>, Field<CellNext>,
            Field<Partner>, Field<Bulge>, Field<BulgeHistory>, Field<SpringX>, Field<SpringY>,
            Field<SpringZ>, Field<ListedPosition>, Field<Status>>
         list_neighbours;
     Kernel<int, Field<Blocks>, Field<Partner>, Field<Mirror>> link_mirrors;
-    Kernel<int, int, Field<Replicas>, Field<Blocks>, Field<ReplicaOfBlock>, Field<StopAt>, Field<Position>,
+    Kernel<int, int, Field<Constants>, Field<Blocks>, Field<ReplicaOfBlock>, Field<StopAt>, Field<Position>,
            Field<Velocity>, Field<AngularVelocity>, Field<Position>, Field<Velocity>, Field<AngularVelocity>,
            Field<Partner>, Field<Mirror>, Field<Bulge>, Field<Bulge>, Field<BulgeHistory>,
            Field<SpringX>, Field<SpringY>, Field<SpringZ>, Field<ListedPosition>, Field<Status>>
         advance;
-    Kernel<Field<Replicas>, Field<Blocks>, Field<ReplicaOfBlock>, Field<StopAt>, Field<Position>, Field<Velocity>,
+    Kernel<Field<Constants>, Field<Blocks>, Field<ReplicaOfBlock>, Field<StopAt>, Field<Position>, Field<Velocity>,
            Field<AngularVelocity>, Field<Partner>, Field<Mirror>, Field<Bulge>, Field<SpringX>, Field<SpringY>,
            Field<SpringZ>, Field<ListedPosition>, Field<ForceX>, Field<ForceY>, Field<ForceZ>, Field<Overlap>,
            Field<Arm>, Field<Energy>>
         measure;
-    Kernel<Field<Replicas>, Field<Chosen>, Field<Partner>, Field<ForceX>, Field<ForceY>, Field<ForceZ>,
+    Kernel<Field<Constants>, Field<Chosen>, Field<Partner>, Field<ForceX>, Field<ForceY>, Field<ForceZ>,
            Field<Energy>, Field<Status>, Field<Reports>>
         reduce;
 
