@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <sstream>
 
 #include "scene/problems.h"
@@ -19,7 +18,7 @@ struct Assign {
 
     bool operator()(double& (*get)(Settings&)) const {
         const auto number = value.is_number() ? value.value<double>() : std::nullopt;
-        if (!number || !std::isfinite(*number) || !key.range.contains(*number)) return false;
+        if (!number || !key.range.contains(*number)) return false;
         get(settings) = *number;
         return true;
     }

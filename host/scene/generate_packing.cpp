@@ -60,7 +60,7 @@ double expected_height(const GeneratedPacking& wanted, const Box& box) {
 
 Packing generate_packing(const GeneratedPacking& wanted, const Box& box, std::uint64_t seed) {
     // Growing gently lets grains find room; more stages or iterations change little.
-    constexpr int stages = 10, iterations_of_stage = 200, last_iterations = 2000;
+    constexpr int stages = 10, iterations_of_stage = 200, last_iterations = 3000;
     constexpr double smallest_scale = 0.7;
 
     Packing packing;
