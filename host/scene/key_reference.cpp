@@ -7,7 +7,8 @@
 namespace mcdem {
 
 std::string key_reference() {
-    const Settings defaults;
+    Settings defaults;
+    defaults.run.name.clear();  // the file's name stands in for it
     std::string text;
     std::string_view open = "none yet";
     for (const Key& key : keys()) {
