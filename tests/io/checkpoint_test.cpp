@@ -6,6 +6,7 @@
 #include <random>
 
 #include "core/errors.h"
+#include "io/hdf5.h"
 #include "io/synthetic_run.h"
 
 namespace mcdem::test {
@@ -72,6 +73,24 @@ TEST(checkpoint, both_damaged_is_an_error_that_names_both) {
     } catch (const InputError& error) {
         EXPECT_EQ(error.problems().size(), 3u);
         EXPECT_THAT(error.what(), HasSubstr("checkpoint.previous.h5"));
+    }
+}
+
+TEST(checkpoint, bytes_changed_behind_the_librarys_checksums_are_noticed) {
+    TemporaryFolder folder;
+    write_checkpoint(folder.path(), example(5));
+    {
+        const h5::Handle file(H5Fopen((folder / "checkpoint.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT),
+                              H5Fclose);
+        const h5::Handle field(H5Dopen2(file, "/checkpoint/fields/status", H5P_DEFAULT), H5Dclose);
+        const unsigned char bytes[3] = {1, 2, 3};
+        ASSERT_GE(H5Dwrite(field, H5T_NATIVE_UCHAR, H5S_ALL, H5S_ALL, H5P_DEFAULT, bytes), 0);
+    }
+    try {
+        read_checkpoint(folder.path());
+        FAIL();
+    } catch (const InputError& error) {
+        EXPECT_THAT(error.what(), HasSubstr("checksum does not match"));
     }
 }
 
