@@ -26,7 +26,13 @@ const char* const first_steps =
 int report_usage(const CLI::App& app, const CLI::ParseError& error) {
     std::string command = "mcdem";
     for (const auto* sub : app.get_subcommands()) command += " " + sub->get_name();
-    spdlog::error("{}", error.what());
+    // "A subcommand is required" does not say that there was one that is not known.
+    const auto unknown = app.get_subcommands().empty() ? app.remaining() : std::vector<std::string>{};
+    if (unknown.empty())
+        spdlog::error("{}", error.what());
+    else
+        spdlog::error("there is no {} {}", unknown.front().starts_with('-') ? "option" : "command",
+                      unknown.front());
     spdlog::error("`{} --help` tells more", command);
     return exit_bad_input;
 }

@@ -55,7 +55,7 @@ void write_file(const fs::path& path, const Checkpoint& checkpoint) {
         if (name.empty() || name.find('/') != std::string::npos)
             throw RunError(path.string() + ": checkpoint field '" + name + "' cannot be a name");
         // Plain: state of floating-point bits hardly packs, and a checkpoint must not hold up the run.
-        file.create_rows("/checkpoint/fields/" + name, byte, {}, h5::Storage::plain)
+        file.create_rows("/checkpoint/fields/" + name, byte, {}, h5::Storage::plain, bytes.size())
             .append(byte, bytes.data(), bytes.size());
     }
     file.close();

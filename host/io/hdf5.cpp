@@ -16,6 +16,10 @@ constexpr unsigned deflate_level = 1;  // a higher one costs five times the time
 constexpr double most_bytes_per_byte = 1100;
 constexpr double small_table = 1 << 20;
 
+/// Told before anything else: no cleaning up at exit. Every file is closed by its owner; one whose disk was
+/// full stays half closed, and the library crashes when it tries again.
+[[maybe_unused]] const herr_t no_cleaning_up = H5dont_atexit();
+
 /// The library prints its own error stacks unless told not to; ours carry the reason.
 void silence_library() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
 
@@ -27,7 +31,12 @@ std::string library_reason() {
         return 0;
     };
     H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_first, &reason);
-    return reason;
+    // Where the system refused, its own words are enough: ".., error message = 'No space left on device', .."
+    const std::string before_words = "error message = '";
+    const auto words = reason.find(before_words);
+    if (words == std::string::npos) return reason;
+    const auto begin = words + before_words.size();
+    return reason.substr(begin, reason.find('\'', begin) - begin);
 }
 
 Handle checked(hid_t id, Handle::Close close, Access access, const std::string& where, const char* what) {
@@ -209,7 +218,8 @@ std::vector<std::string> File::members(const std::string& group) const {
     return names;
 }
 
-Dataset File::create_rows(const std::string& object, hid_t file_type, const Extent& row, Storage storage) {
+Dataset File::create_rows(const std::string& object, hid_t file_type, const Extent& row, Storage storage,
+                          hsize_t rows_expected) {
     Extent now{0}, most{H5S_UNLIMITED}, chunk{1};
     hsize_t bytes = std::max<hsize_t>(H5Tget_size(file_type), 1);
     for (hsize_t n : row) {
@@ -220,6 +230,7 @@ Dataset File::create_rows(const std::string& object, hid_t file_type, const Exte
     }
     const hsize_t wanted = storage == Storage::plain ? 1024 * 1024 : chunk_bytes;
     chunk.front() = std::max<hsize_t>(wanted / bytes, 1);
+    if (rows_expected > 0) chunk.front() = std::min(chunk.front(), rows_expected);
     const Handle space(H5Screate_simple(static_cast<int>(now.size()), now.data(), most.data()), H5Sclose);
     if (const auto group = object.rfind('/'); group > 0) make_group(object.substr(0, group));
     const Handle layout = without_times(H5P_DATASET_CREATE);

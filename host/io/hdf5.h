@@ -99,8 +99,9 @@ public:
     std::vector<std::string> members(const std::string& group) const;
 
     /// A new table whose rows have the extent `row` (empty: one value a row). Groups on the way are made.
+    /// With `rows_expected` a small table takes no more room than it needs.
     Dataset create_rows(const std::string& object, hid_t file_type, const Extent& row,
-                        Storage storage = Storage::compressed);
+                        Storage storage = Storage::compressed, hsize_t rows_expected = 0);
     Dataset dataset(const std::string& object) const;
     template <class Number>
     void write(const std::string& object, const std::vector<Number>& values, const Extent& row = {});

@@ -1,0 +1,97 @@
+// What the program says to a command line: help, versions, errors and their exit codes.
+#include "cli/cli_test.h"
+
+namespace mcdem {
+namespace {
+
+using testing::HasSubstr;
+
+const std::vector<std::string> commands{"devices", "validate", "run",       "table",
+                                        "compare", "figures",  "calibrate", "export"};
+
+TEST_F(CliTest, HelpNamesAllCommandsAndEachTeachesByExample) {
+    const auto help = mcdem({"--help"});
+    EXPECT_EQ(help.exit_code, 0);
+    EXPECT_EQ(help.err, "");
+    for (const auto& command : commands) {
+        EXPECT_THAT(help.out, HasSubstr("\n  " + command + " "));
+        const auto more = mcdem({command, "--help"});
+        EXPECT_EQ(more.exit_code, 0);
+        if (command == "devices")
+            EXPECT_THAT(more.out, HasSubstr("--device 0"));
+        else
+            EXPECT_THAT(more.out, HasSubstr("  mcdem " + command + " "));
+    }
+}
+
+TEST_F(CliTest, VersionIsPrinted) {
+    const auto version = mcdem({"--version"});
+    EXPECT_EQ(version.exit_code, 0);
+    EXPECT_THAT(version.out, testing::MatchesRegex("mcdem [0-9]+\\.[0-9]+\\.[0-9]+.*\n"));
+}
+
+TEST_F(CliTest, MistakesOnTheCommandLineAreBadInput) {
+    expect_bad_input(mcdem({}), "subcommand");
+    expect_bad_input(mcdem({"walk"}), "walk");
+    expect_bad_input(mcdem({"run"}), "SCENE is required");
+    expect_bad_input(mcdem({"run", "small.toml"}), "--out is required");
+    expect_bad_input(mcdem({"run", "small.toml", "--out", "a", "--fast"}), "--fast");
+    expect_bad_input(mcdem({"run", "small.toml", "--out"}), "--out");
+    expect_bad_input(mcdem({"run", "--fast"}), "`mcdem run --help` tells more");
+    expect_bad_input(mcdem({"export", "a", "--out", "b"}), "--vtk is required");
+    expect_bad_input(mcdem({"calibrate", "small.toml", "--experiment", "a", "--rounds", "many"}), "many");
+}
+
+TEST_F(CliTest, MissingFilesAreBadInput) {
+    expect_bad_input(mcdem({"validate", "nowhere.toml"}), "nowhere.toml");
+    expect_bad_input(mcdem({"run", "nowhere.toml", "--out", "a"}), "nowhere.toml");
+    expect_bad_input(mcdem({"table", "nowhere"}), "nowhere");
+    expect_bad_input(mcdem({"compare", "nowhere", "--against", "nowhere"}), "nowhere");
+    expect_bad_input(mcdem({"figures", "nowhere", "--out", "a"}), "nowhere");
+    expect_bad_input(mcdem({"export", "nowhere", "--vtk", "--out", "a"}), "nowhere");
+    expect_bad_input(mcdem({"calibrate", "small.toml", "--experiment", "nowhere"}), "nowhere");
+    expect_bad_input(mcdem({"table", "."}), "holds no run");
+    expect_bad_input(mcdem({"table", "small.toml"}), "small.toml");
+}
+
+TEST_F(CliTest, AllProblemsOfASceneAreSaidEachOnItsLine) {
+    std::ofstream(path("bad.toml")) << "[grains]\nfriction = -1\npoisson_ratio = \"soft\"\ncolour = 3\n";
+    const auto validated = mcdem({"validate", "bad.toml"});
+    expect_bad_input(validated, "mcdem: bad.toml:2: ");
+    EXPECT_THAT(validated.err, HasSubstr("\nmcdem: bad.toml:3: "));
+    EXPECT_THAT(validated.err, HasSubstr("\nmcdem: bad.toml:4: "));
+    EXPECT_EQ(std::count(validated.err.begin(), validated.err.end(), '\n'), 3);
+    const auto run = mcdem({"run", "bad.toml", "--out", "a"});
+    EXPECT_EQ(run.err, validated.err);
+    EXPECT_FALSE(std::filesystem::exists(path("a")));
+    expect_bad_input(mcdem({"validate", "small.toml", "--set", "grains.friction=-1"}),
+                     "--set grains.friction");
+}
+
+TEST_F(CliTest, ValidateSaysWhatWouldRun) {
+    const auto validated = mcdem({"validate", "small.toml", "--set", "batch.replicas=20"});
+    expect_done(validated);
+    EXPECT_THAT(validated.out, HasSubstr("small.toml: good\n40 replicas of 30 grains, float precision"));
+    EXPECT_THAT(validated.out, HasSubstr("\n  independent #1\n"));
+    EXPECT_THAT(validated.out, HasSubstr("and 28 more"));
+}
+
+TEST_F(CliTest, DevicesAreListedAndUnknownOnesRefused) {
+    const auto devices = mcdem({"devices"});
+    expect_done(devices);
+    EXPECT_THAT(devices.out, HasSubstr("\n  0  "));
+    const auto run = mcdem(run_words("a", {"--device", "abacus"}));
+    EXPECT_EQ(run.exit_code, 2);
+    EXPECT_THAT(run.err, testing::AllOf(HasSubstr("mcdem: --device: must be"), HasSubstr("'abacus'"),
+                                        HasSubstr("mcdem:   0  ")));
+}
+
+TEST_F(CliTest, NoDeviceAtAllIsAFailure) {
+    std::filesystem::create_directory(path("no_vendors"));
+    const auto devices = mcdem({"devices"}, {"OCL_ICD_VENDORS=" + path("no_vendors").string()});
+    EXPECT_EQ(devices.exit_code, 1);
+    EXPECT_THAT(devices.err, HasSubstr("pocl-opencl-icd"));
+}
+
+}  // namespace
+}  // namespace mcdem

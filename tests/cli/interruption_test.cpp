@@ -1,0 +1,190 @@
+// Killed, interrupted, damaged, out of space: a run that goes on ends with the bits of one that did not stop.
+#include <sys/mount.h>
+
+#include <chrono>
+#include <csignal>
+#include <random>
+#include <thread>
+
+#include "cli/cli_test.h"
+
+namespace mcdem {
+namespace {
+
+using testing::HasSubstr;
+namespace fs = std::filesystem;
+using namespace std::chrono_literals;
+
+/// Checkpoints as often as the disk allows.
+const std::vector<std::string> often{"--set", "output.checkpoint_minutes=1e-6", "--set",
+                                     "protocol.scans_per_stroke=16"};
+
+class InterruptionTest : public CliTest {
+protected:
+    static std::vector<std::string> words(const std::string& out, bool resume) {
+        auto all = run_words(out, often);
+        if (resume) all.push_back("--resume");
+        return all;
+    }
+    /// What tells one checkpoint from the next.
+    std::string newest_checkpoint(const std::string& out) const {
+        std::error_code error;
+        const auto time = fs::last_write_time(path(out) / "checkpoint.h5", error);
+        return error ? "" : std::to_string(time.time_since_epoch().count());
+    }
+    /// Waits until `child` has written a checkpoint or has ended.
+    void wait_for_checkpoint(Child& child, const std::string& out) const {
+        const auto before = newest_checkpoint(out);
+        while (child.is_running() && newest_checkpoint(out) == before) std::this_thread::sleep_for(1ms);
+    }
+    std::string result(const std::string& out) const { return bytes_of_file(path(out) / "run.h5"); }
+
+    /// Starts a run and stops it by `signal` after its first checkpoint.
+    Finished interrupt(const std::string& out, int signal) const {
+        Child child(folder_.path, words(out, false));
+        wait_for_checkpoint(child, out);
+        child.send(signal);
+        return child.wait();
+    }
+};
+
+TEST_F(InterruptionTest, KilledAtAnyMomentAndResumedGivesTheSameBits) {
+    expect_done(mcdem(words("whole", false)));
+    std::mt19937 random(1);
+    std::uniform_int_distribution<int> microseconds(0, 60'000);
+    int kills = 0;
+    for (bool resume = false;; resume = true) {
+        Child child(folder_.path, words("killed", resume));
+        if (kills < 10) {
+            wait_for_checkpoint(child, "killed");
+            std::this_thread::sleep_for(std::chrono::microseconds(microseconds(random)));
+            child.send(SIGKILL);
+        }
+        const auto finished = child.wait();
+        if (finished.signal == SIGKILL) {
+            ++kills;
+            continue;
+        }
+        expect_done(finished);
+        break;
+    }
+    EXPECT_GT(kills, 2);
+    EXPECT_FALSE(result("whole").empty());
+    EXPECT_TRUE(result("killed") == result("whole"));
+    EXPECT_EQ(bytes_of_file(path("killed/plate.csv")), bytes_of_file(path("whole/plate.csv")));
+}
+
+TEST_F(InterruptionTest, KilledBeforeItsFirstCheckpointStartsAnew) {
+    expect_done(mcdem(words("whole", false)));
+    Child child(folder_.path, words("killed", false));
+    while (child.is_running() && !fs::exists(path("killed"))) std::this_thread::sleep_for(100us);
+    child.send(SIGKILL);
+    ASSERT_EQ(child.wait().signal, SIGKILL);
+    expect_done(mcdem(words("killed", true)));
+    EXPECT_TRUE(result("killed") == result("whole"));
+}
+
+TEST_F(InterruptionTest, InterruptedSaysHowToGoOn) {
+    expect_done(mcdem(words("whole", false)));
+    for (int signal : {SIGINT, SIGTERM}) {
+        const auto out = "stopped by " + std::to_string(signal);
+        const auto stopped = interrupt(out, signal);
+        EXPECT_EQ(stopped.exit_code, 130) << stopped.err;
+        EXPECT_THAT(stopped.err, HasSubstr("mcdem run small.toml --set output.checkpoint_minutes=1e-6 --set "
+                                           "protocol.scans_per_stroke=16 --out '" +
+                                           out + "' --resume"));
+        expect_done(mcdem({"table", out}));  // what is there can be read
+        expect_done(mcdem(words(out, true)));
+        EXPECT_TRUE(result(out) == result("whole"));
+    }
+}
+
+TEST_F(InterruptionTest, OneThreadOrTwoGiveTheSameBits) {
+    expect_done(mcdem(run_words("one"), {"POCL_MAX_PTHREAD_COUNT=1"}));
+    expect_done(mcdem(run_words("two"), {"POCL_MAX_PTHREAD_COUNT=2"}));
+    EXPECT_TRUE(result("one") == result("two"));
+}
+
+TEST_F(InterruptionTest, TruncatedCheckpointIsRefusedOrTheOneBeforeTaken) {
+    expect_done(mcdem(words("whole", false)));
+    interrupt("a", SIGINT);
+    const auto newest = path("a/checkpoint.h5"), previous = path("a/checkpoint.previous.h5");
+    ASSERT_TRUE(fs::exists(newest));
+    ASSERT_TRUE(fs::exists(previous));
+    fs::copy(path("a"), path("b"));
+    fs::resize_file(newest, fs::file_size(newest) / 2);
+    const auto resumed = mcdem(words("a", true));
+    expect_done(resumed);
+    EXPECT_THAT(resumed.err, HasSubstr("going on from checkpoint.previous.h5"));
+    EXPECT_TRUE(result("a") == result("whole"));
+    for (const char* name : {"b/checkpoint.h5", "b/checkpoint.previous.h5"}) fs::resize_file(path(name), 100);
+    const auto refused = mcdem(words("b", true));
+    EXPECT_EQ(refused.exit_code, 2);
+    EXPECT_THAT(refused.err, HasSubstr("no checkpoint can be read"));
+}
+
+TEST_F(InterruptionTest, FoldersThatDoNotSuitAreRefused) {
+    interrupt("a", SIGINT);
+    const auto problem = [&](const std::vector<std::string>& arguments, const char* part) {
+        const auto finished = mcdem(arguments);
+        EXPECT_EQ(finished.exit_code, 2) << finished.err;
+        EXPECT_THAT(finished.err, HasSubstr(part));
+    };
+    problem(words("a", false), "holds another run");
+    problem(run_words("a", {"--resume"}), "must be resumed with the scene it was begun with");
+    problem(words("nowhere", true), "nothing to resume");
+    problem(words("small.toml", false), "is a file");
+    const auto unwritable = mcdem(words("/proc/nowhere", false));
+    EXPECT_EQ(unwritable.exit_code, 1);
+    EXPECT_THAT(unwritable.err, HasSubstr("mcdem: /proc/nowhere: cannot be made"));
+}
+
+TEST_F(InterruptionTest, TwoProgramsDoNotWriteToOneFolder) {
+    Child child(folder_.path, words("a", false));
+    wait_for_checkpoint(child, "a");
+    ASSERT_TRUE(child.is_running());
+    const fs::path elsewhere = path("elsewhere");
+    fs::create_directory(elsewhere);
+    auto second = words(path("a").string(), true);
+    second[1] = path("small.toml").string();
+    const auto refused = run_program(elsewhere, second);
+    EXPECT_EQ(refused.exit_code, 2);
+    EXPECT_THAT(refused.err, HasSubstr("another program is writing"));
+    expect_done(child.wait());
+}
+
+/// A disk of 32 MB, for those who may mount one.
+class SmallDisk {
+public:
+    explicit SmallDisk(const fs::path& folder) : folder_(folder) {
+        fs::create_directory(folder);
+        mounted_ = ::mount("mcdem-test", folder.c_str(), "tmpfs", 0, "size=32m") == 0;
+    }
+    ~SmallDisk() {
+        if (mounted_) ::umount2(folder_.c_str(), MNT_DETACH);
+    }
+    SmallDisk(const SmallDisk&) = delete;
+    SmallDisk& operator=(const SmallDisk&) = delete;
+    bool is_there() const { return mounted_; }
+
+private:
+    fs::path folder_;
+    bool mounted_ = false;
+};
+
+TEST_F(InterruptionTest, FullDiskEndsTheRunWhichGoesOnOnceThereIsSpace) {
+    const SmallDisk disk(path("disk"));
+    if (!disk.is_there()) GTEST_SKIP() << "needs the right to mount a small disk";
+    expect_done(mcdem(words("whole", false)));
+    std::ofstream(path("disk/filler")) << std::string(33'500'000, 'x');
+    const auto full = mcdem(words("disk/a", false));
+    EXPECT_EQ(full.exit_code, 1) << full.err;
+    EXPECT_THAT(full.err, HasSubstr("No space left"));
+    EXPECT_FALSE(fs::exists(path("disk/a/run.h5")));
+    fs::remove(path("disk/filler"));
+    expect_done(mcdem(words("disk/a", true)));
+    EXPECT_TRUE(result("disk/a") == result("whole"));
+}
+
+}  // namespace
+}  // namespace mcdem

@@ -1,0 +1,69 @@
+#include "ensemble/calibrate_scene.h"
+
+#include <gmock/gmock.h>
+
+#include <fstream>
+
+#include "core/errors.h"
+#include "ensemble/make_packings.h"
+#include "ensemble/simulate.h"
+#include "ensemble/small_scene.h"
+
+namespace mcdem {
+namespace {
+
+/// One grain between two plates: the top force is a smooth function of gamma.
+Scene one_grain(const std::filesystem::path& folder, double gamma) {
+    std::ofstream(folder / "grain.csv") << "x_m,y_m,z_m,diameter_m\n0.03,0.03,0.01,0.02\n";
+    return small_scene({"packing.file=" + (folder / "grain.csv").string(), "contact.model=mc_dem",
+                        "contact.gamma=" + std::to_string(gamma), "plate.start=0.0201", "plate.end=0.018",
+                        "protocol.scans_per_stroke=2", "grains.poisson_ratio=0.45"});
+}
+
+TEST(CalibrateScene, FindsTheGammaThatTheReferenceWasMadeWith) {
+    TestFolder folder;
+    Device device;
+    const Scene made_with = one_grain(folder.path, 0.8765);
+    const auto reference = simulate(device, made_with, make_packings(made_with), 1000);
+    CalibrateOptions options;
+    options.search.tolerance = 1e-3;
+    int rounds = 0;
+    options.on_progress = [&](int round, double fraction) {
+        rounds = round + 1;
+        EXPECT_LE(fraction, 1 + 1e-9);
+    };
+    const auto result = calibrate_scene(device, one_grain(folder.path, 0.5), replicas_of(reference), options);
+    EXPECT_NEAR(result.found.gamma, 0.8765, 2e-3);
+    EXPECT_TRUE(result.found.converged);
+    EXPECT_NEAR(result.displacement, 2.1e-3, 1e-6);
+    EXPECT_EQ(result.target.value, reference.front().scans[1].top_force());
+    EXPECT_EQ(rounds, static_cast<int>(result.found.rounds.size()));
+}
+
+TEST(CalibrateScene, RefusesAPlateThatStopsShort) {
+    TestFolder folder;
+    Device device;
+    const Scene scene = one_grain(folder.path, 1);
+    auto reference = simulate(device, scene, make_packings(scene), 1000);
+    for (auto& scan : reference.front().scans) scan.plate_z -= 1e-3;
+    EXPECT_THAT([&] { calibrate_scene(device, scene, replicas_of(reference), {}); },
+                testing::ThrowsMessage<InputError>(testing::HasSubstr("3.100 mm, got 2.100 mm")));
+}
+
+TEST(CalibrateScene, RunsOneMcDemReplicaForEachPacking) {
+    const auto replicas = calibration_replicas(small_scene({"batch.replicas=3"}));
+    ASSERT_EQ(replicas.size(), 3u);
+    for (std::size_t r = 0; r < 3; ++r) {
+        EXPECT_EQ(replicas[r].contact.model, ContactModel::mc_dem);
+        EXPECT_EQ(replicas[r].packing.seed, r + 1);
+    }
+}
+
+TEST(CalibrateScene, RefusesWhatElseVaries) {
+    const auto scene = small_scene({"batch.vary.grains.friction=[0.01, 0.02]"});
+    EXPECT_THAT([&] { calibration_replicas(scene); },
+                testing::ThrowsMessage<InputError>(testing::HasSubstr("grains.friction must be the same")));
+}
+
+}  // namespace
+}  // namespace mcdem
