@@ -29,9 +29,10 @@ def environment(one_core=False, **more):
     return variables
 
 
-def run_benchmark(folder, program, only="", min_time=1.0, env=None):
+def run_benchmark(folder, program, only="", min_time=1.0, env=None, repetitions=1):
     """A Google Benchmark program's output as {"context": .., "benchmarks": [..]}; Failed where a check failed."""
-    command = [folder / "bench" / program, "--benchmark_format=json", f"--benchmark_min_time={min_time}"]
+    command = [folder / "bench" / program, "--benchmark_format=json", f"--benchmark_min_time={min_time}",
+               f"--benchmark_repetitions={repetitions}"]
     if only:
         command.append(f"--benchmark_filter={only}")
     done = subprocess.run(command, env=env or environment(), capture_output=True, text=True)

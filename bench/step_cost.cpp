@@ -8,21 +8,22 @@ constexpr double slots = 16;
 // Flops. A square root, division, minimum or maximum counts as one operation; selections, comparisons and
 // conversions as none. The sums of each header, in the order of its lines:
 constexpr double see_neighbours = 3 + 5 + 1 + 1 + 3 + 3;
-constexpr double hertz = 2 + 3 + 2 + 2 + 2 + 2;  // gap, R*, delta, a, S, F
-constexpr double damping = 7 + 5 + 5;            // m*, v_n, F_d
+constexpr double hertz = 2 + 2 + 2 + 2 + 2;  // gap, delta, a, S, F
+constexpr double reduced = 12;               // R* and m*
+constexpr double damping = 5 + 5;            // v_n, F_d
 constexpr double contact_point = 5 + 1;
 constexpr double sliding = 9 + 18 + 2;  // both spins, v_t, limit
-constexpr double saturated = 7 + 1 + 1 + 2 + 3;
+constexpr double saturated = 7 + 1 + 1 + 1 + 3;
 constexpr double mindlin = 6 + 5 + 6 + 9 + 6 + 1 + 3 + 1 + 12 + 2 + 3;
 constexpr double force_and_torque = 6 + 18;
-constexpr double overlap_check = 2;
+constexpr double checks = 2 + 1;
 constexpr double half_space_term =
     5 + 7 + 2 + 6 + 3 + 3;  // cosine, distance, root, u . n, bracket, times F and sum
 constexpr double sphere_term = 5 + 3 + 2 + 1 + 16 + 3;  // cosine, s, root, s, polynomial, times F and sum
 constexpr double finite_size_term = 1 + 12 + 4;         // spread, polynomial, product
 constexpr double self_term = 3 * (2 + 21 + 4 + 4 + 6) + 24;  // three Newton steps and the result
-constexpr double extrapolation = 1 + 3;
-constexpr double reductions = 8 * 15;  // per grain: six sums and two maxima over 16 lanes
+constexpr double extrapolation = 1 + 5;
+constexpr double reductions = 7 * 15;  // per grain: seven sums over 16 lanes
 constexpr double integration = 50;     // per grain
 
 double surface_term(ContactModel model) {
@@ -47,15 +48,16 @@ StepCost step_cost(ContactModel model, FrictionLaw friction, Precision precision
     const bool springs = friction == FrictionLaw::mindlin;
 
     // Reals: position, velocity and spin come and go (4 each), the listed position comes. Per slot, the
-    // bulges of three steps come and go, the three spring components come and go. Integers: partner, and
-    // mirror where surfaces move. What neighbours hold is read by themselves anyway and counts as cached.
-    const double reals = 2 * 3 * 4 + 4 + slots * ((bulging ? 6 : 0) + (springs ? 6 : 0));
+    // predicted bulge and those of two and four steps before come, the next prediction and this step's bulge
+    // go; the three spring components come and go. Integers: partner, and mirror where surfaces move. What
+    // neighbours hold is read by themselves anyway and counts as cached.
+    const double reals = 2 * 3 * 4 + 4 + slots * ((bulging ? 5 : 0) + (springs ? 6 : 0));
     const double integers = slots * (bulging ? 2 : 1);
 
     const double friction_flops = springs ? mindlin : saturated;
     const double self = model == ContactModel::elastic_sphere ? self_term : 0;
-    const double slot = see_neighbours + hertz + damping + contact_point + sliding + friction_flops +
-                        force_and_torque + overlap_check + self + (bulging ? extrapolation : 0);
+    const double slot = see_neighbours + hertz + reduced + damping + contact_point + sliding +
+                        friction_flops + force_and_torque + checks + self + (bulging ? extrapolation : 0);
     // Each touching contact displaces the surface at every slot.
     return {reals * real + integers * 4,
             slots * (slot + contacts * surface_term(model)) + reductions + integration};

@@ -56,7 +56,7 @@ def command_of(code, folder, parameters, processes):
 def parse(output, returncode, grains):
     """Grain-steps a second of the last run in `output`, and Z at its end; Failed where there is none."""
     if returncode != 0:
-        raise Failed("crashed: " + (re.findall(r"MPI_ERR_\w+|ERROR.*", output) or [f"code {returncode}"])[0])
+        raise Failed("crashed: " + (re.findall(r"MPI_ERR_\w+|^ERROR: .*", output, re.MULTILINE) or [f"exit code {returncode}"])[0])
     loops = re.findall(r"Loop time of (\S+) on \d+ procs for (\d+) steps", output)
     thermo = re.findall(r"^ *\d+ +\d+ +(\S+) +\S+ *$", output, re.MULTILINE)
     if len(loops) < 2 or not thermo:
