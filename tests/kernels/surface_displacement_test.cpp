@@ -77,7 +77,7 @@ Start pressed_grain(ContactModel model, double overlap) {
 /// In F/(E R), at 60, 90, 120 and 180 degrees.
 std::array<double, 4> displacements(ContactModel model) {
     constexpr double radius = 0.01, overlap = 1e-6;
-    const KernelBuild kernels = build(has_double() ? Precision::double_precision : Precision::single_precision);
+    const KernelBuild kernels = build(finest());
     const Start start = pressed_grain(model, overlap);
     Batch batch(kernels, start);
     // long enough for the surfaces to have a past, too short for the grain to move

@@ -1,5 +1,6 @@
 #include "reference/step_reference.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numbers>

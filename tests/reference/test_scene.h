@@ -1,6 +1,7 @@
 // What the tests of kernels and simulation share: the device, packings made on the spot, an engine with
 // its scene at hand, and the comparison of an engine with the reference.
 #pragma once
+#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -109,6 +110,48 @@ inline Start free_cluster(Replica replica, std::vector<Vec3> position, std::vect
     replica.plate.end = box / 2;
     return {replica, {std::move(position), std::move(diameter)}};
 }
+
+/// A central sphere and its twelve neighbours as in a face-centred cubic crystal, `distance` apart.
+inline std::vector<Vec3> thirteen(double distance) {
+    const double h = distance / std::sqrt(2.0);
+    std::vector<Vec3> all{Vec3::Zero()};
+    for (double a : {h, -h})
+        for (double b : {h, -h}) all.insert(all.end(), {Vec3(a, b, 0), Vec3(a, 0, b), Vec3(0, a, b)});
+    return all;
+}
+
+/// Thirteen free grains of about 10 mm radius, overlapping by some 5 %, irregular.
+inline Start irregular_cluster(Replica replica, unsigned seed) {
+    Uniform uniform(seed);
+    auto position = thirteen(0.019);
+    std::vector<double> diameter;
+    for (auto& x : position) {
+        x += uniform.vector(3e-4);
+        diameter.push_back(0.02 * uniform(0.95, 1.05));
+    }
+    replica.grains.drag = 0;
+    replica.grains.excess_density = 0;
+    return free_cluster(replica, position, diameter);
+}
+
+/// Thirteen equal grains held tightly by the six walls; `compression` is every overlap over the sum of radii.
+inline Start caged_cluster(Replica replica, double compression, double jitter, unsigned seed) {
+    constexpr double radius = 0.01;
+    Uniform uniform(seed);
+    const double distance = 2 * radius * (1 - compression);
+    const double half = distance / std::sqrt(2.0) + radius * (1 - compression);
+    Packing packing;
+    for (const Vec3& x : thirteen(distance)) {
+        packing.position.push_back(x + Vec3::Constant(half) + uniform.vector(jitter));
+        packing.diameter.push_back(2 * radius);
+    }
+    replica.box = {2 * half, 2 * half};
+    replica.plate.start = 2 * half;
+    replica.plate.end = 1.9 * half;
+    return {replica, packing};
+}
+
+inline Precision finest() { return has_double() ? Precision::double_precision : Precision::single_precision; }
 
 /// An engine of some starts, its plates standing still at plate.start unless told otherwise.
 class Batch {

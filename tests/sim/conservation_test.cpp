@@ -1,0 +1,124 @@
+// What no law of contact may change: momentum and angular momentum of free grains, and that a contact
+// pushes both sides alike, at one point.
+#include <fmt/core.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "core/names.h"
+#include "reference/test_scene.h"
+
+namespace reference {
+namespace {
+
+double mass(const Start& start, std::size_t grain) {
+    return start.replica.grains.density * std::numbers::pi / 6 * std::pow(start.packing.diameter[grain], 3);
+}
+
+double inertia(const Start& start, std::size_t grain) {
+    return 0.1 * mass(start, grain) * std::pow(start.packing.diameter[grain], 2);
+}
+
+struct Momenta {
+    Vec3 linear = Vec3::Zero(), angular = Vec3::Zero();
+    double linear_size = 0, angular_size = 0;  ///< of all grains' together, signs left aside
+};
+
+/// About the middle of the box.
+Momenta momenta(const Start& start, const mcdem::ReplicaState& state) {
+    Momenta sum;
+    for (std::size_t i = 0; i < state.position.size(); ++i) {
+        const Vec3 linear = mass(start, i) * state.velocity[i];
+        const Vec3 angular = (state.position[i] - Vec3::Constant(0.5)).cross(linear) +
+                             inertia(start, i) * state.angular_velocity[i];
+        sum.linear += linear;
+        sum.angular += angular;
+        sum.linear_size += linear.norm();
+        sum.angular_size += angular.norm();
+    }
+    return sum;
+}
+
+/// Every model with both friction laws, in one batch.
+std::vector<Start> free_clusters() {
+    std::vector<Start> starts;
+    for (ContactModel model : all_models)
+        for (FrictionLaw law : {FrictionLaw::saturated, FrictionLaw::mindlin}) {
+            Replica replica = test_replica(model);
+            replica.contact.friction_law = law;
+            starts.push_back(irregular_cluster(replica, 1));
+        }
+    return starts;
+}
+
+void set_random_velocities(Batch& batch, std::size_t replicas) {
+    Uniform uniform(2);
+    for (std::size_t r = 0; r < replicas; ++r) {
+        const std::size_t count = batch.start(r).packing.size();
+        batch.engine().set_velocities(r, uniform.vectors(count, 0.1), uniform.vectors(count, 10));
+    }
+}
+
+// To rounding: coordinates of half a metre are rounded to 3e-8 m in float, 1.5e-6 of the arms, in each of 200
+// steps; in double to 1e-9 of that.
+void expect_momenta_stay(Precision precision, double allowed) {
+    const auto starts = free_clusters();
+    Batch batch(build(precision), starts);
+    set_random_velocities(batch, starts.size());
+    std::vector<Momenta> before;
+    for (std::size_t r = 0; r < starts.size(); ++r) before.push_back(momenta(starts[r], batch.engine().state(r)));
+    batch.advance(200);
+    for (std::size_t r = 0; r < starts.size(); ++r) {
+        const Momenta after = momenta(starts[r], batch.engine().state(r));
+        const std::string where = fmt::format("{} {}", name(starts[r].replica.contact.model),
+                                              name(starts[r].replica.contact.friction_law));
+        EXPECT_LT((after.linear - before[r].linear).norm() / before[r].linear_size, allowed) << where;
+        EXPECT_LT((after.angular - before[r].angular).norm() / before[r].angular_size, allowed) << where;
+        EXPECT_GT((after.linear_size - before[r].linear_size) / before[r].linear_size, 0.03)
+            << where << ": nothing has happened";
+    }
+}
+
+TEST(Conservation, MomentumAndAngularMomentumInDouble) {
+    if (!has_double()) GTEST_SKIP() << "the device has no double precision";
+    expect_momenta_stay(Precision::double_precision, 1e-12);
+}
+
+TEST(Conservation, MomentumAndAngularMomentumInFloat) { expect_momenta_stay(Precision::single_precision, 5e-4); }
+
+// Contacts are told once, as the lower grain sees them. The next step of each grain must come from these
+// forces, turned round for the higher grain, applied at the very same points.
+TEST(Conservation, ActionIsReactionAtOnePoint) {
+    const auto starts = free_clusters();
+    Batch batch(build(finest()), starts);
+    set_random_velocities(batch, starts.size());
+    batch.advance(5);
+    std::vector<mcdem::ReplicaState> before;
+    for (std::size_t r = 0; r < starts.size(); ++r) before.push_back(batch.engine().state(r));
+    batch.advance(1);
+    const double allowed = has_double() ? 1e-11 : 1e-4;
+    for (std::size_t r = 0; r < starts.size(); ++r) {
+        // Mindlin's springs stretch in the step itself, so that only the first law can be told beforehand.
+        if (starts[r].replica.contact.friction_law == FrictionLaw::mindlin) continue;
+        const auto after = batch.engine().state(r);
+        ASSERT_GT(before[r].contacts.size(), 20u);
+        std::vector<Vec3> force(13, Vec3::Zero()), torque = force, change, turn;
+        for (const auto& contact : before[r].contacts) {
+            force[contact.grain] += contact.force;
+            force[contact.partner] -= contact.force;
+            const auto& x = before[r].position;
+            torque[contact.grain] += (contact.point - x[contact.grain]).cross(contact.force);
+            torque[contact.partner] -= (contact.point - x[contact.partner]).cross(contact.force);
+        }
+        const double dt = batch.engine().time_step(r);
+        for (std::size_t i = 0; i < 13; ++i) {
+            change.push_back((after.velocity[i] - before[r].velocity[i]) * mass(starts[r], i) / dt);
+            turn.push_back((after.angular_velocity[i] - before[r].angular_velocity[i]) * inertia(starts[r], i) / dt);
+        }
+        EXPECT_LT(relative_difference(change, force), allowed) << name(starts[r].replica.contact.model);
+        EXPECT_LT(relative_difference(turn, torque), allowed) << name(starts[r].replica.contact.model);
+    }
+}
+
+}  // namespace
+}  // namespace reference

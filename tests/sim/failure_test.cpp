@@ -1,0 +1,152 @@
+// How a replica stops: with its cause and its grain, while the others of the batch go on as if alone.
+#include <fmt/core.h>
+
+#include <cmath>
+
+#include "core/names.h"
+#include "reference/test_scene.h"
+#include "sim/simulation.h"
+
+namespace reference {
+namespace {
+
+/// A large grain between floor and plate and small ones that touch nothing; `large` is its number.
+Start squeezed(ContactModel model, double gamma, double overlap, int large) {
+    constexpr double radius = 0.01, small = 0.004;
+    Replica replica = test_replica(model);
+    replica.contact.gamma = gamma;
+    replica.grains.excess_density = 0;
+    replica.grains.poisson_ratio = 0.49;
+    replica.walls.youngs_modulus = 1e9;
+    const double height = 2 * radius * (1 - overlap);
+    replica.box = {0.1, 0.1};
+    replica.plate.start = height;
+    replica.plate.end = 0.95 * height;
+    Packing packing;
+    for (int i = 0; i < 8; ++i) {
+        packing.position.push_back({0.012 + 0.025 * (i % 4), 0.03 + 0.04 * (i / 4), height / 2});
+        packing.diameter.push_back(i == large ? 2 * radius : 2 * small);
+    }
+    return {replica, packing};
+}
+
+/// Makes `steps` of every replica that is well. Returns the last results of each.
+std::vector<mcdem::StretchResult> run(Batch& batch, int steps) { return batch.advance(steps, 50); }
+
+TEST(Failure, RunAwayStopsItsReplicaAlone) {
+    const Start healthy = squeezed(ContactModel::mc_dem, 1.125, 0.05, 2);
+    const Start runaway = squeezed(ContactModel::mc_dem, 3, 0.15, 5);
+    const Start other = squeezed(ContactModel::elastic_sphere, 1, 0.1, 6);
+    for (Precision precision : {Precision::single_precision, finest()}) {
+        Batch together(build(precision), {healthy, runaway, other});
+        const auto results = run(together, 500);
+        EXPECT_EQ(results[0].status, 0);
+        EXPECT_EQ(results[1].status & (STATUS_OVERLAP | STATUS_SLOTS | STATUS_LOST), STATUS_OVERLAP);
+        EXPECT_EQ(results[1].failed_grain, 5);
+        EXPECT_GT(results[1].deepest_overlap, runaway.replica.numerics.overlap_limit);
+        EXPECT_EQ(results[2].status, 0);
+        Batch first(build(precision), healthy), last(build(precision), other);
+        run(first, 500);
+        run(last, 500);
+        EXPECT_TRUE(same_bits(together.engine().state(0), first.engine().state(0)));
+        EXPECT_TRUE(same_bits(together.engine().state(2), last.engine().state(0)));
+    }
+}
+
+TEST(Failure, TooLongATimeStepIsNotANumber) {
+    Start start = squeezed(ContactModel::independent, 1, 0.05, 4);
+    start.packing.position[4].z() *= 0.99;
+    start.replica.numerics.time_step = 1e30;
+    Batch batch(build(Precision::single_precision), {squeezed(ContactModel::mc_dem, 1, 0.05, 1), start});
+    const auto results = batch.advance(10);
+    EXPECT_EQ(results[0].status, 0);
+    EXPECT_EQ(results[1].status & STATUS_NOT_A_NUMBER, STATUS_NOT_A_NUMBER);
+    EXPECT_EQ(results[1].failed_grain, 4);
+}
+
+TEST(Failure, GrainThatLeavesTheBoxIsLost) {
+    const Start start = squeezed(ContactModel::independent, 1, 0.05, 4);
+    for (const Vec3& direction : {Vec3(1, 0, 0), Vec3(0, -1, 0), Vec3(0, 0, 1), Vec3(0, 0, -1)}) {
+        Batch batch(build(Precision::single_precision), {start, start});
+        std::vector<Vec3> velocity(8, Vec3::Zero());
+        velocity[7] = 0.2 / batch.engine().time_step(0) * direction;
+        batch.engine().set_velocities(1, velocity, std::vector<Vec3>(8, Vec3::Zero()));
+        const auto results = batch.engine().advance({{20, start.replica.plate.start, 0, 0}, {20, start.replica.plate.start, 0, 0}});
+        EXPECT_EQ(results[0].status, 0);
+        EXPECT_EQ(results[0].steps, 20);
+        EXPECT_EQ(results[1].status, STATUS_LOST);
+        EXPECT_EQ(results[1].failed_grain, 7);
+        EXPECT_EQ(results[1].steps, 1) << "stopped in the step in which it happened";
+    }
+}
+
+// A large grain among many small ones has more neighbours than slots.
+TEST(Failure, MoreNeighboursThanSlotsAreTold) {
+    constexpr double radius = 0.01, small = 0.002;
+    Start start = free_cluster(test_replica(), {Vec3::Zero()}, {2 * radius});
+    start.replica.grains.excess_density = 0;
+    const int count = 30;
+    for (int k = 0; k < count; ++k) {
+        const double z = 1 - (2 * k + 1.0) / count, angle = 2.4 * k;
+        const Vec3 direction(std::sqrt(1 - z * z) * std::cos(angle), std::sqrt(1 - z * z) * std::sin(angle), z);
+        start.packing.position.push_back(Vec3::Constant(0.5) + (radius + 1.001 * small) * direction);
+        start.packing.diameter.push_back(2 * small);
+    }
+    std::swap(start.packing.position[0], start.packing.position[20]);
+    std::swap(start.packing.diameter[0], start.packing.diameter[20]);
+    Batch few(build(Precision::single_precision, 16), start), enough(build(Precision::single_precision, 32), start);
+    const auto result = few.advance(1).front();
+    EXPECT_EQ(result.status, STATUS_SLOTS);
+    EXPECT_EQ(result.failed_grain, 20);
+    EXPECT_EQ(enough.advance(1).front().status, 0);
+}
+
+// The equator moves out by 2 % of the radius, further than the probed gap, towards walls that are too far to touch
+// but still listed.
+TEST(Failure, SurfaceThatBulgesPastTheProbedGapIsTold) {
+    Start start = squeezed(ContactModel::elastic_sphere, 1, 0.12, 0);
+    start.packing.position.resize(1);
+    start.packing.diameter.resize(1);
+    start.packing.position[0].x() = start.packing.position[0].y() = 0.0105;
+    start.replica.box = {0.021, 0.021};
+    Batch wide(build(Precision::single_precision), start);
+    EXPECT_EQ(run(wide, 300).front().status, 0);
+    start.replica.numerics.probe_gap = 0.01;
+    Batch narrow(build(Precision::single_precision), start);
+    EXPECT_EQ(run(narrow, 300).front().status, STATUS_UNPROBED);
+}
+
+/// A scene of some starts with a short protocol.
+mcdem::Scene short_scene(const std::vector<Start>& starts) {
+    mcdem::Scene scene;
+    for (const auto& start : starts) {
+        scene.replicas.push_back(start.replica);
+        auto& protocol = scene.replicas.back().protocol;
+        protocol.scans_per_stroke = 2;
+        protocol.settle_time = 0.02;
+        protocol.relax_time = 0.02;
+    }
+    return scene;
+}
+
+TEST(Failure, SimulationNamesReplicaGrainStepAndCause) {
+    const std::vector<Start> starts{squeezed(ContactModel::mc_dem, 1.125, 0.05, 2),
+                                    squeezed(ContactModel::mc_dem, 3, 0.15, 5)};
+    mcdem::Simulation simulation(device(), short_scene(starts), {starts[0].packing, starts[1].packing});
+    std::vector<int> scans(2, 0);
+    std::vector<std::pair<int, mcdem::Failure>> failures;
+    while (simulation.advance([&](int r, const mcdem::Scan&) { ++scans[r]; },
+                              [&](int r, const mcdem::Failure& failure) { failures.emplace_back(r, failure); })) {
+    }
+    ASSERT_EQ(failures.size(), 1u);
+    EXPECT_EQ(failures[0].first, 1);
+    EXPECT_EQ(failures[0].second.grain, 5);
+    EXPECT_GT(failures[0].second.step, 0);
+    EXPECT_NE(failures[0].second.cause.find("no static solution"), std::string::npos) << failures[0].second.cause;
+    EXPECT_EQ(scans[0], 4) << "two levels, there and back";
+    EXPECT_EQ(scans[1], 0);
+    EXPECT_DOUBLE_EQ(simulation.progress(), 1);
+}
+
+}  // namespace
+}  // namespace reference
