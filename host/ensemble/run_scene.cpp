@@ -78,9 +78,10 @@ private:
         options_.on_failure(scene_.replicas[replica], failure);
     }
 
-    /// Large runs write for long: they do it less often, so that it stays a small part of the time.
+    /// Runs so large that a checkpoint takes long write fewer: it stays a small part of the time.
     bool checkpoint_due() const {
-        const double interval = std::max(60 * scene_.output.checkpoint_minutes, 20 * checkpoint_seconds_);
+        const double rest = checkpoint_seconds_ > 1 ? 20 * checkpoint_seconds_ : 0;
+        const double interval = std::max(60 * scene_.output.checkpoint_minutes, rest);
         return seconds_since(last_checkpoint_) >= interval || bytes_held_ >= most_bytes_held;
     }
 
