@@ -75,8 +75,12 @@ INLINE Contacts contact_forces(global const Replica* restrict replica, real radi
     c.approach = (bulge + bulge_there) - gap;
     c.touching = AS_MASK(c.approach > R(0)) & seen.occupied;
     c.overlap = WHERE(c.touching, c.approach, R(0));
+    SelfCompliance self = {R(0), R(0)};
     if (replica->finite_contacts) {
-        c.overlap = self_consistent_overlap(replica, c.overlap, pair.radius, modulus, radius, seen.radius, seen.wall);
+        const SelfConsistent solved =
+            self_consistent(replica, c.overlap, pair.radius, modulus, radius, seen.radius, seen.wall);
+        c.overlap = solved.overlap;
+        self = solved.compliance;
         c.approach = WHERE(c.touching, c.overlap, c.approach);
     }
 
@@ -84,11 +88,8 @@ INLINE Contacts contact_forces(global const Replica* restrict replica, real radi
     c.radius = sqrt(pair.radius * c.overlap);
     const lanes stiffness = R(2) * modulus * c.radius;
     c.elastic = (R(2) / R(3)) * stiffness * c.overlap;
-    if (replica->finite_contacts) {
-        const SelfCompliance self = self_compliance(replica, c.radius, radius, seen.radius, seen.wall);
-        bulge += self.here * c.elastic;
-        bulge_there += self.there * c.elastic;
-    }
+    bulge += self.here * c.elastic;
+    bulge_there += self.there * c.elastic;
     c.bulge = bulge;
 
     const lanes damping = WHERE(seen.wall, replica->damping_wall, replica->damping_grain);

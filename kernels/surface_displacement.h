@@ -24,10 +24,18 @@ INLINE lanes half_space_displacement(global const Replica* restrict replica, lan
 
 #define SMALLEST_SINE R(0.15) /* the polynomials hold from here on: contacts 17 degrees apart */
 
-INLINE lanes polynomial(global const real* coefficient, int terms, lanes x) {
-    lanes value = coefficient[terms - 1];
-    for (int n = terms - 2; n >= 0; --n) value = value * x + coefficient[n];
-    return value;
+/* The polynomials P and T, even and odd powers apart: four short chains side by side instead of two long. */
+INLINE lanes point_polynomial(global const real* p, lanes s) {
+    const lanes q = s * s;
+    const lanes even = p[0] + q * (p[2] + q * (p[4] + q * (p[6] + q * p[8])));
+    const lanes odd = p[1] + q * (p[3] + q * (p[5] + q * p[7]));
+    return even + s * odd;
+}
+INLINE lanes size_polynomial(global const real* t, lanes s) {
+    const lanes q = s * s;
+    const lanes even = t[0] + q * (t[2] + q * (t[4] + q * t[6]));
+    const lanes odd = t[1] + q * (t[3] + q * t[5]);
+    return even + s * odd;
 }
 
 /* Displacement of an elastic sphere, in F/(E R), at the angle whose cosine is given; `spread` is
@@ -36,9 +44,9 @@ INLINE lanes sphere_displacement(global const Replica* restrict replica, lanes c
     const lanes squared = fmax(R(0.5) - R(0.5) * cosine, (lanes)(SMALLEST_SINE * SMALLEST_SINE));
     const lanes inverse = R(1) / sqrt(squared);
     const lanes s = squared * inverse;
-    lanes value = polynomial(replica->sphere_point, POINT_TERMS, s);
+    lanes value = point_polynomial(replica->sphere_point, s);
     if (replica->finite_contacts)
-        value += spread * inverse * inverse * polynomial(replica->sphere_size, SIZE_TERMS, s);
+        value += spread * inverse * inverse * size_polynomial(replica->sphere_size, s);
     return value * inverse;
 }
 

@@ -34,7 +34,8 @@ double worst_displacement(const KernelBuild& kernels, const Start& start) {
 }
 
 // Float: a force is known to some 3e-5 (step_test.cpp), and the extrapolation in time adds up errors with the
-// weights 10/6, 5/6 and 1/6.
+// weights 10/6, 5/6 and 1/6. At nu = 0 the polynomial of the sphere has coefficients of up to 39 that cancel to
+// some 0.05: its rounding counts tenfold.
 TEST(SurfaceDisplacement, FollowsTheReferenceAtEverySlot) {
     for (ContactModel model : all_models) {
         if (model == ContactModel::independent) continue;
@@ -44,7 +45,7 @@ TEST(SurfaceDisplacement, FollowsTheReferenceAtEverySlot) {
             replica.numerics.probe_gap = 0.2;
             const Start start = jittered_lattice(replica, 65, 3);
             const std::string where = fmt::format("{} nu {}", name(model), nu);
-            EXPECT_LT(worst_displacement(build(Precision::single_precision), start), 1e-4) << where;
+            EXPECT_LT(worst_displacement(build(Precision::single_precision), start), nu == 0 ? 5e-4 : 1e-4) << where;
             if (!has_double()) continue;
             const double allowed = model == ContactModel::elastic_sphere ? 1e-5 : 1e-12;
             EXPECT_LT(worst_displacement(build(Precision::double_precision), start), allowed) << where;
