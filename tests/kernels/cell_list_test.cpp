@@ -10,7 +10,8 @@ namespace {
 /// A batch's fields with positions and replicas uploaded (float).
 struct CellScene {
     explicit CellScene(const std::vector<Start>& starts)
-        : kernels(build(Precision::single_precision)), layout(mcdem::make_layout(packings(starts), kernels.block)) {
+        : kernels(build(Precision::single_precision)),
+          layout(mcdem::make_layout(packings(starts), kernels.block)) {
         int cells = 0;
         for (int r = 0; r < layout.replicas(); ++r) {
             replicas.push_back(mcdem::device_replica<mcdem::f32::Replica>(
@@ -24,14 +25,15 @@ struct CellScene {
             for (int k = 0; k < layout.grain_count[r]; ++k) {
                 const int grain = layout.order[r][k];
                 float* at = &position[4 * (layout.first_grain[r] + k)];
-                for (int axis = 0; axis < 3; ++axis) at[axis] = float(starts[r].packing.position[grain][axis]);
+                for (int axis = 0; axis < 3; ++axis)
+                    at[axis] = float(starts[r].packing.position[grain][axis]);
                 at[3] = float(starts[r].packing.diameter[grain] / 2);
             }
     }
 
     void fill(const std::vector<int>& chosen) {
-        mcdem::Fields fields(device(), kernels, layout, sizeof(mcdem::f32::Replica), sizeof(mcdem::f32::Report),
-                             int(cell_head.size()), {});
+        mcdem::Fields fields(device(), kernels, layout, sizeof(mcdem::f32::Replica),
+                             sizeof(mcdem::f32::Report), int(cell_head.size()), {});
         mcdem::Kernels program(device(), kernels);
         fields.replicas.write(replicas.data());
         fields.position.copies[0].write(position.data());
@@ -44,7 +46,8 @@ struct CellScene {
         fields.relisted_blocks.write(blocks.data(), 0, blocks.size() * sizeof(int));
         program.empty_cells(chosen.size(), 64, fields.replicas, fields.relisted, fields.cell_head);
         program.fill_cells(blocks.size(), kernels.block, fields.replicas, fields.relisted_blocks,
-                           fields.replica_of_block, fields.position.now(0), fields.cell_head, fields.cell_next);
+                           fields.replica_of_block, fields.position.now(0), fields.cell_head,
+                           fields.cell_next);
         fields.cell_head.read(cell_head.data());
         fields.cell_next.read(cell_next.data());
     }
@@ -70,18 +73,19 @@ void expect_cells(const CellScene& scene, int r) {
     const auto& replica = scene.replicas[r];
     std::vector<int> seen(scene.layout.grains(), 0);
     for (int cell = 0; cell < mcdem::cell_count(replica); ++cell)
-        for (int grain = scene.cell_head[replica.first_cell + cell]; grain >= 0; grain = scene.cell_next[grain]) {
+        for (int grain = scene.cell_head[replica.first_cell + cell]; grain >= 0;
+             grain = scene.cell_next[grain]) {
             ASSERT_LT(grain, scene.layout.grains());
             ASSERT_EQ(seen[grain]++, 0) << "grain " << grain << " is in a cell twice";
             const float* x = &scene.position[4 * grain];
-            const int expected =
-                (cell_along(x[2], replica.cell_size, replica.cells_z) * replica.cells_y +
-                 cell_along(x[1], replica.cell_size, replica.cells_y)) *
-                    replica.cells_x +
-                cell_along(x[0], replica.cell_size, replica.cells_x);
+            const int expected = (cell_along(x[2], replica.cell_size, replica.cells_z) * replica.cells_y +
+                                  cell_along(x[1], replica.cell_size, replica.cells_y)) *
+                                     replica.cells_x +
+                                 cell_along(x[0], replica.cell_size, replica.cells_x);
             EXPECT_EQ(cell, expected) << "grain " << grain;
         }
-    for (int k = 0; k < replica.grain_count; ++k) EXPECT_EQ(seen[replica.first_grain + k], 1) << "grain " << k;
+    for (int k = 0; k < replica.grain_count; ++k)
+        EXPECT_EQ(seen[replica.first_grain + k], 1) << "grain " << k;
 }
 
 TEST(CellList, HoldsEveryGrainOnceInItsCell) {

@@ -19,8 +19,10 @@ Near near_by_brute_force(const StepReference& reference, const Start& start, int
     Near near;
     const auto sort_in = [&](int partner, double gap) {
         const double margin = 1e-6 * 0.02;
-        if (gap < reference.reach() - margin) near.sure.push_back(partner);
-        else if (gap < reference.reach() + margin) near.unsure.push_back(partner);
+        if (gap < reference.reach() - margin)
+            near.sure.push_back(partner);
+        else if (gap < reference.reach() + margin)
+            near.unsure.push_back(partner);
     };
     const auto& x = reference.position[grain];
     const double radius = start.packing.diameter[grain] / 2;
@@ -68,12 +70,14 @@ void expect_mirrors(const SavedRows& rows, int slots) {
 void expect_lists(const KernelBuild& build, const std::vector<Start>& starts) {
     Batch batch(build, starts);
     std::vector<StepReference> references;
-    for (std::size_t r = 0; r < starts.size(); ++r) references.push_back(reference_of(batch.engine(), r, starts[r]));
+    for (std::size_t r = 0; r < starts.size(); ++r)
+        references.push_back(reference_of(batch.engine(), r, starts[r]));
     const auto results = batch.advance(1);
     const SavedRows rows(batch, build, starts);
     for (std::size_t r = 0; r < starts.size(); ++r) {
         EXPECT_EQ(results[r].status & STATUS_SLOTS, 0);
-        for (std::size_t i = 0; i < starts[r].packing.size(); ++i) expect_row(rows, references[r], starts[r], r, i);
+        for (std::size_t i = 0; i < starts[r].packing.size(); ++i)
+            expect_row(rows, references[r], starts[r], r, i);
     }
     expect_mirrors(rows, build.slots);
 }
@@ -86,7 +90,8 @@ Replica with_probe_gap(double gap) {
 
 TEST(NeighbourList, HoldsEveryPairAtAwkwardSizes) {
     std::vector<Start> starts;
-    for (int count : {1, 63, 64, 65, 1000, 2}) starts.push_back(jittered_lattice(test_replica(), count, count));
+    for (int count : {1, 63, 64, 65, 1000, 2})
+        starts.push_back(jittered_lattice(test_replica(), count, count));
     expect_lists(build(Precision::single_precision), starts);
     if (has_double()) expect_lists(build(Precision::double_precision), starts);
     expect_lists(other_way(build(Precision::single_precision)), {starts[0], starts[3]});
@@ -94,9 +99,9 @@ TEST(NeighbourList, HoldsEveryPairAtAwkwardSizes) {
 
 TEST(NeighbourList, HoldsEveryPairWithLongRowsAndFewCells) {
     // 0.85 mean radii of gap: 18 neighbours; the whole box is one cell, or two a side
-    expect_lists(build(Precision::single_precision, 32), {jittered_lattice(with_probe_gap(0.85), 8, 1),
-                                                          jittered_lattice(with_probe_gap(0.85), 27, 2),
-                                                          jittered_lattice(with_probe_gap(0.85), 125, 3)});
+    expect_lists(build(Precision::single_precision, 32),
+                 {jittered_lattice(with_probe_gap(0.85), 8, 1), jittered_lattice(with_probe_gap(0.85), 27, 2),
+                  jittered_lattice(with_probe_gap(0.85), 125, 3)});
 }
 
 TEST(NeighbourList, HoldsEveryPairOfVeryDifferentGrains) {
@@ -106,7 +111,8 @@ TEST(NeighbourList, HoldsEveryPairOfVeryDifferentGrains) {
     start.replica.box = {0.3, 0.2};
     start.replica.plate.start = 0.05;
     for (int i = 0; i < 150; ++i) {
-        start.packing.position.push_back({uniform(0.005, 0.295), uniform(0.005, 0.195), uniform(0.005, 0.045)});
+        start.packing.position.push_back(
+            {uniform(0.005, 0.295), uniform(0.005, 0.195), uniform(0.005, 0.045)});
         start.packing.diameter.push_back(i % 10 ? uniform(0.004, 0.008) : uniform(0.02, 0.03));
     }
     expect_lists(build(Precision::single_precision, 64), {start});
@@ -152,7 +158,8 @@ void expect_memory_moves_with_neighbours(const Start& start, const char* quantit
         reference.list_neighbours();
         ++relisted;
         for (int grain = 0; grain < 27; ++grain)
-            for (const auto& [partner, memory] : before[grain]) changed += !reference.memory[grain].count(partner);
+            for (const auto& [partner, memory] : before[grain])
+                changed += !reference.memory[grain].count(partner);
     }
     EXPECT_GT(relisted, 10);
     EXPECT_GT(changed, 10) << "neighbours that were lost";

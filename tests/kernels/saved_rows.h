@@ -13,7 +13,8 @@ namespace reference {
 inline constexpr int empty_slot = -1;  ///< EMPTY of kernels/contact_geometry.h
 
 template <class T>
-std::vector<T> saved_values(const std::map<std::string, std::vector<std::byte>>& saved, const std::string& name) {
+std::vector<T> saved_values(const std::map<std::string, std::vector<std::byte>>& saved,
+                            const std::string& name) {
     const auto& bytes = saved.at(name);
     std::vector<T> values(bytes.size() / sizeof(T));
     if (!values.empty()) std::memcpy(values.data(), bytes.data(), values.size() * sizeof(T));
@@ -31,7 +32,9 @@ inline std::vector<double> saved_reals(const std::map<std::string, std::vector<s
 class SavedRows {
 public:
     SavedRows(Batch& batch, const KernelBuild& build, const std::vector<Start>& starts)
-        : build_(build), saved_(batch.engine().save()), layout_(mcdem::make_layout(packings(starts), build.block)) {
+        : build_(build),
+          saved_(batch.engine().save()),
+          layout_(mcdem::make_layout(packings(starts), build.block)) {
         partner_ = saved_values<int>(saved_, "partner");
     }
 

@@ -19,18 +19,21 @@ kernel void write_offsets(global int* offsets) {
 }
 )";
 
-#define MEMBERS_OF_REPLICA(MEMBER)                                                                                \
-    MEMBER(time_step) MEMBER(density) MEMBER(weight_density) MEMBER(drag) MEMBER(modulus_grain)                   \
-    MEMBER(modulus_wall) MEMBER(shear_grain) MEMBER(shear_wall) MEMBER(damping_grain) MEMBER(damping_wall)        \
-    MEMBER(friction_grain) MEMBER(friction_wall) MEMBER(sliding_velocity) MEMBER(half_space_scale)                \
-    MEMBER(half_space_normal) MEMBER(half_space_shear) MEMBER(sphere_scale) MEMBER(sphere_point)                  \
-    MEMBER(sphere_size) MEMBER(sphere_self) MEMBER(skin) MEMBER(probe_gap) MEMBER(overlap_limit)                  \
-    MEMBER(cell_size) MEMBER(wall_position) MEMBER(plate_velocity) MEMBER(first_grain) MEMBER(grain_count)        \
-    MEMBER(first_cell) MEMBER(cells_x) MEMBER(cells_y) MEMBER(cells_z) MEMBER(surface) MEMBER(finite_contacts)    \
-    MEMBER(mindlin) MEMBER(steps_before)
-#define MEMBERS_OF_REPORT(MEMBER)                                                                                 \
-    MEMBER(kinetic_energy) MEMBER(elastic_energy) MEMBER(moved_squared) MEMBER(deepest_overlap) MEMBER(wall_force) \
-    MEMBER(status) MEMBER(failed_grain)
+#define MEMBERS_OF_REPLICA(MEMBER)                                                                           \
+    MEMBER(time_step)                                                                                        \
+    MEMBER(density) MEMBER(weight_density) MEMBER(drag) MEMBER(modulus_grain) MEMBER(modulus_wall)           \
+        MEMBER(shear_grain) MEMBER(shear_wall) MEMBER(damping_grain) MEMBER(damping_wall)                    \
+            MEMBER(friction_grain) MEMBER(friction_wall) MEMBER(sliding_velocity) MEMBER(half_space_scale)   \
+                MEMBER(half_space_normal) MEMBER(half_space_shear) MEMBER(sphere_scale) MEMBER(sphere_point) \
+                    MEMBER(sphere_size) MEMBER(sphere_self) MEMBER(skin) MEMBER(probe_gap)                   \
+                        MEMBER(overlap_limit) MEMBER(cell_size) MEMBER(wall_position) MEMBER(plate_velocity) \
+                            MEMBER(first_grain) MEMBER(grain_count) MEMBER(first_cell) MEMBER(cells_x)       \
+                                MEMBER(cells_y) MEMBER(cells_z) MEMBER(surface) MEMBER(finite_contacts)      \
+                                    MEMBER(mindlin) MEMBER(steps_before)
+#define MEMBERS_OF_REPORT(MEMBER)                                                                          \
+    MEMBER(kinetic_energy)                                                                                 \
+    MEMBER(elastic_energy) MEMBER(moved_squared) MEMBER(deepest_overlap) MEMBER(wall_force) MEMBER(status) \
+        MEMBER(failed_grain)
 
 #define NAME_REPLICA(member) "REPLICA(" #member ")"
 #define NAME_REPORT(member) "REPORT(" #member ")"
@@ -49,9 +52,9 @@ std::vector<int> device_offsets(Precision precision, std::size_t count) {
     const std::string members = MEMBERS_OF_REPLICA(NAME_REPLICA) MEMBERS_OF_REPORT(NAME_REPORT);
     source.replace(source.rfind("MEMBERS"), 7, members);
     cl::Program program(device().context(), source);
-    const std::string options = "-cl-std=CL1.2 -DLANES=" + std::to_string(kernels.lanes) +
-                                " -DSLOTS=16 -DBLOCK=16 -DMCDEM_DOUBLE=" +
-                                (precision == Precision::double_precision ? "1" : "0");
+    const std::string options =
+        "-cl-std=CL1.2 -DLANES=" + std::to_string(kernels.lanes) +
+        " -DSLOTS=16 -DBLOCK=16 -DMCDEM_DOUBLE=" + (precision == Precision::double_precision ? "1" : "0");
     program.build({device().handle()}, options.c_str());
     struct Offsets;
     mcdem::Field<Offsets> field(device(), count, sizeof(int));
@@ -75,7 +78,8 @@ TEST(SharedStructs, HaveTheSameLayoutInDouble) {
 // Every member is listed above: their sizes leave no room for another. (The last int may be padded.)
 TEST(SharedStructs, AreListedWhole) {
     const auto host = host_offsets<mcdem::f32::Replica, mcdem::f32::Report>();
-    std::size_t replica_words = sizeof(mcdem::f32::Replica) / 4, report_words = sizeof(mcdem::f32::Report) / 4;
+    std::size_t replica_words = sizeof(mcdem::f32::Replica) / 4,
+                report_words = sizeof(mcdem::f32::Report) / 4;
     const std::size_t arrays = (POINT_TERMS - 1) + (SIZE_TERMS - 1) + (SELF_TERMS - 1) + (6 - 1);
     EXPECT_EQ(host.size() - 2, (replica_words - arrays) + (report_words - 17));
 }

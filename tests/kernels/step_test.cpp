@@ -10,22 +10,22 @@
 namespace reference {
 namespace {
 
-/// Relative to the largest of each kind. Float: coordinates of up to 0.2 m are rounded to 7e-9 m in every step, and
-/// overlaps are some 0.5 mm: 1.5e-5 of them, and half as much again of their power 3/2.
-/// Double: the same with 1e-16; but the elastic sphere's overlap is found by some steps of Newton's method,
-/// where the reference bisects to the end.
+/// Relative to the largest of each kind. Float: coordinates of up to 0.2 m are rounded to 7e-9 m in every
+/// step, and overlaps are some 0.5 mm: 1.5e-5 of them, and half as much again of their power 3/2. Double: the
+/// same with 1e-16; but the elastic sphere's overlap is found by some steps of Newton's method, where the
+/// reference bisects to the end.
 double tolerance(Precision precision, ContactModel model) {
     if (precision == Precision::single_precision) return 5e-5;
     return model == ContactModel::elastic_sphere ? 1e-5 : 1e-12;
 }
 
 struct Differences {
-    double position = 0, velocity = 0, angular_velocity = 0, force = 0, overlap = 0, point = 0, wall_force = 0,
-           kinetic = 0, elastic = 0, deepest = 0;
+    double position = 0, velocity = 0, angular_velocity = 0, force = 0, overlap = 0, point = 0,
+           wall_force = 0, kinetic = 0, elastic = 0, deepest = 0;
     bool same_contacts = true;
     double worst() const {
-        return std::max({position, velocity, angular_velocity, force, overlap, point, wall_force, kinetic, elastic,
-                         deepest});
+        return std::max({position, velocity, angular_velocity, force, overlap, point, wall_force, kinetic,
+                         elastic, deepest});
     }
 };
 
@@ -33,12 +33,13 @@ struct Differences {
 std::vector<Seen> listed_contacts(const StepReference& reference) {
     std::vector<Seen> listed;
     for (const Seen& seen : reference.neighbours())
-        if (seen.overlap > 0 && (mcdem::is_wall(seen.partner) || seen.partner > seen.grain)) listed.push_back(seen);
+        if (seen.overlap > 0 && (mcdem::is_wall(seen.partner) || seen.partner > seen.grain))
+            listed.push_back(seen);
     return listed;
 }
 
-void compare_contacts(const std::vector<mcdem::Contact>& contacts, const StepReference& reference, double skim,
-                      Differences& d) {
+void compare_contacts(const std::vector<mcdem::Contact>& contacts, const StepReference& reference,
+                      double skim, Differences& d) {
     std::map<std::pair<int, int>, Seen> expected;
     double largest = 0;
     for (const Seen& seen : listed_contacts(reference)) largest = std::max(largest, seen.overlap);
@@ -65,8 +66,8 @@ void compare_contacts(const std::vector<mcdem::Contact>& contacts, const StepRef
     d.overlap = relative_difference(overlap, overlap_0);
 }
 
-Differences compare(const Engine& engine, int r, const mcdem::StretchResult& result, const StepReference& reference,
-                    double skim) {
+Differences compare(const Engine& engine, int r, const mcdem::StretchResult& result,
+                    const StepReference& reference, double skim) {
     Differences d;
     const auto state = engine.state(r);
     d.position = relative_difference(state.position, reference.position);
@@ -82,10 +83,11 @@ Differences compare(const Engine& engine, int r, const mcdem::StretchResult& res
 }
 
 std::string text(const Differences& d) {
-    return fmt::format("position {:.1e} velocity {:.1e} spin {:.1e} force {:.1e} overlap {:.1e} point {:.1e} wall force "
-                       "{:.1e} kinetic {:.1e} elastic {:.1e} deepest {:.1e} same contacts {}",
-                       d.position, d.velocity, d.angular_velocity, d.force, d.overlap, d.point, d.wall_force,
-                       d.kinetic, d.elastic, d.deepest, d.same_contacts);
+    return fmt::format(
+        "position {:.1e} velocity {:.1e} spin {:.1e} force {:.1e} overlap {:.1e} point {:.1e} wall force "
+        "{:.1e} kinetic {:.1e} elastic {:.1e} deepest {:.1e} same contacts {}",
+        d.position, d.velocity, d.angular_velocity, d.force, d.overlap, d.point, d.wall_force, d.kinetic,
+        d.elastic, d.deepest, d.same_contacts);
 }
 
 /// Six steps one by one, with the plate coming down: the sixth uses the whole history of the surfaces.
@@ -113,8 +115,8 @@ void expect_steps_as_reference(const KernelBuild& build, const std::vector<Start
             const ContactModel model = starts[r].replica.contact.model;
             const double allowed = tolerance(build.precision, model);
             const Differences d = compare(engine, r, results[r], references[r], allowed);
-            const std::string where = fmt::format("step {}, replica {} ({}, {} grains): {}", step, r, name(model),
-                                                  starts[r].packing.size(), text(d));
+            const std::string where = fmt::format("step {}, replica {} ({}, {} grains): {}", step, r,
+                                                  name(model), starts[r].packing.size(), text(d));
             EXPECT_EQ(results[r].status, 0) << where;
             EXPECT_TRUE(d.same_contacts) << where;
             EXPECT_LT(d.worst(), allowed) << where;
@@ -170,8 +172,8 @@ TEST(Step, FollowsTheReferenceInABatchOfDifferentReplicas) {
         std::vector<Start> starts;
         const int counts[] = {1, 64, 7, 65, 17, 16, 63};
         for (int r = 0; r < 7; ++r)
-            starts.push_back(start_of(all_models[r % 6], r % 2 ? FrictionLaw::mindlin : FrictionLaw::saturated,
-                                      counts[r], 20 + r));
+            starts.push_back(start_of(
+                all_models[r % 6], r % 2 ? FrictionLaw::mindlin : FrictionLaw::saturated, counts[r], 20 + r));
         starts[3].replica.grains.youngs_modulus *= 2;
         starts[4].replica.grains.poisson_ratio = 0.3;
         starts[5].replica.grains.poisson_ratio = 0.5;
@@ -212,7 +214,8 @@ TEST(Step, AnotherMaterialIsToldApart) {
     Batch batch(build(Precision::single_precision), start);
     Start softer = start;
     softer.replica.grains.youngs_modulus *= 0.999;
-    StepReference same = reference_of(batch.engine(), 0, start), other = reference_of(batch.engine(), 0, softer);
+    StepReference same = reference_of(batch.engine(), 0, start),
+                  other = reference_of(batch.engine(), 0, softer);
     same.step();
     other.step();
     const auto result = batch.advance(1).front();

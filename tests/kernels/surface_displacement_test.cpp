@@ -33,9 +33,9 @@ double worst_displacement(const KernelBuild& kernels, const Start& start) {
     return worst / largest;
 }
 
-/// Float: a force is known to some 3e-5 (step_test.cpp), and the extrapolation in time adds up errors with the
-/// weights 10/6, 5/6 and 1/6. At nu = 0 the sphere's polynomials have coefficients up to 40 that cancel to some 0.1:
-/// another 3e-4. The elastic sphere's overlaps are found by Newton's method, good to 1e-6.
+/// Float: a force is known to some 3e-5 (step_test.cpp), and the extrapolation in time adds up errors with
+/// the weights 10/6, 5/6 and 1/6. At nu = 0 the sphere's polynomials have coefficients up to 40 that cancel
+/// to some 0.1: another 3e-4. The elastic sphere's overlaps are found by Newton's method, good to 1e-6.
 double tolerance(Precision precision, ContactModel model, double poisson_ratio) {
     if (precision == Precision::single_precision) return poisson_ratio == 0 ? 5e-4 : 1e-4;
     return model == ContactModel::elastic_sphere ? 1e-5 : 1e-12;
@@ -71,7 +71,8 @@ Start pressed_grain(ContactModel model, double overlap) {
     Packing packing{{centre}, {2 * radius}};
     for (int k = 0; k < 4; ++k) {
         const double angle = std::array{60, 90, 120, 180}[k] * pi / 180, turn = k * pi / 2;
-        const Vec3 direction(std::sin(angle) * std::cos(turn), std::sin(angle) * std::sin(turn), -std::cos(angle));
+        const Vec3 direction(std::sin(angle) * std::cos(turn), std::sin(angle) * std::sin(turn),
+                             -std::cos(angle));
         packing.position.push_back(centre + (radius + small + gap) * direction);
         packing.diameter.push_back(2 * small);
     }

@@ -91,7 +91,8 @@ StepReference::Joint StepReference::joint(const Body& a, const Body& b) const {
     const double e = g.youngs_modulus, e_there = wall ? w.youngs_modulus : e;
     Joint joint;
     joint.modulus = 1 / ((1 - nu * nu) / e + (1 - nu_there * nu_there) / e_there);
-    joint.shear_modulus = 1 / ((2 - nu) / shear_modulus(e, nu) + (2 - nu_there) / shear_modulus(e_there, nu_there));
+    joint.shear_modulus =
+        1 / ((2 - nu) / shear_modulus(e, nu) + (2 - nu_there) / shear_modulus(e_there, nu_there));
     joint.radius = wall ? a.radius : 1 / (1 / a.radius + 1 / b.radius);
     joint.mass = wall ? a.mass : 1 / (1 / a.mass + 1 / b.mass);
     const double log_e = std::log(wall ? w.restitution : g.restitution);
@@ -208,7 +209,8 @@ void StepReference::displace_surfaces(const std::vector<std::vector<Seen>>& seen
     by_others.self.fill(0);  // a contact's own term is part of its overlap
     for (std::size_t i = 0; i < seen.size(); ++i) {
         Grain grain{radius_[i], scene_.grains.youngs_modulus, scene_.grains.poisson_ratio, {}};
-        for (const Seen& c : seen[i]) grain.slots.push_back({c.direction, c.arm, c.elastic, c.contact_radius});
+        for (const Seen& c : seen[i])
+            grain.slots.push_back({c.direction, c.arm, c.elastic, c.contact_radius});
         const auto moved = surface_displacement(by_others, grain);
         for (std::size_t c = 0; c < moved.size(); ++c) {
             Memory& m = memory[i].at(seen[i][c].partner);

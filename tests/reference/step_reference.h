@@ -79,7 +79,8 @@ private:
     double self_consistent_overlap(double given, const Body& a, const Body& b, const Joint& joint) const;
     double self_compliance(double contact_radius, const Body& body) const;
     Seen see(int grain, int partner, double elapsed, Vec3& spring) const;
-    void push(Seen& seen, const Body& a, const Body& b, const Joint& joint, double elapsed, Vec3& spring) const;
+    void push(Seen& seen, const Body& a, const Body& b, const Joint& joint, double elapsed,
+              Vec3& spring) const;
     Vec3 friction(double limit, const Vec3& sliding, const Seen& seen, const Joint& joint, double elapsed,
                   Vec3& spring) const;
     void displace_surfaces(const std::vector<std::vector<Seen>>& seen);

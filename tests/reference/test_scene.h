@@ -1,9 +1,9 @@
 // What the tests of kernels and simulation share: the device, packings made on the spot, an engine with
 // its scene at hand, and the comparison of an engine with the reference.
 #pragma once
-#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <cstring>
 #include <random>
 #include <string>
@@ -24,8 +24,9 @@ using mcdem::Precision;
 using mcdem::Replica;
 
 inline constexpr ContactModel all_models[] = {
-    ContactModel::independent,        ContactModel::point_force_on_sphere, ContactModel::sphere_to_sphere,
-    ContactModel::elastic_half_space, ContactModel::mc_dem,                ContactModel::elastic_sphere};
+    ContactModel::independent,      ContactModel::point_force_on_sphere,
+    ContactModel::sphere_to_sphere, ContactModel::elastic_half_space,
+    ContactModel::mc_dem,           ContactModel::elastic_sphere};
 
 /// The device that MCDEM_DEVICE names; one for the whole program.
 inline mcdem::Device& device() {
@@ -223,18 +224,22 @@ inline double relative_difference(const std::vector<Vec3>& a, const std::vector<
 
 inline double relative_difference(double a, double b) { return a == b ? 0 : std::abs(a - b) / std::abs(b); }
 
-inline std::vector<Vec3> wall_forces(const std::array<Vec3, 6>& forces) { return {forces.begin(), forces.end()}; }
+inline std::vector<Vec3> wall_forces(const std::array<Vec3, 6>& forces) {
+    return {forces.begin(), forces.end()};
+}
 
 /// The same bits in every number.
 inline bool same_bits(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
-    return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(Vec3)) == 0);
+    return a.size() == b.size() &&
+           (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(Vec3)) == 0);
 }
 
 inline bool same_bits(const mcdem::ReplicaState& a, const mcdem::ReplicaState& b) {
     const auto forces = [](const mcdem::ReplicaState& state) {
         std::vector<Vec3> all;
         for (const auto& contact : state.contacts)
-            all.insert(all.end(), {contact.force, contact.point, Vec3(contact.grain, contact.partner, contact.overlap)});
+            all.insert(all.end(),
+                       {contact.force, contact.point, Vec3(contact.grain, contact.partner, contact.overlap)});
         return all;
     };
     return same_bits(a.position, b.position) && same_bits(a.velocity, b.velocity) &&

@@ -35,7 +35,8 @@ struct Told {
             add(c.point);
             numbers.push_back(c.overlap);
         }
-        for (double value : {scan.time, scan.plate_z, scan.kinetic_energy, scan.elastic_energy, scan.mean_force})
+        for (double value :
+             {scan.time, scan.plate_z, scan.kinetic_energy, scan.elastic_energy, scan.mean_force})
             numbers.push_back(value);
     }
     void add(const Vec3& v) { numbers.insert(numbers.end(), {v.x(), v.y(), v.z()}); }

@@ -30,7 +30,8 @@ constexpr double default_gap = 1e-4;
 Start collision(Against against, double restitution, double time_step, double gap = default_gap) {
     const Replica replica = collision_replica(restitution, time_step);
     if (against == Against::grain)
-        return free_cluster(replica, {{0, 0, 0}, {radius + other_radius + gap, 0, 0}}, {2 * radius, 2 * other_radius});
+        return free_cluster(replica, {{0, 0, 0}, {radius + other_radius + gap, 0, 0}},
+                            {2 * radius, 2 * other_radius});
     Start start = free_cluster(replica, {{0, 0, 0}}, {2 * radius});
     start.packing.position[0].z() = radius + gap;
     return start;
@@ -43,7 +44,8 @@ struct Hertz {
         const bool pair = against == Against::grain;
         const double modulus = 1e5 / (1 - 0.09) / (pair ? 2 : 1);
         const double r = pair ? radius * other_radius / (radius + other_radius) : radius;
-        const double m = 1000 * 4 / 3.0 * pi * std::pow(radius, 3), n = m * std::pow(other_radius / radius, 3);
+        const double m = 1000 * 4 / 3.0 * pi * std::pow(radius, 3),
+                     n = m * std::pow(other_radius / radius, 3);
         mass = pair ? m * n / (m + n) : m;
         stiffness = 4.0 / 3 * modulus * std::sqrt(r);
     }
@@ -128,8 +130,8 @@ std::vector<double> restitution_errors(Against against, double restitution, doub
     return errors;
 }
 
-// A collision takes some 30 steps, and with strong damping it makes a difference of a per cent where in a step it
-// begins; over many collisions that is the mean, which falls with the time step.
+// A collision takes some 30 steps, and with strong damping it makes a difference of a per cent where in a
+// step it begins; over many collisions that is the mean, which falls with the time step.
 TEST(Collision, GivesBackTheRestitutionAskedFor) {
     for (Against against : {Against::grain, Against::floor})
         for (double restitution : {0.95, 0.7, 0.5}) {
@@ -158,7 +160,8 @@ TEST(Collision, ErrorGoesWithTheSquareOfTheTimeStep) {
         Batch batch(build(Precision::double_precision), start);
         batch.engine().set_velocities(0, {{0, 0, -speed}}, {Vec3::Zero()});
         const double dt = batch.engine().time_step(0), touch = 1e-4 / speed;
-        const int steps = refine * static_cast<int>(std::ceil((touch + 1.2 * hertz.duration()) / (dt * refine)));
+        const int steps =
+            refine * static_cast<int>(std::ceil((touch + 1.2 * hertz.duration()) / (dt * refine)));
         batch.advance(steps);
         const double exact = radius + speed * (steps * dt - touch - hertz.duration());
         error.push_back(std::abs(batch.engine().state(0).position[0].z() - exact));

@@ -66,7 +66,8 @@ void expect_momenta_stay(Precision precision, double allowed) {
     Batch batch(build(precision), starts);
     set_random_velocities(batch, starts.size());
     std::vector<Momenta> before;
-    for (std::size_t r = 0; r < starts.size(); ++r) before.push_back(momenta(starts[r], batch.engine().state(r)));
+    for (std::size_t r = 0; r < starts.size(); ++r)
+        before.push_back(momenta(starts[r], batch.engine().state(r)));
     batch.advance(200);
     for (std::size_t r = 0; r < starts.size(); ++r) {
         const Momenta after = momenta(starts[r], batch.engine().state(r));
@@ -84,7 +85,9 @@ TEST(Conservation, MomentumAndAngularMomentumInDouble) {
     expect_momenta_stay(Precision::double_precision, 1e-12);
 }
 
-TEST(Conservation, MomentumAndAngularMomentumInFloat) { expect_momenta_stay(Precision::single_precision, 5e-4); }
+TEST(Conservation, MomentumAndAngularMomentumInFloat) {
+    expect_momenta_stay(Precision::single_precision, 5e-4);
+}
 
 // Contacts are told once, as the lower grain sees them. The next step of each grain must come from these
 // forces, turned round for the higher grain, applied at the very same points.
@@ -113,7 +116,8 @@ TEST(Conservation, ActionIsReactionAtOnePoint) {
         const double dt = batch.engine().time_step(r);
         for (std::size_t i = 0; i < 13; ++i) {
             change.push_back((after.velocity[i] - before[r].velocity[i]) * mass(starts[r], i) / dt);
-            turn.push_back((after.angular_velocity[i] - before[r].angular_velocity[i]) * inertia(starts[r], i) / dt);
+            turn.push_back((after.angular_velocity[i] - before[r].angular_velocity[i]) *
+                           inertia(starts[r], i) / dt);
         }
         EXPECT_LT(relative_difference(change, force), allowed) << name(starts[r].replica.contact.model);
         EXPECT_LT(relative_difference(turn, torque), allowed) << name(starts[r].replica.contact.model);

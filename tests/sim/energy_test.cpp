@@ -36,20 +36,24 @@ public:
         elastic_.push_back(elastic);
         const std::size_t n = kinetic_.size();
         most_ = std::max(most_, kinetic);
-        if (n >= 3 && kinetic_[n - 2] > kinetic && kinetic_[n - 2] >= kinetic_[n - 3] && kinetic_[n - 2] > 0.1 * most_)
+        if (n >= 3 && kinetic_[n - 2] > kinetic && kinetic_[n - 2] >= kinetic_[n - 3] &&
+            kinetic_[n - 2] > 0.1 * most_)
             peaks_.push_back(n - 2);
     }
     bool done() const { return peaks_.size() >= peaks_wanted; }
-    double steps_per_oscillation() const { return 2.0 * (peaks_.back() - peaks_.front()) / (peaks_.size() - 1); }
-    /// Mean total energy between two peaks. Velocities stand half a step before: the mean of two is at the step.
+    double steps_per_oscillation() const {
+        return 2.0 * (peaks_.back() - peaks_.front()) / (peaks_.size() - 1);
+    }
+    /// Mean total energy between two peaks. Velocities stand half a step before: the mean of two is at the
+    /// step.
     double energy(int first_peak, int last_peak) const {
         double sum = 0;
         for (std::size_t i = peaks_[first_peak]; i < peaks_[last_peak]; ++i)
             sum += elastic_[i] + (kinetic_[i] + kinetic_[i + 1]) / 2;
         return sum / (peaks_[last_peak] - peaks_[first_peak]);
     }
-    /// Of the motion's energy (the largest kinetic energy), per oscillation, from the means over the first and
-    /// the last ten oscillations.
+    /// Of the motion's energy (the largest kinetic energy), per oscillation, from the means over the first
+    /// and the last ten oscillations.
     double drift() const {
         const int last = peaks_.size() - 1;
         return (energy(last - 20, last - 1) - energy(0, 19)) / most_ / (oscillations - 10);
@@ -81,9 +85,9 @@ std::vector<Record> ring(const std::vector<Start>& starts) {
     return records;
 }
 
-/// The extrapolated displacement (10 b(t) - 5 b(t - 2 dt) + b(t - 4 dt)) / 6 is out of phase with the true one by
-/// 8/3 sin^5(omega dt). Where a part g of the stiffness comes from displaced surfaces, that changes the energy by
-/// 2 pi g times as much in an oscillation; past |g| = 1 there is no stable state at all.
+/// The extrapolated displacement (10 b(t) - 5 b(t - 2 dt) + b(t - 4 dt)) / 6 is out of phase with the true
+/// one by 8/3 sin^5(omega dt). Where a part g of the stiffness comes from displaced surfaces, that changes
+/// the energy by 2 pi g times as much in an oscillation; past |g| = 1 there is no stable state at all.
 double drift_bound(double steps_per_oscillation) {
     using std::numbers::pi;
     return 2 * pi * 8.0 / 3 * std::pow(std::sin(2 * pi / steps_per_oscillation), 5);
@@ -96,15 +100,18 @@ TEST(Energy, DriftsLessThanTheExtrapolationAllows) {
         for (double time_step : time_steps) starts.push_back(ringing_cluster(model, time_step));
     const auto records = ring(starts);
     ASSERT_EQ(records.size(), starts.size());
-    fmt::print("drift of the energy of motion per oscillation, over {} oscillations of 13 caged grains\n", oscillations);
-    fmt::print("{:22} {:>9} {:>18} {:>10} {:>10}\n", "model", "time step", "steps/oscillation", "drift", "bound");
+    fmt::print("drift of the energy of motion per oscillation, over {} oscillations of 13 caged grains\n",
+               oscillations);
+    fmt::print("{:22} {:>9} {:>18} {:>10} {:>10}\n", "model", "time step", "steps/oscillation", "drift",
+               "bound");
     for (std::size_t m = 0; m < std::size(all_models); ++m) {
         for (std::size_t t = 0; t < 3; ++t) {
             const Record& record = records[3 * m + t];
             const double steps = record.steps_per_oscillation();
-            fmt::print("{:22} {:>9} {:>18.1f} {:>10.1e} {:>10.1e}\n", name(all_models[m]), time_steps[t], steps,
-                       record.drift(), drift_bound(steps));
-            EXPECT_LT(std::abs(record.drift()), drift_bound(steps)) << name(all_models[m]) << ' ' << time_steps[t];
+            fmt::print("{:22} {:>9} {:>18.1f} {:>10.1e} {:>10.1e}\n", name(all_models[m]), time_steps[t],
+                       steps, record.drift(), drift_bound(steps));
+            EXPECT_LT(std::abs(record.drift()), drift_bound(steps))
+                << name(all_models[m]) << ' ' << time_steps[t];
             EXPECT_TRUE(all_models[m] != ContactModel::independent || std::abs(record.drift()) < 2e-5);
         }
         // fifth order would be 32 and 1024 times; half of that for the mixture of modes

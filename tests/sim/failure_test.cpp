@@ -71,7 +71,8 @@ TEST(Failure, GrainThatLeavesTheBoxIsLost) {
         std::vector<Vec3> velocity(8, Vec3::Zero());
         velocity[7] = 0.2 / batch.engine().time_step(0) * direction;
         batch.engine().set_velocities(1, velocity, std::vector<Vec3>(8, Vec3::Zero()));
-        const auto results = batch.engine().advance({{20, start.replica.plate.start, 0, 0}, {20, start.replica.plate.start, 0, 0}});
+        const auto results = batch.engine().advance(
+            {{20, start.replica.plate.start, 0, 0}, {20, start.replica.plate.start, 0, 0}});
         EXPECT_EQ(results[0].status, 0);
         EXPECT_EQ(results[0].steps, 20);
         EXPECT_EQ(results[1].status, STATUS_LOST);
@@ -88,21 +89,23 @@ TEST(Failure, MoreNeighboursThanSlotsAreTold) {
     const int count = 30;
     for (int k = 0; k < count; ++k) {
         const double z = 1 - (2 * k + 1.0) / count, angle = 2.4 * k;
-        const Vec3 direction(std::sqrt(1 - z * z) * std::cos(angle), std::sqrt(1 - z * z) * std::sin(angle), z);
+        const Vec3 direction(std::sqrt(1 - z * z) * std::cos(angle), std::sqrt(1 - z * z) * std::sin(angle),
+                             z);
         start.packing.position.push_back(Vec3::Constant(0.5) + (radius + 1.001 * small) * direction);
         start.packing.diameter.push_back(2 * small);
     }
     std::swap(start.packing.position[0], start.packing.position[20]);
     std::swap(start.packing.diameter[0], start.packing.diameter[20]);
-    Batch few(build(Precision::single_precision, 16), start), enough(build(Precision::single_precision, 32), start);
+    Batch few(build(Precision::single_precision, 16), start),
+        enough(build(Precision::single_precision, 32), start);
     const auto result = few.advance(1).front();
     EXPECT_EQ(result.status, STATUS_SLOTS);
     EXPECT_EQ(result.failed_grain, 20);
     EXPECT_EQ(enough.advance(1).front().status, 0);
 }
 
-// The equator moves out by 2 % of the radius, further than the probed gap, towards walls that are too far to touch
-// but still listed.
+// The equator moves out by 2 % of the radius, further than the probed gap, towards walls that are too far to
+// touch but still listed.
 TEST(Failure, SurfaceThatBulgesPastTheProbedGapIsTold) {
     Start start = squeezed(ContactModel::elastic_sphere, 1, 0.12, 0);
     start.packing.position.resize(1);
@@ -135,14 +138,16 @@ TEST(Failure, SimulationNamesReplicaGrainStepAndCause) {
     mcdem::Simulation simulation(device(), short_scene(starts), {starts[0].packing, starts[1].packing});
     std::vector<int> scans(2, 0);
     std::vector<std::pair<int, mcdem::Failure>> failures;
-    while (simulation.advance([&](int r, const mcdem::Scan&) { ++scans[r]; },
-                              [&](int r, const mcdem::Failure& failure) { failures.emplace_back(r, failure); })) {
+    while (simulation.advance(
+        [&](int r, const mcdem::Scan&) { ++scans[r]; },
+        [&](int r, const mcdem::Failure& failure) { failures.emplace_back(r, failure); })) {
     }
     ASSERT_EQ(failures.size(), 1u);
     EXPECT_EQ(failures[0].first, 1);
     EXPECT_EQ(failures[0].second.grain, 5);
     EXPECT_GT(failures[0].second.step, 0);
-    EXPECT_NE(failures[0].second.cause.find("no static solution"), std::string::npos) << failures[0].second.cause;
+    EXPECT_NE(failures[0].second.cause.find("no static solution"), std::string::npos)
+        << failures[0].second.cause;
     EXPECT_EQ(scans[0], 4) << "two levels, there and back";
     EXPECT_EQ(scans[1], 0);
     EXPECT_DOUBLE_EQ(simulation.progress(), 1);

@@ -40,7 +40,8 @@ TEST(Motion, DragLeadsToTerminalVelocity) {
     const double dt = batch.engine().time_step(0);
     batch.advance(10, extra);
     const double rounding = has_double() ? 1e-13 : 1e-6;
-    EXPECT_NEAR(batch.engine().state(0).velocity[0].z(), -terminal * (1 - std::pow(1 - 40 * dt, 10)), rounding);
+    EXPECT_NEAR(batch.engine().state(0).velocity[0].z(), -terminal * (1 - std::pow(1 - 40 * dt, 10)),
+                rounding);
     batch.advance(2000, extra);
     EXPECT_NEAR(batch.engine().state(0).velocity[0].z(), -terminal, rounding);
 }

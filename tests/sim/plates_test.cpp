@@ -1,5 +1,5 @@
-// One grain between rigid plates, held by the walls of the box: what the kernels settle on, against the static
-// solution of each model and, for the elastic sphere, against finite elements.
+// One grain between rigid plates, held by the walls of the box: what the kernels settle on, against the
+// static solution of each model and, for the elastic sphere, against finite elements.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -42,7 +42,8 @@ std::vector<Row> read_rows(const std::string& name) {
 
 bool missing() { return !std::filesystem::exists(MCDEM_SHARED_DATA "/fem"); }
 
-/// A grain in a box of these half widths over its radius, a little out of the middle, so that it has to settle.
+/// A grain in a box of these half widths over its radius, a little out of the middle, so that it has to
+/// settle.
 Start held_grain(ContactModel model, double poisson_ratio, const Vec3& half_width) {
     Replica replica;
     replica.grains = {youngs_modulus, poisson_ratio, 1000, 0, 0, 0.5, 0};
@@ -122,8 +123,10 @@ TEST(Plates, ElasticSphereMeetsFiniteElements) {
             << rows[k].arrangement << " nu " << rows[k].poisson_ratio << " overlap " << rows[k].overlap;
         worst = std::max(worst, std::abs(forces[k] / rows[k].value - 1));
     }
-    fmt::print("elastic sphere between two and six plates, overlap/R 0.005 to 0.15: within {:.2f} % of finite elements\n",
-               100 * worst);
+    fmt::print(
+        "elastic sphere between two and six plates, overlap/R 0.005 to 0.15: within {:.2f} % of finite "
+        "elements\n",
+        100 * worst);
 }
 
 /// A grain pressed between floor and plate, with side walls at `gap` from its undeformed equator.
@@ -132,8 +135,8 @@ Start beside_walls(const Row& row, double overlap) {
                       Vec3(1 + row.value, 1 + row.value, 1 - overlap));
 }
 
-// Side walls at the gap that the equator bulges by at an overlap: 5 % below it they feel nothing, 5 % above it they
-// do. In the middle, since the gaps are as small as a ten-thousandth of the radius.
+// Side walls at the gap that the equator bulges by at an overlap: 5 % below it they feel nothing, 5 % above
+// it they do. In the middle, since the gaps are as small as a ten-thousandth of the radius.
 TEST(Plates, BulgingTouchesTheSideWallsAtTheRightOverlap) {
     if (missing()) GTEST_SKIP() << "the finite-element tables are not here";
     const auto rows = read_rows("equator_bulge.csv");
@@ -146,7 +149,8 @@ TEST(Plates, BulgingTouchesTheSideWallsAtTheRightOverlap) {
             centre.x() = centre.y() = radius * (1 + row.value);
         }
     }
-    const auto nothing = settled_forces(below, mcdem::Wall::x_max), something = settled_forces(above, mcdem::Wall::x_max);
+    const auto nothing = settled_forces(below, mcdem::Wall::x_max),
+               something = settled_forces(above, mcdem::Wall::x_max);
     for (std::size_t k = 0; k < rows.size(); ++k) {
         const std::string where = fmt::format("nu {} overlap {}", rows[k].poisson_ratio, rows[k].overlap);
         EXPECT_EQ(nothing[k], 0) << where;

@@ -1,5 +1,5 @@
-// Symmetries of the physics that the program must have: turned, mirrored, moved or renumbered, a packing does the
-// same; and models that coincide in a limit coincide.
+// Symmetries of the physics that the program must have: turned, mirrored, moved or renumbered, a packing does
+// the same; and models that coincide in a limit coincide.
 #include <algorithm>
 #include <functional>
 #include <numeric>
@@ -56,7 +56,8 @@ TEST(Symmetry, TurnedMirroredOrMovedAClusterDoesTheSame) {
     }
     Uniform uniform(6);
     const auto velocity = uniform.vectors(13, 0.1), spin = uniform.vectors(13, 10);
-    const auto after = [&](const std::vector<Start>& from, const std::vector<Vec3>& v, const std::vector<Vec3>& w) {
+    const auto after = [&](const std::vector<Start>& from, const std::vector<Vec3>& v,
+                           const std::vector<Vec3>& w) {
         Batch batch(build(finest()), from);
         for (std::size_t r = 0; r < from.size(); ++r) batch.engine().set_velocities(r, v, w);
         batch.advance(30);
@@ -71,14 +72,19 @@ TEST(Symmetry, TurnedMirroredOrMovedAClusterDoesTheSame) {
         const auto states = after(turned, changed(velocity, change.direction), changed(spin, change.axis));
         for (std::size_t r = 0; r < starts.size(); ++r) {
             const std::string where = std::string(change.what) + ", " + std::string(name(all_models[r]));
-            EXPECT_LT(relative_difference(states[r].position, changed(original[r].position, change.point)), allowed)
-                << where;
-            EXPECT_LT(relative_difference(states[r].velocity, changed(original[r].velocity, change.direction)), allowed)
-                << where;
-            EXPECT_LT(relative_difference(states[r].angular_velocity, changed(original[r].angular_velocity, change.axis)),
+            EXPECT_LT(relative_difference(states[r].position, changed(original[r].position, change.point)),
                       allowed)
                 << where;
-            EXPECT_LT(relative_difference(forces_by_pair(states[r]), changed(forces_by_pair(original[r]), change.direction)),
+            EXPECT_LT(
+                relative_difference(states[r].velocity, changed(original[r].velocity, change.direction)),
+                allowed)
+                << where;
+            EXPECT_LT(relative_difference(states[r].angular_velocity,
+                                          changed(original[r].angular_velocity, change.axis)),
+                      allowed)
+                << where;
+            EXPECT_LT(relative_difference(forces_by_pair(states[r]),
+                                          changed(forces_by_pair(original[r]), change.direction)),
                       allowed)
                 << where;
         }
@@ -174,8 +180,9 @@ TEST(Symmetry, GammaOneIsTheHalfSpaceToTheBit) {
     EXPECT_FALSE(same_bits(batch.engine().state(0), batch.engine().state(2)));
 }
 
-// At nu = 1/2, with contact points (all but) on the sphere. They lie at R (1 - compression), so the half space's
-// displacements are larger by that part, and the forces differ by as much of what the corrections make.
+// At nu = 1/2, with contact points (all but) on the sphere. They lie at R (1 - compression), so the half
+// space's displacements are larger by that part, and the forces differ by as much of what the corrections
+// make.
 TEST(Symmetry, HalfSpaceNearTheSphereIsSphereToSphere) {
     constexpr double compression = 1e-3;
     std::vector<Start> starts;

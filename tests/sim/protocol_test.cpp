@@ -1,0 +1,139 @@
+// The plate's program by itself, fed with results made up here: where it scans, in which order, and when it
+// takes a packing for settled.
+#include "sim/protocol.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace mcdem {
+namespace {
+
+constexpr double time_step = 1e-3;
+
+Replica replica_of(int cycles, int scans, bool stop_at_scans) {
+    Replica replica;
+    replica.plate = {0.2, 0.1, 0.5};
+    replica.protocol.cycles = cycles;
+    replica.protocol.scans_per_stroke = scans;
+    replica.protocol.stop_at_scans = stop_at_scans;
+    replica.protocol.settle_time = 0.05;
+    replica.protocol.relax_time = 0.08;
+    return replica;
+}
+
+/// What a packing would answer that is at rest, or never is.
+StretchResult answer(int steps, double kinetic) {
+    StretchResult result;
+    result.steps = steps;
+    result.kinetic_energy = kinetic;
+    result.elastic_energy = 1;
+    return result;
+}
+
+/// A whole protocol and what came of it.
+struct Course {
+    std::vector<ProtocolRunner::ScanTag> scans;
+    std::vector<Stretch> stretches;
+    std::vector<double> progress;
+    long steps = 0;
+    Course(const Replica& replica, double kinetic, int longest = 60) { run(replica, kinetic, longest); }
+
+private:
+    void run(const Replica& replica, double kinetic, int longest) {
+        ProtocolRunner runner(replica, time_step);
+        while (!runner.finished()) {
+            stretches.push_back(runner.next([&](double) { return longest; }));
+            ASSERT_GT(stretches.back().steps, 0);
+            ASSERT_LE(stretches.back().steps, longest);
+            ASSERT_LT(stretches.size(), 100000u);
+            steps += stretches.back().steps;
+            if (const auto scan = runner.made(answer(stretches.back().steps, kinetic)))
+                scans.push_back(*scan);
+            progress.push_back(runner.progress());
+        }
+        EXPECT_EQ(runner.next([](double) { return 60; }).steps, 0);
+    }
+};
+
+TEST(Protocol, ScansAtEveryLevelThereAndBack) {
+    for (bool stops : {true, false}) {
+        const Course course(replica_of(2, 4, stops), 0, 10);
+        ASSERT_EQ(course.scans.size(), 16u);
+        for (int k = 0; k < 16; ++k) {
+            const auto& scan = course.scans[k];
+            const int level = k % 4 + 1;
+            EXPECT_EQ(scan.frame, k);
+            EXPECT_EQ(scan.cycle, k / 8);
+            EXPECT_EQ(scan.phase, k / 4 % 2 ? Phase::unload : Phase::load);
+            EXPECT_NEAR(scan.plate_z, k / 4 % 2 ? 0.1 + 0.025 * level : 0.2 - 0.025 * level, 1e-15);
+            EXPECT_EQ(scan.settled, stops);
+        }
+        EXPECT_NEAR(course.scans.back().time, course.steps * time_step, 1e-12);
+    }
+}
+
+// 25 mm at 0.5 m/s are 50 steps; the plate stands where the stretches before have brought it.
+TEST(Protocol, MovesAtTheSpeedAskedForWithoutAJump) {
+    const Course course(replica_of(1, 4, true), 0, 7);
+    double plate = 0.2;
+    int moving = 0;
+    for (const Stretch& stretch : course.stretches) {
+        EXPECT_NEAR(stretch.plate_z, plate, 1e-12);
+        plate += stretch.plate_velocity * stretch.steps * time_step;
+        moving += stretch.plate_velocity != 0 ? stretch.steps : 0;
+        EXPECT_NEAR(std::abs(stretch.plate_velocity), stretch.plate_velocity != 0 ? 0.5 : 0, 1e-9);
+        EXPECT_EQ(stretch.extra_drag > 0, stretch.plate_velocity == 0) << "drag while the plate stands still";
+    }
+    EXPECT_EQ(moving, 2 * 4 * 50);
+    EXPECT_NEAR(plate, 0.2, 1e-12);
+}
+
+// A speed that does not divide the way is lowered a little, never raised.
+TEST(Protocol, NeverMovesFasterThanAskedFor) {
+    Replica replica = replica_of(1, 7, true);
+    replica.plate.speed = 0.37;
+    for (const Stretch& stretch : Course(replica, 0).stretches) {
+        EXPECT_LE(std::abs(stretch.plate_velocity), 0.37 * (1 + 1e-9));
+        EXPECT_TRUE(stretch.plate_velocity == 0 || std::abs(stretch.plate_velocity) > 0.35);
+    }
+}
+
+TEST(Protocol, WaitsUntilThePackingIsAtRestOrTimeIsUp) {
+    const Course calm(replica_of(1, 2, true), 1e-5, 10), restless(replica_of(1, 2, true), 1e-3);
+    for (const auto& scan : calm.scans) EXPECT_TRUE(scan.settled);
+    for (const auto& scan : restless.scans) EXPECT_FALSE(scan.settled);
+    EXPECT_EQ(restless.scans.size(), 4u);
+    // 80 steps of relaxation, then 100 of motion and 50 of waiting for each scan
+    EXPECT_EQ(restless.steps, 80 + 4 * (100 + 50));
+
+    EXPECT_EQ(calm.steps, 20 + 4 * (100 + 20)) << "settled after two stretches in a row";
+}
+
+TEST(Protocol, ProgressGrowsFromZeroToOne) {
+    const Course course(replica_of(3, 5, true), 0);
+    EXPECT_TRUE(std::is_sorted(course.progress.begin(), course.progress.end()));
+    EXPECT_LT(course.progress.front(), 0.05);
+    EXPECT_EQ(course.progress.back(), 1);
+}
+
+TEST(Protocol, GoesOnFromItsStateAlone) {
+    const Replica replica = replica_of(2, 3, true);
+    ProtocolRunner runner(replica, time_step);
+    for (int round = 0; !runner.finished(); ++round) {
+        ProtocolRunner other(replica, time_step);
+        other.set_state(runner.state());
+        const auto longest = [](double) { return 17; };
+        const Stretch one = runner.next(longest), two = other.next(longest);
+        ASSERT_EQ(one.steps, two.steps) << "round " << round;
+        ASSERT_EQ(one.plate_z, two.plate_z);
+        ASSERT_EQ(one.plate_velocity, two.plate_velocity);
+        runner.made(answer(one.steps, 0));
+    }
+    runner.stop();
+    EXPECT_TRUE(runner.finished());
+}
+
+}  // namespace
+}  // namespace mcdem
