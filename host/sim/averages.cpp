@@ -10,7 +10,7 @@ namespace {
 
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
-/// Points that fill the unit ball evenly: a golden-angle spiral on shells of equal volume.
+/// Points that fill the unit ball evenly: a golden-angle spiral, its radii from a sequence of their own.
 const std::vector<Vec3>& ball_points() {
     static const std::vector<Vec3> points = [] {
         constexpr int count = 512;
@@ -18,7 +18,7 @@ const std::vector<Vec3>& ball_points() {
         for (int k = 0; k < count; ++k) {
             const double z = 1 - (2 * k + 1.0) / count;
             const double angle = k * std::numbers::pi * (3 - std::sqrt(5.0));
-            const double shell = std::cbrt(std::fmod(k * std::numbers::phi, 1.0));
+            const double shell = std::cbrt(std::fmod((k + 0.5) * std::numbers::sqrt2, 1.0));
             const double rim = std::sqrt(1 - z * z);
             all.push_back(shell * Vec3(rim * std::cos(angle), rim * std::sin(angle), z));
         }
