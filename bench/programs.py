@@ -2,6 +2,7 @@
 import json
 import os
 import pathlib
+import resource
 import subprocess
 import tempfile
 
@@ -56,6 +57,26 @@ def processor():
         if line.startswith("model name"):
             return line.split(":", 1)[1].strip()
     return "unknown processor"
+
+
+class OtherPrograms:
+    """How many cores programs other than our own children keep busy, from here on (Linux)."""
+
+    def __init__(self):
+        self.busy, self.total, self.own = self.clock()
+
+    @staticmethod
+    def clock():
+        """Seconds of all cores together: busy, in all; and those of our children."""
+        fields = [float(f) / os.sysconf("SC_CLK_TCK") for f in open("/proc/stat").readline().split()[1:9]]
+        idle = fields[3] + fields[4]
+        children = resource.getrusage(resource.RUSAGE_CHILDREN)
+        return sum(fields) - idle, sum(fields), children.ru_utime + children.ru_stime
+
+    def cores(self):
+        busy, total, own = self.clock()
+        share = (busy - self.busy - (own - self.own)) / max(total - self.total, 1e-9)
+        return max(0.0, share * (os.cpu_count() or 1))
 
 
 def cold_and_warm_compile(folder):

@@ -11,6 +11,7 @@ constexpr double see_neighbours = 3 + 5 + 1 + 1 + 3 + 3;
 constexpr double hertz = 2 + 2 + 2 + 2 + 2;  // gap, delta, a, S, F
 constexpr double reduced = 12;               // R* and m*
 constexpr double damping = 5 + 5;            // v_n, F_d
+constexpr double own_bulge = 4;
 constexpr double contact_point = 5 + 1;
 constexpr double sliding = 9 + 18 + 2;  // both spins, v_t, limit
 constexpr double saturated = 7 + 1 + 1 + 1 + 3;
@@ -19,9 +20,9 @@ constexpr double force_and_torque = 6 + 18;
 constexpr double checks = 2 + 1;
 constexpr double half_space_term =
     5 + 7 + 2 + 6 + 3 + 3;  // cosine, distance, root, u . n, bracket, times F and sum
-constexpr double sphere_term = 5 + 3 + 2 + 1 + 16 + 3;  // cosine, s, root, s, polynomial, times F and sum
-constexpr double finite_size_term = 1 + 12 + 4;         // spread, polynomial, product
-constexpr double self_term = 3 * (2 + 21 + 4 + 4 + 6) + 24;  // three Newton steps and the result
+constexpr double sphere_term = 5 + 3 + 2 + 1 + 17 + 3;      // cosine, s, root, s, polynomial, times F and sum
+constexpr double finite_size_term = 1 + 12 + 4;             // spread, polynomial, product
+constexpr double self_term = 1 + 3 * (2 + 21 + 4 + 4 + 6);  // three Newton steps
 constexpr double extrapolation = 1 + 5;
 constexpr double reductions = 7 * 15;  // per grain: seven sums over 16 lanes
 constexpr double integration = 50;     // per grain
@@ -56,7 +57,7 @@ StepCost step_cost(ContactModel model, FrictionLaw friction, Precision precision
 
     const double friction_flops = springs ? mindlin : saturated;
     const double self = model == ContactModel::elastic_sphere ? self_term : 0;
-    const double slot = see_neighbours + hertz + reduced + damping + contact_point + sliding +
+    const double slot = see_neighbours + hertz + reduced + damping + own_bulge + contact_point + sliding +
                         friction_flops + force_and_torque + checks + self + (bulging ? extrapolation : 0);
     // Each touching contact displaces the surface at every slot.
     return {reals * real + integers * 4,

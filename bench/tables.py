@@ -30,9 +30,9 @@ def count(number):
 def conditions(machine):
     lines = [f"- device: {machine['device']}", f"- host: {machine['processor']}, {machine['cores']} cores",
              f"- commit: {machine['commit']}", f"- measured {machine['date']}, load average of the machine before "
-             f"{machine['load_before']:.2f}, with these programs at the end {machine['load_after']:.2f}"]
-    if machine["load_before"] > 0.2 * machine["cores"]:
-        lines.append("- **measured under load**: other programs were using the cores, so read every figure as a lower bound and every ratio as rough")
+             f"{machine['load_before']:.2f}; meanwhile other programs kept {machine['other_programs']:.2f} cores busy"]
+    if machine["other_programs"] > 0.05 * machine["cores"]:
+        lines.append("- **measured under load**: read every figure as a lower bound and every ratio as rough")
     return "\n".join(lines) + "\n"
 
 
