@@ -1,0 +1,70 @@
+"""Every command in the documentation works: runs the ```sh blocks as they stand, in their order.
+
+documented_commands_test.py SOURCE_FOLDER FOLDER_OF_PROGRAM DOCUMENT..
+
+Of each block the lines that begin with `mcdem` or `python3 examples/` are run, all in one folder that looks
+like the source folder but is thrown away; a command must end with exit code 0. Lines that end with `# long`
+are left out, and so are commands on data that is not there (folder data/).
+"""
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+TIME_LIMIT = 600  # seconds for one command
+
+
+def commands(text):
+    """The commands of a document; lines that end with a backslash go on."""
+    for block in re.findall(r"^```sh\n(.*?)^```", text, re.DOTALL | re.MULTILINE):
+        for line in block.replace("\\\n", " ").splitlines():
+            line = line.strip().removeprefix("$ ")
+            if re.match(r"(mcdem|python3 examples/)", line):
+                yield line
+
+
+def is_left_out(command):
+    return command.endswith("# long") or re.search(r"\bdata/", command)
+
+
+def working_folder(source, folder):
+    for name in ("scenes", "examples", "host", "README.md"):
+        if (source / name).exists():
+            (folder / name).symlink_to(source / name)
+
+
+def failures(source, program, document, folder):
+    environment = dict(os.environ, PATH=f"{program}:{os.environ['PATH']}", MPLCONFIGDIR=str(folder))
+    for command in commands(document.read_text()):
+        where = document.relative_to(source)
+        if is_left_out(command):
+            print(f"{where}: left out: {command}")
+            continue
+        print(f"{where}: {command}", flush=True)
+        try:
+            done = subprocess.run(["bash", "-c", command], cwd=folder, env=environment, timeout=TIME_LIMIT)
+            if done.returncode != 0:
+                yield f"{where}: exit code {done.returncode}: {command}"
+        except subprocess.TimeoutExpired:
+            yield f"{where}: longer than {TIME_LIMIT} s, say `# long`: {command}"
+
+
+def main():
+    assert list(commands("```sh\nmcdem a \\\n  b\nls\n$ mcdem c  # long\n```\n```toml\nmcdem d\n```\n")) == [
+        "mcdem a    b", "mcdem c  # long"]
+    source, program = (pathlib.Path(word).resolve() for word in sys.argv[1:3])
+    problems = []
+    with tempfile.TemporaryDirectory(prefix="mcdem-docs-") as name:
+        folder = pathlib.Path(name)
+        working_folder(source, folder)
+        for document in (source / word for word in sys.argv[3:]):
+            if document.exists():
+                problems += failures(source, program, document, folder)
+    print("\n".join(problems))
+    return 1 if problems else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

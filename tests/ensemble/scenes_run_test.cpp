@@ -1,0 +1,53 @@
+// Every scene of the folder scenes/ runs: its first millimetre, one scan each way.
+#include <gtest/gtest.h>
+
+#include "ensemble/run_scene.h"
+#include "ensemble/small_scene.h"
+#include "io/results.h"
+
+namespace mcdem {
+namespace {
+
+namespace fs = std::filesystem;
+constexpr std::size_t most_replicas = 6;
+
+/// The scene, cut short.
+Scene beginning_of(const fs::path& file) {
+    Scene scene = read_scene(file);
+    if (scene.replicas.size() > most_replicas) scene.replicas.resize(most_replicas);
+    for (Replica& replica : scene.replicas) {
+        replica.plate.end = std::max(replica.plate.end, replica.plate.start - 1e-3);
+        replica.protocol.cycles = replica.protocol.scans_per_stroke = 1;
+        replica.protocol.settle_time = replica.protocol.relax_time = 1e-3;
+    }
+    return scene;
+}
+
+std::vector<fs::path> scene_files() {
+    std::vector<fs::path> files;
+    for (const auto& entry : fs::directory_iterator(fs::path(MCDEM_SOURCE_DIR) / "scenes"))
+        if (entry.path().extension() == ".toml") files.push_back(entry.path());
+    std::sort(files.begin(), files.end());
+    return files;
+}
+
+class ScenesRun : public testing::TestWithParam<fs::path> {};
+
+TEST_P(ScenesRun, Begins) {
+    TestFolder folder;
+    Device device;
+    RunOptions options;
+    options.folder = folder.path / "run";
+    EXPECT_EQ(run_scene(device, beginning_of(GetParam()), options).end, RunEnd::done);
+    const auto run = read_run(options.folder, ReadWhat::observables);
+    for (const auto& recording : run.recordings) {
+        EXPECT_FALSE(recording.failure) << recording.label << ": " << recording.failure->cause;
+        EXPECT_EQ(recording.scans.size(), 2u) << recording.label;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Folder, ScenesRun, testing::ValuesIn(scene_files()),
+                         [](const auto& scene) { return scene.param.stem().string(); });
+
+}  // namespace
+}  // namespace mcdem

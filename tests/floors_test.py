@@ -1,0 +1,109 @@
+"""The order of the house: what each floor of host/ may include, and how long files and functions may be.
+
+floors_test.py SOURCE_FOLDER; lists what breaks the rules, exit code 1 where something does.
+"""
+import pathlib
+import re
+import sys
+
+# Floor -> the floors whose headers it may include, besides its own.
+FLOORS = {
+    "core": [],
+    "cl": ["core"],
+    "scene": ["core"],
+    "sim": ["scene", "cl", "core"],
+    "io": ["scene", "core"],
+    "experiment": ["scene", "core"],
+    "metrics": ["core"],
+    "calibrate": ["metrics", "core"],
+    "report": ["metrics", "core"],
+    "ensemble": ["calibrate", "metrics", "sim", "io", "scene", "cl", "core"],
+    "cli": ["ensemble", "report", "calibrate", "metrics", "sim", "io", "experiment", "scene", "cl", "core"],
+}
+LONGEST_FILE = 400
+LONGEST_FUNCTION = 70
+SOURCES = {".cpp", ".h", ".cl", ".py"}
+
+
+def sources(root, folders=("host", "kernels", "tests", "bench")):
+    for folder in folders:
+        for file in sorted((root / folder).rglob("*")):
+            if file.suffix in SOURCES and file.is_file():
+                yield file
+
+
+def floor_of(include):
+    """The floor that an include names; kernels/ stands for itself, libraries for nothing."""
+    first = include.split("/")[0]
+    return first if first in FLOORS or first == "kernels" else None
+
+
+def wrong_includes(root):
+    for floor, below in FLOORS.items():
+        allowed = {floor, *below, *(["kernels"] if floor == "sim" else [])}
+        for file in sorted((root / "host" / floor).glob("*.*")):
+            for number, line in enumerate(file.read_text().splitlines(), 1):
+                include = re.match(r'\s*#\s*include\s+"([^"]+)"', line)
+                if include and floor_of(include[1]) not in allowed | {None}:
+                    yield (f"{file.relative_to(root)}:{number}: {floor} must not include {include[1]}; "
+                           f"it may use {', '.join(sorted(allowed - {floor})) or 'nothing'}")
+
+
+def strange_folders(root):
+    for folder in sorted((root / "host").iterdir()):
+        if folder.is_dir() and folder.name not in FLOORS:
+            yield f"host/{folder.name}: is no floor; name it in tests/floors_test.py"
+
+
+def long_files(root):
+    for file in sources(root):
+        lines = len(file.read_text().splitlines())
+        if lines > LONGEST_FILE:
+            yield f"{file.relative_to(root)}: has {lines} lines, at most {LONGEST_FILE}"
+
+
+def functions(text):
+    """First line and length of each block that follows a parameter list, by the indentation of its brace."""
+    lines = text.splitlines()
+    for first, line in enumerate(lines):
+        if not re.search(r"\)[\w\s:<>,&*()-]*\{$", line) or re.match(r"\s*(if|for|while|switch|namespace|})\b", line):
+            continue
+        start = first
+        while start > 0 and (lines[start].lstrip().startswith(":") or lines[start - 1].endswith((",", "("))):
+            start -= 1  # a signature of several lines
+        closing = re.match(r"\s*", lines[start])[0] + "}"
+        for last in range(first + 1, len(lines)):
+            if lines[last].startswith(closing):
+                yield start + 1, last - start + 1
+                break
+
+
+def long_functions(root):
+    for file in sources(root):
+        if file.suffix == ".py":
+            continue
+        for line, length in functions(file.read_text()):
+            if length > LONGEST_FUNCTION:
+                yield f"{file.relative_to(root)}:{line}: function of {length} lines, at most {LONGEST_FUNCTION}"
+
+
+def self_test():
+    """A checker that finds nothing anywhere would be of no use."""
+    body = "void f(int a) {\n" + "    g();\n" * 80 + "}\nvoid g() {\n}\n"
+    assert list(functions(body)) == [(1, 82), (83, 2)], list(functions(body))
+    constructor = "    A(int a,\n      int b)\n        : a_(a) {\n        f();\n    }\n"
+    assert list(functions(constructor)) == [(1, 5)], list(functions(constructor))
+    assert floor_of("sim/engine.h") == "sim" and floor_of("vector") is None
+
+
+def main():
+    self_test()
+    root = pathlib.Path(sys.argv[1])
+    problems = [problem for rule in (strange_folders, wrong_includes, long_files, long_functions)
+                for problem in rule(root)]
+    print("\n".join(problems) or f"{sum(1 for _ in sources(root))} files in order")
+    return 1 if problems else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
