@@ -165,6 +165,51 @@ void expect_memory_moves_with_neighbours(const Start& start, const char* quantit
     EXPECT_GT(changed, 10) << "neighbours that were lost";
 }
 
+// Grains cross the list's margin several times within a stretch, and the plate comes down on them: a stretch
+// ends early rather than miss a contact. The reference looks at every pair in every step.
+TEST(NeighbourList, LongStretchesMissNoContact) {
+    if (!has_double()) GTEST_SKIP() << "the device has no double precision";
+    const Start start = mixing(FrictionLaw::saturated, ContactModel::independent);
+    constexpr double plate_velocity = -0.003;
+    Batch batch(build(Precision::double_precision), start);
+    Uniform uniform(15);
+    batch.engine().set_velocities(0, uniform.vectors(27, 0.5), uniform.vectors(27, 20));
+    StepReference reference = reference_of(batch.engine(), 0, start);
+    reference.begin(start.replica.plate.start, plate_velocity);
+    double plate = start.replica.plate.start;
+    int cut_short = 0;
+    for (int stretch = 0; stretch < 60; ++stretch) {
+        const int asked = batch.engine().longest_stretch(0, plate_velocity);
+        ASSERT_GT(asked, 0);
+        const auto result = batch.engine().advance({{asked, plate, plate_velocity, 0}}).front();
+        ASSERT_EQ(result.status, 0);
+        cut_short += result.steps < asked;
+        for (int step = 0; step < result.steps; ++step) {
+            reference.list_neighbours();
+            reference.step();
+        }
+        plate += plate_velocity * result.steps * reference.time_step();
+        reference.begin(plate, plate_velocity);
+        ASSERT_LT(relative_difference(batch.engine().state(0).velocity, reference.velocity), 1e-9) << stretch;
+    }
+    EXPECT_GT(cut_short, 3);
+}
+
+// The most that a stretch may let the plate come nearer is a fifth of the margin (grains may use the rest).
+TEST(NeighbourList, StretchesEndBeforeThePlateOutrunsTheList) {
+    const Start start = jittered_lattice(test_replica(), 64, 16);
+    Batch batch(build(Precision::single_precision), start);
+    const double margin = 0.2 * start.replica.numerics.skin * 0.01;
+    for (double velocity : {-10.0, -1.0, 0.01}) {
+        const int steps = batch.engine().longest_stretch(0, velocity);
+        const double step = std::abs(velocity) * batch.engine().time_step(0);
+        EXPECT_TRUE(steps == 1 || steps * step < 1.02 * margin) << velocity;
+        EXPECT_GT((steps + 1) * step, steps == 60 ? 0 : 0.98 * margin)
+            << velocity << ": no shorter than needed";
+    }
+    EXPECT_EQ(batch.engine().longest_stretch(0, 0), 60);
+}
+
 TEST(NeighbourList, BulgesMoveWithTheirNeighbours) {
     if (!has_double()) GTEST_SKIP() << "the device has no double precision";
     expect_memory_moves_with_neighbours(mixing(FrictionLaw::saturated, ContactModel::mc_dem), "bulge");
