@@ -19,6 +19,18 @@ INLINE void displace_surfaces(global const Replica* restrict replica, EXCHANGE c
     }
 }
 
+/* A replica that has made its steps keeps its state in both copies of every field. */
+INLINE void keep_state(global const Replica* restrict replica, int grain, size_t row, real4 position, real4 velocity,
+                       real4 spin, global const real* restrict bulge, global real4* restrict position_next,
+                       global real4* restrict velocity_next, global real4* restrict spin_next,
+                       global real* restrict bulge_next) {
+    position_next[grain] = position;
+    velocity_next[grain] = velocity;
+    spin_next[grain] = spin;
+    if (replica->surface == SURFACE_RIGID) return;
+    for (int v = 0; v < VECTORS; ++v) STORE_LANES(LOAD_LANES(bulge + row, v), bulge_next + row, v);
+}
+
 /* Slots in trouble, two kinds counted in one sum. */
 #define DEEP_SLOTS 1024
 INLINE int trouble_status(real counts) {
@@ -40,14 +52,11 @@ kernel void advance(const int s, const int slot_count, global const Replica* res
     const real4 own = position[grain];
     const real4 own_velocity = velocity[grain];
     const real4 own_spin = angular_velocity[grain];
-    if (s >= stop_at[replica_of_block[block]]) { /* this replica waits: keep its state in both copies */
-        position_next[grain] = own;
-        velocity_next[grain] = own_velocity;
-        angular_velocity_next[grain] = own_spin;
-        if (replica->surface != SURFACE_RIGID)
-            for (int v = 0; v < VECTORS; ++v) STORE_LANES(LOAD_LANES(bulge + row, v), bulge_next + row, v);
-        return;
-    }
+    const bool waits = s >= stop_at[replica_of_block[block]];
+    if (waits) keep_state(replica, grain, row, own, own_velocity, own_spin, bulge, position_next, velocity_next,
+                          angular_velocity_next, bulge_next);
+    /* Where barriers follow, the work-items of a waiting replica go through them and write nothing. */
+    if (waits && LANES == 16) return;
 
     const real plate_z = plate_position(replica, s);
     lanes3 force = {R(0), R(0), R(0)}, torque = {R(0), R(0), R(0)};
@@ -59,7 +68,7 @@ kernel void advance(const int s, const int slot_count, global const Replica* res
         load_bulges(replica, row, v, mirror, bulge, &here, &there);
         lanes3 spring = load_springs(replica, row, v, spring_x, spring_y, spring_z);
         const Contacts c = contact_forces(replica, own.w, own_spin.xyz, seen, here, there, replica->time_step, &spring);
-        if (replica->mindlin) {
+        if (replica->mindlin && !waits) {
             STORE_LANES(spring.x, spring_x + row, v);
             STORE_LANES(spring.y, spring_y + row, v);
             STORE_LANES(spring.z, spring_z + row, v);
@@ -71,13 +80,13 @@ kernel void advance(const int s, const int slot_count, global const Replica* res
         tabulate(c, seen.normal, v, table);
     }
     SYNCHRONISE();
-    if (replica->surface != SURFACE_RIGID)
+    if (replica->surface != SURFACE_RIGID && !waits)
         displace_surfaces(replica, table, own.w, row, replica->steps_before + s, slot_count, bulge_next, history);
 
     const lanes trouble = WHERE(too_deep, R(1), R(0)) + WHERE(unprobed, R(DEEP_SLOTS), R(0));
     const real4 total_force = sum_lanes(force.x, force.y, force.z, trouble, scratch);
     const real4 total_torque = sum_lanes(torque.x, torque.y, torque.z, (lanes)(R(0)), scratch);
-    if (!IS_LEADER || !(own.w > R(0))) return;
+    if (waits || !IS_LEADER || !(own.w > R(0))) return;
 
     const Motion after = integrate(replica, own, own_velocity, own_spin, total_force.xyz, total_torque.xyz);
     position_next[grain] = after.position;

@@ -3,6 +3,7 @@
 // alone and in any batch.
 #pragma once
 #include <optional>
+#include <type_traits>
 
 #include "scene/scene.h"
 #include "sim/engine.h"
@@ -12,15 +13,16 @@ namespace mcdem {
 /// The plate's program and how far it has come: plain values, so that a checkpoint can hold them.
 struct ProtocolState {
     enum class Stage : int { relax, move, settle, finished };
+    long step = 0;               ///< since the start
+    long stage_step = 0;         ///< since this stage began
     Stage stage = Stage::relax;
     int cycle = 0;
     Phase phase = Phase::load;
     int level = 0;               ///< scans of this stroke taken or under way
     int frame = 0;               ///< scans taken
-    long step = 0;               ///< since the start
-    long stage_step = 0;         ///< since this stage began
     int settle_stretches = 0;    ///< in a row that met the settling criterion
 };
+static_assert(std::has_unique_object_representations_v<ProtocolState>, "equal states have equal bytes in checkpoints");
 
 class ProtocolRunner {
 public:
