@@ -12,8 +12,8 @@ namespace fs = std::filesystem;
 constexpr std::size_t most_replicas = 6;
 
 /// The scene, cut short.
-Scene beginning_of(const fs::path& file) {
-    Scene scene = read_scene(file);
+Scene beginning_of(const std::string& name) {
+    Scene scene = read_scene(fs::path(MCDEM_SOURCE_DIR) / "scenes" / (name + ".toml"));
     if (scene.replicas.size() > most_replicas) scene.replicas.resize(most_replicas);
     for (Replica& replica : scene.replicas) {
         replica.plate.end = std::max(replica.plate.end, replica.plate.start - 1e-3);
@@ -23,15 +23,15 @@ Scene beginning_of(const fs::path& file) {
     return scene;
 }
 
-std::vector<fs::path> scene_files() {
-    std::vector<fs::path> files;
+std::vector<std::string> scene_names() {
+    std::vector<std::string> names;
     for (const auto& entry : fs::directory_iterator(fs::path(MCDEM_SOURCE_DIR) / "scenes"))
-        if (entry.path().extension() == ".toml") files.push_back(entry.path());
-    std::sort(files.begin(), files.end());
-    return files;
+        if (entry.path().extension() == ".toml") names.push_back(entry.path().stem());
+    std::sort(names.begin(), names.end());
+    return names;
 }
 
-class ScenesRun : public testing::TestWithParam<fs::path> {};
+class ScenesRun : public testing::TestWithParam<std::string> {};
 
 TEST_P(ScenesRun, Begins) {
     TestFolder folder;
@@ -46,8 +46,8 @@ TEST_P(ScenesRun, Begins) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Folder, ScenesRun, testing::ValuesIn(scene_files()),
-                         [](const auto& scene) { return scene.param.stem().string(); });
+INSTANTIATE_TEST_SUITE_P(Folder, ScenesRun, testing::ValuesIn(scene_names()),
+                         [](const auto& scene) { return scene.param; });
 
 }  // namespace
 }  // namespace mcdem
