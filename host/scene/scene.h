@@ -82,6 +82,24 @@ struct Numerics {
     double overlap_limit = 0.5;  ///< corrected overlap over the sum of radii beyond which no static solution is assumed
 };
 
+/// Effects that the plain model leaves out: each off, and at no cost, at its default.
+struct Effects {
+    double adhesion = 0;            ///< work of adhesion w of two grains [J/m2]
+    double viscoelasticity = 0;     ///< part of the Hertz force that relaxes at constant overlap
+    double relaxation_time = 0.1;   ///< of that part [s]
+    double stiffening = 0;          ///< Hertz force times 1 + stiffening * overlap / R*
+    double plasticity = 0;          ///< part of the largest overlap that stays after unloading
+    double bulge_contacts = 1;      ///< part of the bulges that counts where grains do not overlap by themselves
+    double friction_history = 0;    ///< share of the friction law that contact.friction_law does not name
+    double rolling_resistance = 0;  ///< mu_r: resisting torque = mu_r R* F_n
+    double modulus_scatter = 0;     ///< sd of ln E from grain to grain
+    double diameter_error = 0;      ///< true less stated diameter, all grains alike [m]
+    double polydispersity = 0;      ///< sd of true less stated diameter, grain by grain [m]
+    double plate_tilt_x = 0;        ///< slope of the plate along x
+    double plate_tilt_y = 0;        ///< .. along y
+    double plate_compliance = 0;    ///< how far the plate gives way per newton [m/N]
+};
+
 /// Everything that one replica is made of.
 struct Replica {
     std::string label;                              ///< what sets it apart, e.g. "mc_dem #3"
@@ -94,6 +112,7 @@ struct Replica {
     Plate plate;
     Protocol protocol;
     Numerics numerics;
+    Effects effects;
 };
 
 struct Output {
