@@ -16,9 +16,11 @@ FLOORS = {
     "experiment": ["scene", "core"],
     "metrics": ["core"],
     "calibrate": ["metrics", "core"],
-    "report": ["metrics", "core"],
-    "ensemble": ["calibrate", "metrics", "sim", "io", "scene", "cl", "core"],
-    "cli": ["ensemble", "report", "calibrate", "metrics", "sim", "io", "experiment", "scene", "cl", "core"],
+    "diagnose": ["metrics", "experiment", "scene", "core"],
+    "report": ["diagnose", "metrics", "core"],
+    "ensemble": ["diagnose", "calibrate", "metrics", "sim", "io", "experiment", "scene", "cl", "core"],
+    "cli": ["ensemble", "report", "diagnose", "calibrate", "metrics", "sim", "io", "experiment", "scene", "cl",
+            "core"],
 }
 LONGEST_FILE = 400
 LONGEST_FUNCTION = 70
