@@ -32,8 +32,8 @@ Experiment read_experiment(const std::filesystem::path& folder);
 
 enum class Packed { plain, gzip };
 
-/// Writes the folder, so that read_experiment gives back what it holds: the forces above the threshold and
-/// numbers to the last digit. Averages are left to the reader.
+/// Writes the folder, so that read_experiment gives back what it holds, numbers to the last digit. Averages are
+/// left to the reader, and what an instrument would not have seen to `measured` (instrument.h).
 void write_experiment(const std::filesystem::path& folder, const Experiment& experiment,
                       Packed packed = Packed::plain);
 

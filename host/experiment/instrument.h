@@ -16,9 +16,12 @@ struct Instrument {
     double strain_offset = 0;    ///< plate positions are read too high by this [m]
 };
 
-/// `truth` as the instrument reads it: noise on positions (of each scan), diameters and contact forces, contacts
-/// below the threshold gone, averages over contacts not known. Top forces are read exactly. The
-/// same seed gives the same noise.
+/// `truth` as the instrument reads it, in the form in which read_experiment would give it: normal noise on
+/// positions (anew in each scan), on diameters and on the size of contact forces; contact points err with the
+/// centres beside them; contacts below the threshold are gone. Lengths are read too large from the middle of the
+/// floor. Of the walls' forces the top force is read exactly, the others are the sums of the contacts seen; what
+/// an experiment does not know (energies, overlaps, packing fraction) is not-a-number. The noise depends on the
+/// seed and on what is measured (scan, grain, partner) only: of two similar packings it is alike.
 Recording measured(const Recording& truth, const Instrument& instrument, std::uint64_t seed);
 
 }  // namespace mcdem

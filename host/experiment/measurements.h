@@ -5,6 +5,8 @@
 
 namespace mcdem {
 
+/// A scan of which nothing is known yet: not-a-number throughout, measured at rest.
+Scan unknown_scan();
 /// plate.csv: one scan a row.
 void read_plate(Table& table, Recording& recording);
 /// grains.csv: diameters from frame 0, positions of the frames it lists.

@@ -12,17 +12,17 @@ namespace {
 constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
 constexpr double largest_height = 20;  // plate height over the box's width; beyond it is not in metres
 
+}  // namespace
+
 Scan unknown_scan() {
     Scan scan;
     scan.time = not_known;
     scan.kinetic_energy = scan.elastic_energy = not_known;
     scan.coordination_number = scan.mean_force = scan.packing_fraction = scan.branch_length = not_known;
-    scan.settled = true;  // measured at rest
+    scan.settled = true;
     for (Vec3& force : scan.wall_force) force.setConstant(not_known);
     return scan;
 }
-
-}  // namespace
 
 const std::vector<std::string>& plate_columns() {
     static const std::vector<std::string> columns{"frame", "cycle", "phase", "plate_z_m", "top_force_N"};

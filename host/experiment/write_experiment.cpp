@@ -34,11 +34,10 @@ std::string grain_rows(const Recording& recording) {
     return fmt::to_string(text);
 }
 
-std::string contact_rows(const Recording& recording, double force_threshold) {
+std::string contact_rows(const Recording& recording) {
     fmt::memory_buffer text;
     for (std::size_t s = 0; s < recording.scans.size(); ++s)
         for (const Contact& contact : recording.scans[s].contacts) {
-            if (contact.force.norm() < force_threshold) continue;
             const std::string partner = is_wall(contact.partner) ? std::string(name(wall_of(contact.partner)))
                                                                  : std::to_string(contact.partner);
             fmt::format_to(std::back_inserter(text), "{},{},{},{},{},{},{},{},{}\n", s, contact.grain,
@@ -76,8 +75,7 @@ void write_experiment(const std::filesystem::path& folder, const Experiment& exp
     std::filesystem::create_directories(folder, error);
     if (error) throw RunError(folder.string() + ": cannot be made: " + error.message());
     const Recording& recording = experiment.recording;
-    write_table(folder, "contacts.csv", contact_columns(),
-                contact_rows(recording, experiment.measurement.force_threshold), packed);
+    write_table(folder, "contacts.csv", contact_columns(), contact_rows(recording), packed);
     write_table(folder, "grains.csv", grain_columns(), grain_rows(recording), packed);
     write_table(folder, "plate.csv", plate_columns(), plate_rows(recording), packed);
     replace_file(folder / "experiment.toml", settings_text(experiment));

@@ -11,22 +11,47 @@
 namespace mcdem {
 
 /// What a stream of random numbers is for: streams of one seed do not repeat one another.
-enum class Stream : std::uint64_t { diameters = 1, positions = 2, jitter = 3 };
+enum class Stream : std::uint64_t {
+    diameters = 1,
+    positions = 2,
+    jitter = 3,
+    measured_diameters = 4,
+    measured_positions = 5,
+    measured_forces = 6,
+};
+
+/// splitmix64 (Steele, Lea & Flood 2014): neighbouring numbers become unrelated ones.
+constexpr std::uint64_t scattered(std::uint64_t x) {
+    x += 0x9e3779b97f4a7c15u;
+    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
+    x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
+    return x ^ (x >> 31);
+}
+
+/// Uniform in the open interval (0, 1), from the upper bits.
+constexpr double unit_interval(std::uint64_t bits) {
+    return (static_cast<double>(bits >> 11) + 0.5) * 0x1p-53;
+}
+
+/// Normal with mean 0 and standard deviation 1 (Box & Muller 1958), from two numbers in (0, 1).
+inline double normal_of(double a, double b) {
+    return std::sqrt(-2 * std::log(a)) * std::cos(2 * std::numbers::pi * b);
+}
 
 class Random {
 public:
     Random(std::uint64_t seed, Stream stream)
-        : engine_(mix(mix(seed) + static_cast<std::uint64_t>(stream))) {}
+        : engine_(scattered(scattered(seed) + static_cast<std::uint64_t>(stream))) {}
 
     /// Uniform in the open interval (0, 1).
-    double uniform() { return (static_cast<double>(engine_() >> 11) + 0.5) * 0x1p-53; }
+    double uniform() { return unit_interval(engine_()); }
 
     double uniform(double low, double high) { return low + (high - low) * uniform(); }
 
-    /// Normal with mean 0 and standard deviation 1 (Box & Muller 1958; one of the pair is dropped).
+    /// Normal with mean 0 and standard deviation 1.
     double normal() {
-        const double radius = std::sqrt(-2 * std::log(uniform()));
-        return radius * std::cos(2 * std::numbers::pi * uniform());
+        const double a = uniform();
+        return normal_of(a, uniform());
     }
 
     /// Fisher & Yates.
@@ -39,15 +64,23 @@ public:
     }
 
 private:
-    /// splitmix64 (Steele, Lea & Flood 2014): neighbouring seeds give unrelated engines.
-    static std::uint64_t mix(std::uint64_t x) {
-        x += 0x9e3779b97f4a7c15u;
-        x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
-        x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
-        return x ^ (x >> 31);
+    std::mt19937_64 engine_;
+};
+
+/// Standard normal numbers by key, not by order: what two packings have in common gets the same number, however
+/// much else one of them has.
+class KeyedNormal {
+public:
+    KeyedNormal(std::uint64_t seed, Stream stream)
+        : base_(scattered(scattered(seed) + static_cast<std::uint64_t>(stream))) {}
+
+    double operator()(std::uint64_t first, std::uint64_t second) const {
+        const std::uint64_t bits = scattered(scattered(base_ + first) + second);
+        return normal_of(unit_interval(bits), unit_interval(scattered(bits)));
     }
 
-    std::mt19937_64 engine_;
+private:
+    std::uint64_t base_;
 };
 
 /// A normal distribution cut to [low, high], by its quantiles.

@@ -1,0 +1,105 @@
+#include "experiment/instrument.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "experiment/measurements.h"
+#include "scene/random.h"
+
+namespace mcdem {
+namespace {
+
+class Reading {
+public:
+    Reading(const Recording& truth, const Instrument& instrument, std::uint64_t seed)
+        : instrument_(instrument),
+          centre_(0.5 * truth.box.size_x, 0.5 * truth.box.size_y, 0),
+          grains_(truth.diameter.size()),
+          position_noise_(seed, Stream::measured_positions),
+          force_noise_(seed, Stream::measured_forces) {}
+
+    Scan read(const Scan& truth, std::size_t frame) const {
+        Scan scan = unknown_scan();
+        scan.frame = static_cast<int>(frame);
+        scan.cycle = truth.cycle;
+        scan.phase = truth.phase;
+        scan.plate_z = truth.plate_z + instrument_.strain_offset;
+        scan.wall_force[static_cast<std::size_t>(Wall::plate)].z() = truth.top_force();
+        const auto shift = shifts(frame);
+        scan.position.reserve(truth.position.size());
+        for (std::size_t i = 0; i < truth.position.size(); ++i)
+            scan.position.push_back(stretched(truth.position[i]) + shift[i]);
+        scan.contacts.reserve(truth.contacts.size());
+        for (const Contact& contact : truth.contacts) add(contact, frame, shift, scan.contacts);
+        return scan;
+    }
+
+private:
+    /// Errors of the grains' centres in this frame [m].
+    std::vector<Vec3> shifts(std::size_t frame) const {
+        std::vector<Vec3> shift(grains_, Vec3::Zero());
+        const double error = instrument_.stated.position_error;
+        if (error > 0)
+            for (std::size_t i = 0; i < grains_; ++i)
+                for (int axis = 0; axis < 3; ++axis)
+                    shift[i][axis] = error * position_noise_(frame, 3 * i + static_cast<std::size_t>(axis));
+        return shift;
+    }
+
+    Vec3 stretched(const Vec3& point) const {
+        return centre_ + (1 + instrument_.position_bias) * (point - centre_);
+    }
+
+    /// A contact is seen between its two centres, a wall's beside its grain, and errs with them.
+    void add(const Contact& truth, std::size_t frame, const std::vector<Vec3>& shift,
+             std::vector<Contact>& seen) const {
+        Contact contact = truth;
+        contact.force *= gain(contact, frame);
+        if (contact.force.norm() < instrument_.stated.force_threshold + instrument_.threshold_shift) return;
+        const Vec3& of_grain = shift[static_cast<std::size_t>(contact.grain)];
+        contact.point = stretched(truth.point) + of_grain;
+        if (!is_wall(contact.partner))
+            contact.point += 0.5 * (shift[static_cast<std::size_t>(contact.partner)] - of_grain);
+        contact.overlap = std::numeric_limits<double>::quiet_NaN();
+        seen.push_back(contact);
+    }
+
+    /// Never negative: an instrument does not turn a force round.
+    double gain(const Contact& contact, std::size_t frame) const {
+        double gain = 1 + instrument_.force_bias;
+        if (instrument_.stated.force_error > 0) {
+            const auto grain = static_cast<std::uint64_t>(contact.grain);
+            const auto partner = static_cast<std::uint32_t>(contact.partner);
+            gain *= 1 + instrument_.stated.force_error * force_noise_(frame, grain << 32 | partner);
+        }
+        return std::max(gain, 0.0);
+    }
+
+    const Instrument& instrument_;
+    Vec3 centre_;
+    std::size_t grains_;
+    KeyedNormal position_noise_, force_noise_;
+};
+
+}  // namespace
+
+Recording measured(const Recording& truth, const Instrument& instrument, std::uint64_t seed) {
+    Recording recording;
+    recording.label = truth.label;
+    recording.parameters = truth.parameters;
+    recording.failure = truth.failure;
+    recording.box = truth.box;
+    recording.plate_start = truth.plate_start;
+    recording.diameter = truth.diameter;
+    const KeyedNormal diameter_noise(seed, Stream::measured_diameters);
+    for (std::size_t i = 0; i < recording.diameter.size(); ++i)
+        recording.diameter[i] += instrument.stated.diameter_error * diameter_noise(i, 0);
+    const Reading reading(truth, instrument, seed);
+    recording.scans.reserve(truth.scans.size());
+    for (std::size_t s = 0; s < truth.scans.size(); ++s)
+        recording.scans.push_back(reading.read(truth.scans[s], s));
+    average_contacts(recording, instrument.stated.force_threshold);
+    return recording;
+}
+
+}  // namespace mcdem

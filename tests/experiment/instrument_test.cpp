@@ -1,0 +1,229 @@
+#include "experiment/instrument.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+
+#include "experiment/experiment_folder.h"
+#include "scene/random.h"
+
+namespace mcdem::test {
+namespace {
+
+constexpr int grains = 400, scans = 5;
+
+/// A packing that could not stand, but with all that a simulation records.
+Recording truth() {
+    Recording recording;
+    recording.label = "true";
+    recording.box = {0.2, 0.1};
+    recording.plate_start = 0.19;
+    Random random(5, Stream::positions);
+    for (int i = 0; i < grains; ++i) recording.diameter.push_back(random.uniform(0.018, 0.022));
+    for (int s = 0; s < scans; ++s) {
+        Scan scan;
+        scan.frame = s;
+        scan.cycle = s / 4;
+        scan.phase = s % 2 ? Phase::unload : Phase::load;
+        scan.plate_z = 0.19 - 0.01 * s;
+        scan.wall_force[static_cast<int>(Wall::plate)] = Vec3(0.1, 0.2, 3.0 * s);
+        scan.packing_fraction = 0.6;
+        for (int i = 0; i < grains; ++i)
+            scan.position.emplace_back(random.uniform(0, 0.2), random.uniform(0, 0.1),
+                                       random.uniform(0, 0.19));
+        const auto add = [&](int grain, int partner) {
+            scan.contacts.push_back({grain, partner, scan.position[static_cast<std::size_t>(grain)],
+                                     Vec3(random.normal(), random.normal(), random.normal()) * 0.1, 1e-3});
+        };
+        if (s > 0)
+            for (int i = 0; i < grains; ++i) {
+                for (int next = 1; next < 4; ++next)
+                    if (i + next < grains) add(i, i + next);
+                add(i, wall_partner(static_cast<Wall>(i % 6)));
+            }
+        recording.scans.push_back(scan);
+    }
+    return recording;
+}
+
+bool same(double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); }
+bool same(const Vec3& a, const Vec3& b) {
+    return same(a.x(), b.x()) && same(a.y(), b.y()) && same(a.z(), b.z());
+}
+
+void expect_same(const Scan& a, const Scan& b) {
+    EXPECT_EQ(a.frame, b.frame);
+    EXPECT_EQ(a.cycle, b.cycle);
+    EXPECT_EQ(a.phase, b.phase);
+    EXPECT_EQ(a.settled, b.settled);
+    for (const auto value :
+         {&Scan::time, &Scan::plate_z, &Scan::kinetic_energy, &Scan::elastic_energy,
+          &Scan::coordination_number, &Scan::mean_force, &Scan::packing_fraction, &Scan::branch_length})
+        EXPECT_TRUE(same(a.*value, b.*value)) << a.*value << " and " << b.*value;
+    for (std::size_t wall = 0; wall < wall_count; ++wall)
+        EXPECT_TRUE(same(a.wall_force[wall], b.wall_force[wall])) << wall;
+    EXPECT_EQ(a.position, b.position);
+    ASSERT_EQ(a.contacts.size(), b.contacts.size());
+    for (std::size_t c = 0; c < a.contacts.size(); ++c) {
+        const Contact &p = a.contacts[c], &q = b.contacts[c];
+        EXPECT_TRUE(p.grain == q.grain && p.partner == q.partner && p.point == q.point &&
+                    p.force == q.force && same(p.overlap, q.overlap));
+    }
+}
+
+const Instrument noisy{{1e-4, 5e-5, 0.05, 0.02}, 0.03, -0.01, 0.002, 1e-4};
+
+TEST(measured, is_what_a_folder_gives_back) {
+    for (const Instrument& instrument : {noisy, Instrument{}}) {
+        const Recording seen = measured(truth(), instrument, 7);
+        ExperimentFolder folder;
+        write_experiment(folder.path(), {"seen", seen, {}, {}, instrument.stated});
+        const Recording read = read_experiment(folder.path()).recording;
+        EXPECT_EQ(read.diameter, seen.diameter);
+        EXPECT_EQ(read.plate_start, seen.plate_start);
+        ASSERT_EQ(read.scans.size(), seen.scans.size());
+        for (std::size_t s = 0; s < seen.scans.size(); ++s) expect_same(seen.scans[s], read.scans[s]);
+    }
+}
+
+TEST(measured, is_exact_with_a_perfect_instrument) {
+    const Recording real = truth(), seen = measured(real, {}, 1);
+    EXPECT_EQ(seen.label, real.label);
+    EXPECT_EQ(seen.diameter, real.diameter);
+    for (int s = 0; s < scans; ++s) {
+        const Scan &p = real.scans[s], &q = seen.scans[s];
+        EXPECT_EQ(q.plate_z, p.plate_z);
+        EXPECT_EQ(q.top_force(), p.top_force());
+        for (int i = 0; i < grains; ++i)  // 1 ulp: stretched by 1 from the middle of the floor
+            EXPECT_LT((p.position[i] - q.position[i]).norm(), 1e-15);
+        ASSERT_EQ(p.contacts.size(), q.contacts.size());
+        Vec3 on_floor = Vec3::Zero();
+        for (std::size_t c = 0; c < p.contacts.size(); ++c) {
+            EXPECT_EQ(p.contacts[c].force, q.contacts[c].force);
+            if (p.contacts[c].partner == wall_partner(Wall::floor)) on_floor -= p.contacts[c].force;
+        }
+        if (s > 0) {
+            EXPECT_EQ(q.wall_force[static_cast<int>(Wall::floor)], on_floor);
+        }
+    }
+}
+
+struct Moments {
+    double count = 0, sum = 0, squares = 0;
+    void add(double x) { ++count, sum += x, squares += x * x; }
+    double mean() const { return sum / count; }
+    double sd() const { return std::sqrt(squares / count - mean() * mean()); }
+};
+
+/// Mean 0 and the given sd, within 4.5 sigma of what this many numbers allow.
+void expect_noise(const Moments& moments, double sd) {
+    EXPECT_NEAR(moments.mean(), 0, 4.5 * sd / std::sqrt(moments.count));
+    EXPECT_NEAR(moments.sd(), sd, 4.5 * sd / std::sqrt(2 * moments.count));
+}
+
+TEST(measured, noise_has_the_stated_size_and_no_memory) {
+    const Recording real = truth(), seen = measured(real, {{2e-4, 1e-4, 0.05, 0}, 0, 0, 0, 0}, 3);
+    Moments diameter, coordinate, between_scans, between_axes, size;
+    const auto shift = [&](int s, int i) {
+        return Vec3(seen.scans[s].position[i] - real.scans[s].position[i]);
+    };
+    for (int i = 0; i < grains; ++i) diameter.add(seen.diameter[i] - real.diameter[i]);
+    for (int s = 0; s < scans; ++s)
+        for (int i = 0; i < grains; ++i) {
+            for (int axis = 0; axis < 3; ++axis) coordinate.add(shift(s, i)[axis]);
+            between_axes.add(shift(s, i).x() * shift(s, i).y());
+            if (s > 0) between_scans.add(shift(s, i).x() * shift(s - 1, i).x());
+        }
+    for (int s = 1; s < scans; ++s)
+        for (std::size_t c = 0; c < seen.scans[s].contacts.size(); ++c) {
+            const Contact &p = real.scans[s].contacts[c], &q = seen.scans[s].contacts[c];
+            EXPECT_LT(p.force.cross(q.force).norm(), 1e-15);  // forces of 0.1 N: the same direction
+            size.add(q.force.dot(p.force) / p.force.squaredNorm() - 1);
+            if (!is_wall(p.partner)) {
+                const Vec3 mean = 0.5 * (shift(s, p.grain) + shift(s, p.partner));
+                EXPECT_LT((q.point - p.point - mean).norm(), 1e-15);
+            }
+        }
+    expect_noise(diameter, 1e-4);
+    expect_noise(coordinate, 2e-4);
+    expect_noise(between_scans, 4e-8);  // product of two: their sigmas' product
+    expect_noise(between_axes, 4e-8);
+    expect_noise(size, 0.05);
+}
+
+TEST(measured, noise_belongs_to_what_is_measured_and_to_the_seed) {
+    const Instrument instrument{{1e-4, 1e-4, 0.05, 0}, 0, 0, 0, 0};
+    const Recording real = truth();
+    Recording fewer = real;
+    fewer.scans.resize(3);
+    fewer.scans[1].contacts.clear();
+    fewer.scans[2].contacts.erase(fewer.scans[2].contacts.begin());
+    const Recording a = measured(real, instrument, 9), b = measured(fewer, instrument, 9);
+    EXPECT_EQ(a.diameter, b.diameter);
+    EXPECT_EQ(a.scans[2].position, b.scans[2].position);
+    for (std::size_t c = 1; c < a.scans[2].contacts.size(); ++c)
+        EXPECT_EQ(a.scans[2].contacts[c].force, b.scans[2].contacts[c - 1].force);
+    const Recording other = measured(real, instrument, 10);
+    EXPECT_NE(a.diameter[0], other.diameter[0]);
+    EXPECT_NE(a.scans[1].position[0], other.scans[1].position[0]);
+    EXPECT_NE(a.scans[1].contacts[0].force, other.scans[1].contacts[0].force);
+}
+
+TEST(measured, biases_stretch_lengths_forces_and_plate_positions) {
+    const Instrument instrument{{}, 0.1, 0, 0.02, 3e-4};
+    const Recording real = truth(), seen = measured(real, instrument, 1);
+    for (int s = 0; s < scans; ++s) {
+        const Scan &p = real.scans[s], &q = seen.scans[s];
+        EXPECT_DOUBLE_EQ(q.plate_z, p.plate_z + 3e-4);
+        EXPECT_EQ(q.top_force(), p.top_force());
+        EXPECT_NEAR((q.position[1] - q.position[0]).norm(), 1.02 * (p.position[1] - p.position[0]).norm(),
+                    1e-15);
+        EXPECT_NEAR(q.position[0].x(), 0.1 + 1.02 * (p.position[0].x() - 0.1), 1e-15);
+        EXPECT_NEAR(q.position[0].z(), 1.02 * p.position[0].z(), 1e-15);
+        if (s == 0) continue;
+        EXPECT_LT((q.contacts[0].force - 1.1 * p.contacts[0].force).norm(), 1e-15);
+        EXPECT_NEAR(q.contacts[0].point.y(), 0.05 + 1.02 * (p.contacts[0].point.y() - 0.05), 1e-15);
+    }
+    EXPECT_EQ(seen.plate_start, real.plate_start);
+    EXPECT_EQ(seen.diameter, real.diameter);
+}
+
+TEST(measured, threshold_is_the_true_one_and_counts_what_is_read) {
+    const Recording real = truth();
+    for (const double shift : {-0.05, 0.0, 0.05}) {
+        const Instrument instrument{{0, 0, 0, 0.1}, 0.25, shift, 0, 0};
+        const Scan seen = measured(real, instrument, 1).scans[1];
+        std::size_t expected = 0, counted = 0;
+        for (const Contact& contact : real.scans[1].contacts) {
+            expected += 1.25 * contact.force.norm() >= 0.1 + shift;
+            counted += 1.25 * contact.force.norm() >= std::max(0.1, 0.1 + shift);
+        }
+        EXPECT_EQ(seen.contacts.size(), expected);
+        EXPECT_LT(expected, real.scans[1].contacts.size());
+        double force = 0;
+        for (const Contact& contact : seen.contacts)
+            if (contact.force.norm() >= 0.1) force += contact.force.norm();
+        EXPECT_NEAR(seen.mean_force, force / counted, 1e-12);
+    }
+}
+
+TEST(measured, large_errors_do_not_turn_forces_round) {
+    const Recording real = truth(), seen = measured(real, {{0, 0, 3, 0}, 0, 0, 0, 0}, 1);
+    for (std::size_t c = 0; c < seen.scans[1].contacts.size(); ++c)
+        EXPECT_GE(seen.scans[1].contacts[c].force.dot(real.scans[1].contacts[c].force), 0);
+}
+
+TEST(measured, works_without_positions_and_contacts) {
+    Recording real = truth();
+    for (Scan& scan : real.scans) scan.contacts.clear();
+    Recording bare = real;
+    for (Scan& scan : bare.scans) scan.position.clear();
+    EXPECT_EQ(measured(real, noisy, 1).scans[2].position.size(), static_cast<std::size_t>(grains));
+    EXPECT_TRUE(measured(bare, noisy, 1).scans[2].position.empty());
+    EXPECT_TRUE(std::isnan(measured(bare, noisy, 1).scans[2].mean_force));
+    EXPECT_TRUE(measured({}, noisy, 1).scans.empty());
+}
+
+}  // namespace
+}  // namespace mcdem::test
