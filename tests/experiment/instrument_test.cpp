@@ -124,9 +124,13 @@ void expect_noise(const Moments& moments, double sd) {
 
 TEST(measured, noise_has_the_stated_size_and_no_memory) {
     const Recording real = truth(), seen = measured(real, {{2e-4, 1e-4, 0.05, 0}, 0, 0, 0, 0}, 3);
-    Moments diameter, coordinate, between_scans, between_axes, size;
+    Moments diameter, coordinate, between_scans, between_axes, size, between_partners, between_forces;
     const auto shift = [&](int s, int i) {
         return Vec3(seen.scans[s].position[i] - real.scans[s].position[i]);
+    };
+    const auto gain = [&](int s, std::size_t c) {
+        const Vec3& force = real.scans[s].contacts[c].force;
+        return seen.scans[s].contacts[c].force.dot(force) / force.squaredNorm() - 1;
     };
     for (int i = 0; i < grains; ++i) diameter.add(seen.diameter[i] - real.diameter[i]);
     for (int s = 0; s < scans; ++s)
@@ -139,7 +143,10 @@ TEST(measured, noise_has_the_stated_size_and_no_memory) {
         for (std::size_t c = 0; c < seen.scans[s].contacts.size(); ++c) {
             const Contact &p = real.scans[s].contacts[c], &q = seen.scans[s].contacts[c];
             EXPECT_LT(p.force.cross(q.force).norm(), 1e-15);  // forces of 0.1 N: the same direction
-            size.add(q.force.dot(p.force) / p.force.squaredNorm() - 1);
+            size.add(gain(s, c));
+            if (c > 0 && p.grain == real.scans[s].contacts[c - 1].grain)
+                between_partners.add(gain(s, c) * gain(s, c - 1));
+            if (s > 1) between_forces.add(gain(s, c) * gain(s - 1, c));
             if (!is_wall(p.partner)) {
                 const Vec3 mean = 0.5 * (shift(s, p.grain) + shift(s, p.partner));
                 EXPECT_LT((q.point - p.point - mean).norm(), 1e-15);
@@ -150,6 +157,8 @@ TEST(measured, noise_has_the_stated_size_and_no_memory) {
     expect_noise(between_scans, 4e-8);  // product of two: their sigmas' product
     expect_noise(between_axes, 4e-8);
     expect_noise(size, 0.05);
+    expect_noise(between_partners, 0.05 * 0.05);
+    expect_noise(between_forces, 0.05 * 0.05);
 }
 
 TEST(measured, noise_belongs_to_what_is_measured_and_to_the_seed) {
