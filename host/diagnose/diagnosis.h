@@ -65,6 +65,8 @@ struct Shrink {
     std::optional<double> confirmed;       ///< fraction from real runs
     std::map<std::string, std::array<double, 2>> metrics;  ///< Rtop, errf [N], errZ, bhat: before and after
     std::vector<std::array<double, 4>> top_force;  ///< displacement [m], experiment, before, after [N], loading
+    /// Stretch of the plate's displacement that the effect was fitted on [m]; equal ends: not one stretch.
+    std::array<double, 2> fitted_displacement{0, 0};
 };
 
 struct DetectionLimit {
@@ -90,6 +92,7 @@ struct Diagnosis {
     std::vector<std::string> not_testable;  ///< candidates that this scene or these data cannot show, with why
     double seconds = 0;
     std::map<std::string, std::string> provenance;  ///< scene, experiment, versions, device, seed, hashes
+    double where_threshold = 0;   ///< |z| from which a cell stands out of all cells together; 0: not known
 };
 
 }  // namespace mcdem

@@ -1,0 +1,72 @@
+#include "diagnose/comparison.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace mcdem {
+
+Eigen::MatrixXd shrunk_covariance(const Eigen::MatrixXd& rows) {
+    const double n = static_cast<double>(rows.rows());
+    const Eigen::RowVectorXd sigma = (rows.array().square().colwise().sum() / n).sqrt().max(1e-300);
+    const Eigen::MatrixXd z = rows.array().rowwise() / sigma.array();
+    const Eigen::MatrixXd correlation = z.transpose() * z / n;
+    // Sum over pairs of cells of the variance of their correlation, over that of its square.
+    const Eigen::MatrixXd squares = z.array().square();
+    const double sampling =
+        ((squares.transpose() * squares / n).array() - correlation.array().square()).sum() / n;
+    const double signal = correlation.squaredNorm() - static_cast<double>(correlation.rows());
+    const double shrink = signal > 0 ? std::clamp(sampling / signal, 0.0, 1.0) : 1.0;
+    Eigen::MatrixXd shrunk = (1 - shrink) * correlation;
+    shrunk.diagonal().setOnes();
+    return sigma.asDiagonal() * shrunk * sigma.asDiagonal();
+}
+
+std::vector<Eigen::Index> usable_cells(const Library& library, const Eigen::VectorXd& observed) {
+    std::vector<Eigen::Index> cells;
+    const auto usable = [](const std::vector<Signature>& list, Eigen::Index cell) {
+        return std::ranges::all_of(list, [&](const Signature& s) {
+            return std::isfinite(s.linear[cell]) && std::isfinite(s.curvature[cell]);
+        });
+    };
+    for (Eigen::Index cell = 0; cell < observed.size(); ++cell) {
+        const auto column = library.baseline.col(cell).array();
+        const bool varies = column.isFinite().all() && (column - column[0]).abs().maxCoeff() > 0;
+        if (varies && std::isfinite(observed[cell]) && usable(library.effects, cell) && usable(library.nuisances, cell))
+            cells.push_back(cell);
+    }
+    return cells;
+}
+
+Eigen::VectorXd pick(const Eigen::VectorXd& all, const CellChoice& cells) { return all(cells); }
+Eigen::MatrixXd pick_columns(const Eigen::MatrixXd& all, const CellChoice& cells) { return all(Eigen::all, cells); }
+
+Comparison::Comparison(const Eigen::MatrixXd& noise, int mean_of, const CellChoice& cells,
+                       const std::vector<FreeParameter>& free)
+    : cells_(cells), free_(free) {
+    const double both = 1 + (mean_of > 0 ? 1.0 / mean_of : 0);  // the observed one's scatter, and the mean's
+    const Eigen::MatrixXd covariance = both * shrunk_covariance(pick_columns(noise, cells));
+    sigma_ = covariance.diagonal().array().sqrt();
+    directions_.resize(static_cast<Eigen::Index>(cells.size()), static_cast<Eigen::Index>(free.size()));
+    Eigen::MatrixXd total = covariance;
+    for (std::size_t k = 0; k < free.size(); ++k) {
+        const auto column = static_cast<Eigen::Index>(k);
+        directions_.col(column) = pick(free[k].direction, cells);
+        total.noalias() += free[k].sigma * free[k].sigma * directions_.col(column) * directions_.col(column).transpose();
+    }
+    noise_.compute(covariance);
+    total_.compute(total);
+    Eigen::MatrixXd precision = directions_.transpose() * noise_.solve(directions_);
+    for (std::size_t k = 0; k < free.size(); ++k)
+        precision(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(k)) += 1 / (free[k].sigma * free[k].sigma);
+    posterior_ = precision.inverse();
+}
+
+Eigen::VectorXd Comparison::whiten_chosen(const Eigen::VectorXd& chosen) const { return total_.matrixL().solve(chosen); }
+
+Eigen::VectorXd Comparison::fit_nuisances(const Eigen::VectorXd& all) const {
+    return posterior_ * (directions_.transpose() * noise_.solve(pick(all, cells_)));
+}
+
+Eigen::VectorXd Comparison::nuisance_errors() const { return posterior_.diagonal().cwiseSqrt(); }
+
+}  // namespace mcdem

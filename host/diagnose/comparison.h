@@ -1,0 +1,59 @@
+// The space in which an observation is held against the model: cells that all of them have, noise whitened, and the
+// model's rough parameters free to move within their priors.
+#pragma once
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <Eigen/Core>
+#include <vector>
+
+#include "diagnose/library.h"
+
+namespace mcdem {
+
+/// Covariance of rows with mean zero, shrunk towards its own diagonal (Ledoit & Wolf 2004, on correlations).
+Eigen::MatrixXd shrunk_covariance(const Eigen::MatrixXd& rows);
+
+/// Cells whose value is finite in every vector and that vary at all.
+std::vector<Eigen::Index> usable_cells(const Library& library, const Eigen::VectorXd& observed);
+
+/// What a comparison may leave out: the ablations, and the split into fitted and held-out cells.
+using CellChoice = std::vector<Eigen::Index>;
+
+/// Rows of `all` in the order of `cells`.
+Eigen::VectorXd pick(const Eigen::VectorXd& all, const CellChoice& cells);
+Eigen::MatrixXd pick_columns(const Eigen::MatrixXd& all, const CellChoice& cells);
+
+/// A parameter that is refitted: its linear signature on the chosen cells and its prior.
+struct FreeParameter {
+    Eigen::VectorXd direction;  ///< per unit
+    double sigma = 0;           ///< prior
+};
+
+class Comparison {
+public:
+    /// `noise`: rows of one replicate's scatter, all cells; `mean_of`: replicates behind the mean that the observed is
+    /// compared with (0: known exactly).
+    Comparison(const Eigen::MatrixXd& noise, int mean_of, const CellChoice& cells,
+               const std::vector<FreeParameter>& free);
+
+    const CellChoice& cells() const { return cells_; }
+    /// Whitens a vector on all cells: its square is a chi-square of the gap with nuisances marginalised.
+    Eigen::VectorXd whiten(const Eigen::VectorXd& all) const { return whiten_chosen(pick(all, cells_)); }
+    Eigen::VectorXd whiten_chosen(const Eigen::VectorXd& chosen) const;
+    /// One sigma of each chosen cell, nuisances not counted.
+    const Eigen::ArrayXd& sigma() const { return sigma_; }
+    /// The nuisances' most probable values given a difference on all cells, and their errors after it.
+    Eigen::VectorXd fit_nuisances(const Eigen::VectorXd& all) const;
+    Eigen::VectorXd nuisance_errors() const;
+    const std::vector<FreeParameter>& free() const { return free_; }
+
+private:
+    CellChoice cells_;
+    std::vector<FreeParameter> free_;
+    Eigen::ArrayXd sigma_;
+    Eigen::LLT<Eigen::MatrixXd> noise_, total_;
+    Eigen::MatrixXd directions_;   // column: nuisance, on the chosen cells
+    Eigen::MatrixXd posterior_;    // covariance of the nuisances
+};
+
+}  // namespace mcdem

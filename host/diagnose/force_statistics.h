@@ -1,0 +1,29 @@
+// Numbers that describe the forces of one scan: on walls, their distribution, direction and friction.
+#pragma once
+#include <array>
+#include <span>
+
+#include "diagnose/contact_residuals.h"
+
+namespace mcdem {
+
+/// Fewer contacts in a scan say nothing.
+inline constexpr std::size_t fewest_contacts = 60;
+
+// Each in the order of the table of scan_observables.cpp, not-a-number where the scan does not tell.
+
+/// Floor, side and plate forces over the plate's reading, and the plate's couple.
+std::array<double, 5> wall_loads(const Recording& recording, const Scan& scan);
+
+/// Z, weak contacts, log <f>, spread, weak, strong and strongest forces.
+std::array<double, 7> force_distribution_numbers(const Recording& recording, const Scan& scan,
+                                                 const ReferenceMaterial& material);
+
+/// Anisotropy, vertical gradient, non-affine displacement, part of the contacts that pull.
+std::array<double, 4> fabric(const Recording& recording, const Scan& scan, std::span<const ContactResidual> contacts);
+
+/// f_t/f_n between grains (mean, high, sliding) and at walls (mean, high); torque that does not cancel.
+std::array<double, 6> friction_numbers(const Recording& recording, const Scan& scan,
+                                       std::span<const ContactResidual> contacts, const ReferenceMaterial& material);
+
+}  // namespace mcdem

@@ -1,0 +1,115 @@
+#include "diagnose/library.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "core/atomic_file.h"
+#include "core/errors.h"
+#include "metrics/estimate.h"
+
+namespace mcdem {
+namespace {
+
+using nlohmann::json;
+constexpr int library_format = 1;
+
+// JSON has no not-a-number: null stands for it.
+json numbers(const Eigen::VectorXd& values) {
+    json list = json::array();
+    for (const double value : values) list.push_back(std::isfinite(value) ? json(value) : json(nullptr));
+    return list;
+}
+
+Eigen::VectorXd vector_of(const json& list) {
+    Eigen::VectorXd values(static_cast<Eigen::Index>(list.size()));
+    for (std::size_t i = 0; i < list.size(); ++i)
+        values[static_cast<Eigen::Index>(i)] = list[i].is_null() ? not_available : list[i].get<double>();
+    return values;
+}
+
+json signature_json(const Signature& s) {
+    return {{"name", s.name},           {"reach", s.reach}, {"linear", numbers(s.linear)}, {"curvature", numbers(s.curvature)},
+            {"variance", numbers(s.variance)}, {"pairs", s.pairs}};
+}
+
+Signature signature_of(const json& j, Eigen::Index cells) {
+    Signature s{j.at("name"), j.at("reach"), vector_of(j.at("linear")), vector_of(j.at("curvature")),
+                vector_of(j.at("variance")), j.at("pairs")};
+    if (s.linear.size() != cells || s.curvature.size() != cells || s.variance.size() != cells)
+        throw json::other_error::create(501, "signature " + s.name + " is of another length than the cells", &j);
+    return s;
+}
+
+Library library_of(const json& j) {
+    if (j.at("format") != library_format) throw json::other_error::create(501, "it is of another version", &j);
+    Library library;
+    library.grid = {j.at("displacement"), j.at("width"), j.at("stroke")};
+    library.packing = j.at("packing").get<std::vector<int>>();
+    const auto cells = static_cast<Eigen::Index>(cells_of(library.grid).size());
+    library.baseline.resize(static_cast<Eigen::Index>(library.packing.size()), cells);
+    const json& rows = j.at("baseline");
+    for (std::size_t r = 0; r < library.packing.size(); ++r) {
+        const Eigen::VectorXd row = vector_of(rows.at(r));
+        if (row.size() != cells) throw json::other_error::create(501, "it has other observables than this program", &j);
+        library.baseline.row(static_cast<Eigen::Index>(r)) = row;
+    }
+    for (const json& s : j.at("effects")) library.effects.push_back(signature_of(s, cells));
+    for (const json& s : j.at("nuisances")) library.nuisances.push_back(signature_of(s, cells));
+    library.provenance = j.at("provenance").get<std::map<std::string, std::string>>();
+    return library;
+}
+
+}  // namespace
+
+Eigen::MatrixXd scatter(const Library& library) {
+    std::map<int, std::vector<Eigen::Index>> of;
+    for (std::size_t r = 0; r < library.packing.size(); ++r)
+        of[library.packing[r]].push_back(static_cast<Eigen::Index>(r));
+    const bool repeated = std::ranges::all_of(of, [](const auto& rows) { return rows.second.size() > 1; });
+    if (!repeated) {
+        of.clear();
+        for (std::size_t r = 0; r < library.packing.size(); ++r) of[0].push_back(static_cast<Eigen::Index>(r));
+    }
+    Eigen::MatrixXd apart = library.baseline;
+    for (const auto& [packing, rows] : of) {
+        Eigen::RowVectorXd mean = Eigen::RowVectorXd::Zero(apart.cols());
+        const double n = static_cast<double>(rows.size());
+        for (const auto row : rows) mean += library.baseline.row(row) / n;
+        for (const auto row : rows) apart.row(row) = (apart.row(row) - mean) * std::sqrt(n / std::max(1.0, n - 1));
+    }
+    return apart;
+}
+
+void write_library(const std::filesystem::path& file, const Library& library) {
+    json rows = json::array(), effects = json::array(), nuisances = json::array();
+    for (Eigen::Index r = 0; r < library.baseline.rows(); ++r) rows.push_back(numbers(library.baseline.row(r)));
+    for (const Signature& s : library.effects) effects.push_back(signature_json(s));
+    for (const Signature& s : library.nuisances) nuisances.push_back(signature_json(s));
+    replace_file(file, json{{"format", library_format},
+                            {"provenance", library.provenance},
+                            {"displacement", library.grid.displacement},
+                            {"width", library.grid.width},
+                            {"stroke", library.grid.stroke},
+                            {"packing", library.packing},
+                            {"effects", effects},
+                            {"nuisances", nuisances},
+                            {"baseline", rows}}
+                           .dump());
+}
+
+Library read_library(const std::filesystem::path& file) {
+    std::ifstream in(file);
+    if (!in) throw InputError(fmt::format("{}: there is no signature library", file.string()));
+    try {
+        return library_of(json::parse(in));
+    } catch (const json::exception& error) {
+        throw InputError(fmt::format("{}: not a signature library ({}); remove it, and it is made anew", file.string(),
+                                     error.what()));
+    }
+}
+
+}  // namespace mcdem

@@ -1,0 +1,32 @@
+// What simulations of a scene tell before any experiment is looked at: the scatter of the observation, and the
+// signature of every effect and nuisance.
+#pragma once
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "diagnose/observation.h"
+#include "diagnose/signature.h"
+
+namespace mcdem {
+
+struct Library {
+    Grid grid;
+    Eigen::MatrixXd baseline;      ///< row: replicate, column: cell
+    std::vector<int> packing;      ///< of each replicate
+    std::vector<Signature> effects;
+    std::vector<Signature> nuisances;
+    std::map<std::string, std::string> provenance;  ///< scene, program, device
+};
+
+/// Baseline replicates less the mean over those of the same packing, scaled to the variance of one replicate; with
+/// one replicate a packing, less the mean over packings.
+Eigen::MatrixXd scatter(const Library& library);
+
+/// JSON; written whole or not at all.
+void write_library(const std::filesystem::path& file, const Library& library);
+/// Throws InputError where the file is not a library.
+Library read_library(const std::filesystem::path& file);
+
+}  // namespace mcdem
