@@ -21,7 +21,7 @@ SeriesStyle style_number(std::size_t index) {
     return {palette[i], filled_points[i], filled_points[i] - 1};
 }
 
-// Text from outside comes in through `title` and `key` only, and those are drawn as they stand.
+// Text from outside comes in through `title`, `label` and `key` only, and those are drawn as they stand.
 constexpr const char* preamble = R"(set encoding utf8
 set datafile separator comma
 set border 3 linecolor rgb '#444444' linewidth 1
@@ -35,13 +35,15 @@ set autoscale xfixmax
 set offsets 0, graph 0.02, 0, 0
 )";
 
-constexpr const char* terminals =
-    R"(set terminal pngcairo size 2000,1200 font 'Sans,12' fontscale 2 linewidth 2 pointscale 2
-set output '{0}.png'
-{1}
-set terminal svg size 1000,600 dynamic font 'Sans,13' linewidth 1.2 background rgb 'white'
-set output '{0}.svg'
-replot
+constexpr const char* both_formats =
+    R"(do for [ending in 'png svg'] {{
+if (ending eq 'png') {{
+set terminal pngcairo size {2},{3} font 'Sans,12' fontscale 2 linewidth 2 pointscale 2
+}} else {{
+set terminal svg size {0},{1} dynamic font 'Sans,13' linewidth 1.2 background rgb 'white'
+}}
+set output '{4}.'.ending
+{5}}}
 set output
 )";
 
@@ -62,10 +64,20 @@ std::vector<SeriesStyle> styles_of(const std::vector<Setting>& settings) {
 }
 
 PlotScript::PlotScript(std::string name, std::string about, std::string header)
-    : name_(std::move(name)), about_(std::move(about)), data_(std::move(header) + "\n") {}
+    : name_(std::move(name)), about_(std::move(about)), data_(std::move(header) + "\n"), panels_(1) {}
+
+void PlotScript::panel() {
+    if (!panels_.back().elements.empty()) panels_.emplace_back();
+}
+
+void PlotScript::set(const std::string& setting) { panels_.back().settings += "set " + setting + "\n"; }
 
 void PlotScript::title(const std::string& text) {
     set("title " + gnuplot::quoted(text) + " noenhanced font ',14' textcolor rgb '#222222'");
+}
+
+void PlotScript::label(const std::string& text, const std::string& how) {
+    set("label " + gnuplot::quoted(text) + " noenhanced " + how);
 }
 
 int PlotScript::add_block(const std::vector<std::vector<std::string>>& rows) {
@@ -79,19 +91,29 @@ int PlotScript::add_block(const std::vector<std::vector<std::string>>& rows) {
 }
 
 void PlotScript::plot(int block, const std::string& how) {
-    elements_.push_back(fmt::format("'{}.csv' skip 1 index {} {} notitle", name_, block, how));
+    panels_.back().elements.push_back(fmt::format("'{}.csv' skip 1 index {} {} notitle", name_, block, how));
 }
 
 void PlotScript::key(const std::string& text, const std::string& how) {
-    elements_.push_back(fmt::format("keyentry {} title {}", how, gnuplot::quoted(text)));
+    panels_.back().elements.push_back(fmt::format("keyentry {} title {}", how, gnuplot::quoted(text)));
+}
+
+std::string PlotScript::drawing() const {
+    std::string drawing;
+    for (const auto& [settings, elements] : panels_) {
+        drawing += panels_.size() > 1 ? "reset\n" + std::string(preamble) + settings : "";
+        drawing += "plot ";
+        for (std::size_t e = 0; e < elements.size(); ++e) drawing += (e ? ", \\\n     " : "") + elements[e];
+        drawing += "\n";
+    }
+    return panels_.size() > 1 ? "set multiplot\n" + drawing + "unset multiplot\n" : drawing;
 }
 
 Figure PlotScript::figure() const {
-    std::string plot = "plot ";
-    for (std::size_t e = 0; e < elements_.size(); ++e) plot += (e ? ", \\\n     " : "") + elements_[e];
     const auto script =
-        fmt::format("# {}\n# Change what you like, then run: gnuplot {}.gp\n", about_, name_) + preamble +
-        settings_ + fmt::format(fmt::runtime(terminals), name_, plot);
+        fmt::format("# {}\n# Change what you like, then run: gnuplot {}.gp\n", about_, name_) +
+        (panels_.size() > 1 ? "" : preamble + panels_.front().settings) +
+        fmt::format(fmt::runtime(both_formats), width_, height_, 2 * width_, 2 * height_, name_, drawing());
     return {name_, data_, script};
 }
 

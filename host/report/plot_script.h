@@ -34,9 +34,15 @@ class PlotScript {
 public:
     /// `about` opens the script as a comment; `header` is the CSV's first line.
     PlotScript(std::string name, std::string about, std::string header);
+    /// Of the whole picture; 1000 x 600 where nothing is said [pixels of the SVG, half those of the PNG].
+    void size(int width, int height) { width_ = width, height_ = height; }
+    /// Starts another set of axes, with settings and plots of its own; its margins say where it stands.
+    void panel();
     /// A gnuplot setting, without `set`: must hold no text from outside.
-    void set(const std::string& setting) { settings_ += "set " + setting + "\n"; }
+    void set(const std::string& setting);
     void title(const std::string& text);
+    /// Text from anywhere; `how` is what follows it in gnuplot's `set label`: position, alignment, font.
+    void label(const std::string& text, const std::string& how);
     /// A block of rows of CSV fields; its number is what `plot` refers to.
     int add_block(const std::vector<std::vector<std::string>>& rows);
     /// Draws a block: `how` is gnuplot's `using .. with ..`.
@@ -46,9 +52,15 @@ public:
     Figure figure() const;
 
 private:
-    std::string name_, about_, data_, settings_, blank_lines_;
-    std::vector<std::string> elements_;
-    int blocks_ = 0;
+    struct Panel {
+        std::string settings;
+        std::vector<std::string> elements;  ///< of its `plot`
+    };
+    std::string drawing() const;
+
+    std::string name_, about_, data_, blank_lines_;
+    std::vector<Panel> panels_;
+    int blocks_ = 0, width_ = 1000, height_ = 600;
 };
 
 }  // namespace mcdem

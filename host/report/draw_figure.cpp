@@ -1,0 +1,56 @@
+#include "report/draw_figure.h"
+
+#include <cstdlib>
+#include <fstream>
+
+#include "core/atomic_file.h"
+#include "core/errors.h"
+#include "report/gnuplot.h"
+
+namespace mcdem {
+namespace {
+
+/// Pictures are drawn in a folder of their own and then moved into place, so that a reader sees whole ones.
+class DrawingFolder {
+public:
+    explicit DrawingFolder(const std::filesystem::path& beside) {
+        auto pattern = (beside / ".drawing-XXXXXX").string();
+        if (!::mkdtemp(pattern.data()))
+            throw RunError(beside.string() +
+                           ": must be a folder that can be written to, to draw pictures in");
+        path_ = pattern;
+    }
+    ~DrawingFolder() {
+        std::error_code ignored;
+        std::filesystem::remove_all(path_, ignored);
+    }
+    DrawingFolder(const DrawingFolder&) = delete;
+    DrawingFolder& operator=(const DrawingFolder&) = delete;
+    const std::filesystem::path& path() const { return path_; }
+
+private:
+    std::filesystem::path path_;
+};
+
+}  // namespace
+
+std::vector<std::filesystem::path> draw_figure(const Figure& figure, const std::filesystem::path& folder) {
+    const DrawingFolder drawing(folder);
+    const auto write = [&](const std::string& ending, const std::string& text) {
+        std::ofstream(drawing.path() / (figure.name + ending)) << text;
+        replace_file(folder / (figure.name + ending), text);
+    };
+    write(".csv", figure.data);
+    write(".gp", figure.script);
+    gnuplot::run(drawing.path(), figure.name + ".gp");
+    std::vector<std::filesystem::path> pictures;
+    for (const char* ending : {".png", ".svg"}) {
+        pictures.push_back(folder / (figure.name + ending));
+        replace_file(pictures.back(), [&](const std::filesystem::path& temporary) {
+            std::filesystem::rename(drawing.path() / pictures.back().filename(), temporary);
+        });
+    }
+    return pictures;
+}
+
+}  // namespace mcdem
