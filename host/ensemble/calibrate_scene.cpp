@@ -70,7 +70,8 @@ private:
         // The last unloading is not looked at.
         const auto& protocol = scene_.replicas.front().protocol;
         const int strokes = 2 * protocol.cycles - 1;
-        return simulate(device_, batch, packings, std::size_t(strokes) * protocol.scans_per_stroke,
+        return simulate(device_, batch, packings,
+                        std::size_t(strokes) * protocol.scans_per_stroke + protocol.scan_at_start,
                         [&](double fraction) { on_progress(fraction * (strokes + 1) / strokes); });
     }
 

@@ -16,6 +16,8 @@ constexpr auto run = &follow<&Settings::run, path...>;
 template <auto... path>
 constexpr auto replica = &follow<&Settings::replica, path...>;
 template <auto member>
+constexpr auto effect = &follow<&Settings::replica, &Replica::effects, member>;
+template <auto member>
 constexpr auto generated = &follow<&Settings::generated, member>;
 
 constexpr Range above_zero_to(double high) { return {0, high, Range::Low::excluded}; }
@@ -77,6 +79,7 @@ const Key table[] = {
     {"protocol.settle_time", replica<&Replica::protocol, &Protocol::settle_time>, "s", duration, each, "longest wait; a scan taken then is marked unsettled"},
     {"protocol.settle_drag", replica<&Replica::protocol, &Protocol::settle_drag>, "1/s", between(0, 1e6), each, "background drag while the plate stands still, on top of grains.drag"},
     {"protocol.relax_time", replica<&Replica::protocol, &Protocol::relax_time>, "s", between(0, 1e6), each, "longest relaxation before the first stroke, the plate at plate.start"},
+    {"protocol.scan_at_start", replica<&Replica::protocol, &Protocol::scan_at_start>, "", none, each, "a scan, frame 0, of the relaxed packing before the first stroke: an experiment made from the run starts there"},
     {"protocol.force_threshold", replica<&Replica::protocol, &Protocol::force_threshold>, "N", between(0, 1e9), each, "contacts below it do not count in Z and the mean force"},
 
     {"numerics.time_step", replica<&Replica::numerics, &Numerics::time_step>, "", above_zero_to(1), each, "fraction of the Rayleigh time of the smallest grain"},
@@ -85,6 +88,21 @@ const Key table[] = {
     {"numerics.overlap_limit", replica<&Replica::numerics, &Numerics::overlap_limit>, "", above_zero_to(1), each, "corrected overlap over the sum of radii beyond which no static solution is assumed and the replica stops"},
     {"numerics.precision", run<&Scene::precision>, "", none, one_run, "of the device's arithmetic"},
     {"numerics.slots", run<&Scene::slots>, "", Range{16, 64, Range::Low::included, 16}, one_run, "neighbours that a grain can have"},
+
+    {"effects.adhesion", effect<&Effects::adhesion>, "J/m2", between(0, 1000), each, "work of adhesion w of two grains, and of a grain and a wall: touching contacts attract by 2 pi w R* (DMT)"},
+    {"effects.viscoelasticity", effect<&Effects::viscoelasticity>, "", between(0, 1), each, "part of a contact's force that relaxes at constant overlap"},
+    {"effects.relaxation_time", effect<&Effects::relaxation_time>, "s", duration, each, "of that part"},
+    {"effects.stiffening", effect<&Effects::stiffening>, "", between(-0.3, 100), each, "Hertz force times 1 + stiffening * overlap / R*; below zero it softens"},
+    {"effects.plasticity", effect<&Effects::plasticity>, "", between(0, 0.99), each, "part of the deepest overlap that stays after unloading"},
+    {"effects.bulge_contacts", effect<&Effects::bulge_contacts>, "", between(0, 1), each, "part of the bulges that counts where grains do not overlap by themselves; 1: all of it, 0: bulges make no contacts"},
+    {"effects.friction_history", effect<&Effects::friction_history>, "", between(0, 1), each, "share of the friction law that contact.friction_law does not name"},
+    {"effects.rolling_resistance", effect<&Effects::rolling_resistance>, "", between(0, 10), each, "mu_r: couple of mu_r R* F_n against rolling and twisting"},
+    {"effects.modulus_scatter", effect<&Effects::modulus_scatter>, "", between(0, 2), each, "standard deviation of ln E from grain to grain; the mean of E stays"},
+    {"effects.diameter_error", effect<&Effects::diameter_error>, "m", between(-10, 10), each, "true less stated diameter, all grains alike; results state the stated one"},
+    {"effects.polydispersity", effect<&Effects::polydispersity>, "m", between(0, 10), each, "standard deviation of true less stated diameter, grain by grain"},
+    {"effects.plate_tilt_x", effect<&Effects::plate_tilt_x>, "", between(-1, 1), each, "slope of the plate along x, about the middle of the box"},
+    {"effects.plate_tilt_y", effect<&Effects::plate_tilt_y>, "", between(-1, 1), each, "slope of the plate along y"},
+    {"effects.plate_compliance", effect<&Effects::plate_compliance>, "m/N", between(0, 1e6), each, "how far the plate gives way per newton on it; results state the position that it was sent to"},
 
     {"output.positions", run<&Scene::output, &Output::positions>, "", none, one_run, "record every grain's position at scans"},
     {"output.contacts", run<&Scene::output, &Output::contacts>, "", none, one_run, "record every contact's force at scans"},

@@ -72,6 +72,7 @@ struct Protocol {
     double settle_time = 0.5;                   ///< .. or, marked unsettled, after this long [s]
     double settle_drag = 100;    ///< background drag while the plate stands still, on top of grains.drag [1/s]
     double relax_time = 1.0;                    ///< longest relaxation before the first stroke [s]
+    bool scan_at_start = false;                 ///< a scan, frame 0, of the relaxed packing before the first stroke
     double force_threshold = 0;                 ///< contacts below it do not count in Z and <f> [N]
 };
 

@@ -82,7 +82,8 @@ std::optional<ProtocolRunner::ScanTag> ProtocolRunner::made(const StretchResult&
     if (!still && state_.stage_step < std::lround(most / time_step_)) return std::nullopt;
     if (state_.stage == Stage::settle) return arrive(still);
     begin(Stage::move);
-    return std::nullopt;
+    if (!protocol_.scan_at_start) return std::nullopt;
+    return ScanTag{state_.frame++, 0, Phase::load, plate_.start, state_.step * time_step_, still};
 }
 
 /// The plate is at a scan position: a scan is due, and the next move begins.
@@ -100,8 +101,10 @@ std::optional<ProtocolRunner::ScanTag> ProtocolRunner::arrive(bool settled) {
 
 double ProtocolRunner::progress() const {
     if (finished()) return 1;
-    const double all = 2.0 * protocol_.cycles * protocol_.scans_per_stroke;
-    const double moved = state_.stage == Stage::move ? static_cast<double>(state_.stage_step) / move_steps() : 0;
+    const double all = 2.0 * protocol_.cycles * protocol_.scans_per_stroke + protocol_.scan_at_start;
+    double moved = 0;
+    if (state_.stage == Stage::move) moved = static_cast<double>(state_.stage_step) / move_steps();
+    if (state_.stage == Stage::settle) moved = 1;
     return (state_.frame + 0.9 * moved) / all;
 }
 

@@ -74,6 +74,30 @@ TEST(Protocol, ScansAtEveryLevelThereAndBack) {
     }
 }
 
+TEST(Protocol, TheRelaxedPackingIsScannedFirstWhereAskedFor) {
+    for (double kinetic : {0.0, 1.0}) {
+        Replica replica = replica_of(2, 3, true);
+        const Course without(replica, kinetic);
+        replica.protocol.scan_at_start = true;
+        const Course with(replica, kinetic);
+        ASSERT_EQ(with.scans.size(), without.scans.size() + 1);
+        const auto& first = with.scans.front();
+        EXPECT_EQ(first.frame, 0);
+        EXPECT_EQ(first.cycle, 0);
+        EXPECT_EQ(first.phase, Phase::load);
+        EXPECT_EQ(first.plate_z, 0.2);
+        EXPECT_EQ(first.settled, kinetic == 0);
+        EXPECT_NEAR(first.time, 0.08, 1e-12);
+        for (std::size_t k = 0; k < without.scans.size(); ++k) {
+            EXPECT_EQ(with.scans[k + 1].frame, without.scans[k].frame + 1);
+            EXPECT_EQ(with.scans[k + 1].plate_z, without.scans[k].plate_z);
+            EXPECT_EQ(with.scans[k + 1].time, without.scans[k].time);
+        }
+        EXPECT_TRUE(std::is_sorted(with.progress.begin(), with.progress.end()));
+        EXPECT_EQ(with.progress.back(), 1);
+    }
+}
+
 // 25 mm at 0.5 m/s are 50 steps; the plate stands where the stretches before have brought it.
 TEST(Protocol, MovesAtTheSpeedAskedForWithoutAJump) {
     const Course course(replica_of(1, 4, true), 0, 7);
@@ -112,10 +136,12 @@ TEST(Protocol, WaitsUntilThePackingIsAtRestOrTimeIsUp) {
 }
 
 TEST(Protocol, ProgressGrowsFromZeroToOne) {
-    const Course course(replica_of(3, 5, true), 0);
-    EXPECT_TRUE(std::is_sorted(course.progress.begin(), course.progress.end()));
-    EXPECT_LT(course.progress.front(), 0.05);
-    EXPECT_EQ(course.progress.back(), 1);
+    for (int longest : {7, 60}) {
+        const Course course(replica_of(3, 5, true), 0, longest);
+        EXPECT_TRUE(std::is_sorted(course.progress.begin(), course.progress.end()));
+        EXPECT_LT(course.progress.front(), 0.05);
+        EXPECT_EQ(course.progress.back(), 1);
+    }
 }
 
 TEST(Protocol, GoesOnFromItsStateAlone) {
