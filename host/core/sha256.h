@@ -1,0 +1,24 @@
+// SHA-256 (FIPS 180-4): names that stand for what went into a result.
+#pragma once
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace mcdem {
+
+class Sha256 {
+public:
+    Sha256();
+    ~Sha256();
+    Sha256& add(std::string_view text);
+    Sha256& add(std::span<const double> numbers);
+    /// 64 hexadecimal digits of what was added; nothing may be added after.
+    std::string hex();
+
+private:
+    struct Context;
+    std::unique_ptr<Context> context_;
+};
+
+}  // namespace mcdem

@@ -1,0 +1,14 @@
+// What these data could show at all, worked out before they are looked at.
+#pragma once
+#include "diagnose/diagnosis.h"
+#include "diagnose/gap_tests.h"
+
+namespace mcdem {
+
+/// One limit a candidate effect: the amplitude that the directed test detects four times out of five, what refitting
+/// the nuisances takes away of its signature, and the effects not to be told from it at twice that amplitude.
+std::vector<DetectionLimit> detection_limits(const Comparison& comparison, const Setting& setting,
+                                             const NullDistribution& null, const Evidence& evidence,
+                                             const Limits& limits);
+
+}  // namespace mcdem

@@ -1,0 +1,58 @@
+// Everything that a diagnosis rests on, as numbers: no simulator and no files behind it.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "diagnose/comparison.h"
+#include "diagnose/effect_fit.h"
+
+namespace mcdem {
+
+/// An effect that may be to blame, with plausible amplitudes.
+struct CandidateRange {
+    std::string name, unit;
+    double low = 0, high = 0;
+};
+/// A parameter that may be off, with its prior.
+struct NuisancePrior {
+    std::string name, unit;
+    double sigma = 0;
+};
+
+struct Evidence {
+    Eigen::VectorXd observed;             ///< the experiment, one entry a cell
+    Eigen::MatrixXd baseline;             ///< row: replicate of the scene on the experiment's packing
+    Library library;
+    std::vector<CandidateRange> candidates;  ///< all of them in library.effects
+    std::vector<NuisancePrior> nuisances;    ///< all of them in library.nuisances
+    std::uint64_t seed = 1;               ///< of everything drawn at random
+};
+
+/// Limits that decisions are made with. Set on one half of the challenge, scored on the other (challenge/README.md).
+struct Limits {
+    double false_alarm = 0.05;      ///< p below which there is a gap
+    double misfit = 0.01;           ///< p below which what an effect leaves is a gap of its own
+    double surrogate_error = 0.03;  ///< part of an effect's chi-square that its signature may get wrong
+    double group = 3.0;             ///< log likelihood by which members of a group differ at most ..
+    double group_share = 0.04;      ///< .. or this part of the leader's gain
+    double second_gain = 12.0;      ///< log likelihood that a second effect must gain ..
+    double second_share = 0.08;     ///< .. and this part of the leader's gain
+};
+
+/// The evidence on chosen cells, with everything that follows from it before the observed is looked at.
+struct Setting {
+    CellChoice cells;
+    Eigen::VectorXd mean;                 ///< of the baseline
+    Eigen::VectorXd gap;                  ///< observed less mean
+    Eigen::MatrixXd noise;                ///< scatter of one replicate
+    std::vector<FreeParameter> free;
+    std::vector<Candidate> candidates;    ///< effects, then nuisances beyond their priors
+    int effects = 0;                      ///< how many of them are effects
+    const std::string& name(std::size_t candidate) const { return candidates[candidate].signature->name; }
+};
+
+/// Views into `evidence`, which must stay.
+Setting setting_of(const Evidence& evidence);
+
+}  // namespace mcdem

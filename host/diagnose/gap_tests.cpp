@@ -1,0 +1,74 @@
+#include "diagnose/gap_tests.h"
+
+#include <boost/math/distributions/gamma.hpp>
+#include <cmath>
+
+#include "scene/random.h"
+
+namespace mcdem {
+namespace {
+
+constexpr Eigen::Index folds = 8;
+constexpr int draws_a_replicate = 3;
+
+/// Rows of all folds but one.
+Eigen::MatrixXd without_fold(const Eigen::MatrixXd& rows, Eigen::Index fold) {
+    std::vector<Eigen::Index> kept;
+    for (Eigen::Index r = 0; r < rows.rows(); ++r)
+        if (r % folds != fold) kept.push_back(r);
+    return rows(kept, Eigen::all);
+}
+
+boost::math::gamma_distribution<> fitted_gamma(const std::vector<GapStatistics>& draws, double GapStatistics::*statistic) {
+    double mean = 0, square = 0;
+    for (const GapStatistics& draw : draws) mean += draw.*statistic / static_cast<double>(draws.size());
+    for (const GapStatistics& draw : draws)
+        square += std::pow(draw.*statistic - mean, 2) / static_cast<double>(draws.size() - 1);
+    return {mean * mean / square, square / mean};
+}
+
+}  // namespace
+
+GapStatistics gap_statistics(const Comparison& comparison, const Setting& setting, const Eigen::VectorXd& gap) {
+    GapStatistics s;
+    s.omnibus = comparison.whiten(gap).squaredNorm();
+    for (const Candidate& candidate : setting.candidates) {
+        s.fits.push_back(fit_effect(comparison, candidate, gap));
+        if (s.fits.back().score > s.fits[s.best].score) s.best = s.fits.size() - 1;
+    }
+    if (!s.fits.empty()) s.directed = s.fits[s.best].score;
+    s.remainder = s.omnibus - 2 * s.directed;
+    const Eigen::VectorXd chosen = pick(gap, comparison.cells());
+    s.highest = (chosen.array() / comparison.sigma()).abs().maxCoeff();
+    Eigen::VectorXd refitted = chosen;
+    const Eigen::VectorXd shifts = comparison.fit_nuisances(gap);
+    for (Eigen::Index k = 0; k < shifts.size(); ++k)
+        refitted -= shifts[k] * pick(comparison.free()[static_cast<std::size_t>(k)].direction, comparison.cells());
+    s.highest_refitted = (refitted.array() / comparison.sigma()).abs().maxCoeff();
+    return s;
+}
+
+NullDistribution::NullDistribution(const Setting& setting, int mean_of, std::uint64_t seed) {
+    Random random(seed, Stream::null_draws);
+    const double both = std::sqrt(1 + (mean_of > 0 ? 1.0 / mean_of : 0));
+    for (Eigen::Index fold = 0; fold < folds; ++fold) {
+        const Comparison comparison(without_fold(setting.noise, fold), mean_of, setting.cells, setting.free);
+        for (Eigen::Index r = fold; r < setting.noise.rows(); r += folds)
+            for (int draw = 0; draw < draws_a_replicate; ++draw) {
+                Eigen::VectorXd gap = both * setting.noise.row(r).transpose();
+                for (const FreeParameter& parameter : setting.free)
+                    gap += parameter.sigma * random.normal() * parameter.direction;
+                draws_.push_back(gap_statistics(comparison, setting, gap));
+            }
+    }
+}
+
+double NullDistribution::p_value(double GapStatistics::*statistic, double value) const {
+    return value > 0 ? cdf(complement(fitted_gamma(draws_, statistic), value)) : 1;
+}
+
+double NullDistribution::quantile(double GapStatistics::*statistic, double p) const {
+    return boost::math::quantile(complement(fitted_gamma(draws_, statistic), p));
+}
+
+}  // namespace mcdem

@@ -1,0 +1,18 @@
+// Where is the gap? Cells whose difference is larger than any cell's of a replicate, gathered into ranges.
+#pragma once
+#include "diagnose/diagnosis.h"
+#include "diagnose/gap_tests.h"
+
+namespace mcdem {
+
+struct Location {
+    std::vector<WhereEntry> entries;  ///< significant ones, largest first
+    std::vector<WhereCell> cells;     ///< all
+    double threshold = 0;             ///< simultaneous, |z| of the largest cell of 95 % of the replicates
+};
+
+/// Descends from observable to phase to displacement where the parent stands out.
+Location locate(const Comparison& comparison, const Setting& setting, const NullDistribution& null,
+                const Eigen::VectorXd& gap, const Grid& grid, const Limits& limits);
+
+}  // namespace mcdem

@@ -1,0 +1,144 @@
+#include "diagnose/shrinkage.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "scene/random.h"
+
+namespace mcdem {
+namespace {
+
+constexpr double fitted_part = 0.85;  // of the stroke, loading only
+constexpr int bootstrap_draws = 200;
+constexpr int placebo_signatures = 20;
+
+/// Both arms of the comparison, with the whitening of the fitted cells made once.
+class Arms {
+public:
+    Arms(const Setting& setting, const Split& split, int mean_of)
+        : setting_(setting), held_out_(split.held_out), mean_of_(mean_of),
+          comparison_(setting.noise, mean_of, split.fitted, setting.free) {}
+
+    /// What refitted nuisances leave.
+    Eigen::VectorXd refitted(Eigen::VectorXd gap) const {
+        const Eigen::VectorXd shifts = comparison_.fit_nuisances(gap);
+        for (Eigen::Index k = 0; k < shifts.size(); ++k)
+            gap -= shifts[k] * setting_.free[static_cast<std::size_t>(k)].direction;
+        return gap;
+    }
+
+    PartialFit fit(const Eigen::VectorXd& gap, const std::vector<Candidate>& candidates) const {
+        std::vector<double> amplitudes(candidates.size(), 0);
+        Eigen::VectorXd left = gap;
+        for (int round = 0; round < (candidates.size() > 1 ? 6 : 1); ++round)
+            for (std::size_t k = 0; k < candidates.size(); ++k) {
+                left += candidates[k].signature->at(amplitudes[k]);
+                amplitudes[k] = fit_effect(comparison_, candidates[k], left).amplitude;
+                left -= candidates[k].signature->at(amplitudes[k]);
+            }
+        return {amplitudes, comparison_.fit_nuisances(left)};
+    }
+
+    Eigen::VectorXd explained(const PartialFit& fit, const std::vector<Candidate>& candidates) const {
+        Eigen::VectorXd sum = Eigen::VectorXd::Zero(setting_.mean.size());
+        for (std::size_t k = 0; k < candidates.size(); ++k) sum += candidates[k].signature->at(fit.amplitudes[k]);
+        for (Eigen::Index k = 0; k < fit.nuisances.size(); ++k)
+            sum += fit.nuisances[k] * setting_.free[static_cast<std::size_t>(k)].direction;
+        return sum;
+    }
+
+    /// Sizes of the gap on the held-out cells, without and with the candidates.
+    std::array<double, 2> sizes(const Eigen::VectorXd& gap, const std::vector<Candidate>& candidates) const {
+        return {gap_size(setting_, held_out_, refitted(gap), mean_of_),
+                gap_size(setting_, held_out_, gap - explained(fit(gap, candidates), candidates), mean_of_)};
+    }
+
+private:
+    const Setting& setting_;
+    const CellChoice& held_out_;
+    int mean_of_;
+    Comparison comparison_;
+};
+
+double part_gone(const std::array<double, 2>& sizes) {
+    return sizes[0] > 0 ? std::clamp(1 - sizes[1] / sizes[0], -1.0, 1.0) : 0;
+}
+
+/// A signature of the same size that nothing stands behind: a random mixture of the replicates' scatter.
+Signature random_signature(const Setting& setting, Random& random) {
+    Signature s;
+    s.reach = 1;
+    s.linear = Eigen::VectorXd::Zero(setting.mean.size());
+    for (Eigen::Index r = 0; r < setting.noise.rows(); ++r) s.linear += random.normal() * setting.noise.row(r).transpose();
+    s.curvature = Eigen::VectorXd::Zero(s.linear.size());
+    return s;
+}
+
+double placebo(const Setting& setting, const Arms& arms, std::uint64_t seed) {
+    Random random(seed, Stream::placebo);
+    double best = 0;
+    for (int k = 0; k < placebo_signatures; ++k) {
+        const Signature signature = random_signature(setting, random);
+        best = std::max(best, part_gone(arms.sizes(setting.gap, {{&signature, -50, 50}})));
+    }
+    return best;
+}
+
+}  // namespace
+
+Split split_cells(const CellChoice& cells, const Grid& grid) {
+    const auto all = cells_of(grid);
+    Split split;
+    for (const auto cell : cells) {
+        const Cell& c = all[static_cast<std::size_t>(cell)];
+        const bool fitted = c.phase == Phase::load && c.displacement < fitted_part * grid.stroke;
+        (fitted ? split.fitted : split.held_out).push_back(cell);
+    }
+    return split;
+}
+
+double gap_size(const Setting& setting, const CellChoice& cells, const Eigen::VectorXd& gap, int mean_of) {
+    const double both = 1 + (mean_of > 0 ? 1.0 / mean_of : 0);
+    double size = 0;
+    for (const auto cell : cells) {
+        const double variance = setting.noise.col(cell).squaredNorm() / static_cast<double>(setting.noise.rows());
+        size += gap[cell] * gap[cell] / variance - both;
+    }
+    return size;
+}
+
+PartialFit fit_part(const Setting& setting, const CellChoice& cells, const Eigen::VectorXd& gap,
+                    const std::vector<std::size_t>& chosen, int mean_of) {
+    std::vector<Candidate> candidates;
+    for (const auto c : chosen) candidates.push_back(setting.candidates[c]);
+    return Arms(setting, {cells, {}}, mean_of).fit(gap, candidates);
+}
+
+Shrink measure_shrink(const Setting& setting, const Split& split, const Explanation& explanation, int mean_of,
+                      std::uint64_t seed) {
+    Shrink shrink;
+    shrink.held_out = "unloading, and loading beyond 85 % of the stroke";
+    if (split.fitted.empty() || split.held_out.empty()) return shrink;
+    std::vector<Candidate> candidates;
+    for (const auto c : explanation.candidates) candidates.push_back(setting.candidates[c]);
+    const Arms arms(setting, split, mean_of);
+    const auto sizes = arms.sizes(setting.gap, candidates);
+    shrink.before = sizes[0];
+    shrink.after = sizes[1];
+    shrink.fraction = part_gone(sizes);
+    const Eigen::VectorXd model = arms.explained(arms.fit(setting.gap, candidates), candidates);
+    const Eigen::VectorXd unexplained = setting.gap - model;
+    Random random(seed, Stream::bootstrap);
+    std::vector<double> drawn;
+    for (int draw = 0; draw < bootstrap_draws; ++draw) {
+        const auto row = static_cast<Eigen::Index>(random.uniform() * static_cast<double>(setting.noise.rows()));
+        const double sign = random.uniform() < 0.5 ? -1 : 1;
+        drawn.push_back(part_gone(arms.sizes(model + unexplained + sign * setting.noise.row(row).transpose(), candidates)));
+    }
+    std::ranges::sort(drawn);
+    shrink.interval = {drawn[bootstrap_draws / 20], drawn[bootstrap_draws - 1 - bootstrap_draws / 20]};
+    shrink.placebo = placebo(setting, arms, seed);
+    return shrink;
+}
+
+}  // namespace mcdem

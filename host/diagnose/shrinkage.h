@@ -1,0 +1,31 @@
+// How far does the gap shrink? The effect's amplitude and the nuisances are fitted on loading up to four fifths of the
+// stroke; the gap is measured on the rest, once with the nuisances refitted alone and once with the effect too.
+#pragma once
+#include "diagnose/diagnosis.h"
+#include "diagnose/identification.h"
+
+namespace mcdem {
+
+/// Cells that the fit may use and those held out.
+struct Split {
+    CellChoice fitted, held_out;
+};
+Split split_cells(const CellChoice& cells, const Grid& grid);
+
+/// Gap without noise over cells, in squared sigmas: r'Dr - tr(D Sigma).
+double gap_size(const Setting& setting, const CellChoice& cells, const Eigen::VectorXd& gap, int mean_of);
+
+/// Fit on `split.fitted` of the candidates named (one or two), measured on `split.held_out`. Interval by parametric
+/// bootstrap with the replicates' scatter; placebo: the best of as many random signatures.
+Shrink measure_shrink(const Setting& setting, const Split& split, const Explanation& explanation, int mean_of,
+                      std::uint64_t seed);
+
+/// Amplitudes fitted on the split's first part, and the nuisances' shifts with them: what a confirming run is made with.
+struct PartialFit {
+    std::vector<double> amplitudes;
+    Eigen::VectorXd nuisances;
+};
+PartialFit fit_part(const Setting& setting, const CellChoice& cells, const Eigen::VectorXd& gap,
+                    const std::vector<std::size_t>& candidates, int mean_of);
+
+}  // namespace mcdem

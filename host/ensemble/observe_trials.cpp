@@ -1,0 +1,164 @@
+#include "ensemble/observe_trials.h"
+
+#include <atomic>
+#include <map>
+#include <numeric>
+#include <thread>
+
+#include "core/sha256.h"
+#include "metrics/estimate.h"
+#include "scene/keys.h"
+#include "scene/make_packing.h"
+#include "sim/simulation.h"
+
+namespace mcdem {
+namespace {
+
+constexpr std::size_t most_grains_at_once = 32'768;
+
+/// What the simulation of a trial is made of.
+std::string simulation_name(const Device& device, const Question& question, const Trial& trial) {
+    Sha256 digest;
+    digest.add(question.program).add(device.description()).add(name(question.scene.precision));
+    Settings settings;
+    settings.replica = trial.model.replica;
+    for (const Key& key : keys())
+        if (key.scope == Scope::replica && !is_generator_key(key.name) && key.name != "packing.file")
+            digest.add(key.name).add("=").add(value_text(key, settings)).add("\n");
+    for (const Vec3& position : trial.packing.position) digest.add(std::span(position.data(), 3));
+    digest.add(trial.packing.diameter);
+    const double jitter[] = {trial.jitter, static_cast<double>(trial.seed)};
+    return digest.add(jitter).hex();
+}
+
+std::string observation_name(const std::string& simulation, const Question& question, const Instrument& instrument) {
+    const Measurement& stated = instrument.stated;
+    const ReferenceMaterial& m = question.material;
+    const double numbers[] = {stated.position_error, stated.diameter_error, stated.force_error, stated.force_threshold,
+                              instrument.force_bias, instrument.threshold_shift, instrument.position_bias,
+                              instrument.strain_offset, m.youngs_modulus, m.poisson_ratio, m.wall_youngs_modulus,
+                              m.wall_poisson_ratio, m.friction, m.wall_friction, m.weight_density, m.force_threshold,
+                              question.grid.width, static_cast<double>(question.discard)};
+    Sha256 digest;
+    digest.add(simulation).add(numbers).add(question.grid.displacement);
+    for (const Observable& observable : observables()) digest.add(observable.name).add(";");
+    return digest.hex();
+}
+
+/// One simulation and the trials that look at it.
+struct Job {
+    std::vector<std::size_t> trials;
+};
+
+class Work {
+public:
+    Work(Device& device, const Question& question, const std::vector<Trial>& trials, const ObservationStore& store,
+         const TrialOptions& options)
+        : device_(device), question_(question), trials_(trials), store_(store), options_(options), names_(trials.size()),
+          result_(Eigen::MatrixXd::Constant(static_cast<Eigen::Index>(trials.size()),
+                                            static_cast<Eigen::Index>(cells_of(question.grid).size()), not_available)) {}
+
+    Eigen::MatrixXd all() {
+        const std::vector<Job> jobs = missing_jobs();
+        for (std::size_t first = 0; first < jobs.size();) {
+            std::size_t last = first, grains = 0;
+            while (last < jobs.size() && (last == first || grains < most_grains_at_once))
+                grains += trials_[jobs[last++].trials.front()].packing.size();
+            run({jobs.begin() + static_cast<std::ptrdiff_t>(first), jobs.begin() + static_cast<std::ptrdiff_t>(last)},
+                static_cast<double>(first) / jobs.size(), static_cast<double>(last) / jobs.size());
+            first = last;
+        }
+        return std::move(result_);
+    }
+
+private:
+    std::vector<Job> missing_jobs() {
+        std::map<std::string, std::size_t> job_of;
+        std::vector<Job> jobs;
+        for (std::size_t t = 0; t < trials_.size(); ++t) {
+            const std::string simulation = simulation_name(device_, question_, trials_[t]);
+            names_[t] = observation_name(simulation, question_, trials_[t].model.instrument);
+            const auto kept = options_.on_recording ? std::nullopt : store_.find(names_[t]);
+            if (kept && kept->size() == result_.cols()) {
+                result_.row(static_cast<Eigen::Index>(t)) = *kept;
+                continue;
+            }
+            const auto [place, is_new] = job_of.emplace(simulation, jobs.size());
+            if (is_new) jobs.emplace_back();
+            jobs[place->second].trials.push_back(t);
+        }
+        return jobs;
+    }
+
+    void run(const std::vector<Job>& jobs, double from, double to) {
+        Scene batch = question_.scene;
+        batch.output.positions = batch.output.contacts = true;
+        batch.replicas.clear();
+        std::vector<Packing> packings;
+        for (const Job& job : jobs) {
+            const Trial& trial = trials_[job.trials.front()];
+            batch.replicas.push_back(trial.model.replica);
+            batch.replicas.back().packing.seed = trial.seed;
+            packings.push_back(trial.packing);
+            apply_jitter(packings.back(), trial.jitter, trial.seed);
+        }
+        std::vector<Recording> recordings;
+        for (std::size_t r = 0; r < packings.size(); ++r)
+            recordings.push_back(begin_recording(batch.replicas[r], packings[r]));
+        Simulation simulation(device_, batch, packings);
+        const auto keep = [&](int r, Scan scan) { recordings[static_cast<std::size_t>(r)].scans.push_back(std::move(scan)); };
+        const auto note = [&](int r, const Failure& failure) { recordings[static_cast<std::size_t>(r)].failure = failure; };
+        while (simulation.advance(keep, note)) {
+            options_.on_progress(from + (to - from) * simulation.progress());
+            if (options_.stop_wanted()) throw Interrupted();
+        }
+        look(jobs, recordings);
+    }
+
+    /// Measures and observes on all cores.
+    void look(const std::vector<Job>& jobs, const std::vector<Recording>& recordings) {
+        std::atomic<std::size_t> next = 0;
+        const auto work = [&] {
+            for (std::size_t j = next++; j < jobs.size(); j = next++)
+                for (const std::size_t t : jobs[j].trials) look_at(t, recordings[j]);
+        };
+        std::vector<std::jthread> others;
+        for (unsigned k = 1; k < std::thread::hardware_concurrency(); ++k) others.emplace_back(work);
+        work();
+        others.clear();
+        for (const Job& job : jobs)
+            for (const std::size_t t : job.trials) store_.keep(names_[t], result_.row(static_cast<Eigen::Index>(t)));
+    }
+
+    void look_at(std::size_t t, const Recording& truth) {
+        const Recording seen = measured(truth, trials_[t].model.instrument, trials_[t].seed);
+        if (!truth.failure)
+            result_.row(static_cast<Eigen::Index>(t)) = observe(seen, question_.grid, question_.material, question_.discard);
+        if (options_.on_recording) options_.on_recording(t, seen);
+    }
+
+    Device& device_;
+    const Question& question_;
+    const std::vector<Trial>& trials_;
+    const ObservationStore& store_;
+    const TrialOptions& options_;
+    std::vector<std::string> names_;
+    Eigen::MatrixXd result_;
+};
+
+}  // namespace
+
+Eigen::MatrixXd observe_trials(Device& device, const Question& question, const std::vector<Trial>& trials,
+                               const ObservationStore& store, const TrialOptions& options) {
+    return Work(device, question, trials, store, options).all();
+}
+
+ReferenceMaterial reference_material(const Model& model) {
+    constexpr double gravity = 9.81;
+    const auto& grains = model.replica.grains;
+    const auto& walls = model.replica.walls;
+    return {grains.youngs_modulus, grains.poisson_ratio, walls.youngs_modulus, walls.poisson_ratio, grains.friction,
+            walls.friction, grains.excess_density * gravity, model.instrument.stated.force_threshold};
+}
+
+}  // namespace mcdem
