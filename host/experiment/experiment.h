@@ -1,6 +1,7 @@
 // Measured compressions: a folder with experiment.toml, plate.csv and, where measured, grains.csv and
 // contacts.csv (README.md beside this file), read into the same form as simulations.
 #pragma once
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -27,8 +28,12 @@ struct Experiment {
     Measurement measurement;
 };
 
+/// Bytes of one table, unpacked, that are read [1 GiB: some 12 million contacts]. Memory needed stays below five
+/// times that.
+inline constexpr std::uintmax_t largest_table = std::uintmax_t{1} << 30;
+
 /// Throws InputError with every problem found (the first 20), each as file:line and what to do.
-Experiment read_experiment(const std::filesystem::path& folder);
+Experiment read_experiment(const std::filesystem::path& folder, std::uintmax_t largest = largest_table);
 
 enum class Packed { plain, gzip };
 

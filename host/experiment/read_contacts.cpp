@@ -1,7 +1,8 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <compare>
 #include <limits>
-#include <map>
 
 #include "experiment/measurements.h"
 #include "scene/packing_fields.h"
@@ -11,27 +12,45 @@ namespace {
 
 class ContactReader {
 public:
-    ContactReader(Table& table, Recording& recording) : table_(table), recording_(recording) {}
+    ContactReader(Table& table, double youngs_modulus, Recording& recording)
+        : table_(table), recording_(recording) {
+        const double diameter = *std::max_element(recording.diameter.begin(), recording.diameter.end());
+        largest_force_ = youngs_modulus * diameter * diameter;
+        margin_ = Vec3::Constant(std::max(recording.box.size_x, recording.box.size_y) + diameter);
+    }
 
     void read() {
         while (table_.next()) {
             const auto frame = read_frame();
             const auto contact = read_contact();
             if (!frame || !contact) continue;
-            if (*frame != frame_) lines_.clear();
+            if (*frame != frame_) end_frame();
             frame_ = *frame;
-            const auto [first, is_new] =
-                lines_.try_emplace({contact->grain, contact->partner}, table_.where());
-            if (is_new)
-                recording_.scans[static_cast<std::size_t>(frame_)].contacts.push_back(*contact);
-            else
-                table_.problem(
-                    fmt::format("this contact is there twice in frame {}, first in {}: list each pair once",
-                                frame_, first->second));
+            recording_.scans[static_cast<std::size_t>(frame_)].contacts.push_back(*contact);
+            rows_.push_back({contact->grain, contact->partner, table_.line()});
         }
+        end_frame();
     }
 
 private:
+    struct Row {
+        int grain, partner;
+        long line;
+        auto operator<=>(const Row&) const = default;
+    };
+
+    void end_frame() {
+        std::sort(rows_.begin(), rows_.end());
+        for (std::size_t k = 1; k < rows_.size(); ++k)
+            if (rows_[k].grain == rows_[k - 1].grain && rows_[k].partner == rows_[k - 1].partner)
+                table_.problem_at(
+                    table_.where(rows_[k].line),
+                    fmt::format(
+                        "this contact is there twice in frame {}, first in line {}: list each pair once",
+                        frame_, rows_[k - 1].line));
+        rows_.clear();
+    }
+
     std::optional<long> read_frame() {
         const auto frame = table_.whole_number(0, 0);
         const long last = static_cast<long>(recording_.scans.size()) - 1;
@@ -95,19 +114,28 @@ private:
 
     void check_units(const Contact& contact) {
         const Box& box = recording_.box;
-        const double width = std::max(box.size_x, box.size_y);
-        if (width > 0 &&
-            contact.point.head<2>().cwiseAbs().maxCoeff() > 2 * width + recording_.diameter.front())
+        const Vec3 size(box.size_x, box.size_y, recording_.scans.front().plate_z);
+        const bool far_off = (contact.point.array() < -margin_.array()).any() ||
+                             (contact.point.array() > (size + margin_).array()).any();
+        if (box.size_x > 0 && far_off)
             table_.problem_once(
-                "unit", fmt::format("x_m and y_m must lie in the box of {} by {} m, got {} and {}: divide by "
-                                    "1000 if they are in millimetres",
-                                    box.size_x, box.size_y, contact.point.x(), contact.point.y()));
+                "unit",
+                fmt::format("x_m, y_m and z_m must lie in the box of {} by {} m, got {}, {} and {}: divide "
+                            "by 1000 if they are in millimetres",
+                            box.size_x, box.size_y, contact.point.x(), contact.point.y(), contact.point.z()));
+        if (contact.force.norm() > largest_force_)
+            table_.problem_once(
+                "force", fmt::format("fx_N, fy_N and fz_N must be in newtons: {} is more than grains of this "
+                                     "stiffness bear; divide by 1000 if it is in millinewtons",
+                                     contact.force.norm()));
     }
 
     Table& table_;
     Recording& recording_;
-    std::map<std::pair<int, int>, std::string> lines_;  ///< of the contacts of this frame
-    long frame_ = 0;
+    double largest_force_;   ///< [N]
+    Vec3 margin_;            ///< further from the box no measured point can be [m]
+    std::vector<Row> rows_;  ///< of this frame
+    long frame_ = -1;
 };
 
 }  // namespace
@@ -118,6 +146,8 @@ const std::vector<std::string>& contact_columns() {
     return columns;
 }
 
-void read_contacts(Table& table, Recording& recording) { ContactReader(table, recording).read(); }
+void read_contacts(Table& table, double youngs_modulus, Recording& recording) {
+    ContactReader(table, youngs_modulus, recording).read();
+}
 
 }  // namespace mcdem

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/errors.h"
 #include "experiment/experiment.h"
@@ -9,41 +10,64 @@
 namespace mcdem {
 namespace {
 
-void read_tables(const std::filesystem::path& folder, Experiment& experiment, ExperimentProblems& problems) {
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr std::uintmax_t largest_settings = 1'000'000;  // bytes
+
+namespace fs = std::filesystem;
+
+void read_tables(const fs::path& folder, std::uintmax_t largest, Experiment& experiment,
+                 ExperimentProblems& problems) {
     Recording& recording = experiment.recording;
-    const auto plate = find_table(folder, "plate.csv", problems);
-    const auto grains = find_table(folder, "grains.csv", problems);
-    const auto contacts = find_table(folder, "contacts.csv", problems);
+    const long problems_before = problems.count();
+    const auto plate = find_table(folder, "plate.csv", largest, problems);
+    const auto grains = find_table(folder, "grains.csv", largest, problems);
+    const auto contacts = find_table(folder, "contacts.csv", largest, problems);
+    if (problems.count() > problems_before) return;
     if (!plate)
         return problems.add(folder.string(),
                             "must hold plate.csv or plate.csv.gz: the plate's position and force by frame");
-    Table plate_table(*plate, plate_columns(), problems);
-    read_plate(plate_table, recording);
-    if (recording.scans.empty())
-        return problems.add_once("scans", plate->string(), "must have at least one row");
+    const auto modulus = experiment.materials.find("grains.youngs_modulus");
+    const double stiffness = modulus == experiment.materials.end() ? infinity : modulus->second;
+    Table plate_table(*plate, plate_columns(), largest, problems);
+    read_plate(plate_table, stiffness, recording);
+    if (recording.scans.empty()) return;
     if (grains) {
-        Table table(*grains, grain_columns(), problems);
+        Table table(*grains, grain_columns(), largest, problems);
         read_grains(table, recording);
     }
     if (!contacts) return;
-    if (recording.diameter.empty())
+    if (grains && recording.diameter.empty()) return;  // already told why
+    if (!grains)
         return problems.add(contacts->string(),
                             "needs grains.csv with the grains of frame 0: contacts name them");
-    Table table(*contacts, contact_columns(), problems);
-    read_contacts(table, recording);
+    Table table(*contacts, contact_columns(), largest, problems);
+    read_contacts(table, stiffness, recording);
+}
+
+void expect_experiment(const fs::path& folder) {
+    const auto settings = folder / "experiment.toml";
+    std::error_code error;
+    const auto status = fs::status(folder, error);
+    if (status.type() == fs::file_type::not_found)
+        throw InputError(folder.string() + ": must be an experiment's folder, got nothing there");
+    if (error) throw InputError(folder.string() + ": cannot be opened: " + error.message());
+    if (!fs::is_directory(status))
+        throw InputError(folder.string() + ": must be an experiment's folder, got a file");
+    if (!fs::exists(fs::symlink_status(settings, error)))
+        throw InputError(folder.string() + ": is no experiment, for it holds no experiment.toml");
+    if (!fs::is_regular_file(settings, error) || fs::file_size(settings, error) > largest_settings || error)
+        throw InputError(settings.string() + ": must be a text of at most 1 MB that can be read" +
+                         (error ? ": " + error.message() : ""));
 }
 
 }  // namespace
 
-Experiment read_experiment(const std::filesystem::path& folder) {
+Experiment read_experiment(const fs::path& folder, std::uintmax_t largest) {
     ExperimentProblems problems;
     Experiment experiment;
-    const auto settings = folder / "experiment.toml";
-    if (!std::filesystem::is_directory(folder)) throw InputError(folder.string() + ": no such folder");
-    if (!std::filesystem::exists(settings))
-        throw InputError(folder.string() + ": is no experiment, for it holds no experiment.toml");
-    read_settings(settings, experiment, problems);
-    read_tables(folder, experiment, problems);
+    expect_experiment(folder);
+    read_settings(folder / "experiment.toml", experiment, problems);
+    read_tables(folder, largest, experiment, problems);
     problems.report();
     Recording& recording = experiment.recording;
     recording.label = experiment.name;

@@ -1,17 +1,20 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "experiment/measurements.h"
 
 namespace mcdem {
 namespace {
 
+constexpr double most_change = 0.25;  // of a diameter between frames; measuring it again changes it less
+
 struct GrainRow {
     long grain;
     Vec3 position;    ///< [m]
     double diameter;  ///< [m]
-    std::string where;
+    long line;
 };
 
 /// Collects the rows of one frame, then checks that they are all the grains.
@@ -24,7 +27,7 @@ public:
             end_frame();
             frame_ = frame;
         }
-        check_units(row);
+        check(row);
         rows_.push_back(std::move(row));
     }
 
@@ -38,7 +41,7 @@ public:
         const auto missing = std::find(seen.begin(), seen.end(), false);
         if (missing != seen.end())
             table_.problem_at(
-                rows_.front().where,
+                table_.where(rows_.front().line),
                 fmt::format("frame {} must list all {} grains, but grain {} is missing: add it, or leave "
                             "the whole frame out",
                             frame_, grains, missing - seen.begin()));
@@ -50,9 +53,25 @@ public:
     long frame() const { return frame_; }
 
 private:
-    void check_units(const GrainRow& row) {
+    void check(const GrainRow& row) {
+        check_diameter(row);
         const Box& box = recording_.box;
-        const double width = std::max(box.size_x, box.size_y);
+        const Vec3 size(box.size_x, box.size_y, recording_.scans[static_cast<std::size_t>(frame_)].plate_z);
+        const bool outside = (row.position.array() < 0).any() || (row.position.array() > size.array()).any();
+        if (box.size_x > 0 && outside)
+            table_.problem_once(
+                "position",
+                fmt::format(
+                    "centres must lie in the box of {} by {} m below the plate at {} m, got {}, {}, {}: "
+                    "divide by 1000 if they are in millimetres, shift them if the origin is "
+                    "elsewhere, and see that frames count alike in plate.csv",
+                    size.x(), size.y(), size.z(), row.position.x(), row.position.y(), row.position.z()));
+    }
+
+    void check_diameter(const GrainRow& row) {
+        const double width = std::max(recording_.box.size_x, recording_.box.size_y);
+        const auto i = static_cast<std::size_t>(row.grain);
+        const double first = i < recording_.diameter.size() ? recording_.diameter[i] : row.diameter;
         if (!(row.diameter > 0))
             table_.problem(fmt::format("diameter_m must be > 0 [m], got {}", row.diameter));
         else if (width > 0 && row.diameter > width)
@@ -60,16 +79,12 @@ private:
                 "diameter", fmt::format("diameter_m must be in metres: {} is more than the box's width of {} "
                                         "m; divide by 1000 if it is in millimetres",
                                         row.diameter, width));
-        const double margin = width + std::max(row.diameter, 0.0);
-        const bool far_off = row.position.x() < -margin || row.position.x() > box.size_x + margin ||
-                             row.position.y() < -margin || row.position.y() > box.size_y + margin;
-        if (width > 0 && far_off)
+        else if (std::abs(row.diameter - first) > most_change * first)
             table_.problem_once(
-                "position",
-                fmt::format("x_m and y_m must lie in the box of {} by {} m, walls at 0, got {} and "
-                            "{}: divide by 1000 if they are in millimetres, shift them if the "
-                            "origin is elsewhere",
-                            box.size_x, box.size_y, row.position.x(), row.position.y()));
+                "change",
+                fmt::format("grain {} must be as large as in frame 0, {} m, got {}: number the grains "
+                            "alike in all frames",
+                            row.grain, first, row.diameter));
     }
 
     void place(const GrainRow& row, std::size_t grains, std::vector<Vec3>& position,
@@ -77,11 +92,12 @@ private:
         const auto i = static_cast<std::size_t>(row.grain);
         if (i >= grains)
             return table_.problem_at(
-                row.where, fmt::format("grain must be 0 to {}, got {}: grains count from 0, the same in "
-                                       "every frame",
-                                       grains - 1, row.grain));
+                table_.where(row.line),
+                fmt::format("grain must be 0 to {}, got {}: grains count from 0, the same in "
+                            "every frame",
+                            grains - 1, row.grain));
         if (seen[i])
-            return table_.problem_at(row.where,
+            return table_.problem_at(table_.where(row.line),
                                      fmt::format("grain {} is there twice in frame {}", row.grain, frame_));
         seen[i] = true;
         position[i] = row.position;
@@ -120,10 +136,9 @@ void read_grains(Table& table, Recording& recording) {
                                fmt::format("frames must be in order, got {} after {}: sort the rows by frame",
                                            *frame, frames.frame()));
         else
-            frames.add(*frame, {*grain, Vec3(*x, *y, *z), *diameter, table.where()});
+            frames.add(*frame, {*grain, Vec3(*x, *y, *z), *diameter, table.line()});
     }
     frames.end_frame();
-    if (recording.diameter.empty()) table.problem_once("none", "must list the grains of frame 0, got none");
 }
 
 }  // namespace mcdem

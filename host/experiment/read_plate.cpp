@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "experiment/measurements.h"
@@ -10,7 +11,8 @@ namespace mcdem {
 namespace {
 
 constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
-constexpr double largest_height = 20;  // plate height over the box's width; beyond it is not in metres
+constexpr int most_frames = 1'000'000;  // as of a scene
+constexpr double largest_height = 20;   // plate height over the box's width; beyond it is not in metres
 
 }  // namespace
 
@@ -29,10 +31,15 @@ const std::vector<std::string>& plate_columns() {
     return columns;
 }
 
-void read_plate(Table& table, Recording& recording) {
+void read_plate(Table& table, double youngs_modulus, Recording& recording) {
     const double width = std::max(recording.box.size_x, recording.box.size_y);
+    const double largest_force = youngs_modulus * recording.box.size_x * recording.box.size_y;
     int cycle_before = 0;
     for (int row = 0; table.next(); ++row) {
+        if (row == most_frames) {
+            table.problem(fmt::format("must have at most {} frames", most_frames));
+            break;
+        }
         Scan scan = unknown_scan();
         scan.frame = row;
         const auto frame = table.whole_number(0, 0), cycle = table.whole_number(1, 0);
@@ -60,6 +67,12 @@ void read_plate(Table& table, Recording& recording) {
                 fmt::format("plate_z_m must be in metres: {} is more than {} times the box's width of {} m; "
                             "divide by 1000 if it is in millimetres",
                             *plate_z, largest_height, width));
+        if (force && largest_force > 0 && std::abs(*force) > largest_force)
+            table.problem_once(
+                "force",
+                fmt::format("top_force_N must be in newtons: {} is a pressure beyond Young's modulus, {} "
+                            "Pa; divide by 1000 if it is in millinewtons",
+                            *force, youngs_modulus));
         scan.plate_z = plate_z.value_or(1);
         scan.wall_force[static_cast<std::size_t>(Wall::plate)].z() = force.value_or(0);
         recording.scans.push_back(scan);

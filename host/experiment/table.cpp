@@ -11,6 +11,7 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <cstring>
 
 #include "scene/packing_fields.h"
 
@@ -19,11 +20,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr auto too_large =
+    "is larger than an experiment's table may be: leave out frames, or split it into several experiments";
+
 /// The bytes of a file, unpacked where it is packed. Ends with a newline whether the file does or not:
 /// libfccp looks one byte past the end of a last line without one.
 class Bytes : public io::ByteSourceBase {
 public:
-    Bytes(const fs::path& file, std::string& failure) : file_(gzopen(file.c_str(), "rb")), failure_(failure) {
+    Bytes(const fs::path& file, std::uintmax_t largest, std::string& failure)
+        : file_(gzopen(file.c_str(), "rb")), left_(largest), failure_(failure) {
         if (!file_) failure_ = "cannot be opened";
     }
     ~Bytes() override {
@@ -36,9 +41,14 @@ public:
         const char* reason = file_ ? gzerror(file_, &error) : "";
         if (count < 0 || error != Z_OK)
             failure_ = std::string("cannot be unpacked (") + reason + "): pack it again with gzip";
+        count = std::max(count, 0);
+        if (static_cast<std::uintmax_t>(count) > left_) failure_ = too_large;
+        left_ -= std::min<std::uintmax_t>(left_, static_cast<std::uintmax_t>(count));
+        if (std::memchr(buffer, 0, static_cast<std::size_t>(count)))
+            failure_ = "holds zero bytes and is no table: save it as text in UTF-8";
+        if (!failure_.empty()) count = 0;
         if (count < size) {
             ended_ = true;
-            count = std::max(count, 0);
             buffer[count++] = '\n';
         }
         return count;
@@ -46,6 +56,7 @@ public:
 
 private:
     gzFile file_;
+    std::uintmax_t left_;  ///< bytes that may still come
     std::string& failure_;
     bool ended_ = false;
 };
@@ -67,22 +78,37 @@ void split(std::string_view line, std::vector<std::string_view>& words) {
 
 }  // namespace
 
-std::optional<fs::path> find_table(const fs::path& folder, const std::string& name,
+std::optional<fs::path> find_table(const fs::path& folder, const std::string& name, std::uintmax_t largest,
                                    ExperimentProblems& problems) {
     const fs::path plain = folder / name, packed = folder / (name + ".gz");
-    const bool has_plain = fs::exists(plain), has_packed = fs::exists(packed);
+    // Of the link itself: one that leads nowhere is a table that was meant to be there.
+    const auto is_there = [](const fs::path& file) {
+        std::error_code error;
+        return fs::exists(fs::symlink_status(file, error));
+    };
+    const bool has_plain = is_there(plain), has_packed = is_there(packed);
+    if (!has_plain && !has_packed) return std::nullopt;
+    const fs::path file = has_plain ? plain : packed;
+    std::error_code error;
+    const bool is_file = fs::is_regular_file(file, error);
+    const auto size = is_file ? fs::file_size(file, error) : 0;
     if (has_plain && has_packed)
         problems.add(plain.string(), "is there twice, plain and as .gz: remove the one that is out of date");
-    if (has_plain) return plain;
-    if (has_packed) return packed;
+    else if (error || !is_file)
+        problems.add(file.string(), fmt::format("must be a file that can be read{}{}", error ? ": " : "",
+                                                error ? error.message() : ""));
+    else if (size > largest)
+        problems.add(file.string(), fmt::format("{} ({} bytes, at most {})", too_large, size, largest));
+    else
+        return file;
     return std::nullopt;
 }
 
 /// The lines that count.
 class Table::Lines {
 public:
-    explicit Lines(const fs::path& file)
-        : reader_(file.string(), std::unique_ptr<io::ByteSourceBase>(new Bytes(file, failure_))) {}
+    Lines(const fs::path& file, std::uintmax_t largest)
+        : reader_(file.string(), std::unique_ptr<io::ByteSourceBase>(new Bytes(file, largest, failure_))) {}
     /// Nothing at the end, and where the file cannot be read on: failure() says why.
     std::optional<std::string_view> next() {
         try {
@@ -90,8 +116,8 @@ public:
                 const std::string_view text = trimmed(line);
                 if (!text.empty() && text.front() != '#') return text;
             }
-        } catch (const io::error::base& error) {
-            failure_ = error.what();
+        } catch (const io::error::line_length_limit_exceeded&) {
+            failure_ = fmt::format("line {} has more than 16 million characters: is this a table?", number());
         }
         return std::nullopt;
     }
@@ -103,8 +129,12 @@ private:
     io::LineReader reader_;
 };
 
-Table::Table(const fs::path& file, const std::vector<std::string>& columns, ExperimentProblems& problems)
-    : name_(file.string()), columns_(columns), problems_(problems), lines_(std::make_unique<Lines>(file)) {
+Table::Table(const fs::path& file, const std::vector<std::string>& columns, std::uintmax_t largest,
+             ExperimentProblems& problems)
+    : name_(file.string()),
+      columns_(columns),
+      problems_(problems),
+      lines_(std::make_unique<Lines>(file, largest)) {
     words_.resize(columns.size());
     read_header();
 }
@@ -122,9 +152,14 @@ void Table::read_header() {
         problems_.add(name_,
                       fmt::format("is empty: it must begin with the header {}", fmt::join(columns_, ",")));
     line_ = lines_->number();
+    if (header && names.size() == 1 && header->find_first_of(";\t") != std::string_view::npos) {
+        problem("columns must be separated by commas: export the table with commas, and decimal points");
+        names.clear();
+    }
     for (const auto& column : columns_) {
+        if (names.empty()) break;
         const auto times = std::count(names.begin(), names.end(), column);
-        if (header && times != 1)
+        if (times != 1)
             problem(fmt::format("the header must name {} once, got it {} times: the columns are {}", column,
                                 times, fmt::join(columns_, ",")));
     }
@@ -140,11 +175,15 @@ bool Table::next() {
     while (lines_) {
         const auto line = lines_->next();
         if (!line) {
-            if (!lines_->failure().empty()) problems_.add(name_, lines_->failure());
+            if (!lines_->failure().empty())
+                problems_.add(name_, lines_->failure());
+            else if (rows_ == 0)
+                problems_.add(name_, "must have at least one row: remove the file if nothing was measured");
             lines_.reset();
             return false;
         }
         line_ = lines_->number();
+        ++rows_;
         split(*line, words);
         if (words.size() == column_of_word_.size()) {
             for (std::size_t i = 0; i < words.size(); ++i)
@@ -174,7 +213,7 @@ std::optional<long> Table::whole_number(std::size_t column, long least) {
     return std::nullopt;
 }
 
-std::string Table::where() const { return fmt::format("{}:{}", name_, line_); }
+std::string Table::where(long line) const { return fmt::format("{}:{}", name_, line); }
 
 }  // namespace mcdem
 #pragma GCC diagnostic pop

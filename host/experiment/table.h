@@ -1,5 +1,6 @@
 // One CSV table of an experiment, plain or packed with gzip, read row by row.
 #pragma once
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -11,27 +12,30 @@
 
 namespace mcdem {
 
-/// `<folder>/<name>` or `<name>.gz`; nothing where neither is there. Both is a problem: which counts?
+/// `<folder>/<name>` or `<name>.gz`; nothing where neither is there. Problems: both (which counts?), one that is
+/// no ordinary file, one of more than `largest` bytes.
 std::optional<std::filesystem::path> find_table(const std::filesystem::path& folder, const std::string& name,
-                                                ExperimentProblems& problems);
+                                                std::uintmax_t largest, ExperimentProblems& problems);
 
 class Table {
 public:
     /// Opens the file and reads its header, which must name all `columns`, in any order; others are left
-    /// aside.
-    Table(const std::filesystem::path& file, const std::vector<std::string>& columns,
+    /// aside. Reading ends with a problem at a byte that no text has, and after `largest` unpacked bytes.
+    Table(const std::filesystem::path& file, const std::vector<std::string>& columns, std::uintmax_t largest,
           ExperimentProblems& problems);
     ~Table();
     /// Goes on to the next row that has as many columns as the header; false at the end or where the header
-    /// is unusable. Lines that are empty or start with # are skipped.
+    /// is unusable; none at all is a problem. Lines that are empty or start with # are skipped.
     bool next();
 
     std::string_view text(std::size_t column) const { return words_[column]; }
     /// The number in a column; anything else is reported, and nothing given.
     std::optional<double> number(std::size_t column);
     std::optional<long> whole_number(std::size_t column, long least);
-    /// "plate.csv:12", the present row.
-    std::string where() const;
+    long line() const { return line_; }
+    /// "plate.csv:12", the present row or another.
+    std::string where() const { return where(line_); }
+    std::string where(long line) const;
     void problem(const std::string& what) { problem_at(where(), what); }
     void problem_at(const std::string& where, const std::string& what) { problems_.add(where, what); }
     /// The same, told once for each topic in this table.
@@ -49,7 +53,7 @@ private:
     std::unique_ptr<Lines> lines_;
     std::vector<int> column_of_word_;  ///< by word of a line; -1: left aside
     std::vector<std::string_view> words_;
-    long line_ = 1;
+    long line_ = 1, rows_ = 0;
 };
 
 }  // namespace mcdem

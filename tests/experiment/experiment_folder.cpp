@@ -71,8 +71,13 @@ Experiment ExperimentFolder::read() {
 }
 
 std::string ExperimentFolder::error() {
+    write();
+    return error_as_it_lies();
+}
+
+std::string ExperimentFolder::error_as_it_lies(std::uintmax_t largest) const {
     try {
-        read();
+        read_experiment(path_, largest);
         return "no error";
     } catch (const InputError& error) {
         std::string message = error.what();

@@ -20,12 +20,15 @@ public:
     void replace(const std::string& name, const std::string& from, const std::string& to);
     /// Writes the files and reads the folder.
     Experiment read();
-    /// The message of the error that reading gives, without the folder's path; "no error" where it reads.
+    void write() const;
+    /// Writes the files; the message of the error that reading gives, without the folder's path; "no error"
+    /// where it reads.
     std::string error();
+    /// The same of what lies in the folder.
+    std::string error_as_it_lies(std::uintmax_t largest = largest_table) const;
     const std::filesystem::path& path() const { return path_; }
 
 private:
-    void write() const;
     std::map<std::string, std::string> texts_;
     std::filesystem::path path_;
 };

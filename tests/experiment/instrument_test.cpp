@@ -30,8 +30,8 @@ Recording truth() {
         scan.wall_force[static_cast<int>(Wall::plate)] = Vec3(0.1, 0.2, 3.0 * s);
         scan.packing_fraction = 0.6;
         for (int i = 0; i < grains; ++i)
-            scan.position.emplace_back(random.uniform(0, 0.2), random.uniform(0, 0.1),
-                                       random.uniform(0, 0.19));
+            scan.position.emplace_back(random.uniform(0.01, 0.19), random.uniform(0.01, 0.09),
+                                       random.uniform(0.01, 0.14));
         const auto add = [&](int grain, int partner) {
             scan.contacts.push_back({grain, partner, scan.position[static_cast<std::size_t>(grain)],
                                      Vec3(random.normal(), random.normal(), random.normal()) * 0.1, 1e-3});

@@ -128,6 +128,7 @@ INSTANTIATE_TEST_SUITE_P(
         Spoiled{"plate.csv", "0,0,load", "0,1,load", "plate.csv:3: cycle must not fall, got 0 after 1"},
         Spoiled{"plate.csv", "unload", "release",
                 "plate.csv:4: phase must be one of load, unload, got \"release\""},
+        Spoiled{"plate.csv", "0.4", "400", "plate.csv:3: top_force_N must be in newtons: 400 is a pressure"},
         Spoiled{"plate.csv", "0.4", "nan", "plate.csv:3: top_force_N must be a finite number, got \"nan\""},
         Spoiled{"plate.csv", "0.4", "", "plate.csv:3: top_force_N must be a finite number, got \"\""},
         Spoiled{"plate.csv", ",0.4", "", "plate.csv:3: must have 5 columns as the header, got 4"},
@@ -147,7 +148,14 @@ INSTANTIATE_TEST_SUITE_P(
                 "grains.csv:5: frame must be one of plate.csv, 0 to 2, got 7"},
         Spoiled{"grains.csv", "0.01,0.02\n", "0.01,20\n", "grains.csv:2: diameter_m must be in metres"},
         Spoiled{"grains.csv", "0.01,0.02\n", "0.01,0\n", "grains.csv:2: diameter_m must be > 0 [m]"},
-        Spoiled{"grains.csv", "0,0,0.01", "0,0,10", "grains.csv:2: x_m and y_m must lie in the box"},
+        Spoiled{"grains.csv", "0,0,0.01", "0,0,10", "grains.csv:2: centres must lie in the box"},
+        Spoiled{"grains.csv", "0.015,0.01,", "0.015,10,",
+                "grains.csv:2: centres must lie in the box of 0.04 by"},
+        Spoiled{"grains.csv", "0.015,0.01,", "0.015,-0.01,", "grains.csv:2: centres must lie in the box"},
+        Spoiled{"grains.csv", "0.0095,0.02\n", "0.0095,0.03\n",
+                "grains.csv:4: grain 0 must be as large as in frame 0, 0.02 m, got 0.03: number the grains"},
+        Spoiled{"grains.csv", "1,1,0.0305", "1,0,0.0305", "grains.csv:5: grain 0 is there twice in frame 1"},
+        Spoiled{"grains.csv", "0,0,0.01", "1,0,0.01", "grains.csv:2: the first frame must be 0"},
         Spoiled{"grains.csv", "0,0,0.01", "0,0,inf", "grains.csv:2: x_m must be a finite number"}));
 
 INSTANTIATE_TEST_SUITE_P(
@@ -161,7 +169,13 @@ INSTANTIATE_TEST_SUITE_P(
                       Spoiled{"contacts.csv", "floor", "bottom",
                               "contacts.csv:3: partner must be a grain's number or one of x_min"},
                       Spoiled{"contacts.csv", "1,1,floor", "1,0,floor",
-                              "contacts.csv:4: this contact is there twice in frame 1, first in"},
+                              "contacts.csv:4: this contact is there twice in frame 1, first in line 3"},
+                      Spoiled{"contacts.csv", "1,0,floor", "1,0,1",
+                              "contacts.csv:3: this contact is there twice in frame 1, first in line 2"},
+                      Spoiled{"contacts.csv", "0,0,0.2", "0,0,200",
+                              "contacts.csv:3: fx_N, fy_N and fz_N must be in newtons: 200 is more than"},
+                      Spoiled{"contacts.csv", "0.015,0.0095,0.03", "0.015,9.5,0.03",
+                              "contacts.csv:2: x_m, y_m and z_m must lie in the box"},
                       Spoiled{"contacts.csv", "0,0,0.2", "0,0,NaN",
                               "contacts.csv:3: fz_N must be a finite number, got \"NaN\""},
                       Spoiled{"contacts.csv", "1,1,floor", "0,1,floor",
@@ -169,7 +183,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Spoiled{"contacts.csv", "1,0,floor", "3,0,floor",
                               "contacts.csv:3: frame must be one of plate.csv, 0 to 2, got 3"},
                       Spoiled{"contacts.csv", "1,1,0,0.02", "1,1,0,20",
-                              "contacts.csv:2: x_m and y_m must lie in the box"}));
+                              "contacts.csv:2: x_m, y_m and z_m must lie in the box"}));
 
 INSTANTIATE_TEST_SUITE_P(
     settings, spoiled_experiment,
