@@ -6,12 +6,12 @@
    it is stable wherever the plain delayed iteration is, for gains from -1 to 1 (ARCHITECTURE.md). `history` is a
    ring of the last four steps, each `slot_count` long; `turn` counts this replica's steps. */
 INLINE void displace_surfaces(global const Replica* restrict replica, EXCHANGE const ContactTable* table, real radius,
-                              size_t row, int turn, size_t slot_count, global real* restrict bulge_next,
+                              real softer, size_t row, int turn, size_t slot_count, global real* restrict bulge_next,
                               global real* restrict history) {
     global real* two_before = history + ((turn + 2) & 3) * slot_count + row;
     global real* four_before = history + (turn & 3) * slot_count + row;
     for (int v = 0; v < VECTORS; ++v) {
-        const lanes now = surface_displacement(replica, table, radius, v);
+        const lanes now = surface_displacement(replica, table, radius, softer, v);
         const lanes next = (R(10) / R(6)) * now - (R(5) / R(6)) * LOAD_LANES(two_before, v) +
                            (R(1) / R(6)) * LOAD_LANES(four_before, v);
         STORE_LANES(next, bulge_next + row, v);
@@ -31,6 +31,39 @@ INLINE void keep_state(global const Replica* restrict replica, int grain, size_t
     for (int v = 0; v < VECTORS; ++v) STORE_LANES(LOAD_LANES(bulge + row, v), bulge_next + row, v);
 }
 
+/* What a row's contacts do to its grain, lane by lane. */
+typedef struct {
+    lanes3 force;
+    lanes3 torque;
+    mask too_deep, unprobed;
+} Row;
+
+/* The forces of a grain's row; tabulates them for the surfaces. `effects` are the replica's, or a plain 0. */
+INLINE void row_forces(global const Replica* restrict replica, const int effects, bool waits, real plate_z, int grain, size_t row,
+                       real4 own, real softness, real3 spin, global const real4* restrict position,
+                       global const real4* restrict velocity, global const real4* restrict angular_velocity,
+                       global const int* restrict partner, global const int* restrict mirror,
+                       global const real* restrict bulge, global real* restrict spring_x, global real* restrict spring_y,
+                       global real* restrict spring_z, global real* restrict deepest, global real* restrict relaxed,
+                       EXCHANGE ContactTable* table, Row* restrict sums) {
+    for (int v = 0; v < VECTORS; ++v) {
+        const Neighbours seen = see_neighbours(replica, effects, plate_z, grain, LOAD_LANES(partner + row, v), position,
+                                               velocity, angular_velocity);
+        lanes here, there;
+        load_bulges(replica, row, v, mirror, bulge, &here, &there);
+        Memory memory = load_memory(replica, effects, row, v, spring_x, spring_y, spring_z, deepest, relaxed);
+        const Contacts c =
+            contact_forces(replica, effects, own.w, softness, spin, seen, here, there, replica->time_step, &memory);
+        if (!waits) store_memory(replica, effects, row, v, memory, spring_x, spring_y, spring_z, deepest, relaxed);
+        add_contacts(c, seen.normal, &sums->force, &sums->torque);
+        if (effects & EFFECT_ROLLING_RESISTANCE) add_couples(c, &sums->torque);
+        /* Asked this way round, a bulge that is not a number counts as too deep as well. */
+        sums->too_deep |= ~AS_MASK(c.approach <= replica->overlap_limit * (own.w + seen.radius)) & seen.occupied;
+        sums->unprobed |= AS_MASK(here > replica->probe_gap) & ~c.touching & seen.occupied;
+        tabulate(c, seen.normal, v, table);
+    }
+}
+
 /* Slots in trouble, two kinds counted in one sum. */
 #define DEEP_SLOTS 1024
 INLINE int trouble_status(real counts) {
@@ -46,6 +79,7 @@ kernel void advance(const int s, const int slot_count, global const Replica* res
                     global const int* restrict partner, global const int* restrict mirror,
                     global const real* restrict bulge, global real* restrict bulge_next,
                     global real* restrict history, global real* restrict spring_x, global real* restrict spring_y, global real* restrict spring_z,
+                    global real* restrict deepest, global real* restrict relaxed,
                     global const real4* restrict listed_position, global int* restrict status) {
     GRAIN_OF_WORK_ITEM
     global const Replica* restrict replica = replicas + replica_of_block[block];
@@ -59,33 +93,21 @@ kernel void advance(const int s, const int slot_count, global const Replica* res
     if (waits && LANES == 16) return;
 
     const real plate_z = plate_position(replica, s);
-    lanes3 force = {R(0), R(0), R(0)}, torque = {R(0), R(0), R(0)};
-    mask too_deep = 0, unprobed = 0;
-    for (int v = 0; v < VECTORS; ++v) {
-        const Neighbours seen = see_neighbours(replica, plate_z, grain, LOAD_LANES(partner + row, v), position,
-                                               velocity, angular_velocity);
-        lanes here, there;
-        load_bulges(replica, row, v, mirror, bulge, &here, &there);
-        lanes3 spring = load_springs(replica, row, v, spring_x, spring_y, spring_z);
-        const Contacts c = contact_forces(replica, own.w, own_spin.xyz, seen, here, there, replica->time_step, &spring);
-        if (replica->mindlin && !waits) {
-            STORE_LANES(spring.x, spring_x + row, v);
-            STORE_LANES(spring.y, spring_y + row, v);
-            STORE_LANES(spring.z, spring_z + row, v);
-        }
-        add_contacts(c, seen.normal, &force, &torque);
-        /* Asked this way round, a bulge that is not a number counts as too deep as well. */
-        too_deep |= ~AS_MASK(c.approach <= replica->overlap_limit * (own.w + seen.radius)) & seen.occupied;
-        unprobed |= AS_MASK(here > replica->probe_gap) & ~c.touching & seen.occupied;
-        tabulate(c, seen.normal, v, table);
-    }
+    Row sums = {{R(0), R(0), R(0)}, {R(0), R(0), R(0)}, 0, 0};
+    /* Put in place twice: where there are no effects they cost nothing. */
+    if (replica->effects)
+        row_forces(replica, replica->effects, waits, plate_z, grain, row, own, own_velocity.w, own_spin.xyz, position, velocity,
+                   angular_velocity, partner, mirror, bulge, spring_x, spring_y, spring_z, deepest, relaxed, table, &sums);
+    else
+        row_forces(replica, 0, waits, plate_z, grain, row, own, own_velocity.w, own_spin.xyz, position, velocity,
+                   angular_velocity, partner, mirror, bulge, spring_x, spring_y, spring_z, deepest, relaxed, table, &sums);
     SYNCHRONISE();
     if (replica->surface != SURFACE_RIGID && !waits)
-        displace_surfaces(replica, table, own.w, row, replica->steps_before + s, slot_count, bulge_next, history);
+        displace_surfaces(replica, table, own.w, R(1) + own_velocity.w, row, replica->steps_before + s, slot_count, bulge_next, history);
 
-    const lanes trouble = WHERE(too_deep, R(1), R(0)) + WHERE(unprobed, R(DEEP_SLOTS), R(0));
-    const real4 total_force = sum_lanes(force.x, force.y, force.z, trouble, scratch);
-    const real4 total_torque = sum_lanes(torque.x, torque.y, torque.z, (lanes)(R(0)), scratch);
+    const lanes trouble = WHERE(sums.too_deep, R(1), R(0)) + WHERE(sums.unprobed, R(DEEP_SLOTS), R(0));
+    const real4 total_force = sum_lanes(sums.force.x, sums.force.y, sums.force.z, trouble, scratch);
+    const real4 total_torque = sum_lanes(sums.torque.x, sums.torque.y, sums.torque.z, (lanes)(R(0)), scratch);
     if (waits || !IS_LEADER || !(own.w > R(0))) return;
 
     const Motion after = integrate(replica, own, own_velocity, own_spin, total_force.xyz, total_torque.xyz);

@@ -1,55 +1,22 @@
 /* The force of each contact of a grain from its corrected overlap: Hertz, damping with constant
-   restitution, and friction. */
+   restitution, friction, and the effects that the replica has beyond them. */
 
 typedef struct {
     mask touching;
     lanes approach;   /* delta, corrected by both bulges; negative where there is a gap [m] */
     lanes overlap;    /* delta where touching, else zero [m] */
     lanes radius;     /* a = sqrt(R* delta), of the contact [m] */
-    lanes elastic;    /* Hertz force [N] */
+    lanes elastic;    /* Hertz force, as stiffened: what displaces surfaces [N] */
     lanes bulge;      /* of this grain's surface there, all contacts together [m] */
     lanes arm;        /* from the centre to the contact point, or to the probed surface point [m] */
     lanes3 force;     /* on this grain [N] */
     lanes3 tangential;/* its friction part [N] */
+    lanes3 couple;    /* rolling resistance on this grain, set where there is any [N m] */
+    lanes energy;     /* stored beyond Hertz's 2/5 F delta by effects, set where there are any [J] */
 } Contacts;
-
-/* Tangential springs of Mindlin friction, one a slot, as seen from this grain [m]. */
-typedef struct { global real* restrict x; global real* restrict y; global real* restrict z; } Springs;
 
 INLINE real sphere_mass(global const Replica* restrict replica, real radius) {
     return replica->density * (R(4) / R(3)) * PI * radius * radius * radius;
-}
-
-/* Always saturated [paper]: mu F_n against the sliding. Below `sliding_velocity`, and where a step's
-   friction could do more than stop the sliding, it fades to a viscous force so that it cannot chatter. */
-INLINE lanes3 saturated_friction(lanes limit, lanes3 sliding, real sliding_velocity, lanes most_viscosity) {
-    const lanes speed = sqrt(dot3(sliding, sliding) + sliding_velocity * sliding_velocity);
-    const lanes viscosity = fmin(limit / speed, most_viscosity);
-    return (lanes3){viscosity * sliding.x, viscosity * sliding.y, viscosity * sliding.z};
-}
-
-/* Mindlin spring of stiffness k = 8 G* a with damping, cut at the Coulomb limit; a slipping spring keeps
-   the stretch that carries the limit. Updates `spring`. */
-INLINE lanes3 mindlin_friction(lanes limit, lanes3 sliding, lanes3 normal, lanes stiffness, lanes damping,
-                               real time_step, mask touching, lanes3* restrict spring) {
-    lanes3 s = {spring->x + sliding.x * time_step, spring->y + sliding.y * time_step,
-                spring->z + sliding.z * time_step};
-    const lanes along = dot3(s, normal);
-    s.x -= along * normal.x; s.y -= along * normal.y; s.z -= along * normal.z;
-    lanes3 force = {stiffness * s.x + damping * sliding.x, stiffness * s.y + damping * sliding.y,
-                    stiffness * s.z + damping * sliding.z};
-    const lanes size = sqrt(dot3(force, force));
-    const mask slipping = AS_MASK(size > limit);
-    const lanes cut = WHERE(slipping, limit / size, R(1));
-    force.x *= cut; force.y *= cut; force.z *= cut;
-    const lanes compliance = WHERE(touching, R(1) / stiffness, R(0));
-    s.x = WHERE(slipping, (force.x - damping * cut * sliding.x) * compliance, s.x);
-    s.y = WHERE(slipping, (force.y - damping * cut * sliding.y) * compliance, s.y);
-    s.z = WHERE(slipping, (force.z - damping * cut * sliding.z) * compliance, s.z);
-    spring->x = WHERE(touching, s.x, R(0));
-    spring->y = WHERE(touching, s.y, R(0));
-    spring->z = WHERE(touching, s.z, R(0));
-    return force;
 }
 
 /* R* and m* of each pair from one division; both sides of a pair get the same bits. */
@@ -66,19 +33,29 @@ INLINE Reduced reduced(global const Replica* restrict replica, real radius, lane
     return r;
 }
 
-INLINE Contacts contact_forces(global const Replica* restrict replica, real radius, real3 spin, Neighbours seen,
-                               lanes bulge, lanes bulge_there, real elapsed, lanes3* restrict spring) {
+/* `own` is this grain with its angular velocity `spin` and softness; `effects` are the replica's, or a plain 0 that
+   leaves them out when this is compiled. */
+INLINE Contacts contact_forces(global const Replica* restrict replica, const int effects, real radius, real softness,
+                               real3 spin, Neighbours seen, lanes bulge, lanes bulge_there, real elapsed,
+                               Memory* restrict memory) {
     Contacts c;
     const lanes gap = seen.distance - (radius + seen.radius);
     const Reduced pair = reduced(replica, radius, seen.radius, seen.wall);
-    const lanes modulus = WHERE(seen.wall, replica->modulus_wall, replica->modulus_grain);
-    c.approach = (bulge + bulge_there) - gap;
+    lanes modulus = WHERE(seen.wall, replica->modulus_wall, replica->modulus_grain);
+    if (effects & EFFECT_MODULUS_SCATTER)
+        modulus = scattered_modulus(modulus, replica->grain_compliance, softness + seen.softness);
+    lanes bulges = bulge + bulge_there;
+    if (effects & EFFECT_BULGE_CONTACTS) bulges = counted_bulges(gap, bulges, replica->bulge_contacts);
+    c.approach = bulges - gap;
+    if (effects & EFFECT_PLASTICITY)
+        c.approach = plastic_approach(c.approach, replica->plasticity, seen.occupied, &memory->deepest);
     c.touching = AS_MASK(c.approach > R(0)) & seen.occupied;
     c.overlap = WHERE(c.touching, c.approach, R(0));
     SelfCompliance self = {R(0), R(0)};
     if (replica->finite_contacts) {
+        const Softer softer = {effects ? R(1) + softness : R(1), effects ? R(1) + seen.softness : (lanes)(R(1))};
         const SelfConsistent solved =
-            self_consistent(replica, c.overlap, pair.radius, modulus, radius, seen.radius, seen.wall);
+            self_consistent(replica, softer, c.overlap, pair.radius, modulus, radius, seen.radius, seen.wall);
         c.overlap = solved.overlap;
         self = solved.compliance;
         c.approach = WHERE(c.touching, c.overlap, c.approach);
@@ -91,10 +68,17 @@ INLINE Contacts contact_forces(global const Replica* restrict replica, real radi
     bulge += self.here * c.elastic;
     bulge_there += self.there * c.elastic;
     c.bulge = bulge;
+    lanes held = c.elastic;
+    if (effects) {
+        if (effects & EFFECT_STIFFENING) c.elastic *= R(1) + replica->stiffening * c.overlap / pair.radius;
+        held = c.elastic;
+        if (effects & EFFECT_VISCOELASTICITY)
+            held = relaxing_force(c.elastic, replica->viscoelasticity, replica->relaxing_share, &memory->relaxed);
+    }
 
     const lanes damping = WHERE(seen.wall, replica->damping_wall, replica->damping_grain);
     const lanes separating = dot3(seen.velocity, seen.normal);
-    const lanes push = c.elastic - damping * sqrt(stiffness * pair.mass) * separating;
+    const lanes push = held - damping * sqrt(stiffness * pair.mass) * separating;
 
     /* The contact point lies midway between the two displaced surfaces [paper]. */
     const lanes midway = R(0.5) * (seen.distance + (radius + bulge) - (seen.radius + bulge_there));
@@ -108,15 +92,26 @@ INLINE Contacts contact_forces(global const Replica* restrict replica, real radi
                             seen.velocity.y - separating * n.y - (turn.z * n.x - turn.x * n.z),
                             seen.velocity.z - separating * n.z - (turn.x * n.y - turn.y * n.x)};
     const lanes limit = WHERE(seen.wall, replica->friction_wall, replica->friction_grain) * fmax(push, (lanes)(R(0)));
+    lanes shear = R(0);
     if (replica->mindlin) {
-        const lanes shear = R(8) * WHERE(seen.wall, replica->shear_wall, replica->shear_grain) * c.radius;
-        c.tangential = mindlin_friction(limit, sliding, n, shear, damping * sqrt(shear * pair.mass), elapsed,
-                                        c.touching, spring);
-    } else {
-        c.tangential = saturated_friction(limit, sliding, replica->sliding_velocity,
-                                          pair.mass * (R(0.1) / replica->time_step));
+        lanes shear_modulus = WHERE(seen.wall, replica->shear_wall, replica->shear_grain);
+        if (effects & EFFECT_MODULUS_SCATTER)
+            shear_modulus = scattered_modulus(shear_modulus, replica->shear_compliance, softness + seen.softness);
+        shear = R(8) * shear_modulus * c.radius;
     }
-    c.force = (lanes3){c.tangential.x - push * n.x, c.tangential.y - push * n.y, c.tangential.z - push * n.z};
+    c.tangential = friction(replica, effects, limit, sliding, n, shear, damping, pair.mass, elapsed, c.touching, &memory->spring);
+    if (effects & EFFECT_ROLLING_RESISTANCE)
+        c.couple = rolling_couple(replica, push, radius, seen.radius, seen.wall, pair.radius, spin, seen.spin);
+    lanes normal = push;
+    if (effects) {
+        c.energy = effect_energy(replica, c.elastic, held, c.overlap, pair.radius);
+        if (effects & EFFECT_ADHESION) {
+            const Attraction pull = attraction(replica, c.approach, pair.radius, pair.mass, seen.occupied);
+            normal -= pull.force;
+            c.energy += attraction_energy(pull, c.overlap, c.approach);
+        }
+    }
+    c.force = (lanes3){c.tangential.x - normal * n.x, c.tangential.y - normal * n.y, c.tangential.z - normal * n.z};
     return c;
 }
 
@@ -127,4 +122,8 @@ INLINE void add_contacts(Contacts c, lanes3 n, lanes3* restrict force, lanes3* r
     torque->x += c.arm * (n.y * t.z - n.z * t.y);
     torque->y += c.arm * (n.z * t.x - n.x * t.z);
     torque->z += c.arm * (n.x * t.y - n.y * t.x);
+}
+
+INLINE void add_couples(Contacts c, lanes3* restrict torque) {
+    torque->x += c.couple.x; torque->y += c.couple.y; torque->z += c.couple.z;
 }

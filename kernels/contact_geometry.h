@@ -14,19 +14,28 @@ typedef struct {
     lanes radius;     /* the neighbour's, zero for a wall [m] */
     lanes3 velocity;  /* the neighbour's less this grain's [m/s] */
     lanes3 spin;      /* the neighbour's angular velocity [1/s] */
+    lanes softness;   /* E/E_j - 1 of the neighbour, zero for a wall */
 } Neighbours;
 
 /* Replaces the wall entries of a gathered row. Walls do not turn; the plate alone moves, along z. */
-INLINE void insert_walls(global const Replica* restrict replica, real plate_z, real4 own, slots partner,
+INLINE void insert_walls(global const Replica* restrict replica, const int effects, real plate_z, real4 own, slots partner,
                                 lanes4* restrict position, lanes4* restrict velocity, lanes4* restrict spin) {
     const mask wall = AS_MASK(partner < EMPTY);
     lanes along[3] = {WHERE(wall, own.x, position->x), WHERE(wall, own.y, position->y), WHERE(wall, own.z, position->z)};
     for (int w = 0; w < 6; ++w)
         along[w / 2] = WHERE(AS_MASK(partner == WALL_PARTNER(w)), w == 5 ? plate_z : replica->wall_position[w], along[w / 2]);
+    if (effects & EFFECT_PLATE_TILT) {
+        const mask plate = AS_MASK(partner == WALL_PARTNER(5));
+        const real3 foot = plate_foot(replica, plate_z, own);
+        along[0] = WHERE(plate, foot.x, along[0]);
+        along[1] = WHERE(plate, foot.y, along[1]);
+        along[2] = WHERE(plate, foot.z, along[2]);
+    }
     position->x = along[0];
     position->y = along[1];
     position->z = along[2];
     position->w = WHERE(wall, R(0), position->w);
+    velocity->w = WHERE(wall, R(0), velocity->w);
     velocity->x = WHERE(wall, R(0), velocity->x);
     velocity->y = WHERE(wall, R(0), velocity->y);
     velocity->z = WHERE(wall, WHERE(AS_MASK(partner == WALL_PARTNER(5)), replica->plate_velocity, R(0)), velocity->z);
@@ -35,7 +44,7 @@ INLINE void insert_walls(global const Replica* restrict replica, real plate_z, r
     spin->z = WHERE(wall, R(0), spin->z);
 }
 
-INLINE Neighbours see_neighbours(global const Replica* restrict replica, real plate_z, int grain, slots partner,
+INLINE Neighbours see_neighbours(global const Replica* restrict replica, const int effects, real plate_z, int grain, slots partner,
                                  global const real4* restrict position,
                                  global const real4* restrict velocity,
                                  global const real4* restrict angular_velocity) {
@@ -46,7 +55,7 @@ INLINE Neighbours see_neighbours(global const Replica* restrict replica, real pl
     lanes4 moving = gather4(velocity, index);
     lanes4 turning = gather4(angular_velocity, index);
     const mask wall = AS_MASK(partner < EMPTY);
-    if (ANY(wall)) insert_walls(replica, plate_z, own, partner, &there, &moving, &turning);
+    if (ANY(wall)) insert_walls(replica, effects, plate_z, own, partner, &there, &moving, &turning);
 
     Neighbours seen;
     seen.occupied = AS_MASK(partner != EMPTY);
@@ -60,5 +69,6 @@ INLINE Neighbours see_neighbours(global const Replica* restrict replica, real pl
     seen.radius = there.w;
     seen.velocity = (lanes3){moving.x - own_velocity.x, moving.y - own_velocity.y, moving.z - own_velocity.z};
     seen.spin = (lanes3){turning.x, turning.y, turning.z};
+    seen.softness = moving.w;
     return seen;
 }

@@ -64,10 +64,6 @@ INLINE real4 sum_lanes(lanes a, lanes b, lanes c, lanes d, EXCHANGE real* scratc
 }
 #endif
 
-INLINE real plate_position(global const Replica* restrict replica, int steps) {
-    return replica->wall_position[5] + replica->plate_velocity * (replica->time_step * steps);
-}
-
 /* The surface displacements of both sides of a row's contacts, predicted for this step. */
 INLINE void load_bulges(global const Replica* restrict replica, size_t row, int v,
                                global const int* restrict mirror, global const real* restrict bulge,
@@ -77,11 +73,4 @@ INLINE void load_bulges(global const Replica* restrict replica, size_t row, int 
     if (replica->surface == SURFACE_RIGID) return;
     *here = LOAD_LANES(bulge + row, v);
     *there = gather(bulge, LOAD_LANES(mirror + row, v));
-}
-
-INLINE lanes3 load_springs(global const Replica* restrict replica, size_t row, int v,
-                                  global const real* restrict x, global const real* restrict y,
-                                  global const real* restrict z) {
-    if (!replica->mindlin) return (lanes3){R(0), R(0), R(0)};
-    return (lanes3){LOAD_LANES(x + row, v), LOAD_LANES(y + row, v), LOAD_LANES(z + row, v)};
 }

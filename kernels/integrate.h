@@ -12,7 +12,7 @@ INLINE Motion integrate(global const Replica* restrict replica, real4 position, 
     const real3 turning = torque / (R(0.4) * mass * position.w * position.w);
     const real3 v = velocity.xyz + acceleration * dt;
     const real3 w = angular_velocity.xyz + turning * dt;
-    const Motion after = {(real4)(position.xyz + v * dt, position.w), (real4)(v, R(0)), (real4)(w, R(0))};
+    const Motion after = {(real4)(position.xyz + v * dt, position.w), (real4)(v, velocity.w), (real4)(w, R(0))};
     return after;
 }
 
@@ -21,6 +21,6 @@ INLINE int motion_status(global const Replica* restrict replica, Motion after, r
     if (!isfinite(x.x + x.y + x.z + w.x + w.y + w.z)) return STATUS_NOT_A_NUMBER;
     const bool inside = x.x > replica->wall_position[0] && x.x < replica->wall_position[1] &&
                         x.y > replica->wall_position[2] && x.y < replica->wall_position[3] &&
-                        x.z > replica->wall_position[4] && x.z < plate_z;
+                        x.z > replica->wall_position[4] && x.z < plate_height(replica, plate_z, x);
     return inside ? 0 : STATUS_LOST;
 }

@@ -7,7 +7,8 @@ kernel void measure(global const Replica* restrict replicas, global const int* r
                     global const real4* restrict angular_velocity, global const int* restrict partner,
                     global const int* restrict mirror, global const real* restrict bulge,
                     global const real* restrict spring_x, global const real* restrict spring_y,
-                    global const real* restrict spring_z, global const real4* restrict listed_position,
+                    global const real* restrict spring_z, global const real* restrict deepest_overlap,
+                    global const real* restrict relaxed, global const real4* restrict listed_position,
                     global real* restrict force_x, global real* restrict force_y, global real* restrict force_z,
                     global real* restrict overlap, global real* restrict arm, global real4* restrict energy) {
     GRAIN_OF_WORK_ITEM
@@ -19,13 +20,15 @@ kernel void measure(global const Replica* restrict replicas, global const int* r
     lanes elastic_energy = R(0), deepest = R(0);
     for (int v = 0; v < VECTORS; ++v) {
         const slots partners = LOAD_LANES(partner + row, v);
-        const Neighbours seen = see_neighbours(replica, plate_z, grain, partners, position, velocity, angular_velocity);
+        const Neighbours seen = see_neighbours(replica, replica->effects, plate_z, grain, partners, position, velocity, angular_velocity);
         lanes here, there;
         load_bulges(replica, row, v, mirror, bulge, &here, &there);
-        lanes3 spring = load_springs(replica, row, v, spring_x, spring_y, spring_z);
-        const Contacts c = contact_forces(replica, own.w, own_spin.xyz, seen, here, there, R(0), &spring);
+        Memory memory = load_memory(replica, replica->effects, row, v, spring_x, spring_y, spring_z, deepest_overlap, relaxed);
+        const Contacts c = contact_forces(replica, replica->effects, own.w, own_velocity.w, own_spin.xyz, seen, here, there,
+                                          R(0), &memory);
         /* Hertz energy 2/5 F delta, half of it this grain's, less the work of its own bulge */
         elastic_energy += c.elastic * (WHERE(seen.wall, R(0.4), R(0.2)) * c.overlap - R(0.5) * c.bulge);
+        if (replica->effects) elastic_energy += WHERE(seen.wall, R(1), R(0.5)) * c.energy;
         deepest = fmax(deepest, WHERE(seen.occupied, c.overlap / (own.w + seen.radius), R(0)));
         STORE_LANES(c.force.x, force_x + row, v);
         STORE_LANES(c.force.y, force_y + row, v);

@@ -1,5 +1,5 @@
 /* Who is near whom: each grain's row of grains and walls within the probed gap plus the margin, grains
-   first in order of index. What a slot remembers (bulges, springs) moves with its neighbour. */
+   first in order of index. What a slot remembers (bulges, springs, ..) moves with its neighbour. */
 
 /* Puts `entry` into the sorted grains of a row; `count` goes on counting past a full row. */
 INLINE int insert_sorted(int* row, int count, int entry) {
@@ -39,7 +39,9 @@ INLINE int near_walls(global const Replica* restrict replica, real4 own, int* ro
     for (int w = 0; w < 6; ++w) {
         const real coordinate = w / 2 == 0 ? own.x : w / 2 == 1 ? own.y : own.z;
         const real wall = replica->wall_position[w];
-        if ((w % 2 ? wall - coordinate : coordinate - wall) >= reach) continue;
+        const bool leaning = w == 5 && (replica->effects & EFFECT_PLATE_TILT);
+        const real distance = leaning ? plate_distance(replica, wall, own) : w % 2 ? wall - coordinate : coordinate - wall;
+        if (distance >= reach) continue;
         if (count < SLOTS) row[count] = WALL_PARTNER(w);
         ++count;
     }
@@ -63,7 +65,8 @@ kernel void list_neighbours(const int slot_count, global const Replica* restrict
                             global const int* restrict cell_head, global const int* restrict cell_next,
                             global int* restrict partner, global real* restrict bulge, global real* restrict history,
                             global real* restrict spring_x, global real* restrict spring_y,
-                            global real* restrict spring_z, global real4* restrict listed_position,
+                            global real* restrict spring_z, global real* restrict deepest, global real* restrict relaxed,
+                            global real4* restrict listed_position,
                             global int* restrict status) {
     const int block = blocks[get_group_id(0)];
     const int grain = block * BLOCK + get_local_id(0);
@@ -95,6 +98,8 @@ kernel void list_neighbours(const int slot_count, global const Replica* restrict
         carry(before, after, spring_y + row);
         carry(before, after, spring_z + row);
     }
+    if (replica->effects & EFFECT_PLASTICITY) carry(before, after, deepest + row);
+    if (replica->effects & EFFECT_VISCOELASTICITY) carry(before, after, relaxed + row);
 }
 
 /* mirror: where the same contact stands in the neighbour's row. For walls and empty slots, the one place past

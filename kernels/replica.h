@@ -31,6 +31,18 @@ typedef struct {
     real cell_size;           /* [m] */
     real wall_position[6];    /* x_min x_max y_min y_max floor plate, at the chunk's start [m] */
     real plate_velocity;      /* along z [m/s] */
+    real plate_tilt_x;        /* slope of the plate's face along x, about the middle of the box */
+    real plate_tilt_y;        /* .. along y */
+    real grain_compliance;    /* (1 - nu^2) / E of a grain [1/Pa] */
+    real shear_compliance;    /* (2 - nu) / G of a grain [1/Pa] */
+    real adhesion;            /* 2 pi w, pull-off force over R* [N/m] */
+    real viscoelasticity;     /* part of the force that relaxes */
+    real relaxing_share;      /* 1 - exp(-dt / T): of what is left to relax, in a step */
+    real stiffening;          /* per overlap over R* */
+    real plasticity;          /* part of the deepest overlap that stays */
+    real bulge_contacts;      /* part of the bulges that counts without geometric overlap */
+    real mindlin_share;       /* of the friction force, the rest is saturated */
+    real rolling_resistance;  /* mu_r */
     int first_grain;          /* of the padded arrays */
     int grain_count;
     int first_cell;
@@ -40,9 +52,20 @@ typedef struct {
     int steps_before;         /* this stretch, modulo 4: turns the ring of surface displacements */
     int surface;              /* SURFACE_* below */
     int finite_contacts;      /* 1: the sphere's size and self terms are not zero */
-    int mindlin;              /* 1: friction with history */
+    int mindlin;              /* 1: friction with history, all or a share */
+    int effects;              /* EFFECT_* bits: what goes beyond the plain model */
 } Replica;
 
 #define SURFACE_RIGID 0      /* independent contacts */
 #define SURFACE_HALF_SPACE 1 /* paper, Eq. 1, at the deformed contact points */
 #define SURFACE_SPHERE 2     /* displacement of a sphere, a polynomial in sin(theta / 2) */
+
+#define EFFECT_MODULUS_SCATTER 1
+#define EFFECT_BULGE_CONTACTS 2
+#define EFFECT_PLASTICITY 4
+#define EFFECT_STIFFENING 8
+#define EFFECT_VISCOELASTICITY 16
+#define EFFECT_ADHESION 32
+#define EFFECT_FRICTION_HISTORY 64
+#define EFFECT_ROLLING_RESISTANCE 128
+#define EFFECT_PLATE_TILT 256

@@ -29,7 +29,7 @@ void apply_jitter(Packing& packing, double sd, std::uint64_t seed) {
         for (int axis = 0; axis < 3; ++axis) position[axis] += sd * random.normal();
 }
 
-std::vector<std::string> packing_problems(const Packing& packing, const Box& box, double top,
+std::vector<std::string> packing_problems(const Packing& packing, const Box& box, const PlateFace& plate,
                                           const std::string& source) {
     if (packing.size() == 0)
         return {fmt::format("{}: a packing must have at least 1 grain, got none", source)};
@@ -45,12 +45,12 @@ std::vector<std::string> packing_problems(const Packing& packing, const Box& box
     for (std::size_t i = 0; i < packing.size(); ++i) {
         const Vec3& p = packing.position[i];
         const bool inside = p.x() >= 0 && p.x() <= box.size_x && p.y() >= 0 && p.y() <= box.size_y &&
-                            p.z() >= 0 && p.z() <= top;
+                            p.z() >= 0 && p.z() <= plate.height(p);
         if (inside || ++outside > most_problems) continue;
         problems.push_back(
             fmt::format("{}: the centre of grain {} must be in the box of {} x {} m below the plate at {} m, "
                         "got {}, {}, {}",
-                        source, i, box.size_x, box.size_y, top, p.x(), p.y(), p.z()));
+                        source, i, box.size_x, box.size_y, plate.height(p), p.x(), p.y(), p.z()));
     }
     if (outside > most_problems)
         problems.push_back(
@@ -70,7 +70,7 @@ Packing make_packing(const Replica& replica) {
     }
     apply_jitter(packing, from.position_jitter, from.seed);
     // A generated packing may be a little higher than the plate, never so high that a centre is above it.
-    const auto problems = packing_problems(packing, replica.box, replica.plate.start, source);
+    const auto problems = packing_problems(packing, replica.box, plate_face(replica, replica.plate.start), source);
     if (!problems.empty()) throw InputError(problems);
     return packing;
 }

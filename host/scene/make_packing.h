@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "scene/scene.h"
+#include "scene/plate_face.h"
 
 namespace mcdem {
 
@@ -15,9 +15,9 @@ Packing make_packing(const Replica& replica);
 /// Moves every coordinate of every centre by a normal random length with standard deviation `sd` [m].
 void apply_jitter(Packing& packing, double sd, std::uint64_t seed);
 
-/// What is wrong with a packing in this box, below `top` [m]: centres outside, sizes that cannot be metres.
+/// What is wrong with a packing in this box, below this plate: centres outside, sizes that cannot be metres.
 /// Each is `source: ..`; empty where all is well.
-std::vector<std::string> packing_problems(const Packing& packing, const Box& box, double top,
+std::vector<std::string> packing_problems(const Packing& packing, const Box& box, const PlateFace& plate,
                                           const std::string& source);
 
 }  // namespace mcdem

@@ -18,6 +18,12 @@ enum class Stream : std::uint64_t {
     measured_diameters = 4,
     measured_positions = 5,
     measured_forces = 6,
+    moduli = 7,
+    true_diameters = 8,
+    null_draws = 20,
+    bootstrap = 21,
+    placebo = 22,
+    diameter_jitter = 23,
 };
 
 /// splitmix64 (Steele, Lea & Flood 2014): neighbouring numbers become unrelated ones.

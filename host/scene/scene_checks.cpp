@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/errors.h"
 #include "scene/generate_packing.h"
@@ -36,6 +37,23 @@ const std::vector<Check> checks{
     {{"protocol.scans_per_stroke", "protocol.cycles"}, Check::Packing::any, [](const Settings& s) {
         const long scans = 2L * s.replica.protocol.cycles * s.replica.protocol.scans_per_stroke;
         return unless(scans <= 1'000'000, fmt::format("must leave at most 1000000 scans in all, got {}", scans));
+    }},
+    {{"effects.plate_tilt_x", "effects.plate_tilt_y", "box.size_x", "box.size_y", "plate.end"}, Check::Packing::any, [](const Settings& s) {
+        const auto& effects = s.replica.effects;
+        const auto& box = s.replica.box;
+        const double drop = (std::abs(effects.plate_tilt_x) * box.size_x + std::abs(effects.plate_tilt_y) * box.size_y) / 2;
+        return unless(drop < s.replica.plate.end,
+                      fmt::format("and effects.plate_tilt_y must leave the plate's lowest corner above the floor at plate.end = {}, got {} and {}: it is {:.6g} m lower",
+                                  s.replica.plate.end, effects.plate_tilt_x, effects.plate_tilt_y, drop));
+    }},
+    {{"effects.diameter_error", "packing.diameter_min"}, Check::Packing::generated, [](const Settings& s) {
+        return unless(s.replica.effects.diameter_error > -s.generated.diameter_min,
+                      fmt::format("must be above minus packing.diameter_min = {}, got {}", s.generated.diameter_min, s.replica.effects.diameter_error));
+    }},
+    {{"effects.polydispersity", "packing.diameter_mean"}, Check::Packing::generated, [](const Settings& s) {
+        const double sd = s.replica.effects.polydispersity;
+        return unless(sd <= 0.2 * s.generated.diameter_mean,
+                      fmt::format("must be at most a fifth of packing.diameter_mean = {}, got {}", s.generated.diameter_mean, sd));
     }},
     {{"packing.diameter_min", "packing.diameter_mean"}, Check::Packing::generated, [](const Settings& s) {
         const auto& g = s.generated;
@@ -108,12 +126,15 @@ std::vector<std::string> packing_file_problems(const Settings& settings, Checked
         }
     }
     if (!file.problems.empty()) return file.problems;
-    auto problems = packing_problems(file.packing, settings.replica.box, settings.replica.plate.start,
-                                     settings.packing_file);
+    auto problems = packing_problems(file.packing, settings.replica.box,
+                                     plate_face(settings.replica, settings.replica.plate.start), settings.packing_file);
     if (settings.replica.packing.position_jitter > 0.1 * file.smallest)
         problems.push_back(fmt::format(
             "{}: packing.position_jitter must be at most a tenth of the smallest diameter {}, got {}",
             settings.packing_file, file.smallest, settings.replica.packing.position_jitter));
+    if (!(settings.replica.effects.diameter_error > -file.smallest))
+        problems.push_back(fmt::format("{}: effects.diameter_error must be above minus the smallest diameter {}, got {}",
+                                       settings.packing_file, file.smallest, settings.replica.effects.diameter_error));
     return problems;
 }
 

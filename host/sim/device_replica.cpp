@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "core/surface_displacement.h"
+#include "scene/true_grains.h"
 
 namespace mcdem {
 namespace {
@@ -49,7 +50,36 @@ void set_materials(DeviceReplica& d, const Replica& replica) {
     d.friction_grain = g.friction;
     d.friction_wall = w.friction;
     d.sliding_velocity = replica.contact.sliding_velocity;
-    d.mindlin = replica.contact.friction_law == FrictionLaw::mindlin;
+    d.mindlin = mindlin_share(replica) > 0;
+}
+
+template <class DeviceReplica>
+void set_effects(DeviceReplica& d, const Replica& replica, double time_step) {
+    const Effects& e = replica.effects;
+    const auto& g = replica.grains;
+    const auto on = [&](bool wanted, int bit) { d.effects |= wanted ? bit : 0; };
+    on(e.modulus_scatter > 0, EFFECT_MODULUS_SCATTER);
+    d.grain_compliance = (1 - g.poisson_ratio * g.poisson_ratio) / g.youngs_modulus;
+    d.shear_compliance = (2 - g.poisson_ratio) / shear_modulus(g.youngs_modulus, g.poisson_ratio);
+    on(e.bulge_contacts != 1, EFFECT_BULGE_CONTACTS);
+    d.bulge_contacts = e.bulge_contacts;
+    on(e.plasticity > 0, EFFECT_PLASTICITY);
+    d.plasticity = e.plasticity;
+    on(e.stiffening != 0, EFFECT_STIFFENING);
+    d.stiffening = e.stiffening;
+    on(e.viscoelasticity > 0, EFFECT_VISCOELASTICITY);
+    d.viscoelasticity = e.viscoelasticity;
+    d.relaxing_share = -std::expm1(-time_step / e.relaxation_time);
+    on(e.adhesion > 0, EFFECT_ADHESION);
+    d.adhesion = 2 * pi * e.adhesion;
+    const double mindlin = mindlin_share(replica);
+    on(mindlin > 0 && mindlin < 1, EFFECT_FRICTION_HISTORY);
+    d.mindlin_share = mindlin;
+    on(e.rolling_resistance > 0, EFFECT_ROLLING_RESISTANCE);
+    d.rolling_resistance = e.rolling_resistance;
+    on(e.plate_tilt_x != 0 || e.plate_tilt_y != 0, EFFECT_PLATE_TILT);
+    d.plate_tilt_x = e.plate_tilt_x;
+    d.plate_tilt_y = e.plate_tilt_y;
 }
 
 template <class DeviceReplica>
@@ -90,9 +120,17 @@ void set_space(DeviceReplica& d, const Replica& replica, const Packing& packing)
 
 }  // namespace
 
+double mindlin_share(const Replica& replica) {
+    const double other = replica.effects.friction_history;
+    return replica.contact.friction_law == FrictionLaw::mindlin ? 1 - other : other;
+}
+
 double time_step(const Replica& replica, const Packing& packing) {
     const auto& g = replica.grains;
-    const double smallest = 0.5 * *std::min_element(packing.diameter.begin(), packing.diameter.end());
+    const auto softer = softness(replica, packing.size());
+    double smallest = 0.5 * packing.diameter[0] * std::sqrt(1 + softer[0]);  // of the mean stiffness
+    for (std::size_t i = 1; i < packing.size(); ++i)
+        smallest = std::min(smallest, 0.5 * packing.diameter[i] * std::sqrt(1 + softer[i]));
     const double rayleigh = pi * smallest * std::sqrt(g.density / shear_modulus(g.youngs_modulus, g.poisson_ratio)) /
                             (0.163 * g.poisson_ratio + 0.8766);
     return replica.numerics.time_step * rayleigh;
@@ -101,8 +139,10 @@ double time_step(const Replica& replica, const Packing& packing) {
 template <class DeviceReplica>
 DeviceReplica device_replica(const Replica& replica, const Packing& packing, const Place& place) {
     DeviceReplica d{};
-    d.time_step = time_step(replica, packing);
+    const double step = time_step(replica, packing);
+    d.time_step = step;
     set_materials(d, replica);
+    set_effects(d, replica, step);
     set_surface(d, replica);
     set_space(d, replica, packing);
     d.first_grain = place.first_grain;

@@ -7,8 +7,11 @@
 
 namespace mcdem {
 
-/// Fraction of the Rayleigh time of the smallest grain, pi R sqrt(rho / G) / (0.163 nu + 0.8766) [s].
+/// Fraction of the shortest Rayleigh time of a grain, pi R sqrt(rho / G) / (0.163 nu + 0.8766) [s].
 double time_step(const Replica& replica, const Packing& packing);
+
+/// How much of the friction force is that of a Mindlin spring, the rest being saturated.
+double mindlin_share(const Replica& replica);
 
 /// Where a replica lies in the device's arrays.
 struct Place {

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "core/errors.h"
+#include "scene/true_grains.h"
 #include "sim/device_replica.h"
 
 namespace mcdem {
@@ -39,7 +40,9 @@ FieldNeeds needs_of(const std::vector<Replica>& replicas) {
     FieldNeeds needs;
     for (const auto& replica : replicas) {
         needs.bulges |= replica.contact.model != ContactModel::independent;
-        needs.springs |= replica.contact.friction_law == FrictionLaw::mindlin;
+        needs.springs |= mindlin_share(replica) > 0;
+        needs.deepest |= replica.effects.plasticity > 0;
+        needs.relaxed |= replica.effects.viscoelasticity > 0;
     }
     return needs;
 }
@@ -72,28 +75,33 @@ Engine::Engine(Device& device, const KernelBuild& build, std::vector<Replica> re
       kernels_(device, build) {
     for (int r = 0; r < layout_.replicas(); ++r) {
         time_step_.push_back(mcdem::time_step(replicas_[r], packings[r]));
+        softness_.push_back(softness(replicas_[r], packings[r].size()));
         skin_.push_back(std::visit([&](const auto& all) { return double(all[r].skin); }, device_replicas_));
     }
     upload_packings(packings);
 }
 
 void Engine::upload_packings(const std::vector<Packing>& packings) {
-    std::vector<double> values(4 * layout_.grains(), 0.0);
+    std::vector<double> values(4 * layout_.grains(), 0.0), velocities(4 * layout_.grains(), 0.0);
     for (int r = 0; r < layout_.replicas(); ++r)
         for (int k = 0; k < layout_.grain_count[r]; ++k) {
             const int grain = layout_.order[r][k];
             double* at = &values[4 * (layout_.first_grain[r] + k)];
             for (int axis = 0; axis < 3; ++axis) at[axis] = packings[r].position[grain][axis];
             at[3] = 0.5 * packings[r].diameter[grain];
+            velocities[4 * (layout_.first_grain[r] + k) + 3] = softness_[r][grain];
         }
     for (auto& copy : fields_.position.copies) write_reals(copy, 0, values);
+    for (auto& copy : fields_.velocity.copies) write_reals(copy, 0, velocities);
 }
 
 int Engine::longest_stretch(int replica, double plate_velocity) const {
     const double step = std::abs(plate_velocity) * time_step_[replica];
-    const double steps = step > 0 ? plate_stretch * skin_[replica] / step : longest_stretch_steps;
+    const double steps = step > 0 ? farthest_plate_move(replica) / step : longest_stretch_steps;
     return std::clamp(static_cast<int>(std::min(steps, 1e6)), 1, longest_stretch_steps);
 }
+
+double Engine::farthest_plate_move(int replica) const { return plate_stretch * skin_[replica]; }
 
 Engine::Part Engine::part(const std::vector<char>& wanted) const {
     Part part;
@@ -156,7 +164,7 @@ void Engine::find_neighbours(const std::vector<char>& active) {
                         f.cell_head, f.cell_next);
     kernels_.list_neighbours(blocks, block, f.slot_count, f.replicas, f.relisted_blocks, f.replica_of_block, f.position.now(0),
                              f.cell_head, f.cell_next, f.partner, f.bulge.now(0), f.bulge_history,
-                             f.spring_x, f.spring_y, f.spring_z, f.listed_position, f.status);
+                             f.spring_x, f.spring_y, f.spring_z, f.deepest, f.relaxed, f.listed_position, f.status);
     kernels_.link_mirrors(blocks, block, f.slot_count, f.relisted_blocks, f.partner, f.mirror);
     for (int r : stale.replicas) {
         relist_[r] = 0;
@@ -174,7 +182,7 @@ void Engine::make_steps(int steps, std::size_t blocks) {
                          f.position.now(p), f.velocity.now(p), f.angular_velocity.now(p), f.position.next(p),
                          f.velocity.next(p), f.angular_velocity.next(p), f.partner, f.mirror, f.bulge.now(p),
                          f.bulge.next(p), f.bulge_history, f.spring_x, f.spring_y, f.spring_z,
-                         f.listed_position, f.status);
+                         f.deepest, f.relaxed, f.listed_position, f.status);
     }
 }
 
@@ -182,7 +190,7 @@ void Engine::measure(const Part& working) {
     auto& f = fields_;
     kernels_.measure(working.blocks.size(), build_.work_items(), f.replicas, f.blocks, f.replica_of_block, f.stop_at,
                      f.position.now(0), f.velocity.now(0), f.angular_velocity.now(0), f.partner, f.mirror,
-                     f.bulge.now(0), f.spring_x, f.spring_y, f.spring_z, f.listed_position, f.force_x, f.force_y,
+                     f.bulge.now(0), f.spring_x, f.spring_y, f.spring_z, f.deepest, f.relaxed, f.listed_position, f.force_x, f.force_y,
                      f.force_z, f.overlap, f.arm, f.energy);
     f.chosen.write(working.replicas.data(), 0, working.replicas.size() * sizeof(int));
     kernels_.reduce(working.replicas.size(), 64, f.replicas, f.chosen, f.partner, f.force_x, f.force_y, f.force_z,

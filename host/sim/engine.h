@@ -49,6 +49,8 @@ public:
     /// The most steps a stretch of `replica` may have with the plate at this velocity, so that the plate
     /// does not outrun the neighbour list.
     int longest_stretch(int replica, double plate_velocity) const;
+    /// How far the plate may move in one stretch of more than one step [m].
+    double farthest_plate_move(int replica) const;
     /// Device memory in use [bytes].
     std::size_t bytes() const { return fields_.bytes(); }
 
@@ -89,6 +91,7 @@ private:
     Layout layout_;
     std::vector<double> time_step_;
     std::vector<double> skin_;            ///< [m]
+    std::vector<std::vector<double>> softness_;  ///< E/E_i - 1 by the user's grain numbers
     std::vector<char> relist_;            ///< 1: the neighbour list is to be made anew
     std::vector<double> plate_moved_;     ///< since the list was made [m]
     std::vector<double> plate_z_;         ///< where the last stretch left it [m]

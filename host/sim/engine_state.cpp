@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "core/errors.h"
+#include "scene/plate_face.h"
 #include "sim/engine.h"
 
 namespace mcdem {
@@ -43,6 +44,7 @@ void Engine::write_reals(Field<Quantity>& field, std::size_t first, const std::v
 }
 
 template void Engine::write_reals(Field<Position>&, std::size_t, const std::vector<double>&);
+template void Engine::write_reals(Field<Velocity>&, std::size_t, const std::vector<double>&);
 
 ReplicaState Engine::state(int replica) const {
     const auto& order = layout_.order[replica];
@@ -65,6 +67,7 @@ std::vector<Contact> Engine::contacts(int replica, const std::vector<Vec3>& posi
                arm = read_reals(fields_.arm, first, count);
     std::vector<int> partner(count);
     fields_.partner.read(partner.data(), first * sizeof(int), count * sizeof(int));
+    const PlateFace plate = plate_face(replicas_[replica], plate_z_[replica]);
     std::vector<Contact> found;
     for (std::size_t slot = 0; slot < count; ++slot) {
         if (!(overlap[slot] > 0)) continue;
@@ -76,13 +79,14 @@ std::vector<Contact> Engine::contacts(int replica, const std::vector<Vec3>& posi
             contact.partner = wall_partner(static_cast<Wall>(wall));
             direction = Vec3::Zero();
             direction[wall / 2] = wall % 2 ? 1 : -1;
+            if (static_cast<Wall>(wall) == Wall::plate) direction = plate.normal();
         } else {
             contact.partner = order[partner[slot] - layout_.first_grain[replica]];
             if (contact.partner < contact.grain) continue;  // listed from the other side
             direction = (position[contact.partner] - position[contact.grain]).normalized();
         }
         contact.point = position[contact.grain] + arm[slot] * direction;
-        if (contact.partner == wall_partner(Wall::plate)) contact.point.z() = plate_z_[replica];
+        if (contact.partner == wall_partner(Wall::plate)) contact.point = plate.foot(position[contact.grain]);
         contact.force = {x[slot], y[slot], z[slot]};
         contact.overlap = overlap[slot];
         found.push_back(contact);
@@ -101,6 +105,7 @@ void Engine::set_velocities(int replica, const std::vector<Vec3>& velocity, cons
             v[4 * k + axis] = velocity[order[k]][axis];
             w[4 * k + axis] = angular_velocity[order[k]][axis];
         }
+    for (std::size_t k = 0; k < order.size(); ++k) v[4 * k + 3] = softness_[replica][order[k]];
     const std::size_t first = 4 * std::size_t(layout_.first_grain[replica]);
     write_reals(fields_.velocity.copies[0], first, v);
     write_reals(fields_.angular_velocity.copies[0], first, w);

@@ -41,6 +41,8 @@ Fields::Fields(Device& device, const KernelBuild& build, const Layout& layout, s
     make(spring_x, spring_slots, real);
     make(spring_y, spring_slots, real);
     make(spring_z, spring_slots, real);
+    make(deepest, needs.deepest ? slots : 1, real);
+    make(relaxed, needs.relaxed ? slots : 1, real);
     make(force_x, slots, real);
     make(force_y, slots, real);
     make(force_z, slots, real);

@@ -26,6 +26,8 @@ struct BulgeHistory;
 struct SpringX;
 struct SpringY;
 struct SpringZ;
+struct Deepest;
+struct Relaxed;
 struct ListedPosition;
 struct Status;
 struct CellHead;
@@ -50,6 +52,8 @@ struct Pair {
 struct FieldNeeds {
     bool bulges = false;   ///< some replica has interacting contacts
     bool springs = false;  ///< some replica has friction with history
+    bool deepest = false;  ///< some replica has plasticity
+    bool relaxed = false;  ///< some replica has viscoelasticity
 };
 
 /// Fields of a grain (padded, all replicas) unless another extent is named.
@@ -76,6 +80,8 @@ struct Fields {
     Field<SpringX> spring_x;
     Field<SpringY> spring_y;
     Field<SpringZ> spring_z;
+    Field<Deepest> deepest;                 ///< overlap
+    Field<Relaxed> relaxed;                 ///< force
     Field<ForceX> force_x;
     Field<ForceY> force_y;
     Field<ForceZ> force_z;
@@ -99,6 +105,8 @@ struct Fields {
         visit("spring_x", spring_x);
         visit("spring_y", spring_y);
         visit("spring_z", spring_z);
+        visit("deepest", deepest);
+        visit("relaxed", relaxed);
     }
     std::size_t bytes() const { return bytes_; }
     int slot_count = 0;  ///< of all grains that have surface displacements; 1 if none
@@ -117,17 +125,17 @@ struct Kernels {
         fill_cells;
     Kernel<int, Field<Constants>, Field<Blocks>, Field<ReplicaOfBlock>, Field<Position>, Field<CellHead>, Field<CellNext>,
            Field<Partner>, Field<Bulge>, Field<BulgeHistory>, Field<SpringX>, Field<SpringY>,
-           Field<SpringZ>, Field<ListedPosition>, Field<Status>>
+           Field<SpringZ>, Field<Deepest>, Field<Relaxed>, Field<ListedPosition>, Field<Status>>
         list_neighbours;
     Kernel<int, Field<Blocks>, Field<Partner>, Field<Mirror>> link_mirrors;
     Kernel<int, int, Field<Constants>, Field<Blocks>, Field<ReplicaOfBlock>, Field<StopAt>, Field<Position>,
            Field<Velocity>, Field<AngularVelocity>, Field<Position>, Field<Velocity>, Field<AngularVelocity>,
            Field<Partner>, Field<Mirror>, Field<Bulge>, Field<Bulge>, Field<BulgeHistory>,
-           Field<SpringX>, Field<SpringY>, Field<SpringZ>, Field<ListedPosition>, Field<Status>>
+           Field<SpringX>, Field<SpringY>, Field<SpringZ>, Field<Deepest>, Field<Relaxed>, Field<ListedPosition>, Field<Status>>
         advance;
     Kernel<Field<Constants>, Field<Blocks>, Field<ReplicaOfBlock>, Field<StopAt>, Field<Position>, Field<Velocity>,
            Field<AngularVelocity>, Field<Partner>, Field<Mirror>, Field<Bulge>, Field<SpringX>, Field<SpringY>,
-           Field<SpringZ>, Field<ListedPosition>, Field<ForceX>, Field<ForceY>, Field<ForceZ>, Field<Overlap>,
+           Field<SpringZ>, Field<Deepest>, Field<Relaxed>, Field<ListedPosition>, Field<ForceX>, Field<ForceY>, Field<ForceZ>, Field<Overlap>,
            Field<Arm>, Field<Energy>>
         measure;
     Kernel<Field<Constants>, Field<Chosen>, Field<Partner>, Field<ForceX>, Field<ForceY>, Field<ForceZ>,

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "core/errors.h"
+#include "scene/true_grains.h"
 #include "sim/averages.h"
 
 namespace mcdem {
@@ -31,6 +32,11 @@ std::string cause_of(const StretchResult& result, const Replica& replica, int sl
     return cause;
 }
 
+std::vector<Packing> true_packings(const std::vector<Replica>& replicas, std::vector<Packing> stated) {
+    for (std::size_t r = 0; r < stated.size(); ++r) stated[r] = true_packing(replicas[r], std::move(stated[r]));
+    return stated;
+}
+
 }  // namespace
 
 Simulation::Simulation(Device& device, const Scene& scene, std::vector<Packing> packings)
@@ -40,8 +46,12 @@ Simulation::Simulation(Device& device, const Scene& scene, std::vector<Packing> 
           for (const auto& packing : packings) all.push_back(packing.diameter);
           return all;
       }()),
-      engine_(device, kernel_build(device, scene.precision, scene.slots), scene.replicas, std::move(packings)) {
-    for (int r = 0; r < engine_.replicas(); ++r) runners_.emplace_back(scene_.replicas[r], engine_.time_step(r));
+      engine_(device, kernel_build(device, scene.precision, scene.slots), scene.replicas,
+              true_packings(scene.replicas, std::move(packings))) {
+    for (int r = 0; r < engine_.replicas(); ++r) {
+        runners_.emplace_back(scene_.replicas[r], engine_.time_step(r));
+        plates_.emplace_back(scene_.replicas[r].effects.plate_compliance);
+    }
 }
 
 bool Simulation::advance(const ScanSink& on_scan, const FailureSink& on_failure) {
@@ -50,6 +60,7 @@ bool Simulation::advance(const ScanSink& on_scan, const FailureSink& on_failure)
     for (int r = 0; r < engine_.replicas(); ++r) {
         stretches.push_back(
             runners_[r].next([&](double plate_velocity) { return engine_.longest_stretch(r, plate_velocity); }));
+        plates_[r].give_way(stretches[r], engine_.time_step(r), engine_.farthest_plate_move(r));
         any |= stretches.back().steps > 0;
     }
     if (!any) return false;
@@ -57,6 +68,7 @@ bool Simulation::advance(const ScanSink& on_scan, const FailureSink& on_failure)
     for (int r = 0; r < engine_.replicas(); ++r) {
         if (stretches[r].steps == 0) continue;
         grain_steps_ += static_cast<long>(results[r].steps) * static_cast<long>(diameter_[r].size());
+        plates_[r].made(results[r]);
         const auto tag = runners_[r].made(results[r]);
         if (results[r].status) {
             on_failure(r, failure(r, results[r]));
@@ -102,24 +114,32 @@ double Simulation::progress() const {
 
 std::map<std::string, std::vector<std::byte>> Simulation::save() {
     auto saved = engine_.save();
-    auto& bytes = saved["protocol"];
-    for (const auto& runner : runners_) {
-        const auto* begin = reinterpret_cast<const std::byte*>(&runner.state());
-        bytes.insert(bytes.end(), begin, begin + sizeof(ProtocolState));
-    }
+    const auto keep = [&](const char* name, const auto& parts) {
+        auto& bytes = saved[name];
+        for (const auto& part : parts) {
+            const auto* begin = reinterpret_cast<const std::byte*>(&part.state());
+            bytes.insert(bytes.end(), begin, begin + sizeof part.state());
+        }
+    };
+    keep("protocol", runners_);
+    keep("plates", plates_);
     return saved;
 }
 
 void Simulation::restore(const std::map<std::string, std::vector<std::byte>>& saved) {
     engine_.restore(saved);
-    const auto found = saved.find("protocol");
-    if (found == saved.end() || found->second.size() != runners_.size() * sizeof(ProtocolState))
-        throw RunError("the checkpoint does not belong to this scene: it holds another number of replicas");
-    for (std::size_t r = 0; r < runners_.size(); ++r) {
-        ProtocolState state;
-        std::memcpy(&state, found->second.data() + r * sizeof(ProtocolState), sizeof state);
-        runners_[r].set_state(state);
-    }
+    const auto bring_back = [&](const char* name, auto& parts) {
+        auto state = parts.front().state();
+        const auto found = saved.find(name);
+        if (found == saved.end() || found->second.size() != parts.size() * sizeof state)
+            throw RunError("the checkpoint does not belong to this scene: it holds another number of replicas");
+        for (std::size_t r = 0; r < parts.size(); ++r) {
+            std::memcpy(&state, found->second.data() + r * sizeof state, sizeof state);
+            parts[r].set_state(state);
+        }
+    };
+    bring_back("protocol", runners_);
+    bring_back("plates", plates_);
 }
 
 Recording begin_recording(const Replica& replica, const Packing& packing) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/compliant_plate.h"
 #include "sim/engine.h"
 #include "sim/protocol.h"
 
@@ -34,9 +35,10 @@ private:
     Failure failure(int replica, const StretchResult& result) const;
 
     Scene scene_;
-    std::vector<std::vector<double>> diameter_;
+    std::vector<std::vector<double>> diameter_;  ///< as stated [m]
     Engine engine_;
     std::vector<ProtocolRunner> runners_;
+    std::vector<CompliantPlate> plates_;
     long grain_steps_ = 0;
 };
 

@@ -29,7 +29,13 @@ kernel void write_offsets(global int* offsets) {
                         MEMBER(overlap_limit) MEMBER(cell_size) MEMBER(wall_position) MEMBER(plate_velocity) \
                             MEMBER(first_grain) MEMBER(grain_count) MEMBER(first_cell) MEMBER(cells_x)       \
                                 MEMBER(cells_y) MEMBER(cells_z) MEMBER(surface) MEMBER(finite_contacts)      \
-                                    MEMBER(mindlin) MEMBER(steps_before)
+                                    MEMBER(mindlin) MEMBER(steps_before)     \
+                                        MEMBERS_OF_EFFECTS(MEMBER)
+#define MEMBERS_OF_EFFECTS(MEMBER)                                                                         \
+    MEMBER(plate_tilt_x)                                                                                   \
+    MEMBER(plate_tilt_y) MEMBER(grain_compliance) MEMBER(shear_compliance) MEMBER(adhesion)                \
+        MEMBER(viscoelasticity) MEMBER(relaxing_share) MEMBER(stiffening) MEMBER(plasticity)               \
+            MEMBER(bulge_contacts) MEMBER(mindlin_share) MEMBER(rolling_resistance) MEMBER(effects)
 #define MEMBERS_OF_REPORT(MEMBER)                                                                          \
     MEMBER(kinetic_energy)                                                                                 \
     MEMBER(elastic_energy) MEMBER(moved_squared) MEMBER(deepest_overlap) MEMBER(wall_force) MEMBER(status) \

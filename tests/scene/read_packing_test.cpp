@@ -49,7 +49,7 @@ TEST(MeasuredPacking, HasTheStatisticsOfTheExperiment) {
     EXPECT_NEAR(volume, 2695.88e-6, 0.005e-6);
     EXPECT_EQ(packing.diameter[0], 0.0192777);
     EXPECT_EQ(packing.position[513], Vec3(0.0514528, 0.053274, 0.150855));
-    EXPECT_THAT(packing_problems(packing, {0.165191, 0.165834}, 0.167643, file), SizeIs(0));
+    EXPECT_THAT(packing_problems(packing, {0.165191, 0.165834}, {0.167643}, file), SizeIs(0));
 }
 
 TEST(LammpsPacking, NumbersGrainsByTheirIds) {
@@ -148,20 +148,20 @@ TEST(PackingFiles, AreChosenByTheirNamesEnd) {
 TEST(PackingProblems, GrainsOutOfTheBox) {
     const Packing packing{{{0.05, 0.05, 0.05}, {-0.01, 0.05, 0.05}, {0.05, 0.11, 0.05}, {0.05, 0.05, 0.3}},
                           {0.02, 0.02, 0.02, 0.02}};
-    EXPECT_THAT(packing_problems(packing, {0.1, 0.1}, 0.2, "p"),
+    EXPECT_THAT(packing_problems(packing, {0.1, 0.1}, {0.2}, "p"),
                 ElementsAre(HasSubstr("p: the centre of grain 1 must be in the box of 0.1 x 0.1 m below the "
                                       "plate at 0.2 m, got -0.01, 0.05, 0.05"),
                             HasSubstr("grain 2"), HasSubstr("grain 3")));
-    EXPECT_THAT(packing_problems({}, {0.1, 0.1}, 0.2, "p"), SizeIs(1));
+    EXPECT_THAT(packing_problems({}, {0.1, 0.1}, {0.2}, "p"), SizeIs(1));
     Packing many;
     many.position.assign(100000, Vec3(5, 5, 5));
     many.diameter.assign(100000, 0.01);
-    EXPECT_THAT(packing_problems(many, {0.1, 0.1}, 0.2, "p"), SizeIs(11));
+    EXPECT_THAT(packing_problems(many, {0.1, 0.1}, {0.2}, "p"), SizeIs(11));
 }
 
 TEST(PackingProblems, MillimetresAreNoticed) {
     const Packing packing{{{50, 50, 50}, {70, 50, 50}}, {20, 21}};
-    EXPECT_THAT(packing_problems(packing, {0.1, 0.1}, 0.2, "p"),
+    EXPECT_THAT(packing_problems(packing, {0.1, 0.1}, {0.2}, "p"),
                 ElementsAre(HasSubstr("millimetres? divide by 1000")));
 }
 

@@ -1,0 +1,34 @@
+// A plate that gives way: its true position is where it is sent to plus compliance times the force on it. The
+// force is known from the last stretch only; the plate goes after it smoothly, stretch by stretch.
+#pragma once
+#include "sim/engine.h"
+
+namespace mcdem {
+
+class CompliantPlate {
+public:
+    /// Plain values, so that a checkpoint can hold them.
+    struct State {
+        double given = 0;  ///< true less commanded position [m]
+        double slope = 0;  ///< how much of a commanded move it gives way by, -1 to 0
+        double force = 0;  ///< on the plate at the end of the last stretch, upward [N]
+    };
+
+    /// `compliance` [m/N]
+    explicit CompliantPlate(double compliance) : compliance_(compliance) {}
+
+    /// Turns the commanded stretch into the true one. The plate moves at most `farthest` [m] or as far as commanded.
+    void give_way(Stretch& stretch, double time_step, double farthest);
+    /// Takes note of the force at the stretch's end.
+    void made(const StretchResult& result);
+
+    const State& state() const { return state_; }
+    void set_state(const State& state) { state_ = state; }
+
+private:
+    double compliance_;
+    State state_;
+    double change_ = 0;  ///< of `given` a step, in the stretch under way [m]
+};
+
+}  // namespace mcdem

@@ -1,0 +1,79 @@
+/* What goes beyond the plain contact, effect by effect, each off at its default. Every expression is the same
+   seen from both sides, to the last bit. */
+
+/* Grains of unequal stiffness, E_i = E / (1 + softness_i):
+   1/E* = (1 - nu^2)/E_i + (1 - nu^2)/E_j, the shear modulus likewise; a wall's softness is zero. */
+INLINE lanes scattered_modulus(lanes modulus, real compliance, lanes softness) {
+    return modulus / (R(1) + modulus * compliance * softness);
+}
+
+/* The bulges as far as they count: only `part` of them where the grains by themselves do not overlap, all of
+   them from where the geometric overlap is as large as they are. */
+INLINE lanes counted_bulges(lanes gap, lanes bulges, real part) {
+    const lanes share = clamp(-gap / fmax(fabs(bulges), (lanes)(R(1e-30))), (lanes)(R(0)), (lanes)(R(1)));
+    return bulges * (part + (R(1) - part) * share);
+}
+
+/* A part of the deepest overlap stays: d_p = p d_max. Unloading follows F(d_max) ((d - d_p)/(d_max - d_p))^(3/2)
+   (Walton & Braun 1986 with Hertz's power in place of straight lines), that is Hertz's law at the
+   overlap (d - d_p)/(1 - p); beyond d_p there is a gap of d_p - d. */
+INLINE lanes plastic_approach(lanes approach, real part, mask occupied, lanes* restrict deepest) {
+    *deepest = WHERE(occupied, fmax(*deepest, approach), R(0));
+    const lanes left = approach - part * *deepest;
+    return WHERE(AS_MASK(left > R(0)), left / (R(1) - part), left);
+}
+
+/* Standard linear solid in each contact (Zener 1948): F = F_H - a q, dq/dt = (F_H - q)/T, with q taken over the step
+   exactly for a force that stays. A contact does not pull by it. */
+INLINE lanes relaxing_force(lanes elastic, real part, real share, lanes* restrict relaxed) {
+    const lanes force = fmax(elastic - part * *relaxed, (lanes)(R(0)));
+    *relaxed += share * (elastic - *relaxed);
+    return force;
+}
+
+/* Attraction of touching grains, 2 pi w R* whatever the overlap (Derjaguin, Muller & Toporov 1975). In a gap it
+   fades to zero over a hundredth of R*, or as far as it takes for its slope to stay below m* / (20 dt^2). */
+typedef struct { lanes force, range; } Attraction;
+
+INLINE Attraction attraction(global const Replica* restrict replica, lanes approach, lanes reduced_radius, lanes reduced_mass,
+                             mask occupied) {
+    const real dt = replica->time_step;
+    const lanes most = replica->adhesion * reduced_radius;
+    const lanes resolved = fmax(R(0.01) * reduced_radius, R(20) * dt * dt * most / reduced_mass);
+    Attraction a;
+    a.range = fmax(fmin(resolved, (lanes)(replica->probe_gap)), (lanes)(R(1e-30)));
+    a.force = WHERE(occupied, most * clamp(R(1) + approach / a.range, (lanes)(R(0)), (lanes)(R(1))), R(0));
+    return a;
+}
+
+/* What the springs of a contact store beyond 2/5 F delta: 2/7 of the stiffened part's work instead, nothing of what
+   has relaxed or stays behind for good [J]. */
+INLINE lanes effect_energy(global const Replica* restrict replica, lanes elastic, lanes held, lanes overlap,
+                           lanes reduced_radius) {
+    const lanes stiffer = replica->stiffening * overlap / reduced_radius;
+    const lanes loading = elastic * overlap * (R(0.4) + stiffer * R(2) / R(7)) / (R(1) + stiffer);
+    const lanes lasting = (R(1) - replica->plasticity) * (loading - R(0.4) * (elastic - held) * overlap);
+    return lasting - R(0.4) * elastic * overlap;
+}
+
+/* Energy of the attraction, zero out of its range [J]. */
+INLINE lanes attraction_energy(Attraction a, lanes overlap, lanes approach) {
+    const lanes inside = clamp(a.range + approach, (lanes)(R(0)), a.range);
+    return -a.force * (R(0.5) * inside + overlap);
+}
+
+/* Couple of constant size mu_r R* F_n against the relative angular velocity, rolling and twisting alike (Zhou et al.
+   1999; model A of Ai et al. 2011). It fades to a viscous one as saturated friction does. */
+INLINE lanes3 rolling_couple(global const Replica* restrict replica, lanes push, real radius, lanes radius_there, mask wall,
+                             lanes reduced_radius, real3 spin, lanes3 spin_there) {
+    const real fifth = radius * radius * radius * radius * radius;
+    const lanes fifth_there = radius_there * radius_there * radius_there * radius_there * radius_there;
+    const lanes reduced_inertia = replica->density * (R(8) / R(15)) * PI *
+                                  WHERE(wall, fifth, R(1) / (R(1) / fifth + R(1) / fifth_there));
+    const lanes3 relative = {spin_there.x - spin.x, spin_there.y - spin.y, spin_there.z - spin.z};
+    const lanes slow = replica->sliding_velocity / reduced_radius;
+    const lanes limit = replica->rolling_resistance * reduced_radius * fmax(push, (lanes)(R(0)));
+    const lanes viscosity =
+        fmin(limit / sqrt(dot3(relative, relative) + slow * slow), reduced_inertia * (R(0.1) / replica->time_step));
+    return (lanes3){viscosity * relative.x, viscosity * relative.y, viscosity * relative.z};
+}

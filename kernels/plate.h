@@ -1,0 +1,26 @@
+/* The plate: a plane that moves along z and may lean. Its lower face is at
+   z = plate_z + tilt_x (x - Lx/2) + tilt_y (y - Ly/2). */
+
+INLINE real plate_position(global const Replica* restrict replica, int steps) {
+    return replica->wall_position[5] + replica->plate_velocity * (replica->time_step * steps);
+}
+
+/* z of the face above or below a point. */
+INLINE real plate_height(global const Replica* restrict replica, real plate_z, real4 point) {
+    if (!(replica->effects & EFFECT_PLATE_TILT)) return plate_z;
+    return plate_z + replica->plate_tilt_x * (point.x - R(0.5) * replica->wall_position[1]) +
+           replica->plate_tilt_y * (point.y - R(0.5) * replica->wall_position[3]);
+}
+
+/* The foot of the perpendicular from a point to the face. */
+INLINE real3 plate_foot(global const Replica* restrict replica, real plate_z, real4 point) {
+    const real x = replica->plate_tilt_x, y = replica->plate_tilt_y;
+    const real rise = (plate_height(replica, plate_z, point) - point.z) / (R(1) + x * x + y * y);
+    return (real3)(point.x - x * rise, point.y - y * rise, point.z + rise);
+}
+
+/* From a point below the face to its foot. */
+INLINE real plate_distance(global const Replica* restrict replica, real plate_z, real4 point) {
+    return (plate_height(replica, plate_z, point) - point.z) /
+           sqrt(R(1) + replica->plate_tilt_x * replica->plate_tilt_x + replica->plate_tilt_y * replica->plate_tilt_y);
+}
