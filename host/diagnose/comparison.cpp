@@ -37,6 +37,19 @@ std::vector<Eigen::Index> usable_cells(const Library& library, const Eigen::Vect
     return cells;
 }
 
+namespace {
+
+/// By chosen cell; the cells of one observable lie together (cells_of).
+Eigen::ArrayXd resolutions(const CellChoice& cells, Eigen::Index all) {
+    const Eigen::Index cells_each = all / static_cast<Eigen::Index>(observables().size());
+    Eigen::ArrayXd list(static_cast<Eigen::Index>(cells.size()));
+    for (std::size_t k = 0; k < cells.size(); ++k)
+        list[static_cast<Eigen::Index>(k)] = observables()[static_cast<std::size_t>(cells[k] / cells_each)].resolution;
+    return list;
+}
+
+}  // namespace
+
 Eigen::VectorXd pick(const Eigen::VectorXd& all, const CellChoice& cells) { return all(cells); }
 Eigen::MatrixXd pick_columns(const Eigen::MatrixXd& all, const CellChoice& cells) { return all(Eigen::all, cells); }
 
@@ -44,7 +57,8 @@ Comparison::Comparison(const Eigen::MatrixXd& noise, int mean_of, const CellChoi
                        const std::vector<FreeParameter>& free)
     : cells_(cells), free_(free) {
     const double both = 1 + (mean_of > 0 ? 1.0 / mean_of : 0);  // the observed one's scatter, and the mean's
-    const Eigen::MatrixXd covariance = both * shrunk_covariance(pick_columns(noise, cells));
+    Eigen::MatrixXd covariance = both * shrunk_covariance(pick_columns(noise, cells));
+    covariance.diagonal() += resolutions(cells, noise.cols()).square().matrix();
     sigma_ = covariance.diagonal().array().sqrt();
     directions_.resize(static_cast<Eigen::Index>(cells.size()), static_cast<Eigen::Index>(free.size()));
     Eigen::MatrixXd total = covariance;

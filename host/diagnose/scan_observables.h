@@ -15,6 +15,7 @@ enum class Needs { plate, contacts, positions };  ///< positions: contacts too
 struct Observable {
     std::string_view name;
     Needs needs;
+    double resolution;             ///< differences below it mean nothing: numerics, damping, the instrument's own drift
     std::string_view region;       ///< where it looks, empty: everywhere
     std::string_view force_class;  ///< which forces, empty: all
     std::string_view meaning;

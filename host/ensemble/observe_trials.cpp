@@ -9,6 +9,7 @@
 #include "metrics/estimate.h"
 #include "scene/keys.h"
 #include "scene/make_packing.h"
+#include "scene/random.h"
 #include "sim/simulation.h"
 
 namespace mcdem {
@@ -27,7 +28,7 @@ std::string simulation_name(const Device& device, const Question& question, cons
             digest.add(key.name).add("=").add(value_text(key, settings)).add("\n");
     for (const Vec3& position : trial.packing.position) digest.add(std::span(position.data(), 3));
     digest.add(trial.packing.diameter);
-    const double jitter[] = {trial.jitter, static_cast<double>(trial.seed)};
+    const double jitter[] = {trial.jitter, trial.diameter_jitter, static_cast<double>(trial.seed)};
     return digest.add(jitter).hex();
 }
 
@@ -101,6 +102,8 @@ private:
             batch.replicas.back().packing.seed = trial.seed;
             packings.push_back(trial.packing);
             apply_jitter(packings.back(), trial.jitter, trial.seed);
+            Random random(trial.seed, Stream::diameter_jitter);
+            for (double& diameter : packings.back().diameter) diameter += trial.diameter_jitter * random.normal();
         }
         std::vector<Recording> recordings;
         for (std::size_t r = 0; r < packings.size(); ++r)

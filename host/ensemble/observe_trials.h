@@ -17,7 +17,8 @@ struct Trial {
     Model model;
     Packing packing;               ///< where it starts, as measured
     double jitter = 0;             ///< sd of a random displacement of every coordinate of it [m]
-    std::uint64_t seed = 0;        ///< of the jitter, of what is random in the replica, and of the measurement's noise
+    double diameter_jitter = 0;    ///< sd of a random change of every diameter [m]
+    std::uint64_t seed = 0;        ///< of both jitters, of what is random in the replica, and of the measurement's noise
 };
 
 /// What all trials of one question share.

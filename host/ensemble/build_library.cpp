@@ -1,0 +1,102 @@
+#include "ensemble/build_library.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "core/errors.h"
+
+namespace mcdem {
+namespace {
+
+/// Amplitudes of the paired runs of a nuisance: both sides of the model, so that its slope there is met.
+constexpr double nuisance_step = 1.0;  // sigmas
+
+/// Something that is simulated at two amplitudes.
+struct Probe {
+    std::string name;
+    double amplitudes[2];
+    void (*apply)(Model&, double);
+};
+
+std::vector<Probe> probes_of(const Model& model, const LibraryPlan& plan) {
+    std::vector<Probe> probes;
+    for (const std::string& name : plan.candidates) {
+        const Effect& effect = *find_effect(name);
+        const double scale = effect.scale(model);
+        probes.push_back({name, {effect.first * scale, effect.second * scale}, effect.apply});
+    }
+    for (const Nuisance& nuisance : plan.nuisances)
+        probes.push_back({nuisance.name, {-nuisance_step * nuisance.sigma, nuisance_step * nuisance.sigma}, nuisance.apply});
+    return probes;
+}
+
+}  // namespace
+
+std::vector<Trial> baseline_trials(const Model& model, const LibraryPlan& plan) {
+    std::vector<Trial> trials;
+    for (std::size_t p = 0; p < plan.packings.size(); ++p)
+        for (int r = 0; r < plan.replicates; ++r)
+            trials.push_back({model, plan.packings[p], plan.jitter, plan.diameter_jitter, plan.seed + 1000 * p + static_cast<std::uint64_t>(r)});
+    return trials;
+}
+
+Library build_library(Device& device, const Question& question, const Model& model, const LibraryPlan& plan,
+                      const ObservationStore& store, const TrialOptions& options) {
+    std::vector<Trial> trials = baseline_trials(model, plan);
+    Library library;
+    library.grid = question.grid;
+    std::vector<std::size_t> paired;
+    for (std::size_t t = 0; t < trials.size(); ++t) {
+        library.packing.push_back(static_cast<int>(t) / plan.replicates);
+        if (static_cast<int>(t) % plan.replicates < plan.pairs) paired.push_back(t);
+    }
+    const std::size_t baseline_count = trials.size();
+    const auto probes = probes_of(model, plan);
+    for (const Probe& probe : probes)
+        for (const double amplitude : probe.amplitudes)
+            for (const std::size_t t : paired) {
+                trials.push_back(trials[t]);
+                probe.apply(trials.back().model, amplitude);
+            }
+    const Eigen::MatrixXd observed = observe_trials(device, question, trials, store, options);
+    library.baseline = observed.topRows(static_cast<Eigen::Index>(baseline_count));
+    const Eigen::MatrixXd before = library.baseline(paired, Eigen::all);
+    auto next = static_cast<Eigen::Index>(baseline_count);
+    for (const Probe& probe : probes) {
+        Eigen::MatrixXd differences[2];
+        for (Eigen::MatrixXd& difference : differences) {
+            difference = observed.middleRows(next, before.rows()) - before;
+            next += before.rows();
+        }
+        auto& list = find_effect(probe.name) && library.effects.size() < plan.candidates.size() ? library.effects : library.nuisances;
+        list.push_back(learn_signature(probe.name, probe.amplitudes[0], probe.amplitudes[1], differences[0], differences[1]));
+    }
+    library.provenance = {{"program", question.program}, {"device", device.description()}};
+    return library;
+}
+
+CandidateChoice choose_candidates(const Model& model, const std::vector<std::string>& wanted) {
+    std::vector<std::string> problems, names = wanted;
+    for (const std::string& name : wanted)
+        if (!find_effect(name)) {
+            std::vector<std::string_view> known;
+            for (const Effect& effect : effects()) known.push_back(effect.name);
+            problems.push_back(fmt::format("--candidates: {} is not an effect; there are {}", name, fmt::join(known, ", ")));
+        }
+    if (!problems.empty()) throw InputError(problems);
+    if (names.empty())
+        for (const Effect& effect : effects()) names.emplace_back(effect.name);
+    CandidateChoice choice;
+    for (const std::string& name : names) {
+        const std::string_view hindrance = find_effect(name)->hindrance(model);
+        if (hindrance.empty())
+            choice.chosen.push_back(name);
+        else
+            choice.hindered.push_back(fmt::format("{}: {}", name, hindrance));
+    }
+    return choice;
+}
+
+}  // namespace mcdem

@@ -1,0 +1,170 @@
+#include "ensemble/diagnose_experiment.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <numeric>
+
+#include "core/errors.h"
+
+namespace mcdem {
+namespace {
+
+/// The part of a diagnosis' work that one stage is.
+TrialOptions stage(const DiagnoseOptions& options, const std::string& name) {
+    TrialOptions trial_options;
+    trial_options.on_progress = [&options, name](double fraction) { options.on_progress(name, fraction); };
+    trial_options.stop_wanted = options.stop_wanted;
+    return trial_options;
+}
+
+void expect_library_of(const Library& library, const Grid& grid, const LibraryPlan& plan, const std::filesystem::path& file) {
+    std::vector<std::string> problems;
+    const auto expect = [&](const std::vector<Signature>& list, const std::string& name) {
+        if (std::ranges::find(list, name, &Signature::name) == list.end())
+            problems.push_back(fmt::format("{}: has no signature of {}; remove the file to make it anew, or leave {} out of "
+                                           "--candidates", file.string(), name, name));
+    };
+    for (const std::string& name : plan.candidates) expect(library.effects, name);
+    for (const Nuisance& nuisance : plan.nuisances) expect(library.nuisances, nuisance.name);
+    if (std::abs(library.grid.stroke - grid.stroke) > 0.02 * grid.stroke)
+        problems.push_back(fmt::format("{}: was made for a stroke of {:.4g} mm, the experiment has {:.4g} mm", file.string(),
+                                       1e3 * library.grid.stroke, 1e3 * grid.stroke));
+    if (!problems.empty()) throw InputError(problems);
+}
+
+/// The work of one diagnosis, in the order of its steps.
+class Diagnosing {
+public:
+    Diagnosing(Device& device, const Scene& scene, const Experiment& experiment, const DiagnoseOptions& options)
+        : device_(device), experiment_(experiment), options_(options), store_(options.folder / "simulations"),
+          model_(model_of(scene, experiment)), choice_(choose_candidates(model_, options.candidates)) {
+        question_ = {scene, grid_of(experiment.recording), reference_material(model_), model_.replica.protocol.discard,
+                     options.program};
+        plan_ = {{start_packing(experiment)}, options.replicates, options.pairs, experiment.measurement.position_error,
+                 experiment.measurement.diameter_error, options.seed, choice_.chosen, nuisances(model_, experiment)};
+    }
+
+    Diagnosis all() {
+        Evidence evidence = gather();
+        Draft draft = draft_diagnosis(evidence, options_.limits);
+        Diagnosis diagnosis = draft.worth_confirming && options_.confirmations > 0
+                                  ? confirm(evidence, draft, confirmation(draft), options_.limits)
+                                  : draft.diagnosis;
+        diagnosis.not_testable = choice_.hindered;
+        return diagnosis;
+    }
+
+private:
+    Evidence gather() {
+        Evidence evidence;
+        evidence.seed = options_.seed;
+        const bool ready = options_.library && std::filesystem::exists(*options_.library);
+        if (ready) {
+            evidence.library = read_library(*options_.library);
+            expect_library_of(evidence.library, question_.grid, plan_, *options_.library);
+            question_.grid = evidence.library.grid;
+            evidence.baseline = observe_trials(device_, question_, baseline_trials(model_, plan_), store_,
+                                               stage(options_, "baseline"));
+        } else {
+            evidence.library = build_library(device_, question_, model_, plan_, store_, stage(options_, "library"));
+            evidence.baseline = evidence.library.baseline;
+            if (options_.library) write_library(*options_.library, evidence.library);
+        }
+        evidence.observed = observe(experiment_.recording, question_.grid, question_.material, question_.discard);
+        for (const std::string& name : choice_.chosen) {
+            const Effect& effect = *find_effect(name);
+            const double scale = effect.scale(model_);
+            evidence.candidates.push_back({name, std::string(effect.unit), effect.low * scale, effect.high * scale});
+        }
+        for (const Nuisance& nuisance : plan_.nuisances)
+            evidence.nuisances.push_back({nuisance.name, nuisance.unit, nuisance.sigma});
+        return evidence;
+    }
+
+    /// The model with the fitted effects and nuisances.
+    Model fitted(const Draft& draft, const PartialFit& fit) const {
+        Model model = model_;
+        for (Eigen::Index k = 0; k < fit.nuisances.size(); ++k)
+            plan_.nuisances[static_cast<std::size_t>(k)].apply(model, fit.nuisances[k]);
+        const auto& chosen = draft.identification.best.candidates;
+        for (std::size_t k = 0; k < chosen.size(); ++k) {
+            const std::string& name = draft.setting.name(chosen[k]);
+            if (const Effect* effect = static_cast<int>(chosen[k]) < draft.setting.effects ? find_effect(name) : nullptr)
+                effect->apply(model, fit.amplitudes[k]);
+            else
+                std::ranges::find(plan_.nuisances, name, &Nuisance::name)->apply(model, fit.amplitudes[k] + fit.nuisances[nuisance_index(name)]);
+        }
+        return model;
+    }
+
+    Eigen::Index nuisance_index(const std::string& name) const {
+        return std::ranges::find(plan_.nuisances, name, &Nuisance::name) - plan_.nuisances.begin();
+    }
+
+    Confirmation confirmation(const Draft& draft) {
+        LibraryPlan plan = plan_;
+        plan.replicates = options_.confirmations;
+        std::vector<Trial> trials = baseline_trials(fitted(draft, draft.whole), plan);
+        for (Trial& trial : baseline_trials(fitted(draft, draft.part), plan)) trials.push_back(trial);
+        const Eigen::MatrixXd rows = observe_trials(device_, question_, trials, store_, stage(options_, "confirmation"));
+        return {rows.topRows(rows.rows() / 2), rows.bottomRows(rows.rows() / 2)};
+    }
+
+    Device& device_;
+    const Experiment& experiment_;
+    const DiagnoseOptions& options_;
+    ObservationStore store_;
+    Model model_;
+    CandidateChoice choice_;
+    Question question_;
+    LibraryPlan plan_;
+};
+
+}  // namespace
+
+Packing start_packing(const Experiment& experiment) {
+    const Recording& recording = experiment.recording;
+    if (recording.scans.empty() || recording.scans.front().position.empty())
+        throw InputError(fmt::format("{}: grains.csv must have the positions of frame 0, from which simulations start",
+                                     experiment.name));
+    return {recording.scans.front().position, recording.diameter};
+}
+
+Model model_of(const Scene& scene, const Experiment& experiment) {
+    const Recording& recording = experiment.recording;
+    Model model;
+    model.replica = scene.replicas.front();
+    model.replica.box = recording.box;
+    model.instrument.stated = experiment.measurement;
+    model.mean_diameter = std::reduce(recording.diameter.begin(), recording.diameter.end()) /
+                          static_cast<double>(std::max<std::size_t>(1, recording.diameter.size()));
+    int loading = 0, cycles = 1;
+    double lowest = recording.plate_start;
+    for (const Scan& scan : recording.scans) {
+        loading += scan.cycle == 0 && scan.phase == Phase::load && recording.displacement(scan) > 0 ? 1 : 0;
+        cycles = std::max(cycles, scan.cycle + 1);
+        lowest = std::min(lowest, scan.plate_z);
+    }
+    if (loading == 0 || !(lowest < recording.plate_start))
+        throw InputError(fmt::format("{}: plate.csv must have loading frames below plate.start", experiment.name));
+    model.replica.plate.start = recording.plate_start;
+    model.replica.plate.end = lowest;
+    model.replica.protocol.scans_per_stroke = loading;
+    model.replica.protocol.cycles = std::min(cycles, std::max(model.replica.protocol.cycles, model.replica.protocol.discard + 1));
+    model.replica.protocol.scan_at_start = true;
+    return model;
+}
+
+Diagnosis diagnose_experiment(Device& device, const Scene& scene, const Experiment& experiment,
+                              const DiagnoseOptions& options) {
+    const auto begin = std::chrono::steady_clock::now();
+    Diagnosis diagnosis = Diagnosing(device, scene, experiment, options).all();
+    diagnosis.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    diagnosis.provenance = {{"scene", scene.name}, {"experiment", experiment.name}, {"program", options.program},
+                            {"device", device.description()}, {"seed", std::to_string(options.seed)}};
+    return diagnosis;
+}
+
+}  // namespace mcdem

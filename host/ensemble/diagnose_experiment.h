@@ -1,0 +1,36 @@
+// A scene held against an experiment: simulations, library, verdict.
+#pragma once
+#include <filesystem>
+#include <optional>
+
+#include "diagnose/diagnose.h"
+#include "ensemble/build_library.h"
+
+namespace mcdem {
+
+struct DiagnoseOptions {
+    std::filesystem::path folder;                   ///< observations are kept here, in `simulations`
+    std::vector<std::string> candidates;            ///< empty: all
+    int replicates = 32;                            ///< of the baseline, on the experiment's packing
+    int pairs = 8;                                  ///< of every effect
+    int confirmations = 8;                          ///< real runs of the cause
+    std::uint64_t seed = 1;
+    std::optional<std::filesystem::path> library;   ///< read where it is there, else made and written
+    std::string program;
+    Limits limits;
+    std::function<void(const std::string& stage, double fraction)> on_progress = [](const std::string&, double) {};
+    std::function<bool()> stop_wanted = [] { return false; };
+};
+
+/// The scene's first replica with the experiment's box, plate and scans. Throws InputError where the experiment does not
+/// say enough to simulate it.
+Model model_of(const Scene& scene, const Experiment& experiment);
+
+/// Where the experiment's grains were at its first frame.
+Packing start_packing(const Experiment& experiment);
+
+/// Throws InputError, RunError or Interrupted.
+Diagnosis diagnose_experiment(Device& device, const Scene& scene, const Experiment& experiment,
+                              const DiagnoseOptions& options);
+
+}  // namespace mcdem
