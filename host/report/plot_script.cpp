@@ -40,7 +40,7 @@ constexpr const char* both_formats =
 if (ending eq 'png') {{
 set terminal pngcairo size {2},{3} font 'Sans,12' fontscale 2 linewidth 2 pointscale 2
 }} else {{
-set terminal svg size {0},{1} dynamic font 'Sans,13' linewidth 1.2 background rgb 'white'
+set terminal svg size {0},{1} dynamic font 'Sans,12' fontscale 1.25 linewidth 1.2 background rgb 'white'
 }}
 set output '{4}.'.ending
 {5}}}
@@ -72,12 +72,14 @@ void PlotScript::panel() {
 
 void PlotScript::set(const std::string& setting) { panels_.back().settings += "set " + setting + "\n"; }
 
+void PlotScript::unset(const std::string& setting) { panels_.back().settings += "unset " + setting + "\n"; }
+
 void PlotScript::title(const std::string& text) {
     set("title " + gnuplot::quoted(text) + " noenhanced font ',14' textcolor rgb '#222222'");
 }
 
 void PlotScript::label(const std::string& text, const std::string& how) {
-    set("label " + gnuplot::quoted(text) + " noenhanced " + how);
+    set("label " + gnuplot::quoted(text) + " noenhanced textcolor rgb '#222222' " + how);
 }
 
 int PlotScript::add_block(const std::vector<std::vector<std::string>>& rows) {

@@ -40,8 +40,10 @@ public:
     void panel();
     /// A gnuplot setting, without `set`: must hold no text from outside.
     void set(const std::string& setting);
+    void unset(const std::string& setting);
     void title(const std::string& text);
-    /// Text from anywhere; `how` is what follows it in gnuplot's `set label`: position, alignment, font.
+    /// Text from anywhere; `how` is what follows it in gnuplot's `set label`: position, alignment, font (the
+    /// colour is ink).
     void label(const std::string& text, const std::string& how);
     /// A block of rows of CSV fields; its number is what `plot` refers to.
     int add_block(const std::vector<std::vector<std::string>>& rows);

@@ -1,0 +1,26 @@
+// The verdict of a diagnosis in words.
+#pragma once
+#include <array>
+#include <string>
+
+#include "diagnose/diagnosis.h"
+
+namespace mcdem {
+
+/// One sentence.
+std::string verdict_sentence(const Diagnosis& diagnosis);
+
+/// What a line is about, and what it says.
+struct VerdictLine {
+    std::string about;  ///< Gap, Where, Which, How far, Limits
+    std::string says;
+};
+
+/// Is there a gap, where, which effects is it consistent with, how far does it shrink, and what cannot be
+/// told.
+std::array<VerdictLine, 5> verdict_lines(const Diagnosis& diagnosis);
+
+/// The five lines, aligned, each ended by a line feed.
+std::string diagnosis_text(const Diagnosis& diagnosis);
+
+}  // namespace mcdem
