@@ -69,7 +69,9 @@ std::string csv_field(const std::string& text) {
     return field + "\"";
 }
 
-std::string csv_number(double value) { return std::isfinite(value) ? fmt::format("{:.6g}", value) : ""; }
+std::string csv_number(double value) {
+    return std::isfinite(value) ? fmt::format("{:.6g}", value + 0.0) : "";  // + 0: no minus before a zero
+}
 
 void run(const std::filesystem::path& folder, const std::string& script) {
     const Preparation preparation(folder);

@@ -1,0 +1,130 @@
+#include "report/diagnosis_json.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "report/diagnosis_samples.h"
+
+namespace mcdem {
+namespace {
+
+using testing::ElementsAre;
+using Json = nlohmann::ordered_json;
+
+std::vector<std::string> keys_of(const Json& object) {
+    std::vector<std::string> keys;
+    for (const auto& [key, value] : object.items()) keys.push_back(key);
+    return keys;
+}
+
+Json parsed(const Diagnosis& diagnosis) { return Json::parse(diagnosis_json(diagnosis)); }
+
+/// Calls `check` on every value within.
+void each(const Json& json, const std::function<void(const Json&)>& check) {
+    check(json);
+    if (json.is_structured())
+        for (const auto& part : json) each(part, check);
+}
+
+TEST(DiagnosisJson, has_the_documented_keys_in_their_order) {
+    const auto json = parsed(samples::diagnosis(Verdict::effect));
+    EXPECT_THAT(keys_of(json), ElementsAre("verdict", "gap", "where", "causes", "shrink", "detection_limits",
+                                           "not_measured", "seconds", "sentence", "where_threshold", "cells",
+                                           "ranking", "nuisances", "not_testable", "provenance"));
+    EXPECT_THAT(keys_of(json["gap"]), ElementsAre("detected", "p_value", "p_omnibus", "p_directed"));
+    EXPECT_THAT(keys_of(json["where"][0]), ElementsAre("observable", "phase", "displacement_mm", "region",
+                                                       "z_score", "z_score_refitted", "force_class"));
+    const auto cause = ElementsAre("effect", "amplitude", "unit", "confidence", "group", "amplitude_error",
+                                   "explained", "score", "confirmed_score");
+    EXPECT_THAT(keys_of(json["causes"][0]), cause);
+    EXPECT_THAT(keys_of(json["ranking"][17]), cause);
+    EXPECT_THAT(keys_of(json["shrink"]),
+                ElementsAre("held_out", "before", "after", "fraction", "interval", "placebo", "metrics",
+                            "confirmed", "fitted_displacement_mm", "top_force"));
+    EXPECT_THAT(keys_of(json["shrink"]["metrics"]), ElementsAre("Rtop", "errf", "errZ", "bhat"));
+    EXPECT_THAT(keys_of(json["detection_limits"][0]),
+                ElementsAre("effect", "minimum_amplitude", "absorbed_by_calibration", "unit", "group"));
+    EXPECT_THAT(keys_of(json["nuisances"][0]),
+                ElementsAre("name", "shift", "error", "prior", "unit", "at_bound"));
+    EXPECT_THAT(keys_of(json["cells"][0]),
+                ElementsAre("observable", "phase", "displacement_mm", "z_score", "z_score_refitted"));
+}
+
+TEST(DiagnosisJson, has_the_documented_types) {
+    const auto json = parsed(samples::diagnosis(Verdict::effect));
+    for (const char* list : {"where", "causes", "detection_limits", "not_measured", "cells", "ranking",
+                             "nuisances", "not_testable"})
+        EXPECT_TRUE(json[list].is_array()) << list;
+    EXPECT_TRUE(json["verdict"].is_string());
+    EXPECT_TRUE(json["gap"]["detected"].is_boolean());
+    EXPECT_TRUE(json["gap"]["p_value"].is_number());
+    EXPECT_TRUE(json["provenance"].is_object());
+    EXPECT_TRUE(json["causes"][0]["group"].is_array());
+    EXPECT_TRUE(json["nuisances"][0]["at_bound"].is_boolean());
+    EXPECT_EQ(json["shrink"]["interval"].size(), 2u);
+}
+
+TEST(DiagnosisJson, carries_the_values) {
+    const auto d = samples::diagnosis(Verdict::effect);
+    const auto json = parsed(d);
+    EXPECT_EQ(json["verdict"], "effect");
+    EXPECT_EQ(json["cells"].size(), d.cells.size());
+    EXPECT_EQ(json["where"][0]["displacement_mm"], Json::parse("[21.0, 27.0]"));
+    EXPECT_EQ(json["where"][0]["z_score"], d.where[0].z_score);
+    EXPECT_EQ(json["causes"][0]["amplitude"], d.causes[0].amplitude);
+    EXPECT_EQ(json["causes"][0]["confirmed_score"], *d.causes[0].confirmed_score);
+    EXPECT_EQ(json["shrink"]["metrics"]["Rtop"], Json::parse("[0.874, 0.991]"));
+    EXPECT_EQ(json["shrink"]["top_force"][20]["displacement_mm"], 30.0);
+    EXPECT_EQ(json["nuisances"][0]["shift"], 180.0);
+    EXPECT_EQ(json["provenance"]["seed"], "17");
+}
+
+TEST(DiagnosisJson, what_is_not_there_is_null_or_empty) {
+    const auto json = parsed({});
+    EXPECT_EQ(json["verdict"], "no_gap");
+    EXPECT_TRUE(json["shrink"].is_null());
+    EXPECT_EQ(json["where"], Json::array());
+    EXPECT_EQ(json["provenance"], Json::object());
+    Diagnosis d;
+    d.where.push_back({});
+    const auto entry = parsed(d)["where"][0];
+    EXPECT_TRUE(entry["phase"].is_null() && entry["region"].is_null() && entry["force_class"].is_null());
+}
+
+TEST(DiagnosisJson, numbers_that_are_not_finite_become_null) {
+    auto d = samples::diagnosis(Verdict::effect);
+    d.causes[0].amplitude = std::nan("");
+    d.shrink->metrics["Rtop"] = {INFINITY, 1};
+    const auto json = parsed(d);
+    EXPECT_TRUE(json["detection_limits"][12]["minimum_amplitude"].is_null());  // infinite: never shows
+    EXPECT_TRUE(json["causes"][0]["amplitude"].is_null());
+    EXPECT_TRUE(json["shrink"]["metrics"]["Rtop"][0].is_null());
+    each(json, [](const Json& value) {
+        if (value.is_number()) {
+            EXPECT_TRUE(std::isfinite(value.get<double>()));
+        }
+    });
+}
+
+TEST(DiagnosisJson, any_text_is_carried_and_bytes_that_are_none_are_replaced) {
+    const std::string hostile = "\"}]\n\\ <x> \x01";
+    auto d = samples::with_texts(samples::diagnosis(Verdict::group), hostile);
+    EXPECT_EQ(parsed(d)["causes"][0]["effect"], hostile);
+    d = samples::with_texts(d, "caf\xe9");
+    EXPECT_EQ(parsed(d)["causes"][0]["effect"], "caf\xEF\xBF\xBD");
+}
+
+TEST(DiagnosisJson, verdicts_have_names_of_their_own) {
+    std::set<std::string> names;
+    for (const auto verdict : samples::all_verdicts) names.insert(verdict_name(verdict));
+    EXPECT_EQ(names,
+              (std::set<std::string>{"no_gap", "effect", "group", "unknown_effect", "calibration_suspect"}));
+}
+
+}  // namespace
+}  // namespace mcdem

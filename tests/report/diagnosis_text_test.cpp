@@ -1,0 +1,130 @@
+#include "report/diagnosis_text.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "report/diagnosis_samples.h"
+
+namespace mcdem {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+using testing::StartsWith;
+
+std::string line(const Diagnosis& diagnosis, const std::string& about) {
+    for (const auto& [name, says] : verdict_lines(diagnosis))
+        if (name == about) return says;
+    return "";
+}
+
+class EveryVerdict : public testing::TestWithParam<Verdict> {};
+INSTANTIATE_TEST_SUITE_P(DiagnosisText, EveryVerdict, testing::ValuesIn(samples::all_verdicts));
+
+TEST_P(EveryVerdict, has_five_lines_that_end_in_a_full_stop) {
+    for (const auto& d :
+         {samples::diagnosis(GetParam()), samples::with_texts(samples::diagnosis(GetParam()), "a\nb\r")}) {
+        const auto text = diagnosis_text(d);
+        EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 5) << text;
+        for (const auto& [about, says] : verdict_lines(d)) {
+            EXPECT_TRUE(says.ends_with('.') && !says.ends_with("..")) << says;
+            EXPECT_EQ(says.find_first_of("\n\r"), std::string::npos) << says;
+        }
+        EXPECT_TRUE(verdict_sentence(d).ends_with('.')) << verdict_sentence(d);
+    }
+}
+
+TEST_P(EveryVerdict, claims_no_proof) {
+    const auto d = samples::diagnosis(GetParam());
+    const auto text = diagnosis_text(d) + verdict_sentence(d);
+    for (const char* claim : {"caused by", "because of", "is due to", "proves", "is proven"})
+        EXPECT_THAT(text, Not(HasSubstr(claim)));
+    const bool names_something = GetParam() != Verdict::no_gap && GetParam() != Verdict::unknown_effect;
+    if (names_something) {
+        EXPECT_THAT(line(d, "Which"), StartsWith("consistent with "));
+        EXPECT_THAT(verdict_sentence(d), HasSubstr("consistent with"));
+    }
+}
+
+TEST_P(EveryVerdict, is_told_without_any_of_the_optional_parts) {
+    Diagnosis d;
+    d.verdict = GetParam();
+    EXPECT_EQ(std::ranges::count(diagnosis_text(d), '\n'), 5);
+    EXPECT_FALSE(verdict_sentence(d).empty());
+}
+
+TEST(DiagnosisText, no_gap_tells_what_would_have_been_seen) {
+    const auto d = samples::diagnosis(Verdict::no_gap);
+    EXPECT_THAT(line(d, "Gap"), AllOf(StartsWith("none"), HasSubstr("p = 0.44")));
+    EXPECT_THAT(line(d, "Limits"), AllOf(HasSubstr("adhesion from 0.08 mJ/m²"), HasSubstr("and 11 more"),
+                                         HasSubstr("never show rolling resistance and bias of positions")));
+}
+
+TEST(DiagnosisText, no_gap_puts_the_limits_of_the_nearest_candidates_first) {
+    auto d = samples::diagnosis(Verdict::no_gap);
+    std::ranges::reverse(d.ranking);
+    EXPECT_THAT(line(d, "Limits"),
+                HasSubstr("would show shifted force threshold from 1 mN, bias of contact forces"));
+}
+
+TEST(DiagnosisText, effect) {
+    const auto d = samples::diagnosis(Verdict::effect);
+    EXPECT_THAT(line(d, "Gap"), AllOf(StartsWith("yes"), HasSubstr("p = 0.004")));
+    EXPECT_THAT(line(d, "Where"),
+                AllOf(StartsWith("grain scatter while unloading"), HasSubstr("-7.8 sigma")));
+    EXPECT_THAT(line(d, "Which"), AllOf(HasSubstr("adhesion (0.264 ± 0.024 mJ/m²), 87 %"),
+                                        HasSubstr("18 known"), HasSubstr("78 % of the gap")));
+    EXPECT_THAT(line(d, "How far"),
+                AllOf(HasSubstr("81 % of the gap (90 % interval: 66 to 93 %)"),
+                      HasSubstr("placebo takes away 12 %"), HasSubstr("simulated in full it is 79 %")));
+    EXPECT_THAT(line(d, "Limits"), HasSubstr("not measured: forces on the side walls"));
+}
+
+TEST(DiagnosisText, two_effects_together) {
+    auto d = samples::diagnosis(Verdict::effect);
+    d.causes.push_back(d.ranking[2]);
+    EXPECT_THAT(line(d, "Which"),
+                HasSubstr("mJ/m²) together with friction between grains (0.0182 ± 0.0048)"));
+    EXPECT_THAT(verdict_sentence(d), HasSubstr("together with friction between grains"));
+}
+
+TEST(DiagnosisText, a_group_names_all_with_their_amplitudes) {
+    const auto d = samples::diagnosis(Verdict::group);
+    EXPECT_THAT(line(d, "Which"),
+                AllOf(HasSubstr("adhesion (0.264"), HasSubstr("contacts made by bulges (0.332"),
+                      HasSubstr("and friction between grains (0.0182"), HasSubstr("cannot tell them apart"),
+                      Not(HasSubstr("together with"))));
+    EXPECT_THAT(verdict_sentence(d),
+                HasSubstr("any of adhesion, contacts made by bulges and friction between grains"));
+}
+
+TEST(DiagnosisText, unknown_effect_tells_how_little_the_best_explains) {
+    const auto d = samples::diagnosis(Verdict::unknown_effect);
+    EXPECT_THAT(line(d, "Which"), AllOf(StartsWith("none of the 18 known effects"), HasSubstr("adhesion"),
+                                        HasSubstr("21 % of it")));
+    EXPECT_THAT(line(d, "How far"), HasSubstr("no more than a placebo does (12 %)"));
+}
+
+TEST(DiagnosisText, calibration_suspect_names_the_parameter) {
+    auto d = samples::diagnosis(Verdict::calibration_suspect);
+    EXPECT_THAT(line(d, "Which"), HasSubstr("stated modulus is off by +2.30 ± 0.20 kPa (4.6 times"));
+    EXPECT_THAT(line(d, "How far"), StartsWith("correcting it"));
+    d.causes.push_back(d.ranking[6]);
+    d.causes[0].effect = "modulus";
+    d.causes[0].group = {"modulus", "stiffening"};
+    EXPECT_THAT(line(d, "Which"), HasSubstr("cannot tell from stiffening at large strain"));
+}
+
+TEST(DiagnosisText, a_gap_that_the_held_out_data_do_not_show) {
+    auto d = samples::diagnosis(Verdict::effect);
+    d.shrink->before = -0.3;
+    EXPECT_THAT(line(d, "How far"), HasSubstr("show no gap by themselves"));
+    d.shrink.reset();
+    EXPECT_THAT(line(d, "How far"), HasSubstr("nothing was tried"));
+}
+
+}  // namespace
+}  // namespace mcdem

@@ -1,0 +1,96 @@
+#include "report/diagnosis_words.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace mcdem {
+namespace {
+
+TEST(DiagnosisWords, names_are_readable) {
+    EXPECT_EQ(words_of("cross_contact"), "cross-contact deformation");
+    EXPECT_EQ(words_of("some_new_effect"), "some new effect");
+    EXPECT_EQ(words_of("a\nb"), "a b");
+}
+
+TEST(DiagnosisWords, lists) {
+    EXPECT_EQ(listed({}), "");
+    EXPECT_EQ(listed({"a"}), "a");
+    EXPECT_EQ(listed({"a", "b", "c"}), "a, b and c");
+    EXPECT_EQ(listed({"a", "b", "c", "d"}, 2), "a, b and 2 more");
+}
+
+TEST(DiagnosisWords, amounts_in_the_units_that_people_use) {
+    EXPECT_EQ(amount(2.5e-4, "J/m2"), "0.25 mJ/m²");
+    EXPECT_EQ(amount(1.234e-4, "m"), "0.123 mm");
+    EXPECT_EQ(amount(4e-3, "N"), "4 mN");
+    EXPECT_EQ(amount(2300, "Pa"), "2.3 kPa");
+    EXPECT_EQ(amount(0.05, "relative"), "5 %");
+    EXPECT_EQ(amount(0.05, ""), "0.05");
+    EXPECT_EQ(amount(7, "furlong"), "7 furlong");
+    EXPECT_EQ(amount(INFINITY, "m"), "–");
+}
+
+TEST(DiagnosisWords, as_many_decimals_as_the_error_warrants) {
+    EXPECT_EQ(amount(4.213e-4, 0.53e-4, "J/m2"), "0.421 ± 0.053 mJ/m²");
+    EXPECT_EQ(amount(123.456, 17, ""), "123 ± 17");
+    EXPECT_EQ(amount(2300, 200, "Pa", Sign::always), "+2.30 ± 0.20 kPa");
+    EXPECT_EQ(amount(-2300, 200, "Pa", Sign::always), "-2.30 ± 0.20 kPa");
+    EXPECT_EQ(amount(0.1234, 0, ""), "0.123");
+    EXPECT_EQ(amount(0.1234, std::nan(""), "", Sign::always), "+0.123");
+}
+
+TEST(DiagnosisWords, percentages_and_probabilities) {
+    EXPECT_EQ(percent(0.814), "81 %");
+    EXPECT_EQ(percent(0.001), "< 1 %");
+    EXPECT_EQ(percent(0), "0 %");
+    EXPECT_EQ(percent(-0.001), "0 %");
+    EXPECT_EQ(percent(-0.06), "-6 %");
+    EXPECT_EQ(p_words(0.0040), "p = 0.004");
+    EXPECT_EQ(p_words(0.4432), "p = 0.44");
+    EXPECT_EQ(p_words(1e-7), "p < 0.0001");
+}
+
+TEST(DiagnosisWords, places) {
+    WhereEntry entry{"top_force", "load", {18e-3, 24e-3}, {}, {}, 6.13, 0.4};
+    EXPECT_EQ(where_words(entry),
+              "top force while loading, 18 to 24 mm (6.1 sigma, 0.4 after recalibration)");
+    entry = {"mean_force", "", {0, 0}, "floor", "weak", -4, -4};
+    EXPECT_EQ(where_words(entry), "mean force, floor, weak (-4.0 sigma, -4.0 after recalibration)");
+    EXPECT_EQ(displacement_words({18e-3, 18e-3}), "18 mm");
+    EXPECT_EQ(phase_words(""), "both phases");
+}
+
+TEST(DiagnosisWords, metrics_come_in_the_papers_order) {
+    Shrink shrink;
+    shrink.metrics = {
+        {"another", {0, 0}}, {"bhat", {0, 0}}, {"Rtop", {0, 0}}, {"errZ", {0, 0}}, {"errf", {0, 0}}};
+    std::string order;
+    for (const auto& [name, values] : metrics_in_order(shrink)) order += name + " ";
+    EXPECT_EQ(order, "Rtop errf errZ bhat another ");
+}
+
+TEST(DiagnosisWords, suspects_are_the_leading_parameter_or_those_at_their_bounds) {
+    Diagnosis d;
+    d.nuisances = {{"gamma", 0.2, 0.01, 0.05, "", true},
+                   {"modulus", 0.3, 0.02, 0.05, "relative", true},
+                   {"friction", 0.001, 0.001, 0.01, "", false}};
+    auto suspects = suspects_of(d);
+    ASSERT_EQ(suspects.size(), 2u);
+    EXPECT_EQ(suspects[0].name, "modulus");  // 6 sigma, before 4
+    EXPECT_EQ(suspect_words(suspects[0]),
+              "the stated modulus is off by +30.0 ± 2.0 % (6.0 times its stated error)");
+    d.causes.push_back({.effect = "friction",
+                        .amplitude = 0.08,
+                        .amplitude_error = 0.01,
+                        .unit = "",
+                        .group = {},
+                        .confirmed_score = {}});
+    suspects = suspects_of(d);
+    ASSERT_EQ(suspects.size(), 1u);
+    EXPECT_EQ(suspect_words(suspects[0]),
+              "the stated friction between grains is off by +0.080 ± 0.010 (8.0 times its stated error)");
+}
+
+}  // namespace
+}  // namespace mcdem
