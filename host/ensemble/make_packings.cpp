@@ -16,8 +16,9 @@ namespace {
 /// Everything that make_packing looks at, so that equal texts mean equal packings.
 std::string start_of(const Replica& replica) {
     const PackingSource& from = replica.packing;
-    std::string text = fmt::format("{} {} {} {} {}", replica.box.size_x, replica.box.size_y,
-                                   replica.plate.start, from.position_jitter, from.seed);
+    std::string text = fmt::format("{} {} {} {} {} {} {}", replica.box.size_x, replica.box.size_y,
+                                   replica.plate.start, replica.effects.plate_tilt_x,
+                                   replica.effects.plate_tilt_y, from.position_jitter, from.seed);
     if (const auto* file = std::get_if<PackingFile>(&from.source)) return text + " file " + file->path;
     const auto& drawn = std::get<GeneratedPacking>(from.source);
     return text + fmt::format(" drawn {} {} {} {} {} {}", drawn.count, drawn.diameter_mean, drawn.diameter_sd,

@@ -1,6 +1,7 @@
 // A plate that gives way: its true position is where it is sent to plus compliance times the force on it. The
 // force is known from the last stretch only; the plate goes after it smoothly, stretch by stretch.
 #pragma once
+#include "scene/scene.h"
 #include "sim/engine.h"
 
 namespace mcdem {
@@ -14,8 +15,7 @@ public:
         double force = 0;  ///< on the plate at the end of the last stretch, upward [N]
     };
 
-    /// `compliance` [m/N]
-    explicit CompliantPlate(double compliance) : compliance_(compliance) {}
+    explicit CompliantPlate(const Replica& replica);
 
     /// Turns the commanded stretch into the true one. The plate moves at most `farthest` [m] or as far as commanded.
     void give_way(Stretch& stretch, double time_step, double farthest);
@@ -26,7 +26,8 @@ public:
     void set_state(const State& state) { state_ = state; }
 
 private:
-    double compliance_;
+    double compliance_;   ///< [m/N]
+    double follow_time_;  ///< in which an error shrinks to 1/e [s]
     State state_;
     double change_ = 0;  ///< of `given` a step, in the stretch under way [m]
 };

@@ -125,15 +125,16 @@ double mindlin_share(const Replica& replica) {
     return replica.contact.friction_law == FrictionLaw::mindlin ? 1 - other : other;
 }
 
+double rayleigh_speed(const GrainMaterial& g) {
+    return std::sqrt(shear_modulus(g.youngs_modulus, g.poisson_ratio) / g.density) * (0.163 * g.poisson_ratio + 0.8766);
+}
+
 double time_step(const Replica& replica, const Packing& packing) {
-    const auto& g = replica.grains;
     const auto softer = softness(replica, packing.size());
-    double smallest = 0.5 * packing.diameter[0] * std::sqrt(1 + softer[0]);  // of the mean stiffness
+    double smallest = 0.5 * packing.diameter[0] * std::sqrt(1 + softer[0]);  // grain of mean stiffness as slow as this one
     for (std::size_t i = 1; i < packing.size(); ++i)
         smallest = std::min(smallest, 0.5 * packing.diameter[i] * std::sqrt(1 + softer[i]));
-    const double rayleigh = pi * smallest * std::sqrt(g.density / shear_modulus(g.youngs_modulus, g.poisson_ratio)) /
-                            (0.163 * g.poisson_ratio + 0.8766);
-    return replica.numerics.time_step * rayleigh;
+    return replica.numerics.time_step * pi * smallest / rayleigh_speed(replica.grains);
 }
 
 template <class DeviceReplica>

@@ -7,7 +7,10 @@
 
 namespace mcdem {
 
-/// Fraction of the shortest Rayleigh time of a grain, pi R sqrt(rho / G) / (0.163 nu + 0.8766) [s].
+/// Of waves along the surface of the grains' material, sqrt(G / rho) (0.163 nu + 0.8766) [m/s].
+double rayleigh_speed(const GrainMaterial& grains);
+
+/// Fraction of the shortest Rayleigh time of a grain, pi R / rayleigh_speed [s].
 double time_step(const Replica& replica, const Packing& packing);
 
 /// How much of the friction force is that of a Mindlin spring, the rest being saturated.

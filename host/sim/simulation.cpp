@@ -50,7 +50,7 @@ Simulation::Simulation(Device& device, const Scene& scene, std::vector<Packing> 
               true_packings(scene.replicas, std::move(packings))) {
     for (int r = 0; r < engine_.replicas(); ++r) {
         runners_.emplace_back(scene_.replicas[r], engine_.time_step(r));
-        plates_.emplace_back(scene_.replicas[r].effects.plate_compliance);
+        plates_.emplace_back(scene_.replicas[r]);
     }
 }
 

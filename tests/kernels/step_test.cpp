@@ -1,144 +1,14 @@
 // Whole steps of the engine against the double-precision reference: every contact model and friction law,
 // awkward sizes, batches, both precisions, one and two vectors of slots, the CPU's and the GPU's way.
-#include <fmt/core.h>
-
-#include <cmath>
-
-#include "core/names.h"
-#include "reference/test_scene.h"
+#include "kernels/steps_as_reference.h"
 
 namespace reference {
 namespace {
-
-/// Relative to the largest of each kind. Float: coordinates of up to 0.2 m are rounded to 7e-9 m in every
-/// step, and overlaps are some 0.5 mm: 1.5e-5 of them, and half as much again of their power 3/2. Double: the
-/// same with 1e-16; but the elastic sphere's overlap is found by some steps of Newton's method, where the
-/// reference bisects to the end.
-double tolerance(Precision precision, ContactModel model) {
-    if (precision == Precision::single_precision) return 5e-5;
-    return model == ContactModel::elastic_sphere ? 1e-5 : 1e-12;
-}
-
-struct Differences {
-    double position = 0, velocity = 0, angular_velocity = 0, force = 0, overlap = 0, point = 0,
-           wall_force = 0, kinetic = 0, elastic = 0, deepest = 0;
-    bool same_contacts = true;
-    double worst() const {
-        return std::max({position, velocity, angular_velocity, force, overlap, point, wall_force, kinetic,
-                         elastic, deepest});
-    }
-};
-
-/// Contacts seen from the lower grain, touching ones only.
-std::vector<Seen> listed_contacts(const StepReference& reference) {
-    std::vector<Seen> listed;
-    for (const Seen& seen : reference.neighbours())
-        if (seen.overlap > 0 && (mcdem::is_wall(seen.partner) || seen.partner > seen.grain))
-            listed.push_back(seen);
-    return listed;
-}
-
-void compare_contacts(const std::vector<mcdem::Contact>& contacts, const StepReference& reference,
-                      double skim, Differences& d) {
-    std::map<std::pair<int, int>, Seen> expected;
-    double largest = 0;
-    for (const Seen& seen : listed_contacts(reference)) largest = std::max(largest, seen.overlap);
-    for (const Seen& seen : listed_contacts(reference)) expected[{seen.grain, seen.partner}] = seen;
-    std::vector<Vec3> force, point, overlap, force_0, point_0, overlap_0;
-    for (const auto& contact : contacts) {
-        const auto found = expected.find({contact.grain, contact.partner});
-        if (found == expected.end()) {
-            d.same_contacts &= contact.overlap < skim * largest;  // may be a contact within rounding
-            continue;
-        }
-        const Seen& seen = found->second;
-        force.push_back(contact.force);
-        force_0.push_back(seen.force);
-        point.push_back(contact.point - reference.position[contact.grain]);
-        point_0.push_back(seen.arm * seen.direction);
-        overlap.push_back({contact.overlap, 0, 0});
-        overlap_0.push_back({seen.overlap, 0, 0});
-        expected.erase(found);
-    }
-    for (const auto& [key, seen] : expected) d.same_contacts &= seen.overlap < skim * largest;
-    d.force = relative_difference(force, force_0);
-    d.point = relative_difference(point, point_0);
-    d.overlap = relative_difference(overlap, overlap_0);
-}
-
-Differences compare(const Engine& engine, int r, const mcdem::StretchResult& result,
-                    const StepReference& reference, double skim) {
-    Differences d;
-    const auto state = engine.state(r);
-    d.position = relative_difference(state.position, reference.position);
-    d.velocity = relative_difference(state.velocity, reference.velocity);
-    d.angular_velocity = relative_difference(state.angular_velocity, reference.angular_velocity);
-    compare_contacts(state.contacts, reference, skim, d);
-    const Totals totals = reference.totals();
-    d.wall_force = relative_difference(wall_forces(result.wall_force), wall_forces(totals.wall_force));
-    d.kinetic = relative_difference(result.kinetic_energy, totals.kinetic_energy);
-    d.elastic = relative_difference(result.elastic_energy, totals.elastic_energy);
-    d.deepest = relative_difference(result.deepest_overlap, totals.deepest_overlap);
-    return d;
-}
-
-std::string text(const Differences& d) {
-    return fmt::format(
-        "position {:.1e} velocity {:.1e} spin {:.1e} force {:.1e} overlap {:.1e} point {:.1e} wall force "
-        "{:.1e} kinetic {:.1e} elastic {:.1e} deepest {:.1e} same contacts {}",
-        d.position, d.velocity, d.angular_velocity, d.force, d.overlap, d.point, d.wall_force, d.kinetic,
-        d.elastic, d.deepest, d.same_contacts);
-}
-
-/// Six steps one by one, with the plate coming down: the sixth uses the whole history of the surfaces.
-void expect_steps_as_reference(const KernelBuild& build, const std::vector<Start>& starts, unsigned seed) {
-    constexpr double plate_velocity = -0.05;
-    Batch batch(build, starts);
-    Engine& engine = batch.engine();
-    Uniform uniform(seed);
-    std::vector<StepReference> references;
-    std::vector<double> plate;
-    for (std::size_t r = 0; r < starts.size(); ++r) {
-        const std::size_t count = starts[r].packing.size();
-        engine.set_velocities(r, uniform.vectors(count, 0.05), uniform.vectors(count, 5));
-        references.push_back(reference_of(engine, r, starts[r]));
-        references[r].begin(starts[r].replica.plate.start, plate_velocity);
-        plate.push_back(starts[r].replica.plate.start);
-    }
-    for (int step = 0; step < 6; ++step) {
-        std::vector<mcdem::Stretch> stretches;
-        for (double z : plate) stretches.push_back({1, z, plate_velocity, 0});
-        const auto results = engine.advance(stretches);
-        for (std::size_t r = 0; r < starts.size(); ++r) {
-            references[r].step();
-            plate[r] += plate_velocity * references[r].time_step();
-            const ContactModel model = starts[r].replica.contact.model;
-            const double allowed = tolerance(build.precision, model);
-            const Differences d = compare(engine, r, results[r], references[r], allowed);
-            const std::string where = fmt::format("step {}, replica {} ({}, {} grains): {}", step, r,
-                                                  name(model), starts[r].packing.size(), text(d));
-            EXPECT_EQ(results[r].status, 0) << where;
-            EXPECT_TRUE(d.same_contacts) << where;
-            EXPECT_LT(d.worst(), allowed) << where;
-        }
-    }
-}
-
-Start start_of(ContactModel model, FrictionLaw law, int count, unsigned seed) {
-    Replica replica = test_replica(model);
-    replica.contact.friction_law = law;
-    return jittered_lattice(replica, count, seed);
-}
 
 /// A far probed gap gives a grain 18 neighbours and more.
 Start with_many_neighbours(Start start) {
     start.replica.numerics.probe_gap = 0.85;
     return start;
-}
-
-std::vector<Precision> precisions() {
-    if (has_double()) return {Precision::single_precision, Precision::double_precision};
-    return {Precision::single_precision};
 }
 
 TEST(Step, FollowsTheReferenceForEveryModelAndSize) {

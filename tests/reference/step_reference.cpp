@@ -8,6 +8,7 @@
 
 #include "core/recording.h"
 #include "reference/grain_reference.h"
+#include "scene/true_grains.h"
 
 namespace reference {
 namespace {
@@ -32,11 +33,17 @@ StepReference::StepReference(const mcdem::Replica& scene, const mcdem::Packing& 
       law_(mcdem::surface_law(scene.contact.model, scene.grains.poisson_ratio, scene.contact.gamma)) {
     for (double diameter : packing.diameter) radius_.push_back(diameter / 2);
     const auto& g = scene.grains;
-    const double smallest = *std::min_element(radius_.begin(), radius_.end());
+    for (double softness : mcdem::softness(scene, packing.size()))
+        youngs_modulus_.push_back(g.youngs_modulus / (1 + softness));
     const double rayleigh_speed = 0.163 * g.poisson_ratio + 0.8766;  // over sqrt(G / rho)
-    time_step_ = scene.numerics.time_step * pi * smallest *
-                 std::sqrt(g.density / shear_modulus(g.youngs_modulus, g.poisson_ratio)) / rayleigh_speed;
+    std::vector<double> rayleigh_time;
+    for (std::size_t i = 0; i < radius_.size(); ++i)
+        rayleigh_time.push_back(
+            pi * radius_[i] *
+            std::sqrt(g.density / shear_modulus(youngs_modulus_[i], g.poisson_ratio)) / rayleigh_speed);
+    time_step_ = scene.numerics.time_step * *std::min_element(rayleigh_time.begin(), rayleigh_time.end());
     const double mean = std::accumulate(radius_.begin(), radius_.end(), 0.0) / radius_.size();
+    probe_gap_ = scene.numerics.probe_gap * mean;
     reach_ = (scene.numerics.probe_gap + scene.numerics.skin) * mean;
     begin(scene.plate.start);
 }
@@ -52,7 +59,8 @@ void StepReference::begin(double plate_z, double plate_velocity, double extra_dr
 }
 
 StepReference::Body StepReference::body(int grain) const {
-    return {position[grain], velocity[grain], angular_velocity[grain], radius_[grain], mass(grain)};
+    return {position[grain], velocity[grain], angular_velocity[grain],
+            radius_[grain],  mass(grain),     youngs_modulus_[grain]};
 }
 
 /// A wall is a body of no radius at the foot of the perpendicular.
@@ -60,9 +68,15 @@ StepReference::Body StepReference::partner_of(int grain, int partner) const {
     if (!mcdem::is_wall(partner)) return body(partner);
     const int wall = static_cast<int>(mcdem::wall_of(partner));
     const std::array<double, 6> at{0, scene_.box.size_x, 0, scene_.box.size_y, 0, plate_z_};
-    Body foot{position[grain], Vec3::Zero(), Vec3::Zero(), 0, 0};
+    Body foot{position[grain], Vec3::Zero(), Vec3::Zero(), 0, 0, scene_.walls.youngs_modulus};
     foot.position[wall / 2] = at[wall];
-    if (mcdem::wall_of(partner) == mcdem::Wall::plate) foot.velocity.z() = plate_velocity_;
+    if (mcdem::wall_of(partner) == mcdem::Wall::plate) {
+        foot.velocity.z() = plate_velocity_;
+        const Vec3 middle(scene_.box.size_x / 2, scene_.box.size_y / 2, plate_z_);
+        const Vec3 along_x(1, 0, scene_.effects.plate_tilt_x), along_y(0, 1, scene_.effects.plate_tilt_y);
+        const Vec3 out = along_x.cross(along_y).normalized();
+        foot.position = position[grain] + (middle - position[grain]).dot(out) * out;
+    }
     return foot;
 }
 
@@ -88,7 +102,7 @@ StepReference::Joint StepReference::joint(const Body& a, const Body& b) const {
     const auto& w = scene_.walls;
     const bool wall = b.radius == 0;
     const double nu = g.poisson_ratio, nu_there = wall ? w.poisson_ratio : nu;
-    const double e = g.youngs_modulus, e_there = wall ? w.youngs_modulus : e;
+    const double e = a.youngs_modulus, e_there = b.youngs_modulus;
     Joint joint;
     joint.modulus = 1 / ((1 - nu * nu) / e + (1 - nu_there * nu_there) / e_there);
     joint.shear_modulus =
@@ -104,7 +118,7 @@ StepReference::Joint StepReference::joint(const Body& a, const Body& b) const {
 /// What a force moves its own point by beyond Hertz [m/N]; nothing on a wall.
 double StepReference::self_compliance(double contact_radius, const Body& body) const {
     if (body.radius == 0) return 0;
-    const Grain grain{body.radius, scene_.grains.youngs_modulus, scene_.grains.poisson_ratio, {}};
+    const Grain grain{body.radius, body.youngs_modulus, scene_.grains.poisson_ratio, {}};
     return self_displacement(law_, grain, {Vec3::Zero(), body.radius, 1, contact_radius}) /
            (grain.youngs_modulus * grain.radius);
 }
@@ -128,22 +142,42 @@ double StepReference::self_consistent_overlap(double given, const Body& a, const
     return (low + high) / 2;
 }
 
-Seen StepReference::see(int i, int partner, double elapsed, Vec3& spring) const {
+/// Bulges count in part where the grains do not overlap by themselves, from there on more and more.
+double StepReference::counted_bulges(double geometric, double bulges) const {
+    const double least = scene_.effects.bulge_contacts;
+    if (geometric <= 0) return least * bulges;
+    if (geometric >= std::abs(bulges)) return bulges;
+    return (least + (1 - least) * geometric / std::abs(bulges)) * bulges;
+}
+
+/// The overlap at which Hertz's law has the force of the unloading branch; negative where there is a gap.
+double StepReference::plastic_overlap(double overlap, double& deepest) const {
+    const double p = scene_.effects.plasticity;
+    deepest = std::max(deepest, overlap);
+    const double lasting = p * deepest;
+    if (overlap <= lasting) return overlap - lasting;
+    return deepest * (overlap - lasting) / (deepest - lasting);
+}
+
+Seen StepReference::see(int i, int partner, double elapsed, Memory& memory) const {
     const bool wall = mcdem::is_wall(partner);
     const Body a = body(i), b = partner_of(i, partner);
     const Joint joint = this->joint(a, b);
     const double distance = (b.position - a.position).norm();
-    const double bulge_there = wall ? 0 : memory[partner].at(i).predicted;
+    const double bulge_there = wall ? 0 : this->memory[partner].at(i).predicted;
     Seen seen;
     seen.grain = i;
     seen.partner = partner;
     seen.direction = (b.position - a.position) / distance;
-    seen.bulge = memory[i].at(partner).predicted;
+    seen.bulge = memory.predicted;
     const double geometric = a.radius + b.radius - distance;
-    const double overlap = geometric + seen.bulge + bulge_there;
+    const double overlap =
+        plastic_overlap(geometric + counted_bulges(geometric, seen.bulge + bulge_there), memory.deepest);
     if (!(overlap > 0)) {
-        spring.setZero();
+        memory.spring.setZero();
+        memory.relaxed *= std::exp(-elapsed / scene_.effects.relaxation_time);
         seen.arm = a.radius + seen.bulge;
+        attract(seen, overlap, joint);
         return seen;
     }
     const bool self_term = law_.self[0] != 0;
@@ -155,35 +189,74 @@ Seen StepReference::see(int i, int partner, double elapsed, Vec3& spring) const 
     seen.bulge += own;
     const double outer = a.radius + seen.bulge, outer_there = b.radius + bulge_there + other;
     seen.arm = wall ? a.radius - geometric : (outer + distance - outer_there) / 2;
-    push(seen, a, b, joint, elapsed, spring);
+    push(seen, a, b, joint, elapsed, memory);
+    attract(seen, seen.overlap, joint);
     return seen;
 }
 
-/// Normal force with damping, and friction, at a contact.
+/// Normal force with damping, friction and rolling resistance, at a contact.
 void StepReference::push(Seen& seen, const Body& a, const Body& b, const Joint& joint, double elapsed,
-                         Vec3& spring) const {
+                         Memory& memory) const {
+    const auto& effects = scene_.effects;
     const Vec3& e = seen.direction;
     const double distance = (b.position - a.position).norm();
+    const double x = effects.stiffening * seen.overlap / joint.radius;
+    seen.energy = seen.elastic * seen.overlap * (2.0 / 5 + 2.0 / 7 * x);
+    seen.elastic *= 1 + x;
+    const double held = std::max(0.0, seen.elastic - effects.viscoelasticity * memory.relaxed);
+    const double left = std::exp(-elapsed / effects.relaxation_time);
+    memory.relaxed = seen.elastic * (1 - left) + memory.relaxed * left;
+    seen.energy -= 2.0 / 5 * (seen.elastic - held) * seen.overlap;
+    seen.energy *= 1 - effects.plasticity;
+
     const Vec3 r_a = seen.arm * e, r_b = (seen.arm - distance) * e;
     // the other side's material at the contact point as this side's sees it move
     const Vec3 relative =
         (b.velocity + b.angular_velocity.cross(r_b)) - (a.velocity + a.angular_velocity.cross(r_a));
     const double stiffness = 2 * joint.modulus * std::sqrt(joint.radius * seen.overlap);
     const double approaching = -relative.dot(e);
-    const double normal = seen.elastic + joint.damping * std::sqrt(stiffness * joint.mass) * approaching;
+    const double normal = held + joint.damping * std::sqrt(stiffness * joint.mass) * approaching;
     const double limit = joint.friction * std::max(normal, 0.0);
-    seen.tangential = friction(limit, across(relative, e), seen, joint, elapsed, spring);
+    const bool named_saturated = scene_.contact.friction_law == mcdem::FrictionLaw::saturated;
+    const double h = effects.friction_history, mindlin = named_saturated ? h : 1 - h;
+    const Vec3 sliding = across(relative, e);
+    if (mindlin > 0)
+        seen.tangential = mindlin * mindlin_friction(limit, sliding, seen, joint, elapsed, memory.spring);
+    if (mindlin < 1) seen.tangential += (1 - mindlin) * saturated_friction(limit, sliding, joint);
+    seen.couple = couple(normal, a, b, joint);
     seen.force = -normal * e + seen.tangential;
 }
 
-Vec3 StepReference::friction(double limit, const Vec3& sliding, const Seen& seen, const Joint& joint,
-                             double elapsed, Vec3& spring) const {
-    if (scene_.contact.friction_law == mcdem::FrictionLaw::saturated) {
-        // fades to a viscous force below the sliding velocity, and never does more in a step than a tenth
-        // of what would stop the sliding
-        const double smooth_speed = std::hypot(sliding.norm(), scene_.contact.sliding_velocity);
-        return std::min(limit / smooth_speed, 0.1 * joint.mass / time_step_) * sliding;
-    }
+/// Adhesion, 2 pi w R* in contact, linearly less in a gap.
+void StepReference::attract(Seen& seen, double overlap, const Joint& joint) const {
+    const double most = 2 * pi * scene_.effects.adhesion * joint.radius;
+    const double resolved = 20 * time_step_ * time_step_ * most / joint.mass;
+    const double range = std::min(std::max(0.01 * joint.radius, resolved), probe_gap_);
+    if (overlap <= -range) return;
+    const double gap = std::max(0.0, -overlap), force = most * (1 - gap / range);
+    seen.force += force * seen.direction;
+    seen.energy -= overlap > 0 ? most * (range / 2 + overlap) : most * std::pow(range - gap, 2) / (2 * range);
+}
+
+/// Against the relative angular velocity; fades as saturated friction does.
+Vec3 StepReference::couple(double normal, const Body& a, const Body& b, const Joint& joint) const {
+    const auto inertia = [](const Body& body) { return 0.4 * body.mass * body.radius * body.radius; };
+    const double reduced = b.radius == 0 ? inertia(a) : 1 / (1 / inertia(a) + 1 / inertia(b));
+    const Vec3 relative = b.angular_velocity - a.angular_velocity;
+    const double smooth = std::hypot(relative.norm(), scene_.contact.sliding_velocity / joint.radius);
+    const double limit = scene_.effects.rolling_resistance * joint.radius * std::max(normal, 0.0);
+    return std::min(limit / smooth, 0.1 * reduced / time_step_) * relative;
+}
+
+/// Fades to a viscous force below the sliding velocity, and never does more in a step than a tenth of what would
+/// stop the sliding.
+Vec3 StepReference::saturated_friction(double limit, const Vec3& sliding, const Joint& joint) const {
+    const double smooth_speed = std::hypot(sliding.norm(), scene_.contact.sliding_velocity);
+    return std::min(limit / smooth_speed, 0.1 * joint.mass / time_step_) * sliding;
+}
+
+Vec3 StepReference::mindlin_friction(double limit, const Vec3& sliding, const Seen& seen, const Joint& joint,
+                                     double elapsed, Vec3& spring) const {
     const double stiffness = 8 * joint.shear_modulus * seen.contact_radius;
     spring = across(spring + sliding * elapsed, seen.direction);
     const Vec3 force = stiffness * spring + joint.damping * std::sqrt(stiffness * joint.mass) * sliding;
@@ -196,8 +269,8 @@ std::vector<Seen> StepReference::neighbours() const {
     std::vector<Seen> all;
     for (std::size_t i = 0; i < memory.size(); ++i)
         for (const auto& [partner, remembered] : memory[i]) {
-            Vec3 spring = remembered.spring;
-            all.push_back(see(static_cast<int>(i), partner, 0, spring));
+            Memory copy = remembered;
+            all.push_back(see(static_cast<int>(i), partner, 0, copy));
         }
     return all;
 }
@@ -208,7 +281,7 @@ void StepReference::displace_surfaces(const std::vector<std::vector<Seen>>& seen
     mcdem::SurfaceLaw by_others = law_;
     by_others.self.fill(0);  // a contact's own term is part of its overlap
     for (std::size_t i = 0; i < seen.size(); ++i) {
-        Grain grain{radius_[i], scene_.grains.youngs_modulus, scene_.grains.poisson_ratio, {}};
+        Grain grain{radius_[i], youngs_modulus_[i], scene_.grains.poisson_ratio, {}};
         for (const Seen& c : seen[i])
             grain.slots.push_back({c.direction, c.arm, c.elastic, c.contact_radius});
         const auto moved = surface_displacement(by_others, grain);
@@ -225,7 +298,7 @@ void StepReference::step() {
     std::vector<std::vector<Seen>> seen(position.size());
     for (std::size_t i = 0; i < position.size(); ++i)
         for (auto& [partner, remembered] : memory[i])
-            seen[i].push_back(see(static_cast<int>(i), partner, dt, remembered.spring));
+            seen[i].push_back(see(static_cast<int>(i), partner, dt, remembered));
     displace_surfaces(seen);
     for (std::size_t i = 0; i < position.size(); ++i) {
         const double m = mass(static_cast<int>(i)), inertia = 0.4 * m * radius_[i] * radius_[i];
@@ -233,7 +306,7 @@ void StepReference::step() {
         force.z() -= scene_.grains.excess_density / scene_.grains.density * m * 9.81;
         for (const Seen& c : seen[i]) {
             force += c.force;
-            torque += (c.arm * c.direction).cross(c.tangential);
+            torque += (c.arm * c.direction).cross(c.tangential) + c.couple;
         }
         velocity[i] += force / m * dt;
         angular_velocity[i] += torque / inertia * dt;
@@ -252,8 +325,8 @@ Totals StepReference::totals() const {
     }
     for (const Seen& c : neighbours()) {
         const bool wall = mcdem::is_wall(c.partner);
-        // Hertz energy 2/5 F delta, half of it on each side of two grains, less the work of the grain's bulge
-        totals.elastic_energy += (wall ? 1 : 0.5) * 0.4 * c.elastic * c.overlap - 0.5 * c.elastic * c.bulge;
+        // what a contact stores, half of it on each side of two grains, less the work of the grain's bulge
+        totals.elastic_energy += (wall ? 1 : 0.5) * c.energy - 0.5 * c.elastic * c.bulge;
         totals.deepest_overlap = std::max(totals.deepest_overlap,
                                           c.overlap / (radius_[c.grain] + (wall ? 0 : radius_[c.partner])));
         if (wall) totals.wall_force[static_cast<int>(mcdem::wall_of(c.partner))] -= c.force;

@@ -1,5 +1,5 @@
-// One step of a replica in double precision, written in vector form from the paper's formulas, with every
-// pair of grains looked at: what the kernels are checked against.
+// One step of a replica in double precision, written in vector form from the formulas of the paper and of the
+// effects, with every pair of grains looked at: what the kernels are checked against.
 #pragma once
 #include <array>
 #include <map>
@@ -18,6 +18,8 @@ struct Memory {
     double predicted = 0;          ///< surface displacement there, for the coming step [m]
     std::array<double, 4> past{};  ///< .. as the forces of the last four steps made it, the latest first
     Vec3 spring = Vec3::Zero();    ///< tangential, Mindlin friction [m]
+    double deepest = 0;            ///< overlap so far, plasticity [m]
+    double relaxed = 0;            ///< force, viscoelasticity [N]
 };
 
 /// One neighbour as seen from one grain.
@@ -27,10 +29,12 @@ struct Seen {
     Vec3 direction = Vec3::Zero();   ///< e, from the grain outward
     double overlap = 0;              ///< corrected; zero where there is no contact [m]
     double contact_radius = 0;       ///< a [m]
-    double elastic = 0;              ///< Hertz force [N]
+    double elastic = 0;              ///< Hertz force, stiffened [N]
+    double energy = 0;               ///< stored in the contact [J]
     double bulge = 0;                ///< of the grain's own surface [m]
     double arm = 0;                  ///< centre to contact point, or to the probed surface point [m]
     Vec3 tangential = Vec3::Zero();  ///< friction on the grain [N]
+    Vec3 couple = Vec3::Zero();      ///< rolling resistance on the grain [N m]
     Vec3 force = Vec3::Zero();       ///< on the grain, all together [N]
 };
 
@@ -64,6 +68,7 @@ private:
     struct Body {
         Vec3 position, velocity, angular_velocity;
         double radius, mass;
+        double youngs_modulus;  ///< of this very body [Pa]
     };
     /// What two bodies in contact share.
     struct Joint {
@@ -78,17 +83,22 @@ private:
     double distance_to(int grain, int partner) const;
     double self_consistent_overlap(double given, const Body& a, const Body& b, const Joint& joint) const;
     double self_compliance(double contact_radius, const Body& body) const;
-    Seen see(int grain, int partner, double elapsed, Vec3& spring) const;
+    double counted_bulges(double geometric, double bulges) const;
+    double plastic_overlap(double overlap, double& deepest) const;
+    Seen see(int grain, int partner, double elapsed, Memory& memory) const;
     void push(Seen& seen, const Body& a, const Body& b, const Joint& joint, double elapsed,
-              Vec3& spring) const;
-    Vec3 friction(double limit, const Vec3& sliding, const Seen& seen, const Joint& joint, double elapsed,
-                  Vec3& spring) const;
+              Memory& memory) const;
+    void attract(Seen& seen, double overlap, const Joint& joint) const;
+    Vec3 couple(double normal, const Body& a, const Body& b, const Joint& joint) const;
+    Vec3 saturated_friction(double limit, const Vec3& sliding, const Joint& joint) const;
+    Vec3 mindlin_friction(double limit, const Vec3& sliding, const Seen& seen, const Joint& joint,
+                          double elapsed, Vec3& spring) const;
     void displace_surfaces(const std::vector<std::vector<Seen>>& seen);
 
     mcdem::Replica scene_;
     mcdem::SurfaceLaw law_;
-    std::vector<double> radius_;
-    double time_step_ = 0, reach_ = 0;
+    std::vector<double> radius_, youngs_modulus_;
+    double time_step_ = 0, reach_ = 0, probe_gap_ = 0;
     double plate_z_ = 0, plate_velocity_ = 0, drag_ = 0;
 };
 

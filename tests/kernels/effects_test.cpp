@@ -1,0 +1,113 @@
+// Steps with effects against the double-precision reference: each alone, some of one batch, all together; every
+// contact model, both precisions, one and two vectors of slots, the CPU's and the GPU's way.
+#include "kernels/steps_as_reference.h"
+
+namespace reference {
+namespace {
+
+using mcdem::Effects;
+
+/// Amplitudes at which each effect changes forces by some per cent or more within a step.
+Effects all_effects() {
+    Effects effects;
+    effects.adhesion = 0.02;
+    effects.viscoelasticity = 0.3;
+    effects.relaxation_time = 2e-3;  // some steps
+    effects.stiffening = 0.8;
+    effects.plasticity = 0.2;
+    effects.bulge_contacts = 0.4;
+    effects.friction_history = 0.3;
+    effects.rolling_resistance = 0.2;
+    effects.modulus_scatter = 0.2;
+    effects.plate_tilt_x = 0.02;
+    effects.plate_tilt_y = -0.01;
+    return effects;
+}
+
+/// One replica an effect, and one with none.
+std::vector<Effects> one_by_one() {
+    const Effects all = all_effects();
+    std::vector<Effects> each(10);
+    each[0].adhesion = all.adhesion;
+    each[1].viscoelasticity = all.viscoelasticity;
+    each[1].relaxation_time = all.relaxation_time;
+    each[2].stiffening = all.stiffening;
+    each[3].plasticity = all.plasticity;
+    each[4].bulge_contacts = all.bulge_contacts;
+    each[5].friction_history = all.friction_history;
+    each[6].rolling_resistance = all.rolling_resistance;
+    each[7].modulus_scatter = all.modulus_scatter;
+    each[8].plate_tilt_x = all.plate_tilt_x;
+    each[8].plate_tilt_y = all.plate_tilt_y;
+    return each;
+}
+
+/// Overlaps are a third of those of the plain steps, so that roundings of positions weigh more, and the slope of
+/// adhesion in a gap is steeper than that of any contact.
+constexpr double slack = 5;
+
+/// Smaller grains: half of the neighbours have a gap, some of them within the reach of adhesion.
+Start with_effects(const Effects& effects, ContactModel model, FrictionLaw law, int count, unsigned seed) {
+    Start start = start_of(model, law, count, seed);
+    for (auto& diameter : start.packing.diameter) diameter *= 0.96;
+    start.replica.effects = effects;
+    return start;
+}
+
+TEST(EffectSteps, EachAloneFollowsTheReferenceInOneBatch) {
+    for (Precision precision : precisions())
+        for (FrictionLaw law : {FrictionLaw::saturated, FrictionLaw::mindlin}) {
+            std::vector<Start> starts;
+            for (const Effects& effects : one_by_one())
+                starts.push_back(with_effects(effects, ContactModel::mc_dem, law, 64, 31));
+            expect_steps_as_reference(build(precision), starts, 32, slack);
+        }
+}
+
+TEST(EffectSteps, AllTogetherFollowTheReferenceForEveryModel) {
+    for (Precision precision : precisions()) {
+        std::vector<Start> starts;
+        for (ContactModel model : all_models)
+            starts.push_back(with_effects(all_effects(), model, FrictionLaw::saturated, 65, 33));
+        starts.push_back(with_effects({}, ContactModel::mc_dem, FrictionLaw::mindlin, 17, 34));
+        expect_steps_as_reference(build(precision), starts, 35, slack);
+    }
+}
+
+TEST(EffectSteps, AllTogetherFollowTheReferenceTheOtherWay) {
+    for (Precision precision : precisions()) {
+        std::vector<Start> starts;
+        for (ContactModel model : all_models)
+            starts.push_back(with_effects(all_effects(), model, FrictionLaw::mindlin, 17, 36));
+        expect_steps_as_reference(other_way(build(precision)), starts, 37, slack);
+        for (Start& start : starts) start.replica.numerics.probe_gap = 0.85;  // 18 neighbours and more
+        expect_steps_as_reference(build(precision, 32), starts, 38, slack);
+        expect_steps_as_reference(other_way(build(precision, 32)), starts, 38, slack);
+    }
+}
+
+// The comparison would notice: a reference without the effect is told apart from the engine with it.
+TEST(EffectSteps, EachIsToldApartFromNone) {
+    auto each = one_by_one();
+    each.pop_back();
+    for (std::size_t k = 0; k < each.size(); ++k) {
+        const Start start = with_effects(each[k], ContactModel::mc_dem, FrictionLaw::saturated, 64, 31);
+        Start plain = start;
+        plain.replica.effects = {};
+        Batch batch(build(Precision::single_precision), start);
+        Uniform uniform(39);
+        batch.engine().set_velocities(0, uniform.vectors(64, 0.05), uniform.vectors(64, 5));
+        StepReference same = reference_of(batch.engine(), 0, start), other = reference_of(batch.engine(), 0, plain);
+        mcdem::StretchResult result;
+        for (int step = 0; step < 3; ++step) {
+            same.step();
+            other.step();
+            result = batch.advance(1).front();
+        }
+        EXPECT_LT(compare(batch.engine(), 0, result, same, 5e-5).worst(), slack * 5e-5) << "effect " << k;
+        EXPECT_GT(compare(batch.engine(), 0, result, other, 5e-5).worst(), 1e-3) << "effect " << k;
+    }
+}
+
+}  // namespace
+}  // namespace reference
