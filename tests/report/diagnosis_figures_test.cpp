@@ -62,7 +62,8 @@ TEST(WhereFigure, time_runs_from_left_to_right) {
              {"unload", 0.02}, {"load", 0.01}, {"unload", 0.01}, {"load", 0.02}})
         d.cells.push_back({"top_force", phase, displacement, 1, 1});
     std::map<double, std::string> by_place;
-    for (const auto& row : blocks_of(*where_figure(d))[0]) by_place[number(row[0])] = row[9] + row[10];
+    const auto blocks = blocks_of(*where_figure(d));
+    for (const auto& row : blocks[0]) by_place[number(row[0])] = row[9] + row[10];
     std::vector<std::string> order;
     for (const auto& [x, what] : by_place) order.push_back(what);
     EXPECT_THAT(order, ElementsAre("load10", "load20", "unload20", "unload10"));
