@@ -48,6 +48,7 @@ public:
 
     Diagnosis all() {
         Evidence evidence = gather();
+        options_.on_evidence(evidence);
         Draft draft = draft_diagnosis(evidence, options_.limits);
         Diagnosis diagnosis = draft.worth_confirming && options_.confirmations > 0
                                   ? confirm(evidence, draft, confirmation(draft), options_.limits)

@@ -20,6 +20,8 @@ struct DiagnoseOptions {
     Limits limits;
     std::function<void(const std::string& stage, double fraction)> on_progress = [](const std::string&, double) {};
     std::function<bool()> stop_wanted = [] { return false; };
+    /// Gets what the diagnosis rests on, once it is gathered: limits and ablations are tried on it without simulations.
+    std::function<void(const Evidence&)> on_evidence = [](const Evidence&) {};
 };
 
 /// The scene's first replica with the experiment's box, plate and scans. Throws InputError where the experiment does not

@@ -24,6 +24,7 @@ enum class Stream : std::uint64_t {
     bootstrap = 21,
     placebo = 22,
     diameter_jitter = 23,
+    challenge = 24,
 };
 
 /// splitmix64 (Steele, Lea & Flood 2014): neighbouring numbers become unrelated ones.
