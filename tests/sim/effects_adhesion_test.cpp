@@ -1,0 +1,99 @@
+// Adhesion after Derjaguin, Muller & Toporov: pull-off, what fades in a gap, energy and friction.
+#include <numbers>
+
+#include "sim/squeezed_grain.h"
+
+namespace reference {
+namespace {
+
+constexpr double work_of_adhesion = 0.05, radius = SqueezedGrain::radius, other_radius = 0.006;
+
+mcdem::Effects adhesive() {
+    mcdem::Effects effects;
+    effects.adhesion = work_of_adhesion;
+    return effects;
+}
+
+double pull_off(double reduced_radius) { return 2 * std::numbers::pi * work_of_adhesion * reduced_radius; }
+
+Start two_grains(double overlap) {
+    Replica replica = test_replica(ContactModel::independent);
+    replica.grains = {SqueezedGrain::youngs_modulus, SqueezedGrain::poisson_ratio, 1000, 0, 0, 1, 0};
+    replica.effects = adhesive();
+    replica.numerics.time_step = 0.02;
+    return free_cluster(replica, {{0, 0, 0}, {radius + other_radius - overlap, 0, 0}}, {2 * radius, 2 * other_radius});
+}
+
+// Two grains drawn apart by hand: the largest tension is 2 pi w R*, just where the overlap ends.
+TEST(Adhesion, TwoGrainsPullOffAtTwoPiTimesWorkTimesReducedRadius) {
+    constexpr double overlap = 2e-4;
+    constexpr int steps = 400;
+    Batch batch(build(finest()), two_grains(overlap));
+    const double velocity = overlap / (steps * batch.engine().time_step(0));
+    const double reduced = radius * other_radius / (radius + other_radius);
+    double tension = 0, parted_at = 0;
+    for (int step = 0; step < steps + 20; ++step) {
+        batch.engine().set_velocities(0, {Vec3::Zero(), {velocity, 0, 0}}, {2, Vec3::Zero()});
+        batch.advance(1);
+        const auto state = batch.engine().state(0);
+        if (state.contacts.empty()) {
+            parted_at = radius + other_radius - (state.position[1] - state.position[0]).norm();
+            break;
+        }
+        tension = std::max(tension, state.contacts.front().force.x());
+        const double d = state.contacts.front().overlap;
+        const double hertz = 2.0 / 3 * SqueezedGrain::modulus * std::sqrt(reduced) * std::pow(d, 1.5);
+        EXPECT_NEAR(state.contacts.front().force.x(), pull_off(reduced) - hertz, 1e-4 * pull_off(reduced)) << d;
+    }
+    EXPECT_NEAR(tension / pull_off(reduced), 1, 0.01);
+    EXPECT_NEAR(parted_at, 0, 2 * overlap / steps);
+}
+
+// Against a wall R* is R. In the gap the attraction goes down to nothing in a straight line, without a jump.
+TEST(Adhesion, FadesInAGapWithinAHundredthOfTheRadius) {
+    SqueezedGrain grain(adhesive(), 1e-4);
+    const double most = pull_off(radius), range = 0.01 * radius, step = 1e-6;
+    double before = grain.squeeze(0);
+    for (int k = 0; k < 300; ++k) {
+        const double force = grain.squeeze(-step), gap = -grain.overlap();
+        const double expected = SqueezedGrain::hertz(-gap) - most * std::clamp(1 - gap / range, 0.0, 1.0);
+        EXPECT_NEAR(force, expected, 1e-4 * most) << gap;
+        if (gap > 0) EXPECT_LT(std::abs(force - before), 1.1 * most * step / range) << "a jump at " << gap;
+        before = force;
+    }
+    EXPECT_EQ(before, 0);
+}
+
+// Drawn together, squeezed and drawn apart, all along one curve: the energy that is told is the work done, the one that
+// stands at zero out of reach.
+TEST(Adhesion, StoresTheWorkDone) {
+    SqueezedGrain grain(adhesive(), -1.5 * 0.01 * radius);
+    double work = 0, before = 0;
+    const double step = 2e-6;
+    for (int k = 0; k < 200; ++k) {
+        const double force = grain.squeeze(step);
+        work += (force + before) / 2 * 2 * step;
+        before = force;
+        EXPECT_NEAR(grain.energy(), work, 2e-3 * pull_off(radius) * 0.01 * radius) << grain.overlap();
+    }
+    EXPECT_GT(grain.overlap(), 2e-4);
+}
+
+// Friction holds as if the grains were pressed together by the pull-off force as well: mu (F_n + 2 pi w R*), which is mu
+// times the Hertz force.
+TEST(Adhesion, AddsToTheFrictionLimit) {
+    constexpr double friction = 0.2, overlap = 1e-4;
+    Start start = two_grains(0);
+    start.replica.grains.friction = friction;
+    start.replica.walls = {SqueezedGrain::wall_modulus, SqueezedGrain::poisson_ratio, friction, 1};
+    start.packing.position = {{0.5, 0.5, radius - overlap}, {0.1, 0.1, 0.5}};
+    Batch batch(build(finest()), start);
+    batch.engine().set_velocities(0, {{1, 0, 0}, Vec3::Zero()}, {2, Vec3::Zero()});  // 1000 times the sliding velocity
+    const auto force = batch.advance(1).front().wall_force[static_cast<int>(mcdem::Wall::floor)];
+    const double d = radius - batch.engine().state(0).position[0].z();
+    EXPECT_NEAR(force.x() / (friction * SqueezedGrain::hertz(d)), 1, 1e-3);
+    EXPECT_NEAR(-force.z() / (SqueezedGrain::hertz(d) - pull_off(radius)), 1, 1e-3);
+}
+
+}  // namespace
+}  // namespace reference

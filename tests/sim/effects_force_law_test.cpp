@@ -1,0 +1,97 @@
+// Stiffening and plasticity: the force of one contact against its overlap.
+#include "sim/squeezed_grain.h"
+
+namespace reference {
+namespace {
+
+constexpr double deepest = 1e-3;
+
+mcdem::Effects stiffening(double amount) {
+    mcdem::Effects effects;
+    effects.stiffening = amount;
+    return effects;
+}
+
+mcdem::Effects plasticity(double part) {
+    mcdem::Effects effects;
+    effects.plasticity = part;
+    return effects;
+}
+
+TEST(Stiffening, MultipliesHertzByOnePlusOverlapOverRadius) {
+    for (double amount : {-0.3, 1.0, 5.0}) {
+        SqueezedGrain grain(stiffening(amount), 0);
+        double work = 0, before = 0;
+        for (int step = 0; step < 200; ++step) {
+            const double force = grain.squeeze(deepest / 200), overlap = grain.overlap();
+            const double expected = SqueezedGrain::hertz(overlap) * (1 + amount * overlap / SqueezedGrain::radius);
+            EXPECT_NEAR(force / expected, 1, 10 * SqueezedGrain::rounding()) << overlap;
+            work += (force + before) / 2 * 2 * deepest / 200;
+            before = force;
+        }
+        EXPECT_NEAR(grain.energy() / work, 1, 1e-4) << "all work is stored; the trapezoids' error is some 1e-5";
+    }
+}
+
+struct Point {
+    double overlap, force;
+};
+
+/// There and back in steps of a hundredth of `deepest`.
+std::vector<Point> go(SqueezedGrain& grain, double target) {
+    std::vector<Point> curve;
+    const int steps = static_cast<int>(std::lround(100 * std::abs(target - grain.overlap()) / deepest));
+    const double change = (target - grain.overlap()) / steps;
+    for (int step = 0; step < steps; ++step) {
+        const double force = grain.squeeze(change);
+        curve.push_back({grain.overlap(), force});
+    }
+    return curve;
+}
+
+double work(const std::vector<Point>& curve, Point before) {
+    double sum = 0;
+    for (const Point& point : curve) {
+        sum += (point.force + before.force) / 2 * (point.overlap - before.overlap);
+        before = point;
+    }
+    return sum;
+}
+
+TEST(Plasticity, UnloadsAlongASteeperHertzCurve) {
+    for (double part : {0.1, 0.5}) {
+        SqueezedGrain grain(plasticity(part), 0);
+        for (const Point& p : go(grain, deepest))
+            EXPECT_NEAR(p.force / SqueezedGrain::hertz(p.overlap), 1, 10 * SqueezedGrain::rounding());
+        const double residual = part * deepest;
+        for (const Point& p : go(grain, 0)) {
+            const double left = std::max(0.0, (p.overlap - residual) / (deepest - residual));
+            EXPECT_NEAR(p.force / SqueezedGrain::hertz(deepest), std::pow(left, 1.5), 10 * SqueezedGrain::rounding());
+        }
+    }
+}
+
+// Loading takes 2/5 F d_max, unloading gives back 1 - p of it. Trapezoids over a hundred steps add 5e-5.
+TEST(Plasticity, ALoopEnclosesItsShareOfTheWork) {
+    for (double part : {0.1, 0.5}) {
+        SqueezedGrain grain(plasticity(part), 0);
+        const double force = SqueezedGrain::hertz(deepest);
+        const double in = work(go(grain, deepest), {0, 0});
+        EXPECT_NEAR(grain.energy() / (2 * (1 - part) * 0.4 * force * deepest), 1, 1e-4) << "what can be got back";
+        const double back = work(go(grain, 0), {deepest, force});
+        EXPECT_NEAR((in + back) / (part * 0.4 * force * deepest), 1, 1e-3);
+    }
+}
+
+TEST(Plasticity, ReloadsWhereItUnloadedAndThenGoesOn) {
+    SqueezedGrain grain(plasticity(0.3), 0);
+    go(grain, deepest);
+    const auto down = go(grain, 0.2 * deepest), up = go(grain, deepest);
+    for (std::size_t k = 0; k + 1 < up.size(); ++k)
+        EXPECT_NEAR(up[k].force, down[down.size() - 2 - k].force, 1e-6 * SqueezedGrain::hertz(deepest));
+    for (const Point& p : go(grain, 1.5 * deepest))
+        EXPECT_NEAR(p.force / SqueezedGrain::hertz(p.overlap), 1, 10 * SqueezedGrain::rounding());
+}
+
+}  // namespace
+}  // namespace reference
