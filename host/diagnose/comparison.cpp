@@ -54,11 +54,12 @@ Eigen::VectorXd pick(const Eigen::VectorXd& all, const CellChoice& cells) { retu
 Eigen::MatrixXd pick_columns(const Eigen::MatrixXd& all, const CellChoice& cells) { return all(Eigen::all, cells); }
 
 Comparison::Comparison(const Eigen::MatrixXd& noise, int mean_of, const CellChoice& cells,
-                       const std::vector<FreeParameter>& free)
+                       const std::vector<FreeParameter>& free, const Eigen::VectorXd& extra)
     : cells_(cells), free_(free) {
     const double both = 1 + (mean_of > 0 ? 1.0 / mean_of : 0);  // the observed one's scatter, and the mean's
     Eigen::MatrixXd covariance = both * shrunk_covariance(pick_columns(noise, cells));
     covariance.diagonal() += resolutions(cells, noise.cols()).square().matrix();
+    if (extra.size() > 0) covariance.diagonal() += pick(extra, cells);
     sigma_ = covariance.diagonal().array().sqrt();
     directions_.resize(static_cast<Eigen::Index>(cells.size()), static_cast<Eigen::Index>(free.size()));
     Eigen::MatrixXd total = covariance;

@@ -33,8 +33,9 @@ class Comparison {
 public:
     /// `noise`: rows of one replicate's scatter, all cells; `mean_of`: replicates behind the mean that the observed is
     /// compared with (0: known exactly).
+    /// `extra`: variance that comes on top, all cells; empty: none.
     Comparison(const Eigen::MatrixXd& noise, int mean_of, const CellChoice& cells,
-               const std::vector<FreeParameter>& free);
+               const std::vector<FreeParameter>& free, const Eigen::VectorXd& extra = {});
 
     const CellChoice& cells() const { return cells_; }
     /// Whitens a vector on all cells: its square is a chi-square of the gap with nuisances marginalised.

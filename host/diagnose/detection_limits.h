@@ -1,6 +1,6 @@
 // What these data could show at all, worked out before they are looked at.
 #pragma once
-#include "diagnose/diagnosis.h"
+#include "diagnose/decision.h"
 #include "diagnose/gap_tests.h"
 
 namespace mcdem {

@@ -4,16 +4,26 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
+#include <numeric>
 
 #include "core/errors.h"
 #include "diagnose/detection_limits.h"
 #include "diagnose/location.h"
+#include "diagnose/not_measured.h"
 
 namespace mcdem {
 namespace {
 
 constexpr std::size_t fewest_cells = 4;
+
+Setting checked_setting(const Evidence& evidence) {
+    Setting setting = setting_of(evidence);
+    if (setting.cells.size() < fewest_cells)
+        throw InputError(fmt::format("the experiment and the simulations have {} observations in common, and {} are needed: "
+                                     "the plate must press the packing within its stroke in both",
+                                     setting.cells.size(), fewest_cells));
+    return setting;
+}
 
 std::string unit_of(const Evidence& evidence, const std::string& name) {
     for (const CandidateRange& c : evidence.candidates)
@@ -23,126 +33,137 @@ std::string unit_of(const Evidence& evidence, const std::string& name) {
     return "";
 }
 
-Cause cause_of(const Evidence& evidence, const Setting& setting, const Identification& id, const GapStatistics& s,
-               std::size_t candidate) {
-    const EffectFit& fit = s.fits[candidate];
-    Cause cause;
-    cause.effect = setting.name(candidate);
-    cause.amplitude = fit.amplitude;
-    cause.amplitude_error = fit.error;
-    cause.unit = unit_of(evidence, cause.effect);
-    cause.confidence = id.confidence[candidate];
-    cause.explained = s.omnibus > 0 ? 2 * fit.score / s.omnibus : 0;
-    cause.score = fit.score;
-    cause.group = {cause.effect};
-    return cause;
-}
-
-/// The leader with its group, then the second effect where there is one.
-std::vector<Cause> causes_of(const Evidence& evidence, const Setting& setting, const Identification& id,
-                             const GapStatistics& s) {
-    std::vector<Cause> causes;
-    for (std::size_t k = 0; k < id.best.candidates.size(); ++k) {
-        Cause cause = cause_of(evidence, setting, id, s, id.best.candidates[k]);
-        cause.amplitude = id.best.fits[k].amplitude;
-        cause.amplitude_error = id.best.fits[k].error;
-        causes.push_back(cause);
-    }
-    for (const std::size_t member : id.group) {
-        if (member == id.best.candidates[0]) continue;
-        causes[0].group.push_back(setting.name(member));
-        if (id.best.candidates.size() == 1) causes.push_back(cause_of(evidence, setting, id, s, member));
-    }
-    for (std::size_t k = id.best.candidates.size(); k < causes.size(); ++k) causes[k].group = causes[0].group;
-    return causes;
-}
-
 std::vector<NuisanceFit> nuisance_fits(const Evidence& evidence, const Comparison& comparison, const Eigen::VectorXd& gap) {
+    constexpr double far_out = 2.5;  // prior sigmas
     const Eigen::VectorXd values = comparison.fit_nuisances(gap), errors = comparison.nuisance_errors();
     std::vector<NuisanceFit> fits;
     for (std::size_t k = 0; k < evidence.nuisances.size(); ++k) {
         const NuisancePrior& prior = evidence.nuisances[k];
         const auto i = static_cast<Eigen::Index>(k);
-        fits.push_back({prior.name, values[i], errors[i], prior.sigma, prior.unit, std::abs(values[i]) > 2.5 * prior.sigma});
+        fits.push_back({prior.name, values[i], errors[i], prior.sigma, prior.unit, std::abs(values[i]) > far_out * prior.sigma});
     }
     return fits;
 }
 
-/// What is missing in the data, and what it could have told.
-std::vector<std::string> not_measured(const Evidence& evidence) {
-    std::set<Needs> seen, missing;
-    const auto cells = cells_of(evidence.library.grid);
-    for (std::size_t k = 0; k < cells.size(); ++k) {
-        const Needs needs = observables()[static_cast<std::size_t>(cells[k].observable)].needs;
-        (std::isfinite(evidence.observed[static_cast<Eigen::Index>(k)]) ? seen : missing).insert(needs);
+/// The candidates as causes, in the words of the output.
+class Causes {
+public:
+    Causes(const Evidence& evidence, const Findings& findings, const Decision& decision, const GapStatistics& statistics)
+        : evidence_(evidence), findings_(findings), decision_(decision), statistics_(statistics) {}
+
+    Cause of(std::size_t candidate) const {
+        Cause cause;
+        cause.effect = findings_.names[candidate];
+        cause.amplitude = statistics_.fits[candidate].amplitude;
+        cause.amplitude_error = statistics_.fits[candidate].error;
+        cause.unit = unit_of(evidence_, cause.effect);
+        cause.confidence = decision_.confidence[candidate];
+        cause.score = findings_.gain[candidate];
+        cause.explained = statistics_.omnibus > 0 ? 2 * cause.score / statistics_.omnibus : 0;
+        cause.group = {cause.effect};
+        for (const Proposal& proposal : findings_.proposals)
+            if (proposal.candidates == std::vector{candidate}) cause.confirmed_score = proposal.confirmed_gain;
+        return cause;
     }
-    std::vector<std::string> texts;
-    if (!seen.count(Needs::contacts) && missing.count(Needs::contacts))
-        texts.push_back("contacts.csv: forces of contacts would tell the force distribution, the floor's and the walls' share, "
-                        "the plate's couple and biases of the force measurement");
-    if (!seen.count(Needs::positions) && missing.count(Needs::positions))
-        texts.push_back("grains.csv beyond frame 0 (with contacts.csv): positions would tell the overlaps that forces should "
-                        "imply, hence cross-contact effects, stiffening, adhesion, friction and errors of sizes");
-    return texts;
-}
+
+    std::vector<Cause> ranking() const {
+        std::vector<std::size_t> order(findings_.names.size());
+        std::iota(order.begin(), order.end(), std::size_t{0});
+        std::ranges::stable_sort(order, [&](auto a, auto b) { return findings_.gain[a] > findings_.gain[b]; });
+        std::vector<Cause> list;
+        for (const std::size_t candidate : order) list.push_back(of(candidate));
+        return list;
+    }
+
+    /// The leader and its group; or both effects of a pair, each by itself.
+    std::vector<Cause> leading() const {
+        const Proposal& decided = findings_.proposals[static_cast<std::size_t>(decision_.proposal)];
+        std::vector<Cause> list;
+        for (std::size_t k = 0; k < decision_.group.size(); ++k) {
+            list.push_back(of(decision_.group[k]));
+            const auto place = std::ranges::find(decided.candidates, decision_.group[k]) - decided.candidates.begin();
+            if (place < std::ssize(decided.candidates)) {
+                list.back().amplitude = decided.amplitudes[static_cast<std::size_t>(place)];
+                list.back().amplitude_error = decided.errors[static_cast<std::size_t>(place)];
+            }
+        }
+        if (decided.candidates.size() == 1)
+            for (Cause& cause : list) cause.group = names_of(decision_.group);
+        return list;
+    }
+
+private:
+    std::vector<std::string> names_of(const std::vector<std::size_t>& candidates) const {
+        std::vector<std::string> names;
+        for (const std::size_t c : candidates) names.push_back(findings_.names[c]);
+        return names;
+    }
+    const Evidence& evidence_;
+    const Findings& findings_;
+    const Decision& decision_;
+    const GapStatistics& statistics_;
+};
 
 }  // namespace
 
-Draft draft_diagnosis(const Evidence& evidence, const Limits& limits) {
-    Draft draft;
-    draft.setting = setting_of(evidence);
-    const Setting& setting = draft.setting;
-    if (setting.cells.size() < fewest_cells)
-        throw InputError(fmt::format("the experiment and the simulations have {} observations in common, and {} are needed: "
-                                     "the plate must press the packing within its stroke in both",
-                                     setting.cells.size(), fewest_cells));
-    draft.mean_of = static_cast<int>(evidence.baseline.rows());
-    const Comparison comparison(setting.noise, draft.mean_of, setting.cells, setting.free);
-    const NullDistribution null(setting, draft.mean_of, evidence.seed);
-    Diagnosis& d = draft.diagnosis;
-    d.detection_limits = detection_limits(comparison, setting, null, evidence, limits);
-    const GapStatistics s = gap_statistics(comparison, setting, setting.gap);
-    d.p_omnibus = null.p_value(&GapStatistics::omnibus, s.omnibus);
-    d.p_directed = null.p_value(&GapStatistics::directed, s.directed);
-    d.p_value = std::min(1.0, 2 * std::min(d.p_omnibus, d.p_directed));
-    d.detected = d.p_value < limits.false_alarm;
-    const Location location = locate(comparison, setting, null, setting.gap, evidence.library.grid, limits);
-    d.cells = location.cells;
-    if (d.detected) d.where = location.entries;
-    draft.identification = identify(comparison, setting, null, s, setting.gap, limits);
-    const Identification& id = draft.identification;
-    d.verdict = verdict_of(id, setting, d.detected);
-    for (const std::size_t candidate : id.order) d.ranking.push_back(cause_of(evidence, setting, id, s, candidate));
-    if (d.detected) d.causes = causes_of(evidence, setting, id, s);
-    d.nuisances = nuisance_fits(evidence, comparison, setting.gap);
-    d.not_measured = not_measured(evidence);
-    draft.worth_confirming = d.detected && s.directed > 0;
-    if (draft.worth_confirming) {
-        const Split split = split_cells(setting.cells, evidence.library.grid);
-        d.shrink = measure_shrink(setting, split, id.best, draft.mean_of, evidence.seed);
-        draft.whole = fit_part(setting, setting.cells, setting.gap, id.best.candidates, draft.mean_of);
-        draft.part = split.fitted.empty() ? draft.whole
-                                          : fit_part(setting, split.fitted, setting.gap, id.best.candidates, draft.mean_of);
+Draft::Draft(const Evidence& evidence, const Limits& limits)
+    : evidence_(evidence), limits_(limits), setting_(checked_setting(evidence)),
+      mean_of_(static_cast<int>(evidence.baseline.rows())),
+      comparison_(setting_.noise, mean_of_, setting_.cells, setting_.free), null_(setting_, mean_of_, evidence.seed),
+      statistics_(gap_statistics(comparison_, setting_, setting_.gap)) {
+    const double omnibus = null_.p_value(&GapStatistics::omnibus, statistics_.omnibus);
+    const double directed = null_.p_value(&GapStatistics::directed, statistics_.directed);
+    findings_.p_value = std::min(1.0, 2 * std::min(omnibus, directed));
+    findings_.effects = setting_.effects;
+    for (std::size_t c = 0; c < setting_.candidates.size(); ++c) {
+        findings_.names.push_back(setting_.name(c));
+        findings_.gain.push_back(statistics_.fits[c].score);
     }
-    return draft;
+    findings_.proposals = propose(comparison_, setting_, null_, statistics_, mean_of_);
+    decision_ = decide(findings_, limits_);
 }
 
-Diagnosis confirm(const Evidence& evidence, Draft draft, const Confirmation& confirmation, const Limits&) {
-    const Setting& setting = draft.setting;
-    const int runs = static_cast<int>(confirmation.whole.rows());
-    const Eigen::VectorXd left = evidence.observed - confirmation.whole.colwise().mean().transpose();
-    const Eigen::VectorXd left_part = evidence.observed - confirmation.part.colwise().mean().transpose();
-    Diagnosis& d = draft.diagnosis;
-    if (!pick(left, setting.cells).allFinite() || !pick(left_part, setting.cells).allFinite()) return d;
-    const Comparison before(setting.noise, draft.mean_of, setting.cells, setting.free);
-    const Comparison after(setting.noise, runs, setting.cells, setting.free);
-    if (!d.causes.empty())
-        d.causes[0].confirmed_score =
-            0.5 * (before.whiten(setting.gap).squaredNorm() - after.whiten(left).squaredNorm());
-    const Split split = split_cells(setting.cells, evidence.library.grid);
-    if (d.shrink && d.shrink->before > 0)
-        d.shrink->confirmed =
-            std::clamp(1 - gap_size(setting, split.held_out, left_part, runs) / d.shrink->before, -1.0, 1.0);
+PartialFit Draft::whole_fit(std::size_t proposal) const {
+    const Proposal& p = findings_.proposals[proposal];
+    return {p.amplitudes, comparison_.fit_nuisances(setting_.gap - explained_by(p, setting_))};
+}
+
+void Draft::confirm(std::size_t proposal, const Eigen::MatrixXd& runs) {
+    mcdem::confirm(findings_.proposals[proposal], setting_, null_, evidence_.observed, statistics_.omnibus, runs);
+    decision_ = decide(findings_, limits_);
+}
+
+PartialFit Draft::part_fit() const {
+    const Split split = split_cells(setting_.cells, evidence_.library.grid);
+    return fit_part(setting_, split.fitted.empty() ? setting_.cells : split.fitted, setting_.gap, decided().candidates, mean_of_);
+}
+
+void Draft::confirm_held_out(const Eigen::MatrixXd& runs) { held_out_runs_ = runs; }
+
+Diagnosis Draft::diagnosis() const {
+    Diagnosis d;
+    d.verdict = decision_.verdict;
+    d.detected = d.verdict != Verdict::no_gap;
+    d.p_value = findings_.p_value;
+    d.p_omnibus = null_.p_value(&GapStatistics::omnibus, statistics_.omnibus);
+    d.p_directed = null_.p_value(&GapStatistics::directed, statistics_.directed);
+    const Location location = locate(comparison_, setting_, null_, setting_.gap, evidence_.library.grid, limits_);
+    d.cells = location.cells;
+    if (d.detected) d.where = location.entries;
+    const Causes causes(evidence_, findings_, decision_, statistics_);
+    d.ranking = causes.ranking();
+    d.nuisances = nuisance_fits(evidence_, comparison_, setting_.gap);
+    d.detection_limits = detection_limits(comparison_, setting_, null_, evidence_, limits_);
+    d.not_measured = not_measured(evidence_.observed, evidence_.library.grid);
+    if (!wants_held_out()) return d;
+    d.causes = causes.leading();
+    const Split split = split_cells(setting_.cells, evidence_.library.grid);
+    d.shrink = measure_shrink(setting_, split, decided(), mean_of_, evidence_.seed);
+    if (held_out_runs_ && d.shrink->before > 0) {
+        const Eigen::VectorXd left = evidence_.observed - held_out_runs_->colwise().mean().transpose();
+        const double after = gap_size(setting_, split.held_out, left, static_cast<int>(held_out_runs_->rows()));
+        if (std::isfinite(after)) d.shrink->confirmed = std::clamp(1 - after / d.shrink->before, -1.0, 1.0);
+    }
     return d;
 }
 

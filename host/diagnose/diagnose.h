@@ -1,30 +1,50 @@
 // From evidence to verdict: what can be told, whether there is a gap, where, which effect, how far it shrinks.
 #pragma once
-#include "diagnose/identification.h"
+#include <memory>
+
+#include "diagnose/decision.h"
 #include "diagnose/shrinkage.h"
 
 namespace mcdem {
 
-/// A diagnosis as far as signatures carry it, and what the confirming runs are to be made with.
-struct Draft {
-    Diagnosis diagnosis;
-    Setting setting;
-    Identification identification;
-    int mean_of = 0;              ///< baseline replicates behind Setting::mean
-    bool worth_confirming = false;  ///< there is a gap and an effect to try
-    PartialFit whole;             ///< of the best explanation, fitted on everything
-    PartialFit part;              ///< .. fitted on the part that is not held out
-};
+/// A diagnosis in the making. The evidence must outlive it.
+///     Draft draft(evidence, limits);
+///     for (k ..) draft.confirm(k, runs of draft.whole_fit(k));   // real runs of the proposals, or none
+///     if (draft.wants_held_out()) draft.confirm_held_out(runs of draft.part_fit());
+///     draft.diagnosis()
+class Draft {
+public:
+    /// Throws InputError where the observation shares too few cells with the library.
+    Draft(const Evidence& evidence, const Limits& limits);
 
-/// Throws InputError where the observation shares no cells with the library. `evidence` must outlive the draft.
-Draft draft_diagnosis(const Evidence& evidence, const Limits& limits);
+    const Setting& setting() const { return setting_; }
+    const Findings& findings() const { return findings_; }
+    const Decision& decision() const { return decision_; }
 
-/// Real runs of the best explanation with the amplitudes and nuisances of the draft; row: replicate.
-struct Confirmation {
-    Eigen::MatrixXd whole, part;
+    /// What proposal k says the parameters are, fitted on everything.
+    PartialFit whole_fit(std::size_t proposal) const;
+    /// Row: replicate.
+    void confirm(std::size_t proposal, const Eigen::MatrixXd& runs);
+
+    bool wants_held_out() const { return decision_.verdict != Verdict::no_gap && decision_.proposal >= 0; }
+    /// The same for the proposal decided on, fitted on the part that is not held out.
+    PartialFit part_fit() const;
+    const Proposal& decided() const { return findings_.proposals[static_cast<std::size_t>(decision_.proposal)]; }
+    void confirm_held_out(const Eigen::MatrixXd& runs);
+
+    Diagnosis diagnosis() const;
+
+private:
+    const Evidence& evidence_;
+    Limits limits_;
+    Setting setting_;
+    int mean_of_;  ///< replicates behind the baseline's mean
+    Comparison comparison_;
+    NullDistribution null_;
+    GapStatistics statistics_;
+    Findings findings_;
+    Decision decision_;
+    std::optional<Eigen::MatrixXd> held_out_runs_;
 };
-/// Puts what the real runs say into the diagnosis: the confirmed score and shrink, and where the real runs leave a gap
-/// that the signatures hid, the verdict.
-Diagnosis confirm(const Evidence& evidence, Draft draft, const Confirmation& confirmation, const Limits& limits);
 
 }  // namespace mcdem

@@ -25,6 +25,17 @@ Eigen::VectorXd column_means(const Eigen::MatrixXd& rows) {
     return mean;
 }
 
+/// Replicates of one packing know of one another through their mean: they are left out together where there are
+/// packings enough.
+std::vector<int> folds_of(const std::vector<int>& packing) {
+    constexpr int most = 8;
+    const int packings = 1 + *std::ranges::max_element(packing);
+    std::vector<int> fold;
+    for (std::size_t r = 0; r < packing.size(); ++r)
+        fold.push_back((packings >= most ? packing[r] : static_cast<int>(r)) % most);
+    return fold;
+}
+
 }  // namespace
 
 Setting setting_of(const Evidence& evidence) {
@@ -33,6 +44,7 @@ Setting setting_of(const Evidence& evidence) {
     s.gap = evidence.observed - s.mean;
     s.cells = usable_cells(evidence.library, s.gap);
     s.noise = scatter(evidence.library);
+    s.fold = folds_of(evidence.library.packing);
     for (const NuisancePrior& prior : evidence.nuisances)
         s.free.push_back({find(evidence.library.nuisances, prior.name).linear, prior.sigma});
     for (const CandidateRange& range : evidence.candidates)

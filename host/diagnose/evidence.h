@@ -29,23 +29,13 @@ struct Evidence {
     std::uint64_t seed = 1;               ///< of everything drawn at random
 };
 
-/// Limits that decisions are made with. Set on one half of the challenge, scored on the other (challenge/README.md).
-struct Limits {
-    double false_alarm = 0.05;      ///< p below which there is a gap
-    double misfit = 0.01;           ///< p below which what an effect leaves is a gap of its own
-    double surrogate_error = 0.03;  ///< part of an effect's chi-square that its signature may get wrong
-    double group = 3.0;             ///< log likelihood by which members of a group differ at most ..
-    double group_share = 0.04;      ///< .. or this part of the leader's gain
-    double second_gain = 12.0;      ///< log likelihood that a second effect must gain ..
-    double second_share = 0.08;     ///< .. and this part of the leader's gain
-};
-
 /// The evidence on chosen cells, with everything that follows from it before the observed is looked at.
 struct Setting {
     CellChoice cells;
     Eigen::VectorXd mean;                 ///< of the baseline
     Eigen::VectorXd gap;                  ///< observed less mean
     Eigen::MatrixXd noise;                ///< scatter of one replicate
+    std::vector<int> fold;                ///< by row of noise: rows that are left out together, those of one packing
     std::vector<FreeParameter> free;
     std::vector<Candidate> candidates;    ///< effects, then nuisances beyond their priors
     int effects = 0;                      ///< how many of them are effects

@@ -2,21 +2,21 @@
 
 #include <boost/math/distributions/gamma.hpp>
 #include <cmath>
+#include <set>
 
 #include "scene/random.h"
 
 namespace mcdem {
 namespace {
 
-constexpr Eigen::Index folds = 8;
 constexpr int draws_a_replicate = 3;
 
 /// Rows of all folds but one.
-Eigen::MatrixXd without_fold(const Eigen::MatrixXd& rows, Eigen::Index fold) {
+Eigen::MatrixXd without_fold(const Setting& setting, int fold) {
     std::vector<Eigen::Index> kept;
-    for (Eigen::Index r = 0; r < rows.rows(); ++r)
-        if (r % folds != fold) kept.push_back(r);
-    return rows(kept, Eigen::all);
+    for (std::size_t r = 0; r < setting.fold.size(); ++r)
+        if (setting.fold[r] != fold) kept.push_back(static_cast<Eigen::Index>(r));
+    return setting.noise(kept, Eigen::all);
 }
 
 boost::math::gamma_distribution<> fitted_gamma(const std::vector<GapStatistics>& draws, double GapStatistics::*statistic) {
@@ -51,15 +51,18 @@ GapStatistics gap_statistics(const Comparison& comparison, const Setting& settin
 NullDistribution::NullDistribution(const Setting& setting, int mean_of, std::uint64_t seed) {
     Random random(seed, Stream::null_draws);
     const double both = std::sqrt(1 + (mean_of > 0 ? 1.0 / mean_of : 0));
-    for (Eigen::Index fold = 0; fold < folds; ++fold) {
-        const Comparison comparison(without_fold(setting.noise, fold), mean_of, setting.cells, setting.free);
-        for (Eigen::Index r = fold; r < setting.noise.rows(); r += folds)
+    const std::set<int> folds(setting.fold.begin(), setting.fold.end());
+    for (const int fold : folds) {
+        const Comparison comparison(without_fold(setting, fold), mean_of, setting.cells, setting.free);
+        for (std::size_t r = 0; r < setting.fold.size(); ++r) {
+            if (setting.fold[r] != fold) continue;
             for (int draw = 0; draw < draws_a_replicate; ++draw) {
-                Eigen::VectorXd gap = both * setting.noise.row(r).transpose();
+                Eigen::VectorXd gap = both * setting.noise.row(static_cast<Eigen::Index>(r)).transpose();
                 for (const FreeParameter& parameter : setting.free)
                     gap += parameter.sigma * random.normal() * parameter.direction;
                 draws_.push_back(gap_statistics(comparison, setting, gap));
             }
+        }
     }
 }
 

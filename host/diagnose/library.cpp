@@ -9,7 +9,7 @@
 
 #include "core/atomic_file.h"
 #include "core/errors.h"
-#include "metrics/estimate.h"
+#include "diagnose/json_numbers.h"
 
 namespace mcdem {
 namespace {
@@ -17,29 +17,15 @@ namespace {
 using nlohmann::json;
 constexpr int library_format = 1;
 
-// JSON has no not-a-number: null stands for it.
-json numbers(const Eigen::VectorXd& values) {
-    json list = json::array();
-    for (const double value : values) list.push_back(std::isfinite(value) ? json(value) : json(nullptr));
-    return list;
-}
-
-Eigen::VectorXd vector_of(const json& list) {
-    Eigen::VectorXd values(static_cast<Eigen::Index>(list.size()));
-    for (std::size_t i = 0; i < list.size(); ++i)
-        values[static_cast<Eigen::Index>(i)] = list[i].is_null() ? not_available : list[i].get<double>();
-    return values;
-}
-
 json signature_json(const Signature& s) {
-    return {{"name", s.name},           {"reach", s.reach}, {"linear", numbers(s.linear)}, {"curvature", numbers(s.curvature)},
-            {"variance", numbers(s.variance)}, {"pairs", s.pairs}};
+    return {{"name", s.name},           {"reach", s.reach}, {"linear", numbers_json(s.linear)}, {"curvature", numbers_json(s.curvature)},
+            {"variance", numbers_json(s.variance)}, {"spread", numbers_json(s.spread)}, {"pairs", s.pairs}};
 }
 
 Signature signature_of(const json& j, Eigen::Index cells) {
-    Signature s{j.at("name"), j.at("reach"), vector_of(j.at("linear")), vector_of(j.at("curvature")),
-                vector_of(j.at("variance")), j.at("pairs")};
-    if (s.linear.size() != cells || s.curvature.size() != cells || s.variance.size() != cells)
+    Signature s{j.at("name"), j.at("reach"), numbers_of(j.at("linear")), numbers_of(j.at("curvature")),
+                numbers_of(j.at("variance")), numbers_of(j.at("spread")), j.at("pairs")};
+    if (s.linear.size() != cells || s.curvature.size() != cells || s.variance.size() != cells || s.spread.size() != cells)
         throw json::other_error::create(501, "signature " + s.name + " is of another length than the cells", &j);
     return s;
 }
@@ -53,7 +39,7 @@ Library library_of(const json& j) {
     library.baseline.resize(static_cast<Eigen::Index>(library.packing.size()), cells);
     const json& rows = j.at("baseline");
     for (std::size_t r = 0; r < library.packing.size(); ++r) {
-        const Eigen::VectorXd row = vector_of(rows.at(r));
+        const Eigen::VectorXd row = numbers_of(rows.at(r));
         if (row.size() != cells) throw json::other_error::create(501, "it has other observables than this program", &j);
         library.baseline.row(static_cast<Eigen::Index>(r)) = row;
     }
@@ -86,7 +72,7 @@ Eigen::MatrixXd scatter(const Library& library) {
 
 void write_library(const std::filesystem::path& file, const Library& library) {
     json rows = json::array(), effects = json::array(), nuisances = json::array();
-    for (Eigen::Index r = 0; r < library.baseline.rows(); ++r) rows.push_back(numbers(library.baseline.row(r)));
+    for (Eigen::Index r = 0; r < library.baseline.rows(); ++r) rows.push_back(numbers_json(library.baseline.row(r)));
     for (const Signature& s : library.effects) effects.push_back(signature_json(s));
     for (const Signature& s : library.nuisances) nuisances.push_back(signature_json(s));
     replace_file(file, json{{"format", library_format},

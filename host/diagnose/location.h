@@ -1,6 +1,6 @@
 // Where is the gap? Cells whose difference is larger than any cell's of a replicate, gathered into ranges.
 #pragma once
-#include "diagnose/diagnosis.h"
+#include "diagnose/decision.h"
 #include "diagnose/gap_tests.h"
 
 namespace mcdem {

@@ -48,9 +48,9 @@ public:
     }
 
     /// Sizes of the gap on the held-out cells, without and with the candidates.
-    std::array<double, 2> sizes(const Eigen::VectorXd& gap, const std::vector<Candidate>& candidates) const {
-        return {gap_size(setting_, held_out_, refitted(gap), mean_of_),
-                gap_size(setting_, held_out_, gap - explained(fit(gap, candidates), candidates), mean_of_)};
+    std::array<double, 2> sizes(const Eigen::VectorXd& gap, const std::vector<Candidate>& candidates, int extra = 0) const {
+        return {gap_size(setting_, held_out_, refitted(gap), mean_of_, extra),
+                gap_size(setting_, held_out_, gap - explained(fit(gap, candidates), candidates), mean_of_, extra)};
     }
 
 private:
@@ -97,8 +97,8 @@ Split split_cells(const CellChoice& cells, const Grid& grid) {
     return split;
 }
 
-double gap_size(const Setting& setting, const CellChoice& cells, const Eigen::VectorXd& gap, int mean_of) {
-    const double both = 1 + (mean_of > 0 ? 1.0 / mean_of : 0);
+double gap_size(const Setting& setting, const CellChoice& cells, const Eigen::VectorXd& gap, int mean_of, int extra) {
+    const double both = 1 + extra + (mean_of > 0 ? 1.0 / mean_of : 0);
     double size = 0;
     for (const auto cell : cells) {
         const double variance = setting.noise.col(cell).squaredNorm() / static_cast<double>(setting.noise.rows());
@@ -114,26 +114,24 @@ PartialFit fit_part(const Setting& setting, const CellChoice& cells, const Eigen
     return Arms(setting, {cells, {}}, mean_of).fit(gap, candidates);
 }
 
-Shrink measure_shrink(const Setting& setting, const Split& split, const Explanation& explanation, int mean_of,
+Shrink measure_shrink(const Setting& setting, const Split& split, const Proposal& proposal, int mean_of,
                       std::uint64_t seed) {
     Shrink shrink;
     shrink.held_out = "unloading, and loading beyond 85 % of the stroke";
     if (split.fitted.empty() || split.held_out.empty()) return shrink;
     std::vector<Candidate> candidates;
-    for (const auto c : explanation.candidates) candidates.push_back(setting.candidates[c]);
+    for (const auto c : proposal.candidates) candidates.push_back(setting.candidates[c]);
     const Arms arms(setting, split, mean_of);
     const auto sizes = arms.sizes(setting.gap, candidates);
     shrink.before = sizes[0];
     shrink.after = sizes[1];
     shrink.fraction = part_gone(sizes);
-    const Eigen::VectorXd model = arms.explained(arms.fit(setting.gap, candidates), candidates);
-    const Eigen::VectorXd unexplained = setting.gap - model;
     Random random(seed, Stream::bootstrap);
     std::vector<double> drawn;
     for (int draw = 0; draw < bootstrap_draws; ++draw) {
         const auto row = static_cast<Eigen::Index>(random.uniform() * static_cast<double>(setting.noise.rows()));
         const double sign = random.uniform() < 0.5 ? -1 : 1;
-        drawn.push_back(part_gone(arms.sizes(model + unexplained + sign * setting.noise.row(row).transpose(), candidates)));
+        drawn.push_back(part_gone(arms.sizes(setting.gap + sign * setting.noise.row(row).transpose(), candidates, 1)));
     }
     std::ranges::sort(drawn);
     shrink.interval = {drawn[bootstrap_draws / 20], drawn[bootstrap_draws - 1 - bootstrap_draws / 20]};

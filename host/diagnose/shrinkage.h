@@ -2,7 +2,7 @@
 // stroke; the gap is measured on the rest, once with the nuisances refitted alone and once with the effect too.
 #pragma once
 #include "diagnose/diagnosis.h"
-#include "diagnose/identification.h"
+#include "diagnose/proposals.h"
 
 namespace mcdem {
 
@@ -12,12 +12,13 @@ struct Split {
 };
 Split split_cells(const CellChoice& cells, const Grid& grid);
 
-/// Gap without noise over cells, in squared sigmas: r'Dr - tr(D Sigma).
-double gap_size(const Setting& setting, const CellChoice& cells, const Eigen::VectorXd& gap, int mean_of);
+/// Gap without noise over cells, in squared sigmas: r'Dr - tr(D Sigma); `extra`: how many replicates' scatter was
+/// added to it.
+double gap_size(const Setting& setting, const CellChoice& cells, const Eigen::VectorXd& gap, int mean_of, int extra = 0);
 
-/// Fit on `split.fitted` of the candidates named (one or two), measured on `split.held_out`. Interval by parametric
-/// bootstrap with the replicates' scatter; placebo: the best of as many random signatures.
-Shrink measure_shrink(const Setting& setting, const Split& split, const Explanation& explanation, int mean_of,
+/// Fit on `split.fitted` of the candidates named (one or two), measured on `split.held_out`. Interval by bootstrap: the
+/// replicates' scatter is added once more, and its size taken off again; placebo: the best of as many random signatures.
+Shrink measure_shrink(const Setting& setting, const Split& split, const Proposal& proposal, int mean_of,
                       std::uint64_t seed);
 
 /// Amplitudes fitted on the split's first part, and the nuisances' shifts with them: what a confirming run is made with.

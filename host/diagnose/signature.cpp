@@ -50,6 +50,7 @@ Signature learn_signature(const std::string& name, double first, double second, 
     s.linear = seen * linear.mean;
     s.curvature = bent * curvature.mean;
     s.variance = linear.variance;
+    s.spread = moments(at_second / second).variance * static_cast<double>(at_second.rows());
     s.pairs = static_cast<int>(at_first.rows());
     return s;
 }

@@ -49,10 +49,10 @@ public:
     Diagnosis all() {
         Evidence evidence = gather();
         options_.on_evidence(evidence);
-        Draft draft = draft_diagnosis(evidence, options_.limits);
-        Diagnosis diagnosis = draft.worth_confirming && options_.confirmations > 0
-                                  ? confirm(evidence, draft, confirmation(draft), options_.limits)
-                                  : draft.diagnosis;
+        Draft draft(evidence, options_.limits);
+        if (options_.confirmations > 0 && draft.decision().verdict != Verdict::no_gap) confirm(draft);
+        options_.on_findings(draft.findings());
+        Diagnosis diagnosis = draft.diagnosis();
         diagnosis.not_testable = choice_.hindered;
         return diagnosis;
     }
@@ -84,33 +84,43 @@ private:
         return evidence;
     }
 
-    /// The model with the fitted effects and nuisances.
-    Model fitted(const Draft& draft, const PartialFit& fit) const {
-        Model model = model_;
-        for (Eigen::Index k = 0; k < fit.nuisances.size(); ++k)
-            plan_.nuisances[static_cast<std::size_t>(k)].apply(model, fit.nuisances[k]);
-        const auto& chosen = draft.identification.best.candidates;
-        for (std::size_t k = 0; k < chosen.size(); ++k) {
-            const std::string& name = draft.setting.name(chosen[k]);
-            if (const Effect* effect = static_cast<int>(chosen[k]) < draft.setting.effects ? find_effect(name) : nullptr)
-                effect->apply(model, fit.amplitudes[k]);
-            else
-                std::ranges::find(plan_.nuisances, name, &Nuisance::name)->apply(model, fit.amplitudes[k] + fit.nuisances[nuisance_index(name)]);
-        }
-        return model;
+    /// Real runs of every proposal, then of the one decided on with what the fitted part of the data says of it.
+    void confirm(Draft& draft) {
+        std::vector<Trial> trials;
+        const auto& proposals = draft.findings().proposals;
+        for (std::size_t k = 0; k < proposals.size(); ++k)
+            append(trials, trials_of(draft, proposals[k], draft.whole_fit(k)));
+        const Eigen::MatrixXd runs = observe_trials(device_, question_, trials, store_, stage(options_, "confirmation"));
+        for (std::size_t k = 0; k < proposals.size(); ++k)
+            draft.confirm(k, runs.middleRows(static_cast<Eigen::Index>(k) * options_.confirmations, options_.confirmations));
+        if (!draft.wants_held_out()) return;
+        draft.confirm_held_out(observe_trials(device_, question_, trials_of(draft, draft.decided(), draft.part_fit()), store_,
+                                              stage(options_, "held-out confirmation")));
     }
 
-    Eigen::Index nuisance_index(const std::string& name) const {
-        return std::ranges::find(plan_.nuisances, name, &Nuisance::name) - plan_.nuisances.begin();
+    static void append(std::vector<Trial>& all, std::vector<Trial> more) {
+        all.insert(all.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
     }
 
-    Confirmation confirmation(const Draft& draft) {
+    std::vector<Trial> trials_of(const Draft& draft, const Proposal& proposal, const PartialFit& fit) const {
         LibraryPlan plan = plan_;
         plan.replicates = options_.confirmations;
-        std::vector<Trial> trials = baseline_trials(fitted(draft, draft.whole), plan);
-        for (Trial& trial : baseline_trials(fitted(draft, draft.part), plan)) trials.push_back(trial);
-        const Eigen::MatrixXd rows = observe_trials(device_, question_, trials, store_, stage(options_, "confirmation"));
-        return {rows.topRows(rows.rows() / 2), rows.bottomRows(rows.rows() / 2)};
+        return baseline_trials(fitted(draft.setting(), proposal, fit), plan);
+    }
+
+    /// The model with the fitted effects and nuisances.
+    Model fitted(const Setting& setting, const Proposal& proposal, const PartialFit& fit) const {
+        Model model = model_;
+        Eigen::VectorXd shifts = fit.nuisances;
+        for (std::size_t k = 0; k < proposal.candidates.size(); ++k) {
+            const std::string& name = setting.name(proposal.candidates[k]);
+            if (static_cast<int>(proposal.candidates[k]) < setting.effects)
+                find_effect(name)->apply(model, fit.amplitudes[k]);
+            else
+                shifts[std::ranges::find(plan_.nuisances, name, &Nuisance::name) - plan_.nuisances.begin()] += fit.amplitudes[k];
+        }
+        for (Eigen::Index k = 0; k < shifts.size(); ++k) plan_.nuisances[static_cast<std::size_t>(k)].apply(model, shifts[k]);
+        return model;
     }
 
     Device& device_;

@@ -22,6 +22,8 @@ struct DiagnoseOptions {
     std::function<bool()> stop_wanted = [] { return false; };
     /// Gets what the diagnosis rests on, once it is gathered: limits and ablations are tried on it without simulations.
     std::function<void(const Evidence&)> on_evidence = [](const Evidence&) {};
+    /// Gets the numbers that the verdict was decided on.
+    std::function<void(const Findings&)> on_findings = [](const Findings&) {};
 };
 
 /// The scene's first replica with the experiment's box, plate and scans. Throws InputError where the experiment does not
