@@ -25,9 +25,14 @@ const char* const first_steps =
 /// What is wrong with the command line, and where to read how it should be.
 int report_usage(const CLI::App& app, const CLI::ParseError& error) {
     std::string command = "mcdem";
-    for (const auto* sub : app.get_subcommands()) command += " " + sub->get_name();
+    const CLI::App* last = &app;
+    while (!last->get_subcommands().empty()) {
+        last = last->get_subcommands().front();
+        command += " " + last->get_name();
+    }
     // "A subcommand is required" does not say that there was one that is not known.
-    const auto unknown = app.get_subcommands().empty() ? app.remaining() : std::vector<std::string>{};
+    const auto unknown =
+        last->get_require_subcommand_min() > 0 ? app.remaining(true) : std::vector<std::string>{};
     if (unknown.empty())
         spdlog::error("{}", error.what());
     else
@@ -47,7 +52,8 @@ int run_cli(int argc, const char* const* argv) {
     app.set_version_flag("--version", std::string("mcdem ") + version_text);
     int exit_code = exit_done;
     for (const auto add :
-         {add_devices, add_validate, add_run, add_table, add_compare, add_figures, add_calibrate, add_export})
+         {add_devices, add_validate, add_run, add_table, add_compare, add_figures, add_calibrate, add_export,
+          add_experiment})
         add(app, exit_code);
     try {
         app.parse(argc, argv);

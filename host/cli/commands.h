@@ -18,5 +18,6 @@ void add_compare(CLI::App& app, int& exit_code);
 void add_figures(CLI::App& app, int& exit_code);
 void add_calibrate(CLI::App& app, int& exit_code);
 void add_export(CLI::App& app, int& exit_code);
+void add_experiment(CLI::App& app, int& exit_code);
 
 }  // namespace mcdem

@@ -28,6 +28,9 @@ struct Experiment {
     Measurement measurement;
 };
 
+/// The scene keys that `materials` and `uncertainty` may hold.
+const std::vector<std::string>& material_keys();
+
 /// Bytes of one table, unpacked, that are read [1 GiB: some 12 million contacts]. Memory needed stays below five
 /// times that.
 inline constexpr std::uintmax_t largest_table = std::uintmax_t{1} << 30;

@@ -141,6 +141,15 @@ private:
 
 }  // namespace
 
+const std::vector<std::string>& material_keys() {
+    static const std::vector<std::string> keys = [] {
+        std::vector<std::string> all;
+        for (const Setting& setting : materials) all.emplace_back(setting.key);
+        return all;
+    }();
+    return keys;
+}
+
 void read_settings(const std::filesystem::path& file, Experiment& experiment, ExperimentProblems& problems) {
     try {
         const toml::table root = toml::parse_file(file.string());

@@ -185,6 +185,8 @@ TEST(bad_folder, settings_that_are_no_settings_are_told) {
         folder["experiment.toml"] = text;
         EXPECT_THAT(folder.error(), StartsWith("experiment.toml:")) << text.substr(0, 20);
     }
+    folder["experiment.toml"] = std::string(1'000'001, '\n');
+    EXPECT_THAT(folder.error(), StartsWith("experiment.toml: must be a text of at most 1 MB"));
 }
 
 /// Bytes of a good folder changed, taken out and doubled at random: it reads, or says what is wrong.

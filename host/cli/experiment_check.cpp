@@ -1,0 +1,71 @@
+// mcdem experiment check
+#include <fmt/format.h>
+
+#include "cli/experiment.h"
+#include "experiment/check_experiment.h"
+
+namespace mcdem {
+namespace {
+
+constexpr std::size_t line_length = 110;
+
+std::string_view title(Severity severity) {
+    switch (severity) {
+        case Severity::note:
+            return "what there is";
+        case Severity::missing:
+            return "what is missing, and what could be told with it";
+        case Severity::odd:
+            return "what looks odd";
+    }
+    return "";
+}
+
+/// Lines of words, those after the first indented under the text.
+std::string wrapped(const std::string& head, const std::string& text) {
+    const std::string indent(head.size(), ' ');
+    std::string all, line = head;
+    for (std::size_t first = 0; first < text.size();) {
+        const auto end = std::min(text.find(' ', first), text.size());
+        const std::string word = text.substr(first, end - first);
+        if (line.size() + 1 + word.size() > line_length && line.size() > head.size()) {
+            all += line + '\n';
+            line = indent;
+        }
+        line += (line.size() > head.size() ? " " : "") + word;
+        first = end + 1;
+    }
+    return all + line + '\n';
+}
+
+void print_check(const std::string& folder) {
+    const Experiment experiment = read_experiment(folder);
+    const ExperimentCheck check = check_experiment(experiment);
+    fmt::print("{}\n", experiment.name);
+    for (const Severity severity : {Severity::note, Severity::missing, Severity::odd}) {
+        if (check.of(severity).empty()) {
+            if (severity != Severity::note) fmt::print("\n{}: nothing\n", title(severity));
+            continue;
+        }
+        fmt::print("\n{}\n", title(severity));
+        for (const Finding& finding : check.findings)
+            if (finding.severity == severity)
+                fmt::print("{}", wrapped(fmt::format("  {:<16}", finding.about), finding.text));
+    }
+}
+
+}  // namespace
+
+void add_experiment_check(CLI::App& experiment) {
+    auto* sub =
+        experiment.add_subcommand("check", "Say what an experiment holds, lacks, and what looks odd in it");
+    auto folder = std::make_shared<std::string>();
+    sub->add_option("DIR", *folder, "Experiment folder")->required();
+    sub->footer(
+        "The exit code is 0 where the folder can be read, odd or not, and 2 where it cannot.\n"
+        "Example:\n"
+        "  mcdem experiment check data/hydrogel");
+    sub->callback([folder] { print_check(*folder); });
+}
+
+}  // namespace mcdem

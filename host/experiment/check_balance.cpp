@@ -1,0 +1,100 @@
+// Grains at rest: the contact forces of each and its weight cancel, but for what the instrument adds and
+// leaves out.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "experiment/findings.h"
+
+namespace mcdem {
+namespace {
+
+constexpr double gravity = 9.81;       // [m/s2]
+constexpr double near_wall = 1.25;     // centres nearer than this many radii may touch a wall
+constexpr double least_error = 0.02;   // of a force, where none is stated
+constexpr double unseen_contacts = 2;  // of a grain, each up to the threshold
+constexpr double most_unbalanced = 3;  // times what the errors explain
+constexpr std::size_t fewest_grains = 5;
+
+struct Load {
+    Vec3 sum = Vec3::Zero();  ///< of its contacts [N]
+    double squares = 0;       ///< sum of their squares [N2]
+    int contacts = 0;
+};
+
+std::vector<Load> loads(const Recording& recording, const Scan& scan) {
+    std::vector<Load> all(recording.diameter.size());
+    const auto add = [&](int grain, const Vec3& force) {
+        Load& load = all[static_cast<std::size_t>(grain)];
+        load.sum += force;
+        load.squares += force.squaredNorm();
+        ++load.contacts;
+    };
+    for (const Contact& contact : scan.contacts) {
+        add(contact.grain, contact.force);
+        if (!is_wall(contact.partner)) add(contact.partner, -contact.force);
+    }
+    return all;
+}
+
+bool is_in_bulk(const Recording& recording, const Scan& scan, int grain) {
+    for (int wall = 0; wall < wall_count; ++wall)
+        if (distance_to(static_cast<Wall>(wall), at(scan.position, grain), recording.box, scan.plate_z) <
+            near_wall * radius_of(recording, grain))
+            return false;
+    return true;
+}
+
+/// Of the bulk's grains: force that does not cancel, over the root of the sum of squares and over its error.
+struct Imbalance {
+    std::vector<double> relative, in_errors;
+};
+
+Imbalance imbalance(const Experiment& experiment, const Scan& scan) {
+    const Recording& recording = experiment.recording;
+    const double specific_weight = gravity * material(experiment, "grains.excess_density").value_or(0);
+    const double force_error = std::max(experiment.measurement.force_error, least_error);
+    const double unseen = unseen_contacts * std::pow(experiment.measurement.force_threshold, 2);
+    const auto all = loads(recording, scan);
+    Imbalance found;
+    for (int i = 0; i < static_cast<int>(all.size()); ++i) {
+        const Load& load = all[static_cast<std::size_t>(i)];
+        if (load.contacts < 2 || !is_in_bulk(recording, scan, i)) continue;
+        const double volume = std::numbers::pi / 6 * std::pow(2 * radius_of(recording, i), 3);
+        const double rest = (load.sum - Vec3(0, 0, specific_weight * volume)).norm();
+        found.relative.push_back(rest / std::sqrt(load.squares));
+        found.in_errors.push_back(rest / std::sqrt(force_error * force_error * load.squares + unseen));
+    }
+    return found;
+}
+
+}  // namespace
+
+void check_balance(const Experiment& experiment, Findings& findings) {
+    const Recording& recording = experiment.recording;
+    Tally unbalanced;
+    std::vector<double> typical;
+    for (const Scan& scan : recording.scans) {
+        if (scan.position.empty() || scan.contacts.empty()) continue;
+        const Imbalance found = imbalance(experiment, scan);
+        if (found.relative.size() < fewest_grains) continue;
+        typical.push_back(median(found.relative));
+        if (const double errors = median(found.in_errors); errors > most_unbalanced)
+            unbalanced.add(scan, [&] {
+                return fmt::format("{:.2g} times what the errors explain, {:.0f} % of the forces", errors,
+                                   100 * typical.back());
+            });
+    }
+    if (!typical.empty())
+        findings.note(contacts_file,
+                      fmt::format("of the forces on a grain in the bulk, {:.2g} % do not cancel (median)",
+                                  100 * median(typical)));
+    if (unbalanced.count())
+        findings.odd(contacts_file,
+                     "forces on the grains do not cancel, was the packing at rest, are contacts left "
+                     "out? Frames: " +
+                         unbalanced.text());
+}
+
+}  // namespace mcdem

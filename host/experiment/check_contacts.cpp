@@ -1,0 +1,188 @@
+// Contacts against positions, against the plate's gauge, against the stated threshold and stiffness.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "experiment/findings.h"
+
+namespace mcdem {
+namespace {
+
+constexpr double most_apart = 0.15;   // gap over the mean diameter: as far as simulations look for contacts
+constexpr double most_pulling = 0.2;  // of the contacts that are not weak
+constexpr double gauge_range = 1.5;   // plate contacts over the gauge's force, either way
+constexpr double clear_load = 4;      // over the threshold times the plate's contacts
+constexpr std::size_t fewest_pairs = 20;  // for a typical force
+constexpr double clear_overlap = 0.02;    // over R*
+constexpr double hertz_range = 5;         // force over Hertz's, either way: a modulus or unit, no effect
+constexpr double gap_in_forces = 1.5;     // weakest force over the threshold
+constexpr std::size_t many_contacts = 1000;
+
+/// Distance of the surfaces [m].
+double gap(const Recording& recording, const Scan& scan, const Contact& contact) {
+    const Vec3& centre = at(scan.position, contact.grain);
+    const double radius = radius_of(recording, contact.grain);
+    if (is_wall(contact.partner))
+        return distance_to(wall_of(contact.partner), centre, recording.box, scan.plate_z) - radius;
+    return (at(scan.position, contact.partner) - centre).norm() - radius -
+           radius_of(recording, contact.partner);
+}
+
+std::string names(const Contact& contact) {
+    return is_wall(contact.partner)
+               ? fmt::format("grain {} and {}", contact.grain, name(wall_of(contact.partner)))
+               : fmt::format("grains {} and {}", contact.grain, contact.partner);
+}
+
+void check_places(const Recording& recording, Findings& findings) {
+    Tally apart, off;
+    const double diameter = mean_diameter(recording);
+    for (const Scan& scan : recording.scans) {
+        if (scan.position.empty()) continue;
+        for (const Contact& contact : scan.contacts) {
+            const double distance = gap(recording, scan, contact);
+            if (distance > most_apart * diameter)
+                apart.add(scan, [&] { return fmt::format("{}, {:.3g} mm", names(contact), 1e3 * distance); });
+            const double away = (contact.point - at(scan.position, contact.grain)).norm();
+            if (away > 1.5 * radius_of(recording, contact.grain))
+                off.add(scan, [&] {
+                    return fmt::format("{}, {:.3g} mm from the centre of grain {}", names(contact),
+                                       1e3 * away, contact.grain);
+                });
+        }
+    }
+    if (apart.count())
+        findings.odd(contacts_file,
+                     "contacts of grains that do not touch, are grains and frames numbered as in "
+                     "grains.csv? " +
+                         apart.text());
+    if (off.count()) findings.odd(contacts_file, "contact points away from their grain: " + off.text());
+}
+
+/// The direction in which a contact pushes its grain away.
+Vec3 outward(const Scan& scan, const Contact& contact) {
+    if (!is_wall(contact.partner))
+        return (at(scan.position, contact.grain) - at(scan.position, contact.partner)).normalized();
+    const int wall = static_cast<int>(wall_of(contact.partner));
+    return (wall % 2 == 0 ? 1 : -1) * Vec3::Unit(wall / 2);
+}
+
+void check_signs(const Recording& recording, double force_threshold, Findings& findings) {
+    Tally pulls;
+    std::size_t all = 0;
+    for (const Scan& scan : recording.scans)
+        for (const Contact& contact : scan.contacts) {
+            if (scan.position.empty() || contact.force.norm() < 3 * force_threshold) continue;
+            ++all;
+            if (contact.force.dot(outward(scan, contact)) < 0)
+                pulls.add(scan,
+                          [&] { return fmt::format("{}, {:.3g} N", names(contact), contact.force.norm()); });
+        }
+    if (pulls.count() > most_pulling * static_cast<double>(all))
+        findings.odd(contacts_file,
+                     fmt::format("of {} contacts above three thresholds many pull their grain: the "
+                                 "force must be that on `grain`, by `partner`: {}",
+                                 all, pulls.text()));
+}
+
+void check_threshold(const Recording& recording, double force_threshold, Findings& findings) {
+    Tally below;
+    std::size_t all = 0;
+    double weakest = std::numeric_limits<double>::infinity();
+    for (const Scan& scan : recording.scans)
+        for (const Contact& contact : scan.contacts) {
+            const double force = contact.force.norm();
+            ++all;
+            weakest = std::min(weakest, force);
+            if (force < force_threshold)
+                below.add(scan, [&] { return fmt::format("{}, {:.3g} mN", names(contact), 1e3 * force); });
+        }
+    if (below.count())
+        findings.odd(contacts_file, fmt::format("forces below the stated threshold of {:.3g} mN: {}",
+                                                1e3 * force_threshold, below.text()));
+    if (force_threshold > 0 && all >= many_contacts && weakest > gap_in_forces * force_threshold)
+        findings.odd(contacts_file,
+                     fmt::format("of {} contacts the weakest has {:.3g} mN: the threshold is higher "
+                                 "than the stated {:.3g} mN",
+                                 all, 1e3 * weakest, 1e3 * force_threshold));
+}
+
+void check_gauge(const Recording& recording, double force_threshold, Findings& findings) {
+    std::vector<double> ratios;
+    for (const Scan& scan : recording.scans) {
+        double sum = 0, unseen = 0;
+        for (const Contact& contact : scan.contacts) {
+            if (contact.partner != wall_partner(Wall::plate)) continue;
+            sum -= contact.force.z();
+            unseen += force_threshold;
+        }
+        if (unseen > 0 && scan.top_force() > clear_load * unseen) ratios.push_back(sum / scan.top_force());
+    }
+    const double ratio = median(ratios);
+    if (ratio < 1 / gauge_range || ratio > gauge_range)
+        findings.odd(contacts_file,
+                     fmt::format("the contacts with the plate add up to {:.3g} times the top force: "
+                                 "are the units or signs the same, are contacts left out?",
+                                 ratio));
+}
+
+/// Typical force over Hertz's at the typical overlap, of the stronger half of the contacts at the highest
+/// load: there overlaps are clear, and chosen by force they do not favour errors of position.
+double force_over_hertz(const Recording& recording, const Scan& scan, double modulus, double nu) {
+    struct Pair {
+        double force, overlap, reduced_radius;
+        bool operator<(const Pair& other) const { return force < other.force; }
+    };
+    std::vector<Pair> pairs;
+    for (const Contact& contact : scan.contacts) {
+        if (is_wall(contact.partner)) continue;
+        const double a = radius_of(recording, contact.grain), b = radius_of(recording, contact.partner);
+        pairs.push_back({contact.force.norm(), -gap(recording, scan, contact), a * b / (a + b)});
+    }
+    std::sort(pairs.begin(), pairs.end());
+    std::vector<double> forces, overlaps, radii;
+    for (std::size_t k = pairs.size() / 2; k < pairs.size(); ++k) {
+        forces.push_back(pairs[k].force);
+        overlaps.push_back(pairs[k].overlap);
+        radii.push_back(pairs[k].reduced_radius);
+    }
+    const double overlap = median(overlaps);
+    if (forces.size() < fewest_pairs || overlap < clear_overlap * median(radii)) return 1;
+    return median(forces) /
+           (4.0 / 3 * modulus / (2 * (1 - nu * nu)) * std::sqrt(median(radii)) * std::pow(overlap, 1.5));
+}
+
+void check_stiffness(const Experiment& experiment, Findings& findings) {
+    const auto modulus = material(experiment, "grains.youngs_modulus");
+    const Scan* strongest = nullptr;
+    for (const Scan& scan : experiment.recording.scans)
+        if (!scan.position.empty() && !scan.contacts.empty() &&
+            (!strongest || scan.top_force() > strongest->top_force()))
+            strongest = &scan;
+    if (!modulus || !strongest) return;
+    const double nu = material(experiment, "grains.poisson_ratio").value_or(0.5);
+    const double ratio = force_over_hertz(experiment.recording, *strongest, *modulus, nu);
+    if (ratio < 1 / hertz_range || ratio > hertz_range)
+        findings.odd(contacts_file,
+                     fmt::format("at the highest load forces are {:.3g} times those of Hertz at the "
+                                 "measured overlaps: are grains.youngs_modulus [Pa], the forces [N] "
+                                 "and the diameters [m] in these units?",
+                                 ratio));
+}
+
+}  // namespace
+
+void check_contacts(const Experiment& experiment, Findings& findings) {
+    const Recording& recording = experiment.recording;
+    const double force_threshold = experiment.measurement.force_threshold;
+    check_threshold(recording, force_threshold, findings);
+    check_gauge(recording, force_threshold, findings);
+    if (recording.diameter.empty()) return;
+    check_places(recording, findings);
+    check_signs(recording, force_threshold, findings);
+    check_stiffness(experiment, findings);
+}
+
+}  // namespace mcdem

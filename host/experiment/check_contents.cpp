@@ -1,0 +1,91 @@
+// What there is, in a few lines.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <numbers>
+#include <set>
+
+#include "experiment/findings.h"
+
+namespace mcdem {
+namespace {
+
+void describe_plate(const Recording& recording, Findings& findings) {
+    const auto& scans = recording.scans;
+    const auto loading =
+        std::count_if(scans.begin(), scans.end(), [](const Scan& scan) { return scan.phase == Phase::load; });
+    const auto [high, low] = std::minmax_element(
+        scans.begin(), scans.end(), [](const Scan& a, const Scan& b) { return a.plate_z > b.plate_z; });
+    const auto [weak, strong] =
+        std::minmax_element(scans.begin(), scans.end(),
+                            [](const Scan& a, const Scan& b) { return a.top_force() < b.top_force(); });
+    findings.note(
+        plate_file,
+        fmt::format("frames: {} of loading, {} of unloading, cycles {} to {}; plate at {:.6g} to {:.6g} "
+                    "m, displacements {:.4g} to {:.4g} mm; top force {:.4g} to {:.4g} N",
+                    loading, static_cast<long>(scans.size()) - loading, scans.front().cycle,
+                    scans.back().cycle, high->plate_z, low->plate_z, 1e3 * recording.displacement(*high),
+                    1e3 * recording.displacement(*low), weak->top_force(), strong->top_force()));
+}
+
+void describe_grains(const Recording& recording, Findings& findings) {
+    if (recording.diameter.empty()) return;
+    const auto frames = std::count_if(recording.scans.begin(), recording.scans.end(),
+                                      [](const Scan& scan) { return !scan.position.empty(); });
+    const auto [smallest, largest] =
+        std::minmax_element(recording.diameter.begin(), recording.diameter.end());
+    findings.note(grains_file,
+                  fmt::format("{} grains of {:.4g} to {:.4g} mm, {:.4g} mm on average, in {} of {} frames",
+                              recording.diameter.size(), 1e3 * *smallest, 1e3 * *largest,
+                              1e3 * mean_diameter(recording), frames, recording.scans.size()));
+}
+
+void describe_contacts(const Recording& recording, Findings& findings) {
+    std::size_t frames = 0, contacts = 0;
+    std::set<Wall> walls;
+    for (const Scan& scan : recording.scans) {
+        frames += !scan.contacts.empty();
+        contacts += scan.contacts.size();
+        for (const Contact& contact : scan.contacts)
+            if (is_wall(contact.partner)) walls.insert(wall_of(contact.partner));
+    }
+    if (frames == 0) return;
+    std::vector<std::string_view> names;
+    for (const Wall wall : walls) names.push_back(name(wall));
+    findings.note(contacts_file,
+                  fmt::format("{} contacts in {} of {} frames, between grains and with {}", contacts, frames,
+                              recording.scans.size(),
+                              names.empty() ? "no wall" : fmt::format("{}", fmt::join(names, ", "))));
+    findings.note(contacts_file,
+                  "each contact is listed once: that it acts alike on both sides is taken for granted");
+}
+
+void describe_settings(const Experiment& experiment, Findings& findings) {
+    const Box& box = experiment.recording.box;
+    const Measurement& errors = experiment.measurement;
+    findings.note(
+        settings_file,
+        fmt::format("box of {:.6g} by {:.6g} mm; errors of {:.3g} mm in positions, {:.3g} mm in "
+                    "diameters, {:.3g} % in forces; contacts seen from {:.3g} mN on",
+                    1e3 * box.size_x, 1e3 * box.size_y, 1e3 * errors.position_error,
+                    1e3 * errors.diameter_error, 100 * errors.force_error, 1e3 * errors.force_threshold));
+    std::vector<std::string> known;
+    for (const auto& [key, value] : experiment.materials) {
+        const auto sigma = experiment.uncertainty.find(key);
+        known.push_back(fmt::format("{} = {:.6g}", key, value));
+        if (sigma != experiment.uncertainty.end()) known.back() += fmt::format(" +- {:.3g}", sigma->second);
+    }
+    if (!known.empty()) findings.note(settings_file, fmt::format("{}", fmt::join(known, ", ")));
+}
+
+}  // namespace
+
+void describe(const Experiment& experiment, Findings& findings) {
+    describe_plate(experiment.recording, findings);
+    describe_grains(experiment.recording, findings);
+    describe_contacts(experiment.recording, findings);
+    describe_settings(experiment, findings);
+}
+
+}  // namespace mcdem

@@ -1,0 +1,69 @@
+#include "experiment/check_experiment.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+#include "experiment/findings.h"
+
+namespace mcdem {
+
+void Tally::add(const Scan& scan, const std::function<std::string()>& example) {
+    ++count_;
+    if (first_ < 0) {
+        first_ = scan.frame;
+        example_ = example();
+    }
+    if (last_ != scan.frame) ++frames_;
+    last_ = scan.frame;
+}
+
+std::string Tally::text() const {
+    return fmt::format("{} in {} frame{}, first in frame {}: {}", count_, frames_, frames_ == 1 ? "" : "s",
+                       first_, example_);
+}
+
+double distance_to(Wall wall, const Vec3& centre, const Box& box, double plate_z) {
+    const double places[wall_count] = {0, box.size_x, 0, box.size_y, 0, plate_z};
+    const int index = static_cast<int>(wall);
+    return (index % 2 == 0 ? 1 : -1) * (centre[index / 2] - places[index]);
+}
+
+double mean_diameter(const Recording& recording) {
+    return std::accumulate(recording.diameter.begin(), recording.diameter.end(), 0.0) /
+           static_cast<double>(recording.diameter.size());
+}
+
+double median(std::vector<double> values) {
+    if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+std::optional<double> material(const Experiment& experiment, const std::string& key) {
+    const auto found = experiment.materials.find(key);
+    return found == experiment.materials.end() ? std::nullopt : std::optional(found->second);
+}
+
+std::vector<std::string> ExperimentCheck::of(Severity severity) const {
+    std::vector<std::string> texts;
+    for (const Finding& finding : findings)
+        if (finding.severity == severity) texts.push_back(finding.text);
+    return texts;
+}
+
+ExperimentCheck check_experiment(const Experiment& experiment) {
+    Findings findings;
+    for (const auto check :
+         {describe, find_missing, check_errors, check_plate, check_grains, check_contacts, check_balance})
+        check(experiment, findings);
+    ExperimentCheck result{findings.all()};
+    std::stable_sort(result.findings.begin(), result.findings.end(),
+                     [](const Finding& a, const Finding& b) { return a.severity < b.severity; });
+    return result;
+}
+
+}  // namespace mcdem

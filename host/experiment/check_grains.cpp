@@ -1,0 +1,109 @@
+// Whether the grains fit into their box, and how they move.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "experiment/findings.h"
+#include "scene/cell_pairs.h"
+
+namespace mcdem {
+namespace {
+
+constexpr double least_fraction = 0.3, most_fraction = 0.95;  // of a packing that carries load
+constexpr double most_overlap = 0.3;  // over the sum of radii; simulations lose their static solution at 0.5
+constexpr double most_jump = 0.75;    // over the diameter, beyond the plate's own way
+constexpr double most_in_wall = 0.5;  // over the radius
+
+void check_volume(const Recording& recording, Findings& findings) {
+    double volume = 0;
+    for (const double diameter : recording.diameter) volume += std::numbers::pi / 6 * std::pow(diameter, 3);
+    const double fraction =
+        volume / (recording.box.size_x * recording.box.size_y * recording.scans.front().plate_z);
+    if (fraction < least_fraction)
+        findings.odd(grains_file,
+                     fmt::format("the grains fill {:.2g} of the box below the plate: are diameters "
+                                 "radii, or grains left out?",
+                                 fraction));
+    if (fraction > most_fraction)
+        findings.odd(grains_file,
+                     fmt::format("the grains have {:.3g} times the volume of the box below the plate: "
+                                 "are diameters too large, or is the box too small?",
+                                 fraction));
+}
+
+void check_walls(const Recording& recording, Findings& findings) {
+    Tally tally;
+    for (const Scan& scan : recording.scans)
+        for (int i = 0; i < static_cast<int>(scan.position.size()); ++i)
+            for (int wall = 0; wall < wall_count; ++wall) {
+                const double radius = radius_of(recording, i);
+                const double inside = radius - distance_to(static_cast<Wall>(wall), at(scan.position, i),
+                                                           recording.box, scan.plate_z);
+                if (inside > most_in_wall * radius)
+                    tally.add(scan, [&] {
+                        return fmt::format("grain {} by {:.3g} mm in {}", i, 1e3 * inside,
+                                           name(static_cast<Wall>(wall)));
+                    });
+            }
+    if (tally.count())
+        findings.odd(grains_file, "grains reach into a wall by more than half their radius: " + tally.text());
+}
+
+void check_overlaps(const Recording& recording, Findings& findings) {
+    Tally tally;
+    const double largest = *std::max_element(recording.diameter.begin(), recording.diameter.end());
+    for (const Scan& scan : recording.scans) {
+        if (scan.position.empty()) continue;
+        const CellList cells(scan.position, {recording.box.size_x, recording.box.size_y, scan.plate_z},
+                             largest);
+        cells.for_each_pair([&](int i, int j) {
+            const double sum = radius_of(recording, i) + radius_of(recording, j);
+            const double overlap = sum - (at(scan.position, i) - at(scan.position, j)).norm();
+            if (overlap > most_overlap * sum)
+                tally.add(scan, [&] {
+                    return fmt::format("grains {} and {} by {:.3g} mm", std::min(i, j), std::max(i, j),
+                                       1e3 * overlap);
+                });
+        });
+    }
+    if (tally.count())
+        findings.odd(grains_file, fmt::format("grains overlap by more than {} of their radii together: {}",
+                                              most_overlap, tally.text()));
+}
+
+/// Loose grains slip by half a diameter; to a neighbour's place goes only a number.
+void check_jumps(const Recording& recording, Findings& findings) {
+    Tally tally;
+    const Scan* before = nullptr;
+    for (const Scan& scan : recording.scans) {
+        if (scan.position.empty()) continue;
+        for (int i = 0; before && i < static_cast<int>(scan.position.size()); ++i) {
+            const double jump = (at(scan.position, i) - at(before->position, i)).norm();
+            if (jump > 2 * most_jump * radius_of(recording, i) + std::abs(scan.plate_z - before->plate_z))
+                tally.add(scan, [&] {
+                    return fmt::format("grain {} by {:.3g} mm since frame {}", i, 1e3 * jump, before->frame);
+                });
+        }
+        before = &scan;
+    }
+    if (tally.count())
+        findings.odd(grains_file,
+                     "grains jump by most of a diameter from frame to frame, are they numbered "
+                     "alike? " +
+                         tally.text());
+}
+
+}  // namespace
+
+void check_grains(const Experiment& experiment, Findings& findings) {
+    const Recording& recording = experiment.recording;
+    if (recording.diameter.empty()) return;
+    check_volume(recording, findings);
+    check_walls(recording, findings);
+    check_overlaps(recording, findings);
+    check_jumps(recording, findings);
+}
+
+}  // namespace mcdem

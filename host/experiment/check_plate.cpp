@@ -1,0 +1,112 @@
+// The course of the plate, its gauge, and the stated errors of measurement.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "experiment/findings.h"
+
+namespace mcdem {
+namespace {
+
+constexpr double clear_load = 10;  // over the threshold of a contact
+constexpr double falls = 0.5;      // the force at the end of loading over the largest before
+
+void check_course(const Recording& recording, Findings& findings) {
+    Tally wrong_way, unload_first, left_out;
+    for (std::size_t s = 0; s < recording.scans.size(); ++s) {
+        const Scan& scan = recording.scans[s];
+        const Scan* before = s > 0 ? &recording.scans[s - 1] : nullptr;
+        const bool begins = !before || before->cycle != scan.cycle;
+        if (scan.cycle > (before ? before->cycle + 1 : 0))
+            left_out.add(scan, [&] {
+                return fmt::format("cycle {} follows {}", scan.cycle, before ? before->cycle : -1);
+            });
+        if (begins ? scan.phase == Phase::unload
+                   : before->phase == Phase::unload && scan.phase == Phase::load)
+            unload_first.add(scan,
+                             [&] { return fmt::format("{} of cycle {}", name(scan.phase), scan.cycle); });
+        if (begins || before->phase != scan.phase) continue;
+        const double down = before->plate_z - scan.plate_z;
+        if ((scan.phase == Phase::load ? down : -down) < 0)
+            wrong_way.add(scan, [&] {
+                return fmt::format("{:.6g} m after {:.6g} m in phase {}", scan.plate_z, before->plate_z,
+                                   name(scan.phase));
+            });
+    }
+    if (wrong_way.count()) findings.odd(plate_file, "the plate goes against its phase: " + wrong_way.text());
+    if (unload_first.count())
+        findings.odd(plate_file, "a cycle is one loading and then one unloading: " + unload_first.text());
+    if (left_out.count()) findings.odd(plate_file, "cycles are left out: " + left_out.text());
+}
+
+void check_start(const Recording& recording, Findings& findings) {
+    const auto highest = std::max_element(recording.scans.begin(), recording.scans.end(),
+                                          [](const Scan& a, const Scan& b) { return a.plate_z < b.plate_z; });
+    const auto lowest = std::min_element(recording.scans.begin(), recording.scans.end(),
+                                         [](const Scan& a, const Scan& b) { return a.plate_z < b.plate_z; });
+    const double stroke = highest->plate_z - lowest->plate_z;
+    if (highest->plate_z > recording.plate_start + 1e-3 * stroke)
+        findings.odd(settings_file,
+                     fmt::format("plate.start, {:.6g} m, is below the plate of frame {}, {:.6g} m",
+                                 recording.plate_start, highest->frame, highest->plate_z));
+    else if (recording.plate_start > highest->plate_z + std::max(stroke, 0.01 * highest->plate_z))
+        findings.odd(settings_file,
+                     fmt::format("plate.start, {:.6g} m, is more than the whole stroke above the "
+                                 "plate's highest position, {:.6g} m",
+                                 recording.plate_start, highest->plate_z));
+}
+
+void check_gauge(const Experiment& experiment, Findings& findings) {
+    const Recording& recording = experiment.recording;
+    Tally pulls;
+    double largest = 0, last = 0;
+    for (const Scan& scan : recording.scans) {
+        if (scan.top_force() < 0) pulls.add(scan, [&] { return fmt::format("{:.3g} N", scan.top_force()); });
+        if (scan.phase != Phase::load || scan.cycle != recording.scans.front().cycle) continue;
+        largest = std::max(largest, scan.top_force());
+        last = scan.top_force();
+    }
+    if (pulls.count())
+        findings.odd(plate_file,
+                     "the top force is negative, though the grains press the plate up: " + pulls.text());
+    if (last < falls * largest && largest > clear_load * experiment.measurement.force_threshold)
+        findings.odd(
+            plate_file,
+            fmt::format("the top force falls before loading ends, from {:.3g} to {:.3g} N", largest, last));
+}
+
+}  // namespace
+
+void check_plate(const Experiment& experiment, Findings& findings) {
+    check_course(experiment.recording, findings);
+    check_start(experiment.recording, findings);
+    check_gauge(experiment, findings);
+}
+
+void check_errors(const Experiment& experiment, Findings& findings) {
+    const Measurement& errors = experiment.measurement;
+    const bool has_contacts =
+        std::any_of(experiment.recording.scans.begin(), experiment.recording.scans.end(),
+                    [](const Scan& scan) { return !scan.contacts.empty(); });
+    std::vector<std::string_view> zero;
+    if (!experiment.recording.diameter.empty()) {
+        if (errors.position_error == 0) zero.push_back("position_error");
+        if (errors.diameter_error == 0) zero.push_back("diameter_error");
+    }
+    if (has_contacts && errors.force_error == 0) zero.push_back("force_error");
+    if (has_contacts && errors.force_threshold == 0) zero.push_back("force_threshold");
+    if (!zero.empty())
+        findings.odd(settings_file, fmt::format("{} {} zero: noise that is not stated is taken for a gap",
+                                                fmt::join(zero, ", "), zero.size() == 1 ? "is" : "are"));
+    if (experiment.recording.diameter.empty()) return;
+    const double part =
+        std::max(errors.position_error, errors.diameter_error) / mean_diameter(experiment.recording);
+    if (part > 0.05)
+        findings.odd(settings_file,
+                     fmt::format("positions or diameters are known to {:.2g} of a diameter only: "
+                                 "overlaps are not larger",
+                                 part));
+}
+
+}  // namespace mcdem

@@ -1,0 +1,64 @@
+// The parts of check_experiment, each in a file of its name.
+#pragma once
+#include <functional>
+#include <optional>
+
+#include "experiment/check_experiment.h"
+
+namespace mcdem {
+
+class Findings {
+public:
+    void note(const std::string& about, const std::string& text) { add(Severity::note, about, text); }
+    void missing(const std::string& about, const std::string& text) { add(Severity::missing, about, text); }
+    void odd(const std::string& about, const std::string& text) { add(Severity::odd, about, text); }
+    const std::vector<Finding>& all() const { return all_; }
+
+private:
+    void add(Severity severity, const std::string& about, const std::string& text) {
+        all_.push_back({severity, about, text});
+    }
+    std::vector<Finding> all_;
+};
+
+/// Things of one kind that were found in the frames: how many, and an example.
+class Tally {
+public:
+    /// `example` is asked only once.
+    void add(const Scan& scan, const std::function<std::string()>& example);
+    long count() const { return count_; }
+    /// "3 in 2 frames, first in frame 7: <example>"
+    std::string text() const;
+
+private:
+    long count_ = 0, frames_ = 0;
+    int first_ = -1, last_ = -1;
+    std::string example_;
+};
+
+inline constexpr auto settings_file = "experiment.toml";
+inline constexpr auto plate_file = "plate.csv";
+inline constexpr auto grains_file = "grains.csv";
+inline constexpr auto contacts_file = "contacts.csv";
+
+inline const Vec3& at(const std::vector<Vec3>& position, int grain) {
+    return position[static_cast<std::size_t>(grain)];
+}
+inline double radius_of(const Recording& recording, int grain) {
+    return 0.5 * recording.diameter[static_cast<std::size_t>(grain)];
+}
+/// How far a centre is from a wall; the plate where it stands in this scan [m].
+double distance_to(Wall wall, const Vec3& centre, const Box& box, double plate_z);
+double mean_diameter(const Recording& recording);
+double median(std::vector<double> values);  ///< not-a-number of none
+std::optional<double> material(const Experiment& experiment, const std::string& key);
+
+void describe(const Experiment& experiment, Findings& findings);
+void find_missing(const Experiment& experiment, Findings& findings);
+void check_errors(const Experiment& experiment, Findings& findings);
+void check_plate(const Experiment& experiment, Findings& findings);
+void check_grains(const Experiment& experiment, Findings& findings);
+void check_contacts(const Experiment& experiment, Findings& findings);
+void check_balance(const Experiment& experiment, Findings& findings);
+
+}  // namespace mcdem

@@ -1,0 +1,164 @@
+// Experiments made of runs, and checked.
+#include "experiment/experiment.h"
+
+#include <fstream>
+
+#include "cli/cli_test.h"
+#include "io/results.h"
+
+namespace mcdem {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+namespace fs = std::filesystem;
+
+class ExperimentCommandTest : public CliTest {
+protected:
+    /// A run of both models that begins with the packing at rest.
+    void run(const std::string& out, std::vector<std::string> more = {}) {
+        more.insert(more.end(), {"--set", "protocol.scan_at_start=true"});
+        expect_done(mcdem(run_words(out, more)));
+    }
+    Finished from_run(const std::string& out, const std::vector<std::string>& more) {
+        std::vector<std::string> words{"experiment", "from-run", "a", "--out", out};
+        words.insert(words.end(), more.begin(), more.end());
+        return mcdem(words);
+    }
+};
+
+TEST_F(ExperimentCommandTest, ARunBecomesAnExperimentWithNothingOddAboutIt) {
+    run("a");
+    const auto made = from_run("e", {"--replica", "elastic_sphere", "--uncertainty",
+                                     "grains.youngs_modulus=500", "--uncertainty", "walls.friction=0.01"});
+    expect_done(made);
+    EXPECT_EQ(made.err, "");
+    EXPECT_THAT(made.out, testing::MatchesRegex("e: 9 frames, 30 grains, [0-9]+ of [0-9]+ contacts seen\n"));
+    const Experiment e = read_experiment(path("e"));
+    EXPECT_EQ(e.name, "small, elastic_sphere");
+    EXPECT_EQ(e.materials.at("grains.youngs_modulus"), 23300);
+    const std::map<std::string, double> uncertainty{{"grains.youngs_modulus", 500}, {"walls.friction", 0.01}};
+    EXPECT_EQ(e.uncertainty, uncertainty);
+    EXPECT_EQ(e.measurement.position_error, 1e-4);
+    EXPECT_EQ(e.measurement.diameter_error, 5e-5);
+    EXPECT_EQ(e.measurement.force_error, 0.05);
+    EXPECT_EQ(e.measurement.force_threshold, 4e-3);
+    EXPECT_EQ(e.recording.displacement(e.recording.scans.front()), 0);
+
+    const auto checked = mcdem({"experiment", "check", "e"});
+    expect_done(checked);
+    EXPECT_THAT(checked.out, testing::StartsWith("small, elastic_sphere\n\nwhat there is\n"));
+    EXPECT_THAT(checked.out, HasSubstr("\n  grains.csv      30 grains of "));
+    EXPECT_THAT(checked.out, HasSubstr("\n  experiment.toml [uncertainty] of grains.poisson_ratio, "));
+    EXPECT_THAT(checked.out, HasSubstr("\nwhat looks odd: nothing\n"));
+    std::istringstream lines(checked.out);
+    for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 110u);
+
+    expect_done(mcdem({"compare", "a", "--against", "e"}));
+}
+
+TEST_F(ExperimentCommandTest, APerfectInstrumentGivesTheRunBack) {
+    run("a");
+    expect_done(from_run("e", {"--replica", "1", "--position-error", "0", "--diameter-error", "0",
+                               "--force-error", "0", "--force-threshold", "0", "--strain-offset", "1e-3"}));
+    const Recording seen = read_experiment(path("e")).recording, truth = read_run(path("a")).recordings[1];
+    EXPECT_EQ(seen.diameter, truth.diameter);
+    ASSERT_EQ(seen.scans.size(), truth.scans.size());
+    for (std::size_t s = 0; s < truth.scans.size(); ++s) {
+        EXPECT_EQ(seen.scans[s].top_force(), truth.scans[s].top_force());
+        EXPECT_DOUBLE_EQ(seen.scans[s].plate_z, truth.scans[s].plate_z + 1e-3);
+        EXPECT_LT((seen.scans[s].position[7] - truth.scans[s].position[7]).norm(), 1e-15);
+        ASSERT_EQ(seen.scans[s].contacts.size(), truth.scans[s].contacts.size());
+        for (std::size_t c = 0; c < truth.scans[s].contacts.size(); ++c)
+            EXPECT_EQ(seen.scans[s].contacts[c].force, truth.scans[s].contacts[c].force);
+    }
+}
+
+TEST_F(ExperimentCommandTest, TheSeedDecidesTheNoise) {
+    run("a");
+    for (const auto& [out, seed] : {std::pair{"e", "3"}, std::pair{"same", "3"}, std::pair{"other", "4"}})
+        expect_done(from_run(out, {"--replica", "0", "--seed", seed}));
+    expect_done(from_run("packed", {"--replica", "0", "--seed", "3", "--gzip", "--name", "a secret"}));
+    for (const char* table : {"grains.csv", "contacts.csv"}) {
+        EXPECT_EQ(bytes_of_file(path("e") / table), bytes_of_file(path("same") / table));
+        EXPECT_NE(bytes_of_file(path("e") / table), bytes_of_file(path("other") / table));
+        EXPECT_FALSE(fs::exists(path("packed") / table));
+    }
+    EXPECT_EQ(bytes_of_file(path("e/plate.csv")), bytes_of_file(path("other/plate.csv")));
+    const Experiment plain = read_experiment(path("e")), packed = read_experiment(path("packed"));
+    EXPECT_EQ(packed.name, "a secret");
+    EXPECT_EQ(packed.recording.scans[5].position, plain.recording.scans[5].position);
+    EXPECT_EQ(packed.recording.scans[5].mean_force, plain.recording.scans[5].mean_force);
+}
+
+TEST_F(ExperimentCommandTest, WhatARunLacksIsSaid) {
+    expect_done(mcdem(run_words("a", {"--set", "contact.model=mc_dem"})));
+    const auto loaded = from_run("e", {});
+    expect_done(loaded);
+    EXPECT_THAT(loaded.err, HasSubstr("frame 0 is 2.5 mm below the plate's start"));
+    EXPECT_THAT(mcdem({"experiment", "check", "e"}).out,
+                HasSubstr("the packing at rest before the first stroke"));
+    fs::remove_all(path("a"));
+    run("a", {"--set", "contact.model=mc_dem", "--set", "output.positions=false"});
+    const auto bare = from_run("bare", {});
+    expect_done(bare);
+    EXPECT_THAT(bare.err, HasSubstr("output.positions = true"));
+    EXPECT_FALSE(fs::exists(path("bare/grains.csv")));
+    EXPECT_FALSE(fs::exists(path("bare/contacts.csv")));
+    EXPECT_THAT(mcdem({"experiment", "check", "bare"}).out, HasSubstr("diameters and positions: "));
+}
+
+TEST_F(ExperimentCommandTest, MistakesAreBadInput) {
+    run("a");
+    const auto problem = [&](std::vector<std::string> more, const char* part) {
+        expect_bad_input(from_run("e", more), part);
+        EXPECT_FALSE(fs::exists(path("e")));
+    };
+    problem(
+        {},
+        "--replica: must be a number or label of a's replicas (0: independent, 1: elastic_sphere); got none");
+    problem({"--replica", "2"}, "got 2");
+    problem({"--replica", "jelly"}, "got jelly");
+    problem({"--replica", "0", "--position-error", "0.01"}, "--position-error: must be at most an eighth");
+    problem({"--replica", "0", "--diameter-error", "0.01"}, "--diameter-error: must be at most an eighth");
+    problem({"--replica", "0", "--force-error", "-0.1"}, "--force-error");
+    problem({"--replica", "0", "--force-threshold", "weak"}, "--force-threshold");
+    for (const char* word :
+         {"youngs_modulus=5", "grains.youngs_modulus", "grains.friction=", "grains.friction=-1"})
+        problem({"--replica", "0", "--uncertainty", word}, "must be KEY=SIGMA");
+    expect_bad_input(mcdem({"experiment", "from-run", "nowhere", "--out", "e"}), "nowhere");
+    expect_bad_input(mcdem({"experiment", "from-run", "small.toml", "--out", "e"}), "small.toml");
+    expect_bad_input(mcdem({"experiment"}), "subcommand");
+    expect_bad_input(mcdem({"experiment", "invent"}), "invent");
+    expect_bad_input(mcdem({"experiment", "check", "nowhere"}), "nowhere: must be an experiment's folder");
+    expect_bad_input(mcdem({"experiment", "check", "a"}), "a: is no experiment");
+}
+
+TEST_F(ExperimentCommandTest, MeasuredDataAreNotOverwritten) {
+    run("a");
+    expect_done(from_run("e", {"--replica", "0"}));
+    const auto before = bytes_of_file(path("e/grains.csv"));
+    expect_bad_input(from_run("e", {"--replica", "1"}), "--out: e holds another experiment or run");
+    expect_bad_input(from_run("a", {"--replica", "1"}), "--out: a holds another experiment or run");
+    expect_bad_input(from_run("small.toml", {"--replica", "1"}),
+                     "--out: small.toml must be a folder, got a file");
+    EXPECT_EQ(bytes_of_file(path("e/grains.csv")), before);
+    const auto unwritable = from_run("/proc/nowhere", {"--replica", "1"});
+    EXPECT_EQ(unwritable.exit_code, 1);
+    EXPECT_THAT(unwritable.err, HasSubstr("/proc/nowhere: cannot be made"));
+}
+
+TEST_F(ExperimentCommandTest, SpoiledTablesAreToldWithTheirLines) {
+    run("a");
+    expect_done(from_run("e", {"--replica", "0"}));
+    std::string text = bytes_of_file(path("e/plate.csv"));
+    text.replace(text.find("\n2,0,load"), 9, "\n2,0,lode");
+    std::ofstream(path("e/plate.csv")) << text;
+    std::ofstream(path("e/contacts.csv"), std::ios::app) << "8,77,floor,0,0,0,0,0,1\n";
+    const auto checked = mcdem({"experiment", "check", "e"});
+    expect_bad_input(checked, "mcdem: e/plate.csv:4: phase must be one of load, unload, got \"lode\"");
+    EXPECT_THAT(checked.err, HasSubstr("grain must be a grain of grains.csv, 0 to 29, got 77"));
+}
+
+}  // namespace
+}  // namespace mcdem
