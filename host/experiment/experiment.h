@@ -31,8 +31,8 @@ struct Experiment {
 /// The scene keys that `materials` and `uncertainty` may hold.
 const std::vector<std::string>& material_keys();
 
-/// Bytes of one table, unpacked, that are read [1 GiB: some 12 million contacts]. Memory needed stays below five
-/// times that.
+/// Bytes of one table, unpacked, that are read [1 GiB: some 12 million contacts]. Memory needed is about the tables'
+/// size.
 inline constexpr std::uintmax_t largest_table = std::uintmax_t{1} << 30;
 
 /// Throws InputError with every problem found (the first 20), each as file:line and what to do.

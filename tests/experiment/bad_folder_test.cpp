@@ -203,7 +203,9 @@ TEST(bad_folder, any_damage_is_an_error_of_input) {
                 const auto at = static_cast<std::size_t>(random.uniform(0, static_cast<double>(text.size())));
                 const char byte = bytes[static_cast<std::size_t>(random.uniform(0, sizeof bytes - 1))];
                 const double what = random.uniform();
-                if (what < 0.6)
+                if (what < 0.3)
+                    text[at] = static_cast<char>(random.uniform(0, 256));
+                else if (what < 0.6)
                     text[at] = byte;
                 else if (what < 0.8)
                     text.erase(at, static_cast<std::size_t>(random.uniform(1, 30)));

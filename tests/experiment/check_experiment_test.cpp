@@ -302,6 +302,22 @@ INSTANTIATE_TEST_SUITE_P(
                             "[uncertainty] of grains.friction: "}),
     [](const auto& info) { return info.param.name; });
 
+TEST(check_experiment, slow_ways_are_no_jumps) {
+    Experiment experiment = lattice();
+    for (std::size_t s = 0; s < scans(experiment).size(); ++s)
+        scans(experiment)[s].position[31].x() += 0.0035 * static_cast<double>(s);
+    EXPECT_THAT(check_experiment(experiment).of(odd), testing::Not(Contains(HasSubstr("grains jump"))));
+}
+
+TEST(check_experiment, contacts_below_the_threshold_may_miss_at_a_weakly_loaded_plate) {
+    Experiment experiment = lattice();
+    for (Scan& scan : scans(experiment)) scan.wall_force[5].z() = 0.5;
+    for_contacts(experiment, [](Contact& contact) {
+        if (contact.partner == wall_partner(Wall::plate)) contact.force *= 0.01;
+    });
+    EXPECT_THAT(check_experiment(experiment).of(odd), testing::Not(Contains(HasSubstr("add up to"))));
+}
+
 TEST(check_experiment, forces_of_the_other_sign_are_found) {
     Experiment experiment = lattice();
     for_contacts(experiment, [](Contact& contact) { contact.force = -contact.force; });

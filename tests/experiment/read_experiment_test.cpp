@@ -258,33 +258,5 @@ TEST(read_experiment, missing_and_empty_files) {
     EXPECT_THROW(read_experiment("/nowhere"), InputError);
 }
 
-TEST(read_experiment, a_packed_table_cut_short_is_told) {
-    ExperimentFolder folder;
-    folder.read();
-    ASSERT_EQ(std::system(("gzip -c " + (folder.path() / "plate.csv").string() + " | head -c 60 > " +
-                           (folder.path() / "plate.csv.gz").string())
-                              .c_str()),
-              0);
-    std::filesystem::remove(folder.path() / "plate.csv");
-    try {
-        read_experiment(folder.path());
-        FAIL();
-    } catch (const InputError& error) {
-        EXPECT_THAT(error.what(), HasSubstr("plate.csv.gz: cannot be unpacked"));
-    }
-}
-
-TEST(read_experiment, bytes_at_random_never_crash) {
-    unsigned state = 1;
-    const auto random = [&] { return state = state * 1664525u + 1013904223u, state >> 8; };
-    for (int trial = 0; trial < 300; ++trial) {
-        ExperimentFolder folder;
-        for (const std::string name : {"plate.csv", "grains.csv", "contacts.csv", "experiment.toml"})
-            for (int k = 0; k < 2; ++k)
-                folder[name][random() % folder[name].size()] = static_cast<char>(random() % 256);
-        EXPECT_FALSE(folder.error().empty());
-    }
-}
-
 }  // namespace
 }  // namespace mcdem::test
