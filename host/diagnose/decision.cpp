@@ -30,7 +30,7 @@ int best_single(const Findings& findings) {
 int worthy_pair(const Findings& findings, double single_gain, const Limits& limits) {
     for (std::size_t k = 0; k < findings.proposals.size(); ++k) {
         const Proposal& pair = findings.proposals[k];
-        if (pair.candidates.size() == 2 && pair.best_misfit() >= limits.misfit &&
+        if (pair.candidates.size() == 2 && pair.best_misfit() >= limits.pair_misfit &&
             pair.best_gain() - single_gain > std::max(limits.second_gain, limits.second_share * single_gain))
             return static_cast<int>(k);
     }

@@ -16,13 +16,13 @@ namespace {
 
 constexpr std::size_t fewest_cells = 4;
 
-Setting checked_setting(const Evidence& evidence) {
-    Setting setting = setting_of(evidence);
-    if (setting.cells.size() < fewest_cells)
+GapData checked_data(const Evidence& evidence) {
+    GapData data = gap_data(evidence);
+    if (data.cells.size() < fewest_cells)
         throw InputError(fmt::format("the experiment and the simulations have {} observations in common, and {} are needed: "
                                      "the plate must press the packing within its stroke in both",
-                                     setting.cells.size(), fewest_cells));
-    return setting;
+                                     data.cells.size(), fewest_cells));
+    return data;
 }
 
 std::string unit_of(const Evidence& evidence, const std::string& name) {
@@ -33,9 +33,9 @@ std::string unit_of(const Evidence& evidence, const std::string& name) {
     return "";
 }
 
-std::vector<NuisanceFit> nuisance_fits(const Evidence& evidence, const Comparison& comparison, const Eigen::VectorXd& gap) {
+std::vector<NuisanceFit> nuisance_fits(const Evidence& evidence, const GapSpace& space, const Eigen::VectorXd& gap) {
     constexpr double far_out = 2.5;  // prior sigmas
-    const Eigen::VectorXd values = comparison.fit_nuisances(gap), errors = comparison.nuisance_errors();
+    const Eigen::VectorXd values = space.fit_nuisances(gap), errors = space.nuisance_errors();
     std::vector<NuisanceFit> fits;
     for (std::size_t k = 0; k < evidence.nuisances.size(); ++k) {
         const NuisancePrior& prior = evidence.nuisances[k];
@@ -107,35 +107,35 @@ private:
 }  // namespace
 
 Draft::Draft(const Evidence& evidence, const Limits& limits)
-    : evidence_(evidence), limits_(limits), setting_(checked_setting(evidence)),
+    : evidence_(evidence), limits_(limits), data_(checked_data(evidence)),
       mean_of_(static_cast<int>(evidence.baseline.rows())),
-      comparison_(setting_.noise, mean_of_, setting_.cells, setting_.free), null_(setting_, mean_of_, evidence.seed),
-      statistics_(gap_statistics(comparison_, setting_, setting_.gap)) {
+      space_(data_.noise, mean_of_, data_.cells, data_.free), null_(data_, mean_of_, evidence.seed),
+      statistics_(gap_statistics(space_, data_, data_.gap)) {
     const double omnibus = null_.p_value(&GapStatistics::omnibus, statistics_.omnibus);
     const double directed = null_.p_value(&GapStatistics::directed, statistics_.directed);
     findings_.p_value = std::min(1.0, 2 * std::min(omnibus, directed));
-    findings_.effects = setting_.effects;
-    for (std::size_t c = 0; c < setting_.candidates.size(); ++c) {
-        findings_.names.push_back(setting_.name(c));
+    findings_.effects = data_.effects;
+    for (std::size_t c = 0; c < data_.candidates.size(); ++c) {
+        findings_.names.push_back(data_.name(c));
         findings_.gain.push_back(statistics_.fits[c].score);
     }
-    findings_.proposals = propose(comparison_, setting_, null_, statistics_, mean_of_);
+    findings_.proposals = propose(space_, data_, null_, statistics_, mean_of_);
     decision_ = decide(findings_, limits_);
 }
 
 PartialFit Draft::whole_fit(std::size_t proposal) const {
     const Proposal& p = findings_.proposals[proposal];
-    return {p.amplitudes, comparison_.fit_nuisances(setting_.gap - explained_by(p, setting_))};
+    return {p.amplitudes, space_.fit_nuisances(data_.gap - explained_by(p, data_))};
 }
 
 void Draft::confirm(std::size_t proposal, const Eigen::MatrixXd& runs) {
-    mcdem::confirm(findings_.proposals[proposal], setting_, null_, evidence_.observed, statistics_.omnibus, runs);
+    mcdem::confirm(findings_.proposals[proposal], data_, null_, evidence_.observed, statistics_.omnibus, runs);
     decision_ = decide(findings_, limits_);
 }
 
 PartialFit Draft::part_fit() const {
-    const Split split = split_cells(setting_.cells, evidence_.library.grid);
-    return fit_part(setting_, split.fitted.empty() ? setting_.cells : split.fitted, setting_.gap, decided().candidates, mean_of_);
+    const Split split = split_cells(data_.cells, evidence_.library.grid);
+    return fit_part(data_, split.fitted.empty() ? data_.cells : split.fitted, data_.gap, decided().candidates, mean_of_);
 }
 
 void Draft::confirm_held_out(const Eigen::MatrixXd& runs) { held_out_runs_ = runs; }
@@ -147,21 +147,21 @@ Diagnosis Draft::diagnosis() const {
     d.p_value = findings_.p_value;
     d.p_omnibus = null_.p_value(&GapStatistics::omnibus, statistics_.omnibus);
     d.p_directed = null_.p_value(&GapStatistics::directed, statistics_.directed);
-    const Location location = locate(comparison_, setting_, null_, setting_.gap, evidence_.library.grid, limits_);
+    const Location location = locate(space_, data_, null_, data_.gap, evidence_.library.grid, limits_);
     d.cells = location.cells;
     if (d.detected) d.where = location.entries;
     const Causes causes(evidence_, findings_, decision_, statistics_);
     d.ranking = causes.ranking();
-    d.nuisances = nuisance_fits(evidence_, comparison_, setting_.gap);
-    d.detection_limits = detection_limits(comparison_, setting_, null_, evidence_, limits_);
+    d.nuisances = nuisance_fits(evidence_, space_, data_.gap);
+    d.detection_limits = detection_limits(space_, data_, null_, evidence_, limits_);
     d.not_measured = not_measured(evidence_.observed, evidence_.library.grid);
     if (!wants_held_out()) return d;
     d.causes = causes.leading();
-    const Split split = split_cells(setting_.cells, evidence_.library.grid);
-    d.shrink = measure_shrink(setting_, split, decided(), mean_of_, evidence_.seed);
+    const Split split = split_cells(data_.cells, evidence_.library.grid);
+    d.shrink = measure_shrink(data_, split, decided(), mean_of_, evidence_.seed);
     if (held_out_runs_ && d.shrink->before > 0) {
         const Eigen::VectorXd left = evidence_.observed - held_out_runs_->colwise().mean().transpose();
-        const double after = gap_size(setting_, split.held_out, left, static_cast<int>(held_out_runs_->rows()));
+        const double after = gap_size(data_, split.held_out, left, static_cast<int>(held_out_runs_->rows()));
         if (std::isfinite(after)) d.shrink->confirmed = std::clamp(1 - after / d.shrink->before, -1.0, 1.0);
     }
     return d;

@@ -17,7 +17,7 @@ public:
     /// Throws InputError where the observation shares too few cells with the library.
     Draft(const Evidence& evidence, const Limits& limits);
 
-    const Setting& setting() const { return setting_; }
+    const GapData& data() const { return data_; }
     const Findings& findings() const { return findings_; }
     const Decision& decision() const { return decision_; }
 
@@ -37,9 +37,9 @@ public:
 private:
     const Evidence& evidence_;
     Limits limits_;
-    Setting setting_;
+    GapData data_;
     int mean_of_;  ///< replicates behind the baseline's mean
-    Comparison comparison_;
+    GapSpace space_;
     NullDistribution null_;
     GapStatistics statistics_;
     Findings findings_;

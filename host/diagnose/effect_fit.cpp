@@ -12,12 +12,12 @@ constexpr int bits = 20;  // of the amplitude, 1e-6 of the range
 /// -2 log likelihood as a function of the amplitude, from products of the three whitened vectors.
 class Misfit {
 public:
-    Misfit(const Comparison& comparison, const Signature& signature, const Eigen::VectorXd& gap)
+    Misfit(const GapSpace& space, const Signature& signature, const Eigen::VectorXd& gap)
         : reach_(signature.reach) {
-        basis_.resize(static_cast<Eigen::Index>(comparison.cells().size()), 3);
-        basis_.col(0) = comparison.whiten(gap);
-        basis_.col(1) = comparison.whiten(signature.linear);
-        basis_.col(2) = comparison.whiten(signature.curvature);
+        basis_.resize(static_cast<Eigen::Index>(space.cells().size()), 3);
+        basis_.col(0) = space.whiten(gap);
+        basis_.col(1) = space.whiten(signature.linear);
+        basis_.col(2) = space.whiten(signature.curvature);
         products_ = basis_.transpose() * basis_;
     }
 
@@ -45,8 +45,8 @@ private:
 
 }  // namespace
 
-EffectFit fit_effect(const Comparison& comparison, const Candidate& candidate, const Eigen::VectorXd& gap) {
-    const Misfit misfit(comparison, *candidate.signature, gap);
+EffectFit fit_effect(const GapSpace& space, const Candidate& candidate, const Eigen::VectorXd& gap) {
+    const Misfit misfit(space, *candidate.signature, gap);
     const double step = (candidate.high - candidate.low) / coarse_steps;
     double best = 0;
     for (int k = 0; k <= coarse_steps; ++k)

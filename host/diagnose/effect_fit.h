@@ -1,6 +1,6 @@
 // The amplitude of one effect that fits a gap best, and what it gains over no effect.
 #pragma once
-#include "diagnose/comparison.h"
+#include "diagnose/gap_space.h"
 
 namespace mcdem {
 
@@ -18,6 +18,6 @@ struct EffectFit {
 };
 
 /// `gap`: observed less model, all cells.
-EffectFit fit_effect(const Comparison& comparison, const Candidate& candidate, const Eigen::VectorXd& gap);
+EffectFit fit_effect(const GapSpace& space, const Candidate& candidate, const Eigen::VectorXd& gap);
 
 }  // namespace mcdem

@@ -38,8 +38,8 @@ std::vector<int> folds_of(const std::vector<int>& packing) {
 
 }  // namespace
 
-Setting setting_of(const Evidence& evidence) {
-    Setting s;
+GapData gap_data(const Evidence& evidence) {
+    GapData s;
     s.mean = column_means(evidence.baseline);
     s.gap = evidence.observed - s.mean;
     s.cells = usable_cells(evidence.library, s.gap);

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "diagnose/comparison.h"
+#include "diagnose/gap_space.h"
 #include "diagnose/effect_fit.h"
 
 namespace mcdem {
@@ -30,7 +30,7 @@ struct Evidence {
 };
 
 /// The evidence on chosen cells, with everything that follows from it before the observed is looked at.
-struct Setting {
+struct GapData {
     CellChoice cells;
     Eigen::VectorXd mean;                 ///< of the baseline
     Eigen::VectorXd gap;                  ///< observed less mean
@@ -43,6 +43,6 @@ struct Setting {
 };
 
 /// Views into `evidence`, which must stay.
-Setting setting_of(const Evidence& evidence);
+GapData gap_data(const Evidence& evidence);
 
 }  // namespace mcdem

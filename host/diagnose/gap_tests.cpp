@@ -12,11 +12,11 @@ namespace {
 constexpr int draws_a_replicate = 3;
 
 /// Rows of all folds but one.
-Eigen::MatrixXd without_fold(const Setting& setting, int fold) {
+Eigen::MatrixXd without_fold(const GapData& data, int fold) {
     std::vector<Eigen::Index> kept;
-    for (std::size_t r = 0; r < setting.fold.size(); ++r)
-        if (setting.fold[r] != fold) kept.push_back(static_cast<Eigen::Index>(r));
-    return setting.noise(kept, Eigen::all);
+    for (std::size_t r = 0; r < data.fold.size(); ++r)
+        if (data.fold[r] != fold) kept.push_back(static_cast<Eigen::Index>(r));
+    return data.noise(kept, Eigen::all);
 }
 
 boost::math::gamma_distribution<> fitted_gamma(const std::vector<GapStatistics>& draws, double GapStatistics::*statistic) {
@@ -29,38 +29,38 @@ boost::math::gamma_distribution<> fitted_gamma(const std::vector<GapStatistics>&
 
 }  // namespace
 
-GapStatistics gap_statistics(const Comparison& comparison, const Setting& setting, const Eigen::VectorXd& gap) {
+GapStatistics gap_statistics(const GapSpace& space, const GapData& data, const Eigen::VectorXd& gap) {
     GapStatistics s;
-    s.omnibus = comparison.whiten(gap).squaredNorm();
-    for (const Candidate& candidate : setting.candidates) {
-        s.fits.push_back(fit_effect(comparison, candidate, gap));
+    s.omnibus = space.whiten(gap).squaredNorm();
+    for (const Candidate& candidate : data.candidates) {
+        s.fits.push_back(fit_effect(space, candidate, gap));
         if (s.fits.back().score > s.fits[s.best].score) s.best = s.fits.size() - 1;
     }
     if (!s.fits.empty()) s.directed = s.fits[s.best].score;
     s.remainder = s.omnibus - 2 * s.directed;
-    const Eigen::VectorXd chosen = pick(gap, comparison.cells());
-    s.highest = (chosen.array() / comparison.sigma()).abs().maxCoeff();
+    const Eigen::VectorXd chosen = pick(gap, space.cells());
+    s.highest = (chosen.array() / space.sigma()).abs().maxCoeff();
     Eigen::VectorXd refitted = chosen;
-    const Eigen::VectorXd shifts = comparison.fit_nuisances(gap);
+    const Eigen::VectorXd shifts = space.fit_nuisances(gap);
     for (Eigen::Index k = 0; k < shifts.size(); ++k)
-        refitted -= shifts[k] * pick(comparison.free()[static_cast<std::size_t>(k)].direction, comparison.cells());
-    s.highest_refitted = (refitted.array() / comparison.sigma()).abs().maxCoeff();
+        refitted -= shifts[k] * pick(space.free()[static_cast<std::size_t>(k)].direction, space.cells());
+    s.highest_refitted = (refitted.array() / space.sigma()).abs().maxCoeff();
     return s;
 }
 
-NullDistribution::NullDistribution(const Setting& setting, int mean_of, std::uint64_t seed) {
+NullDistribution::NullDistribution(const GapData& data, int mean_of, std::uint64_t seed) {
     Random random(seed, Stream::null_draws);
     const double both = std::sqrt(1 + (mean_of > 0 ? 1.0 / mean_of : 0));
-    const std::set<int> folds(setting.fold.begin(), setting.fold.end());
+    const std::set<int> folds(data.fold.begin(), data.fold.end());
     for (const int fold : folds) {
-        const Comparison comparison(without_fold(setting, fold), mean_of, setting.cells, setting.free);
-        for (std::size_t r = 0; r < setting.fold.size(); ++r) {
-            if (setting.fold[r] != fold) continue;
+        const GapSpace space(without_fold(data, fold), mean_of, data.cells, data.free);
+        for (std::size_t r = 0; r < data.fold.size(); ++r) {
+            if (data.fold[r] != fold) continue;
             for (int draw = 0; draw < draws_a_replicate; ++draw) {
-                Eigen::VectorXd gap = both * setting.noise.row(static_cast<Eigen::Index>(r)).transpose();
-                for (const FreeParameter& parameter : setting.free)
+                Eigen::VectorXd gap = both * data.noise.row(static_cast<Eigen::Index>(r)).transpose();
+                for (const FreeParameter& parameter : data.free)
                     gap += parameter.sigma * random.normal() * parameter.direction;
-                draws_.push_back(gap_statistics(comparison, setting, gap));
+                draws_.push_back(gap_statistics(space, data, gap));
             }
         }
     }

@@ -15,13 +15,13 @@ struct GapStatistics {
     std::vector<EffectFit> fits;  ///< by candidate
     std::size_t best = 0;
 };
-GapStatistics gap_statistics(const Comparison& comparison, const Setting& setting, const Eigen::VectorXd& gap);
+GapStatistics gap_statistics(const GapSpace& space, const GapData& data, const Eigen::VectorXd& gap);
 
 /// What the statistics are where there is no gap: replicates, each compared without its own part in the noise, with
 /// nuisances drawn from their priors.
 class NullDistribution {
 public:
-    NullDistribution(const Setting& setting, int mean_of, std::uint64_t seed);
+    NullDistribution(const GapData& data, int mean_of, std::uint64_t seed);
     /// Probability of a statistic at least as large: from a gamma distribution with the replicates' mean and variance.
     double p_value(double GapStatistics::*statistic, double value) const;
     /// The value that a part `p` of the null exceeds.

@@ -32,21 +32,21 @@ void gather_ranges(const std::vector<WhereCell>& row, double threshold, double h
 
 }  // namespace
 
-Location locate(const Comparison& comparison, const Setting& setting, const NullDistribution& null,
+Location locate(const GapSpace& space, const GapData& data, const NullDistribution& null,
                 const Eigen::VectorXd& gap, const Grid& grid, const Limits& limits) {
     Location location;
     location.threshold = null.quantile(&GapStatistics::highest, limits.false_alarm);
     const auto all = cells_of(grid);
-    const Eigen::VectorXd shifts = comparison.fit_nuisances(gap);
+    const Eigen::VectorXd shifts = space.fit_nuisances(gap);
     std::vector<std::vector<WhereCell>> rows(2 * observables().size());
-    for (std::size_t k = 0; k < setting.cells.size(); ++k) {
-        const Cell& cell = all[static_cast<std::size_t>(setting.cells[k])];
-        const double sigma = comparison.sigma()[static_cast<Eigen::Index>(k)];
-        double refitted = gap[setting.cells[k]];
+    for (std::size_t k = 0; k < data.cells.size(); ++k) {
+        const Cell& cell = all[static_cast<std::size_t>(data.cells[k])];
+        const double sigma = space.sigma()[static_cast<Eigen::Index>(k)];
+        double refitted = gap[data.cells[k]];
         for (Eigen::Index n = 0; n < shifts.size(); ++n)
-            refitted -= shifts[n] * setting.free[static_cast<std::size_t>(n)].direction[setting.cells[k]];
+            refitted -= shifts[n] * data.free[static_cast<std::size_t>(n)].direction[data.cells[k]];
         WhereCell where{std::string(observables()[static_cast<std::size_t>(cell.observable)].name),
-                        std::string(name(cell.phase)), cell.displacement, gap[setting.cells[k]] / sigma, refitted / sigma};
+                        std::string(name(cell.phase)), cell.displacement, gap[data.cells[k]] / sigma, refitted / sigma};
         location.cells.push_back(where);
         rows[2 * static_cast<std::size_t>(cell.observable) + (cell.phase == Phase::load ? 0 : 1)].push_back(where);
     }

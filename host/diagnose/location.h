@@ -12,7 +12,7 @@ struct Location {
 };
 
 /// Descends from observable to phase to displacement where the parent stands out.
-Location locate(const Comparison& comparison, const Setting& setting, const NullDistribution& null,
+Location locate(const GapSpace& space, const GapData& data, const NullDistribution& null,
                 const Eigen::VectorXd& gap, const Grid& grid, const Limits& limits);
 
 }  // namespace mcdem

@@ -15,57 +15,60 @@ constexpr double pair_gain = 4;
 constexpr double signature_error = 0.1;
 constexpr int rounds = 6;
 
-Eigen::VectorXd without(const Eigen::VectorXd& gap, const Setting& setting, const Proposal& proposal,
+Eigen::VectorXd without(const Eigen::VectorXd& gap, const GapData& data, const Proposal& proposal,
                         std::size_t but = SIZE_MAX) {
     Eigen::VectorXd left = gap;
     for (std::size_t k = 0; k < proposal.candidates.size(); ++k)
-        if (k != but) left -= setting.candidates[proposal.candidates[k]].signature->at(proposal.amplitudes[k]);
+        if (k != but) left -= data.candidates[proposal.candidates[k]].signature->at(proposal.amplitudes[k]);
     return left;
 }
 
 /// How much more packings scatter with the effect than without: they differ in it, and its random draws do.
-Eigen::VectorXd effect_scatter(const Setting& setting, const Proposal& proposal) {
+Eigen::VectorXd effect_scatter(const GapData& data, const Proposal& proposal) {
     const Eigen::VectorXd chaos =
-        2 * setting.noise.colwise().squaredNorm().transpose() / static_cast<double>(setting.noise.rows());
-    Eigen::VectorXd extra = Eigen::VectorXd::Zero(setting.mean.size());
+        2 * data.noise.colwise().squaredNorm().transpose() / static_cast<double>(data.noise.rows());
+    Eigen::VectorXd extra = Eigen::VectorXd::Zero(data.mean.size());
     for (std::size_t k = 0; k < proposal.candidates.size(); ++k) {
-        const Signature& signature = *setting.candidates[proposal.candidates[k]].signature;
+        const Signature& signature = *data.candidates[proposal.candidates[k]].signature;
         const double a = proposal.amplitudes[k], part = std::min(1.0, std::abs(a) / signature.reach);
         extra += (a * a * signature.spread - part * part * chaos).cwiseMax(0);
     }
     return extra;
 }
 
-double signature_misfit(const Setting& setting, const NullDistribution& null, const Eigen::VectorXd& gap,
+double signature_misfit(const GapData& data, const NullDistribution& null, const Eigen::VectorXd& gap,
                         const Proposal& proposal, int mean_of) {
-    Eigen::VectorXd extra = effect_scatter(setting, proposal);
+    Eigen::VectorXd extra = effect_scatter(data, proposal);
     for (std::size_t k = 0; k < proposal.candidates.size(); ++k)
-        extra += (signature_error * setting.candidates[proposal.candidates[k]].signature->at(proposal.amplitudes[k])).cwiseAbs2();
-    const Comparison comparison(setting.noise, mean_of, setting.cells, setting.free, extra);
-    return null.p_value(&GapStatistics::remainder, comparison.whiten(without(gap, setting, proposal)).squaredNorm());
+        extra += (signature_error * data.candidates[proposal.candidates[k]].signature->at(proposal.amplitudes[k])).cwiseAbs2();
+    const GapSpace space(data.noise, mean_of, data.cells, data.free, extra);
+    return null.p_value(&GapStatistics::remainder, space.whiten(without(gap, data, proposal)).squaredNorm());
 }
 
 /// Both amplitudes, one after the other until neither moves.
-Proposal fit_pair(const Comparison& comparison, const Setting& setting, const Eigen::VectorXd& gap, double omnibus,
+Proposal fit_pair(const GapSpace& space, const GapData& data, const Eigen::VectorXd& gap, double omnibus,
                   std::size_t first, std::size_t second, double first_amplitude) {
-    Proposal pair{{first, second}, {first_amplitude, 0}, {0, 0}};
+    Proposal pair;
+    pair.candidates = {first, second};
+    pair.amplitudes = {first_amplitude, 0};
+    pair.errors = {0, 0};
     for (int round = 0; round < rounds; ++round)
         for (const std::size_t k : {1, 0}) {
-            const EffectFit fit = fit_effect(comparison, setting.candidates[pair.candidates[k]], without(gap, setting, pair, k));
+            const EffectFit fit = fit_effect(space, data.candidates[pair.candidates[k]], without(gap, data, pair, k));
             pair.amplitudes[k] = fit.amplitude;
             pair.errors[k] = fit.error;
         }
-    pair.gain = 0.5 * (omnibus - comparison.whiten(without(gap, setting, pair)).squaredNorm());
+    pair.gain = 0.5 * (omnibus - space.whiten(without(gap, data, pair)).squaredNorm());
     return pair;
 }
 
 }  // namespace
 
-Eigen::VectorXd explained_by(const Proposal& proposal, const Setting& setting) {
-    return -without(Eigen::VectorXd::Zero(setting.mean.size()), setting, proposal);
+Eigen::VectorXd explained_by(const Proposal& proposal, const GapData& data) {
+    return -without(Eigen::VectorXd::Zero(data.mean.size()), data, proposal);
 }
 
-std::vector<Proposal> propose(const Comparison& comparison, const Setting& setting, const NullDistribution& null,
+std::vector<Proposal> propose(const GapSpace& space, const GapData& data, const NullDistribution& null,
                               const GapStatistics& statistics, int mean_of) {
     std::vector<std::size_t> order(statistics.fits.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
@@ -75,33 +78,37 @@ std::vector<Proposal> propose(const Comparison& comparison, const Setting& setti
     for (const std::size_t c : order) {
         const EffectFit& fit = statistics.fits[c];
         if (proposals.size() == most_singles || !(fit.score > 0) || best - fit.score > std::max(far_behind, far_behind_share * best)) break;
-        proposals.push_back({{c}, {fit.amplitude}, {fit.error}, fit.score});
+        Proposal& proposal = proposals.emplace_back();
+        proposal.candidates = {c};
+        proposal.amplitudes = {fit.amplitude};
+        proposal.errors = {fit.error};
+        proposal.gain = fit.score;
     }
     if (proposals.empty()) return proposals;
     Proposal pair;
     for (const std::size_t second : order)
         if (second != order[0]) {
-            const Proposal tried = fit_pair(comparison, setting, setting.gap, statistics.omnibus, order[0], second,
+            const Proposal tried = fit_pair(space, data, data.gap, statistics.omnibus, order[0], second,
                                             statistics.fits[order[0]].amplitude);
             if (tried.gain > pair.gain) pair = tried;
         }
     if (pair.gain > best + pair_gain) proposals.push_back(pair);
     for (Proposal& proposal : proposals)
-        proposal.misfit_p = signature_misfit(setting, null, setting.gap, proposal, mean_of);
+        proposal.misfit_p = signature_misfit(data, null, data.gap, proposal, mean_of);
     return proposals;
 }
 
-void confirm(Proposal& proposal, const Setting& setting, const NullDistribution& null, const Eigen::VectorXd& observed,
+void confirm(Proposal& proposal, const GapData& data, const NullDistribution& null, const Eigen::VectorXd& observed,
              double omnibus, const Eigen::MatrixXd& runs) {
     const Eigen::VectorXd left = observed - runs.colwise().mean().transpose();
-    if (!pick(left, setting.cells).allFinite()) return;
-    std::vector<FreeParameter> free = setting.free;
+    if (!pick(left, data.cells).allFinite()) return;
+    std::vector<FreeParameter> free = data.free;
     for (std::size_t k = 0; k < proposal.candidates.size(); ++k)
-        free.push_back({setting.candidates[proposal.candidates[k]].signature->slope(proposal.amplitudes[k]),
+        free.push_back({data.candidates[proposal.candidates[k]].signature->slope(proposal.amplitudes[k]),
                         2 * proposal.errors[k] + 0.1 * std::abs(proposal.amplitudes[k])});
-    const Comparison comparison(setting.noise, static_cast<int>(runs.rows()), setting.cells, free,
-                                effect_scatter(setting, proposal));
-    const double remainder = comparison.whiten(left).squaredNorm();
+    const GapSpace space(data.noise, static_cast<int>(runs.rows()), data.cells, free,
+                                effect_scatter(data, proposal));
+    const double remainder = space.whiten(left).squaredNorm();
     proposal.confirmed_gain = 0.5 * (omnibus - remainder);
     proposal.confirmed_misfit_p = null.p_value(&GapStatistics::remainder, remainder);
 }

@@ -6,15 +6,15 @@
 namespace mcdem {
 
 /// `statistics` of the observed gap; `mean_of`: replicates behind the baseline's mean.
-std::vector<Proposal> propose(const Comparison& comparison, const Setting& setting, const NullDistribution& null,
+std::vector<Proposal> propose(const GapSpace& space, const GapData& data, const NullDistribution& null,
                               const GapStatistics& statistics, int mean_of);
 
 /// What real runs say of a proposal: gain and misfit. The amplitude may still move a little within its error, and the
 /// nuisances within their priors. `runs`: row a replicate.
-void confirm(Proposal& proposal, const Setting& setting, const NullDistribution& null, const Eigen::VectorXd& observed,
+void confirm(Proposal& proposal, const GapData& data, const NullDistribution& null, const Eigen::VectorXd& observed,
              double omnibus, const Eigen::MatrixXd& runs);
 
 /// The sum of a proposal's signatures, or its best fit on other cells.
-Eigen::VectorXd explained_by(const Proposal& proposal, const Setting& setting);
+Eigen::VectorXd explained_by(const Proposal& proposal, const GapData& data);
 
 }  // namespace mcdem

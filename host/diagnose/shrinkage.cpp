@@ -12,18 +12,18 @@ constexpr double fitted_part = 0.85;  // of the stroke, loading only
 constexpr int bootstrap_draws = 200;
 constexpr int placebo_signatures = 20;
 
-/// Both arms of the comparison, with the whitening of the fitted cells made once.
+/// Both arms of the space, with the whitening of the fitted cells made once.
 class Arms {
 public:
-    Arms(const Setting& setting, const Split& split, int mean_of)
-        : setting_(setting), held_out_(split.held_out), mean_of_(mean_of),
-          comparison_(setting.noise, mean_of, split.fitted, setting.free) {}
+    Arms(const GapData& data, const Split& split, int mean_of)
+        : data_(data), held_out_(split.held_out), mean_of_(mean_of),
+          space_(data.noise, mean_of, split.fitted, data.free) {}
 
     /// What refitted nuisances leave.
     Eigen::VectorXd refitted(Eigen::VectorXd gap) const {
-        const Eigen::VectorXd shifts = comparison_.fit_nuisances(gap);
+        const Eigen::VectorXd shifts = space_.fit_nuisances(gap);
         for (Eigen::Index k = 0; k < shifts.size(); ++k)
-            gap -= shifts[k] * setting_.free[static_cast<std::size_t>(k)].direction;
+            gap -= shifts[k] * data_.free[static_cast<std::size_t>(k)].direction;
         return gap;
     }
 
@@ -33,31 +33,31 @@ public:
         for (int round = 0; round < (candidates.size() > 1 ? 6 : 1); ++round)
             for (std::size_t k = 0; k < candidates.size(); ++k) {
                 left += candidates[k].signature->at(amplitudes[k]);
-                amplitudes[k] = fit_effect(comparison_, candidates[k], left).amplitude;
+                amplitudes[k] = fit_effect(space_, candidates[k], left).amplitude;
                 left -= candidates[k].signature->at(amplitudes[k]);
             }
-        return {amplitudes, comparison_.fit_nuisances(left)};
+        return {amplitudes, space_.fit_nuisances(left)};
     }
 
     Eigen::VectorXd explained(const PartialFit& fit, const std::vector<Candidate>& candidates) const {
-        Eigen::VectorXd sum = Eigen::VectorXd::Zero(setting_.mean.size());
+        Eigen::VectorXd sum = Eigen::VectorXd::Zero(data_.mean.size());
         for (std::size_t k = 0; k < candidates.size(); ++k) sum += candidates[k].signature->at(fit.amplitudes[k]);
         for (Eigen::Index k = 0; k < fit.nuisances.size(); ++k)
-            sum += fit.nuisances[k] * setting_.free[static_cast<std::size_t>(k)].direction;
+            sum += fit.nuisances[k] * data_.free[static_cast<std::size_t>(k)].direction;
         return sum;
     }
 
     /// Sizes of the gap on the held-out cells, without and with the candidates.
     std::array<double, 2> sizes(const Eigen::VectorXd& gap, const std::vector<Candidate>& candidates, int extra = 0) const {
-        return {gap_size(setting_, held_out_, refitted(gap), mean_of_, extra),
-                gap_size(setting_, held_out_, gap - explained(fit(gap, candidates), candidates), mean_of_, extra)};
+        return {gap_size(data_, held_out_, refitted(gap), mean_of_, extra),
+                gap_size(data_, held_out_, gap - explained(fit(gap, candidates), candidates), mean_of_, extra)};
     }
 
 private:
-    const Setting& setting_;
+    const GapData& data_;
     const CellChoice& held_out_;
     int mean_of_;
-    Comparison comparison_;
+    GapSpace space_;
 };
 
 double part_gone(const std::array<double, 2>& sizes) {
@@ -65,21 +65,21 @@ double part_gone(const std::array<double, 2>& sizes) {
 }
 
 /// A signature of the same size that nothing stands behind: a random mixture of the replicates' scatter.
-Signature random_signature(const Setting& setting, Random& random) {
+Signature random_signature(const GapData& data, Random& random) {
     Signature s;
     s.reach = 1;
-    s.linear = Eigen::VectorXd::Zero(setting.mean.size());
-    for (Eigen::Index r = 0; r < setting.noise.rows(); ++r) s.linear += random.normal() * setting.noise.row(r).transpose();
+    s.linear = Eigen::VectorXd::Zero(data.mean.size());
+    for (Eigen::Index r = 0; r < data.noise.rows(); ++r) s.linear += random.normal() * data.noise.row(r).transpose();
     s.curvature = Eigen::VectorXd::Zero(s.linear.size());
     return s;
 }
 
-double placebo(const Setting& setting, const Arms& arms, std::uint64_t seed) {
+double placebo(const GapData& data, const Arms& arms, std::uint64_t seed) {
     Random random(seed, Stream::placebo);
     double best = 0;
     for (int k = 0; k < placebo_signatures; ++k) {
-        const Signature signature = random_signature(setting, random);
-        best = std::max(best, part_gone(arms.sizes(setting.gap, {{&signature, -50, 50}})));
+        const Signature signature = random_signature(data, random);
+        best = std::max(best, part_gone(arms.sizes(data.gap, {{&signature, -50, 50}})));
     }
     return best;
 }
@@ -97,45 +97,47 @@ Split split_cells(const CellChoice& cells, const Grid& grid) {
     return split;
 }
 
-double gap_size(const Setting& setting, const CellChoice& cells, const Eigen::VectorXd& gap, int mean_of, int extra) {
+double gap_size(const GapData& data, const CellChoice& cells, const Eigen::VectorXd& gap, int mean_of, int extra) {
     const double both = 1 + extra + (mean_of > 0 ? 1.0 / mean_of : 0);
+    const Eigen::ArrayXd finest = resolutions(cells, gap.size()).square();
     double size = 0;
-    for (const auto cell : cells) {
-        const double variance = setting.noise.col(cell).squaredNorm() / static_cast<double>(setting.noise.rows());
-        size += gap[cell] * gap[cell] / variance - both;
+    for (std::size_t k = 0; k < cells.size(); ++k) {
+        const double scatter = data.noise.col(cells[k]).squaredNorm() / static_cast<double>(data.noise.rows());
+        const double variance = scatter + finest[static_cast<Eigen::Index>(k)];
+        size += (gap[cells[k]] * gap[cells[k]] - both * scatter) / variance;
     }
     return size;
 }
 
-PartialFit fit_part(const Setting& setting, const CellChoice& cells, const Eigen::VectorXd& gap,
+PartialFit fit_part(const GapData& data, const CellChoice& cells, const Eigen::VectorXd& gap,
                     const std::vector<std::size_t>& chosen, int mean_of) {
     std::vector<Candidate> candidates;
-    for (const auto c : chosen) candidates.push_back(setting.candidates[c]);
-    return Arms(setting, {cells, {}}, mean_of).fit(gap, candidates);
+    for (const auto c : chosen) candidates.push_back(data.candidates[c]);
+    return Arms(data, {cells, {}}, mean_of).fit(gap, candidates);
 }
 
-Shrink measure_shrink(const Setting& setting, const Split& split, const Proposal& proposal, int mean_of,
+Shrink measure_shrink(const GapData& data, const Split& split, const Proposal& proposal, int mean_of,
                       std::uint64_t seed) {
     Shrink shrink;
     shrink.held_out = "unloading, and loading beyond 85 % of the stroke";
     if (split.fitted.empty() || split.held_out.empty()) return shrink;
     std::vector<Candidate> candidates;
-    for (const auto c : proposal.candidates) candidates.push_back(setting.candidates[c]);
-    const Arms arms(setting, split, mean_of);
-    const auto sizes = arms.sizes(setting.gap, candidates);
+    for (const auto c : proposal.candidates) candidates.push_back(data.candidates[c]);
+    const Arms arms(data, split, mean_of);
+    const auto sizes = arms.sizes(data.gap, candidates);
     shrink.before = sizes[0];
     shrink.after = sizes[1];
     shrink.fraction = part_gone(sizes);
     Random random(seed, Stream::bootstrap);
     std::vector<double> drawn;
     for (int draw = 0; draw < bootstrap_draws; ++draw) {
-        const auto row = static_cast<Eigen::Index>(random.uniform() * static_cast<double>(setting.noise.rows()));
+        const auto row = static_cast<Eigen::Index>(random.uniform() * static_cast<double>(data.noise.rows()));
         const double sign = random.uniform() < 0.5 ? -1 : 1;
-        drawn.push_back(part_gone(arms.sizes(setting.gap + sign * setting.noise.row(row).transpose(), candidates, 1)));
+        drawn.push_back(part_gone(arms.sizes(data.gap + sign * data.noise.row(row).transpose(), candidates, 1)));
     }
     std::ranges::sort(drawn);
     shrink.interval = {drawn[bootstrap_draws / 20], drawn[bootstrap_draws - 1 - bootstrap_draws / 20]};
-    shrink.placebo = placebo(setting, arms, seed);
+    shrink.placebo = placebo(data, arms, seed);
     return shrink;
 }
 

@@ -14,11 +14,11 @@ Split split_cells(const CellChoice& cells, const Grid& grid);
 
 /// Gap without noise over cells, in squared sigmas: r'Dr - tr(D Sigma); `extra`: how many replicates' scatter was
 /// added to it.
-double gap_size(const Setting& setting, const CellChoice& cells, const Eigen::VectorXd& gap, int mean_of, int extra = 0);
+double gap_size(const GapData& data, const CellChoice& cells, const Eigen::VectorXd& gap, int mean_of, int extra = 0);
 
 /// Fit on `split.fitted` of the candidates named (one or two), measured on `split.held_out`. Interval by bootstrap: the
 /// replicates' scatter is added once more, and its size taken off again; placebo: the best of as many random signatures.
-Shrink measure_shrink(const Setting& setting, const Split& split, const Proposal& proposal, int mean_of,
+Shrink measure_shrink(const GapData& data, const Split& split, const Proposal& proposal, int mean_of,
                       std::uint64_t seed);
 
 /// Amplitudes fitted on the split's first part, and the nuisances' shifts with them: what a confirming run is made with.
@@ -26,7 +26,7 @@ struct PartialFit {
     std::vector<double> amplitudes;
     Eigen::VectorXd nuisances;
 };
-PartialFit fit_part(const Setting& setting, const CellChoice& cells, const Eigen::VectorXd& gap,
+PartialFit fit_part(const GapData& data, const CellChoice& cells, const Eigen::VectorXd& gap,
                     const std::vector<std::size_t>& candidates, int mean_of);
 
 }  // namespace mcdem

@@ -105,16 +105,16 @@ private:
     std::vector<Trial> trials_of(const Draft& draft, const Proposal& proposal, const PartialFit& fit) const {
         LibraryPlan plan = plan_;
         plan.replicates = options_.confirmations;
-        return baseline_trials(fitted(draft.setting(), proposal, fit), plan);
+        return baseline_trials(fitted(draft.data(), proposal, fit), plan);
     }
 
     /// The model with the fitted effects and nuisances.
-    Model fitted(const Setting& setting, const Proposal& proposal, const PartialFit& fit) const {
+    Model fitted(const GapData& data, const Proposal& proposal, const PartialFit& fit) const {
         Model model = model_;
         Eigen::VectorXd shifts = fit.nuisances;
         for (std::size_t k = 0; k < proposal.candidates.size(); ++k) {
-            const std::string& name = setting.name(proposal.candidates[k]);
-            if (static_cast<int>(proposal.candidates[k]) < setting.effects)
+            const std::string& name = data.name(proposal.candidates[k]);
+            if (static_cast<int>(proposal.candidates[k]) < data.effects)
                 find_effect(name)->apply(model, fit.amplitudes[k]);
             else
                 shifts[std::ranges::find(plan_.nuisances, name, &Nuisance::name) - plan_.nuisances.begin()] += fit.amplitudes[k];

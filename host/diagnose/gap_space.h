@@ -16,12 +16,15 @@ Eigen::MatrixXd shrunk_covariance(const Eigen::MatrixXd& rows);
 /// Cells whose value is finite in every vector and that vary at all.
 std::vector<Eigen::Index> usable_cells(const Library& library, const Eigen::VectorXd& observed);
 
-/// What a comparison may leave out: the ablations, and the split into fitted and held-out cells.
+/// What a space may leave out: the ablations, and the split into fitted and held-out cells.
 using CellChoice = std::vector<Eigen::Index>;
 
 /// Rows of `all` in the order of `cells`.
 Eigen::VectorXd pick(const Eigen::VectorXd& all, const CellChoice& cells);
 Eigen::MatrixXd pick_columns(const Eigen::MatrixXd& all, const CellChoice& cells);
+
+/// Observable::resolution of each chosen cell, of `all` cells.
+Eigen::ArrayXd resolutions(const CellChoice& cells, Eigen::Index all);
 
 /// A parameter that is refitted: its linear signature on the chosen cells and its prior.
 struct FreeParameter {
@@ -29,12 +32,12 @@ struct FreeParameter {
     double sigma = 0;           ///< prior
 };
 
-class Comparison {
+class GapSpace {
 public:
     /// `noise`: rows of one replicate's scatter, all cells; `mean_of`: replicates behind the mean that the observed is
     /// compared with (0: known exactly).
     /// `extra`: variance that comes on top, all cells; empty: none.
-    Comparison(const Eigen::MatrixXd& noise, int mean_of, const CellChoice& cells,
+    GapSpace(const Eigen::MatrixXd& noise, int mean_of, const CellChoice& cells,
                const std::vector<FreeParameter>& free, const Eigen::VectorXd& extra = {});
 
     const CellChoice& cells() const { return cells_; }

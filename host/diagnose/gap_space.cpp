@@ -1,4 +1,4 @@
-#include "diagnose/comparison.h"
+#include "diagnose/gap_space.h"
 
 #include <algorithm>
 #include <cmath>
@@ -37,9 +37,7 @@ std::vector<Eigen::Index> usable_cells(const Library& library, const Eigen::Vect
     return cells;
 }
 
-namespace {
-
-/// By chosen cell; the cells of one observable lie together (cells_of).
+// The cells of one observable lie together (cells_of).
 Eigen::ArrayXd resolutions(const CellChoice& cells, Eigen::Index all) {
     const Eigen::Index cells_each = all / static_cast<Eigen::Index>(observables().size());
     Eigen::ArrayXd list(static_cast<Eigen::Index>(cells.size()));
@@ -48,12 +46,10 @@ Eigen::ArrayXd resolutions(const CellChoice& cells, Eigen::Index all) {
     return list;
 }
 
-}  // namespace
-
 Eigen::VectorXd pick(const Eigen::VectorXd& all, const CellChoice& cells) { return all(cells); }
 Eigen::MatrixXd pick_columns(const Eigen::MatrixXd& all, const CellChoice& cells) { return all(Eigen::all, cells); }
 
-Comparison::Comparison(const Eigen::MatrixXd& noise, int mean_of, const CellChoice& cells,
+GapSpace::GapSpace(const Eigen::MatrixXd& noise, int mean_of, const CellChoice& cells,
                        const std::vector<FreeParameter>& free, const Eigen::VectorXd& extra)
     : cells_(cells), free_(free) {
     const double both = 1 + (mean_of > 0 ? 1.0 / mean_of : 0);  // the observed one's scatter, and the mean's
@@ -76,12 +72,12 @@ Comparison::Comparison(const Eigen::MatrixXd& noise, int mean_of, const CellChoi
     posterior_ = precision.inverse();
 }
 
-Eigen::VectorXd Comparison::whiten_chosen(const Eigen::VectorXd& chosen) const { return total_.matrixL().solve(chosen); }
+Eigen::VectorXd GapSpace::whiten_chosen(const Eigen::VectorXd& chosen) const { return total_.matrixL().solve(chosen); }
 
-Eigen::VectorXd Comparison::fit_nuisances(const Eigen::VectorXd& all) const {
+Eigen::VectorXd GapSpace::fit_nuisances(const Eigen::VectorXd& all) const {
     return posterior_ * (directions_.transpose() * noise_.solve(pick(all, cells_)));
 }
 
-Eigen::VectorXd Comparison::nuisance_errors() const { return posterior_.diagonal().cwiseSqrt(); }
+Eigen::VectorXd GapSpace::nuisance_errors() const { return posterior_.diagonal().cwiseSqrt(); }
 
 }  // namespace mcdem
