@@ -151,12 +151,14 @@ Model model_of(const Scene& scene, const Experiment& experiment) {
     model.instrument.stated = experiment.measurement;
     model.mean_diameter = std::reduce(recording.diameter.begin(), recording.diameter.end()) /
                           static_cast<double>(std::max<std::size_t>(1, recording.diameter.size()));
-    int loading = 0, cycles = 1;
     double lowest = recording.plate_start;
+    for (const Scan& scan : recording.scans) lowest = std::min(lowest, scan.plate_z);
+    // A scan before the stroke is no level of it, even where the plate's zero is a little off.
+    const double begun = 0.02 * (recording.plate_start - lowest);
+    int loading = 0, cycles = 1;
     for (const Scan& scan : recording.scans) {
-        loading += scan.cycle == 0 && scan.phase == Phase::load && recording.displacement(scan) > 0 ? 1 : 0;
+        loading += scan.cycle == 0 && scan.phase == Phase::load && recording.displacement(scan) > begun ? 1 : 0;
         cycles = std::max(cycles, scan.cycle + 1);
-        lowest = std::min(lowest, scan.plate_z);
     }
     if (loading == 0 || !(lowest < recording.plate_start))
         throw InputError(fmt::format("{}: plate.csv must have loading frames below plate.start", experiment.name));

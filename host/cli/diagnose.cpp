@@ -1,0 +1,127 @@
+// mcdem diagnose
+#include <fmt/format.h>
+
+#include "cli/commands.h"
+#include "cli/interrupt.h"
+#include "cli/messages.h"
+#include "cli/progress.h"
+#include "cli/scene_options.h"
+#include "cli/version.h"
+#include "core/atomic_file.h"
+#include "ensemble/diagnose_experiment.h"
+#include "report/diagnosis_json.h"
+#include "report/diagnosis_page.h"
+#include "report/diagnosis_text.h"
+
+namespace mcdem {
+namespace {
+
+struct DiagnoseCommand {
+    SceneOptions scene;
+    std::string experiment, out, device, library;
+    std::vector<std::string> candidates;
+    int replicates = 32, pairs = 8, confirmations = 8;
+    std::uint64_t seed = 1;
+};
+
+DiagnoseOptions options_of(const DiagnoseCommand& command) {
+    DiagnoseOptions options;
+    options.folder = command.out;
+    options.candidates = command.candidates;
+    options.replicates = command.replicates;
+    options.pairs = std::min(command.pairs, command.replicates);
+    options.confirmations = command.confirmations;
+    options.seed = command.seed;
+    if (!command.library.empty()) options.library = command.library;
+    options.program = version_text;
+    options.stop_wanted = Interrupt::wanted;
+    return options;
+}
+
+/// Every stage with a bar of its own.
+class Stages {
+public:
+    void show(const std::string& stage, double fraction) {
+        if (stage != stage_) {
+            progress_.reset();
+            stage_ = stage;
+            spdlog::info("{}", stage);
+            progress_.emplace(stderr, progress_style(stderr));
+        }
+        progress_->show(fraction);
+    }
+
+private:
+    std::string stage_;
+    std::optional<Progress> progress_;
+};
+
+Diagnosis diagnose(const DiagnoseCommand& command) {
+    const Scene scene = command.scene.read();
+    const Experiment experiment = read_experiment(command.experiment);
+    Device device(command.device);
+    spdlog::info("{} against {} on {}", scene.name, experiment.name, device.info().name);
+    if (scene.replicas.size() > 1)
+        spdlog::warn("the scene has {} replicas; the first one is diagnosed: {}", scene.replicas.size(),
+                     scene.replicas.front().label);
+    const Interrupt interrupt;
+    Stages stages;
+    DiagnoseOptions options = options_of(command);
+    options.on_progress = [&](const std::string& stage, double fraction) { stages.show(stage, fraction); };
+    return diagnose_experiment(device, scene, experiment, options);
+}
+
+int run(const DiagnoseCommand& command) {
+    try {
+        const Diagnosis diagnosis = diagnose(command);
+        const std::filesystem::path folder = command.out;
+        replace_file(folder / "diagnosis.json", diagnosis_json(diagnosis));
+        const auto files = write_diagnosis_page(diagnosis, folder);
+        fmt::print("{}\nwrote\n  {}\n", diagnosis_text(diagnosis), (folder / "diagnosis.json").string());
+        for (const auto& file : files) fmt::print("  {}\n", file.string());
+        return exit_done;
+    } catch (const Interrupted& interrupted) {
+        spdlog::warn("{}", interrupted.what());
+        return exit_interrupted;
+    }
+}
+
+}  // namespace
+
+void add_diagnose(CLI::App& app, int& exit_code) {
+    auto* sub = app.add_subcommand("diagnose", "Where a scene and an experiment part, and which effect is to blame");
+    auto command = std::make_shared<DiagnoseCommand>();
+    add_scene_options(*sub, command->scene);
+    sub->add_option("--experiment", command->experiment, "Experiment folder")->required()->type_name("DIR");
+    sub->add_option("--out", command->out, "Folder for the verdict, the page, and every simulation made for them")
+        ->required()
+        ->type_name("DIR");
+    sub->add_option("--candidates", command->candidates, "Effects that may be to blame; all where left out")
+        ->delimiter(',')
+        ->type_name("A,B,..");
+    sub->add_option("--replicates", command->replicates, "Runs of the scene as it stands: the noise floor")
+        ->check(CLI::Range(8, 10000))
+        ->capture_default_str();
+    sub->add_option("--pairs", command->pairs, "Runs of each effect at each of its two amplitudes")
+        ->check(CLI::Range(2, 10000))
+        ->capture_default_str();
+    sub->add_option("--confirmations", command->confirmations, "Real runs of each proposed cause; 0: none")
+        ->check(CLI::Range(0, 10000))
+        ->capture_default_str();
+    sub->add_option("--seed", command->seed, "Of everything drawn at random")->capture_default_str();
+    sub->add_option("--library", command->library,
+                    "File of signatures: read where it is there, else made and written")
+        ->type_name("FILE");
+    add_device_option(*sub, command->device);
+    sub->footer(
+        "The scene is the simulation as it stands; box, plate and scans are the experiment's. Prints the verdict in\n"
+        "five lines and writes diagnosis.json and diagnosis.html, with its pictures, into DIR. Simulations are kept\n"
+        "in DIR/simulations: nothing is computed twice, and an interrupted diagnosis goes on with the same command.\n"
+        "Verdicts: no_gap, effect, group (effects that these data cannot tell apart), unknown_effect (none of the\n"
+        "library), calibration_suspect. `mcdem experiment check DIR` tells beforehand what the data can carry.\n"
+        "Example:\n"
+        "  mcdem diagnose scenes/small.toml --experiment out/reality --out out/diagnosis");
+    sub->callback([command, &exit_code] { exit_code = run(*command); });
+}
+
+}  // namespace mcdem
