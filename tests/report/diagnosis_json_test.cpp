@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <functional>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -75,9 +76,18 @@ TEST(DiagnosisJson, carries_the_values) {
     EXPECT_EQ(json["verdict"], "effect");
     EXPECT_EQ(json["cells"].size(), d.cells.size());
     EXPECT_EQ(json["where"][0]["displacement_mm"], Json::parse("[21.0, 27.0]"));
+    EXPECT_EQ(json["where"][1]["displacement_mm"], Json::parse("[15.0, 21.0]"));  // not 20.999999999999996
     EXPECT_EQ(json["where"][0]["z_score"], d.where[0].z_score);
     EXPECT_EQ(json["causes"][0]["amplitude"], d.causes[0].amplitude);
     EXPECT_EQ(json["causes"][0]["confirmed_score"], *d.causes[0].confirmed_score);
+    for (const auto& [key, value] : std::map<std::string, double>{{"before", d.shrink->before},
+                                                                  {"after", d.shrink->after},
+                                                                  {"fraction", 0.81},
+                                                                  {"placebo", 0.12},
+                                                                  {"confirmed", d.shrink->confirmed.value()}})
+        EXPECT_EQ(json["shrink"][key], value) << key;
+    EXPECT_EQ(json["shrink"]["interval"], Json(d.shrink->interval));
+    EXPECT_EQ(json["shrink"]["fitted_displacement_mm"], Json::parse("[0.0, 18.0]"));
     EXPECT_EQ(json["shrink"]["metrics"]["Rtop"], Json::parse("[0.874, 0.991]"));
     EXPECT_EQ(json["shrink"]["top_force"][20]["displacement_mm"], 30.0);
     EXPECT_EQ(json["nuisances"][0]["shift"], 180.0);

@@ -121,7 +121,7 @@ TEST_F(DrawnSample, has_all_numbers) {
                                "18.2",  // causes
                                "0.08 mJ/m²",
                                "4 kg/m³",
-                               "never shows",
+                               ">never shows<",
                                "85 %",  // limits
                                "413",
                                "140",
@@ -146,8 +146,8 @@ TEST_F(DrawnSample, has_all_numbers) {
                                "hydrogel.toml",
                                "5f70bf18a086007016e948b04aed3b82103a36bea41755b6cddfaf10ace3c6ef"})
         EXPECT_TRUE(contains(page, number)) << number;
-    for (const char* words :
-         {"forces on the side walls: would tell", "cross_contact: the scene", "unloading, and loading"})
+    for (const char* words : {"<li>forces on the side walls: would tell", "<li>diameters of single grains",
+                              "cross_contact: the scene", "unloading, and loading"})
         EXPECT_TRUE(contains(page, words)) << words;
 }
 
