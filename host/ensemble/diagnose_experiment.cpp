@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "core/errors.h"
+#include "ensemble/paper_metrics.h"
 
 namespace mcdem {
 namespace {
@@ -34,6 +35,9 @@ void expect_library_of(const Library& library, const Grid& grid, const LibraryPl
     if (!problems.empty()) throw InputError(problems);
 }
 
+/// Whole recordings that the paper's metrics are taken from, on either side.
+constexpr std::size_t recordings_kept = 4;
+
 /// The work of one diagnosis, in the order of its steps.
 class Diagnosing {
 public:
@@ -54,6 +58,8 @@ public:
         options_.on_findings(draft.findings());
         Diagnosis diagnosis = draft.diagnosis();
         diagnosis.not_testable = choice_.hindered;
+        if (diagnosis.shrink && options_.paper_metrics && options_.confirmations > 0)
+            add_paper_metrics(*diagnosis.shrink, experiment_.recording, before_after(draft));
         return diagnosis;
     }
 
@@ -61,6 +67,7 @@ private:
     Evidence gather() {
         Evidence evidence;
         evidence.seed = options_.seed;
+        recorded(baseline_trials(model_, plan_));  // first: what is kept whole is not simulated again
         const bool ready = options_.library && std::filesystem::exists(*options_.library);
         if (ready) {
             evidence.library = read_library(*options_.library);
@@ -94,8 +101,25 @@ private:
         for (std::size_t k = 0; k < proposals.size(); ++k)
             draft.confirm(k, runs.middleRows(static_cast<Eigen::Index>(k) * options_.confirmations, options_.confirmations));
         if (!draft.wants_held_out()) return;
+        recorded(trials_of(draft, draft.decided(), draft.part_fit()));
         draft.confirm_held_out(observe_trials(device_, question_, trials_of(draft, draft.decided(), draft.part_fit()), store_,
                                               stage(options_, "held-out confirmation")));
+    }
+
+    BeforeAfter before_after(const Draft& draft) {
+        LibraryPlan plan = plan_;
+        plan.replicates = std::min(options_.replicates, options_.confirmations);
+        return {kept_recordings(device_, question_, recorded(baseline_trials(model_, plan)), store_),
+                kept_recordings(device_, question_, recorded(trials_of(draft, draft.decided(), draft.part_fit())), store_)};
+    }
+
+    /// The first few trials, with their whole recordings kept.
+    std::vector<Trial> recorded(std::vector<Trial> trials) const {
+        trials.resize(std::min<std::size_t>(trials.size(), recordings_kept));
+        for (Trial& trial : trials) trial.keep_recording = options_.paper_metrics;
+        if (options_.paper_metrics)
+            observe_trials(device_, question_, trials, store_, stage(options_, "recordings"));
+        return trials;
     }
 
     static void append(std::vector<Trial>& all, std::vector<Trial> more) {

@@ -5,6 +5,7 @@
 
 #include "core/atomic_file.h"
 #include "core/sha256.h"
+#include "io/results.h"
 
 namespace mcdem {
 namespace {
@@ -40,6 +41,21 @@ void ObservationStore::keep(const std::string& name, const Eigen::VectorXd& obse
     bytes.append(reinterpret_cast<const char*>(observation.data()),
                  static_cast<std::size_t>(observation.size()) * sizeof(double));
     replace_file(file_of(name), bytes);
+}
+
+std::filesystem::path ObservationStore::recording_file(const std::string& name) const { return folder_ / (name + ".h5"); }
+
+bool ObservationStore::has_recording(const std::string& name) const { return std::filesystem::exists(recording_file(name)); }
+
+Recording ObservationStore::recording(const std::string& name) const {
+    return read_run(recording_file(name)).recordings.at(0);
+}
+
+void ObservationStore::keep(const std::string& name, const Recording& recording) const {
+    Run run;
+    run.name = name;
+    run.recordings = {recording};
+    write_run(recording_file(name), run);
 }
 
 }  // namespace mcdem

@@ -1,9 +1,12 @@
-// Observations of simulations, kept under a name made of all that went into them, so that nothing is simulated twice.
+// Observations of simulations, and a few whole recordings, kept under a name made of all that went into them, so that
+// nothing is simulated twice.
 #pragma once
 #include <Eigen/Core>
 #include <filesystem>
 #include <optional>
 #include <string>
+
+#include "core/recording.h"
 
 namespace mcdem {
 
@@ -15,8 +18,14 @@ public:
     std::optional<Eigen::VectorXd> find(const std::string& name) const;
     void keep(const std::string& name, const Eigen::VectorXd& observation) const;
 
+    bool has_recording(const std::string& name) const;
+    /// Throws RunError where it is missing or damaged.
+    Recording recording(const std::string& name) const;
+    void keep(const std::string& name, const Recording& recording) const;
+
 private:
     std::filesystem::path file_of(const std::string& name) const;
+    std::filesystem::path recording_file(const std::string& name) const;
     std::filesystem::path folder_;
 };
 

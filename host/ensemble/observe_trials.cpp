@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <map>
+#include <mutex>
 #include <numeric>
 #include <thread>
 
@@ -79,7 +80,8 @@ private:
         for (std::size_t t = 0; t < trials_.size(); ++t) {
             const std::string simulation = simulation_name(device_, question_, trials_[t]);
             names_[t] = observation_name(simulation, question_, trials_[t].model.instrument);
-            const auto kept = options_.on_recording ? std::nullopt : store_.find(names_[t]);
+            const bool lacks_recording = trials_[t].keep_recording && !store_.has_recording(names_[t]);
+            const auto kept = lacks_recording ? std::nullopt : store_.find(names_[t]);
             if (kept && kept->size() == result_.cols()) {
                 result_.row(static_cast<Eigen::Index>(t)) = *kept;
                 continue;
@@ -130,14 +132,20 @@ private:
         work();
         others.clear();
         for (const Job& job : jobs)
-            for (const std::size_t t : job.trials) store_.keep(names_[t], result_.row(static_cast<Eigen::Index>(t)));
+            for (const std::size_t t : job.trials) store_.keep(names_[t], Eigen::VectorXd(result_.row(static_cast<Eigen::Index>(t))));
+    }
+
+    /// HDF5 is used by one thread at a time.
+    void keep_recording(std::size_t t, const Recording& seen) {
+        const std::scoped_lock lock(recordings_);
+        store_.keep(names_[t], seen);
     }
 
     void look_at(std::size_t t, const Recording& truth) {
         const Recording seen = measured(truth, trials_[t].model.instrument, trials_[t].seed);
         if (!truth.failure)
             result_.row(static_cast<Eigen::Index>(t)) = observe(seen, question_.grid, question_.material, question_.discard);
-        if (options_.on_recording) options_.on_recording(t, seen);
+        if (trials_[t].keep_recording) keep_recording(t, seen);
     }
 
     Device& device_;
@@ -147,6 +155,7 @@ private:
     const TrialOptions& options_;
     std::vector<std::string> names_;
     Eigen::MatrixXd result_;
+    std::mutex recordings_;
 };
 
 }  // namespace
@@ -154,6 +163,15 @@ private:
 Eigen::MatrixXd observe_trials(Device& device, const Question& question, const std::vector<Trial>& trials,
                                const ObservationStore& store, const TrialOptions& options) {
     return Work(device, question, trials, store, options).all();
+}
+
+std::vector<Recording> kept_recordings(const Device& device, const Question& question, const std::vector<Trial>& trials,
+                                       const ObservationStore& store) {
+    std::vector<Recording> recordings;
+    for (const Trial& trial : trials)
+        recordings.push_back(store.recording(
+            observation_name(simulation_name(device, question, trial), question, trial.model.instrument)));
+    return recordings;
 }
 
 ReferenceMaterial reference_material(const Model& model) {

@@ -19,6 +19,7 @@ struct Trial {
     double jitter = 0;             ///< sd of a random displacement of every coordinate of it [m]
     double diameter_jitter = 0;    ///< sd of a random change of every diameter [m]
     std::uint64_t seed = 0;        ///< of both jitters, of what is random in the replica, and of the measurement's noise
+    bool keep_recording = false;   ///< the whole recording too, as measured
 };
 
 /// What all trials of one question share.
@@ -33,15 +34,16 @@ struct Question {
 struct TrialOptions {
     std::function<void(double fraction)> on_progress = [](double) {};
     std::function<bool()> stop_wanted = [] { return false; };
-    /// Where given: each recording as measured.
-    std::function<void(std::size_t trial, const Recording& measured)> on_recording;
 };
 
 /// Row: trial, column: cell; not-a-number where a simulation failed. Trials that differ in the instrument only share a
-/// simulation, and what the store has is not simulated at all (unless recordings are asked for). All are kept
-/// as they come. Throws Interrupted when stop_wanted says so.
+/// simulation, and what the store has is not simulated at all. All are kept as they come. Throws Interrupted when stop_wanted says so.
 Eigen::MatrixXd observe_trials(Device& device, const Question& question, const std::vector<Trial>& trials,
                                const ObservationStore& store, const TrialOptions& options);
+
+/// Recordings of trials that were observed with keep_recording.
+std::vector<Recording> kept_recordings(const Device& device, const Question& question, const std::vector<Trial>& trials,
+                                       const ObservationStore& store);
 
 struct Interrupted : std::runtime_error {
     Interrupted() : std::runtime_error("interrupted; the same command goes on where it stopped") {}

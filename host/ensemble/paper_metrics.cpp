@@ -1,0 +1,39 @@
+#include "ensemble/paper_metrics.h"
+
+#include "metrics/compare.h"
+
+namespace mcdem {
+namespace {
+
+void add(Shrink& shrink, const char* metric, const Estimate& before, const Estimate& after) {
+    if (before.available() && after.available()) shrink.metrics[metric] = {before.value, after.value};
+}
+
+}  // namespace
+
+void add_paper_metrics(Shrink& shrink, const Recording& experiment, const BeforeAfter& simulated) {
+    const Replicas reference{&experiment};
+    const Setting settings[] = {{"before", replicas_of(simulated.before)}, {"after", replicas_of(simulated.after)}};
+    const Comparison before = compare(settings[0], reference), after = compare(settings[1], reference);
+    add(shrink, "Rtop", before.Rtop, after.Rtop);
+    add(shrink, "errf", before.errf, after.errf);
+    add(shrink, "errZ", before.errZ, after.errZ);
+    add(shrink, "bhat", before.bhat, after.bhat);
+
+    const LevelOptions options;
+    const Levels measured = group_levels(reference, options);
+    Eigen::ArrayXd forces[2];
+    for (int k = 0; k < 2; ++k) {
+        const Levels levels = group_levels(settings[k].replicas, options);
+        const auto matches = match_levels(levels, measured, options.tolerance);
+        forces[k] = mean_without(at_reference(by_replica(levels, top_force), matches), -1);
+    }
+    const Eigen::ArrayXd experiment_force = mean_without(by_replica(measured, top_force), -1);
+    for (std::size_t level = 0; level < measured.size(); ++level) {
+        const auto i = static_cast<Eigen::Index>(level);
+        if (measured[level].phase == Phase::load)
+            shrink.top_force.push_back({measured[level].displacement, experiment_force[i], forces[0][i], forces[1][i]});
+    }
+}
+
+}  // namespace mcdem
