@@ -28,7 +28,7 @@ std::vector<std::string> group_letters(const std::vector<Cause>& ranking);
 namespace diagnosis_colour {
 inline constexpr const char* named = "#D55E00";
 inline constexpr const char* other = "#6F9BBF";
-inline constexpr const char* before = "#0072B2";
+inline constexpr const char* before = "#2B87C8";
 inline constexpr const char* after = "#D55E00";
 inline constexpr const char* faint = "#999999";
 }  // namespace diagnosis_colour
