@@ -70,7 +70,8 @@ Packing make_packing(const Replica& replica) {
     }
     apply_jitter(packing, from.position_jitter, from.seed);
     // A generated packing may be a little higher than the plate, never so high that a centre is above it.
-    const auto problems = packing_problems(packing, replica.box, plate_face(replica, replica.plate.start), source);
+    const auto problems =
+        packing_problems(packing, replica.box, plate_face(replica, replica.plate.start), source);
     if (!problems.empty()) throw InputError(problems);
     return packing;
 }

@@ -5,9 +5,9 @@
 namespace mcdem {
 
 struct PlateFace {
-    double z = 0;                         ///< over the middle of the box [m]
-    double tilt_x = 0, tilt_y = 0;        ///< slopes
-    double middle_x = 0, middle_y = 0;    ///< of the box [m]
+    double z = 0;                       ///< over the middle of the box [m]
+    double tilt_x = 0, tilt_y = 0;      ///< slopes
+    double middle_x = 0, middle_y = 0;  ///< of the box [m]
 
     double height(const Vec3& point) const {
         return z + tilt_x * (point.x() - middle_x) + tilt_y * (point.y() - middle_y);
@@ -23,7 +23,8 @@ struct PlateFace {
 
 /// With its middle at `z` [m].
 inline PlateFace plate_face(const Replica& replica, double z) {
-    return {z, replica.effects.plate_tilt_x, replica.effects.plate_tilt_y, replica.box.size_x / 2, replica.box.size_y / 2};
+    return {z, replica.effects.plate_tilt_x, replica.effects.plate_tilt_y, replica.box.size_x / 2,
+            replica.box.size_y / 2};
 }
 
 }  // namespace mcdem

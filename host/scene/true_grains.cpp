@@ -17,9 +17,10 @@ Packing true_packing(const Replica& replica, Packing stated) {
     for (double& diameter : stated.diameter) diameter += error + sd * random.normal();
     const auto smallest = std::ranges::min_element(stated.diameter);
     if (!(*smallest > 0))
-        throw InputError(fmt::format("effects.diameter_error and effects.polydispersity must leave every diameter > 0 [m], "
-                                     "got {} for grain {} of {}",
-                                     *smallest, smallest - stated.diameter.begin(), replica.label));
+        throw InputError(fmt::format(
+            "effects.diameter_error and effects.polydispersity must leave every diameter > 0 [m], "
+            "got {} for grain {} of {}",
+            *smallest, smallest - stated.diameter.begin(), replica.label));
     return stated;
 }
 

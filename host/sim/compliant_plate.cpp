@@ -8,35 +8,40 @@
 namespace mcdem {
 namespace {
 
-// The plate goes after compliance * force as a tracker of second order, so that it does not lag behind while the
-// plate moves evenly. Critically damped: the slope is learned with a quarter of the square of the catching up.
+// The plate goes after compliance * force as a tracker of second order, so that it does not lag behind while
+// the plate moves evenly. Critically damped: the slope is learned with a quarter of the square of the
+// catching up.
 constexpr double learn = 0.25;
 
-// A plate that moves at v feels Z v more, Z = stiffness * the time that a wave takes through the packing: going after
-// the force faster than that rings, and the more so the more compliant it is. Tried on packings of 514 grains up to
-// compliance * E * area / height = 27; the packing's own stiffness is about a third of E * area / height.
-double follow_time(const Replica& replica) {
-    const double height = replica.plate.start;
-    const double stiffness = replica.grains.youngs_modulus * replica.box.size_x * replica.box.size_y / height;
-    return height / rayleigh_speed(replica.grains) * std::max(1.0, replica.effects.plate_compliance * stiffness / 3);
+/// About the most that a packing adds to the force per length of compression, over the plate's own stiffness.
+double gain(const Replica& replica) {
+    const double block =
+        replica.grains.youngs_modulus * replica.box.size_x * replica.box.size_y / replica.plate.start;
+    return replica.effects.plate_compliance * block / 3;
 }
 
 }  // namespace
 
+// A plate that moves at v feels Z v more, Z = stiffness * the time that a wave takes through the packing:
+// going after the force faster than that rings, and the more so the more compliant it is. Besides, what one
+// stretch corrects must not be undone by the next: catch_up (1 + gain) < 2.
 CompliantPlate::CompliantPlate(const Replica& replica)
-    : compliance_(replica.effects.plate_compliance), follow_time_(follow_time(replica)) {}
+    : compliance_(replica.effects.plate_compliance),
+      follow_time_(replica.plate.start / rayleigh_speed(replica.grains) * std::max(1.0, gain(replica))),
+      most_catch_up_(1 / (1 + gain(replica))) {}
 
 void CompliantPlate::give_way(Stretch& stretch, double time_step, double farthest) {
     change_ = 0;
     if (compliance_ == 0 || stretch.steps == 0) return;
     const double duration = time_step * stretch.steps;
     const double commanded = stretch.plate_velocity * duration;
-    const double error = compliance_ * state_.force - state_.given;
-    const double catch_up = -std::expm1(-duration / follow_time_);
+    const double catch_up = std::min(most_catch_up_, -std::expm1(-duration / follow_time_));
     if (commanded != 0)
-        state_.slope = std::clamp(state_.slope + learn * catch_up * catch_up * error / commanded, -1.0, 0.0);
+        state_.slope =
+            std::clamp(state_.slope + learn * catch_up * catch_up * error() / commanded, -1.0, 0.0);
     const double most = std::max(farthest, std::abs(commanded));
-    const double change = std::clamp(state_.slope * commanded + catch_up * error, -most - commanded, most - commanded);
+    const double change =
+        std::clamp(state_.slope * commanded + catch_up * error(), -most - commanded, most - commanded);
     stretch.plate_z += state_.given;
     stretch.plate_velocity += change / duration;
     change_ = change / stretch.steps;
@@ -45,6 +50,10 @@ void CompliantPlate::give_way(Stretch& stretch, double time_step, double farthes
 void CompliantPlate::made(const StretchResult& result) {
     state_.given += change_ * result.steps;
     state_.force = result.wall_force[static_cast<int>(Wall::plate)].z();
+}
+
+bool CompliantPlate::arrived(double farthest) const {
+    return std::abs(error()) <= 1e-3 * std::max(std::abs(state_.given), farthest);
 }
 
 }  // namespace mcdem

@@ -17,17 +17,24 @@ public:
 
     explicit CompliantPlate(const Replica& replica);
 
-    /// Turns the commanded stretch into the true one. The plate moves at most `farthest` [m] or as far as commanded.
+    /// Turns the commanded stretch into the true one. The plate moves at most `farthest` [m] or as far as
+    /// commanded.
     void give_way(Stretch& stretch, double time_step, double farthest);
     /// Takes note of the force at the stretch's end.
     void made(const StretchResult& result);
+
+    /// The plate gives way as much as it should, to a thousandth of that or of `farthest` [m].
+    bool arrived(double farthest) const;
 
     const State& state() const { return state_; }
     void set_state(const State& state) { state_ = state; }
 
 private:
-    double compliance_;   ///< [m/N]
-    double follow_time_;  ///< in which an error shrinks to 1/e [s]
+    double error() const { return compliance_ * state_.force - state_.given; }
+
+    double compliance_;     ///< [m/N]
+    double follow_time_;    ///< in which an error shrinks to 1/e [s]
+    double most_catch_up_;  ///< part of an error that a stretch makes good
     State state_;
     double change_ = 0;  ///< of `given` a step, in the stretch under way [m]
 };

@@ -54,9 +54,9 @@ long ProtocolRunner::steps_left() const {
     return std::max(1L, std::lround(most / time_step_) - state_.stage_step);
 }
 
-bool ProtocolRunner::settled(const StretchResult& result) {
+bool ProtocolRunner::settled(const StretchResult& result, bool plate_arrived) {
     const bool still =
-        result.kinetic_energy <= protocol_.settle_kinetic_over_elastic * std::abs(result.elastic_energy);
+        plate_arrived && result.kinetic_energy <= protocol_.settle_kinetic_over_elastic * std::abs(result.elastic_energy);
     state_.settle_stretches = still ? state_.settle_stretches + 1 : 0;
     return state_.settle_stretches >= settled_stretches;
 }
@@ -67,7 +67,8 @@ void ProtocolRunner::begin(Stage stage) {
     state_.settle_stretches = 0;
 }
 
-std::optional<ProtocolRunner::ScanTag> ProtocolRunner::made(const StretchResult& result) {
+std::optional<ProtocolRunner::ScanTag> ProtocolRunner::made(const StretchResult& result,
+                                                             bool plate_arrived) {
     if (finished()) return std::nullopt;
     state_.step += result.steps;
     state_.stage_step += result.steps;
@@ -78,7 +79,7 @@ std::optional<ProtocolRunner::ScanTag> ProtocolRunner::made(const StretchResult&
         return std::nullopt;
     }
     const double most = state_.stage == Stage::relax ? protocol_.relax_time : protocol_.settle_time;
-    const bool still = settled(result);
+    const bool still = settled(result, plate_arrived);
     if (!still && state_.stage_step < std::lround(most / time_step_)) return std::nullopt;
     if (state_.stage == Stage::settle) return arrive(still);
     begin(Stage::move);

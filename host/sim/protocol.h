@@ -46,8 +46,8 @@ public:
         double plate_z, time;
         bool settled;
     };
-    /// Takes note of a stretch.
-    std::optional<ScanTag> made(const StretchResult& result);
+    /// Takes note of a stretch. Nothing counts as settled while the plate is still on its way.
+    std::optional<ScanTag> made(const StretchResult& result, bool plate_arrived = true);
 
     void stop() { state_.stage = ProtocolState::Stage::finished; }
     bool finished() const { return state_.stage == ProtocolState::Stage::finished; }
@@ -63,7 +63,7 @@ private:
     long move_steps() const;
     double plate_velocity() const;
     long steps_left() const;
-    bool settled(const StretchResult& result);
+    bool settled(const StretchResult& result, bool plate_arrived);
     std::optional<ScanTag> arrive(bool settled);
     void begin(ProtocolState::Stage stage);
 

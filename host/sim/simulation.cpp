@@ -69,7 +69,7 @@ bool Simulation::advance(const ScanSink& on_scan, const FailureSink& on_failure)
         if (stretches[r].steps == 0) continue;
         grain_steps_ += static_cast<long>(results[r].steps) * static_cast<long>(diameter_[r].size());
         plates_[r].made(results[r]);
-        const auto tag = runners_[r].made(results[r]);
+        const auto tag = runners_[r].made(results[r], plates_[r].arrived(engine_.farthest_plate_move(r)));
         if (results[r].status) {
             on_failure(r, failure(r, results[r]));
             runners_[r].stop();

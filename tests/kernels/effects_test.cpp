@@ -1,5 +1,5 @@
-// Steps with effects against the double-precision reference: each alone, some of one batch, all together; every
-// contact model, both precisions, one and two vectors of slots, the CPU's and the GPU's way.
+// Steps with effects against the double-precision reference: each alone, some of one batch, all together;
+// every contact model, both precisions, one and two vectors of slots, the CPU's and the GPU's way.
 #include "kernels/steps_as_reference.h"
 
 namespace reference {
@@ -42,8 +42,8 @@ std::vector<Effects> one_by_one() {
     return each;
 }
 
-/// Overlaps are a third of those of the plain steps, so that roundings of positions weigh more, and the slope of
-/// adhesion in a gap is steeper than that of any contact.
+/// Overlaps are a third of those of the plain steps, so that roundings of positions weigh more, and the slope
+/// of adhesion in a gap is steeper than that of any contact.
 constexpr double slack = 5;
 
 /// Smaller grains: half of the neighbours have a gap, some of them within the reach of adhesion.
@@ -97,7 +97,8 @@ TEST(EffectSteps, EachIsToldApartFromNone) {
         Batch batch(build(Precision::single_precision), start);
         Uniform uniform(39);
         batch.engine().set_velocities(0, uniform.vectors(64, 0.05), uniform.vectors(64, 5));
-        StepReference same = reference_of(batch.engine(), 0, start), other = reference_of(batch.engine(), 0, plain);
+        StepReference same = reference_of(batch.engine(), 0, start),
+                      other = reference_of(batch.engine(), 0, plain);
         mcdem::StretchResult result;
         for (int step = 0; step < 3; ++step) {
             same.step();

@@ -38,7 +38,7 @@ inline std::vector<Seen> listed_contacts(const StepReference& reference) {
 }
 
 inline void compare_contacts(const std::vector<mcdem::Contact>& contacts, const StepReference& reference,
-                      double skim, Differences& d) {
+                             double skim, Differences& d) {
     std::map<std::pair<int, int>, Seen> expected;
     double largest = 0;
     for (const Seen& seen : listed_contacts(reference)) largest = std::max(largest, seen.overlap);
@@ -66,7 +66,7 @@ inline void compare_contacts(const std::vector<mcdem::Contact>& contacts, const 
 }
 
 inline Differences compare(const Engine& engine, int r, const mcdem::StretchResult& result,
-                    const StepReference& reference, double skim) {
+                           const StepReference& reference, double skim) {
     Differences d;
     const auto state = engine.state(r);
     d.position = relative_difference(state.position, reference.position);
@@ -89,10 +89,10 @@ inline std::string text(const Differences& d) {
         d.elastic, d.deepest, d.same_contacts);
 }
 
-/// Six steps one by one, with the plate coming down: the sixth uses the whole history of the surfaces. `slack`
-/// times the usual differences are allowed.
-inline void expect_steps_as_reference(const KernelBuild& build, const std::vector<Start>& starts, unsigned seed,
-                                      double slack = 1) {
+/// Six steps one by one, with the plate coming down: the sixth uses the whole history of the surfaces.
+/// `slack` times the usual differences are allowed.
+inline void expect_steps_as_reference(const KernelBuild& build, const std::vector<Start>& starts,
+                                      unsigned seed, double slack = 1) {
     constexpr double plate_velocity = -0.05;
     Batch batch(build, starts);
     Engine& engine = batch.engine();

@@ -38,9 +38,9 @@ StepReference::StepReference(const mcdem::Replica& scene, const mcdem::Packing& 
     const double rayleigh_speed = 0.163 * g.poisson_ratio + 0.8766;  // over sqrt(G / rho)
     std::vector<double> rayleigh_time;
     for (std::size_t i = 0; i < radius_.size(); ++i)
-        rayleigh_time.push_back(
-            pi * radius_[i] *
-            std::sqrt(g.density / shear_modulus(youngs_modulus_[i], g.poisson_ratio)) / rayleigh_speed);
+        rayleigh_time.push_back(pi * radius_[i] *
+                                std::sqrt(g.density / shear_modulus(youngs_modulus_[i], g.poisson_ratio)) /
+                                rayleigh_speed);
     time_step_ = scene.numerics.time_step * *std::min_element(rayleigh_time.begin(), rayleigh_time.end());
     const double mean = std::accumulate(radius_.begin(), radius_.end(), 0.0) / radius_.size();
     probe_gap_ = scene.numerics.probe_gap * mean;
@@ -248,8 +248,8 @@ Vec3 StepReference::couple(double normal, const Body& a, const Body& b, const Jo
     return std::min(limit / smooth, 0.1 * reduced / time_step_) * relative;
 }
 
-/// Fades to a viscous force below the sliding velocity, and never does more in a step than a tenth of what would
-/// stop the sliding.
+/// Fades to a viscous force below the sliding velocity, and never does more in a step than a tenth of what
+/// would stop the sliding.
 Vec3 StepReference::saturated_friction(double limit, const Vec3& sliding, const Joint& joint) const {
     const double smooth_speed = std::hypot(sliding.norm(), scene_.contact.sliding_velocity);
     return std::min(limit / smooth_speed, 0.1 * joint.mass / time_step_) * sliding;

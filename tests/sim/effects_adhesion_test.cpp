@@ -21,7 +21,8 @@ Start two_grains(double overlap) {
     replica.grains = {SqueezedGrain::youngs_modulus, SqueezedGrain::poisson_ratio, 1000, 0, 0, 1, 0};
     replica.effects = adhesive();
     replica.numerics.time_step = 0.02;
-    return free_cluster(replica, {{0, 0, 0}, {radius + other_radius - overlap, 0, 0}}, {2 * radius, 2 * other_radius});
+    return free_cluster(replica, {{0, 0, 0}, {radius + other_radius - overlap, 0, 0}},
+                        {2 * radius, 2 * other_radius});
 }
 
 // Two grains drawn apart by hand: the largest tension is 2 pi w R*, just where the overlap ends.
@@ -43,7 +44,8 @@ TEST(Adhesion, TwoGrainsPullOffAtTwoPiTimesWorkTimesReducedRadius) {
         tension = std::max(tension, state.contacts.front().force.x());
         const double d = state.contacts.front().overlap;
         const double hertz = 2.0 / 3 * SqueezedGrain::modulus * std::sqrt(reduced) * std::pow(d, 1.5);
-        EXPECT_NEAR(state.contacts.front().force.x(), pull_off(reduced) - hertz, 1e-4 * pull_off(reduced)) << d;
+        EXPECT_NEAR(state.contacts.front().force.x(), pull_off(reduced) - hertz, 1e-4 * pull_off(reduced))
+            << d;
     }
     EXPECT_NEAR(tension / pull_off(reduced), 1, 0.01);
     EXPECT_NEAR(parted_at, 0, 2 * overlap / steps);
@@ -64,8 +66,8 @@ TEST(Adhesion, FadesInAGapWithinAHundredthOfTheRadius) {
     EXPECT_EQ(before, 0);
 }
 
-// Drawn together, squeezed and drawn apart, all along one curve: the energy that is told is the work done, the one that
-// stands at zero out of reach.
+// Drawn together, squeezed and drawn apart, all along one curve: the energy that is told is the work done,
+// the one that stands at zero out of reach.
 TEST(Adhesion, StoresTheWorkDone) {
     SqueezedGrain grain(adhesive(), -1.5 * 0.01 * radius);
     double work = 0, before = 0;
@@ -79,8 +81,8 @@ TEST(Adhesion, StoresTheWorkDone) {
     EXPECT_GT(grain.overlap(), 2e-4);
 }
 
-// Friction holds as if the grains were pressed together by the pull-off force as well: mu (F_n + 2 pi w R*), which is mu
-// times the Hertz force.
+// Friction holds as if the grains were pressed together by the pull-off force as well: mu (F_n + 2 pi w R*),
+// which is mu times the Hertz force.
 TEST(Adhesion, AddsToTheFrictionLimit) {
     constexpr double friction = 0.2, overlap = 1e-4;
     Start start = two_grains(0);
@@ -88,7 +90,8 @@ TEST(Adhesion, AddsToTheFrictionLimit) {
     start.replica.walls = {SqueezedGrain::wall_modulus, SqueezedGrain::poisson_ratio, friction, 1};
     start.packing.position = {{0.5, 0.5, radius - overlap}, {0.1, 0.1, 0.5}};
     Batch batch(build(finest()), start);
-    batch.engine().set_velocities(0, {{1, 0, 0}, Vec3::Zero()}, {2, Vec3::Zero()});  // 1000 times the sliding velocity
+    batch.engine().set_velocities(0, {{1, 0, 0}, Vec3::Zero()},
+                                  {2, Vec3::Zero()});  // 1000 times the sliding velocity
     const auto force = batch.advance(1).front().wall_force[static_cast<int>(mcdem::Wall::floor)];
     const double d = radius - batch.engine().state(0).position[0].z();
     EXPECT_NEAR(force.x() / (friction * SqueezedGrain::hertz(d)), 1, 1e-3);

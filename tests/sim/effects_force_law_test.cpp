@@ -24,12 +24,14 @@ TEST(Stiffening, MultipliesHertzByOnePlusOverlapOverRadius) {
         double work = 0, before = 0;
         for (int step = 0; step < 200; ++step) {
             const double force = grain.squeeze(deepest / 200), overlap = grain.overlap();
-            const double expected = SqueezedGrain::hertz(overlap) * (1 + amount * overlap / SqueezedGrain::radius);
+            const double expected =
+                SqueezedGrain::hertz(overlap) * (1 + amount * overlap / SqueezedGrain::radius);
             EXPECT_NEAR(force / expected, 1, 10 * SqueezedGrain::rounding()) << overlap;
             work += (force + before) / 2 * 2 * deepest / 200;
             before = force;
         }
-        EXPECT_NEAR(grain.energy() / work, 1, 1e-4) << "all work is stored; the trapezoids' error is some 1e-5";
+        EXPECT_NEAR(grain.energy() / work, 1, 1e-4)
+            << "all work is stored; the trapezoids' error is some 1e-5";
     }
 }
 
@@ -66,7 +68,8 @@ TEST(Plasticity, UnloadsAlongASteeperHertzCurve) {
         const double residual = part * deepest;
         for (const Point& p : go(grain, 0)) {
             const double left = std::max(0.0, (p.overlap - residual) / (deepest - residual));
-            EXPECT_NEAR(p.force / SqueezedGrain::hertz(deepest), std::pow(left, 1.5), 10 * SqueezedGrain::rounding());
+            EXPECT_NEAR(p.force / SqueezedGrain::hertz(deepest), std::pow(left, 1.5),
+                        10 * SqueezedGrain::rounding());
         }
     }
 }
@@ -77,7 +80,8 @@ TEST(Plasticity, ALoopEnclosesItsShareOfTheWork) {
         SqueezedGrain grain(plasticity(part), 0);
         const double force = SqueezedGrain::hertz(deepest);
         const double in = work(go(grain, deepest), {0, 0});
-        EXPECT_NEAR(grain.energy() / (2 * (1 - part) * 0.4 * force * deepest), 1, 1e-4) << "what can be got back";
+        EXPECT_NEAR(grain.energy() / (2 * (1 - part) * 0.4 * force * deepest), 1, 1e-4)
+            << "what can be got back";
         const double back = work(go(grain, 0), {deepest, force});
         EXPECT_NEAR((in + back) / (part * 0.4 * force * deepest), 1, 1e-3);
     }

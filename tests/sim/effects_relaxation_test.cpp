@@ -47,7 +47,8 @@ TEST(Relaxation, OfARampIsTheIntegralOverItsHistory) {
     for (int step = 1; step <= steps; ++step) {
         const double force = grain.squeeze(overlap / steps), t = step * grain.time_step();
         const double expected = ramp_force(t, overlap / (steps * grain.time_step()));
-        EXPECT_NEAR(force, expected, 0.6 * late * part * SqueezedGrain::hertz(grain.overlap()) + 1e-9) << step;
+        EXPECT_NEAR(force, expected, 0.6 * late * part * SqueezedGrain::hertz(grain.overlap()) + 1e-9)
+            << step;
     }
     EXPECT_LT(late, 0.06);
 }

@@ -1,5 +1,5 @@
-// One grain between floor and plate, squeezed alike on both sides and moved by hand: force against overlap of a
-// single contact, without any motion of its own.
+// One grain between floor and plate, squeezed alike on both sides and moved by hand: force against overlap of
+// a single contact, without any motion of its own.
 #pragma once
 #include <cmath>
 
@@ -11,12 +11,14 @@ class SqueezedGrain {
 public:
     static constexpr double radius = 0.01, youngs_modulus = 1e5, poisson_ratio = 0.3;
     static constexpr double wall_modulus = 1e13;  ///< as good as rigid
-    static constexpr double modulus = 1 / ((1 - poisson_ratio * poisson_ratio) * (1 / youngs_modulus + 1 / wall_modulus));
+    static constexpr double modulus =
+        1 / ((1 - poisson_ratio * poisson_ratio) * (1 / youngs_modulus + 1 / wall_modulus));
 
     SqueezedGrain(const mcdem::Effects& effects, double overlap)
         : batch_(build(finest()), start(effects, overlap)), plate_(2 * (radius - overlap)) {}
 
-    /// One step in which the overlap grows by `change` [m]. Returns the upward force on the plate at its end [N].
+    /// One step in which the overlap grows by `change` [m]. Returns the upward force on the plate at its end
+    /// [N].
     double squeeze(double change) {
         const double dt = time_step(), velocity = -2 * change / dt;
         batch_.engine().set_velocities(0, {{0, 0, velocity / 2}}, {Vec3::Zero()});
@@ -35,7 +37,8 @@ public:
     static double hertz(double overlap) {
         return overlap > 0 ? 4.0 / 3 * modulus * std::sqrt(radius) * std::pow(overlap, 1.5) : 0;
     }
-    /// Of single steps' forces, relative: coordinates are rounded to 1e-9 of the overlap or, in float, to 1e-5.
+    /// Of single steps' forces, relative: coordinates are rounded to 1e-9 of the overlap or, in float, to
+    /// 1e-5.
     static double rounding() { return has_double() ? 1e-9 : 1e-3; }
 
 private:

@@ -1,0 +1,86 @@
+// Effects that cannot be: amplitudes out of range, plates that would reach the floor, grains that would
+// vanish.
+#include "scene/make_packing.h"
+#include "scene/read_scene.h"
+#include "scene_test_tools.h"
+
+namespace mcdem {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+std::vector<std::string> problems_in(const std::string& text,
+                                     const std::vector<std::string>& overrides = {}) {
+    return problems_of([&] { parse_scene(text, "bad.toml", overrides); });
+}
+
+TEST(EffectsErrors, OutOfRangeAreToldWithTheirUnits) {
+    EXPECT_THAT(
+        problems_in(R"([effects]
+adhesion = -0.1
+viscoelasticity = 1.5
+relaxation_time = 0
+stiffening = -1
+plasticity = 1
+bulge_contacts = 2
+friction_history = "much"
+polydispersity = -1e-3
+adhesive = 1
+)"),
+        ElementsAre(
+            "bad.toml:2: effects.adhesion must be a number between 0 and 1000 [J/m2], got -0.1",
+            "bad.toml:3: effects.viscoelasticity must be a number between 0 and 1, got 1.5",
+            "bad.toml:4: effects.relaxation_time must be a number > 0 and <= 1e+06 [s], got 0",
+            "bad.toml:5: effects.stiffening must be a number between -0.3 and 100, got -1",
+            "bad.toml:6: effects.plasticity must be a number between 0 and 0.99, got 1",
+            "bad.toml:7: effects.bulge_contacts must be a number between 0 and 1, got 2",
+            "bad.toml:8: effects.friction_history must be a number between 0 and 1, got \"much\"",
+            "bad.toml:9: effects.polydispersity must be a number between 0 and 10 [m], got -0.001",
+            StartsWith("bad.toml:10: effects.adhesive must be a key of a scene, got an unknown one")));
+}
+
+TEST(EffectsErrors, OfWhatKeysDemandOfEachOther) {
+    EXPECT_THAT(problems_in("[effects]\nplate_tilt_x = 0.9\nplate_tilt_y = 0.9\n"),
+                ElementsAre(StartsWith(
+                    "bad.toml:2: effects.plate_tilt_x and effects.plate_tilt_y must leave the plate's lowest "
+                    "corner above the floor at plate.end = 0.137517, got 0.9 and 0.9: it is 0.148")));
+    EXPECT_THAT(problems_in("[effects]\ndiameter_error = -0.019\n"),
+                ElementsAre("bad.toml:2: effects.diameter_error must be above minus packing.diameter_min = "
+                            "0.018167, got -0.019"));
+    EXPECT_THAT(problems_in("[effects]\npolydispersity = 0.01\n"),
+                ElementsAre("bad.toml:2: effects.polydispersity must be at most a fifth of "
+                            "packing.diameter_mean = 0.02149, got "
+                            "0.01"));
+}
+
+TEST(EffectsErrors, OfAPackingFileNameTheFile) {
+    const TestFolder folder;
+    folder.write("two.csv", "x_m,y_m,z_m,diameter_m\n0.03,0.08,0.16,0.01\n0.13,0.08,0.16,0.02\n");
+    const auto scene = folder.write("scene.toml", "[packing]\nfile = \"two.csv\"\n");
+    const auto problems = [&](const std::string& override) {
+        return problems_of([&] { read_scene(scene, {override}); });
+    };
+    EXPECT_THAT(
+        problems("effects.diameter_error=-0.01"),
+        ElementsAre(HasSubstr(
+            "two.csv: effects.diameter_error must be above minus the smallest diameter 0.01, got -0.01")));
+    // the plate is at 0.1676 m in the middle, and 11 mm lower over the grain at x = 0.03 m
+    EXPECT_THAT(problems("effects.plate_tilt_x=0.21"),
+                ElementsAre(HasSubstr("the centre of grain 0 must be in the box")));
+}
+
+// Every effect can vary from replica to replica, and names them.
+TEST(EffectsErrors, NoneWhereEffectsVary) {
+    const Scene scene = parse_scene(
+        "[effects]\nplasticity = 0.1\n[batch.vary]\n\"effects.adhesion\" = [0, 0.05]\n", "good.toml", {});
+    ASSERT_EQ(scene.replicas.size(), 2u);
+    EXPECT_EQ(scene.replicas[1].effects.adhesion, 0.05);
+    EXPECT_EQ(scene.replicas[1].effects.plasticity, 0.1);
+    EXPECT_EQ(scene.replicas[1].label, "adhesion=0.05");
+    EXPECT_EQ(scene.replicas[1].parameters.at("effects.adhesion"), "0.05");
+}
+
+}  // namespace
+}  // namespace mcdem

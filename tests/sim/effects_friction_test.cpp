@@ -1,0 +1,142 @@
+// Friction with a share of the other law, and rolling resistance.
+#include <numbers>
+
+#include "reference/test_scene.h"
+
+namespace reference {
+namespace {
+
+Start lattice(FrictionLaw law, double friction_history) {
+    Replica replica = test_replica(ContactModel::independent);
+    replica.contact.friction_law = law;
+    replica.effects.friction_history = friction_history;
+    return jittered_lattice(replica, 27, 51);
+}
+
+// The whole share of the other law is the other law, to the last bit.
+TEST(FrictionHistory, AWholeShareIsTheOtherLaw) {
+    for (Precision precision : {Precision::single_precision, finest()}) {
+        Batch batch(build(precision),
+                    std::vector<Start>{lattice(FrictionLaw::saturated, 0), lattice(FrictionLaw::mindlin, 1),
+                                       lattice(FrictionLaw::mindlin, 0), lattice(FrictionLaw::saturated, 1)});
+        for (int r = 0; r < 4; ++r) {
+            Uniform uniform(3);
+            batch.engine().set_velocities(r, uniform.vectors(27, 0.1), uniform.vectors(27, 10));
+        }
+        batch.advance(100);
+        EXPECT_TRUE(same_bits(batch.engine().state(0), batch.engine().state(1)));
+        EXPECT_TRUE(same_bits(batch.engine().state(2), batch.engine().state(3)));
+        EXPECT_FALSE(same_bits(batch.engine().state(0), batch.engine().state(2)));
+    }
+}
+
+// Sheared alike by hand, three grains on the floor: the third's force is 0.7 of the first law's and 0.3 of
+// the other's. In the one step between two pushes by hand friction changes the speed by some 1e-4.
+TEST(FrictionHistory, AShareOfEachForce) {
+    std::vector<Start> starts;
+    for (double share : {0.0, 1.0, 0.3}) {
+        Replica replica = test_replica(ContactModel::independent);
+        replica.grains.excess_density = 1000;
+        replica.effects.friction_history = share;
+        replica.contact.sliding_velocity = 0.2;
+        replica.numerics.time_step = 2e-3;
+        Start start = free_cluster(replica, {Vec3::Zero()}, {0.02});
+        start.packing.position[0].z() = 0.01 - 2e-4;
+        starts.push_back(start);
+    }
+    Batch batch(build(finest()), starts);
+    double most = 0;
+    for (int step = 0; step < 40; ++step) {
+        for (int r = 0; r < 3; ++r)
+            batch.engine().set_velocities(r, {{step < 25 ? 0.4 : -0.4, 0, 0}}, {Vec3::Zero()});
+        const auto results = batch.advance(1);
+        const auto force = [&](int r) {
+            return results[r].wall_force[static_cast<int>(mcdem::Wall::floor)].x();
+        };
+        most = std::max({most, std::abs(force(0)), std::abs(force(1))});
+        EXPECT_NEAR(force(2), 0.7 * force(0) + 0.3 * force(1), 1e-3 * most) << step;
+        if (step == 3) EXPECT_GT(std::abs(force(0) - force(1)), 0.1 * most) << "the laws differ";
+    }
+    EXPECT_GT(most, 0);
+}
+
+struct Rolling {
+    std::vector<double> speed;
+    double time_step = 0;
+};
+
+/// A sphere that starts to roll at 0.05 m/s along the floor under its weight.
+Rolling roll(double rolling_resistance, int steps) {
+    Replica replica = test_replica(ContactModel::independent);
+    replica.grains = {1e6, 0.3, 1000, 1000, 0.5, 0.3, 0};
+    replica.walls = {1e12, 0.3, 0.5, 0.3};
+    replica.effects.rolling_resistance = rolling_resistance;
+    replica.contact.sliding_velocity = 1e-4;
+    Start start = free_cluster(replica, {Vec3::Zero()}, {0.02});
+    const double weight = 1000 * 9.81 * 4.0 / 3 * std::numbers::pi * 1e-6;
+    start.packing.position[0].z() = 0.01 - std::pow(weight / (4.0 / 3 * 1e6 / 0.91 * 0.1), 2.0 / 3);
+    Batch batch(build(finest()), start);
+    batch.engine().set_velocities(0, {{0.05, 0, 0}}, {{0, 5, 0}});
+    Rolling rolling;
+    rolling.time_step = batch.engine().time_step(0);
+    for (int step = 0; step < steps; step += 20) {
+        batch.advance(20);
+        rolling.speed.push_back(batch.engine().state(0).velocity[0].x());
+    }
+    return rolling;
+}
+
+// The couple M = mu_r R m g and the friction that keeps it rolling: a = -M / (R (m + I/R^2)) = -5/7 mu_r g.
+// The overlap, a thousandth of R, shortens the arm.
+TEST(RollingResistance, SlowsARollingSphereByFiveSeventhsOfItsShareOfGravity) {
+    constexpr double resistance = 0.02;
+    const Rolling rolling = roll(resistance, 2000);
+    const double expected = -5.0 / 7 * resistance * 9.81;
+    const std::size_t first = 20, last = 80;
+    const double measured =
+        (rolling.speed[last] - rolling.speed[first]) / ((last - first) * 20 * rolling.time_step);
+    EXPECT_GT(rolling.speed[last], 0.01);
+    EXPECT_NEAR(measured / expected, 1, 0.01);
+    const Rolling free = roll(0, 2000);
+    EXPECT_NEAR(free.speed[last], 0.05, 1e-3);
+}
+
+TEST(RollingResistance, StopsASphereForGood) {
+    const Rolling rolling = roll(0.3, 4000);
+    double least = 1;
+    for (double speed : rolling.speed) least = std::min(least, speed);
+    EXPECT_GT(least, -1e-6) << "it never turns back";
+    EXPECT_LT(std::abs(rolling.speed.back()), 1e-4);
+}
+
+// Two grains pressed together and twisting against each other: the couple mu_r R* F acts along the line of
+// centres too, and on both alike.
+TEST(RollingResistance, SlowsTwistingAndKeepsAngularMomentum) {
+    constexpr double resistance = 0.1, radius = 0.01;
+    Replica replica = test_replica(ContactModel::independent);
+    replica.grains = {1e5, 0.3, 1000, 0, 0, 1, 0};
+    replica.effects.rolling_resistance = resistance;
+    const Start start = free_cluster(replica, {{0, 0, 0}, {0.0199, 0, 0}}, {2 * radius, 2 * radius});
+    const double inertia = 0.4 * 1000 * 4.0 / 3 * std::numbers::pi * std::pow(radius, 5);
+    Batch batch(build(finest()), start);
+    std::vector<Vec3> spin{{3, 0, 0}, {-1, 0, 0}};
+    double force = 0;
+    for (int step = 0; step < 10; ++step) {
+        batch.engine().set_velocities(0, {2, Vec3::Zero()}, spin);  // held by hand; they spin as they will
+        batch.advance(1);
+        const auto state = batch.engine().state(0);
+        const auto& now = state.angular_velocity;
+        EXPECT_NEAR(now[0].x() + now[1].x(), 2, has_double() ? 1e-12 : 1e-4);
+        const double slower = spin[0].x() - spin[1].x() - (now[0].x() - now[1].x());
+        const double expected = 2 * resistance * radius / 2 * force / inertia * batch.engine().time_step(0);
+        if (step > 0)
+            EXPECT_NEAR(slower / expected, 1, 0.01) << step << ": the couple fades at 0.2 of 4 per second";
+        ASSERT_EQ(state.contacts.size(), 1u);
+        force = state.contacts.front().force.norm();
+        spin = now;
+    }
+    EXPECT_LT(spin[0].x() - spin[1].x(), 3.9);
+}
+
+}  // namespace
+}  // namespace reference

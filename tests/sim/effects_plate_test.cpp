@@ -1,0 +1,190 @@
+// A plate that leans, and one that gives way.
+#include "sim/compliant_plate.h"
+#include "sim/simulation.h"
+#include "sim/squeezed_grain.h"
+
+namespace reference {
+namespace {
+
+constexpr double radius = SqueezedGrain::radius, tilt_x = 0.1, tilt_y = -0.05, width = 6 * radius;
+constexpr int plate_wall = static_cast<int>(mcdem::Wall::plate);
+
+Replica single_grain() {
+    Replica replica = test_replica(ContactModel::independent);
+    replica.grains = {SqueezedGrain::youngs_modulus, SqueezedGrain::poisson_ratio, 1000, 0, 0, 0.5, 0};
+    replica.walls = {SqueezedGrain::wall_modulus, SqueezedGrain::poisson_ratio, 0, 0.5};
+    replica.box = {width, width};
+    return replica;
+}
+
+/// Distance of a point from the leaning face, as of a plane through three of its points.
+double distance_to_face(const Vec3& point, double plate_z) {
+    const Vec3 middle(width / 2, width / 2, plate_z), along_x(1, 0, tilt_x), along_y(0, 1, tilt_y);
+    return along_x.cross(along_y).normalized().dot(middle - point);
+}
+
+Start under_leaning_plate(const Vec3& position, double plate_z) {
+    Replica replica = single_grain();
+    replica.effects.plate_tilt_x = tilt_x;
+    replica.effects.plate_tilt_y = tilt_y;
+    replica.plate.start = plate_z;
+    replica.grains.restitution = replica.walls.restitution = 1;
+    replica.numerics.overlap_limit = 1;
+    return {replica, {{position}, {2 * radius}}};
+}
+
+// The force is the Hertz force of the distance from the plane, along its normal, at the foot of the
+// perpendicular; the plate feels it and its couple about the middle.
+TEST(PlateTilt, PushesAlongTheNormalOfTheFace) {
+    for (const Vec3& position : {Vec3(0.02, 0.02, 0.05), Vec3(0.045, 0.03, 0.05)}) {
+        constexpr double overlap = 3e-4;
+        const double plate_z = 0.05 + (radius - overlap) * std::sqrt(1 + tilt_x * tilt_x + tilt_y * tilt_y) -
+                               tilt_x * (position.x() - width / 2) - tilt_y * (position.y() - width / 2);
+        Batch batch(build(finest()), under_leaning_plate(position, plate_z));
+        const auto result = batch.advance(1).front();
+        const auto state = batch.engine().state(0);
+        const Vec3 normal = Vec3(-tilt_x, -tilt_y, 1).normalized();
+        const double distance = distance_to_face(state.position[0], plate_z);
+        const double hertz = SqueezedGrain::hertz(radius - distance);
+        ASSERT_GT(hertz, 0);
+        EXPECT_LT((result.wall_force[plate_wall] / hertz - normal).norm(), 10 * SqueezedGrain::rounding());
+        const Vec3& force = result.wall_force[plate_wall];
+        EXPECT_LT(force.cross(normal).norm() / force.norm(), SqueezedGrain::rounding());
+        ASSERT_EQ(state.contacts.size(), 1u);
+        const auto& contact = state.contacts.front();
+        EXPECT_LT((contact.force + force).norm() / force.norm(), SqueezedGrain::rounding());
+        const Vec3 foot = state.position[0] + distance * normal;
+        EXPECT_LT((contact.point - foot).norm(), SqueezedGrain::rounding() * radius);
+        EXPECT_NEAR(contact.overlap / (radius - distance), 1, 100 * SqueezedGrain::rounding());
+        const Vec3 middle(width / 2, width / 2, plate_z);
+        const Vec3 couple = (contact.point - middle).cross(-contact.force);
+        EXPECT_LT((couple - (foot - middle).cross(hertz * normal)).norm(),
+                  10 * SqueezedGrain::rounding() * couple.norm());
+    }
+}
+
+// A centre is lost when it is above the face where it is, not above the middle of it.
+TEST(PlateTilt, GrainsAreLostAboveTheFaceOnly) {
+    const double plate_z = 0.05;
+    std::vector<Start> starts;
+    for (double x : {0.015, 0.045})
+        starts.push_back(under_leaning_plate({x, 0.03, plate_z}, plate_z + (x < 0.03 ? 0.0016 : -0.0014)));
+    for (Start& start : starts) start.packing.diameter = {1e-3};
+    Batch batch(build(finest()), starts);
+    const auto results = batch.advance(1);
+    EXPECT_EQ(results[0].status, 0) << "1.6 mm below the middle of the face, which is 1.5 mm lower here";
+    EXPECT_EQ(results[1].status, 0) << "1.4 mm above the middle of the face, which is 1.5 mm higher here";
+    for (Start& start : starts) start.replica.plate.start -= 0.0002;
+    Batch lower(build(finest()), starts);
+    for (const auto& result : lower.advance(1)) EXPECT_NE(result.status & STATUS_LOST, 0);
+}
+
+/// Scans of one grain between the floor and a plate that comes down by `stroke`.
+std::vector<mcdem::Scan> scans(const Replica& replica, int count = 1) {
+    mcdem::Scene scene;
+    scene.precision = finest();
+    scene.replicas = {replica};
+    scene.replicas[0].protocol.scans_per_stroke = count;
+    scene.replicas[0].protocol.settle_kinetic_over_elastic = 1e-12;
+    scene.replicas[0].box = {2.2 * radius, 2.2 * radius};
+    const Packing packing{{{1.1 * radius, 1.1 * radius, replica.plate.start / 2}}, {2 * radius}};
+    mcdem::Simulation simulation(device(), scene, {packing});
+    std::vector<mcdem::Scan> all;
+    while (simulation.advance([&](int, const mcdem::Scan& scan) { all.push_back(scan); },
+                              [](int, const mcdem::Failure& failure) { ADD_FAILURE() << failure.cause; })) {
+    }
+    return all;
+}
+
+// Settled, force and position solve z = commanded z + C F, F = F_H(R - z/2); C dF/dz goes up to 12. A scan
+// waits for the plate, to a thousandth of its give or of what it may move in a stretch.
+TEST(PlateCompliance, ForceAndPositionAgree) {
+    for (double compliance : {1e-3, 1e-2, 5e-2}) {
+        Replica replica = single_grain();
+        replica.effects.plate_compliance = compliance;
+        replica.plate = {2 * radius, 2 * radius * 0.95, 0.05};
+        replica.protocol.settle_time = 5;
+        const auto all = scans(replica, 3);
+        ASSERT_EQ(all.size(), 6u);
+        for (const auto& scan : all) {
+            if (scan.plate_z == replica.plate.start) continue;  // free again, nothing to settle on
+            double low = scan.plate_z, high = std::max(scan.plate_z, 2 * radius);
+            for (int k = 0; k < 100; ++k) {
+                const double z = (low + high) / 2;
+                (scan.plate_z + compliance * SqueezedGrain::hertz(radius - z / 2) > z ? low : high) = z;
+            }
+            const double expected = SqueezedGrain::hertz(radius - low / 2);
+            EXPECT_TRUE(scan.settled);
+            EXPECT_NEAR(compliance * scan.top_force(), compliance * expected,
+                        1e-3 * std::max(2e-4, low - scan.plate_z))
+                << compliance << " at " << scan.plate_z;
+            for (const auto& contact : scan.contacts)
+                if (contact.partner == mcdem::wall_partner(mcdem::Wall::plate))
+                    EXPECT_NEAR(contact.point.z() - scan.plate_z, compliance * scan.top_force(),
+                                1e-3 * std::max(2e-4, low - scan.plate_z));
+        }
+        EXPECT_EQ(all[2].plate_z, replica.plate.end) << "the recorded position is the commanded one";
+    }
+}
+
+/// A spring in the plate's place: what the controller does by itself.
+class Spring {
+public:
+    Spring(const Replica& replica, double stiffness) : plate_(replica), stiffness_(stiffness) {}
+
+    /// One stretch in which the commanded plate moves by `move` from where it is; the spring is free above
+    /// zero.
+    void stretch(double move, int steps) {
+        mcdem::Stretch stretch{steps, commanded_, move / (steps * time_step), 0};
+        plate_.give_way(stretch, time_step, farthest);
+        EXPECT_NEAR(stretch.plate_z, true_z_, 1e-13) << "the plate does not jump";
+        const double went = stretch.plate_velocity * steps * time_step;
+        EXPECT_LE(std::abs(went), std::max(farthest, std::abs(move)) * (1 + 1e-12));
+        true_z_ += went;
+        commanded_ += move;
+        mcdem::StretchResult result;
+        result.steps = steps;
+        result.wall_force[plate_wall] = {0, 0, force()};
+        plate_.made(result);
+    }
+    double force() const { return stiffness_ * std::max(0.0, -true_z_); }
+    /// What is missing of the give, C F less true less commanded position.
+    double lag(double compliance) const { return compliance * force() - (true_z_ - commanded_); }
+
+private:
+    static constexpr double time_step = 1e-4, farthest = 2e-4;
+    mcdem::CompliantPlate plate_;
+    double stiffness_, commanded_ = 0, true_z_ = 0;
+};
+
+TEST(PlateCompliance, FollowsAMovingPlateWithoutLag) {
+    constexpr double stiffness = 1000, move = 1e-4;
+    for (double compliance : {1e-4, 5e-4, 2e-3}) {
+        Replica replica = single_grain();
+        replica.effects.plate_compliance = compliance;
+        replica.plate.start = 2 * radius;
+        replica.box = {2.2 * radius, 2.2 * radius};
+        Spring spring(replica, stiffness);
+        for (int k = 0; k < 1000; ++k) spring.stretch(-move, 10);
+        EXPECT_NEAR(spring.lag(compliance), 0, 1e-2 * move) << compliance;
+        const double gain = compliance * stiffness, depth = 1000 * move;
+        EXPECT_NEAR(spring.force() / (stiffness * depth / (1 + gain)), 1, 1e-4);
+        for (int k = 0; k < 100; ++k) spring.stretch(0, 60);
+        EXPECT_NEAR(spring.lag(compliance), 0, 1e-9) << compliance << ": at rest nothing is left";
+    }
+}
+
+TEST(PlateCompliance, ARigidPlateIsLeftAlone) {
+    mcdem::CompliantPlate plate(single_grain());
+    mcdem::Stretch stretch{17, 0.1, -0.03, 2};
+    mcdem::StretchResult result;
+    result.steps = 17;
+    result.wall_force[plate_wall] = {0, 0, 5};
+    plate.made(result);
+    plate.give_way(stretch, 1e-4, 1e-4);
+    EXPECT_EQ(stretch.plate_z, 0.1);
+    EXPECT_EQ(stretch.plate_velocity, -0.03);
+}
+
+}  // namespace
+}  // namespace reference

@@ -1,0 +1,80 @@
+// A simulation from its first packing to its last scan with everything that it tells, bit for bit.
+#pragma once
+#include "reference/test_scene.h"
+#include "sim/simulation.h"
+
+namespace reference {
+
+/// Everything that a simulation tells of one replica.
+struct Told {
+    std::vector<double> numbers;
+    int scans = 0;
+    void add(const mcdem::Scan& scan) {
+        ++scans;
+        for (const auto& x : scan.position) add(x);
+        for (const auto& f : scan.wall_force) add(f);
+        for (const auto& c : scan.contacts) {
+            add(c.force);
+            add(c.point);
+            numbers.push_back(c.overlap);
+        }
+        for (double value :
+             {scan.time, scan.plate_z, scan.kinetic_energy, scan.elastic_energy, scan.mean_force})
+            numbers.push_back(value);
+    }
+    void add(const Vec3& v) { numbers.insert(numbers.end(), {v.x(), v.y(), v.z()}); }
+    bool operator==(const Told& other) const {
+        return numbers.size() == other.numbers.size() &&
+               std::memcmp(numbers.data(), other.numbers.data(), numbers.size() * sizeof(double)) == 0;
+    }
+};
+
+class WholeRun {
+public:
+    WholeRun(Precision precision, const std::vector<Start>& starts)
+        : told(starts.size()), simulation_(device(), scene(precision, starts), packings(starts)) {}
+
+    bool advance() {
+        return simulation_.advance([this](int r, const mcdem::Scan& scan) { told[r].add(scan); },
+                                   [](int r, const mcdem::Failure& failure) {
+                                       ADD_FAILURE() << "replica " << r << ": " << failure.cause;
+                                   });
+    }
+    void advance(int rounds) {
+        for (int round = 0; round < rounds && advance(); ++round) {
+        }
+    }
+    void finish() {
+        while (advance()) {
+        }
+    }
+    mcdem::ReplicaState state(int r) { return simulation_.engine().state(r); }
+    auto save() { return simulation_.save(); }
+    void restore(const std::map<std::string, std::vector<std::byte>>& saved) { simulation_.restore(saved); }
+
+    std::vector<Told> told;
+
+private:
+    static mcdem::Scene scene(Precision precision, const std::vector<Start>& starts) {
+        mcdem::Scene scene;
+        scene.precision = precision;
+        for (const Start& start : starts) scene.replicas.push_back(start.replica);
+        return scene;
+    }
+    static std::vector<Packing> packings(const std::vector<Start>& starts) {
+        std::vector<Packing> all;
+        for (const Start& start : starts) all.push_back(start.packing);
+        return all;
+    }
+    mcdem::Simulation simulation_;
+};
+
+/// Four scans, all alike.
+inline void expect_same(WholeRun& one, int r, WholeRun& other, int s) {
+    EXPECT_TRUE(one.told[r] == other.told[s]);
+    EXPECT_TRUE(same_bits(one.state(r), other.state(s)));
+    EXPECT_EQ(one.told[r].scans, 4);
+    EXPECT_GT(one.told[r].numbers.size(), 50u);
+}
+
+}  // namespace reference
