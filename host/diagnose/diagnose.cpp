@@ -149,6 +149,7 @@ Diagnosis Draft::diagnosis() const {
     d.p_directed = null_.p_value(&GapStatistics::directed, statistics_.directed);
     const Location location = locate(space_, data_, null_, data_.gap, evidence_.library.grid, limits_);
     d.cells = location.cells;
+    d.where_threshold = location.threshold;
     if (d.detected) d.where = location.entries;
     const Causes causes(evidence_, findings_, decision_, statistics_);
     d.ranking = causes.ranking();
@@ -159,6 +160,7 @@ Diagnosis Draft::diagnosis() const {
     d.causes = causes.leading();
     const Split split = split_cells(data_.cells, evidence_.library.grid);
     d.shrink = measure_shrink(data_, split, decided(), mean_of_, evidence_.seed);
+    d.shrink->fitted_displacement = {0, fitted_part * evidence_.library.grid.stroke};
     if (held_out_runs_ && d.shrink->before > 0) {
         const Eigen::VectorXd left = evidence_.observed - held_out_runs_->colwise().mean().transpose();
         const double after = gap_size(data_, split.held_out, left, static_cast<int>(held_out_runs_->rows()));

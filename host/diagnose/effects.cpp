@@ -77,11 +77,11 @@ const Effect table[] = {
      -0.08, 0.08, -0.015, 0.015, one, [](Model& m, double a) { m.replica.effects.plate_tilt_y = a; }, nothing},
     {"plate_compliance", "m/N", "how far the plate gives way per newton", "linear spring",
      0, 1, 0.1, 0.3, compliance_scale, [](Model& m, double a) { m.replica.effects.plate_compliance = a; }, nothing},
-    {"force_bias", "", "contact forces read too large by this part", "measurement",
+    {"force_bias", "relative", "contact forces read too large by this part", "measurement",
      -0.5, 0.8, -0.1, 0.1, one, [](Model& m, double a) { m.instrument.force_bias = a; }, nothing},
     {"force_threshold", "N", "true less stated threshold of contact forces", "measurement",
      -1, 8, -0.5, 1.5, threshold_scale, [](Model& m, double a) { m.instrument.threshold_shift = a; }, no_threshold},
-    {"position_bias", "", "lengths read too large by this part", "measurement",
+    {"position_bias", "relative", "lengths read too large by this part", "measurement",
      -0.02, 0.02, -0.003, 0.003, one, [](Model& m, double a) { m.instrument.position_bias = a; }, nothing},
 };
 // clang-format on
@@ -107,7 +107,7 @@ std::vector<Nuisance> nuisances(const Model& model, const Experiment& experiment
     };
     std::vector<Nuisance> list;
     const double modulus = stated("grains.youngs_modulus") / model.replica.grains.youngs_modulus;
-    list.push_back({"modulus", "", modulus > 0 ? modulus : modulus_sigma,
+    list.push_back({"modulus", "relative", modulus > 0 ? modulus : modulus_sigma,
                     [](Model& m, double shift) { m.replica.grains.youngs_modulus *= std::exp(shift); }});
     list.push_back({"strain_offset", "m", strain_zero_sigma * model.mean_diameter,
                     [](Model& m, double shift) { m.instrument.strain_offset = shift; }});

@@ -8,7 +8,6 @@
 namespace mcdem {
 namespace {
 
-constexpr double fitted_part = 0.85;  // of the stroke, loading only
 constexpr int bootstrap_draws = 200;
 constexpr int placebo_signatures = 20;
 

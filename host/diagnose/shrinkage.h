@@ -6,6 +6,9 @@
 
 namespace mcdem {
 
+/// Part of the stroke that is fitted, loading only.
+inline constexpr double fitted_part = 0.85;
+
 /// Cells that the fit may use and those held out.
 struct Split {
     CellChoice fitted, held_out;
