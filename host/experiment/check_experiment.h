@@ -24,7 +24,8 @@ struct ExperimentCheck {
     std::vector<std::string> of(Severity severity) const;  ///< their texts
 };
 
-/// Finds nothing odd in what `measured` gives of a simulation that has settled at every scan.
+/// Finds nothing odd in what `measured` gives of a simulation that has settled at every scan, its stated diameters and
+/// moduli true. What an experiment lacks (severity missing) limits every conclusion from it.
 ExperimentCheck check_experiment(const Experiment& experiment);
 
 }  // namespace mcdem

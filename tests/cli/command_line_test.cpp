@@ -6,8 +6,8 @@ namespace {
 
 using testing::HasSubstr;
 
-const std::vector<std::string> commands{"devices", "validate", "run",       "table",
-                                        "compare", "figures",  "calibrate", "export", "experiment"};
+const std::vector<std::string> commands{"devices", "validate",  "run",    "table",     "compare",
+                                        "figures", "calibrate", "export", "experiment"};
 
 TEST_F(CliTest, HelpNamesAllCommandsAndEachTeachesByExample) {
     const auto help = mcdem({"--help"});
