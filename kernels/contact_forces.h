@@ -70,7 +70,7 @@ INLINE Contacts contact_forces(global const Replica* restrict replica, const int
     c.bulge = bulge;
     lanes held = c.elastic;
     if (effects) {
-        if (effects & EFFECT_STIFFENING) c.elastic *= R(1) + replica->stiffening * c.overlap / pair.radius;
+        if (effects & EFFECT_STIFFENING) c.elastic = stiffened(replica, c.elastic, c.overlap, pair.radius);
         held = c.elastic;
         if (effects & EFFECT_VISCOELASTICITY)
             held = relaxing_force(c.elastic, replica->viscoelasticity, replica->relaxing_share, &memory->relaxed);

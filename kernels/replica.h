@@ -38,7 +38,7 @@ typedef struct {
     real adhesion;            /* 2 pi w, pull-off force over R* [N/m] */
     real viscoelasticity;     /* part of the force that relaxes */
     real relaxing_share;      /* 1 - exp(-dt / T): of what is left to relax, in a step */
-    real stiffening;          /* per overlap over R* */
+    real stiffening;          /* c, per overlap over R*; below zero it softens */
     real plasticity;          /* part of the deepest overlap that stays */
     real bulge_contacts;      /* part of the bulges that counts without geometric overlap */
     real mindlin_share;       /* of the friction force, the rest is saturated */

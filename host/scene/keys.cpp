@@ -92,7 +92,7 @@ const Key table[] = {
     {"effects.adhesion", effect<&Effects::adhesion>, "J/m2", between(0, 1000), each, "work of adhesion w of two grains, and of a grain and a wall: touching contacts attract by 2 pi w R* (DMT)"},
     {"effects.viscoelasticity", effect<&Effects::viscoelasticity>, "", between(0, 1), each, "part of a contact's force that relaxes at constant overlap"},
     {"effects.relaxation_time", effect<&Effects::relaxation_time>, "s", duration, each, "of that part"},
-    {"effects.stiffening", effect<&Effects::stiffening>, "", between(-0.3, 100), each, "Hertz force times 1 + stiffening * overlap / R*; below zero it softens"},
+    {"effects.stiffening", effect<&Effects::stiffening>, "", between(-100, 100), each, "c: Hertz force times 1 + c overlap / R*; where c < 0 over 1 - c overlap / R*, which softens"},
     {"effects.plasticity", effect<&Effects::plasticity>, "", between(0, 0.99), each, "part of the deepest overlap that stays after unloading"},
     {"effects.bulge_contacts", effect<&Effects::bulge_contacts>, "", between(0, 1), each, "part of the bulges that counts where grains do not overlap by themselves; 1: all of it, 0: bulges make no contacts"},
     {"effects.friction_history", effect<&Effects::friction_history>, "", between(0, 1), each, "share of the friction law that contact.friction_law does not name"},

@@ -88,7 +88,7 @@ struct Effects {
     double adhesion = 0;            ///< work of adhesion w of two grains [J/m2]
     double viscoelasticity = 0;     ///< part of the Hertz force that relaxes at constant overlap
     double relaxation_time = 0.1;   ///< of that part [s]
-    double stiffening = 0;          ///< Hertz force times 1 + stiffening * overlap / R*
+    double stiffening = 0;          ///< c: Hertz force times 1 + c overlap / R*, or over 1 - c overlap / R* where c < 0
     double plasticity = 0;          ///< part of the largest overlap that stays after unloading
     double bulge_contacts = 1;      ///< part of the bulges that counts where grains do not overlap by themselves
     double friction_history = 0;    ///< share of the friction law that contact.friction_law does not name

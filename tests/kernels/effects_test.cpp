@@ -27,7 +27,7 @@ Effects all_effects() {
 /// One replica an effect, and one with none.
 std::vector<Effects> one_by_one() {
     const Effects all = all_effects();
-    std::vector<Effects> each(10);
+    std::vector<Effects> each(11);
     each[0].adhesion = all.adhesion;
     each[1].viscoelasticity = all.viscoelasticity;
     each[1].relaxation_time = all.relaxation_time;
@@ -39,6 +39,7 @@ std::vector<Effects> one_by_one() {
     each[7].modulus_scatter = all.modulus_scatter;
     each[8].plate_tilt_x = all.plate_tilt_x;
     each[8].plate_tilt_y = all.plate_tilt_y;
+    each[9].stiffening = -all.stiffening;
     return each;
 }
 

@@ -201,8 +201,9 @@ void StepReference::push(Seen& seen, const Body& a, const Body& b, const Joint& 
     const Vec3& e = seen.direction;
     const double distance = (b.position - a.position).norm();
     const double x = effects.stiffening * seen.overlap / joint.radius;
-    seen.energy = seen.elastic * seen.overlap * (2.0 / 5 + 2.0 / 7 * x);
-    seen.elastic *= 1 + x;
+    seen.elastic *= x > 0 ? 1 + x : 1 / (1 - x);
+    seen.energy = seen.elastic * seen.overlap *
+                  (x > 0 ? (2.0 / 5 + 2.0 / 7 * x) / (1 + x) : (2.0 / 5 - 2.0 / 7 * x) / (1 - 3.0 / 7 * x));
     const double held = std::max(0.0, seen.elastic - effects.viscoelasticity * memory.relaxed);
     const double left = std::exp(-elapsed / effects.relaxation_time);
     memory.relaxed = seen.elastic * (1 - left) + memory.relaxed * left;

@@ -22,7 +22,7 @@ TEST(EffectsErrors, OutOfRangeAreToldWithTheirUnits) {
 adhesion = -0.1
 viscoelasticity = 1.5
 relaxation_time = 0
-stiffening = -1
+stiffening = -101
 plasticity = 1
 bulge_contacts = 2
 friction_history = "much"
@@ -33,7 +33,7 @@ adhesive = 1
             "bad.toml:2: effects.adhesion must be a number between 0 and 1000 [J/m2], got -0.1",
             "bad.toml:3: effects.viscoelasticity must be a number between 0 and 1, got 1.5",
             "bad.toml:4: effects.relaxation_time must be a number > 0 and <= 1e+06 [s], got 0",
-            "bad.toml:5: effects.stiffening must be a number between -0.3 and 100, got -1",
+            "bad.toml:5: effects.stiffening must be a number between -100 and 100, got -101",
             "bad.toml:6: effects.plasticity must be a number between 0 and 0.99, got 1",
             "bad.toml:7: effects.bulge_contacts must be a number between 0 and 1, got 2",
             "bad.toml:8: effects.friction_history must be a number between 0 and 1, got \"much\"",

@@ -18,21 +18,32 @@ mcdem::Effects plasticity(double part) {
     return effects;
 }
 
-TEST(Stiffening, MultipliesHertzByOnePlusOverlapOverRadius) {
-    for (double amount : {-0.3, 1.0, 5.0}) {
-        SqueezedGrain grain(stiffening(amount), 0);
-        double work = 0, before = 0;
-        for (int step = 0; step < 200; ++step) {
-            const double force = grain.squeeze(deepest / 200), overlap = grain.overlap();
-            const double expected =
-                SqueezedGrain::hertz(overlap) * (1 + amount * overlap / SqueezedGrain::radius);
-            EXPECT_NEAR(force / expected, 1, 10 * SqueezedGrain::rounding()) << overlap;
-            work += (force + before) / 2 * 2 * deepest / 200;
-            before = force;
-        }
-        EXPECT_NEAR(grain.energy() / work, 1, 1e-4)
-            << "all work is stored; the trapezoids' error is some 1e-5";
+/// The work of the plate is what both contacts store; trapezoids over 200 steps add some 1e-5.
+void expect_law(double amount, double (*factor)(double), double energy_error) {
+    SqueezedGrain grain(stiffening(amount), 0);
+    double work = 0, before = 0;
+    for (int step = 0; step < 200; ++step) {
+        const double force = grain.squeeze(deepest / 200), overlap = grain.overlap();
+        const double expected =
+            SqueezedGrain::hertz(overlap) * factor(amount * overlap / SqueezedGrain::radius);
+        EXPECT_NEAR(force / expected, 1, 10 * SqueezedGrain::rounding()) << overlap;
+        work += (force + before) / 2 * 2 * deepest / 200;
+        before = force;
     }
+    EXPECT_NEAR(grain.energy() / work, 1, energy_error) << amount;
+}
+
+TEST(Stiffening, MultipliesHertzByOnePlusOverlapOverRadius) {
+    for (double amount : {1.0, 5.0})
+        expect_law(
+            amount, [](double x) { return 1 + x; }, 1e-4);
+}
+
+// Softening divides instead, so that the force grows however deep the overlap is.
+TEST(Stiffening, BelowZeroItDivides) {
+    for (double amount : {-1.0, -20.0})
+        expect_law(
+            amount, [](double x) { return 1 / (1 - x); }, 0.03);
 }
 
 struct Point {
