@@ -53,7 +53,7 @@ int run_cli(int argc, const char* const* argv) {
     int exit_code = exit_done;
     for (const auto add :
          {add_devices, add_validate, add_run, add_table, add_compare, add_figures, add_calibrate, add_export,
-          add_experiment})
+          add_experiment, add_diagnose, add_challenge})
         add(app, exit_code);
     try {
         app.parse(argc, argv);

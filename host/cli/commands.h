@@ -18,6 +18,8 @@ void add_compare(CLI::App& app, int& exit_code);
 void add_figures(CLI::App& app, int& exit_code);
 void add_calibrate(CLI::App& app, int& exit_code);
 void add_export(CLI::App& app, int& exit_code);
+void add_diagnose(CLI::App& app, int& exit_code);
+void add_challenge(CLI::App& app, int& exit_code);
 void add_experiment(CLI::App& app, int& exit_code);
 
 }  // namespace mcdem

@@ -2,12 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <atomic>
+#include <algorithm>
 #include <exception>
 #include <map>
-#include <thread>
 
 #include "core/errors.h"
+#include "core/in_parallel.h"
 #include "scene/make_packing.h"
 
 namespace mcdem {
@@ -23,19 +23,6 @@ std::string start_of(const Replica& replica) {
     const auto& drawn = std::get<GeneratedPacking>(from.source);
     return text + fmt::format(" drawn {} {} {} {} {} {}", drawn.count, drawn.diameter_mean, drawn.diameter_sd,
                               drawn.diameter_min, drawn.diameter_max, drawn.packing_fraction);
-}
-
-/// Calls work(i) for i below `count` on as many threads as there are cores.
-template <class Work>
-void in_parallel(std::size_t count, Work work) {
-    std::atomic<std::size_t> next{0};
-    const auto take_turns = [&] {
-        for (std::size_t i = next++; i < count; i = next++) work(i);
-    };
-    const std::size_t cores = std::max(1u, std::thread::hardware_concurrency());
-    std::vector<std::jthread> threads;
-    for (std::size_t t = 1; t < std::min(count, cores); ++t) threads.emplace_back(take_turns);
-    take_turns();
 }
 
 /// Throws the first error that is not about input; else all problems of input, each once.

@@ -1,0 +1,68 @@
+// mcdem challenge score
+#include "diagnose/challenge_score.h"
+
+#include <fmt/format.h>
+
+#include "cli/challenge.h"
+#include "cli/challenge_tables.h"
+#include "cli/messages.h"
+#include "cli/progress.h"
+#include "core/atomic_file.h"
+#include "core/errors.h"
+#include "diagnose/challenge_truth.h"
+
+namespace mcdem {
+namespace {
+
+struct ScoreCommand {
+    std::string challenge, out, truth;
+    bool no_figures = false;
+};
+
+void print(const ChallengeScore& score) {
+    fmt::print("{}\n{}\n", to_text(table_of_merits(score), TableFormat::terminal),
+               to_text(table_of_arms(score), TableFormat::terminal));
+}
+
+void draw(const ChallengeScore& score, const std::filesystem::path& folder) {
+    try {
+        for (const auto& picture : draw_score(score, folder)) fmt::print("wrote {}\n", picture.string());
+    } catch (const RunError& error) {
+        spdlog::warn("no pictures: {}", error.what());
+    }
+}
+
+void score(const ScoreCommand& command) {
+    const std::filesystem::path folder = command.challenge, out = command.out;
+    const OpenChallenge open = read_open_challenge(folder);
+    const Challenge truth = open_truth(command.truth.empty() ? folder / "truth.json" : std::filesystem::path(command.truth),
+                                       open.sealed);
+    ChallengeScore score;
+    {
+        Progress progress(stderr, progress_style(stderr));
+        score = score_challenge(truth, open, out, [&](double fraction) { progress.show(fraction); });
+    }
+    for (const std::string& problem : score.not_diagnosed) spdlog::warn("not diagnosed: {}", problem);
+    print(score);
+    replace_file(out / "score.json", score_json(score));
+    replace_file(out / "score.md", score_markdown(score));
+    fmt::print("wrote {}\nwrote {}\n", (out / "score.json").string(), (out / "score.md").string());
+    if (!command.no_figures) draw(score, out);
+}
+
+}  // namespace
+
+void add_challenge_score(CLI::App& challenge, int&) {
+    auto* sub = challenge.add_subcommand("score", "Open the answers and hold the diagnoses against them");
+    auto command = std::make_shared<ScoreCommand>();
+    sub->add_option("CHALLENGE", command->challenge, "Folder of the challenge")->required();
+    sub->add_option("ANSWERS", command->out, "Folder of the diagnoses; the score is written there too")->required();
+    sub->add_option("--truth", command->truth, "File with the truth; CHALLENGE/truth.json where left out")->type_name("FILE");
+    sub->add_flag("--no-figures", command->no_figures, "Do not draw pictures");
+    sub->footer("Truth of another SHA-256 than challenge.json says is refused.\n"
+                "Example:\n"
+                "  mcdem challenge score out/challenge out/answers");
+    sub->callback([command] { score(*command); });
+}
+
+}  // namespace mcdem

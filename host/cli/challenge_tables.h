@@ -1,0 +1,30 @@
+// The score of a challenge as tables, JSON and pictures.
+#pragma once
+#include <filesystem>
+#include <vector>
+
+#include "diagnose/challenge_score.h"
+#include "report/text_table.h"
+
+namespace mcdem {
+
+/// Figures of merit of the whole method with 95 % intervals and what is asked; both halves.
+TextTable table_of_merits(const ChallengeScore& score);
+/// Every arm on the scored half.
+TextTable table_of_arms(const ChallengeScore& score);
+/// Detected and named, by effect.
+TextTable table_of_effects(const ChallengeScore& score);
+/// Named although unknown, by what it was.
+TextTable table_of_unknown(const ChallengeScore& score);
+/// Limits that the first half led to, and the defaults.
+TextTable table_of_limits(const ChallengeScore& score);
+
+/// All of it as Markdown.
+std::string score_markdown(const ChallengeScore& score);
+/// All of it for programs.
+std::string score_json(const ChallengeScore& score);
+
+/// Draws what there is to draw; returns the files.
+std::vector<std::filesystem::path> draw_score(const ChallengeScore& score, const std::filesystem::path& folder);
+
+}  // namespace mcdem

@@ -1,0 +1,163 @@
+#include "ensemble/challenge_run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "core/atomic_file.h"
+#include "core/errors.h"
+#include "core/sha256.h"
+#include "diagnose/challenge_evidence.h"
+#include "diagnose/challenge_files.h"
+#include "ensemble/make_packings.h"
+#include "scene/random.h"
+
+namespace mcdem {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// In simulations, for the progress.
+double work_for(const ChallengeLibrary& library, std::size_t probes) {
+    return library.packings * (library.replicates + 2.0 * library.pairs * static_cast<double>(probes));
+}
+
+class Running {
+public:
+    Running(Device& device, const Scene& scene, const ChallengeRunOptions& options)
+        : device_(device), scene_(scene), options_(options), challenge_(read_open_challenge(options.challenge)) {
+        if (Sha256().add(scene.text).hex() != challenge_.scene)
+            throw InputError(fmt::format("{}: is not the scene that {} was made with", scene.name,
+                                         (options.challenge / "challenge.json").string()));
+        for (const char* folder : {"evidence", "findings"}) fs::create_directories(options.out / folder);
+    }
+
+    void all() {
+        std::vector<const OpenCase*> missing;
+        for (const OpenCase& c : challenge_.cases)
+            if (!fs::exists(file_of(c, ""))) missing.push_back(&c);
+        if (missing.empty()) return;
+        work_done_ = work_a_case() * static_cast<double>(challenge_.cases.size() - missing.size());
+        make_library(*missing.front());
+        for (const OpenCase* c : missing) {
+            diagnose(*c);
+            work_done_ += work_a_case();
+        }
+    }
+
+private:
+    fs::path file_of(const OpenCase& c, const std::string& folder) const { return options_.out / folder / (c.folder + ".json"); }
+    fs::path library_file() const { return options_.out / "library.json"; }
+    double work_a_case() const { return options_.replicates + 2.0 * options_.confirmations; }
+
+    /// Other packings of the same kind; the seeds of the cases' are not known here, and are not met by chance.
+    std::vector<Packing> other_packings(const Replica& replica) const {
+        constexpr std::uint64_t apart = 0x6c696272617279;
+        Scene all = scene_;
+        all.replicas.clear();
+        for (int p = 0; p < options_.library.packings; ++p) {
+            all.replicas.push_back(replica);
+            all.replicas.back().packing.seed = scattered(scattered(options_.seed + apart) + static_cast<std::uint64_t>(p)) >> 16;
+        }
+        auto packings = make_packings(all, options_.stop_wanted);
+        if (packings.size() < all.replicas.size()) throw Interrupted();
+        return packings;
+    }
+
+    /// The grid of an experiment whose plate went as the scene's does: a case's own zero of strain is not the scene's.
+    Grid grid_of_scene(const Experiment& experiment) const {
+        const Plate& plate = scene_.replicas.front().plate;
+        Grid grid = grid_of(experiment.recording);
+        const double factor = (plate.start - plate.end) / grid.stroke;
+        for (double& displacement : grid.displacement) displacement *= factor;
+        grid.width *= factor;
+        grid.stroke *= factor;
+        return grid;
+    }
+
+    Library new_library(const Experiment& experiment) {
+        Model model = model_of(scene_, experiment);
+        model.replica.plate = scene_.replicas.front().plate;
+        const Question question{scene_, grid_of_scene(experiment), reference_material(model), model.replica.protocol.discard,
+                                options_.program};
+        LibraryPlan plan;
+        plan.packings = other_packings(model.replica);
+        plan.replicates = options_.library.replicates;
+        plan.pairs = options_.library.pairs;
+        plan.jitter = experiment.measurement.position_error;
+        plan.diameter_jitter = experiment.measurement.diameter_error;
+        plan.seed = options_.seed;
+        plan.candidates = choose_candidates(model, options_.library.candidates).chosen;
+        plan.nuisances = nuisances(model, experiment);
+        work_of_library_ = work_for(options_.library, plan.candidates.size() + plan.nuisances.size());
+        TrialOptions trials;
+        trials.on_progress = [&](double fraction) { show(fraction * work_of_library_); };
+        trials.stop_wanted = options_.stop_wanted;
+        return build_library(device_, question, model, plan, ObservationStore(options_.out / "simulations"), trials);
+    }
+
+    /// Reads the library, or makes it as the first case is measured; a copy goes to the results.
+    void make_library(const OpenCase& first) {
+        const fs::path& file = options_.library.file;
+        if (!fs::exists(file)) {
+            write_library(file, new_library(read_experiment(options_.challenge / first.folder)));
+            work_done_ += work_of_library_;
+        }
+        library_ = read_library(file);
+        write_library(library_file(), library_);
+    }
+
+    std::vector<std::string> candidates_of(const OpenCase& c) const {
+        std::vector<std::string> names;
+        for (const Signature& effect : library_.effects)
+            if (!c.candidates || std::ranges::find(*c.candidates, effect.name) != c.candidates->end())
+                names.push_back(effect.name);
+        return names;
+    }
+
+    void diagnose(const OpenCase& c) {
+        DiagnoseOptions how;
+        how.folder = options_.out;
+        how.candidates = candidates_of(c);
+        how.replicates = options_.replicates;
+        how.confirmations = options_.confirmations;
+        how.paper_metrics = false;  // not scored
+        how.seed = options_.seed;
+        how.library = library_file();
+        how.program = options_.program;
+        how.on_progress = [&](const std::string& stage, double fraction) {
+            show(work_a_case() * (stage == "baseline" ? 0.5 * fraction : 0.5 + 0.5 * fraction));
+        };
+        how.stop_wanted = options_.stop_wanted;
+        how.on_evidence = [&](const Evidence& evidence) { replace_file(file_of(c, "evidence"), evidence_text(evidence)); };
+        how.on_findings = [&](const Findings& findings) { replace_file(file_of(c, "findings"), findings_text(findings)); };
+        try {
+            const Experiment experiment = read_experiment(options_.challenge / c.folder);
+            options_.keep(file_of(c, ""), diagnose_experiment(device_, scene_, experiment, how));
+        } catch (const InputError& error) {
+            replace_file(file_of(c, ""), nlohmann::json{{"problem", error.what()}}.dump(1) + "\n");
+            options_.on_problem(fmt::format("{}: could not be diagnosed: {}", c.folder, error.what()));
+        }
+    }
+
+    void show(double work_now) const {
+        const double all = work_of_library_ + work_a_case() * static_cast<double>(challenge_.cases.size());
+        options_.on_progress((work_done_ + work_now) / all);
+    }
+
+    Device& device_;
+    const Scene& scene_;
+    const ChallengeRunOptions& options_;
+    OpenChallenge challenge_;
+    Library library_;
+    double work_of_library_ = 0, work_done_ = 0;
+};
+
+}  // namespace
+
+void run_challenge(Device& device, const Scene& scene, const ChallengeRunOptions& options) {
+    Running(device, scene, options).all();
+}
+
+}  // namespace mcdem
