@@ -18,6 +18,7 @@ struct Limits {
     double group_share = 0.04;     ///< .. or this part of the leader's gain
     double second_gain = 8.0;      ///< log likelihood that a second effect must gain ..
     double second_share = 0.08;    ///< .. and this part of the leader's gain
+    double shrink_margin = 0.1;    ///< what signatures get wrong in the shrink, on either side of its interval
 };
 
 /// One effect, or two together, and how well they do.

@@ -120,17 +120,35 @@ Draft::Draft(const Evidence& evidence, const Limits& limits)
         findings_.gain.push_back(statistics_.fits[c].score);
     }
     findings_.proposals = propose(space_, data_, null_, statistics_, mean_of_);
+    for (const Proposal& p : findings_.proposals)
+        whole_.push_back({p.amplitudes, space_.fit_nuisances(data_.gap - explained_by(p, data_))});
+    step_.resize(whole_.size());
     decision_ = decide(findings_, limits_);
-}
-
-PartialFit Draft::whole_fit(std::size_t proposal) const {
-    const Proposal& p = findings_.proposals[proposal];
-    return {p.amplitudes, space_.fit_nuisances(data_.gap - explained_by(p, data_))};
 }
 
 void Draft::confirm(std::size_t proposal, const Eigen::MatrixXd& runs) {
-    mcdem::confirm(findings_.proposals[proposal], data_, null_, evidence_.observed, statistics_.omnibus, runs);
+    Proposal tried = findings_.proposals[proposal];
+    tried.amplitudes = whole_[proposal].amplitudes;
+    step_[proposal] = mcdem::confirm(tried, data_, null_, evidence_.observed, statistics_.omnibus, runs);
+    if (!step_[proposal]) return;
+    const auto& known = findings_.proposals[proposal].confirmed_gain;
+    if (!known || *tried.confirmed_gain > *known) findings_.proposals[proposal] = tried;
     decision_ = decide(findings_, limits_);
+}
+
+bool Draft::refit(std::size_t proposal) {
+    const Proposal& p = findings_.proposals[proposal];
+    if (!step_[proposal] || p.best_misfit() >= limits_.misfit) return false;
+    PartialFit& fit = whole_[proposal];
+    const auto nuisances = fit.nuisances.size();
+    const auto before = fit.amplitudes;
+    fit.nuisances += step_[proposal]->head(nuisances);
+    for (std::size_t k = 0; k < p.candidates.size(); ++k) {
+        const Candidate& candidate = data_.candidates[p.candidates[k]];
+        fit.amplitudes[k] = std::clamp(fit.amplitudes[k] + (*step_[proposal])[nuisances + static_cast<Eigen::Index>(k)],
+                                       candidate.low, candidate.high);
+    }
+    return fit.amplitudes != before;
 }
 
 PartialFit Draft::part_fit() const {
@@ -160,6 +178,8 @@ Diagnosis Draft::diagnosis() const {
     d.causes = causes.leading();
     const Split split = split_cells(data_.cells, evidence_.library.grid);
     d.shrink = measure_shrink(data_, split, decided(), mean_of_, evidence_.seed);
+    d.shrink->interval = {d.shrink->interval[0] - limits_.shrink_margin,
+                          std::min(1.0, d.shrink->interval[1] + limits_.shrink_margin)};
     d.shrink->fitted_displacement = {0, fitted_part * evidence_.library.grid.stroke};
     if (held_out_runs_ && d.shrink->before > 0) {
         const Eigen::VectorXd left = evidence_.observed - held_out_runs_->colwise().mean().transpose();

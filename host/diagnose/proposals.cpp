@@ -98,19 +98,20 @@ std::vector<Proposal> propose(const GapSpace& space, const GapData& data, const 
     return proposals;
 }
 
-void confirm(Proposal& proposal, const GapData& data, const NullDistribution& null, const Eigen::VectorXd& observed,
-             double omnibus, const Eigen::MatrixXd& runs) {
+std::optional<Eigen::VectorXd> confirm(Proposal& proposal, const GapData& data, const NullDistribution& null,
+                                       const Eigen::VectorXd& observed, double omnibus, const Eigen::MatrixXd& runs) {
+    constexpr double still_free = 0.25;  // part of an amplitude
     const Eigen::VectorXd left = observed - runs.colwise().mean().transpose();
-    if (!pick(left, data.cells).allFinite()) return;
+    if (!pick(left, data.cells).allFinite()) return std::nullopt;
     std::vector<FreeParameter> free = data.free;
     for (std::size_t k = 0; k < proposal.candidates.size(); ++k)
         free.push_back({data.candidates[proposal.candidates[k]].signature->slope(proposal.amplitudes[k]),
-                        2 * proposal.errors[k] + 0.1 * std::abs(proposal.amplitudes[k])});
-    const GapSpace space(data.noise, static_cast<int>(runs.rows()), data.cells, free,
-                                effect_scatter(data, proposal));
+                        2 * proposal.errors[k] + still_free * std::abs(proposal.amplitudes[k])});
+    const GapSpace space(data.noise, static_cast<int>(runs.rows()), data.cells, free, effect_scatter(data, proposal));
     const double remainder = space.whiten(left).squaredNorm();
     proposal.confirmed_gain = 0.5 * (omnibus - remainder);
     proposal.confirmed_misfit_p = null.p_value(&GapStatistics::remainder, remainder);
+    return space.fit_nuisances(left);
 }
 
 }  // namespace mcdem

@@ -39,6 +39,9 @@ void expect_library_of(const Library& library, const Grid& grid, const LibraryPl
 /// Whole recordings that the paper's metrics are taken from, on either side.
 constexpr std::size_t recordings_kept = 4;
 
+/// Real runs of a proposal, and again with what they taught.
+constexpr int most_rounds = 3;
+
 /// The work of one diagnosis, in the order of its steps.
 class Diagnosing {
 public:
@@ -68,7 +71,7 @@ private:
     Evidence gather() {
         Evidence evidence;
         evidence.seed = options_.seed;
-        recorded(baseline_trials(model_, plan_));  // first: what is kept whole is not simulated again
+        if (options_.paper_metrics) recorded(baseline_trials(model_, plan_));  // first: what is kept whole is not simulated again
         const bool ready = options_.library && std::filesystem::exists(*options_.library);
         if (ready) {
             evidence.library = read_library(*options_.library);
@@ -92,19 +95,28 @@ private:
         return evidence;
     }
 
-    /// Real runs of every proposal, then of the one decided on with what the fitted part of the data says of it.
+    /// Real runs of every proposal, again where they miss; then of the one decided on with what the fitted part of the
+    /// data says of it.
     void confirm(Draft& draft) {
-        std::vector<Trial> trials;
-        const auto& proposals = draft.findings().proposals;
-        for (std::size_t k = 0; k < proposals.size(); ++k)
-            append(trials, trials_of(draft, proposals[k], draft.whole_fit(k)));
-        const Eigen::MatrixXd runs = observe_trials(device_, question_, trials, store_, stage(options_, "confirmation"));
-        for (std::size_t k = 0; k < proposals.size(); ++k)
-            draft.confirm(k, runs.middleRows(static_cast<Eigen::Index>(k) * options_.confirmations, options_.confirmations));
+        std::vector<std::size_t> tried(draft.findings().proposals.size());
+        std::iota(tried.begin(), tried.end(), std::size_t{0});
+        for (int round = 0; round < most_rounds && !tried.empty(); ++round) {
+            run(draft, tried);
+            std::erase_if(tried, [&](std::size_t k) { return !draft.refit(k); });
+        }
         if (!draft.wants_held_out()) return;
-        recorded(trials_of(draft, draft.decided(), draft.part_fit()));
+        if (options_.paper_metrics) recorded(trials_of(draft, draft.decided(), draft.part_fit()));
         draft.confirm_held_out(observe_trials(device_, question_, trials_of(draft, draft.decided(), draft.part_fit()), store_,
                                               stage(options_, "held-out confirmation")));
+    }
+
+    void run(Draft& draft, const std::vector<std::size_t>& proposals) {
+        std::vector<Trial> trials;
+        for (const std::size_t k : proposals) append(trials, trials_of(draft, draft.findings().proposals[k], draft.whole_fit(k)));
+        const Eigen::MatrixXd runs = observe_trials(device_, question_, trials, store_, stage(options_, "confirmation"));
+        for (std::size_t k = 0; k < proposals.size(); ++k)
+            draft.confirm(proposals[k],
+                          runs.middleRows(static_cast<Eigen::Index>(k) * options_.confirmations, options_.confirmations));
     }
 
     BeforeAfter before_after(const Draft& draft) {
@@ -117,9 +129,8 @@ private:
     /// The first few trials, with their whole recordings kept.
     std::vector<Trial> recorded(std::vector<Trial> trials) const {
         trials.resize(std::min<std::size_t>(trials.size(), recordings_kept));
-        for (Trial& trial : trials) trial.keep_recording = options_.paper_metrics;
-        if (options_.paper_metrics)
-            observe_trials(device_, question_, trials, store_, stage(options_, "recordings"));
+        for (Trial& trial : trials) trial.keep_recording = true;
+        observe_trials(device_, question_, trials, store_, stage(options_, "recordings"));
         return trials;
     }
 
