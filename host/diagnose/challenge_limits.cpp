@@ -15,6 +15,7 @@ struct Choice {
 const std::vector<Choice> choices{
     {"false_alarm",  &Limits::false_alarm,  {0.01, 0.02, 0.03, 0.05, 0.08}},
     {"misfit",       &Limits::misfit,       {1e-4, 1e-3, 3e-3, 0.01, 0.03, 0.1}},
+    {"pair_misfit",  &Limits::pair_misfit,  {0.01, 0.03, 0.05, 0.1, 0.2}},
     {"group",        &Limits::group,        {1, 2, 3, 5}},
     {"group_share",  &Limits::group_share,  {0.01, 0.02, 0.04, 0.06, 0.1}},
     {"second_gain",  &Limits::second_gain,  {4, 8, 12, 20}},

@@ -46,8 +46,7 @@ void add_pair(Merits& m, const ScoredCase& scored) {
 }  // namespace
 
 bool leads_rightly(const ScoredCase& scored) {
-    return scored.answer.names() && scored.truth->kind != CaseKind::unknown &&
-           is_true(*scored.truth, scored.answer.group.front());
+    return scored.answer.names() && is_true(*scored.truth, scored.answer.group.front());
 }
 
 std::string unknown_name(const ChallengeCase& truth) {

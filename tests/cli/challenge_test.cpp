@@ -1,0 +1,229 @@
+// A small challenge from its realities to its score: blind, sealed, and telling nothing.
+#include <zlib.h>
+
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "cli/cli_test.h"
+#include "core/sha256.h"
+#include "diagnose/challenge_outside.h"
+#include "diagnose/effects.h"
+#include "experiment/experiment.h"
+
+namespace mcdem {
+namespace {
+
+using testing::HasSubstr;
+namespace fs = std::filesystem;
+using Words = std::vector<std::string>;
+
+/// 64 grains, as dense as the challenge's.
+const char* const scene_text = R"(name = "tiny"
+[box]
+size_x = 0.083
+size_y = 0.083
+[contact]
+model = "independent"
+friction_law = "mindlin"
+[packing]
+count = 64
+packing_fraction = 0.59
+[plate]
+start = 0.0835
+end = 0.0685
+speed = 0.2
+[protocol]
+stop_at_scans = false
+scans_per_stroke = 6
+relax_time = 0.1
+)";
+constexpr int cases = 7;
+
+const Words make_words{"challenge", "make", "tiny.toml", "--out", "challenge", "--seed", "3", "--effects", "friction,force_bias",
+                       "--none", "2", "--per-effect", "1", "--pairs", "0", "--unknown", "2", "--outside", "1", "--packings", "2"};
+const Words run_words{"challenge", "run", "challenge", "--scene", "tiny.toml", "--library", "library.json", "--out", "answers",
+                      "--candidates", "friction,force_bias", "--library-packings", "8", "--library-replicates", "2",
+                      "--replicates", "3", "--confirmations", "2"};
+const Words score_words{"challenge", "score", "challenge", "answers", "--truth", "sealed/truth.json"};
+
+/// Bytes of all files below, by path; compressed ones unpacked.
+std::map<std::string, std::string> contents_of(const fs::path& folder) {
+    std::map<std::string, std::string> contents;
+    for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+        if (!entry.is_regular_file()) continue;
+        std::string& text = contents[fs::relative(entry.path(), folder)];
+        const gzFile in = gzopen(entry.path().c_str(), "rb");
+        char part[1 << 14];
+        for (int read; (read = gzread(in, part, sizeof part)) > 0;) text.append(part, static_cast<std::size_t>(read));
+        gzclose(in);
+    }
+    return contents;
+}
+
+/// Realities and diagnoses are made once; the truth is out of reach while they are diagnosed.
+class ChallengeTest : public testing::Test {
+protected:
+    static void SetUpTestSuite() {
+        folder_ = new TestFolder;
+        std::ofstream(path("tiny.toml")) << scene_text;
+        made_ = new Finished(mcdem(make_words));
+        fs::create_directories(path("sealed"));
+        if (fs::exists(path("challenge/truth.json"))) fs::rename(path("challenge/truth.json"), path("sealed/truth.json"));
+        ran_ = new Finished(mcdem(run_words));
+    }
+    static void TearDownTestSuite() {
+        delete folder_;
+        delete made_;
+        delete ran_;
+    }
+    void SetUp() override {
+        ASSERT_EQ(made_->exit_code, 0) << made_->err;
+        ASSERT_EQ(ran_->exit_code, 0) << ran_->err;
+    }
+
+    static fs::path path(const std::string& name) { return folder_->path / name; }
+    static Finished mcdem(const Words& words) { return run_program(folder_->path, words); }
+    static nlohmann::json json_of(const std::string& name) { return nlohmann::json::parse(bytes_of_file(path(name))); }
+
+    static inline TestFolder* folder_ = nullptr;
+    static inline Finished *made_ = nullptr, *ran_ = nullptr;
+};
+
+TEST_F(ChallengeTest, TheSealIsThatOfTheTruth) {
+    const std::string seal = Sha256().add(bytes_of_file(path("sealed/truth.json"))).hex();
+    EXPECT_THAT(made_->out, HasSubstr(seal));
+    EXPECT_EQ(json_of("challenge/challenge.json").at("sealed_sha256"), seal);
+}
+
+/// Sum of the contact forces at the plate over the plate's own reading, all scans together.
+double plate_contacts_over_reading(const Recording& recording) {
+    double contacts = 0, reading = 0;
+    for (const Scan& scan : recording.scans) {
+        reading += scan.top_force();
+        for (const Contact& contact : scan.contacts)
+            if (contact.partner == wall_partner(Wall::plate)) contacts -= contact.force.z();
+    }
+    return contacts / reading;
+}
+
+TEST_F(ChallengeTest, RealitiesHaveWhatTheTruthSays) {
+    const auto truth = json_of("sealed/truth.json");
+    ASSERT_EQ(truth.at("cases").size(), static_cast<std::size_t>(cases));
+    for (const auto& c : truth.at("cases")) {
+        const auto recording = read_experiment(path("challenge/" + c.at("folder").get<std::string>())).recording;
+        for (const auto& shift : c.at("nuisances"))
+            if (shift.at("name") == "strain_offset")
+                EXPECT_NEAR(recording.scans.front().plate_z - 0.0835, shift.at("amplitude").get<double>(), 1e-8) << c;
+        double bias = 0;
+        for (const auto& effect : c.at("effects"))
+            if (effect.at("name") == "force_bias") bias = effect.at("amplitude");
+        // Some 250 contacts with 5 % noise each and unequal forces, and the weakest are not seen: 2 %.
+        EXPECT_NEAR(plate_contacts_over_reading(recording), 1 + bias, 0.02) << c;
+    }
+}
+
+TEST_F(ChallengeTest, EveryCaseIsDiagnosedWithoutTheTruth) {
+    for (int k = 1; k <= cases; ++k) {
+        const auto diagnosis = json_of("answers/case_000" + std::to_string(k) + ".json");
+        EXPECT_TRUE(diagnosis.contains("verdict")) << diagnosis;
+    }
+}
+
+TEST_F(ChallengeTest, IsScored) {
+    auto words = score_words;
+    words.push_back("--no-figures");
+    const Finished scored = mcdem(words);
+    ASSERT_EQ(scored.exit_code, 0) << scored.err;
+    EXPECT_THAT(scored.out, HasSubstr("RMSE ranking"));
+    const auto score = json_of("answers/score.json");
+    EXPECT_EQ(score.at("cases"), cases);
+    EXPECT_TRUE(score.at("not_diagnosed").empty());
+    const auto& whole = score.at("methods").at(0);
+    int counted = 0;
+    for (const char* half : {"first_half", "scored_half"})
+        for (const char* kind : {"false_alarms", "detected", "named_unknown", "named_outside_prior"})
+            counted += whole.at(half).at(kind).at("of").get<int>();
+    EXPECT_EQ(counted, cases);
+    EXPECT_THAT(bytes_of_file(path("answers/score.md")), HasSubstr("| whole method"));
+}
+
+TEST_F(ChallengeTest, RefusesATruthThatWasTouched) {
+    std::string truth = bytes_of_file(path("sealed/truth.json"));
+    truth.replace(truth.find("\"none\""), 6, "\"pair\"");
+    std::ofstream(path("sealed/touched.json")) << truth;
+    auto words = score_words;
+    words.back() = "sealed/touched.json";
+    expect_bad_input(mcdem(words), "is not the truth that was sealed");
+}
+
+TEST_F(ChallengeTest, FoldersTellNothing) {
+    const auto contents = contents_of(path("challenge"));
+    EXPECT_EQ(contents.size(), 1u + 4u * cases);
+    std::vector<std::string> words{"none", "pair", "unknown", "outside", "seed", "amplitude", "struck"};
+    for (const Effect& effect : effects()) words.emplace_back(effect.name);
+    for (const OutsideEffect& effect : outside_effects()) words.emplace_back(effect.name);
+    std::string settings;
+    for (const auto& [name, text] : contents) {
+        if (name == "challenge.json") continue;
+        const fs::path file = name;
+        // Words of any experiment.toml: grains.friction is stated there.
+        if (file.filename() == "experiment.toml") {
+            const std::string nameless = text.substr(text.find('['));
+            if (settings.empty()) settings = nameless;
+            EXPECT_EQ(nameless, settings) << name;
+            EXPECT_THAT(nameless, HasSubstr("youngs_modulus = 23300.0"));
+            continue;
+        }
+        for (const std::string& word : words) EXPECT_EQ(text.find(word), std::string::npos) << name << ": " << word;
+    }
+}
+
+TEST_F(ChallengeTest, OnlyStruckCandidatesShowInTheOpenFile) {
+    const auto challenge = json_of("challenge/challenge.json");
+    int with_candidates = 0;
+    for (const auto& c : challenge.at("cases")) {
+        EXPECT_EQ(c.size(), 2u) << c;
+        with_candidates += !c.at("candidates").is_null();
+    }
+    EXPECT_EQ(with_candidates, 1);
+    const auto truth = json_of("sealed/truth.json");
+    for (const auto& c : truth.at("cases"))
+        for (const auto& struck : c.at("struck"))
+            for (const auto& open : challenge.at("cases"))
+                if (open.at("folder") == c.at("folder")) EXPECT_EQ(open.at("candidates").dump().find(struck.dump()), std::string::npos);
+    EXPECT_EQ(challenge.size(), 4u) << challenge;
+}
+
+TEST_F(ChallengeTest, GoesOnWhereItStopped) {
+    const auto before = contents_of(path("challenge"));
+    fs::copy(path("sealed/truth.json"), path("challenge/truth.json"));
+    fs::remove(path("challenge/case_0004/experiment.toml"));
+    fs::remove(path("challenge/case_0004/plate.csv.gz"));
+    fs::last_write_time(path("challenge/case_0002/plate.csv.gz"), {});
+    const Finished again = mcdem(make_words);
+    EXPECT_EQ(again.exit_code, 0) << again.err;
+    EXPECT_EQ(again.out, made_->out);
+    EXPECT_EQ(fs::last_write_time(path("challenge/case_0002/plate.csv.gz")), fs::file_time_type{});
+    fs::remove(path("challenge/truth.json"));
+    EXPECT_EQ(contents_of(path("challenge")), before);
+
+    const std::string kept = bytes_of_file(path("answers/case_0001.json"));
+    EXPECT_EQ(mcdem(run_words).exit_code, 0);
+    EXPECT_EQ(bytes_of_file(path("answers/case_0001.json")), kept);  // its seconds would differ
+}
+
+TEST_F(ChallengeTest, RefusesAFolderOfAnotherChallenge) {
+    auto words = make_words;
+    words[6] = "4";
+    words.insert(words.end(), {"--truth", "sealed/truth.json"});
+    expect_bad_input(mcdem(words), "is of another challenge");
+}
+
+TEST_F(ChallengeTest, RefusesAnotherScene) {
+    auto words = run_words;
+    words.insert(words.end(), {"--set", "grains.friction=0.1"});
+    expect_bad_input(mcdem(words), "is not the scene that");
+}
+
+}  // namespace
+}  // namespace mcdem
