@@ -40,7 +40,7 @@ typedef struct {
 
 /* The forces of a grain's row; tabulates them for the surfaces. `effects` are the replica's, or a plain 0. */
 INLINE void row_forces(global const Replica* restrict replica, const int effects, bool waits, real plate_z, int grain, size_t row,
-                       real4 own, real softness, real3 spin, global const real4* restrict position,
+                       OwnSide own, global const real4* restrict position,
                        global const real4* restrict velocity, global const real4* restrict angular_velocity,
                        global const int* restrict partner, global const int* restrict mirror,
                        global const real* restrict bulge, global real* restrict spring_x, global real* restrict spring_y,
@@ -52,13 +52,12 @@ INLINE void row_forces(global const Replica* restrict replica, const int effects
         lanes here, there;
         load_bulges(replica, row, v, mirror, bulge, &here, &there);
         Memory memory = load_memory(replica, effects, row, v, spring_x, spring_y, spring_z, deepest, relaxed);
-        const Contacts c =
-            contact_forces(replica, effects, own.w, softness, spin, seen, here, there, replica->time_step, &memory);
+        const Contacts c = contact_forces(replica, effects, own, seen, here, there, replica->time_step, &memory);
         if (!waits) store_memory(replica, effects, row, v, memory, spring_x, spring_y, spring_z, deepest, relaxed);
         add_contacts(c, seen.normal, &sums->force, &sums->torque);
         if (effects & EFFECT_ROLLING_RESISTANCE) add_couples(c, &sums->torque);
         /* Asked this way round, a bulge that is not a number counts as too deep as well. */
-        sums->too_deep |= ~AS_MASK(c.approach <= replica->overlap_limit * (own.w + seen.radius)) & seen.occupied;
+        sums->too_deep |= ~AS_MASK(c.approach <= replica->overlap_limit * (own.radius + seen.radius)) & seen.occupied;
         sums->unprobed |= AS_MASK(here > replica->probe_gap) & ~c.touching & seen.occupied;
         tabulate(c, seen.normal, v, table);
     }
@@ -93,17 +92,19 @@ kernel void advance(const int s, const int slot_count, global const Replica* res
     if (waits && LANES == 16) return;
 
     const real plate_z = plate_position(replica, s);
+    const OwnSide side = {own.w, own_velocity.w, own_spin.xyz};
     Row sums = {{R(0), R(0), R(0)}, {R(0), R(0), R(0)}, 0, 0};
     /* Put in place twice: where there are no effects they cost nothing. */
-    if (replica->effects)
-        row_forces(replica, replica->effects, waits, plate_z, grain, row, own, own_velocity.w, own_spin.xyz, position, velocity,
-                   angular_velocity, partner, mirror, bulge, spring_x, spring_y, spring_z, deepest, relaxed, table, &sums);
+    if (RARELY(replica->effects))
+        row_forces(replica, replica->effects, waits, plate_z, grain, row, side, position, velocity, angular_velocity,
+                   partner, mirror, bulge, spring_x, spring_y, spring_z, deepest, relaxed, table, &sums);
     else
-        row_forces(replica, 0, waits, plate_z, grain, row, own, own_velocity.w, own_spin.xyz, position, velocity,
-                   angular_velocity, partner, mirror, bulge, spring_x, spring_y, spring_z, deepest, relaxed, table, &sums);
+        row_forces(replica, 0, waits, plate_z, grain, row, side, position, velocity, angular_velocity,
+                   partner, mirror, bulge, spring_x, spring_y, spring_z, deepest, relaxed, table, &sums);
     SYNCHRONISE();
     if (replica->surface != SURFACE_RIGID && !waits)
-        displace_surfaces(replica, table, own.w, R(1) + own_velocity.w, row, replica->steps_before + s, slot_count, bulge_next, history);
+        displace_surfaces(replica, table, own.w, R(1) + own_velocity.w, row, replica->steps_before + s, slot_count,
+                          bulge_next, history);
 
     const lanes trouble = WHERE(sums.too_deep, R(1), R(0)) + WHERE(sums.unprobed, R(DEEP_SLOTS), R(0));
     const real4 total_force = sum_lanes(sums.force.x, sums.force.y, sums.force.z, trouble, scratch);

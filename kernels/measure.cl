@@ -17,6 +17,7 @@ kernel void measure(global const Replica* restrict replicas, global const int* r
     const real4 own_velocity = velocity[grain];
     const real4 own_spin = angular_velocity[grain];
     const real plate_z = plate_position(replica, steps[replica_of_block[block]]);
+    const OwnSide side = {own.w, own_velocity.w, own_spin.xyz};
     lanes elastic_energy = R(0), deepest = R(0);
     for (int v = 0; v < VECTORS; ++v) {
         const slots partners = LOAD_LANES(partner + row, v);
@@ -24,8 +25,7 @@ kernel void measure(global const Replica* restrict replicas, global const int* r
         lanes here, there;
         load_bulges(replica, row, v, mirror, bulge, &here, &there);
         Memory memory = load_memory(replica, replica->effects, row, v, spring_x, spring_y, spring_z, deepest_overlap, relaxed);
-        const Contacts c = contact_forces(replica, replica->effects, own.w, own_velocity.w, own_spin.xyz, seen, here, there,
-                                          R(0), &memory);
+        const Contacts c = contact_forces(replica, replica->effects, side, seen, here, there, R(0), &memory);
         /* Hertz energy 2/5 F delta, half of it this grain's, less the work of its own bulge */
         elastic_energy += c.elastic * (WHERE(seen.wall, R(0.4), R(0.2)) * c.overlap - R(0.5) * c.bulge);
         if (replica->effects) elastic_energy += WHERE(seen.wall, R(1), R(0.5)) * c.energy;

@@ -17,5 +17,14 @@ typedef float8 real8;
 #endif
 /* Every function is put in place: a call would pass vectors through memory. */
 #define INLINE static inline __attribute__((always_inline))
+/* Keeps what is hardly ever needed out of the way of what always is. */
+#ifdef __has_builtin
+#if __has_builtin(__builtin_expect)
+#define RARELY(condition) __builtin_expect((condition) != 0, 0)
+#endif
+#endif
+#ifndef RARELY
+#define RARELY(condition) (condition)
+#endif
 #define R(x) ((real)(x))
 #define PI R(3.14159265358979323846)

@@ -30,9 +30,12 @@ Near near_by_brute_force(const StepReference& reference, const Start& start, int
         if (int(j) != grain)
             sort_in(j, (reference.position[j] - x).norm() - radius - start.packing.diameter[j] / 2);
     const Vec3 far(start.replica.box.size_x, start.replica.box.size_y, start.replica.plate.start);
-    for (int w = 0; w < mcdem::wall_count; ++w)
+    for (int w = 0; w + 1 < mcdem::wall_count; ++w)
         sort_in(mcdem::wall_partner(static_cast<mcdem::Wall>(w)),
                 (w % 2 ? far[w / 2] - x[w / 2] : x[w / 2]) - radius);
+    const Vec3 slope(start.replica.effects.plate_tilt_x, start.replica.effects.plate_tilt_y, -1);
+    const Vec3 middle(far.x() / 2, far.y() / 2, far.z());
+    sort_in(mcdem::wall_partner(mcdem::Wall::plate), slope.dot(x - middle) / slope.norm() - radius);
     return near;
 }
 
@@ -104,10 +107,10 @@ TEST(NeighbourList, HoldsEveryPairWithLongRowsAndFewCells) {
                   jittered_lattice(with_probe_gap(0.85), 125, 3)});
 }
 
-TEST(NeighbourList, HoldsEveryPairOfVeryDifferentGrains) {
-    // a gas of small grains about large ones, in a flat box: cells as large as the largest pair
+/// A gas of small grains about large ones, in a flat box: cells as large as the largest pair.
+Start gas(const Replica& replica) {
     Uniform uniform(4);
-    Start start{test_replica(), {}};
+    Start start{replica, {}};
     start.replica.box = {0.3, 0.2};
     start.replica.plate.start = 0.05;
     for (int i = 0; i < 150; ++i) {
@@ -115,7 +118,18 @@ TEST(NeighbourList, HoldsEveryPairOfVeryDifferentGrains) {
             {uniform(0.005, 0.295), uniform(0.005, 0.195), uniform(0.005, 0.045)});
         start.packing.diameter.push_back(i % 10 ? uniform(0.004, 0.008) : uniform(0.02, 0.03));
     }
-    expect_lists(build(Precision::single_precision, 64), {start});
+    return start;
+}
+
+TEST(NeighbourList, HoldsEveryPairOfVeryDifferentGrains) {
+    expect_lists(build(Precision::single_precision, 64), {gas(test_replica())});
+}
+
+TEST(NeighbourList, HoldsThePlateWhereItLeans) {
+    Replica replica = test_replica();
+    replica.effects.plate_tilt_x = -0.2;
+    replica.effects.plate_tilt_y = 0.1;
+    expect_lists(build(Precision::single_precision, 64), {gas(replica)});
 }
 
 /// A loose cluster whose grains move past one another by a radius or so.

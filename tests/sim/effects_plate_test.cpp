@@ -147,6 +147,7 @@ public:
         result.wall_force[plate_wall] = {0, 0, force()};
         plate_.made(result);
     }
+    bool arrived() const { return plate_.arrived(farthest); }
     double force() const { return stiffness_ * std::max(0.0, -true_z_); }
     /// What is missing of the give, C F less true less commanded position.
     double lag(double compliance) const { return compliance * force() - (true_z_ - commanded_); }
@@ -172,6 +173,33 @@ TEST(PlateCompliance, FollowsAMovingPlateWithoutLag) {
         for (int k = 0; k < 100; ++k) spring.stretch(0, 60);
         EXPECT_NEAR(spring.lag(compliance), 0, 1e-9) << compliance << ": at rest nothing is left";
     }
+}
+
+TEST(PlateCompliance, ArrivesWhenItGivesAsMuchAsItShould) {
+    constexpr double compliance = 5e-4;
+    Replica replica = single_grain();
+    replica.effects.plate_compliance = compliance;
+    replica.plate.start = 2 * radius;
+    Spring spring(replica, 1000);
+    EXPECT_TRUE(spring.arrived()) << "nothing to give";
+    for (int k = 0; k < 20; ++k) {
+        spring.stretch(-1e-4, 10);
+        EXPECT_FALSE(spring.arrived()) << k << ": the force has grown";
+    }
+    for (int k = 0; k < 200; ++k) spring.stretch(0, 60);
+    EXPECT_TRUE(spring.arrived());
+    EXPECT_LT(std::abs(spring.lag(compliance)), 1e-3 * compliance * spring.force());
+}
+
+TEST(PlateCompliance, NothingIsSettledBeforeThePlateArrives) {
+    mcdem::ProtocolRunner runner(single_grain(), 1e-4);
+    mcdem::StretchResult still;
+    still.steps = 60;
+    still.elastic_energy = 1;
+    for (int k = 0; k < 5; ++k) runner.made(still, false);
+    EXPECT_EQ(runner.state().stage, mcdem::ProtocolState::Stage::relax);
+    for (int k = 0; k < 2; ++k) runner.made(still, true);
+    EXPECT_EQ(runner.state().stage, mcdem::ProtocolState::Stage::move);
 }
 
 TEST(PlateCompliance, ARigidPlateIsLeftAlone) {
