@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace mcdem {
 
@@ -49,6 +50,30 @@ Eigen::ArrayXd resolutions(const CellChoice& cells, Eigen::Index all) {
 Eigen::VectorXd pick(const Eigen::VectorXd& all, const CellChoice& cells) { return all(cells); }
 Eigen::MatrixXd pick_columns(const Eigen::MatrixXd& all, const CellChoice& cells) { return all(Eigen::all, cells); }
 
+namespace {
+
+/// Variances of single cells, few replicates behind each, drawn towards the mean of their observable: as if that mean
+/// had been seen in a few replicates more (Smyth 2004). A cell that hardly moved by chance does not stand out then.
+Eigen::ArrayXd moderated(const Eigen::ArrayXd& variance, const CellChoice& cells, const Eigen::MatrixXd& noise) {
+    constexpr double replicates_more = 8;
+    const Eigen::Index cells_each = noise.cols() / static_cast<Eigen::Index>(observables().size());
+    const double n = static_cast<double>(noise.rows());
+    std::map<Eigen::Index, std::pair<double, int>> sum;
+    for (std::size_t k = 0; k < cells.size(); ++k) {
+        sum[cells[k] / cells_each].first += variance[static_cast<Eigen::Index>(k)];
+        ++sum[cells[k] / cells_each].second;
+    }
+    Eigen::ArrayXd result(variance.size());
+    for (std::size_t k = 0; k < cells.size(); ++k) {
+        const auto& [total, count] = sum[cells[k] / cells_each];
+        const auto i = static_cast<Eigen::Index>(k);
+        result[i] = (n * variance[i] + replicates_more * total / count) / (n + replicates_more);
+    }
+    return result;
+}
+
+}  // namespace
+
 GapSpace::GapSpace(const Eigen::MatrixXd& noise, int mean_of, const CellChoice& cells,
                        const std::vector<FreeParameter>& free, const Eigen::VectorXd& extra)
     : cells_(cells), free_(free) {
@@ -56,7 +81,7 @@ GapSpace::GapSpace(const Eigen::MatrixXd& noise, int mean_of, const CellChoice& 
     Eigen::MatrixXd covariance = both * shrunk_covariance(pick_columns(noise, cells));
     covariance.diagonal() += resolutions(cells, noise.cols()).square().matrix();
     if (extra.size() > 0) covariance.diagonal() += pick(extra, cells);
-    sigma_ = covariance.diagonal().array().sqrt();
+    sigma_ = moderated(covariance.diagonal().array(), cells, noise).sqrt();
     directions_.resize(static_cast<Eigen::Index>(cells.size()), static_cast<Eigen::Index>(free.size()));
     Eigen::MatrixXd total = covariance;
     for (std::size_t k = 0; k < free.size(); ++k) {

@@ -44,7 +44,7 @@ public:
     /// Whitens a vector on all cells: its square is a chi-square of the gap with nuisances marginalised.
     Eigen::VectorXd whiten(const Eigen::VectorXd& all) const { return whiten_chosen(pick(all, cells_)); }
     Eigen::VectorXd whiten_chosen(const Eigen::VectorXd& chosen) const;
-    /// One sigma of each chosen cell, nuisances not counted.
+    /// One sigma of each chosen cell by itself, moderated over its observable; nuisances not counted.
     const Eigen::ArrayXd& sigma() const { return sigma_; }
     /// The nuisances' most probable values given a difference on all cells, and their errors after it.
     Eigen::VectorXd fit_nuisances(const Eigen::VectorXd& all) const;
