@@ -7,7 +7,7 @@
 #include "cli/messages.h"
 #include "cli/progress.h"
 #include "cli/scene_options.h"
-#include "ensemble/challenge_realities.h"
+#include "ensemble/challenge_make.h"
 #include "ensemble/observe_trials.h"
 
 namespace mcdem {

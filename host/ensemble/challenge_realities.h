@@ -1,29 +1,45 @@
-// The realities of a blind challenge: simulated with what is hidden, measured, and written as experiments that tell
-// nothing of it.
+// Simulations of the cases of a challenge, with everything that is hidden in them.
 #pragma once
-#include <filesystem>
 #include <functional>
-#include <optional>
+#include <span>
 
 #include "cl/device.h"
-#include "diagnose/challenge_plan.h"
+#include "diagnose/challenge_case.h"
+#include "diagnose/effects.h"
 
 namespace mcdem {
 
-struct ChallengeOptions {
-    std::filesystem::path folder;             ///< of the challenge
-    std::filesystem::path truth;              ///< file of the answers
-    std::optional<std::uint64_t> seed;        ///< nothing: that of the truth where it is there, else one that nobody knows
-    ChallengeSize size;
-    std::vector<std::string> effects;         ///< empty: challenged_effects()
-    Measurement measurement;                  ///< how well all of them are measured
-    std::function<void(double fraction)> on_progress = [](double) {};
-    std::function<bool()> stop_wanted = [] { return false; };
-};
+class Realities {
+public:
+    /// Throws InputError where the scene does not suit a challenge.
+    Realities(Device& device, const Scene& scene, const Measurement& measurement);
 
-/// Writes the truth, then challenge.json, then the folders that are not there yet. Returns the seal, SHA-256 of the
-/// truth. Throws InputError where the scene does not suit or the folder holds another challenge, RunError where a
-/// simulation fails, Interrupted when stop_wanted says so.
-std::string make_challenge(Device& device, const Scene& scene, const ChallengeOptions& options);
+    /// The scene with what its instrument states, before anything is hidden in it.
+    const Model& stated() const { return stated_; }
+    const std::vector<Nuisance>& nuisances() const { return nuisances_; }
+
+    /// The packings that cases start from, by number. Throws Interrupted.
+    void make_packings(const std::vector<std::uint64_t>& seeds, const std::function<bool()>& stop_wanted);
+
+    /// One recording a case, not yet measured; ended early where a case fails. `scans_needed`: of the first stroke, or all.
+    enum class Part { loading, all };
+    std::vector<Recording> simulate(std::span<const ChallengeCase* const> cases, Part part,
+                                    const std::function<void(double fraction)>& on_progress) const;
+
+    /// The recording as the case's instrument reads it, in the stated box, named by its folder.
+    Experiment experiment(const ChallengeCase& c, Recording recording) const;
+
+    /// How many cases to simulate together.
+    std::size_t at_once() const;
+
+private:
+    Model reality_of(const ChallengeCase& c) const;
+
+    Device& device_;
+    Scene scene_;
+    Model stated_;
+    std::vector<Nuisance> nuisances_;
+    std::vector<Packing> packings_;
+};
 
 }  // namespace mcdem
