@@ -131,9 +131,12 @@ void Draft::confirm(std::size_t proposal, const Eigen::MatrixXd& runs) {
     tried.amplitudes = whole_[proposal].amplitudes;
     step_[proposal] = mcdem::confirm(tried, data_, null_, evidence_.observed, statistics_.omnibus, runs);
     if (!step_[proposal]) return;
-    // What the runs leave is the best estimate of how far the signatures' amplitude was off.
-    for (std::size_t k = 0; k < tried.amplitudes.size(); ++k)
-        tried.amplitudes[k] += (*step_[proposal])[whole_[proposal].nuisances.size() + static_cast<Eigen::Index>(k)];
+    // The signature's amplitude and the one that the runs ask for enclose the truth where signatures bend.
+    for (std::size_t k = 0; k < tried.amplitudes.size(); ++k) {
+        const double half = 0.5 * (*step_[proposal])[whole_[proposal].nuisances.size() + static_cast<Eigen::Index>(k)];
+        tried.amplitudes[k] += half;
+        tried.errors[k] = std::hypot(tried.errors[k], half);
+    }
     const auto& known = findings_.proposals[proposal].confirmed_gain;
     if (!known || *tried.confirmed_gain > *known) findings_.proposals[proposal] = tried;
     decision_ = decide(findings_, limits_);

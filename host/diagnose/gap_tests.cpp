@@ -38,9 +38,7 @@ GapStatistics gap_statistics(const GapSpace& space, const GapData& data, const E
     }
     if (!s.fits.empty()) s.directed = s.fits[s.best].score;
     s.remainder = s.omnibus - 2 * s.directed;
-    const Eigen::VectorXd chosen = pick(gap, space.cells());
-    s.highest = (chosen.array() / space.sigma()).abs().maxCoeff();
-    Eigen::VectorXd refitted = chosen;
+    Eigen::VectorXd refitted = pick(gap, space.cells());
     const Eigen::VectorXd shifts = space.fit_nuisances(gap);
     for (Eigen::Index k = 0; k < shifts.size(); ++k)
         refitted -= shifts[k] * pick(space.free()[static_cast<std::size_t>(k)].direction, space.cells());

@@ -10,8 +10,7 @@ struct GapStatistics {
     double omnibus = 0;   ///< chi-square, nuisances marginalised
     double directed = 0;  ///< largest gain in log likelihood of a candidate
     double remainder = 0; ///< chi-square after the best candidate
-    double highest = 0;   ///< largest |gap|/sigma of a cell
-    double highest_refitted = 0;  ///< .. after the nuisances were refitted
+    double highest_refitted = 0;  ///< largest |gap|/sigma of a cell after the nuisances were refitted
     std::vector<EffectFit> fits;  ///< by candidate
     std::size_t best = 0;
 };

@@ -10,12 +10,12 @@ namespace {
 void gather_ranges(const std::vector<WhereCell>& row, double threshold, double half_spacing,
                    const Observable& observable, std::vector<WhereEntry>& entries) {
     for (std::size_t first = 0; first < row.size(); ++first) {
-        if (std::abs(row[first].z_score) < threshold) continue;
+        if (std::abs(row[first].z_score_refitted) < threshold) continue;
         std::size_t last = first;
-        while (last + 1 < row.size() && std::abs(row[last + 1].z_score) >= threshold) ++last;
+        while (last + 1 < row.size() && std::abs(row[last + 1].z_score_refitted) >= threshold) ++last;
         const auto strongest = std::max_element(row.begin() + static_cast<std::ptrdiff_t>(first),
                                                 row.begin() + static_cast<std::ptrdiff_t>(last) + 1, [](auto& a, auto& b) {
-                                                    return std::abs(a.z_score) < std::abs(b.z_score);
+                                                    return std::abs(a.z_score_refitted) < std::abs(b.z_score_refitted);
                                                 });
         WhereEntry entry;
         entry.observable = observable.name;
@@ -35,7 +35,7 @@ void gather_ranges(const std::vector<WhereCell>& row, double threshold, double h
 Location locate(const GapSpace& space, const GapData& data, const NullDistribution& null,
                 const Eigen::VectorXd& gap, const Grid& grid, const Limits& limits) {
     Location location;
-    location.threshold = null.quantile(&GapStatistics::highest, limits.false_alarm);
+    location.threshold = null.quantile(&GapStatistics::highest_refitted, limits.false_alarm);
     const auto all = cells_of(grid);
     const Eigen::VectorXd shifts = space.fit_nuisances(gap);
     std::vector<std::vector<WhereCell>> rows(2 * observables().size());
@@ -56,7 +56,7 @@ Location locate(const GapSpace& space, const GapData& data, const NullDistributi
         gather_ranges(rows[r], location.threshold, half_spacing, observables()[r / 2], location.entries);
     for (WhereEntry& entry : location.entries) entry.displacement[1] = std::min(entry.displacement[1], grid.stroke);
     std::ranges::stable_sort(location.entries,
-                             [](auto& a, auto& b) { return std::abs(a.z_score) > std::abs(b.z_score); });
+                             [](auto& a, auto& b) { return std::abs(a.z_score_refitted) > std::abs(b.z_score_refitted); });
     return location;
 }
 
