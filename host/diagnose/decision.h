@@ -11,7 +11,7 @@ namespace mcdem {
 
 /// Limits that decisions are made with. Set on one half of the challenge, scored on the other (challenge/README.md).
 struct Limits {
-    double false_alarm = 0.05;     ///< p below which there is a gap
+    double false_alarm = 0.01;     ///< p below which there is a gap
     double misfit = 0.003;         ///< p below which what one effect leaves is a gap of its own
     double pair_misfit = 0.05;     ///< .. what two leave: two can mimic much
     double group = 3.0;            ///< log likelihood by which members of a group differ at most ..
