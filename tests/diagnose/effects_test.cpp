@@ -1,0 +1,276 @@
+// The table of effects: each moves what it says and nothing else.
+#include "diagnose/effects.h"
+
+#include <gmock/gmock.h>
+
+#include <fstream>
+#include <map>
+#include <set>
+
+namespace mcdem {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::UnorderedElementsAreArray;
+
+/// Every number of a model that an effect may move.
+std::map<std::string, double> numbers_of(const Model& m) {
+    const Replica& r = m.replica;
+    const Effects& e = r.effects;
+    const Instrument& i = m.instrument;
+    return {{"contact.model", static_cast<double>(r.contact.model)},
+            {"contact.gamma", r.contact.gamma},
+            {"contact.friction_law", static_cast<double>(r.contact.friction_law)},
+            {"contact.sliding_velocity", r.contact.sliding_velocity},
+            {"grains.youngs_modulus", r.grains.youngs_modulus},
+            {"grains.poisson_ratio", r.grains.poisson_ratio},
+            {"grains.density", r.grains.density},
+            {"grains.excess_density", r.grains.excess_density},
+            {"grains.friction", r.grains.friction},
+            {"grains.restitution", r.grains.restitution},
+            {"grains.drag", r.grains.drag},
+            {"walls.youngs_modulus", r.walls.youngs_modulus},
+            {"walls.poisson_ratio", r.walls.poisson_ratio},
+            {"walls.friction", r.walls.friction},
+            {"walls.restitution", r.walls.restitution},
+            {"plate.start", r.plate.start},
+            {"plate.end", r.plate.end},
+            {"plate.speed", r.plate.speed},
+            {"adhesion", e.adhesion},
+            {"viscoelasticity", e.viscoelasticity},
+            {"relaxation_time", e.relaxation_time},
+            {"stiffening", e.stiffening},
+            {"plasticity", e.plasticity},
+            {"bulge_contacts", e.bulge_contacts},
+            {"friction_history", e.friction_history},
+            {"rolling_resistance", e.rolling_resistance},
+            {"modulus_scatter", e.modulus_scatter},
+            {"diameter_error", e.diameter_error},
+            {"polydispersity", e.polydispersity},
+            {"plate_tilt_x", e.plate_tilt_x},
+            {"plate_tilt_y", e.plate_tilt_y},
+            {"plate_compliance", e.plate_compliance},
+            {"position_error", i.stated.position_error},
+            {"force_threshold", i.stated.force_threshold},
+            {"force_bias", i.force_bias},
+            {"threshold_shift", i.threshold_shift},
+            {"position_bias", i.position_bias},
+            {"strain_offset", i.strain_offset},
+            {"mean_diameter", m.mean_diameter}};
+}
+
+std::set<std::string> moved(const Model& before, const Model& after) {
+    std::set<std::string> names;
+    for (const auto& [name, value] : numbers_of(before))
+        if (numbers_of(after).at(name) != value) names.insert(name);
+    return names;
+}
+
+/// What each effect moves.
+const std::map<std::string, std::set<std::string>> moves{
+    {"cross_contact", {"contact.model", "contact.gamma"}},
+    {"bulge_contacts", {"bulge_contacts"}},
+    {"friction", {"grains.friction"}},
+    {"wall_friction", {"walls.friction"}},
+    {"friction_history", {"friction_history"}},
+    {"adhesion", {"adhesion"}},
+    {"viscoelasticity", {"viscoelasticity"}},
+    {"stiffening", {"stiffening"}},
+    {"plasticity", {"plasticity"}},
+    {"buoyancy", {"grains.excess_density"}},
+    {"diameter_error", {"diameter_error"}},
+    {"polydispersity", {"polydispersity"}},
+    {"modulus_scatter", {"modulus_scatter"}},
+    {"rolling_resistance", {"rolling_resistance"}},
+    {"plate_tilt", {"plate_tilt_x"}},
+    {"plate_tilt_y", {"plate_tilt_y"}},
+    {"plate_compliance", {"plate_compliance"}},
+    {"force_bias", {"force_bias"}},
+    {"force_threshold", {"threshold_shift"}},
+    {"position_bias", {"position_bias"}}};
+
+Model plain_model() {
+    Model model;
+    model.replica.contact.model = ContactModel::independent;
+    model.replica.contact.gamma = 1.125;
+    model.instrument.stated.force_threshold = 4e-3;
+    model.mean_diameter = 0.0215;
+    return model;
+}
+
+/// A model that has some of everything already.
+Model full_model() {
+    Model model = plain_model();
+    model.replica.contact.model = ContactModel::mc_dem;
+    model.replica.effects = {.adhesion = 0.01,
+                             .viscoelasticity = 0.2,
+                             .relaxation_time = 0.1,
+                             .stiffening = 0.5,
+                             .plasticity = 0.1,
+                             .bulge_contacts = 0.6,
+                             .friction_history = 0.3,
+                             .rolling_resistance = 0.1,
+                             .modulus_scatter = 0.2,
+                             .diameter_error = 1e-4,
+                             .polydispersity = 2e-4,
+                             .plate_tilt_x = 0.01,
+                             .plate_tilt_y = -0.01,
+                             .plate_compliance = 1e-4};
+    model.instrument.force_bias = 0.05;
+    model.instrument.threshold_shift = 1e-3;
+    model.instrument.position_bias = 1e-3;
+    return model;
+}
+
+/// The names in the table of host/diagnose/README.md, in its order.
+std::vector<std::string> names_of_readme() {
+    std::ifstream in(MCDEM_SOURCE_DIR "/host/diagnose/README.md");
+    std::vector<std::string> names;
+    for (std::string line; std::getline(in, line);) {
+        if (!line.starts_with("| `")) continue;
+        const std::string cell = line.substr(0, line.find('|', 1));
+        for (std::size_t from = cell.find('`'); from != std::string::npos;) {
+            const std::size_t to = cell.find('`', from + 1);
+            names.push_back(cell.substr(from + 1, to - from - 1));
+            from = cell.find('`', to + 1);
+        }
+    }
+    return names;
+}
+
+TEST(Effects, AreThoseDocumented) {
+    std::vector<std::string> names;
+    for (const Effect& effect : effects()) names.emplace_back(effect.name);
+    std::vector<std::string> documented;
+    for (const auto& [name, fields] : moves) documented.push_back(name);
+    EXPECT_THAT(names, UnorderedElementsAreArray(documented));
+    EXPECT_EQ(names, names_of_readme());
+    for (const std::string& name : names) EXPECT_EQ(find_effect(name)->name, name);
+    EXPECT_EQ(find_effect("phlogiston"), nullptr);
+}
+
+TEST(Effects, AmplitudesLieWithinTheirBounds) {
+    for (const Effect& e : effects()) {
+        SCOPED_TRACE(e.name);
+        EXPECT_LE(e.low, 0);
+        EXPECT_GT(e.high, 0);
+        for (const double amplitude : {e.first, e.second}) {
+            EXPECT_GE(amplitude, e.low);
+            EXPECT_LE(amplitude, e.high);
+            EXPECT_NE(amplitude, 0);
+        }
+        EXPECT_NE(e.first, e.second);
+        EXPECT_GT(e.scale(plain_model()), 0);
+        EXPECT_FALSE(e.formula.empty());
+        EXPECT_FALSE(e.source.empty());
+    }
+}
+
+TEST(Effects, MoveTheirOwnFieldOnly) {
+    for (const Effect& e : effects())
+        for (const double amplitude : {e.first, e.second}) {
+            Model model = plain_model();
+            e.apply(model, amplitude * e.scale(model));
+            EXPECT_EQ(moved(plain_model(), model), moves.at(std::string(e.name))) << e.name;
+        }
+}
+
+TEST(Effects, OfAmplitudeZeroAreNone) {
+    for (const Effect& e : effects())
+        for (const Model& start : {plain_model(), full_model()}) {
+            if (!e.hindrance(start).empty()) continue;
+            Model model = start;
+            e.apply(model, 0);
+            // Eq. 1 with gamma = 0 is independent contacts.
+            if (e.name == "cross_contact")
+                EXPECT_EQ(model.replica.contact.gamma, 0);
+            else
+                EXPECT_EQ(moved(start, model), std::set<std::string>{}) << e.name;
+        }
+}
+
+TEST(Effects, AddToWhatTheModelHas) {
+    for (const Effect& e : effects()) {
+        const Model start = full_model();
+        if (!e.hindrance(start).empty()) continue;
+        Model model = start;
+        e.apply(model, e.second * e.scale(model));
+        ASSERT_EQ(moved(start, model), moves.at(std::string(e.name))) << e.name;
+        const std::string field = *moves.at(std::string(e.name)).begin();
+        const double before = numbers_of(start).at(field), after = numbers_of(model).at(field);
+        // The amplitudes of the paired runs are positive at last; only the bulges' part falls.
+        if (field == "bulge_contacts")
+            EXPECT_LT(after, before);
+        else
+            EXPECT_GT(after, before) << e.name;
+    }
+}
+
+TEST(Effects, SharesStayShares) {
+    for (const char* name : {"viscoelasticity", "friction_history", "bulge_contacts"}) {
+        Model model = full_model();
+        find_effect(name)->apply(model, find_effect(name)->high);
+        const double after = numbers_of(model).at(name);
+        EXPECT_GE(after, 0) << name;
+        EXPECT_LE(after, 1) << name;
+    }
+}
+
+TEST(Effects, FrictionIsNeverNegative) {
+    for (const char* name : {"friction", "wall_friction"}) {
+        Model model = plain_model();
+        find_effect(name)->apply(model, -1);
+        EXPECT_EQ(
+            numbers_of(model).at(name == std::string("friction") ? "grains.friction" : "walls.friction"), 0);
+    }
+}
+
+TEST(Effects, HindrancesSayWhy) {
+    const Model independent = plain_model();
+    Model interacting = independent, smooth = independent, unlimited = independent;
+    interacting.replica.contact.model = ContactModel::elastic_sphere;
+    smooth.replica.grains.friction = 0;
+    unlimited.instrument.stated.force_threshold = 0;
+    const auto hindered = [](const Model& model) {
+        std::vector<std::string> names;
+        for (const Effect& effect : effects())
+            if (!effect.hindrance(model).empty()) names.emplace_back(effect.name);
+        return names;
+    };
+    EXPECT_THAT(hindered(independent), ElementsAre("bulge_contacts"));
+    EXPECT_THAT(hindered(interacting), ElementsAre("cross_contact"));
+    EXPECT_THAT(hindered(smooth), ElementsAre("bulge_contacts", "friction_history"));
+    EXPECT_THAT(hindered(unlimited), ElementsAre("bulge_contacts", "force_threshold"));
+}
+
+TEST(Nuisances, MoveTheirParameter) {
+    Model model = plain_model();
+    Experiment experiment;
+    auto list = nuisances(model, experiment);
+    ASSERT_EQ(list.size(), 2u);
+    EXPECT_EQ(list[0].name, "modulus");
+    EXPECT_EQ(list[1].name, "strain_offset");
+    model.replica.contact.model = ContactModel::mc_dem;
+    experiment.uncertainty = {{"grains.youngs_modulus", 0.1 * model.replica.grains.youngs_modulus},
+                              {"grains.friction", 0.01},
+                              {"walls.friction", 0.02}};
+    list = nuisances(model, experiment);
+    const std::string names[] = {"modulus", "strain_offset", "gamma", "friction", "wall_friction"};
+    const std::string fields[] = {"grains.youngs_modulus", "strain_offset", "contact.gamma",
+                                  "grains.friction", "walls.friction"};
+    ASSERT_EQ(list.size(), 5u);
+    EXPECT_NEAR(list[0].sigma, 0.1, 1e-12);
+    EXPECT_EQ(list[3].sigma, 0.01);
+    EXPECT_EQ(list[4].sigma, 0.02);
+    for (std::size_t k = 0; k < 5; ++k) {
+        EXPECT_EQ(list[k].name, names[k]);
+        Model changed = model;
+        list[k].apply(changed, 0);
+        EXPECT_EQ(moved(model, changed), std::set<std::string>{}) << names[k];
+        list[k].apply(changed, list[k].sigma);
+        EXPECT_EQ(moved(model, changed), std::set{fields[k]});
+    }
+}
+
+}  // namespace
+}  // namespace mcdem
