@@ -31,7 +31,7 @@ std::vector<DetectionLimit> detection_limits(const GapSpace& space, const GapDat
     // p is doubled for there being two tests.
     const double threshold = null.quantile(&GapStatistics::directed, 0.5 * limits.false_alarm);
     const double wanted = 0.5 * std::pow(std::sqrt(2 * threshold) + power_of_four_fifths, 2);
-    const GapSpace fixed(data.noise, 0, data.cells, {});
+    const GapSpace fixed(data.noise, static_cast<int>(evidence.baseline.rows()), data.cells, {});
     std::vector<DetectionLimit> list;
     for (std::size_t c = 0; c < static_cast<std::size_t>(data.effects); ++c) {
         const Candidate& candidate = data.candidates[c];
@@ -43,7 +43,7 @@ std::vector<DetectionLimit> detection_limits(const GapSpace& space, const GapDat
         limit.minimum_amplitude = std::abs(down) < std::abs(up) ? std::abs(down) : up;
         const double probe = std::isfinite(up) ? up : candidate.high;
         const double alone = fixed.whiten(candidate.signature->at(probe)).squaredNorm();
-        limit.absorbed_by_calibration = 1 - 2 * expected_gain(space, *candidate.signature, probe) / alone;
+        if (alone > 0) limit.absorbed_by_calibration = 1 - 2 * expected_gain(space, *candidate.signature, probe) / alone;
         const double twice = std::min(2 * probe, candidate.high);
         const GapStatistics as_if = gap_statistics(space, data, candidate.signature->at(twice));
         const double margin = std::max(limits.group, limits.group_share * as_if.fits[c].score);
