@@ -35,6 +35,7 @@ Library library_of(const json& j) {
     Library library;
     library.grid = {j.at("displacement"), j.at("width"), j.at("stroke")};
     library.packing = j.at("packing").get<std::vector<int>>();
+    if (library.packing.empty()) throw json::other_error::create(501, "it has no replicates", &j);
     const auto cells = static_cast<Eigen::Index>(cells_of(library.grid).size());
     library.baseline.resize(static_cast<Eigen::Index>(library.packing.size()), cells);
     const json& rows = j.at("baseline");
