@@ -19,7 +19,7 @@ public:
     void keep(const std::string& name, const Eigen::VectorXd& observation) const;
 
     bool has_recording(const std::string& name) const;
-    /// Throws RunError where it is missing or damaged.
+    /// Throws InputError where it is missing or damaged.
     Recording recording(const std::string& name) const;
     void keep(const std::string& name, const Recording& recording) const;
 

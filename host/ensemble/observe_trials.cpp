@@ -1,11 +1,9 @@
 #include "ensemble/observe_trials.h"
 
-#include <atomic>
 #include <map>
-#include <mutex>
-#include <numeric>
-#include <thread>
+#include <optional>
 
+#include "core/in_parallel.h"
 #include "core/sha256.h"
 #include "metrics/estimate.h"
 #include "scene/keys.h"
@@ -29,8 +27,8 @@ std::string simulation_name(const Device& device, const Question& question, cons
             digest.add(key.name).add("=").add(value_text(key, settings)).add("\n");
     for (const Vec3& position : trial.packing.position) digest.add(std::span(position.data(), 3));
     digest.add(trial.packing.diameter);
-    const double jitter[] = {trial.jitter, trial.diameter_jitter, static_cast<double>(trial.seed)};
-    return digest.add(jitter).hex();
+    const double jitter[] = {trial.jitter, trial.diameter_jitter};
+    return digest.add(jitter).add(std::to_string(trial.seed)).hex();
 }
 
 std::string observation_name(const std::string& simulation, const Question& question, const Instrument& instrument) {
@@ -120,32 +118,24 @@ private:
         look(jobs, recordings);
     }
 
-    /// Measures and observes on all cores.
+    /// Measures and observes on all cores; files are written by one thread, where errors can be reported.
     void look(const std::vector<Job>& jobs, const std::vector<Recording>& recordings) {
-        std::atomic<std::size_t> next = 0;
-        const auto work = [&] {
-            for (std::size_t j = next++; j < jobs.size(); j = next++)
-                for (const std::size_t t : jobs[j].trials) look_at(t, recordings[j]);
-        };
-        std::vector<std::jthread> others;
-        for (unsigned k = 1; k < std::thread::hardware_concurrency(); ++k) others.emplace_back(work);
-        work();
-        others.clear();
+        std::vector<std::optional<Recording>> kept(trials_.size());
+        in_parallel(jobs.size(), [&](std::size_t j) {
+            for (const std::size_t t : jobs[j].trials) look_at(t, recordings[j], kept[t]);
+        });
         for (const Job& job : jobs)
-            for (const std::size_t t : job.trials) store_.keep(names_[t], Eigen::VectorXd(result_.row(static_cast<Eigen::Index>(t))));
+            for (const std::size_t t : job.trials) {
+                if (kept[t]) store_.keep(names_[t], *kept[t]);
+                store_.keep(names_[t], Eigen::VectorXd(result_.row(static_cast<Eigen::Index>(t))));
+            }
     }
 
-    /// HDF5 is used by one thread at a time.
-    void keep_recording(std::size_t t, const Recording& seen) {
-        const std::scoped_lock lock(recordings_);
-        store_.keep(names_[t], seen);
-    }
-
-    void look_at(std::size_t t, const Recording& truth) {
-        const Recording seen = measured(truth, trials_[t].model.instrument, trials_[t].seed);
+    void look_at(std::size_t t, const Recording& truth, std::optional<Recording>& kept) {
+        Recording seen = measured(truth, trials_[t].model.instrument, trials_[t].seed);
         if (!truth.failure)
             result_.row(static_cast<Eigen::Index>(t)) = observe(seen, question_.grid, question_.material, question_.discard);
-        if (trials_[t].keep_recording) keep_recording(t, seen);
+        if (trials_[t].keep_recording) kept = std::move(seen);
     }
 
     Device& device_;
@@ -155,7 +145,6 @@ private:
     const TrialOptions& options_;
     std::vector<std::string> names_;
     Eigen::MatrixXd result_;
-    std::mutex recordings_;
 };
 
 }  // namespace

@@ -1,0 +1,121 @@
+// Libraries of tiny packings: what is in them, and from which runs.
+#include "ensemble/build_library.h"
+
+#include <gmock/gmock.h>
+
+#include "core/errors.h"
+#include "ensemble/small_trials.h"
+
+namespace mcdem {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::ThrowsMessage;
+
+TEST(BaselineTrials, HaveSeedsOfTheirOwn) {
+    const SmallTrials small;
+    LibraryPlan plan;
+    plan.packings = {small.packing, small.packing};
+    plan.replicates = 3;
+    plan.jitter = 1e-5;
+    plan.diameter_jitter = 2e-5;
+    plan.seed = 7;
+    const auto trials = baseline_trials(small.model, plan);
+    ASSERT_EQ(trials.size(), 6u);
+    for (std::size_t t = 0; t < 6; ++t) {
+        EXPECT_EQ(trials[t].seed, 7 + 1000 * (t / 3) + t % 3);
+        EXPECT_EQ(trials[t].jitter, 1e-5);
+        EXPECT_EQ(trials[t].diameter_jitter, 2e-5);
+        EXPECT_FALSE(trials[t].keep_recording);
+    }
+}
+
+TEST(BuildLibrary, BaselineEffectsAndNuisances) {
+    const SmallTrials small;
+    Device device;
+    LibraryPlan plan;
+    plan.packings = {small.packing};
+    plan.replicates = 3;
+    plan.pairs = 2;
+    plan.jitter = plan.diameter_jitter = 1e-5;
+    plan.candidates = {"force_bias", "plate_tilt"};
+    plan.nuisances = nuisances(small.model, {});
+    const Library library = build_library(device, small.question, small.model, plan, small.store, {});
+    const auto cells = static_cast<Eigen::Index>(cells_of(small.question.grid).size());
+    EXPECT_EQ(library.grid.displacement, small.question.grid.displacement);
+    EXPECT_EQ(library.packing, (std::vector{0, 0, 0}));
+    ASSERT_EQ(library.baseline.rows(), 3);
+    ASSERT_EQ(library.baseline.cols(), cells);
+    ASSERT_EQ(library.effects.size(), 2u);
+    EXPECT_EQ(library.effects[0].name, "force_bias");
+    EXPECT_EQ(library.effects[1].name, "plate_tilt");
+    EXPECT_EQ(library.effects[1].reach, 0.015);
+    EXPECT_EQ(library.effects[1].pairs, 2);
+    ASSERT_EQ(library.nuisances.size(), plan.nuisances.size());
+    EXPECT_EQ(library.nuisances[0].name, "modulus");
+    EXPECT_EQ(library.nuisances[0].reach, plan.nuisances[0].sigma);
+    EXPECT_EQ(library.provenance.at("program"), "test");
+
+    // The plate's reading is not a contact force: no bias of those is seen on it.
+    EXPECT_EQ(library.effects[0].linear[0], 0);
+    EXPECT_GT(library.nuisances[0].linear[1], 0.3);  // ln F grows by one with ln E, less what rearranges
+    // The same from trials made by hand.
+    std::vector<Trial> trials = baseline_trials(small.model, plan);
+    const Eigen::MatrixXd before = observe_trials(device, small.question, trials, small.store, {});
+    EXPECT_TRUE(same(before.row(2), library.baseline.row(2)));
+    trials.resize(2);
+    Eigen::MatrixXd differences[2];
+    for (int k = 0; k < 2; ++k) {
+        for (Trial& trial : trials) trial.model.replica.effects.plate_tilt_x = k ? 0.015 : -0.015;
+        differences[k] = observe_trials(device, small.question, trials, small.store, {}) - before.topRows(2);
+    }
+    const Signature tilt = learn_signature("plate_tilt", -0.015, 0.015, differences[0], differences[1]);
+    EXPECT_TRUE(same(tilt.linear, library.effects[1].linear));
+    EXPECT_TRUE(same(tilt.curvature, library.effects[1].curvature));
+}
+
+TEST(BuildLibrary, SeveralPackings) {
+    const SmallTrials small;
+    Device device;
+    LibraryPlan plan;
+    Packing mirrored = small.packing;
+    for (Vec3& position : mirrored.position) position.x() = small.model.replica.box.size_x - position.x();
+    plan.packings = {small.packing, mirrored};
+    plan.replicates = 2;
+    plan.pairs = 1;
+    plan.candidates = {"force_bias"};
+    const Library library = build_library(device, small.question, small.model, plan, small.store, {});
+    EXPECT_EQ(library.packing, (std::vector{0, 0, 1, 1}));
+    EXPECT_EQ(library.effects[0].pairs, 2);  // one of each packing
+    EXPECT_TRUE(library.nuisances.empty());
+    EXPECT_FALSE(same(library.baseline.row(0), library.baseline.row(2)));
+}
+
+TEST(ChooseCandidates, AllThatTheModelCanHave) {
+    Model model = SmallTrials().model;
+    model.replica.contact.model = ContactModel::independent;
+    const CandidateChoice all = choose_candidates(model, {});
+    EXPECT_EQ(all.chosen.size() + all.hindered.size(), effects().size());
+    EXPECT_THAT(all.chosen, AllOf(Contains("cross_contact"), Not(Contains("bulge_contacts"))));
+    EXPECT_THAT(all.hindered, ElementsAre("bulge_contacts: independent contacts make no bulges"));
+    const CandidateChoice some = choose_candidates(model, {"adhesion", "bulge_contacts"});
+    EXPECT_THAT(some.chosen, ElementsAre("adhesion"));
+    EXPECT_EQ(some.hindered.size(), 1u);
+}
+
+TEST(ChooseCandidates, NamesWhatIsNoEffect) {
+    const Model model = SmallTrials().model;
+    EXPECT_THAT(
+        [&] {
+            choose_candidates(model, {"adhesion", "phlogiston", "ether"});
+        },
+        ThrowsMessage<InputError>(AllOf(HasSubstr("phlogiston is not an effect; there are cross_contact"),
+                                        HasSubstr("ether is not an effect"))));
+}
+
+}  // namespace
+}  // namespace mcdem

@@ -1,0 +1,266 @@
+// Trials: the same alone and in company, fresh and from the store; and never mistaken for one another.
+#include "ensemble/observe_trials.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "ensemble/small_trials.h"
+#include "scene/keys.h"
+
+namespace mcdem {
+namespace {
+
+TEST(ObserveTrials, SameAloneAndInABatch) {
+    const SmallTrials small;
+    Device device;
+    Trial tilted = small.trial(2), biased = small.trial(3);
+    tilted.model.replica.effects.plate_tilt_x = 0.01;
+    biased.model.instrument.force_bias = 0.2;
+    const std::vector<Trial> trials{small.trial(1), tilted, biased};
+    const Eigen::MatrixXd together = observe_trials(device, small.question, trials, small.store, {});
+    ASSERT_EQ(together.rows(), 3);
+    ASSERT_EQ(together.cols(), static_cast<Eigen::Index>(cells_of(small.question.grid).size()));
+    EXPECT_TRUE(std::isfinite(together(0, 0)) && std::isfinite(together(0, 1)));
+    EXPECT_NE(together(0, 1), together(1, 1));
+    for (std::size_t k = 0; k < 3; ++k) {
+        const SmallTrials fresh;
+        const auto alone = observe_trials(device, fresh.question, {trials[k]}, fresh.store, {});
+        EXPECT_TRUE(same(alone.row(0), together.row(static_cast<Eigen::Index>(k)))) << k;
+    }
+}
+
+/// Counts the calls of progress: none where nothing is simulated.
+struct Watched {
+    int calls = 0;
+    TrialOptions options() {
+        TrialOptions o;
+        o.on_progress = [this](double fraction) {
+            ++calls;
+            EXPECT_GE(fraction, 0);
+            EXPECT_LE(fraction, 1);
+        };
+        return o;
+    }
+};
+
+TEST(ObserveTrials, FromTheStoreNothingIsSimulated) {
+    const SmallTrials small;
+    Device device;
+    Watched first, second, third;
+    const auto fresh = observe_trials(device, small.question, {small.trial(1)}, small.store, first.options());
+    EXPECT_GT(first.calls, 0);
+    const auto kept = observe_trials(device, small.question, {small.trial(1)}, small.store, second.options());
+    EXPECT_EQ(second.calls, 0);
+    EXPECT_TRUE(same(kept.row(0), fresh.row(0)));
+    const auto more = observe_trials(device, small.question, {small.trial(2), small.trial(1)}, small.store,
+                                     third.options());
+    EXPECT_GT(third.calls, 0);
+    EXPECT_TRUE(same(more.row(1), fresh.row(0)));
+}
+
+TEST(ObserveTrials, AnotherInstrumentSharesTheSimulation) {
+    const SmallTrials small;
+    Device device;
+    Trial biased = small.trial(1);
+    biased.model.instrument.strain_offset = 1e-3;
+    Watched one, two;
+    observe_trials(device, small.question, {small.trial(1)}, small.store, one.options());
+    const SmallTrials fresh;
+    const auto rows =
+        observe_trials(device, fresh.question, {fresh.trial(1), biased}, fresh.store, two.options());
+    EXPECT_FALSE(same(rows.row(0), rows.row(1)));
+    EXPECT_EQ(files_in(fresh.folder.path / "simulations"), 2);
+    // One simulation goes through as many stretches however many look at it.
+    EXPECT_EQ(two.calls, one.calls);
+}
+
+TEST(ObserveTrials, InterruptedAndGoingOn) {
+    const SmallTrials small;
+    Device device;
+    TrialOptions impatient;
+    impatient.stop_wanted = [] { return true; };
+    EXPECT_THROW(observe_trials(device, small.question, {small.trial(1)}, small.store, impatient),
+                 Interrupted);
+    EXPECT_EQ(files_in(small.folder.path / "simulations"), 0);
+    const auto later = observe_trials(device, small.question, {small.trial(1)}, small.store, {});
+    const SmallTrials fresh;
+    EXPECT_TRUE(
+        same(later.row(0), observe_trials(device, fresh.question, {fresh.trial(1)}, fresh.store, {}).row(0)));
+}
+
+TEST(ObserveTrials, KeptRecordings) {
+    const SmallTrials small;
+    Device device;
+    observe_trials(device, small.question, {small.trial(1)}, small.store, {});
+    EXPECT_ANY_THROW(kept_recordings(device, small.question, {small.trial(1)}, small.store));
+    Trial kept = small.trial(1);
+    kept.keep_recording = true;
+    const auto row = observe_trials(device, small.question, {kept}, small.store, {});
+    const auto recordings = kept_recordings(device, small.question, {kept}, small.store);
+    ASSERT_EQ(recordings.size(), 1u);
+    EXPECT_EQ(recordings[0].diameter.size(), small.packing.size());
+    EXPECT_NE(recordings[0].diameter[0], small.packing.diameter[0]);  // as measured
+    const Eigen::VectorXd seen = observe(recordings[0], small.question.grid, small.question.material);
+    for (Eigen::Index cell = 0; cell < seen.size(); ++cell)
+        if (std::isfinite(seen[cell]))
+            EXPECT_NEAR(seen[cell], row(0, cell), 1e-4) << cell;  // positions are kept as floats: 1e-8 m
+    EXPECT_EQ(seen.array().isFinite().count(), row.array().isFinite().count());
+    Watched again;
+    observe_trials(device, small.question, {kept}, small.store, again.options());
+    EXPECT_EQ(again.calls, 0);
+}
+
+/// Whether a trial's observation is found where only that of small.trial(1) is kept.
+class Names {
+public:
+    Names() { observe_trials(device_, small.question, {small.trial(1)}, small.store, {}); }
+
+    bool taken_for_the_kept(const Question& question, const Trial& trial) {
+        TrialOptions impatient;
+        impatient.stop_wanted = [] { return true; };
+        try {
+            observe_trials(device_, question, {trial}, small.store, impatient);
+            return true;
+        } catch (const Interrupted&) {
+            return false;
+        } catch (const std::exception&) {
+            return false;  // not found, and too strange to be simulated
+        }
+    }
+    bool taken_for_the_kept(const Trial& trial) { return taken_for_the_kept(small.question, trial); }
+
+    SmallTrials small;
+
+private:
+    Device device_;
+};
+
+TEST(TrialNames, TheSameAgain) {
+    Names names;
+    EXPECT_TRUE(names.taken_for_the_kept(names.small.trial(1)));
+    Trial relabelled = names.small.trial(1);
+    relabelled.model.replica.label = "another label";
+    EXPECT_TRUE(names.taken_for_the_kept(relabelled));
+}
+
+TEST(TrialNames, TellSeedsJittersAndPackingsApart) {
+    Names names;
+    const auto expect_apart = [&](const char* what, const std::function<void(Trial&)>& change) {
+        Trial trial = names.small.trial(1);
+        change(trial);
+        EXPECT_FALSE(names.taken_for_the_kept(trial)) << what;
+    };
+    expect_apart("seed", [](Trial& t) { t.seed = 2; });
+    expect_apart("jitter", [](Trial& t) { t.jitter = 2e-5; });
+    expect_apart("diameter jitter", [](Trial& t) { t.diameter_jitter = 2e-5; });
+    expect_apart("swapped jitters", [](Trial& t) { t.jitter = 0, t.diameter_jitter = 2e-5; });
+    expect_apart("position", [](Trial& t) { t.packing.position[3].y() += 1e-12; });
+    expect_apart("diameter", [](Trial& t) { t.packing.diameter[3] += 1e-12; });
+}
+
+TEST(TrialNames, TellLargeSeedsApart) {
+    SmallTrials small;
+    Device device;
+    const std::uint64_t seed =
+        std::numeric_limits<std::uint64_t>::max() - 1;  // a double does not tell it from the next
+    const auto rows =
+        observe_trials(device, small.question, {small.trial(seed), small.trial(seed + 1)}, small.store, {});
+    EXPECT_FALSE(same(rows.row(0), rows.row(1)));
+    EXPECT_EQ(files_in(small.folder.path / "simulations"), 2);
+}
+
+/// The value of a key moved a little, to the next word or the other truth.
+void move(Settings& settings, const Key& key) {
+    std::visit(
+        [&](auto member) {
+            auto& value = member(settings);
+            using Value = std::remove_reference_t<decltype(value)>;
+            if constexpr (std::is_same_v<Value, double>)
+                value = value == 0 ? 1e-9 : value * (1 + 1e-12);
+            else if constexpr (std::is_same_v<Value, std::string>)
+                value += "?";
+            else if constexpr (std::is_same_v<Value, bool>)
+                value = !value;
+            else if constexpr (std::is_enum_v<Value>)
+                value = static_cast<Value>(static_cast<int>(value) == 0 ? 1 : 0);
+            else
+                ++value;
+        },
+        key.member);
+}
+
+TEST(TrialNames, TellEveryKeyOfAReplicaApart) {
+    Names names;
+    int tried = 0;
+    for (const Key& key : keys()) {
+        if (key.scope != Scope::replica || is_generator_key(key.name) || key.name == "packing.file") continue;
+        Trial trial = names.small.trial(1);
+        Settings settings;
+        settings.replica = trial.model.replica;
+        move(settings, key);
+        trial.model.replica = settings.replica;
+        EXPECT_FALSE(names.taken_for_the_kept(trial)) << key.name;
+        ++tried;
+    }
+    EXPECT_GT(tried, 40);
+}
+
+// The table of keys and the struct agree: a member without a key would be forgotten in names too.
+TEST(TrialNames, TellEveryEffectApart) {
+    Names names;
+    constexpr std::size_t count = sizeof(Effects) / sizeof(double);
+    for (std::size_t k = 0; k < count; ++k) {
+        Trial trial = names.small.trial(1);
+        reinterpret_cast<double*>(&trial.model.replica.effects)[k] += 1e-9;
+        EXPECT_FALSE(names.taken_for_the_kept(trial)) << k;
+    }
+}
+
+/// Every double of a struct that holds nothing else, moved one after the other.
+template <class Plain>
+void for_each_number(Plain& plain, const std::function<void(std::size_t)>& look) {
+    static_assert(std::is_trivially_copyable_v<Plain> && sizeof(Plain) % sizeof(double) == 0);
+    for (std::size_t k = 0; k < sizeof(Plain) / sizeof(double); ++k) {
+        const Plain before = plain;
+        double& value = reinterpret_cast<double*>(&plain)[k];
+        value = std::nextafter(value, 1e300);
+        look(k);
+        plain = before;
+    }
+}
+
+TEST(TrialNames, TellInstrumentsApart) {
+    Names names;
+    Trial trial = names.small.trial(1);
+    for_each_number(trial.model.instrument,
+                    [&](std::size_t k) { EXPECT_FALSE(names.taken_for_the_kept(trial)) << k; });
+}
+
+TEST(TrialNames, TellQuestionsApart) {
+    Names names;
+    Question question = names.small.question;
+    const auto expect_apart = [&](const char* what) {
+        EXPECT_FALSE(names.taken_for_the_kept(question, names.small.trial(1))) << what;
+        question = names.small.question;
+    };
+    EXPECT_TRUE(names.taken_for_the_kept(question, names.small.trial(1)));
+    for_each_number(question.material, [&](std::size_t k) {
+        EXPECT_FALSE(names.taken_for_the_kept(question, names.small.trial(1))) << k;
+    });
+    question.grid.width += 1e-9;
+    expect_apart("width");
+    question.grid.displacement[1] += 1e-9;
+    expect_apart("displacement");
+    question.discard = 1;
+    expect_apart("discard");
+    question.program = "another";
+    expect_apart("program");
+    question.scene.precision = Precision::double_precision;
+    expect_apart("precision");
+}
+
+}  // namespace
+}  // namespace mcdem

@@ -1,0 +1,53 @@
+// The paper's metrics before and after, on recordings whose forces are known.
+#include "ensemble/paper_metrics.h"
+
+#include <gtest/gtest.h>
+
+#include "metrics/estimate.h"
+
+namespace mcdem {
+namespace {
+
+/// Loading and unloading with a top force of `stiffness` times the displacement squared.
+Recording stroke(double stiffness) {
+    Recording recording;
+    recording.plate_start = 0.1;
+    for (const Phase phase : {Phase::load, Phase::unload})
+        for (int k = 1; k <= 5; ++k) {
+            Scan scan;
+            scan.frame = static_cast<int>(recording.scans.size());
+            scan.phase = phase;
+            scan.coordination_number = scan.mean_force = not_available;
+            const double displacement = 0.002 * (phase == Phase::load ? k : 6 - k);
+            scan.plate_z = 0.1 - displacement;
+            scan.wall_force[static_cast<int>(Wall::plate)].z() = stiffness * displacement * displacement;
+            recording.scans.push_back(scan);
+        }
+    return recording;
+}
+
+TEST(PaperMetrics, BeforeAndAfter) {
+    Shrink shrink;
+    const double stiffness = 1e4;  // 1 N at 10 mm
+    add_paper_metrics(shrink, stroke(stiffness),
+                      {{stroke(0.5 * stiffness), stroke(0.7 * stiffness)}, {stroke(1.1 * stiffness)}});
+    EXPECT_NEAR(shrink.metrics.at("Rtop")[0], 0.6, 1e-12);
+    EXPECT_NEAR(shrink.metrics.at("Rtop")[1], 1.1, 1e-12);
+    // Root mean square over the levels, of which loading and unloading have the same: 0.04 k^2 N.
+    const double mean_square = 0.04 * 0.04 * (1 + 16 + 81 + 256 + 625) / 5;
+    EXPECT_NEAR(shrink.metrics.at("errf")[0], 0.4 * std::sqrt(mean_square), 1e-12);
+    EXPECT_NEAR(shrink.metrics.at("errf")[1], 0.1 * std::sqrt(mean_square), 1e-12);
+    EXPECT_FALSE(shrink.metrics.contains("errZ"));  // no contacts
+    EXPECT_FALSE(shrink.metrics.contains("bhat"));
+    ASSERT_EQ(shrink.top_force.size(), 5u);
+    for (int k = 1; k <= 5; ++k) {
+        const auto& row = shrink.top_force[static_cast<std::size_t>(k - 1)];
+        EXPECT_NEAR(row[0], 0.002 * k, 1e-12);
+        EXPECT_NEAR(row[1], 0.04 * k * k, 1e-12);
+        EXPECT_NEAR(row[2], 0.6 * 0.04 * k * k, 1e-12);
+        EXPECT_NEAR(row[3], 1.1 * 0.04 * k * k, 1e-12);
+    }
+}
+
+}  // namespace
+}  // namespace mcdem
