@@ -1,0 +1,155 @@
+// Recordings as vectors: local lines through the scans near a cell.
+#include "diagnose/observation.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "diagnose/synthetic_scan.h"
+
+namespace mcdem {
+namespace {
+
+constexpr double start = 0.15, stroke = 0.03;  // [m]
+
+Scan plate_scan(double displacement, double log_force, Phase phase = Phase::load, int cycle = 0) {
+    Scan scan;
+    scan.cycle = cycle;
+    scan.phase = phase;
+    scan.plate_z = start - displacement;
+    scan.wall_force[static_cast<int>(Wall::plate)].z() = std::exp(log_force);
+    return scan;
+}
+
+Recording recording_of(std::vector<Scan> scans) {
+    Recording recording;
+    recording.plate_start = start;
+    recording.scans = std::move(scans);
+    return recording;
+}
+
+const Grid grid{{0.01, 0.02}, 0.004, stroke};
+
+/// Top force, loading at both displacements, then unloading.
+std::array<double, 4> top_forces(const Recording& recording, int discard = 0) {
+    const Eigen::VectorXd all = observe(recording, grid, soft_material(), discard);
+    EXPECT_EQ(all.size(), static_cast<Eigen::Index>(cells_of(grid).size()));
+    for (Eigen::Index cell = 4; cell < all.size(); ++cell) EXPECT_TRUE(std::isnan(all[cell]));
+    return {all[0], all[1], all[2], all[3]};
+}
+
+TEST(Observation, LocalLineIsExactForLinearData) {
+    for (const double shift : {0.0, 0.3e-3, 0.7e-3, 1.1e-3}) {
+        Recording recording = recording_of({});
+        for (double d = shift; d <= stroke; d += 1.3e-3) {
+            recording.scans.push_back(plate_scan(d, -3 + 150 * d));
+            recording.scans.push_back(plate_scan(d, -5 + 120 * d, Phase::unload));
+        }
+        const auto forces = top_forces(recording);
+        EXPECT_NEAR(forces[0], -3 + 150 * 0.01, 1e-9);
+        EXPECT_NEAR(forces[1], -3 + 150 * 0.02, 1e-9);
+        EXPECT_NEAR(forces[2], -5 + 120 * 0.01, 1e-9);
+        EXPECT_NEAR(forces[3], -5 + 120 * 0.02, 1e-9);
+    }
+}
+
+TEST(Observation, TriangularWeights) {
+    // Scans at -3/4, 0 and 1/2 of the width: weights 1/4, 1, 1/2. Weighted line through (0.8, 1, 1.5), by
+    // hand.
+    const Recording recording =
+        recording_of({plate_scan(0.007, 0.8), plate_scan(0.010, 1.0), plate_scan(0.012, 1.5)});
+    const double n = 1.75, x = -0.1875 + 0.25, xx = 0.140625 + 0.125, y = 0.2 + 1 + 0.75, xy = -0.15 + 0.375;
+    EXPECT_NEAR(top_forces(recording)[0], (xx * y - x * xy) / (n * xx - x * x), 1e-9);
+}
+
+TEST(Observation, BeyondTheWidthNothingCounts) {
+    const std::vector<Scan> inside{plate_scan(0.009, 1), plate_scan(0.011, 2)};
+    auto outside = inside;
+    outside.push_back(plate_scan(0.0141, 9));
+    outside.push_back(plate_scan(0.0059, 9));
+    EXPECT_EQ(top_forces(recording_of(outside))[0], top_forces(recording_of(inside))[0]);
+    outside.push_back(plate_scan(0.0139, 9));
+    EXPECT_NE(top_forces(recording_of(outside))[0], top_forces(recording_of(inside))[0]);
+}
+
+TEST(Observation, OneScanCountsWhereItIsNear) {
+    EXPECT_NEAR(top_forces(recording_of({plate_scan(0.0103, 1.7)}))[0], 1.7, 1e-12);
+    EXPECT_TRUE(std::isnan(top_forces(recording_of({plate_scan(0.011, 1.7)}))[0]));
+    EXPECT_TRUE(std::isnan(top_forces(recording_of({}))[0]));
+}
+
+TEST(Observation, NeedsAForceOnThePlate) {
+    Recording recording = recording_of({plate_scan(0.009, 1), plate_scan(0.010, 1), plate_scan(0.011, 1)});
+    recording.scans[1].wall_force = no_wall_forces();
+    EXPECT_NEAR(top_forces(recording)[0], 1, 1e-12);
+}
+
+TEST(Observation, CyclesAreAveragedAfterThoseDiscarded) {
+    Recording recording = recording_of({});
+    for (int cycle = 0; cycle < 3; ++cycle)
+        for (double d = 0.0005; d < stroke; d += 0.001)
+            for (const Phase phase : {Phase::load, Phase::unload})
+                recording.scans.push_back(plate_scan(d, 100 * d + (cycle == 0 ? 9 : cycle), phase, cycle));
+    EXPECT_NEAR(top_forces(recording, 1)[1], 2 + 1.5, 1e-9);
+    EXPECT_NEAR(top_forces(recording, 1)[3], 2 + 1.5, 1e-9);
+    EXPECT_NEAR(top_forces(recording)[1], 2 + 4, 1e-9);
+}
+
+TEST(Observation, CellsByObservableThenPhaseThenDisplacement) {
+    const auto cells = cells_of(grid);
+    ASSERT_EQ(cells.size(), 4 * observables().size());
+    for (std::size_t k = 0; k < cells.size(); ++k) {
+        EXPECT_EQ(cells[k].observable, static_cast<int>(k / 4));
+        EXPECT_EQ(cells[k].phase, k % 4 < 2 ? Phase::load : Phase::unload);
+        EXPECT_EQ(cells[k].displacement, grid.displacement[k % 2]);
+    }
+}
+
+TEST(Observation, OtherObservablesStandInTheirCells) {
+    const Lattice lattice(5);
+    Recording recording = lattice.recording;
+    recording.scans = {lattice.scan, lattice.scan};
+    recording.plate_start = lattice.scan.plate_z + 0.01;
+    recording.scans[1].phase = Phase::unload;
+    for (Contact& contact : recording.scans[1].contacts) contact.force *= 2;
+    const Grid two{{0.01, 0.02}, 0.004, stroke};
+    const auto all = observe(recording, two, soft_material());
+    const auto cells = cells_of(two);
+    const auto load = scan_observables(recording, recording.scans[0], soft_material());
+    const auto unload = scan_observables(recording, recording.scans[1], soft_material());
+    for (std::size_t k = 0; k < cells.size(); ++k) {
+        const double seen = all[static_cast<Eigen::Index>(k)];
+        const double expected = (cells[k].phase == Phase::load ? load : unload)[cells[k].observable];
+        if (cells[k].displacement > 0.015 || std::isnan(expected))
+            EXPECT_TRUE(std::isnan(seen)) << k;
+        else
+            EXPECT_NEAR(seen, expected, 1e-9) << k;
+    }
+}
+
+/// `scans` a stroke, at equal distances down to `stroke`, and up again.
+Recording strokes(int scans, int cycles) {
+    Recording recording = recording_of({plate_scan(0, 0)});
+    recording.scans.clear();
+    for (int cycle = 0; cycle < cycles; ++cycle)
+        for (int k = 1; k <= scans; ++k) {
+            recording.scans.push_back(plate_scan(stroke * k / scans, 0, Phase::load, cycle));
+            recording.scans.push_back(plate_scan(stroke * (1 - 1.0 * k / scans), 0, Phase::unload, cycle));
+        }
+    return recording;
+}
+
+TEST(Grid, FollowsTheStrokeAndTheScans) {
+    for (const int cycles : {1, 3}) {
+        const Grid fine = grid_of(strokes(50, cycles));
+        EXPECT_NEAR(fine.stroke, stroke, 1e-12);
+        ASSERT_EQ(fine.displacement.size(), 4u);
+        const double parts[] = {0.42, 0.61, 0.80, 0.98};
+        for (std::size_t k = 0; k < 4; ++k) EXPECT_NEAR(fine.displacement[k], parts[k] * stroke, 1e-12);
+        EXPECT_NEAR(fine.width, 0.12 * stroke, 1e-12);
+        EXPECT_NEAR(grid_of(strokes(8, cycles)).width, 1.6 / 8 * stroke, 1e-12);  // three scans wide
+    }
+}
+
+}  // namespace
+}  // namespace mcdem
