@@ -1,0 +1,81 @@
+// Amplitudes recovered from synthetic gaps, and their scores in closed form.
+#include "diagnose/effect_fit.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "diagnose/synthetic_evidence.h"
+
+namespace mcdem {
+namespace {
+
+struct Setting {
+    explicit Setting(std::uint64_t seed = 1)
+        : world(2, seed), evidence(world.evidence(1, 40)), data(gap_data(evidence)) {}
+    GapSpace space() const { return {data.noise, 0, data.cells, {{direction, 1.0}}}; }
+    SyntheticWorld world;
+    Evidence evidence;
+    GapData data;
+    Eigen::VectorXd direction = world.pattern(1);
+};
+
+TEST(EffectFit, LinearSignatureInClosedForm) {
+    Setting s;
+    const Signature signature = s.world.signature("adhesion", s.world.pattern(0.5));
+    const Eigen::VectorXd gap = 3 * signature.linear + s.world.noise();
+    const GapSpace space = s.space();
+    const Eigen::VectorXd l = space.whiten(signature.linear), g = space.whiten(gap);
+    const EffectFit fit = fit_effect(space, {&signature, -8, 8}, gap);
+    EXPECT_NEAR(fit.amplitude, l.dot(g) / l.squaredNorm(), 1e-4);  // 20 bits of the range
+    EXPECT_NEAR(fit.error, 1 / l.norm(), 1e-9);
+    EXPECT_NEAR(fit.score, 0.5 * l.dot(g) * l.dot(g) / l.squaredNorm(), 1e-6 * fit.score);
+    EXPECT_NEAR(fit.amplitude, 3, 4 * fit.error);
+    EXPECT_FALSE(fit.at_bound);
+}
+
+TEST(EffectFit, ErrorIsTheScatterOfAmplitudes) {
+    Setting s(2);
+    const Signature signature = s.world.signature("adhesion", s.world.pattern(0.5));
+    const GapSpace space = s.space();
+    double square = 0;
+    const int draws = 400;
+    for (int k = 0; k < draws; ++k) {
+        const Eigen::VectorXd gap =
+            2 * signature.linear + s.world.noise() + s.world.random().normal() * s.direction;
+        const EffectFit fit = fit_effect(space, {&signature, -20, 20}, gap);
+        square += std::pow((fit.amplitude - 2) / fit.error, 2) / draws;
+    }
+    EXPECT_NEAR(square, 1, 0.4);  // 400 draws: 0.07; the space knows the covariance from 40 rows: some 0.2
+}
+
+TEST(EffectFit, CurvedSignature) {
+    Setting s(3);
+    Signature signature = s.world.signature("stiffening", s.world.pattern(1));
+    signature.curvature = s.world.pattern(0.4);
+    signature.reach = 1.5;
+    for (const double amplitude : {-1.2, 0.4, 1.5, 3.7})  // the last beyond the reach
+        EXPECT_NEAR(fit_effect(s.space(), {&signature, -2, 4}, signature.at(amplitude)).amplitude, amplitude,
+                    1e-4);
+    // At amplitude a the slope of the signature, not its linear part, says how well it is known.
+    const EffectFit fit = fit_effect(s.space(), {&signature, -2, 4}, signature.at(0.4));
+    EXPECT_NEAR(fit.error, 1 / s.space().whiten(signature.slope(fit.amplitude)).norm(), 1e-9);
+}
+
+TEST(EffectFit, StaysWithinItsBounds) {
+    Setting s(4);
+    const Signature signature = s.world.signature("plasticity", s.world.pattern(1));
+    const EffectFit above = fit_effect(s.space(), {&signature, 0, 2}, 5 * signature.linear);
+    EXPECT_NEAR(above.amplitude, 2, 1e-3);
+    EXPECT_TRUE(above.at_bound);
+    const EffectFit below = fit_effect(s.space(), {&signature, 0, 2}, -5 * signature.linear);
+    EXPECT_EQ(below.amplitude, 0);
+    EXPECT_EQ(below.score, 0);
+    EXPECT_FALSE(below.at_bound);
+    const EffectFit lowest = fit_effect(s.space(), {&signature, -1, 2}, -5 * signature.linear);
+    EXPECT_NEAR(lowest.amplitude, -1, 2e-3);
+    EXPECT_TRUE(lowest.at_bound);
+}
+
+}  // namespace
+}  // namespace mcdem

@@ -1,0 +1,154 @@
+// False alarms and power of the two tests, by experiments drawn at random.
+#include "diagnose/gap_tests.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "diagnose/synthetic_evidence.h"
+
+namespace mcdem {
+namespace {
+
+constexpr int experiments = 200;
+
+struct Shares {
+    double omnibus = 0, directed = 0;  ///< of the experiments with p < 0.05
+};
+
+/// Everything is drawn anew for each experiment, the library included. `planted`: amplitude of the candidate.
+Shares alarms(int packings, int replicates, double planted, int observables_known = 4) {
+    Shares shares;
+    for (int k = 0; k < experiments; ++k) {
+        SyntheticWorld world(observables_known, 100 + static_cast<std::uint64_t>(k));
+        Evidence evidence = world.evidence(packings, replicates);
+        world.add_effect(evidence, "adhesion", world.pattern(0.5));
+        world.add_effect(evidence, "friction", world.pattern(0.5));
+        world.add_nuisance(evidence, "modulus", world.pattern(1), 2);
+        evidence.observed += planted * evidence.library.effects[0].linear;
+        evidence.observed += 2 * world.random().normal() * evidence.library.nuisances[0].linear;
+        const GapData data = gap_data(evidence);
+        const GapSpace space(data.noise, replicates, data.cells, data.free);
+        const NullDistribution null(data, replicates, 1);
+        const GapStatistics s = gap_statistics(space, data, data.gap);
+        shares.omnibus += null.p_value(&GapStatistics::omnibus, s.omnibus) < 0.05 ? 1.0 / experiments : 0;
+        shares.directed += null.p_value(&GapStatistics::directed, s.directed) < 0.05 ? 1.0 / experiments : 0;
+    }
+    return shares;
+}
+
+// Of 200 experiments 5 % +- 1.5 % raise a false alarm; the null's own 32 replicates add as much again.
+void expect_about_one_in_twenty(const Shares& shares) {
+    EXPECT_GE(shares.omnibus, 0.005);
+    EXPECT_LE(shares.omnibus, 0.12);
+    EXPECT_GE(shares.directed, 0.005);
+    EXPECT_LE(shares.directed, 0.12);
+}
+
+TEST(GapTests, FalseAlarmsWithOnePacking) { expect_about_one_in_twenty(alarms(1, 32, 0)); }
+
+// Two replicates of a packing are mirror images of each other about their mean: only if they are left out
+// together does the null not know them.
+TEST(GapTests, FalseAlarmsWithManyPackings) { expect_about_one_in_twenty(alarms(16, 2, 0)); }
+
+TEST(GapTests, PowerForWhatIsPlanted) {
+    // Amplitude 2.5 of a signature of 0.5 in each of 32 cells with noise one: some 6 sigma before
+    // correlations.
+    const Shares shares = alarms(1, 32, 2.5);
+    EXPECT_GT(shares.directed, 0.9);
+    EXPECT_GT(shares.omnibus, 0.3);
+}
+
+TEST(GapTests, StatisticsOfOneGap) {
+    SyntheticWorld world(3, 1);
+    Evidence evidence = world.evidence(1, 30);
+    world.add_effect(evidence, "adhesion", world.pattern(0.5));
+    world.add_effect(evidence, "friction", world.pattern(0.5));
+    world.add_nuisance(evidence, "modulus", world.pattern(1), 2);
+    const GapData data = gap_data(evidence);
+    const GapSpace space(data.noise, 30, data.cells, data.free);
+    const Eigen::VectorXd gap =
+        data.gap + 4 * evidence.library.effects[1].linear + 3 * evidence.library.nuisances[0].linear;
+    const GapStatistics s = gap_statistics(space, data, gap);
+    ASSERT_EQ(s.fits.size(), 3u);  // the modulus beyond its prior is a candidate too
+    EXPECT_EQ(s.best, 1u);
+    EXPECT_EQ(data.name(s.best), "friction");
+    EXPECT_EQ(data.effects, 2);
+    EXPECT_EQ(data.name(2), "modulus");
+    EXPECT_EQ(s.directed, s.fits[1].score);
+    EXPECT_NEAR(s.omnibus, space.whiten(gap).squaredNorm(), 1e-9 * s.omnibus);
+    const Eigen::VectorXd left = gap - s.fits[1].amplitude * evidence.library.effects[1].linear;
+    EXPECT_NEAR(s.remainder, space.whiten(left).squaredNorm(), 1e-6 * s.remainder);
+    double refitted = 0;
+    const double shift = space.fit_nuisances(gap)[0];
+    EXPECT_NEAR(shift, 3, 1.5);
+    for (std::size_t k = 0; k < data.cells.size(); ++k) {
+        const double sigma = space.sigma()[static_cast<Eigen::Index>(k)], value = gap[data.cells[k]];
+        refitted = std::max(
+            refitted, std::abs(value - shift * evidence.library.nuisances[0].linear[data.cells[k]]) / sigma);
+    }
+    EXPECT_NEAR(s.highest_refitted, refitted, 1e-12);
+}
+
+TEST(NullDistribution, QuantileIsTheInverseOfP) {
+    SyntheticWorld world(3, 2);
+    Evidence evidence = world.evidence(1, 24);
+    world.add_effect(evidence, "adhesion", world.pattern(0.5));
+    world.add_nuisance(evidence, "modulus", world.pattern(1), 2);
+    const GapData data = gap_data(evidence);
+    const NullDistribution null(data, 24, 1);
+    EXPECT_EQ(null.draws().size(), 3 * 24u);
+    for (const double p : {0.5, 0.05, 0.001})
+        EXPECT_NEAR(null.p_value(&GapStatistics::highest_refitted,
+                                 null.quantile(&GapStatistics::highest_refitted, p)),
+                    p, 1e-9);
+    EXPECT_EQ(null.p_value(&GapStatistics::directed, 0), 1);
+    // As many draws lie above the median as below it: 72 draws, 4 sigma.
+    const double median = null.quantile(&GapStatistics::omnibus, 0.5);
+    EXPECT_NEAR(
+        std::ranges::count_if(null.draws(), [&](const GapStatistics& s) { return s.omnibus > median; }), 36,
+        17);
+}
+
+TEST(NullDistribution, DependsOnItsSeedOnly) {
+    SyntheticWorld world(2, 3);
+    Evidence evidence = world.evidence(1, 16);
+    world.add_nuisance(evidence, "modulus", world.pattern(1), 2);
+    const GapData data = gap_data(evidence);
+    const auto p = [&](std::uint64_t seed) {
+        return NullDistribution(data, 16, seed).p_value(&GapStatistics::highest_refitted, 3);
+    };
+    EXPECT_EQ(p(1), p(1));
+    EXPECT_NE(p(1), p(2));
+}
+
+TEST(Evidence, FoldsKeepPackingsTogether) {
+    SyntheticWorld world(1, 4);
+    Evidence evidence = world.evidence(9, 3);
+    const GapData data = gap_data(evidence);
+    for (std::size_t r = 0; r < 27; ++r) EXPECT_EQ(data.fold[r], static_cast<int>(r / 3) % 8);
+    Evidence single = world.evidence(1, 12);
+    const GapData alone = gap_data(single);
+    for (std::size_t r = 0; r < 12; ++r) EXPECT_EQ(alone.fold[r], static_cast<int>(r) % 8);
+}
+
+TEST(Evidence, GapIsObservedLessTheBaselinesMean) {
+    SyntheticWorld world(1, 5);
+    Evidence evidence = world.evidence(2, 3);
+    evidence.baseline(1, 4) = not_available;
+    const GapData data = gap_data(evidence);
+    EXPECT_NEAR(data.gap[0], evidence.observed[0] - evidence.baseline.col(0).mean(), 1e-12);
+    EXPECT_NEAR(data.gap[4], evidence.observed[4] - 0.5 * (evidence.baseline(0, 4) + evidence.baseline(2, 4)),
+                1e-12);
+    EXPECT_EQ(data.cells, (CellChoice{0, 1, 2, 3, 4, 5, 6, 7}));
+}
+
+TEST(Evidence, EveryNameNeedsASignature) {
+    SyntheticWorld world(1, 6);
+    Evidence evidence = world.evidence(1, 8);
+    evidence.candidates.push_back({"adhesion", "", 0, 1});
+    EXPECT_THROW(gap_data(evidence), std::logic_error);
+}
+
+}  // namespace
+}  // namespace mcdem

@@ -1,0 +1,132 @@
+// What is proposed for a planted gap, and what real runs make of it.
+#include "diagnose/proposals.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "diagnose/synthetic_evidence.h"
+
+namespace mcdem {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::UnorderedElementsAre;
+
+constexpr int replicates = 32;
+
+/// A gap of `amplitudes` of the four effects.
+struct Case {
+    explicit Case(const std::vector<double>& amplitudes, std::uint64_t seed = 1)
+        : world(4, seed), evidence(make(amplitudes)), data(gap_data(evidence)) {}
+
+    Evidence make(const std::vector<double>& amplitudes) {
+        Evidence e = world.evidence(1, replicates);
+        for (const char* name : {"adhesion", "friction", "plasticity", "plate_tilt"})
+            world.add_effect(e, name, world.pattern(1));
+        world.add_nuisance(e, "modulus", world.pattern(0.5), 1);
+        for (std::size_t k = 0; k < amplitudes.size(); ++k)
+            e.observed += amplitudes[k] * e.library.effects[k].linear;
+        return e;
+    }
+    std::vector<Proposal> proposals() const { return propose(space, data, null, statistics, replicates); }
+
+    SyntheticWorld world;
+    Evidence evidence;
+    GapData data;
+    GapSpace space{data.noise, replicates, data.cells, data.free};
+    NullDistribution null{data, replicates, 1};
+    GapStatistics statistics = gap_statistics(space, data, data.gap);
+};
+
+TEST(Proposals, OneEffectThatExplainsIt) {
+    const Case c({0, 4});
+    const auto list = c.proposals();
+    ASSERT_FALSE(list.empty());
+    EXPECT_THAT(list[0].candidates, ElementsAre(1));
+    EXPECT_NEAR(list[0].amplitudes[0], 4, 4 * list[0].errors[0]);
+    EXPECT_EQ(list[0].gain, c.statistics.directed);
+    EXPECT_GT(list[0].misfit_p, 0.01);
+    for (const Proposal& p : list) EXPECT_EQ(p.candidates.size(), 1u);
+}
+
+TEST(Proposals, TwoEffectsTogether) {
+    const Case c({0, 4, 0, -3});
+    const auto list = c.proposals();
+    const Proposal& pair = list.back();
+    ASSERT_THAT(pair.candidates, UnorderedElementsAre(1, 3));
+    const std::size_t first = pair.candidates[0] == 1 ? 0 : 1;
+    EXPECT_NEAR(pair.amplitudes[first], 4, 4 * pair.errors[first]);
+    EXPECT_NEAR(pair.amplitudes[1 - first], -3, 4 * pair.errors[1 - first]);
+    EXPECT_GT(pair.misfit_p, 0.01);
+    EXPECT_LT(list[0].misfit_p, 0.003);
+    const Eigen::VectorXd left = c.data.gap - explained_by(pair, c.data);
+    EXPECT_NEAR(pair.gain, 0.5 * (c.statistics.omnibus - c.space.whiten(left).squaredNorm()),
+                1e-6 * pair.gain);
+}
+
+TEST(Proposals, ExplainedBySignatures) {
+    const Case c({});
+    Proposal p;
+    p.candidates = {0, 2};
+    p.amplitudes = {1.5, -2};
+    const Eigen::VectorXd sum =
+        1.5 * c.evidence.library.effects[0].linear - 2 * c.evidence.library.effects[2].linear;
+    EXPECT_LT((explained_by(p, c.data) - sum).norm(), 1e-12);
+}
+
+TEST(Proposals, OfWhatGainsNothingThereAreNone) {
+    Case c({});
+    GapStatistics nothing = c.statistics;
+    for (EffectFit& fit : nothing.fits) fit = {};
+    nothing.directed = 0;
+    EXPECT_TRUE(propose(c.space, c.data, c.null, nothing, replicates).empty());
+}
+
+Eigen::MatrixXd runs(Case& c, const Eigen::VectorXd& shift, int number) {
+    Eigen::MatrixXd rows(number, c.data.mean.size());
+    const Eigen::VectorXd centre = c.data.mean + shift;
+    for (int r = 0; r < number; ++r) rows.row(r) = (centre + c.world.noise()).transpose();
+    return rows;
+}
+
+TEST(Confirmation, RunsThatMeetTheData) {
+    Case c({0, 4}, 2);
+    Proposal p = c.proposals().at(0);
+    const auto step = confirm(p, c.data, c.null, c.evidence.observed, c.statistics.omnibus,
+                              runs(c, 4 * c.evidence.library.effects[1].linear, 16));
+    ASSERT_TRUE(step);
+    EXPECT_EQ(step->size(), 2);  // the modulus, then the amplitude
+    EXPECT_GT(*p.confirmed_misfit_p, 0.01);
+    EXPECT_NEAR(*p.confirmed_gain, p.gain, 0.25 * p.gain);
+}
+
+TEST(Confirmation, RunsThatDoNot) {
+    Case c({0, 4}, 2);
+    Proposal p = c.proposals().at(0);
+    confirm(p, c.data, c.null, c.evidence.observed, c.statistics.omnibus,
+            runs(c, 4 * c.evidence.library.effects[2].linear, 16));
+    EXPECT_LT(*p.confirmed_misfit_p, 1e-3);
+    EXPECT_LT(*p.confirmed_gain, 0.6 * p.gain);
+}
+
+TEST(Confirmation, StepSaysHowFarTheAmplitudeMissed) {
+    Case c({0, 4}, 2);
+    Proposal p = c.proposals().at(0);
+    const auto step = confirm(p, c.data, c.null, c.evidence.observed, c.statistics.omnibus,
+                              runs(c, 3 * c.evidence.library.effects[1].linear, 200));
+    ASSERT_TRUE(step);
+    EXPECT_NEAR((*step)[1], 1, 0.6);  // one sigma of the amplitude is 0.2, and the prior pulls a little
+}
+
+TEST(Confirmation, OfAFailedRunThereIsNone) {
+    Case c({0, 4}, 2);
+    Proposal p = c.proposals().at(0);
+    Eigen::MatrixXd failed = runs(c, Eigen::VectorXd::Zero(c.data.mean.size()), 4);
+    failed.row(2).setConstant(not_available);
+    EXPECT_FALSE(confirm(p, c.data, c.null, c.evidence.observed, c.statistics.omnibus, failed));
+    EXPECT_FALSE(p.confirmed_gain);
+}
+
+}  // namespace
+}  // namespace mcdem

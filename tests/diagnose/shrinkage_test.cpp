@@ -1,0 +1,125 @@
+// A planted effect takes its gap away on data that were not fitted; where there is none, nothing does.
+#include "diagnose/shrinkage.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "diagnose/synthetic_evidence.h"
+
+namespace mcdem {
+namespace {
+
+constexpr int replicates = 32;
+
+struct Case {
+    explicit Case(double amplitude, std::uint64_t seed = 1)
+        : world(6, seed), evidence(make(amplitude)), data(gap_data(evidence)) {}
+    Evidence make(double amplitude) {
+        Evidence e = world.evidence(1, replicates);
+        world.add_effect(e, "adhesion", world.pattern(1));
+        world.add_effect(e, "friction", world.pattern(1));
+        world.add_nuisance(e, "modulus", world.pattern(0.5), 1);
+        e.observed += amplitude * e.library.effects[0].linear;
+        return e;
+    }
+    Shrink shrink(std::vector<std::size_t> candidates) const {
+        Proposal p;
+        p.candidates = std::move(candidates);
+        return measure_shrink(data, split, p, replicates, 1);
+    }
+
+    SyntheticWorld world;
+    Evidence evidence;
+    GapData data;
+    Split split = split_cells(data.cells, synthetic_grid);
+};
+
+TEST(Split, FitsTheFirstPartOfLoading) {
+    const Case c(0);
+    ASSERT_EQ(c.split.fitted.size() + c.split.held_out.size(), 48u);
+    EXPECT_EQ(c.split.fitted.size(), 6 * 3u);  // three of four displacements lie below 85 % of the stroke
+    const auto cells = cells_of(synthetic_grid);
+    for (const auto cell : c.split.fitted) {
+        EXPECT_EQ(cells[static_cast<std::size_t>(cell)].phase, Phase::load);
+        EXPECT_LT(cells[static_cast<std::size_t>(cell)].displacement, 0.85 * synthetic_grid.stroke);
+    }
+}
+
+TEST(GapSize, OfNoiseIsZeroOnAverage) {
+    Case c(0);
+    double mean = 0, twice = 0;
+    constexpr int draws = 2000;
+    for (int k = 0; k < draws; ++k) {
+        const Eigen::VectorXd gap = c.world.noise() - c.world.noise();
+        mean += gap_size(c.data, c.split.held_out, gap, 1) / draws;
+        twice += gap_size(c.data, c.split.held_out, gap + c.world.noise(), 1, 1) / draws;
+    }
+    // Thirty cells with a scatter of 2 sqrt 2: 0.4 over 2000 draws; variances from 32 replicates err by 0.25
+    // a cell.
+    EXPECT_NEAR(mean, 0, 5);
+    EXPECT_NEAR(twice, 0, 8);
+}
+
+TEST(GapSize, OfWhatIsThereIsItsSquareInSigmas) {
+    Case c(0);
+    double mean = 0;
+    constexpr int draws = 500;
+    const Eigen::VectorXd there = 3 * c.evidence.library.effects[0].linear;
+    for (int k = 0; k < draws; ++k)
+        mean += (gap_size(c.data, c.split.held_out, there + c.world.noise(), 0) -
+                 gap_size(c.data, c.split.held_out, c.world.noise(), 0)) /
+                draws;
+    double expected = 0;
+    for (const auto cell : c.split.held_out)
+        expected += there[cell] * there[cell] * replicates / c.data.noise.col(cell).squaredNorm();
+    EXPECT_NEAR(mean, expected, 0.03 * expected);
+}
+
+TEST(Shrink, APlantedEffectTakesItsGapAway) {
+    const Case c(4);
+    const Shrink s = c.shrink({0});
+    EXPECT_GT(s.fraction, 0.9);
+    EXPECT_LE(s.fraction, 1);
+    EXPECT_NEAR(s.fraction, std::min(1.0, 1 - s.after / s.before), 1e-12);
+    EXPECT_LE(s.interval[0], s.fraction);
+    EXPECT_GE(s.interval[1], s.fraction);
+    EXPECT_GT(s.interval[0], 0.75);
+    EXPECT_LT(s.placebo, 0.5);
+    EXPECT_GE(s.placebo, 0);
+}
+
+TEST(Shrink, AnotherEffectDoesNot) { EXPECT_LT(Case(4).shrink({1}).fraction, 0.3); }
+
+TEST(Shrink, TwoEffectsAreFittedTogether) {
+    Case c(4);
+    c.data.gap -= 3 * c.evidence.library.effects[1].linear;
+    EXPECT_GT(c.shrink({0, 1}).fraction, 0.9);
+    EXPECT_LT(c.shrink({0}).fraction, 0.8);
+    const PartialFit fit = fit_part(c.data, c.split.fitted, c.data.gap, {0, 1}, replicates);
+    EXPECT_NEAR(fit.amplitudes[0], 4, 1.2);  // 18 correlated cells of noise one: 0.3 each
+    EXPECT_NEAR(fit.amplitudes[1], -3, 1.2);
+    EXPECT_EQ(fit.nuisances.size(), 1);
+}
+
+TEST(Shrink, OfNoiseIsNothingForSure) {
+    int covered = 0;
+    constexpr int cases = 20;
+    for (int k = 0; k < cases; ++k) {
+        const Shrink s = Case(0, 50 + static_cast<std::uint64_t>(k)).shrink({0});
+        covered += s.interval[0] <= 0.1;
+    }
+    EXPECT_GE(covered, 16);  // a 90 % interval of the part, whose true value is none
+}
+
+TEST(Shrink, OnePartMissing) {
+    const Case c(4);
+    Proposal p;
+    p.candidates = {0};
+    const Shrink s = measure_shrink(c.data, {c.split.fitted, {}}, p, replicates, 1);
+    EXPECT_EQ(s.fraction, 0);
+    EXPECT_EQ(s.before, 0);
+}
+
+}  // namespace
+}  // namespace mcdem

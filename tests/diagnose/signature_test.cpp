@@ -1,0 +1,83 @@
+// What is learnt from paired runs: parabolas come back, noise does not.
+#include "diagnose/signature.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "scene/random.h"
+
+namespace mcdem {
+namespace {
+
+/// Rows alike but for noise: linear a + curvature a^2.
+Eigen::MatrixXd differences(double a, const Eigen::VectorXd& linear, const Eigen::VectorXd& curvature,
+                            int pairs, double noise = 0, std::uint64_t seed = 1) {
+    Random random(seed, Stream::positions);
+    Eigen::MatrixXd rows = (a * linear + a * a * curvature).transpose().replicate(pairs, 1);
+    for (Eigen::Index r = 0; r < rows.rows(); ++r)
+        for (Eigen::Index cell = 0; cell < rows.cols(); ++cell) rows(r, cell) += noise * random.normal();
+    return rows;
+}
+
+const Eigen::Vector3d linear(1, -0.5, 2), curvature(0.3, 0.4, -0.7);
+
+TEST(Signature, ParabolaThroughExactData) {
+    for (const auto& [first, second] : {std::pair{0.5, 1.0}, {-0.7, 2.5}, {-0.2, 0.2}}) {
+        const Signature s =
+            learn_signature("adhesion", first, second, differences(first, linear, curvature, 4),
+                            differences(second, linear, curvature, 4));
+        EXPECT_EQ(s.name, "adhesion");
+        EXPECT_EQ(s.reach, second);
+        EXPECT_EQ(s.pairs, 4);
+        EXPECT_LT((s.linear - linear).norm(), 1e-12);
+        EXPECT_LT((s.curvature - curvature).norm(), 1e-11);
+        EXPECT_LT(s.variance.norm() + s.spread.norm(), 1e-20);
+        const double a = 0.6 * second;
+        EXPECT_LT((s.at(a) - (a * linear + a * a * curvature)).norm(), 1e-11);
+        EXPECT_LT((s.slope(a) - (linear + 2 * a * curvature)).norm(), 1e-11);
+    }
+}
+
+TEST(Signature, GoesStraightOnBeyondItsReach) {
+    const Signature s{"", 2, linear, curvature, {}, {}, 1};
+    for (const double side : {-1.0, 1.0}) {
+        const Eigen::Vector3d end = side * 2 * linear + 4 * curvature, slope = linear + side * 4 * curvature;
+        EXPECT_LT((s.at(side * 2) - end).norm(), 1e-12);
+        EXPECT_LT((s.at(side * 3.5) - (end + side * 1.5 * slope)).norm(), 1e-12);
+        EXPECT_LT((s.slope(side * 3.5) - slope).norm(), 1e-12);
+    }
+}
+
+TEST(Signature, NoiseIsShrunkToNothing) {
+    const int cells = 2000, pairs = 8;
+    const Eigen::VectorXd zero = Eigen::VectorXd::Zero(cells);
+    const Signature s = learn_signature("", -1, 1, differences(-1, zero, zero, pairs, 1, 1),
+                                        differences(1, zero, zero, pairs, 1, 2));
+    // Of a normal mean over its known error, 68 % lie below one; with the error from 8 pairs 65 %.
+    const double nothing = (s.linear.array() == 0).cast<double>().mean();
+    EXPECT_NEAR((s.curvature.array() == 0).cast<double>().mean(), 0.65, 0.05);
+    EXPECT_GT(nothing, 0.4);
+    EXPECT_LT(s.at(1).squaredNorm() / cells,
+              0.7 / pairs);  // the mean of the second amplitude's runs: 1/pairs
+}
+
+TEST(Signature, ClearEffectsAreKept) {
+    const Eigen::VectorXd one = Eigen::VectorXd::Constant(500, 1.0), zero = Eigen::VectorXd::Zero(500);
+    const Signature s = learn_signature("", 0.5, 1, differences(0.5, one, zero, 8, 0.1, 1),
+                                        differences(1, one, zero, 8, 0.1, 2));
+    // The mean of 8 pairs errs by 0.035; its slope by little more, and by more where a curvature is believed.
+    EXPECT_NEAR(s.at(1).mean(), 1, 0.01);
+    EXPECT_LT((s.at(1) - one).norm() / std::sqrt(500), 0.06);
+}
+
+TEST(Signature, SpreadIsThatOfPairsOverTheAmplitude) {
+    Eigen::MatrixXd first(3, 1), second(3, 1);
+    first << 1, 1, 1;
+    second << 2, 3, 7;  // variance 7
+    const Signature s = learn_signature("", 1, 2, first, second);
+    EXPECT_NEAR(s.spread[0], 7.0 / 4, 1e-12);
+}
+
+}  // namespace
+}  // namespace mcdem
