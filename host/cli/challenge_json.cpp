@@ -10,7 +10,10 @@ using Json = nlohmann::ordered_json;
 
 Json share_json(const Share& share) {
     const auto [low, high] = wilson_interval(share.hits, share.of);
-    return {{"hits", share.hits}, {"of", share.of}, {"share", share.of > 0 ? Json(share.value()) : Json()}, {"interval", {low, high}}};
+    return {{"hits", share.hits},
+            {"of", share.of},
+            {"share", share.of > 0 ? Json(share.value()) : Json()},
+            {"interval", {low, high}}};
 }
 
 Json shares_json(const std::map<std::string, Share>& shares) {
@@ -44,7 +47,10 @@ Json arm_json(const ArmScore& arm) {
     Json limits;
     if (arm.has_limits)
         for (const auto& [name, value] : named_limits(arm.limits)) limits[std::string(name)] = value;
-    return {{"name", arm.name}, {"meaning", arm.meaning}, {"limits", limits}, {"first_half", merits_json(arm.first)},
+    return {{"name", arm.name},
+            {"meaning", arm.meaning},
+            {"limits", limits},
+            {"first_half", merits_json(arm.first)},
             {"scored_half", merits_json(arm.second)}};
 }
 

@@ -1,4 +1,6 @@
 // mcdem challenge make
+#include "ensemble/challenge_make.h"
+
 #include <fmt/format.h>
 
 #include "cli/challenge.h"
@@ -7,7 +9,6 @@
 #include "cli/messages.h"
 #include "cli/progress.h"
 #include "cli/scene_options.h"
-#include "ensemble/challenge_make.h"
 #include "ensemble/observe_trials.h"
 
 namespace mcdem {
@@ -23,7 +24,8 @@ void make(MakeCommand& command, int& exit_code) {
     const Scene scene = command.scene.read();
     ChallengeOptions& options = command.options;
     options.folder = command.out;
-    options.truth = command.truth.empty() ? options.folder / "truth.json" : std::filesystem::path(command.truth);
+    options.truth =
+        command.truth.empty() ? options.folder / "truth.json" : std::filesystem::path(command.truth);
     Device device(command.device);
     const Interrupt interrupt;
     Progress progress(stderr, progress_style(stderr));
@@ -32,7 +34,8 @@ void make(MakeCommand& command, int& exit_code) {
     try {
         const std::string seal = make_challenge(device, scene, options);
         progress.clear();
-        fmt::print("{}: the challenge is made\ntruth: {}\nits SHA-256: {}\n", command.out, options.truth.string(), seal);
+        fmt::print("{}: the challenge is made\ntruth: {}\nits SHA-256: {}\n", command.out,
+                   options.truth.string(), seal);
     } catch (const Interrupted& interrupted) {
         progress.clear();
         spdlog::warn("{}", interrupted.what());
@@ -47,8 +50,10 @@ void add_sizes(CLI::App& sub, ChallengeSize& size) {
     add("--none", size.none, "Realities without an effect");
     add("--per-effect", size.per_effect, "Realities with each effect of the library");
     add("--pairs", size.pairs, "Realities with two of them");
-    add("--unknown", size.unknown, "Realities with an effect that the library of their diagnosis does not have");
-    add("--outside", size.outside_prior, "Realities with modulus or strain zero far outside their uncertainty");
+    add("--unknown", size.unknown,
+        "Realities with an effect that the library of their diagnosis does not have");
+    add("--outside", size.outside_prior,
+        "Realities with modulus or strain zero far outside their uncertainty");
     add("--packings", size.packings, "Different packings; an even number");
 }
 
@@ -66,12 +71,15 @@ void add_measurement(CLI::App& sub, Measurement& measurement) {
 }  // namespace
 
 void add_challenge_make(CLI::App& challenge, int& exit_code) {
-    auto* sub = challenge.add_subcommand("make", "Simulate realities and write them as experiments; seal the answers");
+    auto* sub = challenge.add_subcommand(
+        "make", "Simulate realities and write them as experiments; seal the answers");
     auto command = std::make_shared<MakeCommand>();
     add_scene_options(*sub, command->scene);
     sub->add_option("--out", command->out, "Folder for the challenge")->required()->type_name("DIR");
-    sub->add_option("--truth", command->truth, "File for the answers; DIR/truth.json where left out")->type_name("FILE");
-    sub->add_option("--seed", command->options.seed, "Everything is drawn from it; where left out it is known to nobody")
+    sub->add_option("--truth", command->truth, "File for the answers; DIR/truth.json where left out")
+        ->type_name("FILE");
+    sub->add_option("--seed", command->options.seed,
+                    "Everything is drawn from it; where left out it is known to nobody")
         ->type_name("S");
     sub->add_option("--effects", command->options.effects, "Effects to try, instead of a dozen of all kinds")
         ->delimiter(',')
@@ -79,9 +87,10 @@ void add_challenge_make(CLI::App& challenge, int& exit_code) {
     add_sizes(*sub, command->options.size);
     add_measurement(*sub, command->options.measurement);
     add_device_option(*sub, command->device);
-    sub->footer("The same command goes on where an interrupted one stopped.\n"
-                "Example:\n"
-                "  mcdem challenge make scenes/challenge.toml --out out/challenge --truth out/truth.json");
+    sub->footer(
+        "The same command goes on where an interrupted one stopped.\n"
+        "Example:\n"
+        "  mcdem challenge make scenes/challenge.toml --out out/challenge --truth out/truth.json");
     sub->callback([command, &exit_code] { make(*command, exit_code); });
 }
 

@@ -42,7 +42,8 @@ std::vector<std::string> in_order(std::set<std::string> names) {
     };
     take(verdict_name(Verdict::no_gap));
     std::vector<std::string> last;
-    for (const std::string& name : {two_effects, verdict_name(Verdict::unknown_effect), verdict_name(Verdict::calibration_suspect)})
+    for (const std::string& name :
+         {two_effects, verdict_name(Verdict::unknown_effect), verdict_name(Verdict::calibration_suspect)})
         if (names.erase(name)) last.push_back(name);
     list.insert(list.end(), names.begin(), names.end());
     list.insert(list.end(), last.begin(), last.end());
@@ -62,7 +63,8 @@ ConfusionMatrix confusion_of(const std::vector<ScoredCase>& cases) {
     ConfusionMatrix matrix{in_order(rows), in_order(columns), {}};
     matrix.counts.assign(matrix.truths.size(), std::vector<int>(matrix.verdicts.size(), 0));
     for (const ScoredCase& c : cases)
-        ++matrix.counts[place_in(matrix.truths, row_of(*c.truth))][place_in(matrix.verdicts, column_of(c.answer))];
+        ++matrix.counts[place_in(matrix.truths, row_of(*c.truth))]
+                       [place_in(matrix.verdicts, column_of(c.answer))];
     return matrix;
 }
 
@@ -115,12 +117,15 @@ std::vector<ConfidenceBin> confidences_of(const std::vector<ScoredCase>& cases) 
 
 }  // namespace
 
-std::vector<std::filesystem::path> draw_score(const ChallengeScore& score, const std::filesystem::path& folder) {
+std::vector<std::filesystem::path> draw_score(const ChallengeScore& score,
+                                              const std::filesystem::path& folder) {
     std::vector<Figure> figures;
     if (!score.scored.empty()) figures.push_back(confusion_figure(confusion_of(score.scored)));
-    if (const auto power = power_of(score.scored, score.arms.front().limits.false_alarm); !power.points.empty())
+    if (const auto power = power_of(score.scored, score.arms.front().limits.false_alarm);
+        !power.points.empty())
         figures.push_back(power_figure(power));
-    if (const auto bins = confidences_of(score.scored); !bins.empty()) figures.push_back(confidence_figure(bins));
+    if (const auto bins = confidences_of(score.scored); !bins.empty())
+        figures.push_back(confidence_figure(bins));
     std::vector<std::filesystem::path> pictures;
     for (const Figure& figure : figures)
         for (const auto& picture : draw_figure(figure, folder)) pictures.push_back(picture);

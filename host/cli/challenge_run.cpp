@@ -65,13 +65,15 @@ void add_numbers(CLI::App& sub, ChallengeRunOptions& options) {
     sub.add_option("--candidates", options.library.candidates, "Effects of a new library, instead of all")
         ->delimiter(',')
         ->type_name("NAME,..");
-    sub.add_option("--seed", options.seed, "Of everything that is random in the diagnoses")->capture_default_str();
+    sub.add_option("--seed", options.seed, "Of everything that is random in the diagnoses")
+        ->capture_default_str();
 }
 
 }  // namespace
 
 void add_challenge_run(CLI::App& challenge, int& exit_code) {
-    auto* sub = challenge.add_subcommand("run", "Diagnose every reality of a challenge from its experiment alone");
+    auto* sub =
+        challenge.add_subcommand("run", "Diagnose every reality of a challenge from its experiment alone");
     auto command = std::make_shared<RunChallengeCommand>();
     sub->add_option("CHALLENGE", command->challenge, "Folder of the challenge")->required();
     sub->add_option("--scene", command->scene, "Scene that the challenge was made with")->required();

@@ -35,8 +35,8 @@ void draw(const ChallengeScore& score, const std::filesystem::path& folder) {
 void score(const ScoreCommand& command) {
     const std::filesystem::path folder = command.challenge, out = command.out;
     const OpenChallenge open = read_open_challenge(folder);
-    const Challenge truth = open_truth(command.truth.empty() ? folder / "truth.json" : std::filesystem::path(command.truth),
-                                       open.sealed);
+    const Challenge truth = open_truth(
+        command.truth.empty() ? folder / "truth.json" : std::filesystem::path(command.truth), open.sealed);
     ChallengeScore score;
     {
         Progress progress(stderr, progress_style(stderr));
@@ -56,12 +56,15 @@ void add_challenge_score(CLI::App& challenge, int&) {
     auto* sub = challenge.add_subcommand("score", "Open the answers and hold the diagnoses against them");
     auto command = std::make_shared<ScoreCommand>();
     sub->add_option("CHALLENGE", command->challenge, "Folder of the challenge")->required();
-    sub->add_option("ANSWERS", command->out, "Folder of the diagnoses; the score is written there too")->required();
-    sub->add_option("--truth", command->truth, "File with the truth; CHALLENGE/truth.json where left out")->type_name("FILE");
+    sub->add_option("ANSWERS", command->out, "Folder of the diagnoses; the score is written there too")
+        ->required();
+    sub->add_option("--truth", command->truth, "File with the truth; CHALLENGE/truth.json where left out")
+        ->type_name("FILE");
     sub->add_flag("--no-figures", command->no_figures, "Do not draw pictures");
-    sub->footer("Truth of another SHA-256 than challenge.json says is refused.\n"
-                "Example:\n"
-                "  mcdem challenge score out/challenge out/answers");
+    sub->footer(
+        "Truth of another SHA-256 than challenge.json says is refused.\n"
+        "Example:\n"
+        "  mcdem challenge score out/challenge out/answers");
     sub->callback([command] { score(*command); });
 }
 

@@ -25,6 +25,7 @@ std::string score_markdown(const ChallengeScore& score);
 std::string score_json(const ChallengeScore& score);
 
 /// Draws what there is to draw; returns the files.
-std::vector<std::filesystem::path> draw_score(const ChallengeScore& score, const std::filesystem::path& folder);
+std::vector<std::filesystem::path> draw_score(const ChallengeScore& score,
+                                              const std::filesystem::path& folder);
 
 }  // namespace mcdem

@@ -89,11 +89,13 @@ int run(const DiagnoseCommand& command) {
 }  // namespace
 
 void add_diagnose(CLI::App& app, int& exit_code) {
-    auto* sub = app.add_subcommand("diagnose", "Where a scene and an experiment part, and which effect is to blame");
+    auto* sub =
+        app.add_subcommand("diagnose", "Where a scene and an experiment part, and which effect is to blame");
     auto command = std::make_shared<DiagnoseCommand>();
     add_scene_options(*sub, command->scene);
     sub->add_option("--experiment", command->experiment, "Experiment folder")->required()->type_name("DIR");
-    sub->add_option("--out", command->out, "Folder for the verdict, the page, and every simulation made for them")
+    sub->add_option("--out", command->out,
+                    "Folder for the verdict, the page, and every simulation made for them")
         ->required()
         ->type_name("DIR");
     sub->add_option("--candidates", command->candidates, "Effects that may be to blame; all where left out")
@@ -114,11 +116,16 @@ void add_diagnose(CLI::App& app, int& exit_code) {
         ->type_name("FILE");
     add_device_option(*sub, command->device);
     sub->footer(
-        "The scene is the simulation as it stands; box, plate and scans are the experiment's. Prints the verdict in\n"
-        "five lines and writes diagnosis.json and diagnosis.html, with its pictures, into DIR. Simulations are kept\n"
-        "in DIR/simulations: nothing is computed twice, and an interrupted diagnosis goes on with the same command.\n"
-        "Verdicts: no_gap, effect, group (effects that these data cannot tell apart), unknown_effect (none of the\n"
-        "library), calibration_suspect. `mcdem experiment check DIR` tells beforehand what the data can carry.\n"
+        "The scene is the simulation as it stands; box, plate and scans are the experiment's. Prints the "
+        "verdict in\n"
+        "five lines and writes diagnosis.json and diagnosis.html, with its pictures, into DIR. Simulations "
+        "are kept\n"
+        "in DIR/simulations: nothing is computed twice, and an interrupted diagnosis goes on with the same "
+        "command.\n"
+        "Verdicts: no_gap, effect, group (effects that these data cannot tell apart), unknown_effect (none "
+        "of the\n"
+        "library), calibration_suspect. `mcdem experiment check DIR` tells beforehand what the data can "
+        "carry.\n"
         "Example:\n"
         "  mcdem diagnose scenes/small.toml --experiment out/reality --out out/diagnosis");
     sub->callback([command, &exit_code] { exit_code = run(*command); });

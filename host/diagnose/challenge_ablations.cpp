@@ -31,7 +31,8 @@ void top_force_alone(Evidence& evidence) {
 
 void without_nuisances(Evidence& evidence) { evidence.nuisances.clear(); }
 
-/// The mean over the library's packings for the experiment's own packing, and their scatter for that of replicates.
+/// The mean over the library's packings for the experiment's own packing, and their scatter for that of
+/// replicates.
 void without_pairing(Evidence& evidence) {
     Library& library = evidence.library;
     const int packings = 1 + *std::ranges::max_element(library.packing);
@@ -43,7 +44,8 @@ void without_pairing(Evidence& evidence) {
     std::vector<int> seen(static_cast<std::size_t>(packings), 0);
     for (std::size_t r = 0; r < library.packing.size(); ++r) {
         const auto packing = static_cast<std::size_t>(library.packing[r]);
-        evidence.baseline.row(library.packing[r]) += library.baseline.row(static_cast<Eigen::Index>(r)) / replicates[packing];
+        evidence.baseline.row(library.packing[r]) +=
+            library.baseline.row(static_cast<Eigen::Index>(r)) / replicates[packing];
         library.packing[r] += step * seen[packing]++;
     }
 }
@@ -85,7 +87,8 @@ Answer smallest_residual(const Evidence& evidence) {
     Eigen::MatrixXd independent = Eigen::MatrixXd::Zero(count, data.noise.cols());
     for (Eigen::Index k = 0; k < count; ++k) {
         const auto cell = data.cells[static_cast<std::size_t>(k)];
-        independent(k, cell) = data.noise.col(cell).norm() / std::sqrt(static_cast<double>(data.noise.rows())) *
+        independent(k, cell) = data.noise.col(cell).norm() /
+                               std::sqrt(static_cast<double>(data.noise.rows())) *
                                std::sqrt(static_cast<double>(count));
     }
     return {Verdict::effect, {winner(GapSpace(independent, 0, data.cells, {}), data).name}, 1};

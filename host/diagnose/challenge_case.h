@@ -22,22 +22,22 @@ struct Hidden {
 };
 
 struct ChallengeCase {
-    std::string folder;             ///< of its experiment, in the challenge's
+    std::string folder;  ///< of its experiment, in the challenge's
     CaseKind kind = CaseKind::none;
-    std::vector<Hidden> effects;    ///< of the library, or where unknown of outside_effects() or struck
-    std::vector<Hidden> nuisances;  ///< shifts, all of them
+    std::vector<Hidden> effects;      ///< of the library, or where unknown of outside_effects() or struck
+    std::vector<Hidden> nuisances;    ///< shifts, all of them
     std::vector<std::string> struck;  ///< effects that its diagnosis may not name
-    int packing = 0;                ///< which of the challenge's
-    std::uint64_t seed = 0;         ///< of its jitter, of what is random in its effects, and of its noise
+    int packing = 0;                  ///< which of the challenge's
+    std::uint64_t seed = 0;           ///< of its jitter, of what is random in its effects, and of its noise
     bool operator==(const ChallengeCase&) const = default;
 };
 
 /// The whole secret.
 struct Challenge {
     std::uint64_t seed = 0;
-    std::string scene;                          ///< SHA-256 of the scene's text
-    std::vector<std::uint64_t> packing_seeds;   ///< by packing
-    std::vector<ChallengeCase> cases;           ///< in the order of their folders
+    std::string scene;                         ///< SHA-256 of the scene's text
+    std::vector<std::uint64_t> packing_seeds;  ///< by packing
+    std::vector<ChallengeCase> cases;          ///< in the order of their folders
     bool operator==(const Challenge&) const = default;
 };
 

@@ -40,7 +40,8 @@ Evidence evidence_of(const json& j, const Library& library) {
     }
     for (const json& n : j.at("nuisances")) {
         evidence.nuisances.push_back({n.at("name"), n.at("unit"), n.at("sigma")});
-        expect(has(library.nuisances, evidence.nuisances.back().name), "the library lacks a nuisance of it", n);
+        expect(has(library.nuisances, evidence.nuisances.back().name), "the library lacks a nuisance of it",
+               n);
     }
     return evidence;
 }
@@ -55,8 +56,13 @@ Findings findings_of(const json& j) {
     Findings findings{j.at("p_value"), j.at("names"), j.at("effects"), j.at("gain"), {}};
     expect(findings.names.size() == findings.gain.size(), "it has not one gain a candidate", j);
     for (const json& p : j.at("proposals")) {
-        Proposal proposal{p.at("candidates"), p.at("amplitudes"), p.at("errors"), p.at("gain"), p.at("misfit_p"),
-                          optional_of(p.at("confirmed_gain")), optional_of(p.at("confirmed_misfit_p"))};
+        Proposal proposal{p.at("candidates"),
+                          p.at("amplitudes"),
+                          p.at("errors"),
+                          p.at("gain"),
+                          p.at("misfit_p"),
+                          optional_of(p.at("confirmed_gain")),
+                          optional_of(p.at("confirmed_misfit_p"))};
         for (const std::size_t candidate : proposal.candidates)
             expect(candidate < findings.names.size(), "it proposes a candidate that there is not", p);
         findings.proposals.push_back(proposal);
@@ -74,13 +80,17 @@ json parsed(const std::filesystem::path& file) {
 
 std::string evidence_text(const Evidence& evidence) {
     json baseline = json::array(), candidates = json::array(), nuisances = json::array();
-    for (Eigen::Index r = 0; r < evidence.baseline.rows(); ++r) baseline.push_back(numbers_json(evidence.baseline.row(r)));
+    for (Eigen::Index r = 0; r < evidence.baseline.rows(); ++r)
+        baseline.push_back(numbers_json(evidence.baseline.row(r)));
     for (const CandidateRange& c : evidence.candidates)
         candidates.push_back({{"name", c.name}, {"unit", c.unit}, {"low", c.low}, {"high", c.high}});
     for (const NuisancePrior& n : evidence.nuisances)
         nuisances.push_back({{"name", n.name}, {"unit", n.unit}, {"sigma", n.sigma}});
-    return json{{"seed", evidence.seed}, {"observed", numbers_json(evidence.observed)}, {"baseline", baseline},
-                {"candidates", candidates}, {"nuisances", nuisances}}
+    return json{{"seed", evidence.seed},
+                {"observed", numbers_json(evidence.observed)},
+                {"baseline", baseline},
+                {"candidates", candidates},
+                {"nuisances", nuisances}}
         .dump();
 }
 
@@ -93,11 +103,18 @@ Evidence read_evidence(const std::filesystem::path& file, const Library& library
 std::string findings_text(const Findings& findings) {
     json proposals = json::array();
     for (const Proposal& p : findings.proposals)
-        proposals.push_back({{"candidates", p.candidates}, {"amplitudes", p.amplitudes}, {"errors", p.errors}, {"gain", p.gain},
-                             {"misfit_p", p.misfit_p}, {"confirmed_gain", optional_json(p.confirmed_gain)},
+        proposals.push_back({{"candidates", p.candidates},
+                             {"amplitudes", p.amplitudes},
+                             {"errors", p.errors},
+                             {"gain", p.gain},
+                             {"misfit_p", p.misfit_p},
+                             {"confirmed_gain", optional_json(p.confirmed_gain)},
                              {"confirmed_misfit_p", optional_json(p.confirmed_misfit_p)}});
-    return json{{"p_value", findings.p_value}, {"names", findings.names}, {"effects", findings.effects},
-                {"gain", findings.gain}, {"proposals", proposals}}
+    return json{{"p_value", findings.p_value},
+                {"names", findings.names},
+                {"effects", findings.effects},
+                {"gain", findings.gain},
+                {"proposals", proposals}}
         .dump();
 }
 

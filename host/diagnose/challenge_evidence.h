@@ -1,5 +1,5 @@
-// What a diagnosis of a challenge rested on and what it found, kept so that limits and ablations can be tried without
-// simulating again.
+// What a diagnosis of a challenge rested on and what it found, kept so that limits and ablations can be tried
+// without simulating again.
 #pragma once
 #include <filesystem>
 

@@ -19,7 +19,9 @@ std::string open_challenge_text(const OpenChallenge& challenge) {
     Json cases = Json::array();
     for (const OpenCase& c : challenge.cases)
         cases.push_back({{"folder", c.folder}, {"candidates", c.candidates ? Json(*c.candidates) : Json()}});
-    return Json{{"format", challenge_format}, {"scene_sha256", challenge.scene}, {"sealed_sha256", challenge.sealed},
+    return Json{{"format", challenge_format},
+                {"scene_sha256", challenge.scene},
+                {"sealed_sha256", challenge.sealed},
                 {"cases", cases}}
                .dump(1) +
            "\n";
@@ -28,10 +30,13 @@ std::string open_challenge_text(const OpenChallenge& challenge) {
 OpenChallenge read_open_challenge(const std::filesystem::path& folder) {
     const auto file = folder / "challenge.json";
     std::ifstream in(file);
-    if (!in) throw InputError(fmt::format("{}: there is no challenge; `mcdem challenge make` makes one", file.string()));
+    if (!in)
+        throw InputError(
+            fmt::format("{}: there is no challenge; `mcdem challenge make` makes one", file.string()));
     try {
         const auto json = nlohmann::json::parse(in);
-        if (json.at("format") != challenge_format) throw InputError(file.string() + ": made by another version; make it anew");
+        if (json.at("format") != challenge_format)
+            throw InputError(file.string() + ": made by another version; make it anew");
         OpenChallenge challenge{json.at("scene_sha256"), json.at("sealed_sha256"), {}};
         for (const auto& c : json.at("cases")) {
             challenge.cases.push_back({c.at("folder"), std::nullopt});

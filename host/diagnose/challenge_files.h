@@ -1,4 +1,5 @@
-// challenge.json: what a diagnosis of the challenge may know, and the seal of what it may not (challenge/README.md).
+// challenge.json: what a diagnosis of the challenge may know, and the seal of what it may not
+// (challenge/README.md).
 #pragma once
 #include <filesystem>
 #include <optional>
@@ -8,8 +9,8 @@
 namespace mcdem {
 
 struct OpenCase {
-    std::string folder;                                    ///< of its experiment, in the challenge's
-    std::optional<std::vector<std::string>> candidates;    ///< effects that may be named; nothing: all
+    std::string folder;                                  ///< of its experiment, in the challenge's
+    std::optional<std::vector<std::string>> candidates;  ///< effects that may be named; nothing: all
 };
 
 struct OpenChallenge {

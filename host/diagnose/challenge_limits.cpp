@@ -41,7 +41,8 @@ double objective(const Merits& m) {
 
 Merits merits_with(std::span<const LimitCase> cases, const Limits& limits) {
     std::vector<ScoredCase> scored;
-    for (const LimitCase& c : cases) scored.push_back({c.truth, answer_of(*c.findings, limits), c.over_limit});
+    for (const LimitCase& c : cases)
+        scored.push_back({c.truth, answer_of(*c.findings, limits), c.over_limit});
     return merits_of(scored);
 }
 

@@ -17,15 +17,15 @@ struct LimitCase {
 /// What is asked of a challenge.
 struct Bars {
     double false_alarms = 0.10, named_unknown = 0.10, named_outside_prior = 0.10;  ///< at most
-    double group_size = 1.5;                                                        ///< at most
-    double led_by_truth = 0.80, truth_in_group = 0.85;                              ///< at least
+    double group_size = 1.5;                                                       ///< at most
+    double led_by_truth = 0.80, truth_in_group = 0.85;                             ///< at least
 };
 
 /// Sharpness, half the pairs found, and five times what is missing to each bar off that.
 double objective(const Merits& merits);
 
-/// The limits with the largest objective: one after the other over a few values each, until none moves. Of equally
-/// good ones the nearest to the start, the defaults.
+/// The limits with the largest objective: one after the other over a few values each, until none moves. Of
+/// equally good ones the nearest to the start, the defaults.
 Limits choose_limits(std::span<const LimitCase> cases);
 
 Merits merits_with(std::span<const LimitCase> cases, const Limits& limits);

@@ -40,7 +40,8 @@ void add_effect(Merits& m, Sums& sums, const ScoredCase& scored) {
 void add_pair(Merits& m, const ScoredCase& scored) {
     const auto& group = scored.answer.group;
     m.pair_led.add(leads_rightly(scored));
-    m.pair_found.add(group.size() == 2 && is_true(*scored.truth, group[0]) && is_true(*scored.truth, group[1]));
+    m.pair_found.add(group.size() == 2 && is_true(*scored.truth, group[0]) &&
+                     is_true(*scored.truth, group[1]));
 }
 
 }  // namespace

@@ -19,25 +19,27 @@ struct Share {
 struct ScoredCase {
     const ChallengeCase* truth = nullptr;
     Answer answer;
-    double over_limit = 0;  ///< size of the only effect over its predicted detection limit; 0: no effect, two, or no limit
+    double over_limit =
+        0;  ///< size of the only effect over its predicted detection limit; 0: no effect, two, or no limit
 };
 
 struct Merits {
-    Share false_alarms;        ///< without an effect: a gap is found
-    Share detected;            ///< one effect: a gap is found
-    Share detected_clear;      ///< .. at `clear` times the limit or more
-    Share led_by_truth;        ///< .. of those: the effect named first is the true one
-    Share truth_in_group;      ///< .. of those: the true effect is among those named
-    Share named;               ///< one effect, any amplitude: the effect named first is the true one
-    double group_size = 0;     ///< mean over cases with one effect that is named
-    double sharpness = 0;      ///< one clear effect: mean of 1/(effects named) where the true one is among them, else 0
-    Share named_unknown;       ///< an effect outside the library: effects of the library are named
-    Share named_outside_prior; ///< a nuisance outside its prior: effects are named
-    Share suspected;           ///< .. : the calibration is suspected
-    Share pair_led;            ///< two effects: the one named first is one of them
-    Share pair_found;          ///< two effects: both are named, and no other
-    double brier = 0;          ///< mean square of (confidence - right), wherever effects are named
-    Share right_where_named;   ///< .. : the effect named first is a true one
+    Share false_alarms;     ///< without an effect: a gap is found
+    Share detected;         ///< one effect: a gap is found
+    Share detected_clear;   ///< .. at `clear` times the limit or more
+    Share led_by_truth;     ///< .. of those: the effect named first is the true one
+    Share truth_in_group;   ///< .. of those: the true effect is among those named
+    Share named;            ///< one effect, any amplitude: the effect named first is the true one
+    double group_size = 0;  ///< mean over cases with one effect that is named
+    double sharpness =
+        0;  ///< one clear effect: mean of 1/(effects named) where the true one is among them, else 0
+    Share named_unknown;        ///< an effect outside the library: effects of the library are named
+    Share named_outside_prior;  ///< a nuisance outside its prior: effects are named
+    Share suspected;            ///< .. : the calibration is suspected
+    Share pair_led;             ///< two effects: the one named first is one of them
+    Share pair_found;           ///< two effects: both are named, and no other
+    double brier = 0;           ///< mean square of (confidence - right), wherever effects are named
+    Share right_where_named;    ///< .. : the effect named first is a true one
     std::map<std::string, Share> detected_by_effect, named_by_effect;  ///< one effect
     std::map<std::string, Share> named_by_unknown;                     ///< outside the library, by what it is
 };

@@ -1,4 +1,5 @@
-// Effects that realities of the challenge have and that no library knows: a diagnosis should name none of its own.
+// Effects that realities of the challenge have and that no library knows: a diagnosis should name none of its
+// own.
 #pragma once
 #include <span>
 #include <string_view>
@@ -14,8 +15,9 @@ struct OutsideEffect {
     std::string_view formula;  ///< what the amplitude does
     double low, high;          ///< amplitudes drawn, log-uniform
     bool both_signs;
-    void (*change_model)(Replica&, double amplitude);      ///< before the simulation; may be null
-    void (*change_reading)(Recording&, double amplitude);  ///< after it, before the instrument's noise; may be null
+    void (*change_model)(Replica&, double amplitude);  ///< before the simulation; may be null
+    void (*change_reading)(Recording&,
+                           double amplitude);  ///< after it, before the instrument's noise; may be null
 };
 
 std::span<const OutsideEffect> outside_effects();

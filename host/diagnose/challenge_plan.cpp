@@ -14,17 +14,18 @@
 namespace mcdem {
 namespace {
 
-constexpr std::string_view tried[] = {"cross_contact", "friction",        "adhesion",   "viscoelasticity",
-                                      "stiffening",    "plasticity",      "buoyancy",   "diameter_error",
-                                      "modulus_scatter", "plate_tilt",    "plate_compliance", "force_bias"};
+constexpr std::string_view tried[] = {"cross_contact",   "friction",   "adhesion",         "viscoelasticity",
+                                      "stiffening",      "plasticity", "buoyancy",         "diameter_error",
+                                      "modulus_scatter", "plate_tilt", "plate_compliance", "force_bias"};
 
 /// Effects that are the same thing in another direction.
 constexpr std::array<std::string_view, 2> twins[] = {{"plate_tilt", "plate_tilt_y"}};
 
-constexpr int every_struck = 4;  ///< of the unknown, one in so many is struck from the library
+constexpr int every_struck = 4;              ///< of the unknown, one in so many is struck from the library
 constexpr double nearest = 4, farthest = 8;  ///< nuisances outside their prior, in sigmas
 
-/// Drawn from half the smaller, the smaller or the larger of the library's two amplitudes up to 1.5 times the larger.
+/// Drawn from half the smaller, the smaller or the larger of the library's two amplitudes up to 1.5 times the
+/// larger.
 enum class Strength { any, clear, strong };
 
 class Drawing {
@@ -38,20 +39,25 @@ public:
     Hidden effect(std::string_view name, Strength strength) {
         const Effect& effect = *find_effect(name);
         const auto [smaller, larger] = std::minmax({std::abs(effect.first), std::abs(effect.second)});
-        const double from = strength == Strength::any ? 0.5 * smaller : strength == Strength::clear ? smaller : larger;
+        const double from = strength == Strength::any     ? 0.5 * smaller
+                            : strength == Strength::clear ? smaller
+                                                          : larger;
         const double size = log_uniform(from, 1.5 * larger);
         const bool both_signs = -effect.low >= larger;
-        const double amplitude = both_signs && sign() < 0 ? std::max(-size, effect.low) : std::min(size, effect.high);
+        const double amplitude =
+            both_signs && sign() < 0 ? std::max(-size, effect.low) : std::min(size, effect.high);
         return {std::string(name), amplitude * effect.scale(model_)};
     }
 
     Hidden outside(const OutsideEffect& effect) {
-        return {std::string(effect.name), log_uniform(effect.low, effect.high) * (effect.both_signs ? sign() : 1)};
+        return {std::string(effect.name),
+                log_uniform(effect.low, effect.high) * (effect.both_signs ? sign() : 1)};
     }
 
     std::vector<Hidden> from_priors() {
         std::vector<Hidden> shifts;
-        for (const Nuisance& nuisance : nuisances_) shifts.push_back({nuisance.name, nuisance.sigma * random_.normal()});
+        for (const Nuisance& nuisance : nuisances_)
+            shifts.push_back({nuisance.name, nuisance.sigma * random_.normal()});
         return shifts;
     }
 
@@ -76,7 +82,8 @@ std::vector<std::string> with_twin(const std::string& name) {
 }
 
 /// By kind, in order.
-std::vector<ChallengeCase> draw_cases(const ChallengeSize& size, const std::vector<std::string>& effects, Drawing& draw) {
+std::vector<ChallengeCase> draw_cases(const ChallengeSize& size, const std::vector<std::string>& effects,
+                                      Drawing& draw) {
     std::vector<ChallengeCase> cases;
     const auto add = [&](CaseKind kind, std::vector<Hidden> hidden) -> ChallengeCase& {
         cases.push_back({"", kind, std::move(hidden), draw.from_priors(), {}, 0, 0});
@@ -98,7 +105,8 @@ std::vector<ChallengeCase> draw_cases(const ChallengeSize& size, const std::vect
             const std::string& name = struck[static_cast<std::size_t>(strikes++) % struck.size()];
             add(CaseKind::unknown, {draw.effect(name, Strength::strong)}).struck = with_twin(name);
         } else {
-            add(CaseKind::unknown, {draw.outside(others[static_cast<std::size_t>(k - strikes) % others.size()])});
+            add(CaseKind::unknown,
+                {draw.outside(others[static_cast<std::size_t>(k - strikes) % others.size()])});
         }
     const std::string far[] = {"modulus", "strain_offset"};
     for (int k = 0; k < size.outside_prior; ++k) {
@@ -122,18 +130,23 @@ void deal_packings(std::vector<ChallengeCase>& cases, int packings, Random& rand
 
 void check(const ChallengeSize& size, const std::vector<std::string>& effects, const Model& model) {
     std::vector<std::string> problems;
-    for (const auto& [option, value] : {std::pair{"none", size.none}, {"per-effect", size.per_effect}, {"pairs", size.pairs},
-                                        {"unknown", size.unknown}, {"outside", size.outside_prior}})
+    for (const auto& [option, value] : {std::pair{"none", size.none},
+                                        {"per-effect", size.per_effect},
+                                        {"pairs", size.pairs},
+                                        {"unknown", size.unknown},
+                                        {"outside", size.outside_prior}})
         if (value < 0) problems.push_back(fmt::format("--{} must be 0 or more, got {}", option, value));
     if (size.packings < 2 || size.packings % 2)
-        problems.push_back(fmt::format("--packings must be an even number, one half for the limits and one for the score, got {}",
-                                       size.packings));
+        problems.push_back(fmt::format(
+            "--packings must be an even number, one half for the limits and one for the score, got {}",
+            size.packings));
     for (const std::string& name : effects) {
         const Effect* effect = find_effect(name);
         if (!effect) {
             std::vector<std::string_view> known;
             for (const Effect& e : mcdem::effects()) known.push_back(e.name);
-            problems.push_back(fmt::format("--effects: {} is not an effect; there are {}", name, fmt::join(known, ", ")));
+            problems.push_back(
+                fmt::format("--effects: {} is not an effect; there are {}", name, fmt::join(known, ", ")));
         } else if (const auto hindrance = effect->hindrance(model); !hindrance.empty()) {
             problems.push_back(fmt::format("--effects: {} cannot be tried: {}", name, hindrance));
         }
@@ -143,14 +156,17 @@ void check(const ChallengeSize& size, const std::vector<std::string>& effects, c
 }
 
 /// Small enough for every file format, and unrelated for neighbouring seeds.
-std::uint64_t derived_seed(std::uint64_t seed, std::uint64_t number) { return scattered(scattered(seed) + number) >> 16; }
+std::uint64_t derived_seed(std::uint64_t seed, std::uint64_t number) {
+    return scattered(scattered(seed) + number) >> 16;
+}
 
 }  // namespace
 
 std::span<const std::string_view> challenged_effects() { return tried; }
 
-Challenge draw_challenge(const ChallengeSize& size, const std::vector<std::string>& effects, const Model& model,
-                         std::span<const Nuisance> nuisances, const std::string& scene, std::uint64_t seed) {
+Challenge draw_challenge(const ChallengeSize& size, const std::vector<std::string>& effects,
+                         const Model& model, std::span<const Nuisance> nuisances, const std::string& scene,
+                         std::uint64_t seed) {
     check(size, effects, model);
     Challenge challenge{seed, scene, {}, {}};
     Drawing draw(model, nuisances, seed);

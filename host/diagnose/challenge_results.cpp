@@ -28,7 +28,8 @@ void read_diagnosis(const json& diagnosis, CaseResult& result) {
 CaseResult read_case(const fs::path& folder, const OpenCase& open_case) {
     const fs::path file = folder / (open_case.folder + ".json");
     std::ifstream in(file);
-    if (!in) throw InputError(fmt::format("{}: is missing; `mcdem challenge run` must have ended", file.string()));
+    if (!in)
+        throw InputError(fmt::format("{}: is missing; `mcdem challenge run` must have ended", file.string()));
     CaseResult result;
     try {
         const json diagnosis = json::parse(in);

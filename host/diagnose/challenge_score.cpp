@@ -76,8 +76,10 @@ public:
 private:
     void one(std::size_t k, OtherArms& arms) const {
         const Evidence evidence = read_evidence(evidence_file(folder_, open_.cases[k]), results_.library);
-        for (std::size_t a = 0; a < arms.findings.size(); ++a) arms.findings[a][k] = ablated_findings(evidence, ablations()[a]);
-        for (std::size_t a = 0; a < arms.answers.size(); ++a) arms.answers[a][k] = simpler_methods()[a].answer(evidence);
+        for (std::size_t a = 0; a < arms.findings.size(); ++a)
+            arms.findings[a][k] = ablated_findings(evidence, ablations()[a]);
+        for (std::size_t a = 0; a < arms.answers.size(); ++a)
+            arms.answers[a][k] = simpler_methods()[a].answer(evidence);
     }
 
     const OpenChallenge& open_;
@@ -98,7 +100,8 @@ class Scoring {
 public:
     Scoring(const Challenge& truth, const ChallengeResults& results) : truth_(truth), results_(results) {}
 
-    ArmScore with_limits(std::string_view name, std::string_view meaning, const std::vector<Findings>& findings) const {
+    ArmScore with_limits(std::string_view name, std::string_view meaning,
+                         const std::vector<Findings>& findings) const {
         std::vector<LimitCase> cases;
         for (std::size_t k = 0; k < truth_.cases.size(); ++k)
             cases.push_back({&truth_.cases[k], &findings[k], over_limit(truth_.cases[k], results_.cases[k])});
@@ -111,8 +114,8 @@ public:
 
     ArmScore without_limits(const SimplerMethod& method, const std::vector<Answer>& answers) const {
         const auto cases = scored(answers);
-        return {std::string(method.name), std::string(method.meaning), false, {}, merits_of(half_of(cases, true)),
-                merits_of(half_of(cases, false))};
+        return {std::string(method.name),        std::string(method.meaning),     false, {},
+                merits_of(half_of(cases, true)), merits_of(half_of(cases, false))};
     }
 
     std::vector<ScoredCase> scored(const std::vector<Answer>& answers) const {
@@ -129,13 +132,15 @@ private:
 
 void expect_same_cases(const Challenge& truth, const OpenChallenge& open) {
     bool same = truth.cases.size() == open.cases.size();
-    for (std::size_t k = 0; same && k < open.cases.size(); ++k) same = truth.cases[k].folder == open.cases[k].folder;
+    for (std::size_t k = 0; same && k < open.cases.size(); ++k)
+        same = truth.cases[k].folder == open.cases[k].folder;
     if (!same) throw InputError("challenge.json: lists other cases than its truth");
 }
 
 }  // namespace
 
-ChallengeScore score_challenge(const Challenge& truth, const OpenChallenge& open, const std::filesystem::path& folder,
+ChallengeScore score_challenge(const Challenge& truth, const OpenChallenge& open,
+                               const std::filesystem::path& folder,
                                const std::function<void(double)>& on_progress) {
     expect_same_cases(truth, open);
     const ChallengeResults results = read_challenge_results(folder, open);
@@ -151,7 +156,8 @@ ChallengeScore score_challenge(const Challenge& truth, const OpenChallenge& open
     }
     score.arms.push_back(scoring.with_limits("whole method", "with confirming runs", whole));
     for (std::size_t a = 0; a < others.findings.size(); ++a)
-        score.arms.push_back(scoring.with_limits(ablations()[a].name, ablations()[a].meaning, others.findings[a]));
+        score.arms.push_back(
+            scoring.with_limits(ablations()[a].name, ablations()[a].meaning, others.findings[a]));
     for (std::size_t a = 0; a < others.answers.size(); ++a)
         score.arms.push_back(scoring.without_limits(simpler_methods()[a], others.answers[a]));
     score.shrink = score_shrink(results.cases);

@@ -13,7 +13,7 @@ struct ArmScore {
     std::string name, meaning;
     bool has_limits = true;  ///< simpler methods have none
     Limits limits;
-    Merits first, second;    ///< on the half that limits were set on, and on the other
+    Merits first, second;  ///< on the half that limits were set on, and on the other
 };
 
 /// Predicted against realised shrink, over all cases with confirming runs: no limit enters them.
@@ -28,11 +28,12 @@ struct ChallengeScore {
     std::vector<std::string> not_diagnosed;  ///< folder and reason
     std::vector<ArmScore> arms;              ///< the whole method first
     ShrinkScore shrink;
-    std::vector<ScoredCase> scored;          ///< second half, by the whole method
+    std::vector<ScoredCase> scored;  ///< second half, by the whole method
 };
 
 /// `truth` must be the challenge's, sorted like it. `on_progress`: part of the ablations that is done.
-ChallengeScore score_challenge(const Challenge& truth, const OpenChallenge& open, const std::filesystem::path& folder,
+ChallengeScore score_challenge(const Challenge& truth, const OpenChallenge& open,
+                               const std::filesystem::path& folder,
                                const std::function<void(double)>& on_progress);
 
 }  // namespace mcdem

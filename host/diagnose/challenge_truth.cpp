@@ -18,7 +18,8 @@ constexpr std::string_view kinds[] = {"none", "effect", "pair", "unknown", "outs
 
 Json hidden_json(const std::vector<Hidden>& list) {
     Json json = Json::array();
-    for (const Hidden& hidden : list) json.push_back({{"name", hidden.name}, {"amplitude", hidden.amplitude}});
+    for (const Hidden& hidden : list)
+        json.push_back({{"name", hidden.name}, {"amplitude", hidden.amplitude}});
     return json;
 }
 
@@ -35,8 +36,13 @@ CaseKind kind_of(const std::string& name) {
 }
 
 ChallengeCase case_of(const Json& json) {
-    return {json.at("folder"), kind_of(json.at("kind")), hidden_of(json.at("effects")), hidden_of(json.at("nuisances")),
-            json.at("struck"), json.at("packing"), json.at("seed")};
+    return {json.at("folder"),
+            kind_of(json.at("kind")),
+            hidden_of(json.at("effects")),
+            hidden_of(json.at("nuisances")),
+            json.at("struck"),
+            json.at("packing"),
+            json.at("seed")};
 }
 
 }  // namespace
@@ -46,11 +52,18 @@ std::string_view case_kind_name(CaseKind kind) { return kinds[static_cast<std::s
 std::string truth_text(const Challenge& challenge) {
     Json cases = Json::array();
     for (const ChallengeCase& c : challenge.cases)
-        cases.push_back({{"folder", c.folder}, {"kind", case_kind_name(c.kind)}, {"effects", hidden_json(c.effects)},
-                         {"nuisances", hidden_json(c.nuisances)}, {"struck", c.struck}, {"packing", c.packing},
+        cases.push_back({{"folder", c.folder},
+                         {"kind", case_kind_name(c.kind)},
+                         {"effects", hidden_json(c.effects)},
+                         {"nuisances", hidden_json(c.nuisances)},
+                         {"struck", c.struck},
+                         {"packing", c.packing},
                          {"seed", c.seed}});
-    return Json{{"format", truth_format}, {"seed", challenge.seed}, {"scene_sha256", challenge.scene},
-                {"packing_seeds", challenge.packing_seeds}, {"cases", cases}}
+    return Json{{"format", truth_format},
+                {"seed", challenge.seed},
+                {"scene_sha256", challenge.scene},
+                {"packing_seeds", challenge.packing_seeds},
+                {"cases", cases}}
                .dump(1) +
            "\n";
 }
@@ -71,11 +84,13 @@ std::string seal_of(const std::string& text) { return Sha256().add(text).hex(); 
 
 Challenge open_truth(const std::filesystem::path& file, const std::string& seal) {
     std::ifstream in(file, std::ios::binary);
-    if (!in) throw InputError(fmt::format("{}: cannot be read; --truth says where the truth is", file.string()));
+    if (!in)
+        throw InputError(fmt::format("{}: cannot be read; --truth says where the truth is", file.string()));
     const std::string text{std::istreambuf_iterator<char>(in), {}};
     if (const std::string found = seal_of(text); found != seal)
-        throw InputError(fmt::format("{}: is not the truth that was sealed: its SHA-256 is {}, challenge.json says {}",
-                                     file.string(), found, seal));
+        throw InputError(
+            fmt::format("{}: is not the truth that was sealed: its SHA-256 is {}, challenge.json says {}",
+                        file.string(), found, seal));
     return parse_truth(text, file.string());
 }
 

@@ -14,10 +14,11 @@ struct Side {
     double push;
 };
 
-/// Outward displacement, over (1 + nu) F/(4 pi E R), of the surface at an angle from a force: the paper's Eq. 1 with
-/// both points on the undeformed sphere (Gonzalez & Cuitino 2012), s = sin(theta / 2).
+/// Outward displacement, over (1 + nu) F/(4 pi E R), of the surface at an angle from a force: the paper's Eq.
+/// 1 with both points on the undeformed sphere (Gonzalez & Cuitino 2012), s = sin(theta / 2).
 double displacement_on_sphere(double cosine, double nu) {
-    const double s = std::sqrt(std::max(0.5 * (1 - cosine), 0.0225));  // contacts nearer than 17 degrees are misread
+    const double s =
+        std::sqrt(std::max(0.5 * (1 - cosine), 0.0225));  // contacts nearer than 17 degrees are misread
     return (-2 * (1 - nu) - 2 * (1 - 2 * nu) * s + (7 - 8 * nu) * s * s) / s;
 }
 
@@ -52,7 +53,8 @@ private:
         c.measured = -gap / c.reduced_radius;
         const int index = static_cast<int>(list_.size());
         sides_[static_cast<std::size_t>(c.grain)].push_back({index, c.normal, c.push});
-        if (!is_wall(c.partner)) sides_[static_cast<std::size_t>(c.partner)].push_back({index, -c.normal, c.push});
+        if (!is_wall(c.partner))
+            sides_[static_cast<std::size_t>(c.partner)].push_back({index, -c.normal, c.push});
         list_.push_back(c);
     }
 
@@ -77,13 +79,15 @@ private:
     double reduced_modulus(bool wall) const {
         const auto compliance = [](double e, double nu) { return (1 - nu * nu) / e; };
         const double grain = compliance(material_.youngs_modulus, material_.poisson_ratio);
-        const double other = wall ? compliance(material_.wall_youngs_modulus, material_.wall_poisson_ratio) : grain;
+        const double other =
+            wall ? compliance(material_.wall_youngs_modulus, material_.wall_poisson_ratio) : grain;
         return 1 / (grain + other);
     }
 
     void displace(std::size_t grain) {
         const double nu = material_.poisson_ratio;
-        const double scale = (1 + nu) / (4 * std::numbers::pi * material_.youngs_modulus * radius(static_cast<int>(grain)));
+        const double scale =
+            (1 + nu) / (4 * std::numbers::pi * material_.youngs_modulus * radius(static_cast<int>(grain)));
         const auto& sides = sides_[grain];
         for (const Side& at : sides) {
             double sum = 0;

@@ -26,7 +26,8 @@ int best_single(const Findings& findings) {
     return best;
 }
 
-/// Index of a pair that explains what no single effect does and is worth its second effect, -1 where there is none.
+/// Index of a pair that explains what no single effect does and is worth its second effect, -1 where there is
+/// none.
 int worthy_pair(const Findings& findings, double single_gain, const Limits& limits) {
     for (std::size_t k = 0; k < findings.proposals.size(); ++k) {
         const Proposal& pair = findings.proposals[k];
@@ -54,7 +55,8 @@ Decision decide(const Findings& findings, const Limits& limits) {
     decision.group = findings.proposals[static_cast<std::size_t>(single)].candidates;
     for (std::size_t c = 0; c < gains.size(); ++c)
         if (c != decision.group[0] && gains[c] > 0 && best - gains[c] <= margin) decision.group.push_back(c);
-    std::sort(decision.group.begin() + 1, decision.group.end(), [&](auto a, auto b) { return gains[a] > gains[b]; });
+    std::sort(decision.group.begin() + 1, decision.group.end(),
+              [&](auto a, auto b) { return gains[a] > gains[b]; });
     decision.proposal = single;
     if (findings.p_value >= limits.false_alarm) return decision;
     if (findings.proposals[static_cast<std::size_t>(single)].best_misfit() < limits.misfit) {

@@ -1,5 +1,5 @@
-// The verdict, from the few numbers that it hangs on: no data and no simulations behind it, so that thresholds can be
-// studied on cases that were worked out once.
+// The verdict, from the few numbers that it hangs on: no data and no simulations behind it, so that
+// thresholds can be studied on cases that were worked out once.
 #pragma once
 #include <optional>
 #include <string>
@@ -9,16 +9,17 @@
 
 namespace mcdem {
 
-/// Limits that decisions are made with. Set on one half of the challenge, scored on the other (challenge/README.md).
+/// Limits that decisions are made with. Set on one half of the challenge, scored on the other
+/// (challenge/README.md).
 struct Limits {
-    double false_alarm = 0.01;     ///< p below which there is a gap
-    double misfit = 0.003;         ///< p below which what one effect leaves is a gap of its own
-    double pair_misfit = 0.05;     ///< .. what two leave: two can mimic much
-    double group = 3.0;            ///< log likelihood by which members of a group differ at most ..
-    double group_share = 0.04;     ///< .. or this part of the leader's gain
-    double second_gain = 8.0;      ///< log likelihood that a second effect must gain ..
-    double second_share = 0.08;    ///< .. and this part of the leader's gain
-    double shrink_margin = 0.1;    ///< what signatures get wrong in the shrink, on either side of its interval
+    double false_alarm = 0.01;   ///< p below which there is a gap
+    double misfit = 0.003;       ///< p below which what one effect leaves is a gap of its own
+    double pair_misfit = 0.05;   ///< .. what two leave: two can mimic much
+    double group = 3.0;          ///< log likelihood by which members of a group differ at most ..
+    double group_share = 0.04;   ///< .. or this part of the leader's gain
+    double second_gain = 8.0;    ///< log likelihood that a second effect must gain ..
+    double second_share = 0.08;  ///< .. and this part of the leader's gain
+    double shrink_margin = 0.1;  ///< what signatures get wrong in the shrink, on either side of its interval
 };
 
 /// One effect, or two together, and how well they do.
@@ -33,18 +34,18 @@ struct Proposal {
 };
 
 struct Findings {
-    double p_value = 1;                ///< of there being no gap
-    std::vector<std::string> names;    ///< candidates: effects, then nuisances beyond their priors
-    int effects = 0;                   ///< how many of them are effects
-    std::vector<double> gain;          ///< by candidate, by the signatures
-    std::vector<Proposal> proposals;   ///< single effects by gain, then the best pair
+    double p_value = 1;               ///< of there being no gap
+    std::vector<std::string> names;   ///< candidates: effects, then nuisances beyond their priors
+    int effects = 0;                  ///< how many of them are effects
+    std::vector<double> gain;         ///< by candidate, by the signatures
+    std::vector<Proposal> proposals;  ///< single effects by gain, then the best pair
 };
 
 struct Decision {
     Verdict verdict = Verdict::no_gap;
-    int proposal = -1;                    ///< index in Findings::proposals, -1: none
-    std::vector<std::size_t> group;       ///< candidates that cannot be told apart, the leader first
-    std::vector<double> confidence;       ///< by candidate
+    int proposal = -1;               ///< index in Findings::proposals, -1: none
+    std::vector<std::size_t> group;  ///< candidates that cannot be told apart, the leader first
+    std::vector<double> confidence;  ///< by candidate
 };
 Decision decide(const Findings& findings, const Limits& limits);
 

@@ -43,7 +43,8 @@ std::vector<DetectionLimit> detection_limits(const GapSpace& space, const GapDat
         limit.minimum_amplitude = std::abs(down) < std::abs(up) ? std::abs(down) : up;
         const double probe = std::isfinite(up) ? up : candidate.high;
         const double alone = fixed.whiten(candidate.signature->at(probe)).squaredNorm();
-        if (alone > 0) limit.absorbed_by_calibration = 1 - 2 * expected_gain(space, *candidate.signature, probe) / alone;
+        if (alone > 0)
+            limit.absorbed_by_calibration = 1 - 2 * expected_gain(space, *candidate.signature, probe) / alone;
         const double twice = std::min(2 * probe, candidate.high);
         const GapStatistics as_if = gap_statistics(space, data, candidate.signature->at(twice));
         const double margin = std::max(limits.group, limits.group_share * as_if.fits[c].score);

@@ -5,8 +5,9 @@
 
 namespace mcdem {
 
-/// One limit a candidate effect: the amplitude that the directed test detects four times out of five, what refitting
-/// the nuisances takes away of its signature, and the effects not to be told from it at twice that amplitude.
+/// One limit a candidate effect: the amplitude that the directed test detects four times out of five, what
+/// refitting the nuisances takes away of its signature, and the effects not to be told from it at twice that
+/// amplitude.
 std::vector<DetectionLimit> detection_limits(const GapSpace& space, const GapData& data,
                                              const NullDistribution& null, const Evidence& evidence,
                                              const Limits& limits);

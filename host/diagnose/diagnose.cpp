@@ -19,9 +19,10 @@ constexpr std::size_t fewest_cells = 4;
 GapData checked_data(const Evidence& evidence) {
     GapData data = gap_data(evidence);
     if (data.cells.size() < fewest_cells)
-        throw InputError(fmt::format("the experiment and the simulations have {} observations in common, and {} are needed: "
-                                     "the plate must press the packing within its stroke in both",
-                                     data.cells.size(), fewest_cells));
+        throw InputError(fmt::format(
+            "the experiment and the simulations have {} observations in common, and {} are needed: "
+            "the plate must press the packing within its stroke in both",
+            data.cells.size(), fewest_cells));
     return data;
 }
 
@@ -33,14 +34,16 @@ std::string unit_of(const Evidence& evidence, const std::string& name) {
     return "";
 }
 
-std::vector<NuisanceFit> nuisance_fits(const Evidence& evidence, const GapSpace& space, const Eigen::VectorXd& gap) {
+std::vector<NuisanceFit> nuisance_fits(const Evidence& evidence, const GapSpace& space,
+                                       const Eigen::VectorXd& gap) {
     constexpr double far_out = 2.5;  // prior sigmas
     const Eigen::VectorXd values = space.fit_nuisances(gap), errors = space.nuisance_errors();
     std::vector<NuisanceFit> fits;
     for (std::size_t k = 0; k < evidence.nuisances.size(); ++k) {
         const NuisancePrior& prior = evidence.nuisances[k];
         const auto i = static_cast<Eigen::Index>(k);
-        fits.push_back({prior.name, values[i], errors[i], prior.sigma, prior.unit, std::abs(values[i]) > far_out * prior.sigma});
+        fits.push_back({prior.name, values[i], errors[i], prior.sigma, prior.unit,
+                        std::abs(values[i]) > far_out * prior.sigma});
     }
     return fits;
 }
@@ -48,7 +51,8 @@ std::vector<NuisanceFit> nuisance_fits(const Evidence& evidence, const GapSpace&
 /// The candidates as causes, in the words of the output.
 class Causes {
 public:
-    Causes(const Evidence& evidence, const Findings& findings, const Decision& decision, const GapStatistics& statistics)
+    Causes(const Evidence& evidence, const Findings& findings, const Decision& decision,
+           const GapStatistics& statistics)
         : evidence_(evidence), findings_(findings), decision_(decision), statistics_(statistics) {}
 
     Cause of(std::size_t candidate) const {
@@ -62,14 +66,16 @@ public:
         cause.explained = statistics_.omnibus > 0 ? 2 * cause.score / statistics_.omnibus : 0;
         cause.group = {cause.effect};
         for (const Proposal& proposal : findings_.proposals)
-            if (proposal.candidates == std::vector{candidate}) cause.confirmed_score = proposal.confirmed_gain;
+            if (proposal.candidates == std::vector{candidate})
+                cause.confirmed_score = proposal.confirmed_gain;
         return cause;
     }
 
     std::vector<Cause> ranking() const {
         std::vector<std::size_t> order(findings_.names.size());
         std::iota(order.begin(), order.end(), std::size_t{0});
-        std::ranges::stable_sort(order, [&](auto a, auto b) { return findings_.gain[a] > findings_.gain[b]; });
+        std::ranges::stable_sort(order,
+                                 [&](auto a, auto b) { return findings_.gain[a] > findings_.gain[b]; });
         std::vector<Cause> list;
         for (const std::size_t candidate : order) list.push_back(of(candidate));
         return list;
@@ -81,7 +87,8 @@ public:
         std::vector<Cause> list;
         for (std::size_t k = 0; k < decision_.group.size(); ++k) {
             list.push_back(of(decision_.group[k]));
-            const auto place = std::ranges::find(decided.candidates, decision_.group[k]) - decided.candidates.begin();
+            const auto place =
+                std::ranges::find(decided.candidates, decision_.group[k]) - decided.candidates.begin();
             if (place < std::ssize(decided.candidates)) {
                 list.back().amplitude = decided.amplitudes[static_cast<std::size_t>(place)];
                 list.back().amplitude_error = decided.errors[static_cast<std::size_t>(place)];
@@ -107,9 +114,12 @@ private:
 }  // namespace
 
 Draft::Draft(const Evidence& evidence, const Limits& limits)
-    : evidence_(evidence), limits_(limits), data_(checked_data(evidence)),
+    : evidence_(evidence),
+      limits_(limits),
+      data_(checked_data(evidence)),
       mean_of_(static_cast<int>(evidence.baseline.rows())),
-      space_(data_.noise, mean_of_, data_.cells, data_.free), null_(data_, mean_of_, evidence.seed),
+      space_(data_.noise, mean_of_, data_.cells, data_.free),
+      null_(data_, mean_of_, evidence.seed),
       statistics_(gap_statistics(space_, data_, data_.gap)) {
     const double omnibus = null_.p_value(&GapStatistics::omnibus, statistics_.omnibus);
     const double directed = null_.p_value(&GapStatistics::directed, statistics_.directed);
@@ -133,7 +143,8 @@ void Draft::confirm(std::size_t proposal, const Eigen::MatrixXd& runs) {
     if (!step_[proposal]) return;
     // The signature's amplitude and the one that the runs ask for enclose the truth where signatures bend.
     for (std::size_t k = 0; k < tried.amplitudes.size(); ++k) {
-        const double half = 0.5 * (*step_[proposal])[whole_[proposal].nuisances.size() + static_cast<Eigen::Index>(k)];
+        const double half =
+            0.5 * (*step_[proposal])[whole_[proposal].nuisances.size() + static_cast<Eigen::Index>(k)];
         tried.amplitudes[k] += half;
         tried.errors[k] = std::hypot(tried.errors[k], half);
     }
@@ -151,15 +162,17 @@ bool Draft::refit(std::size_t proposal) {
     fit.nuisances += step_[proposal]->head(nuisances);
     for (std::size_t k = 0; k < p.candidates.size(); ++k) {
         const Candidate& candidate = data_.candidates[p.candidates[k]];
-        fit.amplitudes[k] = std::clamp(fit.amplitudes[k] + (*step_[proposal])[nuisances + static_cast<Eigen::Index>(k)],
-                                       candidate.low, candidate.high);
+        fit.amplitudes[k] =
+            std::clamp(fit.amplitudes[k] + (*step_[proposal])[nuisances + static_cast<Eigen::Index>(k)],
+                       candidate.low, candidate.high);
     }
     return fit.amplitudes != before;
 }
 
 PartialFit Draft::part_fit() const {
     const Split split = split_cells(data_.cells, evidence_.library.grid);
-    return fit_part(data_, split.fitted.empty() ? data_.cells : split.fitted, data_.gap, decided().candidates, mean_of_);
+    return fit_part(data_, split.fitted.empty() ? data_.cells : split.fitted, data_.gap, decided().candidates,
+                    mean_of_);
 }
 
 void Draft::confirm_held_out(const Eigen::MatrixXd& runs) { held_out_runs_ = runs; }

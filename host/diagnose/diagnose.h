@@ -1,4 +1,5 @@
-// From evidence to verdict: what can be told, whether there is a gap, where, which effect, how far it shrinks.
+// From evidence to verdict: what can be told, whether there is a gap, where, which effect, how far it
+// shrinks.
 #pragma once
 #include <memory>
 
@@ -26,14 +27,16 @@ public:
     const PartialFit& whole_fit(std::size_t proposal) const { return whole_[proposal]; }
     /// Real runs with whole_fit(); row: replicate.
     void confirm(std::size_t proposal, const Eigen::MatrixXd& runs);
-    /// Moves the parameters of a confirmed proposal by what its runs leave (a step of Gauss and Newton's method) where
-    /// they leave a gap of their own. False where there is nothing to gain.
+    /// Moves the parameters of a confirmed proposal by what its runs leave (a step of Gauss and Newton's
+    /// method) where they leave a gap of their own. False where there is nothing to gain.
     bool refit(std::size_t proposal);
 
     bool wants_held_out() const { return decision_.verdict != Verdict::no_gap && decision_.proposal >= 0; }
     /// The same for the proposal decided on, fitted on the part that is not held out.
     PartialFit part_fit() const;
-    const Proposal& decided() const { return findings_.proposals[static_cast<std::size_t>(decision_.proposal)]; }
+    const Proposal& decided() const {
+        return findings_.proposals[static_cast<std::size_t>(decision_.proposal)];
+    }
     void confirm_held_out(const Eigen::MatrixXd& runs);
 
     Diagnosis diagnosis() const;

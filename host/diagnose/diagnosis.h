@@ -20,12 +20,12 @@ enum class Verdict {
 /// Part of the data whose gap stands out of the noise.
 struct WhereEntry {
     std::string observable;
-    std::string phase;                          ///< load, unload, or empty: both
-    std::array<double, 2> displacement{0, 0};   ///< of the plate, from and to [m]
+    std::string phase;                         ///< load, unload, or empty: both
+    std::array<double, 2> displacement{0, 0};  ///< of the plate, from and to [m]
     std::optional<std::string> region;
     std::optional<std::string> force_class;
-    double z_score = 0;                         ///< of the gap, over its noise
-    double z_score_refitted = 0;                ///< .. after the nuisances were refitted
+    double z_score = 0;           ///< of the gap, over its noise
+    double z_score_refitted = 0;  ///< .. after the nuisances were refitted
 };
 
 /// One cell of the picture "where": every observable, significant or not.
@@ -41,11 +41,11 @@ struct Cause {
     double amplitude = 0;
     double amplitude_error = 0;  ///< one sigma
     std::string unit;
-    double confidence = 0;                 ///< probability among the library's effects
-    double explained = 0;                  ///< part of the gap's chi-square that it takes away
-    std::vector<std::string> group;        ///< effects that these data cannot tell from it, itself included
-    double score = 0;                      ///< gain in log likelihood over no effect, nuisances refitted in both
-    std::optional<double> confirmed_score; ///< .. from real runs at the fitted amplitude
+    double confidence = 0;           ///< probability among the library's effects
+    double explained = 0;            ///< part of the gap's chi-square that it takes away
+    std::vector<std::string> group;  ///< effects that these data cannot tell from it, itself included
+    double score = 0;                ///< gain in log likelihood over no effect, nuisances refitted in both
+    std::optional<double> confirmed_score;  ///< .. from real runs at the fitted amplitude
 };
 
 struct NuisanceFit {
@@ -53,46 +53,49 @@ struct NuisanceFit {
     double value = 0, error = 0;  ///< shift from the scene's value; one sigma after the fit
     double prior = 0;             ///< one sigma before
     std::string unit;
-    bool at_bound = false;        ///< pulled further than its prior allows: a symptom
+    bool at_bound = false;  ///< pulled further than its prior allows: a symptom
 };
 
 struct Shrink {
-    std::string held_out;  ///< which part of the data
+    std::string held_out;          ///< which part of the data
     double before = 0, after = 0;  ///< gap without noise: sum over cells of squared differences in sigmas
     double fraction = 0;           ///< 1 - after/before
     std::array<double, 2> interval{0, 0};  ///< 90 %
     double placebo = 0;
-    std::optional<double> confirmed;       ///< fraction from real runs
+    std::optional<double> confirmed;                       ///< fraction from real runs
     std::map<std::string, std::array<double, 2>> metrics;  ///< Rtop, errf [N], errZ, bhat: before and after
-    std::vector<std::array<double, 4>> top_force;  ///< displacement [m], experiment, before, after [N], loading
+    std::vector<std::array<double, 4>>
+        top_force;  ///< displacement [m], experiment, before, after [N], loading
     /// Stretch of the plate's displacement that the effect was fitted on [m]; equal ends: not one stretch.
     std::array<double, 2> fitted_displacement{0, 0};
 };
 
 struct DetectionLimit {
     std::string effect, unit;
-    double minimum_amplitude = std::numeric_limits<double>::infinity();  ///< infinite: these data never show it
-    double absorbed_by_calibration = 0;  ///< part of its signature that nuisances take away
-    std::vector<std::string> group;      ///< not to be told apart from it at twice that amplitude
+    double minimum_amplitude =
+        std::numeric_limits<double>::infinity();  ///< infinite: these data never show it
+    double absorbed_by_calibration = 0;           ///< part of its signature that nuisances take away
+    std::vector<std::string> group;               ///< not to be told apart from it at twice that amplitude
 };
 
 struct Diagnosis {
     Verdict verdict = Verdict::no_gap;
     bool detected = false;
-    double p_value = 1;           ///< the smaller of the two tests, corrected for there being two
+    double p_value = 1;  ///< the smaller of the two tests, corrected for there being two
     double p_omnibus = 1, p_directed = 1;
     std::vector<WhereEntry> where;
     std::vector<WhereCell> cells;
-    std::vector<Cause> causes;    ///< best first; empty where there is no gap
-    std::vector<Cause> ranking;   ///< all candidates by score, for the picture
+    std::vector<Cause> causes;   ///< best first; empty where there is no gap
+    std::vector<Cause> ranking;  ///< all candidates by score, for the picture
     std::vector<NuisanceFit> nuisances;
     std::optional<Shrink> shrink;
     std::vector<DetectionLimit> detection_limits;
     std::vector<std::string> not_measured;  ///< what is missing and what could have been told with it
-    std::vector<std::string> not_testable;  ///< candidates that this scene or these data cannot show, with why
+    std::vector<std::string>
+        not_testable;  ///< candidates that this scene or these data cannot show, with why
     double seconds = 0;
     std::map<std::string, std::string> provenance;  ///< scene, experiment, versions, device, seed, hashes
-    double where_threshold = 0;   ///< |z| from which a cell stands out of all cells together; 0: not known
+    double where_threshold = 0;  ///< |z| from which a cell stands out of all cells together; 0: not known
 };
 
 }  // namespace mcdem

@@ -58,7 +58,9 @@ EffectFit fit_effect(const GapSpace& space, const Candidate& candidate, const Ei
     fit.score = 0.5 * (misfit(0) - misfit(fit.amplitude));
     fit.error = 1 / std::sqrt(std::max(misfit.information(fit.amplitude), 1e-300));
     const double margin = 1e-3 * (candidate.high - candidate.low);
-    fit.at_bound = fit.amplitude != 0 && (fit.amplitude < candidate.low + margin ? candidate.low != 0 : fit.amplitude > candidate.high - margin);
+    fit.at_bound = fit.amplitude != 0 &&
+                   (fit.amplitude < candidate.low + margin ? candidate.low != 0
+                                                           : fit.amplitude > candidate.high - margin);
     return fit;
 }
 

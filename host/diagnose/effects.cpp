@@ -32,7 +32,9 @@ void add_share(double& share, double a) { share += a * (1 - share); }
 
 std::string_view nothing(const Model&) { return ""; }
 std::string_view interacting_already(const Model& m) {
-    return interacting(m) ? "the contacts of the scene feel one another already; gamma is refitted with every candidate" : "";
+    return interacting(m)
+               ? "the contacts of the scene feel one another already; gamma is refitted with every candidate"
+               : "";
 }
 std::string_view independent_contacts(const Model& m) {
     return interacting(m) ? "" : "independent contacts make no bulges";
@@ -115,7 +117,8 @@ std::vector<Nuisance> nuisances(const Model& model, const Experiment& experiment
     list.push_back({"strain_offset", "m", strain_zero_sigma * model.mean_diameter,
                     [](Model& m, double shift) { m.instrument.strain_offset += shift; }});
     if (model.replica.contact.model == ContactModel::mc_dem)
-        list.push_back({"gamma", "", gamma_sigma, [](Model& m, double shift) { m.replica.contact.gamma += shift; }});
+        list.push_back(
+            {"gamma", "", gamma_sigma, [](Model& m, double shift) { m.replica.contact.gamma += shift; }});
     if (const double sigma = stated("grains.friction"); sigma > 0)
         list.push_back({"friction", "", sigma, [](Model& m, double shift) {
                             m.replica.grains.friction = std::max(0.0, m.replica.grains.friction + shift);

@@ -1,5 +1,5 @@
-// The library of effects that a simulation may leave out, and of the parameters that it may have slightly wrong.
-// A new effect is one row in effects.cpp (CONTRIBUTING.md).
+// The library of effects that a simulation may leave out, and of the parameters that it may have slightly
+// wrong. A new effect is one row in effects.cpp (CONTRIBUTING.md).
 #pragma once
 #include <optional>
 #include <span>
@@ -21,11 +21,11 @@ struct Model {
 /// One way in which reality may differ from the model, with an amplitude that is zero for the model as it is.
 struct Effect {
     std::string_view name;
-    std::string_view unit;      ///< of the amplitude, empty for pure numbers
-    std::string_view formula;   ///< what the amplitude does
-    std::string_view source;    ///< where the formula comes from
-    double low, high;           ///< plausible amplitudes, over the scale
-    double first, second;       ///< of the paired runs, over the scale
+    std::string_view unit;          ///< of the amplitude, empty for pure numbers
+    std::string_view formula;       ///< what the amplitude does
+    std::string_view source;        ///< where the formula comes from
+    double low, high;               ///< plausible amplitudes, over the scale
+    double first, second;           ///< of the paired runs, over the scale
     double (*scale)(const Model&);  ///< natural size of the amplitude in this model [unit]
     void (*apply)(Model&, double amplitude);
     /// Why this model cannot have it; empty where it can.

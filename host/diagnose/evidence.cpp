@@ -20,13 +20,14 @@ Eigen::VectorXd column_means(const Eigen::MatrixXd& rows) {
     Eigen::VectorXd mean(rows.cols());
     for (Eigen::Index cell = 0; cell < rows.cols(); ++cell) {
         const auto column = rows.col(cell).array();
-        mean[cell] = column.isFinite().select(column, 0).sum() / static_cast<double>(column.isFinite().count());
+        mean[cell] =
+            column.isFinite().select(column, 0).sum() / static_cast<double>(column.isFinite().count());
     }
     return mean;
 }
 
-/// Replicates of one packing know of one another through their mean: they are left out together where there are
-/// packings enough.
+/// Replicates of one packing know of one another through their mean: they are left out together where there
+/// are packings enough.
 std::vector<int> folds_of(const std::vector<int>& packing) {
     constexpr int most = 8;
     const int packings = 1 + *std::ranges::max_element(packing);
@@ -52,7 +53,8 @@ GapData gap_data(const Evidence& evidence) {
     s.effects = static_cast<int>(s.candidates.size());
     for (const NuisancePrior& prior : evidence.nuisances)
         if (prior.name == "modulus" || prior.name == "strain_offset" || prior.name == "gamma")
-            s.candidates.push_back({&find(evidence.library.nuisances, prior.name), -farthest * prior.sigma, farthest * prior.sigma});
+            s.candidates.push_back({&find(evidence.library.nuisances, prior.name), -farthest * prior.sigma,
+                                    farthest * prior.sigma});
     return s;
 }
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "diagnose/gap_space.h"
 #include "diagnose/effect_fit.h"
+#include "diagnose/gap_space.h"
 
 namespace mcdem {
 
@@ -21,24 +21,24 @@ struct NuisancePrior {
 };
 
 struct Evidence {
-    Eigen::VectorXd observed;             ///< the experiment, one entry a cell
-    Eigen::MatrixXd baseline;             ///< row: replicate of the scene on the experiment's packing
+    Eigen::VectorXd observed;  ///< the experiment, one entry a cell
+    Eigen::MatrixXd baseline;  ///< row: replicate of the scene on the experiment's packing
     Library library;
     std::vector<CandidateRange> candidates;  ///< all of them in library.effects
     std::vector<NuisancePrior> nuisances;    ///< all of them in library.nuisances
-    std::uint64_t seed = 1;               ///< of everything drawn at random
+    std::uint64_t seed = 1;                  ///< of everything drawn at random
 };
 
 /// The evidence on chosen cells, with everything that follows from it before the observed is looked at.
 struct GapData {
     CellChoice cells;
-    Eigen::VectorXd mean;                 ///< of the baseline
-    Eigen::VectorXd gap;                  ///< observed less mean
-    Eigen::MatrixXd noise;                ///< scatter of one replicate
-    std::vector<int> fold;                ///< by row of noise: rows that are left out together, those of one packing
+    Eigen::VectorXd mean;   ///< of the baseline
+    Eigen::VectorXd gap;    ///< observed less mean
+    Eigen::MatrixXd noise;  ///< scatter of one replicate
+    std::vector<int> fold;  ///< by row of noise: rows that are left out together, those of one packing
     std::vector<FreeParameter> free;
-    std::vector<Candidate> candidates;    ///< effects, then nuisances beyond their priors
-    int effects = 0;                      ///< how many of them are effects
+    std::vector<Candidate> candidates;  ///< effects, then nuisances beyond their priors
+    int effects = 0;                    ///< how many of them are effects
     const std::string& name(std::size_t candidate) const { return candidates[candidate].signature->name; }
 };
 

@@ -15,7 +15,8 @@ namespace {
 /// The value below which a part `share` of the values lies.
 double quantile(std::vector<double>& values, double share) {
     if (values.empty()) return not_available;
-    const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+    const auto at =
+        values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
     std::nth_element(values.begin(), at, values.end());
     return *at;
 }
@@ -27,7 +28,8 @@ double mean(std::span<const double> values) {
 }
 
 double part(std::span<const double> values, double low, double high) {
-    const auto inside = std::ranges::count_if(values, [&](double value) { return value >= low && value < high; });
+    const auto inside =
+        std::ranges::count_if(values, [&](double value) { return value >= low && value < high; });
     return values.empty() ? not_available : static_cast<double>(inside) / static_cast<double>(values.size());
 }
 
@@ -50,7 +52,9 @@ std::array<double, 5> wall_loads(const Recording& recording, const Scan& scan) {
     for (const Contact& contact : scan.contacts) {
         if (!is_wall(contact.partner)) continue;
         switch (wall_of(contact.partner)) {
-            case Wall::floor: floor += contact.force.z(); break;
+            case Wall::floor:
+                floor += contact.force.z();
+                break;
             case Wall::plate: {
                 const double push = -contact.force.z();
                 plate += push;
@@ -58,11 +62,13 @@ std::array<double, 5> wall_loads(const Recording& recording, const Scan& scan) {
                 couple_y += push * (contact.point.y() / half_y - 1);
                 break;
             }
-            default: sides += std::abs(contact.force[wall_of(contact.partner) < Wall::y_min ? 0 : 1]) / 4;
+            default:
+                sides += std::abs(contact.force[wall_of(contact.partner) < Wall::y_min ? 0 : 1]) / 4;
         }
     }
     const double top = scan.top_force();
-    if (!(top > 0) || !(plate > 0)) return {not_available, not_available, not_available, not_available, not_available};
+    if (!(top > 0) || !(plate > 0))
+        return {not_available, not_available, not_available, not_available, not_available};
     return {floor / top, sides / top, plate / top, couple_x / plate, couple_y / plate};
 }
 
@@ -91,7 +97,8 @@ std::array<double, 7> force_distribution_numbers(const Recording& recording, con
 
 namespace {
 
-/// Root mean square of the displacements since the first scan less their best affine map, over the mean diameter.
+/// Root mean square of the displacements since the first scan less their best affine map, over the mean
+/// diameter.
 double non_affine_displacement(const Recording& recording, const Scan& scan) {
     const std::vector<Vec3>& before = recording.scans.front().position;
     if (before.size() != scan.position.size()) return not_available;
@@ -113,7 +120,8 @@ double non_affine_displacement(const Recording& recording, const Scan& scan) {
 
 }  // namespace
 
-std::array<double, 4> fabric(const Recording& recording, const Scan& scan, std::span<const ContactResidual> contacts) {
+std::array<double, 4> fabric(const Recording& recording, const Scan& scan,
+                             std::span<const ContactResidual> contacts) {
     double total = 0, vertical = 0, pulls = 0;
     std::vector<double> height, force;
     for (const ContactResidual& c : contacts) {
@@ -131,8 +139,8 @@ std::array<double, 4> fabric(const Recording& recording, const Scan& scan, std::
 
 namespace {
 
-/// Sum over grains of |sum of torques| over the sum of |torque|: the friction forces of a grain at rest that nothing
-/// else turns cancel.
+/// Sum over grains of |sum of torques| over the sum of |torque|: the friction forces of a grain at rest that
+/// nothing else turns cancel.
 double torque_imbalance(const Recording& recording, std::span<const ContactResidual> contacts) {
     std::vector<Vec3> torque(recording.diameter.size(), Vec3::Zero());
     std::vector<double> size(recording.diameter.size(), 0.0);
@@ -156,7 +164,8 @@ double torque_imbalance(const Recording& recording, std::span<const ContactResid
 }  // namespace
 
 std::array<double, 6> friction_numbers(const Recording& recording, const Scan&,
-                                       std::span<const ContactResidual> contacts, const ReferenceMaterial& material) {
+                                       std::span<const ContactResidual> contacts,
+                                       const ReferenceMaterial& material) {
     std::vector<double> grains, walls;
     double pushes = 0;
     for (const ContactResidual& c : contacts) pushes += c.push / static_cast<double>(contacts.size());
@@ -166,8 +175,8 @@ std::array<double, 6> friction_numbers(const Recording& recording, const Scan&,
     const double mu = material.friction;
     const double sliding = mu > 0 ? part(grains, 0.8 * mu, 1.2 * mu) : not_available;
     const double grain_mean = mean(grains), wall_mean = mean(walls);
-    return {grain_mean, quantile(grains, 0.8), sliding, wall_mean, quantile(walls, 0.8),
-            torque_imbalance(recording, contacts)};
+    return {grain_mean, quantile(grains, 0.8), sliding,
+            wall_mean,  quantile(walls, 0.8),  torque_imbalance(recording, contacts)};
 }
 
 }  // namespace mcdem

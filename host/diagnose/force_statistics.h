@@ -20,10 +20,12 @@ std::array<double, 7> force_distribution_numbers(const Recording& recording, con
                                                  const ReferenceMaterial& material);
 
 /// Anisotropy, vertical gradient, non-affine displacement, part of the contacts that pull.
-std::array<double, 4> fabric(const Recording& recording, const Scan& scan, std::span<const ContactResidual> contacts);
+std::array<double, 4> fabric(const Recording& recording, const Scan& scan,
+                             std::span<const ContactResidual> contacts);
 
 /// f_t/f_n between grains (mean, high, sliding) and at walls (mean, high); torque that does not cancel.
 std::array<double, 6> friction_numbers(const Recording& recording, const Scan& scan,
-                                       std::span<const ContactResidual> contacts, const ReferenceMaterial& material);
+                                       std::span<const ContactResidual> contacts,
+                                       const ReferenceMaterial& material);
 
 }  // namespace mcdem

@@ -32,7 +32,8 @@ std::vector<Eigen::Index> usable_cells(const Library& library, const Eigen::Vect
     for (Eigen::Index cell = 0; cell < observed.size(); ++cell) {
         const auto column = library.baseline.col(cell).array();
         const bool varies = column.isFinite().all() && (column - column[0]).abs().maxCoeff() > 0;
-        if (varies && std::isfinite(observed[cell]) && usable(library.effects, cell) && usable(library.nuisances, cell))
+        if (varies && std::isfinite(observed[cell]) && usable(library.effects, cell) &&
+            usable(library.nuisances, cell))
             cells.push_back(cell);
     }
     return cells;
@@ -43,18 +44,23 @@ Eigen::ArrayXd resolutions(const CellChoice& cells, Eigen::Index all) {
     const Eigen::Index cells_each = all / static_cast<Eigen::Index>(observables().size());
     Eigen::ArrayXd list(static_cast<Eigen::Index>(cells.size()));
     for (std::size_t k = 0; k < cells.size(); ++k)
-        list[static_cast<Eigen::Index>(k)] = observables()[static_cast<std::size_t>(cells[k] / cells_each)].resolution;
+        list[static_cast<Eigen::Index>(k)] =
+            observables()[static_cast<std::size_t>(cells[k] / cells_each)].resolution;
     return list;
 }
 
 Eigen::VectorXd pick(const Eigen::VectorXd& all, const CellChoice& cells) { return all(cells); }
-Eigen::MatrixXd pick_columns(const Eigen::MatrixXd& all, const CellChoice& cells) { return all(Eigen::all, cells); }
+Eigen::MatrixXd pick_columns(const Eigen::MatrixXd& all, const CellChoice& cells) {
+    return all(Eigen::all, cells);
+}
 
 namespace {
 
-/// Variances of single cells, few replicates behind each, drawn towards the mean of their observable: as if that mean
-/// had been seen in a few replicates more (Smyth 2004). A cell that hardly moved by chance does not stand out then.
-Eigen::ArrayXd moderated(const Eigen::ArrayXd& variance, const CellChoice& cells, const Eigen::MatrixXd& noise) {
+/// Variances of single cells, few replicates behind each, drawn towards the mean of their observable: as if
+/// that mean had been seen in a few replicates more (Smyth 2004). A cell that hardly moved by chance does not
+/// stand out then.
+Eigen::ArrayXd moderated(const Eigen::ArrayXd& variance, const CellChoice& cells,
+                         const Eigen::MatrixXd& noise) {
     constexpr double replicates_more = 8;
     const Eigen::Index cells_each = noise.cols() / static_cast<Eigen::Index>(observables().size());
     const double n = static_cast<double>(noise.rows());
@@ -75,7 +81,7 @@ Eigen::ArrayXd moderated(const Eigen::ArrayXd& variance, const CellChoice& cells
 }  // namespace
 
 GapSpace::GapSpace(const Eigen::MatrixXd& noise, int mean_of, const CellChoice& cells,
-                       const std::vector<FreeParameter>& free, const Eigen::VectorXd& extra)
+                   const std::vector<FreeParameter>& free, const Eigen::VectorXd& extra)
     : cells_(cells), free_(free) {
     const double both = 1 + (mean_of > 0 ? 1.0 / mean_of : 0);  // the observed one's scatter, and the mean's
     Eigen::MatrixXd covariance = both * shrunk_covariance(pick_columns(noise, cells));
@@ -87,17 +93,21 @@ GapSpace::GapSpace(const Eigen::MatrixXd& noise, int mean_of, const CellChoice& 
     for (std::size_t k = 0; k < free.size(); ++k) {
         const auto column = static_cast<Eigen::Index>(k);
         directions_.col(column) = pick(free[k].direction, cells);
-        total.noalias() += free[k].sigma * free[k].sigma * directions_.col(column) * directions_.col(column).transpose();
+        total.noalias() +=
+            free[k].sigma * free[k].sigma * directions_.col(column) * directions_.col(column).transpose();
     }
     noise_.compute(covariance);
     total_.compute(total);
     Eigen::MatrixXd precision = directions_.transpose() * noise_.solve(directions_);
     for (std::size_t k = 0; k < free.size(); ++k)
-        precision(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(k)) += 1 / (free[k].sigma * free[k].sigma);
+        precision(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(k)) +=
+            1 / (free[k].sigma * free[k].sigma);
     posterior_ = precision.inverse();
 }
 
-Eigen::VectorXd GapSpace::whiten_chosen(const Eigen::VectorXd& chosen) const { return total_.matrixL().solve(chosen); }
+Eigen::VectorXd GapSpace::whiten_chosen(const Eigen::VectorXd& chosen) const {
+    return total_.matrixL().solve(chosen);
+}
 
 Eigen::VectorXd GapSpace::fit_nuisances(const Eigen::VectorXd& all) const {
     return posterior_ * (directions_.transpose() * noise_.solve(pick(all, cells_)));

@@ -1,9 +1,9 @@
-// The space in which an observation is held against the model: cells that all of them have, noise whitened, and the
-// model's rough parameters free to move within their priors.
+// The space in which an observation is held against the model: cells that all of them have, noise whitened,
+// and the model's rough parameters free to move within their priors.
 #pragma once
 #include <Eigen/Cholesky>
-#include <Eigen/LU>
 #include <Eigen/Core>
+#include <Eigen/LU>
 #include <vector>
 
 #include "diagnose/library.h"
@@ -34,11 +34,11 @@ struct FreeParameter {
 
 class GapSpace {
 public:
-    /// `noise`: rows of one replicate's scatter, all cells; `mean_of`: replicates behind the mean that the observed is
-    /// compared with (0: known exactly).
-    /// `extra`: variance that comes on top, all cells; empty: none.
+    /// `noise`: rows of one replicate's scatter, all cells; `mean_of`: replicates behind the mean that the
+    /// observed is compared with (0: known exactly). `extra`: variance that comes on top, all cells; empty:
+    /// none.
     GapSpace(const Eigen::MatrixXd& noise, int mean_of, const CellChoice& cells,
-               const std::vector<FreeParameter>& free, const Eigen::VectorXd& extra = {});
+             const std::vector<FreeParameter>& free, const Eigen::VectorXd& extra = {});
 
     const CellChoice& cells() const { return cells_; }
     /// Whitens a vector on all cells: its square is a chi-square of the gap with nuisances marginalised.
@@ -56,8 +56,8 @@ private:
     std::vector<FreeParameter> free_;
     Eigen::ArrayXd sigma_;
     Eigen::LLT<Eigen::MatrixXd> noise_, total_;
-    Eigen::MatrixXd directions_;   // column: nuisance, on the chosen cells
-    Eigen::MatrixXd posterior_;    // covariance of the nuisances
+    Eigen::MatrixXd directions_;  // column: nuisance, on the chosen cells
+    Eigen::MatrixXd posterior_;   // covariance of the nuisances
 };
 
 }  // namespace mcdem

@@ -19,7 +19,8 @@ Eigen::MatrixXd without_fold(const GapData& data, int fold) {
     return data.noise(kept, Eigen::all);
 }
 
-boost::math::gamma_distribution<> fitted_gamma(const std::vector<GapStatistics>& draws, double GapStatistics::*statistic) {
+boost::math::gamma_distribution<> fitted_gamma(const std::vector<GapStatistics>& draws,
+                                               double GapStatistics::*statistic) {
     double mean = 0, square = 0;
     for (const GapStatistics& draw : draws) mean += draw.*statistic / static_cast<double>(draws.size());
     for (const GapStatistics& draw : draws)

@@ -1,5 +1,5 @@
-// Is there a gap? An omnibus test (anything at all) and a directed one (something that looks like a known effect), both
-// ranked against replicates sent through the same comparison.
+// Is there a gap? An omnibus test (anything at all) and a directed one (something that looks like a known
+// effect), both ranked against replicates sent through the same comparison.
 #pragma once
 #include "diagnose/evidence.h"
 
@@ -7,21 +7,22 @@ namespace mcdem {
 
 /// Statistics of one gap.
 struct GapStatistics {
-    double omnibus = 0;   ///< chi-square, nuisances marginalised
-    double directed = 0;  ///< largest gain in log likelihood of a candidate
-    double remainder = 0; ///< chi-square after the best candidate
+    double omnibus = 0;           ///< chi-square, nuisances marginalised
+    double directed = 0;          ///< largest gain in log likelihood of a candidate
+    double remainder = 0;         ///< chi-square after the best candidate
     double highest_refitted = 0;  ///< largest |gap|/sigma of a cell after the nuisances were refitted
     std::vector<EffectFit> fits;  ///< by candidate
     std::size_t best = 0;
 };
 GapStatistics gap_statistics(const GapSpace& space, const GapData& data, const Eigen::VectorXd& gap);
 
-/// What the statistics are where there is no gap: replicates, each compared without its own part in the noise, with
-/// nuisances drawn from their priors.
+/// What the statistics are where there is no gap: replicates, each compared without its own part in the
+/// noise, with nuisances drawn from their priors.
 class NullDistribution {
 public:
     NullDistribution(const GapData& data, int mean_of, std::uint64_t seed);
-    /// Probability of a statistic at least as large: from a gamma distribution with the replicates' mean and variance.
+    /// Probability of a statistic at least as large: from a gamma distribution with the replicates' mean and
+    /// variance.
     double p_value(double GapStatistics::*statistic, double value) const;
     /// The value that a part `p` of the null exceeds.
     double quantile(double GapStatistics::*statistic, double p) const;

@@ -10,7 +10,8 @@ namespace mcdem {
 
 inline nlohmann::json numbers_json(const Eigen::VectorXd& values) {
     nlohmann::json list = nlohmann::json::array();
-    for (const double value : values) list.push_back(std::isfinite(value) ? nlohmann::json(value) : nlohmann::json());
+    for (const double value : values)
+        list.push_back(std::isfinite(value) ? nlohmann::json(value) : nlohmann::json());
     return list;
 }
 

@@ -18,20 +18,33 @@ using nlohmann::json;
 constexpr int library_format = 1;
 
 json signature_json(const Signature& s) {
-    return {{"name", s.name},           {"reach", s.reach}, {"linear", numbers_json(s.linear)}, {"curvature", numbers_json(s.curvature)},
-            {"variance", numbers_json(s.variance)}, {"spread", numbers_json(s.spread)}, {"pairs", s.pairs}};
+    return {{"name", s.name},
+            {"reach", s.reach},
+            {"linear", numbers_json(s.linear)},
+            {"curvature", numbers_json(s.curvature)},
+            {"variance", numbers_json(s.variance)},
+            {"spread", numbers_json(s.spread)},
+            {"pairs", s.pairs}};
 }
 
 Signature signature_of(const json& j, Eigen::Index cells) {
-    Signature s{j.at("name"), j.at("reach"), numbers_of(j.at("linear")), numbers_of(j.at("curvature")),
-                numbers_of(j.at("variance")), numbers_of(j.at("spread")), j.at("pairs")};
-    if (s.linear.size() != cells || s.curvature.size() != cells || s.variance.size() != cells || s.spread.size() != cells)
-        throw json::other_error::create(501, "signature " + s.name + " is of another length than the cells", &j);
+    Signature s{j.at("name"),
+                j.at("reach"),
+                numbers_of(j.at("linear")),
+                numbers_of(j.at("curvature")),
+                numbers_of(j.at("variance")),
+                numbers_of(j.at("spread")),
+                j.at("pairs")};
+    if (s.linear.size() != cells || s.curvature.size() != cells || s.variance.size() != cells ||
+        s.spread.size() != cells)
+        throw json::other_error::create(501, "signature " + s.name + " is of another length than the cells",
+                                        &j);
     return s;
 }
 
 Library library_of(const json& j) {
-    if (j.at("format") != library_format) throw json::other_error::create(501, "it is of another version", &j);
+    if (j.at("format") != library_format)
+        throw json::other_error::create(501, "it is of another version", &j);
     Library library;
     library.grid = {j.at("displacement"), j.at("width"), j.at("stroke")};
     library.packing = j.at("packing").get<std::vector<int>>();
@@ -41,7 +54,8 @@ Library library_of(const json& j) {
     const json& rows = j.at("baseline");
     for (std::size_t r = 0; r < library.packing.size(); ++r) {
         const Eigen::VectorXd row = numbers_of(rows.at(r));
-        if (row.size() != cells) throw json::other_error::create(501, "it has other observables than this program", &j);
+        if (row.size() != cells)
+            throw json::other_error::create(501, "it has other observables than this program", &j);
         library.baseline.row(static_cast<Eigen::Index>(r)) = row;
     }
     for (const json& s : j.at("effects")) library.effects.push_back(signature_of(s, cells));
@@ -59,21 +73,24 @@ Eigen::MatrixXd scatter(const Library& library) {
     const bool repeated = std::ranges::all_of(of, [](const auto& rows) { return rows.second.size() > 1; });
     if (!repeated) {
         of.clear();
-        for (std::size_t r = 0; r < library.packing.size(); ++r) of[0].push_back(static_cast<Eigen::Index>(r));
+        for (std::size_t r = 0; r < library.packing.size(); ++r)
+            of[0].push_back(static_cast<Eigen::Index>(r));
     }
     Eigen::MatrixXd apart = library.baseline;
     for (const auto& [packing, rows] : of) {
         Eigen::RowVectorXd mean = Eigen::RowVectorXd::Zero(apart.cols());
         const double n = static_cast<double>(rows.size());
         for (const auto row : rows) mean += library.baseline.row(row) / n;
-        for (const auto row : rows) apart.row(row) = (apart.row(row) - mean) * std::sqrt(n / std::max(1.0, n - 1));
+        for (const auto row : rows)
+            apart.row(row) = (apart.row(row) - mean) * std::sqrt(n / std::max(1.0, n - 1));
     }
     return apart;
 }
 
 void write_library(const std::filesystem::path& file, const Library& library) {
     json rows = json::array(), effects = json::array(), nuisances = json::array();
-    for (Eigen::Index r = 0; r < library.baseline.rows(); ++r) rows.push_back(numbers_json(library.baseline.row(r)));
+    for (Eigen::Index r = 0; r < library.baseline.rows(); ++r)
+        rows.push_back(numbers_json(library.baseline.row(r)));
     for (const Signature& s : library.effects) effects.push_back(signature_json(s));
     for (const Signature& s : library.nuisances) nuisances.push_back(signature_json(s));
     replace_file(file, json{{"format", library_format},
@@ -94,8 +111,8 @@ Library read_library(const std::filesystem::path& file) {
     try {
         return library_of(json::parse(in));
     } catch (const json::exception& error) {
-        throw InputError(fmt::format("{}: not a signature library ({}); remove it, and it is made anew", file.string(),
-                                     error.what()));
+        throw InputError(fmt::format("{}: not a signature library ({}); remove it, and it is made anew",
+                                     file.string(), error.what()));
     }
 }
 

@@ -1,5 +1,5 @@
-// What simulations of a scene tell before any experiment is looked at: the scatter of the observation, and the
-// signature of every effect and nuisance.
+// What simulations of a scene tell before any experiment is looked at: the scatter of the observation, and
+// the signature of every effect and nuisance.
 #pragma once
 #include <filesystem>
 #include <map>
@@ -13,15 +13,15 @@ namespace mcdem {
 
 struct Library {
     Grid grid;
-    Eigen::MatrixXd baseline;      ///< row: replicate, column: cell
-    std::vector<int> packing;      ///< of each replicate
+    Eigen::MatrixXd baseline;  ///< row: replicate, column: cell
+    std::vector<int> packing;  ///< of each replicate
     std::vector<Signature> effects;
     std::vector<Signature> nuisances;
     std::map<std::string, std::string> provenance;  ///< scene, program, device
 };
 
-/// Baseline replicates less the mean over those of the same packing, scaled to the variance of one replicate; with
-/// one replicate a packing, less the mean over packings.
+/// Baseline replicates less the mean over those of the same packing, scaled to the variance of one replicate;
+/// with one replicate a packing, less the mean over packings.
 Eigen::MatrixXd scatter(const Library& library);
 
 /// JSON; written whole or not at all.

@@ -13,10 +13,10 @@ void gather_ranges(const std::vector<WhereCell>& row, double threshold, double h
         if (std::abs(row[first].z_score_refitted) < threshold) continue;
         std::size_t last = first;
         while (last + 1 < row.size() && std::abs(row[last + 1].z_score_refitted) >= threshold) ++last;
-        const auto strongest = std::max_element(row.begin() + static_cast<std::ptrdiff_t>(first),
-                                                row.begin() + static_cast<std::ptrdiff_t>(last) + 1, [](auto& a, auto& b) {
-                                                    return std::abs(a.z_score_refitted) < std::abs(b.z_score_refitted);
-                                                });
+        const auto strongest = std::max_element(
+            row.begin() + static_cast<std::ptrdiff_t>(first),
+            row.begin() + static_cast<std::ptrdiff_t>(last) + 1,
+            [](auto& a, auto& b) { return std::abs(a.z_score_refitted) < std::abs(b.z_score_refitted); });
         WhereEntry entry;
         entry.observable = observable.name;
         entry.phase = row[first].phase;
@@ -46,17 +46,21 @@ Location locate(const GapSpace& space, const GapData& data, const NullDistributi
         for (Eigen::Index n = 0; n < shifts.size(); ++n)
             refitted -= shifts[n] * data.free[static_cast<std::size_t>(n)].direction[data.cells[k]];
         WhereCell where{std::string(observables()[static_cast<std::size_t>(cell.observable)].name),
-                        std::string(name(cell.phase)), cell.displacement, gap[data.cells[k]] / sigma, refitted / sigma};
+                        std::string(name(cell.phase)), cell.displacement, gap[data.cells[k]] / sigma,
+                        refitted / sigma};
         location.cells.push_back(where);
-        rows[2 * static_cast<std::size_t>(cell.observable) + (cell.phase == Phase::load ? 0 : 1)].push_back(where);
+        rows[2 * static_cast<std::size_t>(cell.observable) + (cell.phase == Phase::load ? 0 : 1)].push_back(
+            where);
     }
     const double half_spacing =
         grid.displacement.size() > 1 ? 0.5 * (grid.displacement[1] - grid.displacement[0]) : 0.5 * grid.width;
     for (std::size_t r = 0; r < rows.size(); ++r)
         gather_ranges(rows[r], location.threshold, half_spacing, observables()[r / 2], location.entries);
-    for (WhereEntry& entry : location.entries) entry.displacement[1] = std::min(entry.displacement[1], grid.stroke);
-    std::ranges::stable_sort(location.entries,
-                             [](auto& a, auto& b) { return std::abs(a.z_score_refitted) > std::abs(b.z_score_refitted); });
+    for (WhereEntry& entry : location.entries)
+        entry.displacement[1] = std::min(entry.displacement[1], grid.stroke);
+    std::ranges::stable_sort(location.entries, [](auto& a, auto& b) {
+        return std::abs(a.z_score_refitted) > std::abs(b.z_score_refitted);
+    });
     return location;
 }
 

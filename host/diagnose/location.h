@@ -1,5 +1,5 @@
-// Where is the gap? Cells whose difference, parameters refitted, is larger than any cell's of a replicate, gathered into
-// ranges.
+// Where is the gap? Cells whose difference, parameters refitted, is larger than any cell's of a replicate,
+// gathered into ranges.
 #pragma once
 #include "diagnose/decision.h"
 #include "diagnose/gap_tests.h"
@@ -9,7 +9,7 @@ namespace mcdem {
 struct Location {
     std::vector<WhereEntry> entries;  ///< significant ones, largest first
     std::vector<WhereCell> cells;     ///< all
-    double threshold = 0;             ///< simultaneous: |z| of the largest refitted cell of 95 % of the replicates
+    double threshold = 0;  ///< simultaneous: |z| of the largest refitted cell of 95 % of the replicates
 };
 
 /// Descends from observable to phase to displacement where the parent stands out.

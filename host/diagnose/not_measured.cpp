@@ -14,11 +14,13 @@ std::vector<std::string> not_measured(const Eigen::VectorXd& observed, const Gri
     std::vector<std::string> texts;
     if (!seen.count(Needs::contacts))
         texts.push_back(
-            "contacts.csv: the forces of contacts would tell the force distribution, the floor's and the walls' share, the "
+            "contacts.csv: the forces of contacts would tell the force distribution, the floor's and the "
+            "walls' share, the "
             "plate's couple and biases of the force measurement");
     if (!seen.count(Needs::positions))
         texts.push_back(
-            "grains.csv beyond frame 0, with contacts.csv: positions would tell the overlaps that the forces should imply, "
+            "grains.csv beyond frame 0, with contacts.csv: positions would tell the overlaps that the forces "
+            "should imply, "
             "hence cross-contact effects, stiffening, adhesion, friction and errors of sizes");
     return texts;
 }

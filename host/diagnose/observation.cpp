@@ -67,7 +67,8 @@ std::vector<Cell> cells_of(const Grid& grid) {
     return cells;
 }
 
-Eigen::VectorXd observe(const Recording& recording, const Grid& grid, const ReferenceMaterial& material, int discard) {
+Eigen::VectorXd observe(const Recording& recording, const Grid& grid, const ReferenceMaterial& material,
+                        int discard) {
     const auto count = static_cast<Eigen::Index>(observables().size());
     const std::size_t places = grid.displacement.size();
     std::vector<LocalLine> lines(std::size(phases) * places, LocalLine(count));

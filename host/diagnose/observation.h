@@ -25,9 +25,9 @@ struct Cell {
 /// The cells of a grid: by observable, then phase, then displacement.
 std::vector<Cell> cells_of(const Grid& grid);
 
-/// One value a cell; not-a-number where the recording does not tell. Cycles after `discard` are averaged. Within the
-/// width of a cell a straight line is fitted through the scans (local linear regression, triangular weights),
-/// so that scans need not lie at the same displacements in what is compared.
+/// One value a cell; not-a-number where the recording does not tell. Cycles after `discard` are averaged.
+/// Within the width of a cell a straight line is fitted through the scans (local linear regression,
+/// triangular weights), so that scans need not lie at the same displacements in what is compared.
 Eigen::VectorXd observe(const Recording& recording, const Grid& grid, const ReferenceMaterial& material,
                         int discard = 0);
 

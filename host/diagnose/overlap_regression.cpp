@@ -38,7 +38,9 @@ private:
     int rows_ = 0;
 };
 
-Terms<4> grain_terms(const ContactResidual& c) { return {1, c.implied, c.implied * c.implied, c.cross_contact}; }
+Terms<4> grain_terms(const ContactResidual& c) {
+    return {1, c.implied, c.implied * c.implied, c.cross_contact};
+}
 
 /// Mean product of the remainders of two contacts of one grain, and the same with remainder times overlap.
 std::array<double, 2> shared_remainders(std::size_t grains, std::span<const ContactResidual> contacts,
@@ -99,7 +101,8 @@ std::array<double, 2> contact_occurrence(const Recording& recording, const Scan&
             const double a = recording.diameter[static_cast<std::size_t>(i)];
             const double b = recording.diameter[static_cast<std::size_t>(j)];
             const double reach = 0.5 * (a + b) - clear_overlap * 0.5 * a * b / (a + b);
-            const Vec3 apart = scan.position[static_cast<std::size_t>(i)] - scan.position[static_cast<std::size_t>(j)];
+            const Vec3 apart =
+                scan.position[static_cast<std::size_t>(i)] - scan.position[static_cast<std::size_t>(j)];
             if (apart.squaredNorm() < reach * reach)
                 silent += !std::ranges::binary_search(listed, std::pair<int, int>(std::minmax(i, j)));
         });
@@ -118,7 +121,8 @@ std::array<double, 7> grain_overlaps(const Recording& recording, std::span<const
     const Terms<4> fit = regression.solve();
     std::vector<double> remainder(contacts.size(), not_available);
     for (std::size_t k = 0; k < contacts.size(); ++k)
-        if (!is_wall(contacts[k].partner)) remainder[k] = contacts[k].residual() - fit.dot(grain_terms(contacts[k]));
+        if (!is_wall(contacts[k].partner))
+            remainder[k] = contacts[k].residual() - fit.dot(grain_terms(contacts[k]));
     const auto shared = shared_remainders(recording.diameter.size(), contacts, remainder, overlaps / number);
     return {fit[0], fit[1], fit[2], fit[3], root_mean_square(remainder), shared[0], shared[1]};
 }
@@ -133,11 +137,15 @@ std::array<double, 6> wall_overlaps(const Recording& recording, const Scan& scan
         const double y = c.residual() - c.cross_contact;
         const Vec3& at = scan.position[static_cast<std::size_t>(c.grain)];
         switch (wall_of(c.partner)) {
-            case Wall::floor: floor.add(Terms<1>(1), y); break;
-            case Wall::plate:
-                plate.add({1, 2 * at.x() / recording.box.size_x - 1, 2 * at.y() / recording.box.size_y - 1}, y);
+            case Wall::floor:
+                floor.add(Terms<1>(1), y);
                 break;
-            default: sides.add({1, c.implied}, y);
+            case Wall::plate:
+                plate.add({1, 2 * at.x() / recording.box.size_x - 1, 2 * at.y() / recording.box.size_y - 1},
+                          y);
+                break;
+            default:
+                sides.add({1, c.implied}, y);
         }
     }
     const auto side = sides.solve();

@@ -40,7 +40,9 @@ double signature_misfit(const GapData& data, const NullDistribution& null, const
                         const Proposal& proposal, int mean_of) {
     Eigen::VectorXd extra = effect_scatter(data, proposal);
     for (std::size_t k = 0; k < proposal.candidates.size(); ++k)
-        extra += (signature_error * data.candidates[proposal.candidates[k]].signature->at(proposal.amplitudes[k])).cwiseAbs2();
+        extra +=
+            (signature_error * data.candidates[proposal.candidates[k]].signature->at(proposal.amplitudes[k]))
+                .cwiseAbs2();
     const GapSpace space(data.noise, mean_of, data.cells, data.free, extra);
     return null.p_value(&GapStatistics::remainder, space.whiten(without(gap, data, proposal)).squaredNorm());
 }
@@ -54,7 +56,8 @@ Proposal fit_pair(const GapSpace& space, const GapData& data, const Eigen::Vecto
     pair.errors = {0, 0};
     for (int round = 0; round < rounds; ++round)
         for (const std::size_t k : {1, 0}) {
-            const EffectFit fit = fit_effect(space, data.candidates[pair.candidates[k]], without(gap, data, pair, k));
+            const EffectFit fit =
+                fit_effect(space, data.candidates[pair.candidates[k]], without(gap, data, pair, k));
             pair.amplitudes[k] = fit.amplitude;
             pair.errors[k] = fit.error;
         }
@@ -72,12 +75,15 @@ std::vector<Proposal> propose(const GapSpace& space, const GapData& data, const 
                               const GapStatistics& statistics, int mean_of) {
     std::vector<std::size_t> order(statistics.fits.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
-    std::ranges::stable_sort(order, [&](auto a, auto b) { return statistics.fits[a].score > statistics.fits[b].score; });
+    std::ranges::stable_sort(
+        order, [&](auto a, auto b) { return statistics.fits[a].score > statistics.fits[b].score; });
     const double best = statistics.directed;
     std::vector<Proposal> proposals;
     for (const std::size_t c : order) {
         const EffectFit& fit = statistics.fits[c];
-        if (proposals.size() == most_singles || !(fit.score > 0) || best - fit.score > std::max(far_behind, far_behind_share * best)) break;
+        if (proposals.size() == most_singles || !(fit.score > 0) ||
+            best - fit.score > std::max(far_behind, far_behind_share * best))
+            break;
         Proposal& proposal = proposals.emplace_back();
         proposal.candidates = {c};
         proposal.amplitudes = {fit.amplitude};
@@ -99,7 +105,8 @@ std::vector<Proposal> propose(const GapSpace& space, const GapData& data, const 
 }
 
 std::optional<Eigen::VectorXd> confirm(Proposal& proposal, const GapData& data, const NullDistribution& null,
-                                       const Eigen::VectorXd& observed, double omnibus, const Eigen::MatrixXd& runs) {
+                                       const Eigen::VectorXd& observed, double omnibus,
+                                       const Eigen::MatrixXd& runs) {
     constexpr double still_free = 0.25;  // part of an amplitude
     const Eigen::VectorXd left = observed - runs.colwise().mean().transpose();
     if (!pick(left, data.cells).allFinite()) return std::nullopt;
@@ -107,7 +114,8 @@ std::optional<Eigen::VectorXd> confirm(Proposal& proposal, const GapData& data, 
     for (std::size_t k = 0; k < proposal.candidates.size(); ++k)
         free.push_back({data.candidates[proposal.candidates[k]].signature->slope(proposal.amplitudes[k]),
                         2 * proposal.errors[k] + still_free * std::abs(proposal.amplitudes[k])});
-    const GapSpace space(data.noise, static_cast<int>(runs.rows()), data.cells, free, effect_scatter(data, proposal));
+    const GapSpace space(data.noise, static_cast<int>(runs.rows()), data.cells, free,
+                         effect_scatter(data, proposal));
     const double remainder = space.whiten(left).squaredNorm();
     proposal.confirmed_gain = 0.5 * (omnibus - remainder);
     proposal.confirmed_misfit_p = null.p_value(&GapStatistics::remainder, remainder);

@@ -74,7 +74,8 @@ private:
 
 std::span<const Observable> observables() { return table; }
 
-Eigen::VectorXd scan_observables(const Recording& recording, const Scan& scan, const ReferenceMaterial& material) {
+Eigen::VectorXd scan_observables(const Recording& recording, const Scan& scan,
+                                 const ReferenceMaterial& material) {
     Row row;
     const double top = scan.top_force();
     row.add(std::array{top > 0 ? std::log(top) : not_available});

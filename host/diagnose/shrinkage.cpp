@@ -15,7 +15,9 @@ constexpr int placebo_signatures = 20;
 class Arms {
 public:
     Arms(const GapData& data, const Split& split, int mean_of)
-        : data_(data), held_out_(split.held_out), mean_of_(mean_of),
+        : data_(data),
+          held_out_(split.held_out),
+          mean_of_(mean_of),
           space_(data.noise, mean_of, split.fitted, data.free) {}
 
     /// What refitted nuisances leave.
@@ -40,16 +42,19 @@ public:
 
     Eigen::VectorXd explained(const PartialFit& fit, const std::vector<Candidate>& candidates) const {
         Eigen::VectorXd sum = Eigen::VectorXd::Zero(data_.mean.size());
-        for (std::size_t k = 0; k < candidates.size(); ++k) sum += candidates[k].signature->at(fit.amplitudes[k]);
+        for (std::size_t k = 0; k < candidates.size(); ++k)
+            sum += candidates[k].signature->at(fit.amplitudes[k]);
         for (Eigen::Index k = 0; k < fit.nuisances.size(); ++k)
             sum += fit.nuisances[k] * data_.free[static_cast<std::size_t>(k)].direction;
         return sum;
     }
 
     /// Sizes of the gap on the held-out cells, without and with the candidates.
-    std::array<double, 2> sizes(const Eigen::VectorXd& gap, const std::vector<Candidate>& candidates, int extra = 0) const {
-        return {gap_size(data_, held_out_, refitted(gap), mean_of_, extra),
-                gap_size(data_, held_out_, gap - explained(fit(gap, candidates), candidates), mean_of_, extra)};
+    std::array<double, 2> sizes(const Eigen::VectorXd& gap, const std::vector<Candidate>& candidates,
+                                int extra = 0) const {
+        return {
+            gap_size(data_, held_out_, refitted(gap), mean_of_, extra),
+            gap_size(data_, held_out_, gap - explained(fit(gap, candidates), candidates), mean_of_, extra)};
     }
 
 private:
@@ -68,7 +73,8 @@ Signature random_signature(const GapData& data, Random& random) {
     Signature s;
     s.reach = 1;
     s.linear = Eigen::VectorXd::Zero(data.mean.size());
-    for (Eigen::Index r = 0; r < data.noise.rows(); ++r) s.linear += random.normal() * data.noise.row(r).transpose();
+    for (Eigen::Index r = 0; r < data.noise.rows(); ++r)
+        s.linear += random.normal() * data.noise.row(r).transpose();
     s.curvature = Eigen::VectorXd::Zero(s.linear.size());
     return s;
 }
@@ -96,12 +102,14 @@ Split split_cells(const CellChoice& cells, const Grid& grid) {
     return split;
 }
 
-double gap_size(const GapData& data, const CellChoice& cells, const Eigen::VectorXd& gap, int mean_of, int extra) {
+double gap_size(const GapData& data, const CellChoice& cells, const Eigen::VectorXd& gap, int mean_of,
+                int extra) {
     const double both = 1 + extra + (mean_of > 0 ? 1.0 / mean_of : 0);
     const Eigen::ArrayXd finest = resolutions(cells, gap.size()).square();
     double size = 0;
     for (std::size_t k = 0; k < cells.size(); ++k) {
-        const double scatter = data.noise.col(cells[k]).squaredNorm() / static_cast<double>(data.noise.rows());
+        const double scatter =
+            data.noise.col(cells[k]).squaredNorm() / static_cast<double>(data.noise.rows());
         const double variance = scatter + finest[static_cast<Eigen::Index>(k)];
         size += (gap[cells[k]] * gap[cells[k]] - both * scatter) / variance;
     }
@@ -132,7 +140,8 @@ Shrink measure_shrink(const GapData& data, const Split& split, const Proposal& p
     for (int draw = 0; draw < bootstrap_draws; ++draw) {
         const auto row = static_cast<Eigen::Index>(random.uniform() * static_cast<double>(data.noise.rows()));
         const double sign = random.uniform() < 0.5 ? -1 : 1;
-        drawn.push_back(part_gone(arms.sizes(data.gap + sign * data.noise.row(row).transpose(), candidates, 1)));
+        drawn.push_back(
+            part_gone(arms.sizes(data.gap + sign * data.noise.row(row).transpose(), candidates, 1)));
     }
     std::ranges::sort(drawn);
     shrink.interval = {drawn[bootstrap_draws / 20], drawn[bootstrap_draws - 1 - bootstrap_draws / 20]};

@@ -18,9 +18,7 @@ Moments moments(const Eigen::MatrixXd& rows) {
 }
 
 /// Part of each mean that is kept.
-Eigen::ArrayXd kept(const Moments& m) {
-    return (1 - m.variance / m.mean.square().max(1e-300)).max(0.0);
-}
+Eigen::ArrayXd kept(const Moments& m) { return (1 - m.variance / m.mean.square().max(1e-300)).max(0.0); }
 
 }  // namespace
 
@@ -33,8 +31,8 @@ Eigen::VectorXd Signature::slope(double amplitude) const {
     return linear + 2 * std::clamp(amplitude, -reach, reach) * curvature;
 }
 
-Signature learn_signature(const std::string& name, double first, double second, const Eigen::MatrixXd& at_first,
-                          const Eigen::MatrixXd& at_second) {
+Signature learn_signature(const std::string& name, double first, double second,
+                          const Eigen::MatrixXd& at_first, const Eigen::MatrixXd& at_second) {
     // The parabola through zero and both differences, pair by pair.
     const double a = first, b = second, determinant = a * b * (b - a);
     const Moments curvature = moments((at_second * a - at_first * b) / determinant);

@@ -28,7 +28,9 @@ std::vector<Probe> probes_of(const Model& model, const LibraryPlan& plan) {
         probes.push_back({name, {effect.first * scale, effect.second * scale}, effect.apply});
     }
     for (const Nuisance& nuisance : plan.nuisances)
-        probes.push_back({nuisance.name, {-nuisance_step * nuisance.sigma, nuisance_step * nuisance.sigma}, nuisance.apply});
+        probes.push_back({nuisance.name,
+                          {-nuisance_step * nuisance.sigma, nuisance_step * nuisance.sigma},
+                          nuisance.apply});
     return probes;
 }
 
@@ -38,7 +40,8 @@ std::vector<Trial> baseline_trials(const Model& model, const LibraryPlan& plan) 
     std::vector<Trial> trials;
     for (std::size_t p = 0; p < plan.packings.size(); ++p)
         for (int r = 0; r < plan.replicates; ++r)
-            trials.push_back({model, plan.packings[p], plan.jitter, plan.diameter_jitter, plan.seed + 1000 * p + static_cast<std::uint64_t>(r)});
+            trials.push_back({model, plan.packings[p], plan.jitter, plan.diameter_jitter,
+                              plan.seed + 1000 * p + static_cast<std::uint64_t>(r)});
     return trials;
 }
 
@@ -70,8 +73,11 @@ Library build_library(Device& device, const Question& question, const Model& mod
             difference = observed.middleRows(next, before.rows()) - before;
             next += before.rows();
         }
-        auto& list = find_effect(probe.name) && library.effects.size() < plan.candidates.size() ? library.effects : library.nuisances;
-        list.push_back(learn_signature(probe.name, probe.amplitudes[0], probe.amplitudes[1], differences[0], differences[1]));
+        auto& list = find_effect(probe.name) && library.effects.size() < plan.candidates.size()
+                         ? library.effects
+                         : library.nuisances;
+        list.push_back(learn_signature(probe.name, probe.amplitudes[0], probe.amplitudes[1], differences[0],
+                                       differences[1]));
     }
     library.provenance = {{"program", question.program}, {"device", device.description()}};
     return library;
@@ -83,7 +89,8 @@ CandidateChoice choose_candidates(const Model& model, const std::vector<std::str
         if (!find_effect(name)) {
             std::vector<std::string_view> known;
             for (const Effect& effect : effects()) known.push_back(effect.name);
-            problems.push_back(fmt::format("--candidates: {} is not an effect; there are {}", name, fmt::join(known, ", ")));
+            problems.push_back(
+                fmt::format("--candidates: {} is not an effect; there are {}", name, fmt::join(known, ", ")));
         }
     if (!problems.empty()) throw InputError(problems);
     if (names.empty())

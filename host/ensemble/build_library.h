@@ -1,5 +1,5 @@
-// Makes the signature library of a scene: baseline replicates and, from the same starts, every effect and nuisance at
-// two amplitudes.
+// Makes the signature library of a scene: baseline replicates and, from the same starts, every effect and
+// nuisance at two amplitudes.
 #pragma once
 #include "diagnose/library.h"
 #include "ensemble/observe_trials.h"
@@ -7,13 +7,13 @@
 namespace mcdem {
 
 struct LibraryPlan {
-    std::vector<Packing> packings;         ///< one or several
-    int replicates = 32;                   ///< baseline runs a packing, jittered
-    int pairs = 8;                         ///< of them, those repeated with every effect
-    double jitter = 0;                     ///< sd of every coordinate of the start [m]
-    double diameter_jitter = 0;            ///< sd of every diameter [m]
+    std::vector<Packing> packings;  ///< one or several
+    int replicates = 32;            ///< baseline runs a packing, jittered
+    int pairs = 8;                  ///< of them, those repeated with every effect
+    double jitter = 0;              ///< sd of every coordinate of the start [m]
+    double diameter_jitter = 0;     ///< sd of every diameter [m]
     std::uint64_t seed = 1;
-    std::vector<std::string> candidates;   ///< effects
+    std::vector<std::string> candidates;  ///< effects
     std::vector<Nuisance> nuisances;
 };
 

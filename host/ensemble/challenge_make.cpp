@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double weaker = 0.8;    ///< amplitudes of a reality that ran away, from one try to the next
+constexpr double weaker = 0.8;  ///< amplitudes of a reality that ran away, from one try to the next
 constexpr int most_tries = 10;
 constexpr double part_of_tries = 0.3;  ///< of the progress: loading alone, and not all cases
 
@@ -39,8 +39,9 @@ std::string text_of(const fs::path& file) {
 }
 
 InputError of_another_challenge(const fs::path& file) {
-    return InputError(fmt::format("{}: is of another challenge; choose another folder, or the same scene, seed and numbers",
-                                  file.string()));
+    return InputError(
+        fmt::format("{}: is of another challenge; choose another folder, or the same scene, seed and numbers",
+                    file.string()));
 }
 
 /// Equal in all but how strong effects are, which trying may have changed.
@@ -60,8 +61,9 @@ public:
         : options_(options), realities_(device, scene, options.measurement) {
         std::optional<Challenge> sealed;
         if (fs::exists(options.truth)) sealed = parse_truth(text_of(options.truth), options.truth.string());
-        challenge_ = draw_challenge(options.size, effects_to_try(options, realities_.stated()), realities_.stated(),
-                                    realities_.nuisances(), seal_of(scene.text), seed_of(sealed));
+        challenge_ =
+            draw_challenge(options.size, effects_to_try(options, realities_.stated()), realities_.stated(),
+                           realities_.nuisances(), seal_of(scene.text), seed_of(sealed));
         is_sealed_ = sealed.has_value();
         if (sealed && !alike(*sealed, challenge_)) throw of_another_challenge(options.truth);
         if (sealed) challenge_ = *sealed;
@@ -77,8 +79,10 @@ public:
         const std::size_t before = challenge_.cases.size() - missing.size();
         in_batches(missing, [&](const Cases& batch, std::size_t first) {
             const auto recordings = realities_.simulate(batch, Realities::Part::all, [&](double fraction) {
-                const double done = static_cast<double>(before + first) + fraction * static_cast<double>(batch.size());
-                show(part_of_tries + (1 - part_of_tries) * done / static_cast<double>(challenge_.cases.size()));
+                const double done =
+                    static_cast<double>(before + first) + fraction * static_cast<double>(batch.size());
+                show(part_of_tries +
+                     (1 - part_of_tries) * done / static_cast<double>(challenge_.cases.size()));
             });
             for (std::size_t k = 0; k < batch.size(); ++k) write(*batch[k], recordings[k]);
         });
@@ -102,13 +106,15 @@ private:
     void in_batches(const Cases& cases, Work work) const {
         for (std::size_t first = 0; first < cases.size();) {
             const std::size_t last = std::min(cases.size(), first + realities_.at_once());
-            work(Cases(cases.begin() + static_cast<std::ptrdiff_t>(first), cases.begin() + static_cast<std::ptrdiff_t>(last)), first);
+            work(Cases(cases.begin() + static_cast<std::ptrdiff_t>(first),
+                       cases.begin() + static_cast<std::ptrdiff_t>(last)),
+                 first);
             first = last;
         }
     }
 
-    /// Dense packings whose contacts feel one another have no static solution from some amplitude on. Such realities are
-    /// loaded again with weaker effects before anything is sealed.
+    /// Dense packings whose contacts feel one another have no static solution from some amplitude on. Such
+    /// realities are loaded again with weaker effects before anything is sealed.
     void weaken_what_runs_away() {
         Cases tried;
         for (const ChallengeCase& c : challenge_.cases)
@@ -117,17 +123,21 @@ private:
         for (int tries = 0; !tried.empty(); ++tries) {
             Cases failed;
             in_batches(tried, [&](const Cases& batch, std::size_t first) {
-                const auto recordings = realities_.simulate(batch, Realities::Part::loading, [&](double fraction) {
-                    const double part = (static_cast<double>(first) + fraction * static_cast<double>(batch.size())) / all;
-                    show(part_of_tries * (tries == 0 ? part : 1));
-                });
+                const auto recordings =
+                    realities_.simulate(batch, Realities::Part::loading, [&](double fraction) {
+                        const double part =
+                            (static_cast<double>(first) + fraction * static_cast<double>(batch.size())) / all;
+                        show(part_of_tries * (tries == 0 ? part : 1));
+                    });
                 for (std::size_t k = 0; k < batch.size(); ++k)
                     if (recordings[k].failure) failed.push_back(batch[k]);
             });
             if (!failed.empty() && tries == most_tries)
-                throw RunError(fmt::format("{} realities cannot be simulated even with weak effects; compress less", failed.size()));
+                throw RunError(fmt::format(
+                    "{} realities cannot be simulated even with weak effects; compress less", failed.size()));
             for (const ChallengeCase* c : failed)
-                for (Hidden& effect : challenge_.cases[static_cast<std::size_t>(c - challenge_.cases.data())].effects)
+                for (Hidden& effect :
+                     challenge_.cases[static_cast<std::size_t>(c - challenge_.cases.data())].effects)
                     effect.amplitude *= weaker;
             tried = failed;
         }
@@ -153,15 +163,16 @@ private:
             if (c.struck.empty()) continue;
             auto& candidates = open.cases.back().candidates.emplace();
             for (const Effect& effect : effects())
-                if (std::ranges::find(c.struck, effect.name) == c.struck.end()) candidates.emplace_back(effect.name);
+                if (std::ranges::find(c.struck, effect.name) == c.struck.end())
+                    candidates.emplace_back(effect.name);
         }
         return open_challenge_text(open);
     }
 
     void write(const ChallengeCase& c, const Recording& recording) const {
         if (recording.failure)
-            throw RunError(fmt::format("{}: its simulation failed at step {}: {}", c.folder, recording.failure->step,
-                                       recording.failure->cause));
+            throw RunError(fmt::format("{}: its simulation failed at step {}: {}", c.folder,
+                                       recording.failure->step, recording.failure->cause));
         write_experiment(options_.folder / c.folder, realities_.experiment(c, recording), Packed::gzip);
     }
 

@@ -25,9 +25,12 @@ constexpr std::size_t most_grains_at_once = 16'384;  ///< a batch is what an int
 GeneratedPacking generated(const Scene& scene) {
     std::vector<std::string> problems;
     if (scene.replicas.size() != 1)
-        problems.push_back(fmt::format("{}: a challenge needs one replica, got {}", scene.name, scene.replicas.size()));
+        problems.push_back(
+            fmt::format("{}: a challenge needs one replica, got {}", scene.name, scene.replicas.size()));
     const auto* packing = std::get_if<GeneratedPacking>(&scene.replicas.front().packing.source);
-    if (!packing) problems.push_back(fmt::format("{}: a challenge generates its packings; packing.file must not be set", scene.name));
+    if (!packing)
+        problems.push_back(
+            fmt::format("{}: a challenge generates its packings; packing.file must not be set", scene.name));
     if (!problems.empty()) throw InputError(problems);
     return *packing;
 }
@@ -35,13 +38,16 @@ GeneratedPacking generated(const Scene& scene) {
 }  // namespace
 
 Realities::Realities(Device& device, const Scene& scene, const Measurement& measurement)
-    : device_(device), scene_(scene), stated_{scene.replicas.front(), {measurement}, generated(scene).diameter_mean} {
+    : device_(device),
+      scene_(scene),
+      stated_{scene.replicas.front(), {measurement}, generated(scene).diameter_mean} {
     stated_.replica.protocol.scan_at_start = true;
     scene_.output.positions = scene_.output.contacts = true;
     nuisances_ = mcdem::nuisances(stated_, {});
 }
 
-void Realities::make_packings(const std::vector<std::uint64_t>& seeds, const std::function<bool()>& stop_wanted) {
+void Realities::make_packings(const std::vector<std::uint64_t>& seeds,
+                              const std::function<bool()>& stop_wanted) {
     Scene all = scene_;
     all.replicas.clear();
     for (const std::uint64_t seed : seeds) {
@@ -90,7 +96,8 @@ std::vector<Recording> Realities::simulate(std::span<const ChallengeCase* const>
 
 Experiment Realities::experiment(const ChallengeCase& c, Recording recording) const {
     for (const Hidden& hidden : c.effects)
-        if (const OutsideEffect* outside = find_outside_effect(hidden.name); outside && outside->change_reading)
+        if (const OutsideEffect* outside = find_outside_effect(hidden.name);
+            outside && outside->change_reading)
             outside->change_reading(recording, hidden.amplitude);
     recording.box = stated_.replica.box;
     recording.label = c.folder;

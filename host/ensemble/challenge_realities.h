@@ -21,7 +21,8 @@ public:
     /// The packings that cases start from, by number. Throws Interrupted.
     void make_packings(const std::vector<std::uint64_t>& seeds, const std::function<bool()>& stop_wanted);
 
-    /// One recording a case, not yet measured; ended early where a case fails. `scans_needed`: of the first stroke, or all.
+    /// One recording a case, not yet measured; ended early where a case fails. `scans_needed`: of the first
+    /// stroke, or all.
     enum class Part { loading, all };
     std::vector<Recording> simulate(std::span<const ChallengeCase* const> cases, Part part,
                                     const std::function<void(double fraction)>& on_progress) const;

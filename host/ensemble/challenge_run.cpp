@@ -26,7 +26,10 @@ double work_for(const ChallengeLibrary& library, std::size_t probes) {
 class Running {
 public:
     Running(Device& device, const Scene& scene, const ChallengeRunOptions& options)
-        : device_(device), scene_(scene), options_(options), challenge_(read_open_challenge(options.challenge)) {
+        : device_(device),
+          scene_(scene),
+          options_(options),
+          challenge_(read_open_challenge(options.challenge)) {
         if (Sha256().add(scene.text).hex() != challenge_.scene)
             throw InputError(fmt::format("{}: is not the scene that {} was made with", scene.name,
                                          (options.challenge / "challenge.json").string()));
@@ -47,25 +50,30 @@ public:
     }
 
 private:
-    fs::path file_of(const OpenCase& c, const std::string& folder) const { return options_.out / folder / (c.folder + ".json"); }
+    fs::path file_of(const OpenCase& c, const std::string& folder) const {
+        return options_.out / folder / (c.folder + ".json");
+    }
     fs::path library_file() const { return options_.out / "library.json"; }
     double work_a_case() const { return options_.replicates + 2.0 * options_.confirmations; }
 
-    /// Other packings of the same kind; the seeds of the cases' are not known here, and are not met by chance.
+    /// Other packings of the same kind; the seeds of the cases' are not known here, and are not met by
+    /// chance.
     std::vector<Packing> other_packings(const Replica& replica) const {
         constexpr std::uint64_t apart = 0x6c696272617279;
         Scene all = scene_;
         all.replicas.clear();
         for (int p = 0; p < options_.library.packings; ++p) {
             all.replicas.push_back(replica);
-            all.replicas.back().packing.seed = scattered(scattered(options_.seed + apart) + static_cast<std::uint64_t>(p)) >> 16;
+            all.replicas.back().packing.seed =
+                scattered(scattered(options_.seed + apart) + static_cast<std::uint64_t>(p)) >> 16;
         }
         auto packings = make_packings(all, options_.stop_wanted);
         if (packings.size() < all.replicas.size()) throw Interrupted();
         return packings;
     }
 
-    /// The grid of an experiment whose plate went as the scene's does: a case's own zero of strain is not the scene's.
+    /// The grid of an experiment whose plate went as the scene's does: a case's own zero of strain is not the
+    /// scene's.
     Grid grid_of_scene(const Experiment& experiment) const {
         const Plate& plate = scene_.replicas.front().plate;
         Grid grid = grid_of(experiment.recording);
@@ -79,8 +87,8 @@ private:
     Library new_library(const Experiment& experiment) {
         Model model = model_of(scene_, experiment);
         model.replica.plate = scene_.replicas.front().plate;
-        const Question question{scene_, grid_of_scene(experiment), reference_material(model), model.replica.protocol.discard,
-                                options_.program};
+        const Question question{scene_, grid_of_scene(experiment), reference_material(model),
+                                model.replica.protocol.discard, options_.program};
         LibraryPlan plan;
         plan.packings = other_packings(model.replica);
         plan.replicates = options_.library.replicates;
@@ -94,7 +102,8 @@ private:
         TrialOptions trials;
         trials.on_progress = [&](double fraction) { show(fraction * work_of_library_); };
         trials.stop_wanted = options_.stop_wanted;
-        return build_library(device_, question, model, plan, ObservationStore(options_.out / "simulations"), trials);
+        return build_library(device_, question, model, plan, ObservationStore(options_.out / "simulations"),
+                             trials);
     }
 
     /// Reads the library, or makes it as the first case is measured; a copy goes to the results.
@@ -130,8 +139,12 @@ private:
             show(work_a_case() * (stage == "baseline" ? 0.5 * fraction : 0.5 + 0.5 * fraction));
         };
         how.stop_wanted = options_.stop_wanted;
-        how.on_evidence = [&](const Evidence& evidence) { replace_file(file_of(c, "evidence"), evidence_text(evidence)); };
-        how.on_findings = [&](const Findings& findings) { replace_file(file_of(c, "findings"), findings_text(findings)); };
+        how.on_evidence = [&](const Evidence& evidence) {
+            replace_file(file_of(c, "evidence"), evidence_text(evidence));
+        };
+        how.on_findings = [&](const Findings& findings) {
+            replace_file(file_of(c, "findings"), findings_text(findings));
+        };
         try {
             const Experiment experiment = read_experiment(options_.challenge / c.folder);
             options_.keep(file_of(c, ""), diagnose_experiment(device_, scene_, experiment, how));

@@ -7,9 +7,9 @@ namespace mcdem {
 /// How large the challenge's signature library is, where it is not there yet.
 struct ChallengeLibrary {
     std::filesystem::path file;
-    int packings = 16;    ///< generated, other ones than those of the cases
-    int replicates = 4;   ///< a packing
-    int pairs = 1;        ///< of them, those repeated with every effect
+    int packings = 16;                    ///< generated, other ones than those of the cases
+    int replicates = 4;                   ///< a packing
+    int pairs = 1;                        ///< of them, those repeated with every effect
     std::vector<std::string> candidates;  ///< empty: all
 };
 

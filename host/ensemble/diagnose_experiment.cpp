@@ -20,19 +20,22 @@ TrialOptions stage(const DiagnoseOptions& options, const std::string& name) {
     return trial_options;
 }
 
-void expect_library_of(const Library& library, const Grid& grid, const LibraryPlan& plan, const std::filesystem::path& file) {
+void expect_library_of(const Library& library, const Grid& grid, const LibraryPlan& plan,
+                       const std::filesystem::path& file) {
     std::vector<std::string> problems;
     const auto expect = [&](const std::vector<Signature>& list, const std::string& name) {
         if (std::ranges::find(list, name, &Signature::name) == list.end())
-            problems.push_back(fmt::format("{}: has no signature of {}; remove the file to make it anew, or leave {} out of "
-                                           "--candidates", file.string(), name, name));
+            problems.push_back(
+                fmt::format("{}: has no signature of {}; remove the file to make it anew, or leave {} out of "
+                            "--candidates",
+                            file.string(), name, name));
     };
     for (const std::string& name : plan.candidates) expect(library.effects, name);
     for (const Nuisance& nuisance : plan.nuisances) expect(library.nuisances, nuisance.name);
     constexpr double alike = 0.1;  // a shifted zero of strain is for the diagnosis to find
     if (std::abs(library.grid.stroke - grid.stroke) > alike * grid.stroke)
-        problems.push_back(fmt::format("{}: was made for a stroke of {:.4g} mm, the experiment has {:.4g} mm", file.string(),
-                                       1e3 * library.grid.stroke, 1e3 * grid.stroke));
+        problems.push_back(fmt::format("{}: was made for a stroke of {:.4g} mm, the experiment has {:.4g} mm",
+                                       file.string(), 1e3 * library.grid.stroke, 1e3 * grid.stroke));
     if (!problems.empty()) throw InputError(problems);
 }
 
@@ -45,13 +48,24 @@ constexpr int most_rounds = 3;
 /// The work of one diagnosis, in the order of its steps.
 class Diagnosing {
 public:
-    Diagnosing(Device& device, const Scene& scene, const Experiment& experiment, const DiagnoseOptions& options)
-        : device_(device), experiment_(experiment), options_(options), store_(options.folder / "simulations"),
-          model_(model_of(scene, experiment)), choice_(choose_candidates(model_, options.candidates)) {
-        question_ = {scene, grid_of(experiment.recording), reference_material(model_), model_.replica.protocol.discard,
-                     options.program};
-        plan_ = {{start_packing(experiment)}, options.replicates, options.pairs, experiment.measurement.position_error,
-                 experiment.measurement.diameter_error, options.seed, choice_.chosen, nuisances(model_, experiment)};
+    Diagnosing(Device& device, const Scene& scene, const Experiment& experiment,
+               const DiagnoseOptions& options)
+        : device_(device),
+          experiment_(experiment),
+          options_(options),
+          store_(options.folder / "simulations"),
+          model_(model_of(scene, experiment)),
+          choice_(choose_candidates(model_, options.candidates)) {
+        question_ = {scene, grid_of(experiment.recording), reference_material(model_),
+                     model_.replica.protocol.discard, options.program};
+        plan_ = {{start_packing(experiment)},
+                 options.replicates,
+                 options.pairs,
+                 experiment.measurement.position_error,
+                 experiment.measurement.diameter_error,
+                 options.seed,
+                 choice_.chosen,
+                 nuisances(model_, experiment)};
     }
 
     Diagnosis all() {
@@ -71,7 +85,8 @@ private:
     Evidence gather() {
         Evidence evidence;
         evidence.seed = options_.seed;
-        if (options_.paper_metrics) recorded(baseline_trials(model_, plan_));  // first: what is kept whole is not simulated again
+        if (options_.paper_metrics)
+            recorded(baseline_trials(model_, plan_));  // first: what is kept whole is not simulated again
         const bool ready = options_.library && std::filesystem::exists(*options_.library);
         if (ready) {
             evidence.library = read_library(*options_.library);
@@ -80,23 +95,26 @@ private:
             evidence.baseline = observe_trials(device_, question_, baseline_trials(model_, plan_), store_,
                                                stage(options_, "baseline"));
         } else {
-            evidence.library = build_library(device_, question_, model_, plan_, store_, stage(options_, "library"));
+            evidence.library =
+                build_library(device_, question_, model_, plan_, store_, stage(options_, "library"));
             evidence.baseline = evidence.library.baseline;
             if (options_.library) write_library(*options_.library, evidence.library);
         }
-        evidence.observed = observe(experiment_.recording, question_.grid, question_.material, question_.discard);
+        evidence.observed =
+            observe(experiment_.recording, question_.grid, question_.material, question_.discard);
         for (const std::string& name : choice_.chosen) {
             const Effect& effect = *find_effect(name);
             const double scale = effect.scale(model_);
-            evidence.candidates.push_back({name, std::string(effect.unit), effect.low * scale, effect.high * scale});
+            evidence.candidates.push_back(
+                {name, std::string(effect.unit), effect.low * scale, effect.high * scale});
         }
         for (const Nuisance& nuisance : plan_.nuisances)
             evidence.nuisances.push_back({nuisance.name, nuisance.unit, nuisance.sigma});
         return evidence;
     }
 
-    /// Real runs of every proposal, again where they miss; then of the one decided on with what the fitted part of the
-    /// data says of it.
+    /// Real runs of every proposal, again where they miss; then of the one decided on with what the fitted
+    /// part of the data says of it.
     void confirm(Draft& draft) {
         std::vector<std::size_t> tried(draft.findings().proposals.size());
         std::iota(tried.begin(), tried.end(), std::size_t{0});
@@ -106,24 +124,28 @@ private:
         }
         if (!draft.wants_held_out()) return;
         if (options_.paper_metrics) recorded(trials_of(draft, draft.decided(), draft.part_fit()));
-        draft.confirm_held_out(observe_trials(device_, question_, trials_of(draft, draft.decided(), draft.part_fit()), store_,
+        draft.confirm_held_out(observe_trials(device_, question_,
+                                              trials_of(draft, draft.decided(), draft.part_fit()), store_,
                                               stage(options_, "held-out confirmation")));
     }
 
     void run(Draft& draft, const std::vector<std::size_t>& proposals) {
         std::vector<Trial> trials;
-        for (const std::size_t k : proposals) append(trials, trials_of(draft, draft.findings().proposals[k], draft.whole_fit(k)));
-        const Eigen::MatrixXd runs = observe_trials(device_, question_, trials, store_, stage(options_, "confirmation"));
+        for (const std::size_t k : proposals)
+            append(trials, trials_of(draft, draft.findings().proposals[k], draft.whole_fit(k)));
+        const Eigen::MatrixXd runs =
+            observe_trials(device_, question_, trials, store_, stage(options_, "confirmation"));
         for (std::size_t k = 0; k < proposals.size(); ++k)
-            draft.confirm(proposals[k],
-                          runs.middleRows(static_cast<Eigen::Index>(k) * options_.confirmations, options_.confirmations));
+            draft.confirm(proposals[k], runs.middleRows(static_cast<Eigen::Index>(k) * options_.confirmations,
+                                                        options_.confirmations));
     }
 
     BeforeAfter before_after(const Draft& draft) {
         LibraryPlan plan = plan_;
         plan.replicates = std::min(options_.replicates, options_.confirmations);
         return {kept_recordings(device_, question_, recorded(baseline_trials(model_, plan)), store_),
-                kept_recordings(device_, question_, recorded(trials_of(draft, draft.decided(), draft.part_fit())), store_)};
+                kept_recordings(device_, question_,
+                                recorded(trials_of(draft, draft.decided(), draft.part_fit())), store_)};
     }
 
     /// The first few trials, with their whole recordings kept.
@@ -153,9 +175,11 @@ private:
             if (static_cast<int>(proposal.candidates[k]) < data.effects)
                 find_effect(name)->apply(model, fit.amplitudes[k]);
             else
-                shifts[std::ranges::find(plan_.nuisances, name, &Nuisance::name) - plan_.nuisances.begin()] += fit.amplitudes[k];
+                shifts[std::ranges::find(plan_.nuisances, name, &Nuisance::name) - plan_.nuisances.begin()] +=
+                    fit.amplitudes[k];
         }
-        for (Eigen::Index k = 0; k < shifts.size(); ++k) plan_.nuisances[static_cast<std::size_t>(k)].apply(model, shifts[k]);
+        for (Eigen::Index k = 0; k < shifts.size(); ++k)
+            plan_.nuisances[static_cast<std::size_t>(k)].apply(model, shifts[k]);
         return model;
     }
 
@@ -174,8 +198,9 @@ private:
 Packing start_packing(const Experiment& experiment) {
     const Recording& recording = experiment.recording;
     if (recording.scans.empty() || recording.scans.front().position.empty())
-        throw InputError(fmt::format("{}: grains.csv must have the positions of frame 0, from which simulations start",
-                                     experiment.name));
+        throw InputError(
+            fmt::format("{}: grains.csv must have the positions of frame 0, from which simulations start",
+                        experiment.name));
     return {recording.scans.front().position, recording.diameter};
 }
 
@@ -193,15 +218,18 @@ Model model_of(const Scene& scene, const Experiment& experiment) {
     const double begun = 0.02 * (recording.plate_start - lowest);
     int loading = 0, cycles = 1;
     for (const Scan& scan : recording.scans) {
-        loading += scan.cycle == 0 && scan.phase == Phase::load && recording.displacement(scan) > begun ? 1 : 0;
+        loading +=
+            scan.cycle == 0 && scan.phase == Phase::load && recording.displacement(scan) > begun ? 1 : 0;
         cycles = std::max(cycles, scan.cycle + 1);
     }
     if (loading == 0 || !(lowest < recording.plate_start))
-        throw InputError(fmt::format("{}: plate.csv must have loading frames below plate.start", experiment.name));
+        throw InputError(
+            fmt::format("{}: plate.csv must have loading frames below plate.start", experiment.name));
     model.replica.plate.start = recording.plate_start;
     model.replica.plate.end = lowest;
     model.replica.protocol.scans_per_stroke = loading;
-    model.replica.protocol.cycles = std::min(cycles, std::max(model.replica.protocol.cycles, model.replica.protocol.discard + 1));
+    model.replica.protocol.cycles =
+        std::min(cycles, std::max(model.replica.protocol.cycles, model.replica.protocol.discard + 1));
     model.replica.protocol.scan_at_start = true;
     return model;
 }
@@ -211,8 +239,11 @@ Diagnosis diagnose_experiment(Device& device, const Scene& scene, const Experime
     const auto begin = std::chrono::steady_clock::now();
     Diagnosis diagnosis = Diagnosing(device, scene, experiment, options).all();
     diagnosis.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    diagnosis.provenance = {{"scene", scene.name}, {"experiment", experiment.name}, {"program", options.program},
-                            {"device", device.description()}, {"seed", std::to_string(options.seed)}};
+    diagnosis.provenance = {{"scene", scene.name},
+                            {"experiment", experiment.name},
+                            {"program", options.program},
+                            {"device", device.description()},
+                            {"seed", std::to_string(options.seed)}};
     return diagnosis;
 }
 

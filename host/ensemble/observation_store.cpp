@@ -21,7 +21,9 @@ ObservationStore::ObservationStore(std::filesystem::path folder) : folder_(std::
     std::filesystem::create_directories(folder_);
 }
 
-std::filesystem::path ObservationStore::file_of(const std::string& name) const { return folder_ / (name + ".obs"); }
+std::filesystem::path ObservationStore::file_of(const std::string& name) const {
+    return folder_ / (name + ".obs");
+}
 
 std::optional<Eigen::VectorXd> ObservationStore::find(const std::string& name) const {
     std::ifstream in(file_of(name), std::ios::binary | std::ios::ate);
@@ -43,9 +45,13 @@ void ObservationStore::keep(const std::string& name, const Eigen::VectorXd& obse
     replace_file(file_of(name), bytes);
 }
 
-std::filesystem::path ObservationStore::recording_file(const std::string& name) const { return folder_ / (name + ".h5"); }
+std::filesystem::path ObservationStore::recording_file(const std::string& name) const {
+    return folder_ / (name + ".h5");
+}
 
-bool ObservationStore::has_recording(const std::string& name) const { return std::filesystem::exists(recording_file(name)); }
+bool ObservationStore::has_recording(const std::string& name) const {
+    return std::filesystem::exists(recording_file(name));
+}
 
 Recording ObservationStore::recording(const std::string& name) const {
     return read_run(recording_file(name)).recordings.at(0);

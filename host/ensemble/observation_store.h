@@ -1,5 +1,5 @@
-// Observations of simulations, and a few whole recordings, kept under a name made of all that went into them, so that
-// nothing is simulated twice.
+// Observations of simulations, and a few whole recordings, kept under a name made of all that went into them,
+// so that nothing is simulated twice.
 #pragma once
 #include <Eigen/Core>
 #include <filesystem>

@@ -31,14 +31,28 @@ std::string simulation_name(const Device& device, const Question& question, cons
     return digest.add(jitter).add(std::to_string(trial.seed)).hex();
 }
 
-std::string observation_name(const std::string& simulation, const Question& question, const Instrument& instrument) {
+std::string observation_name(const std::string& simulation, const Question& question,
+                             const Instrument& instrument) {
     const Measurement& stated = instrument.stated;
     const ReferenceMaterial& m = question.material;
-    const double numbers[] = {stated.position_error, stated.diameter_error, stated.force_error, stated.force_threshold,
-                              instrument.force_bias, instrument.threshold_shift, instrument.position_bias,
-                              instrument.strain_offset, m.youngs_modulus, m.poisson_ratio, m.wall_youngs_modulus,
-                              m.wall_poisson_ratio, m.friction, m.wall_friction, m.weight_density, m.force_threshold,
-                              question.grid.width, static_cast<double>(question.discard)};
+    const double numbers[] = {stated.position_error,
+                              stated.diameter_error,
+                              stated.force_error,
+                              stated.force_threshold,
+                              instrument.force_bias,
+                              instrument.threshold_shift,
+                              instrument.position_bias,
+                              instrument.strain_offset,
+                              m.youngs_modulus,
+                              m.poisson_ratio,
+                              m.wall_youngs_modulus,
+                              m.wall_poisson_ratio,
+                              m.friction,
+                              m.wall_friction,
+                              m.weight_density,
+                              m.force_threshold,
+                              question.grid.width,
+                              static_cast<double>(question.discard)};
     Sha256 digest;
     digest.add(simulation).add(numbers).add(question.grid.displacement);
     for (const Observable& observable : observables()) digest.add(observable.name).add(";");
@@ -52,11 +66,17 @@ struct Job {
 
 class Work {
 public:
-    Work(Device& device, const Question& question, const std::vector<Trial>& trials, const ObservationStore& store,
-         const TrialOptions& options)
-        : device_(device), question_(question), trials_(trials), store_(store), options_(options), names_(trials.size()),
+    Work(Device& device, const Question& question, const std::vector<Trial>& trials,
+         const ObservationStore& store, const TrialOptions& options)
+        : device_(device),
+          question_(question),
+          trials_(trials),
+          store_(store),
+          options_(options),
+          names_(trials.size()),
           result_(Eigen::MatrixXd::Constant(static_cast<Eigen::Index>(trials.size()),
-                                            static_cast<Eigen::Index>(cells_of(question.grid).size()), not_available)) {}
+                                            static_cast<Eigen::Index>(cells_of(question.grid).size()),
+                                            not_available)) {}
 
     Eigen::MatrixXd all() {
         const std::vector<Job> jobs = missing_jobs();
@@ -64,7 +84,8 @@ public:
             std::size_t last = first, grains = 0;
             while (last < jobs.size() && (last == first || grains < most_grains_at_once))
                 grains += trials_[jobs[last++].trials.front()].packing.size();
-            run({jobs.begin() + static_cast<std::ptrdiff_t>(first), jobs.begin() + static_cast<std::ptrdiff_t>(last)},
+            run({jobs.begin() + static_cast<std::ptrdiff_t>(first),
+                 jobs.begin() + static_cast<std::ptrdiff_t>(last)},
                 static_cast<double>(first) / jobs.size(), static_cast<double>(last) / jobs.size());
             first = last;
         }
@@ -103,14 +124,19 @@ private:
             packings.push_back(trial.packing);
             apply_jitter(packings.back(), trial.jitter, trial.seed);
             Random random(trial.seed, Stream::diameter_jitter);
-            for (double& diameter : packings.back().diameter) diameter += trial.diameter_jitter * random.normal();
+            for (double& diameter : packings.back().diameter)
+                diameter += trial.diameter_jitter * random.normal();
         }
         std::vector<Recording> recordings;
         for (std::size_t r = 0; r < packings.size(); ++r)
             recordings.push_back(begin_recording(batch.replicas[r], packings[r]));
         Simulation simulation(device_, batch, packings);
-        const auto keep = [&](int r, Scan scan) { recordings[static_cast<std::size_t>(r)].scans.push_back(std::move(scan)); };
-        const auto note = [&](int r, const Failure& failure) { recordings[static_cast<std::size_t>(r)].failure = failure; };
+        const auto keep = [&](int r, Scan scan) {
+            recordings[static_cast<std::size_t>(r)].scans.push_back(std::move(scan));
+        };
+        const auto note = [&](int r, const Failure& failure) {
+            recordings[static_cast<std::size_t>(r)].failure = failure;
+        };
         while (simulation.advance(keep, note)) {
             options_.on_progress(from + (to - from) * simulation.progress());
             if (options_.stop_wanted()) throw Interrupted();
@@ -134,7 +160,8 @@ private:
     void look_at(std::size_t t, const Recording& truth, std::optional<Recording>& kept) {
         Recording seen = measured(truth, trials_[t].model.instrument, trials_[t].seed);
         if (!truth.failure)
-            result_.row(static_cast<Eigen::Index>(t)) = observe(seen, question_.grid, question_.material, question_.discard);
+            result_.row(static_cast<Eigen::Index>(t)) =
+                observe(seen, question_.grid, question_.material, question_.discard);
         if (trials_[t].keep_recording) kept = std::move(seen);
     }
 
@@ -154,8 +181,8 @@ Eigen::MatrixXd observe_trials(Device& device, const Question& question, const s
     return Work(device, question, trials, store, options).all();
 }
 
-std::vector<Recording> kept_recordings(const Device& device, const Question& question, const std::vector<Trial>& trials,
-                                       const ObservationStore& store) {
+std::vector<Recording> kept_recordings(const Device& device, const Question& question,
+                                       const std::vector<Trial>& trials, const ObservationStore& store) {
     std::vector<Recording> recordings;
     for (const Trial& trial : trials)
         recordings.push_back(store.recording(
@@ -167,8 +194,14 @@ ReferenceMaterial reference_material(const Model& model) {
     constexpr double gravity = 9.81;
     const auto& grains = model.replica.grains;
     const auto& walls = model.replica.walls;
-    return {grains.youngs_modulus, grains.poisson_ratio, walls.youngs_modulus, walls.poisson_ratio, grains.friction,
-            walls.friction, grains.excess_density * gravity, model.instrument.stated.force_threshold};
+    return {grains.youngs_modulus,
+            grains.poisson_ratio,
+            walls.youngs_modulus,
+            walls.poisson_ratio,
+            grains.friction,
+            walls.friction,
+            grains.excess_density * gravity,
+            model.instrument.stated.force_threshold};
 }
 
 }  // namespace mcdem

@@ -1,5 +1,5 @@
-// Many small simulations, each looked at through an instrument: what a signature library, a noise floor and the
-// confirmation of a cause are made of.
+// Many small simulations, each looked at through an instrument: what a signature library, a noise floor and
+// the confirmation of a cause are made of.
 #pragma once
 #include <functional>
 #include <string>
@@ -15,20 +15,21 @@ namespace mcdem {
 /// One simulation and one look at it.
 struct Trial {
     Model model;
-    Packing packing;               ///< where it starts, as measured
-    double jitter = 0;             ///< sd of a random displacement of every coordinate of it [m]
-    double diameter_jitter = 0;    ///< sd of a random change of every diameter [m]
-    std::uint64_t seed = 0;        ///< of both jitters, of what is random in the replica, and of the measurement's noise
-    bool keep_recording = false;   ///< the whole recording too, as measured
+    Packing packing;             ///< where it starts, as measured
+    double jitter = 0;           ///< sd of a random displacement of every coordinate of it [m]
+    double diameter_jitter = 0;  ///< sd of a random change of every diameter [m]
+    std::uint64_t seed =
+        0;  ///< of both jitters, of what is random in the replica, and of the measurement's noise
+    bool keep_recording = false;  ///< the whole recording too, as measured
 };
 
 /// What all trials of one question share.
 struct Question {
-    Scene scene;                   ///< precision and slots; its replicas are not looked at
+    Scene scene;  ///< precision and slots; its replicas are not looked at
     Grid grid;
     ReferenceMaterial material;
-    int discard = 0;               ///< first cycles left out
-    std::string program;           ///< version and commit
+    int discard = 0;      ///< first cycles left out
+    std::string program;  ///< version and commit
 };
 
 struct TrialOptions {
@@ -36,14 +37,15 @@ struct TrialOptions {
     std::function<bool()> stop_wanted = [] { return false; };
 };
 
-/// Row: trial, column: cell; not-a-number where a simulation failed. Trials that differ in the instrument only share a
-/// simulation, and what the store has is not simulated at all. All are kept as they come. Throws Interrupted when stop_wanted says so.
+/// Row: trial, column: cell; not-a-number where a simulation failed. Trials that differ in the instrument
+/// only share a simulation, and what the store has is not simulated at all. All are kept as they come. Throws
+/// Interrupted when stop_wanted says so.
 Eigen::MatrixXd observe_trials(Device& device, const Question& question, const std::vector<Trial>& trials,
                                const ObservationStore& store, const TrialOptions& options);
 
 /// Recordings of trials that were observed with keep_recording.
-std::vector<Recording> kept_recordings(const Device& device, const Question& question, const std::vector<Trial>& trials,
-                                       const ObservationStore& store);
+std::vector<Recording> kept_recordings(const Device& device, const Question& question,
+                                       const std::vector<Trial>& trials, const ObservationStore& store);
 
 struct Interrupted : std::runtime_error {
     Interrupted() : std::runtime_error("interrupted; the same command goes on where it stopped") {}

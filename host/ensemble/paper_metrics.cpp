@@ -13,7 +13,8 @@ void add(Shrink& shrink, const char* metric, const Estimate& before, const Estim
 
 void add_paper_metrics(Shrink& shrink, const Recording& experiment, const BeforeAfter& simulated) {
     const Replicas reference{&experiment};
-    const Setting settings[] = {{"before", replicas_of(simulated.before)}, {"after", replicas_of(simulated.after)}};
+    const Setting settings[] = {{"before", replicas_of(simulated.before)},
+                                {"after", replicas_of(simulated.after)}};
     const Comparison before = compare(settings[0], reference), after = compare(settings[1], reference);
     add(shrink, "Rtop", before.Rtop, after.Rtop);
     add(shrink, "errf", before.errf, after.errf);
@@ -32,7 +33,8 @@ void add_paper_metrics(Shrink& shrink, const Recording& experiment, const Before
     for (std::size_t level = 0; level < measured.size(); ++level) {
         const auto i = static_cast<Eigen::Index>(level);
         if (measured[level].phase == Phase::load)
-            shrink.top_force.push_back({measured[level].displacement, experiment_force[i], forces[0][i], forces[1][i]});
+            shrink.top_force.push_back(
+                {measured[level].displacement, experiment_force[i], forces[0][i], forces[1][i]});
     }
 }
 

@@ -1,4 +1,5 @@
-// The paper's metrics of an experiment against the scene as it stands and against the scene with its cause added.
+// The paper's metrics of an experiment against the scene as it stands and against the scene with its cause
+// added.
 #pragma once
 #include <vector>
 

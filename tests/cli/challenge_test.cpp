@@ -39,11 +39,32 @@ relax_time = 0.1
 )";
 constexpr int cases = 7;
 
-const Words make_words{"challenge", "make", "tiny.toml", "--out", "challenge", "--seed", "3", "--effects", "friction,force_bias",
-                       "--none", "2", "--per-effect", "1", "--pairs", "0", "--unknown", "2", "--outside", "1", "--packings", "2"};
-const Words run_words{"challenge", "run", "challenge", "--scene", "tiny.toml", "--library", "library.json", "--out", "answers",
-                      "--candidates", "friction,force_bias", "--library-packings", "8", "--library-replicates", "2",
-                      "--replicates", "3", "--confirmations", "2"};
+const Words make_words{"challenge", "make",       "tiny.toml",
+                       "--out",     "challenge",  "--seed",
+                       "3",         "--effects",  "friction,force_bias",
+                       "--none",    "2",          "--per-effect",
+                       "1",         "--pairs",    "0",
+                       "--unknown", "2",          "--outside",
+                       "1",         "--packings", "2"};
+const Words run_words{"challenge",
+                      "run",
+                      "challenge",
+                      "--scene",
+                      "tiny.toml",
+                      "--library",
+                      "library.json",
+                      "--out",
+                      "answers",
+                      "--candidates",
+                      "friction,force_bias",
+                      "--library-packings",
+                      "8",
+                      "--library-replicates",
+                      "2",
+                      "--replicates",
+                      "3",
+                      "--confirmations",
+                      "2"};
 const Words score_words{"challenge", "score", "challenge", "answers", "--truth", "sealed/truth.json"};
 
 /// Bytes of all files below, by path; compressed ones unpacked.
@@ -54,7 +75,8 @@ std::map<std::string, std::string> contents_of(const fs::path& folder) {
         std::string& text = contents[fs::relative(entry.path(), folder)];
         const gzFile in = gzopen(entry.path().c_str(), "rb");
         char part[1 << 14];
-        for (int read; (read = gzread(in, part, sizeof part)) > 0;) text.append(part, static_cast<std::size_t>(read));
+        for (int read; (read = gzread(in, part, sizeof part)) > 0;)
+            text.append(part, static_cast<std::size_t>(read));
         gzclose(in);
     }
     return contents;
@@ -68,7 +90,8 @@ protected:
         std::ofstream(path("tiny.toml")) << scene_text;
         made_ = new Finished(mcdem(make_words));
         fs::create_directories(path("sealed"));
-        if (fs::exists(path("challenge/truth.json"))) fs::rename(path("challenge/truth.json"), path("sealed/truth.json"));
+        if (fs::exists(path("challenge/truth.json")))
+            fs::rename(path("challenge/truth.json"), path("sealed/truth.json"));
         ran_ = new Finished(mcdem(run_words));
     }
     static void TearDownTestSuite() {
@@ -83,7 +106,9 @@ protected:
 
     static fs::path path(const std::string& name) { return folder_->path / name; }
     static Finished mcdem(const Words& words) { return run_program(folder_->path, words); }
-    static nlohmann::json json_of(const std::string& name) { return nlohmann::json::parse(bytes_of_file(path(name))); }
+    static nlohmann::json json_of(const std::string& name) {
+        return nlohmann::json::parse(bytes_of_file(path(name)));
+    }
 
     static inline TestFolder* folder_ = nullptr;
     static inline Finished *made_ = nullptr, *ran_ = nullptr;
@@ -110,10 +135,13 @@ TEST_F(ChallengeTest, RealitiesHaveWhatTheTruthSays) {
     const auto truth = json_of("sealed/truth.json");
     ASSERT_EQ(truth.at("cases").size(), static_cast<std::size_t>(cases));
     for (const auto& c : truth.at("cases")) {
-        const auto recording = read_experiment(path("challenge/" + c.at("folder").get<std::string>())).recording;
+        const auto recording =
+            read_experiment(path("challenge/" + c.at("folder").get<std::string>())).recording;
         for (const auto& shift : c.at("nuisances"))
             if (shift.at("name") == "strain_offset")
-                EXPECT_NEAR(recording.scans.front().plate_z - 0.0835, shift.at("amplitude").get<double>(), 1e-8) << c;
+                EXPECT_NEAR(recording.scans.front().plate_z - 0.0835, shift.at("amplitude").get<double>(),
+                            1e-8)
+                    << c;
         double bias = 0;
         for (const auto& effect : c.at("effects"))
             if (effect.at("name") == "force_bias") bias = effect.at("amplitude");
@@ -174,7 +202,8 @@ TEST_F(ChallengeTest, FoldersTellNothing) {
             EXPECT_THAT(nameless, HasSubstr("youngs_modulus = 23300.0"));
             continue;
         }
-        for (const std::string& word : words) EXPECT_EQ(text.find(word), std::string::npos) << name << ": " << word;
+        for (const std::string& word : words)
+            EXPECT_EQ(text.find(word), std::string::npos) << name << ": " << word;
     }
 }
 
@@ -190,7 +219,8 @@ TEST_F(ChallengeTest, OnlyStruckCandidatesShowInTheOpenFile) {
     for (const auto& c : truth.at("cases"))
         for (const auto& struck : c.at("struck"))
             for (const auto& open : challenge.at("cases"))
-                if (open.at("folder") == c.at("folder")) EXPECT_EQ(open.at("candidates").dump().find(struck.dump()), std::string::npos);
+                if (open.at("folder") == c.at("folder"))
+                    EXPECT_EQ(open.at("candidates").dump().find(struck.dump()), std::string::npos);
     EXPECT_EQ(challenge.size(), 4u) << challenge;
 }
 

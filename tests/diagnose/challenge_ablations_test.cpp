@@ -1,4 +1,5 @@
-// Parts of the method taken away from evidence whose answer is known; what is kept of a diagnosis comes back as it was.
+// Parts of the method taken away from evidence whose answer is known; what is kept of a diagnosis comes back
+// as it was.
 #include "diagnose/challenge_ablations.h"
 
 #include <gmock/gmock.h>
@@ -19,7 +20,8 @@ Eigen::VectorXd cells_where(const Grid& grid, bool (*wanted)(const Observable&))
     const auto cells = cells_of(grid);
     Eigen::VectorXd chosen = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(cells.size()));
     for (std::size_t k = 0; k < cells.size(); ++k)
-        chosen[static_cast<Eigen::Index>(k)] = wanted(observables()[static_cast<std::size_t>(cells[k].observable)]);
+        chosen[static_cast<Eigen::Index>(k)] =
+            wanted(observables()[static_cast<std::size_t>(cells[k].observable)]);
     return chosen;
 }
 
@@ -28,16 +30,20 @@ Signature signature(const std::string& name, const Eigen::VectorXd& linear) {
     return {name, 1, linear, zero, zero, zero, 8};
 }
 
-/// Noise of 1 from replicate to replicate and of 3 from packing to packing. "adhesion" shows where positions are needed
-/// and nowhere else, "friction" in the top force alone, "modulus" in every cell.
+/// Noise of 1 from replicate to replicate and of 3 from packing to packing. "adhesion" shows where positions
+/// are needed and nowhere else, "friction" in the top force alone, "modulus" in every cell.
 Evidence evidence(double adhesion, double friction, double modulus = 0) {
     Random random(7, Stream::null_draws);
     Evidence e;
     e.library.grid = {{0.004, 0.006, 0.008, 0.0098}, 0.002, 0.01};
-    const auto in_positions = cells_where(e.library.grid, [](const Observable& o) { return o.needs == Needs::positions; });
-    const auto in_top = cells_where(e.library.grid, [](const Observable& o) { return o.needs == Needs::plate; });
+    const auto in_positions =
+        cells_where(e.library.grid, [](const Observable& o) { return o.needs == Needs::positions; });
+    const auto in_top =
+        cells_where(e.library.grid, [](const Observable& o) { return o.needs == Needs::plate; });
     const auto cells = in_top.size();
-    const auto noise = [&](double sd) { return Eigen::VectorXd::NullaryExpr(cells, [&] { return sd * random.normal(); }).eval(); };
+    const auto noise = [&](double sd) {
+        return Eigen::VectorXd::NullaryExpr(cells, [&] { return sd * random.normal(); }).eval();
+    };
     e.library.baseline.resize(packings * replicates, cells);
     for (int p = 0; p < packings; ++p) {
         const Eigen::VectorXd centre = noise(3);
@@ -53,7 +59,8 @@ Evidence evidence(double adhesion, double friction, double modulus = 0) {
     e.library.nuisances = {signature("modulus", Eigen::VectorXd::Ones(cells))};
     e.candidates = {{"adhesion", "J/m2", -20, 20}, {"friction", "", -20, 20}};
     e.nuisances = {{"modulus", "", 0.5}};
-    e.observed = own + noise(1) + adhesion * in_positions + friction * in_top + modulus * Eigen::VectorXd::Ones(cells);
+    e.observed =
+        own + noise(1) + adhesion * in_positions + friction * in_top + modulus * Eigen::VectorXd::Ones(cells);
     return e;
 }
 
@@ -150,8 +157,12 @@ TEST(KeptEvidence, OfAnotherLibraryIsRefused) {
 
 TEST(KeptFindings, ComeBackAsTheyWere) {
     TestFolder folder;
-    const Findings f{0.004, {"adhesion", "modulus"}, 1, {12.5, 3}, {{{0}, {0.1}, {0.02}, 12.5, 0.3, 11.0, std::nullopt},
-                                                                 {{0, 1}, {0.1, 0.2}, {0.02, 0.03}, 15, 0.6, {}, {}}}};
+    const Findings f{0.004,
+                     {"adhesion", "modulus"},
+                     1,
+                     {12.5, 3},
+                     {{{0}, {0.1}, {0.02}, 12.5, 0.3, 11.0, std::nullopt},
+                      {{0, 1}, {0.1, 0.2}, {0.02, 0.03}, 15, 0.6, {}, {}}}};
     std::ofstream(folder.path / "f.json") << findings_text(f);
     const Findings back = read_findings(folder.path / "f.json");
     EXPECT_EQ(findings_text(back), findings_text(f));

@@ -8,7 +8,8 @@
 namespace mcdem {
 namespace {
 
-ChallengeCase truth(CaseKind kind, const std::vector<std::string>& effects = {}, const std::vector<std::string>& struck = {}) {
+ChallengeCase truth(CaseKind kind, const std::vector<std::string>& effects = {},
+                    const std::vector<std::string>& struck = {}) {
     ChallengeCase c;
     c.kind = kind;
     for (const std::string& name : effects) c.effects.push_back({name, 1});
@@ -27,14 +28,16 @@ void expect_share(const Share& share, int hits, int of) {
 
 TEST(Merits, OfRealitiesWithoutAnEffect) {
     const ChallengeCase none = truth(CaseKind::none);
-    const Merits m = merits_of(std::vector<ScoredCase>{{&none, {}}, {&none, {Verdict::unknown_effect, {}, 0}}, {&none, named({"friction"})}});
+    const Merits m = merits_of(std::vector<ScoredCase>{
+        {&none, {}}, {&none, {Verdict::unknown_effect, {}, 0}}, {&none, named({"friction"})}});
     expect_share(m.false_alarms, 2, 3);
     expect_share(m.right_where_named, 0, 1);
     EXPECT_EQ(m.brier, 1);
 }
 
 TEST(Merits, OfOneEffect) {
-    const ChallengeCase adhesion = truth(CaseKind::effect, {"adhesion"}), tilt = truth(CaseKind::effect, {"plate_tilt"});
+    const ChallengeCase adhesion = truth(CaseKind::effect, {"adhesion"}),
+                        tilt = truth(CaseKind::effect, {"plate_tilt"});
     const Merits m = merits_of(std::vector<ScoredCase>{
         {&adhesion, named({"adhesion"}, 0.9), 2},                  // right
         {&adhesion, named({"friction", "adhesion"}, 0.6), 1.6},    // in the group
@@ -69,7 +72,8 @@ TEST(Merits, OfTwoEffects) {
 }
 
 TEST(Merits, OfTheUnknown) {
-    const ChallengeCase soft = truth(CaseKind::unknown, {"soft_walls"}), struck = truth(CaseKind::unknown, {"friction"}, {"friction"});
+    const ChallengeCase soft = truth(CaseKind::unknown, {"soft_walls"}),
+                        struck = truth(CaseKind::unknown, {"friction"}, {"friction"});
     const ChallengeCase shifted = truth(CaseKind::outside_prior);
     const Merits m = merits_of(std::vector<ScoredCase>{{&soft, named({"adhesion"})},
                                                        {&soft, {Verdict::unknown_effect, {}, 0}},
@@ -91,7 +95,8 @@ Findings findings(double p, double gain, double other_gain, double misfit) {
 
 TEST(ChooseLimits, MakesUnknownEffectsAbstainWithoutLosingTheKnown) {
     // With the default, misfit below 0.01 is unknown. Here known effects fit to 0.05, unknown ones to 0.02.
-    const ChallengeCase known = truth(CaseKind::effect, {"adhesion"}), unknown = truth(CaseKind::unknown, {"soft_walls"});
+    const ChallengeCase known = truth(CaseKind::effect, {"adhesion"}),
+                        unknown = truth(CaseKind::unknown, {"soft_walls"});
     const Findings fits = findings(1e-6, 50, 0, 0.05), does_not = findings(1e-6, 50, 0, 0.02);
     const std::vector<LimitCase> cases{{&known, &fits, 3}, {&unknown, &does_not, 0}};
     ASSERT_EQ(merits_with(cases, {}).named_unknown.hits, 1);

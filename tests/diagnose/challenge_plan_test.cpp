@@ -22,14 +22,16 @@ Model model() {
 
 std::vector<std::string> all_tried() { return {challenged_effects().begin(), challenged_effects().end()}; }
 
-Challenge draw(std::uint64_t seed, const ChallengeSize& size = {}, const std::vector<std::string>& effects = all_tried()) {
+Challenge draw(std::uint64_t seed, const ChallengeSize& size = {},
+               const std::vector<std::string>& effects = all_tried()) {
     const Model m = model();
     return draw_challenge(size, effects, m, nuisances(m, {}), "scene", seed);
 }
 
 std::vector<ChallengeCase> of_kind(const Challenge& challenge, CaseKind kind) {
     std::vector<ChallengeCase> list;
-    std::ranges::copy_if(challenge.cases, std::back_inserter(list), [&](const auto& c) { return c.kind == kind; });
+    std::ranges::copy_if(challenge.cases, std::back_inserter(list),
+                         [&](const auto& c) { return c.kind == kind; });
     return list;
 }
 
@@ -65,7 +67,8 @@ TEST(ChallengePlan, AmplitudesSpanWhatTheLibraryKnows) {
     size.per_effect = 40;
     for (const ChallengeCase& c : of_kind(draw(2, size), CaseKind::effect)) {
         const Effect& effect = *find_effect(c.effects.at(0).name);
-        const double scale = effect.scale(m), first = std::abs(effect.first), second = std::abs(effect.second);
+        const double scale = effect.scale(m), first = std::abs(effect.first),
+                     second = std::abs(effect.second);
         const double over = std::abs(c.effects[0].amplitude) / scale;
         EXPECT_GE(over, 0.5 * first * (1 - 1e-9)) << effect.name;
         EXPECT_LE(over, 1.5 * second * (1 + 1e-9)) << effect.name;
@@ -78,11 +81,13 @@ TEST(ChallengePlan, SignsAreRandomWhereBothArePlausible) {
     ChallengeSize size;
     size.per_effect = 40;
     std::map<std::string, std::set<bool>> signs;
-    for (const ChallengeCase& c : of_kind(draw(3, size), CaseKind::effect)) signs[c.effects[0].name].insert(c.effects[0].amplitude > 0);
+    for (const ChallengeCase& c : of_kind(draw(3, size), CaseKind::effect))
+        signs[c.effects[0].name].insert(c.effects[0].amplitude > 0);
     EXPECT_EQ(signs["plate_tilt"].size(), 2u);
     EXPECT_EQ(signs["diameter_error"].size(), 2u);
     EXPECT_EQ(signs["adhesion"], std::set{true});
-    EXPECT_EQ(signs["friction"], std::set{true});  // -1 is as low as it can be, and less than the library's own amplitudes
+    EXPECT_EQ(signs["friction"],
+              std::set{true});  // -1 is as low as it can be, and less than the library's own amplitudes
 }
 
 TEST(ChallengePlan, PairsAreTwoDifferentEffects) {
@@ -133,7 +138,8 @@ TEST(ChallengePlan, EveryKindIsDealtToBothHalves) {
     std::map<std::string, std::array<int, 2>> dealt;
     std::array<int, 24> by_packing{};
     for (const ChallengeCase& c : draw(7).cases) {
-        const std::string what = c.kind == CaseKind::effect ? c.effects[0].name : std::string(case_kind_name(c.kind));
+        const std::string what =
+            c.kind == CaseKind::effect ? c.effects[0].name : std::string(case_kind_name(c.kind));
         ++dealt[what][in_first_half(c.packing)];
         ++by_packing[static_cast<std::size_t>(c.packing)];
     }
@@ -157,10 +163,14 @@ TEST(ChallengePlan, SaysWhatDoesNotSuit) {
     ChallengeSize size;
     size.packings = 3;
     size.pairs = -1;
-    EXPECT_THAT([&] { draw(1, size, {"friction", "magic"}); },
-                testing::ThrowsMessage<InputError>(testing::AllOf(testing::HasSubstr("--packings must be an even number"),
-                                                                  testing::HasSubstr("--pairs must be 0 or more, got -1"),
-                                                                  testing::HasSubstr("magic is not an effect"))));
+    EXPECT_THAT(
+        [&] {
+            draw(1, size, {"friction", "magic"});
+        },
+        testing::ThrowsMessage<InputError>(
+            testing::AllOf(testing::HasSubstr("--packings must be an even number"),
+                           testing::HasSubstr("--pairs must be 0 or more, got -1"),
+                           testing::HasSubstr("magic is not an effect"))));
 }
 
 TEST(ChallengeTruth, ComesBackAsItWasWritten) {

@@ -1,4 +1,5 @@
-// Nothing that diagnoses can read what is sealed: the sources that it is made of do not even include the header.
+// Nothing that diagnoses can read what is sealed: the sources that it is made of do not even include the
+// header.
 #include <gtest/gtest.h>
 
 #include <regex>
@@ -32,7 +33,8 @@ std::set<std::string> reached_from(const std::set<std::string>& roots) {
 TEST(ChallengeBlindness, WhatDiagnosesCannotReadTheTruth) {
     const auto reached = reached_from({"ensemble/challenge_run.cpp", "ensemble/diagnose_experiment.cpp"});
     EXPECT_TRUE(reached.contains("diagnose/proposals.cpp")) << "the search itself must search";
-    for (const char* sealed : {"diagnose/challenge_truth.h", "diagnose/challenge_case.h", "diagnose/challenge_plan.h"})
+    for (const char* sealed :
+         {"diagnose/challenge_truth.h", "diagnose/challenge_case.h", "diagnose/challenge_plan.h"})
         EXPECT_FALSE(reached.contains(sealed)) << sealed;
 }
 
@@ -41,8 +43,9 @@ TEST(ChallengeBlindness, WhatScoresReadsIt) {
 }
 
 TEST(ChallengeBlindness, TheRunDoesNotSpeakOfIt) {
-    for (const char* name : {"ensemble/challenge_run.cpp", "ensemble/challenge_run.h", "cli/challenge_run.cpp",
-                             "ensemble/diagnose_experiment.cpp", "diagnose/challenge_files.cpp", "diagnose/challenge_evidence.cpp"})
+    for (const char* name : {"ensemble/challenge_run.cpp", "ensemble/challenge_run.h",
+                             "cli/challenge_run.cpp", "ensemble/diagnose_experiment.cpp",
+                             "diagnose/challenge_files.cpp", "diagnose/challenge_evidence.cpp"})
         EXPECT_EQ(bytes_of_file(host / name).find("truth"), std::string::npos) << name;
 }
 

@@ -51,7 +51,8 @@ ChallengeOptions options_for(const fs::path& folder) {
 Challenge drawn(Device& device, const ChallengeOptions& options) {
     const Scene scene = dense_scene();
     const Realities realities(device, scene, options.measurement);
-    return draw_challenge(options.size, options.effects, realities.stated(), realities.nuisances(), seal_of(scene.text), *options.seed);
+    return draw_challenge(options.size, options.effects, realities.stated(), realities.nuisances(),
+                          seal_of(scene.text), *options.seed);
 }
 
 TEST(MakeChallenge, WeakensWhatRunsAwayBeforeItSeals) {
