@@ -33,7 +33,11 @@ struct Case {
         world.add_nuisance(e, "modulus", modulus, 1000);
         return e;
     }
-    std::vector<DetectionLimit> limits() const { return detection_limits(space, data, null, evidence, {}); }
+    std::vector<DetectionLimit> limits() const {
+        Limits limits;
+        limits.false_alarm = 0.05;
+        return detection_limits(space, data, null, evidence, limits);
+    }
     double expected_gain(std::size_t c, double amplitude) const {
         return 0.5 * space.whiten(data.candidates[c].signature->at(amplitude)).squaredNorm();
     }

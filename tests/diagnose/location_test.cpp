@@ -20,7 +20,9 @@ struct Case {
         return e;
     }
     Location locate_gap(const Eigen::VectorXd& gap) const {
-        return locate(space, data, null, gap, synthetic_grid, {});
+        Limits limits;
+        limits.false_alarm = 0.05;
+        return locate(space, data, null, gap, synthetic_grid, limits);
     }
 
     SyntheticWorld world;
