@@ -81,23 +81,21 @@ std::vector<Point> binned(const std::vector<double>& values, std::vector<double>
     return points;
 }
 
-/// Amplitudes far above their limits are left out: the picture is about small ones.
-constexpr double most_over_limit = 6;
-
 PowerCurve power_of(const std::vector<ScoredCase>& cases, double false_alarm) {
     std::vector<ScoredCase> single;
     std::vector<double> sizes;
     for (const ScoredCase& c : cases)
-        if (c.over_limit > 0 && c.over_limit <= most_over_limit) {
+        if (c.over_limit > 0) {
             single.push_back(c);
             sizes.push_back(c.over_limit);
         }
     PowerCurve curve;
     curve.false_alarm = false_alarm;
-    curve.points = binned<PowerPoint>(sizes, {0.5, 1, 1.5, 2, 3, 4.5}, [&](PowerPoint& point, std::size_t k) {
-        point.over_limit += (sizes[k] - point.over_limit) / ++point.cases;
-        point.detected += single[k].answer.detected();
-    });
+    curve.points =
+        binned<PowerPoint>(sizes, {0.35, 0.7, 1, 1.5, 3, 6, 12}, [&](PowerPoint& point, std::size_t k) {
+            point.over_limit += (sizes[k] - point.over_limit) / ++point.cases;
+            point.detected += single[k].answer.detected();
+        });
     return curve;
 }
 

@@ -20,6 +20,7 @@ const std::vector<Choice> choices{
     {"group_share",  &Limits::group_share,  {0.01, 0.02, 0.04, 0.06, 0.1}},
     {"second_gain",  &Limits::second_gain,  {4, 8, 12, 20}},
     {"second_share", &Limits::second_share, {0.02, 0.04, 0.08, 0.15, 0.3}},
+    {"unknown_odds", &Limits::unknown_odds, {0.01, 0.03, 0.1, 0.3, 1}},
 };
 // clang-format on
 constexpr int most_rounds = 5;
@@ -36,7 +37,7 @@ double objective(const Merits& m) {
                            above(m.named_outside_prior.value(), bars.named_outside_prior) +
                            above(m.group_size, bars.group_size) + below(m.led_by_truth, bars.led_by_truth) +
                            below(m.truth_in_group, bars.truth_in_group);
-    return m.sharpness + 0.5 * m.pair_found.value() - 5 * missing;
+    return m.sharpness + 0.5 * m.pair_found.value() - m.brier - 5 * missing;
 }
 
 Merits merits_with(std::span<const LimitCase> cases, const Limits& limits) {

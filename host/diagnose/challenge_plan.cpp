@@ -24,8 +24,8 @@ constexpr std::array<std::string_view, 2> twins[] = {{"plate_tilt", "plate_tilt_
 constexpr int every_struck = 4;              ///< of the unknown, one in so many is struck from the library
 constexpr double nearest = 4, farthest = 8;  ///< nuisances outside their prior, in sigmas
 
-/// Drawn from half the smaller, the smaller or the larger of the library's two amplitudes up to 1.5 times the
-/// larger.
+/// Drawn from a tenth of the smaller, the smaller or the larger of the library's two amplitudes up to 1.5
+/// times the larger.
 enum class Strength { any, clear, strong };
 
 class Drawing {
@@ -39,7 +39,7 @@ public:
     Hidden effect(std::string_view name, Strength strength) {
         const Effect& effect = *find_effect(name);
         const auto [smaller, larger] = std::minmax({std::abs(effect.first), std::abs(effect.second)});
-        const double from = strength == Strength::any     ? 0.5 * smaller
+        const double from = strength == Strength::any     ? 0.1 * smaller
                             : strength == Strength::clear ? smaller
                                                           : larger;
         const double size = log_uniform(from, 1.5 * larger);

@@ -21,10 +21,10 @@ struct ChallengeSize {
 /// The effects that a challenge tries where nothing else is said: of contacts, grains, plate and measurement.
 std::span<const std::string_view> challenged_effects();
 
-/// Amplitudes are log-uniform between half the smaller and 1.5 times the larger of the library's paired runs,
-/// and plausible; nuisances come from their priors. Every kind is dealt evenly to both halves, and the order
-/// of cases and packings tells nothing. Throws InputError where size or effects do not suit. `scene`: SHA-256
-/// of its text.
+/// Amplitudes are log-uniform between a tenth of the smaller and 1.5 times the larger of the library's paired
+/// runs, and plausible; nuisances come from their priors. Every kind is dealt evenly to both halves, and the
+/// order of cases and packings tells nothing. Throws InputError where size or effects do not suit. `scene`:
+/// SHA-256 of its text.
 Challenge draw_challenge(const ChallengeSize& size, const std::vector<std::string>& effects,
                          const Model& model, std::span<const Nuisance> nuisances, const std::string& scene,
                          std::uint64_t seed);

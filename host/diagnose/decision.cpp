@@ -38,6 +38,14 @@ int worthy_pair(const Findings& findings, double single_gain, const Limits& limi
     return -1;
 }
 
+/// Probability that an explanation is the whole one. What speaks for it at most is -e p ln p, the smallest
+/// Bayes factor that the p-value of what it leaves allows (Sellke, Bayarri & Berger 2001).
+double trust(double misfit_p, double unknown_odds) {
+    const double p = std::max(misfit_p, 1e-300);
+    const double factor = p < std::exp(-1.0) ? -std::exp(1.0) * p * std::log(p) : 1;
+    return factor / (factor + unknown_odds);
+}
+
 }  // namespace
 
 Decision decide(const Findings& findings, const Limits& limits) {
@@ -51,7 +59,9 @@ Decision decide(const Findings& findings, const Limits& limits) {
     double sum = 0;
     for (std::size_t c = 0; c < gains.size(); ++c)
         sum += decision.confidence[c] = std::exp(std::min(0.0, gains[c] - best) * limits.group / margin);
-    for (double& p : decision.confidence) p /= sum;
+    const double whole =
+        trust(findings.proposals[static_cast<std::size_t>(single)].best_misfit(), limits.unknown_odds);
+    for (double& p : decision.confidence) p *= whole / sum;
     decision.group = findings.proposals[static_cast<std::size_t>(single)].candidates;
     for (std::size_t c = 0; c < gains.size(); ++c)
         if (c != decision.group[0] && gains[c] > 0 && best - gains[c] <= margin) decision.group.push_back(c);

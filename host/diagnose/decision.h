@@ -19,6 +19,7 @@ struct Limits {
     double group_share = 0.04;   ///< .. or this part of the leader's gain
     double second_gain = 8.0;    ///< log likelihood that a second effect must gain ..
     double second_share = 0.08;  ///< .. and this part of the leader's gain
+    double unknown_odds = 0.1;   ///< of an effect that the library lacks, before what is left was looked at
     double shrink_margin = 0.1;  ///< what signatures get wrong in the shrink, on either side of its interval
 };
 
@@ -45,7 +46,7 @@ struct Decision {
     Verdict verdict = Verdict::no_gap;
     int proposal = -1;               ///< index in Findings::proposals, -1: none
     std::vector<std::size_t> group;  ///< candidates that cannot be told apart, the leader first
-    std::vector<double> confidence;  ///< by candidate
+    std::vector<double> confidence;  ///< by candidate; what is missing to one is for something unknown
 };
 Decision decide(const Findings& findings, const Limits& limits);
 

@@ -113,6 +113,14 @@ Eigen::VectorXd GapSpace::fit_nuisances(const Eigen::VectorXd& all) const {
     return posterior_ * (directions_.transpose() * noise_.solve(pick(all, cells_)));
 }
 
+Eigen::VectorXd GapSpace::refitted(const Eigen::VectorXd& all) const {
+    return pick(all, cells_) - directions_ * fit_nuisances(all);
+}
+
+double GapSpace::sigma_of(const Eigen::VectorXd& weights) const {
+    return (noise_.matrixU() * weights).norm();
+}
+
 Eigen::VectorXd GapSpace::nuisance_errors() const { return posterior_.diagonal().cwiseSqrt(); }
 
 }  // namespace mcdem

@@ -49,6 +49,10 @@ public:
     /// The nuisances' most probable values given a difference on all cells, and their errors after it.
     Eigen::VectorXd fit_nuisances(const Eigen::VectorXd& all) const;
     Eigen::VectorXd nuisance_errors() const;
+    /// What is left of a difference, on the chosen cells, once the nuisances have their most probable values.
+    Eigen::VectorXd refitted(const Eigen::VectorXd& all) const;
+    /// One sigma of a weighted sum of chosen cells; nuisances not counted.
+    double sigma_of(const Eigen::VectorXd& weights) const;
     const std::vector<FreeParameter>& free() const { return free_; }
 
 private:

@@ -28,6 +28,32 @@ boost::math::gamma_distribution<> fitted_gamma(const std::vector<GapStatistics>&
     return {mean * mean / square, square / mean};
 }
 
+/// When the plate passes a cell, by its place among those of its observable: loading, then unloading back.
+double passage(Eigen::Index place, Eigen::Index places) {
+    return static_cast<double>(2 * place < places ? place : places - 1 - (place - places / 2));
+}
+
+/// Mean and trend of every observable with three cells or more, as weights of the chosen cells, which lie
+/// observable by observable, loading before unloading, each by displacement (cells_of).
+std::vector<Eigen::VectorXd> observable_patterns(const CellChoice& cells, Eigen::Index all) {
+    constexpr std::size_t fewest = 3;
+    const Eigen::Index each = all / static_cast<Eigen::Index>(observables().size());
+    std::vector<Eigen::VectorXd> patterns;
+    for (std::size_t first = 0, end = 0; first < cells.size(); first = end) {
+        while (end < cells.size() && cells[end] / each == cells[first] / each) ++end;
+        if (end - first < fewest) continue;
+        Eigen::VectorXd mean = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(cells.size())), trend = mean;
+        for (std::size_t k = first; k < end; ++k) {
+            mean[static_cast<Eigen::Index>(k)] = 1.0 / static_cast<double>(end - first);
+            trend[static_cast<Eigen::Index>(k)] = passage(cells[k] % each, each);
+        }
+        trend -= trend.sum() * mean;
+        patterns.push_back(mean);
+        patterns.push_back(trend);
+    }
+    return patterns;
+}
+
 }  // namespace
 
 GapStatistics gap_statistics(const GapSpace& space, const GapData& data, const Eigen::VectorXd& gap) {
@@ -39,12 +65,19 @@ GapStatistics gap_statistics(const GapSpace& space, const GapData& data, const E
     }
     if (!s.fits.empty()) s.directed = s.fits[s.best].score;
     s.remainder = s.omnibus - 2 * s.directed;
-    Eigen::VectorXd refitted = pick(gap, space.cells());
-    const Eigen::VectorXd shifts = space.fit_nuisances(gap);
-    for (Eigen::Index k = 0; k < shifts.size(); ++k)
-        refitted -= shifts[k] * pick(space.free()[static_cast<std::size_t>(k)].direction, space.cells());
-    s.highest_refitted = (refitted.array() / space.sigma()).abs().maxCoeff();
+    s.highest_refitted = (space.refitted(gap).array() / space.sigma()).abs().maxCoeff();
+    Eigen::VectorXd left = gap;
+    if (s.directed > 0) left -= data.candidates[s.best].signature->at(s.fits[s.best].amplitude);
+    s.pattern_left = highest_pattern(space, left);
     return s;
+}
+
+double highest_pattern(const GapSpace& space, const Eigen::VectorXd& gap) {
+    const Eigen::VectorXd left = space.refitted(gap);
+    double highest = (left.array() / space.sigma()).abs().maxCoeff();
+    for (const Eigen::VectorXd& weights : observable_patterns(space.cells(), gap.size()))
+        highest = std::max(highest, std::abs(weights.dot(left)) / space.sigma_of(weights));
+    return highest;
 }
 
 NullDistribution::NullDistribution(const GapData& data, int mean_of, std::uint64_t seed) {
@@ -67,6 +100,12 @@ NullDistribution::NullDistribution(const GapData& data, int mean_of, std::uint64
 
 double NullDistribution::p_value(double GapStatistics::*statistic, double value) const {
     return value > 0 ? cdf(complement(fitted_gamma(draws_, statistic), value)) : 1;
+}
+
+double NullDistribution::misfit_p(const GapSpace& space, const Eigen::VectorXd& left) const {
+    const double together = p_value(&GapStatistics::remainder, space.whiten(left).squaredNorm());
+    const double pattern = p_value(&GapStatistics::pattern_left, highest_pattern(space, left));
+    return std::min(1.0, 2 * std::min(together, pattern));
 }
 
 double NullDistribution::quantile(double GapStatistics::*statistic, double p) const {

@@ -37,17 +37,15 @@ Location locate(const GapSpace& space, const GapData& data, const NullDistributi
     Location location;
     location.threshold = null.quantile(&GapStatistics::highest_refitted, limits.false_alarm);
     const auto all = cells_of(grid);
-    const Eigen::VectorXd shifts = space.fit_nuisances(gap);
+    const Eigen::VectorXd refitted = space.refitted(gap);
     std::vector<std::vector<WhereCell>> rows(2 * observables().size());
     for (std::size_t k = 0; k < data.cells.size(); ++k) {
         const Cell& cell = all[static_cast<std::size_t>(data.cells[k])];
-        const double sigma = space.sigma()[static_cast<Eigen::Index>(k)];
-        double refitted = gap[data.cells[k]];
-        for (Eigen::Index n = 0; n < shifts.size(); ++n)
-            refitted -= shifts[n] * data.free[static_cast<std::size_t>(n)].direction[data.cells[k]];
+        const auto i = static_cast<Eigen::Index>(k);
+        const double sigma = space.sigma()[i];
         WhereCell where{std::string(observables()[static_cast<std::size_t>(cell.observable)].name),
                         std::string(name(cell.phase)), cell.displacement, gap[data.cells[k]] / sigma,
-                        refitted / sigma};
+                        refitted[i] / sigma};
         location.cells.push_back(where);
         rows[2 * static_cast<std::size_t>(cell.observable) + (cell.phase == Phase::load ? 0 : 1)].push_back(
             where);

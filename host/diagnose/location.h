@@ -9,7 +9,8 @@ namespace mcdem {
 struct Location {
     std::vector<WhereEntry> entries;  ///< significant ones, largest first
     std::vector<WhereCell> cells;     ///< all
-    double threshold = 0;  ///< simultaneous: |z| of the largest refitted cell of all replicates but `Limits::false_alarm`
+    double threshold =
+        0;  ///< simultaneous: |z| of the largest refitted cell of all replicates but `Limits::false_alarm`
 };
 
 /// Descends from observable to phase to displacement where the parent stands out.

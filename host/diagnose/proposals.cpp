@@ -44,7 +44,7 @@ double signature_misfit(const GapData& data, const NullDistribution& null, const
             (signature_error * data.candidates[proposal.candidates[k]].signature->at(proposal.amplitudes[k]))
                 .cwiseAbs2();
     const GapSpace space(data.noise, mean_of, data.cells, data.free, extra);
-    return null.p_value(&GapStatistics::remainder, space.whiten(without(gap, data, proposal)).squaredNorm());
+    return null.misfit_p(space, without(gap, data, proposal));
 }
 
 /// Both amplitudes, one after the other until neither moves.
@@ -118,7 +118,7 @@ std::optional<Eigen::VectorXd> confirm(Proposal& proposal, const GapData& data, 
                          effect_scatter(data, proposal));
     const double remainder = space.whiten(left).squaredNorm();
     proposal.confirmed_gain = 0.5 * (omnibus - remainder);
-    proposal.confirmed_misfit_p = null.p_value(&GapStatistics::remainder, remainder);
+    proposal.confirmed_misfit_p = null.misfit_p(space, left);
     return space.fit_nuisances(left);
 }
 

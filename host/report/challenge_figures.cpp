@@ -148,18 +148,21 @@ Figure power_figure(const PowerCurve& curve) {
     set_proportions(script);
     script.set("xlabel 'amplitude / predicted detection limit' textcolor rgb '#222222'");
     script.set("ylabel 'part that is detected' textcolor rgb '#222222'");
-    double largest = 2;
+    double smallest = 0.5, largest = 2;
     Rows measured, ideal;
     for (const auto& point : curve.points) {
         if (point.cases <= 0) continue;
         measured.push_back(proportion_row(point.over_limit, point.detected, point.cases).front());
+        smallest = std::min(smallest, point.over_limit);
         largest = std::max(largest, point.over_limit);
     }
+    smallest /= 1.2, largest *= 1.2;
     for (int i = 0; i <= 100; ++i) {
-        const double x = 1.1 * largest * i / 100;
+        const double x = smallest * std::pow(largest / smallest, i / 100.0);
         ideal.push_back({csv_number(x), csv_number(ideal_power(curve, x))});
     }
-    script.set(fmt::format("xrange [{}:{}]", -0.03 * largest, 1.1 * largest));
+    script.set("logscale x");
+    script.set(fmt::format("xrange [{}:{}]", smallest, largest));
     const std::string line = "with lines linewidth 1.5 linecolor rgb '#666666'";
     script.plot(script.add_block(ideal), "using 1:2 " + line);
     script.key(fmt::format("as predicted: {:.2g} without an effect, {:.2g} at the limit", curve.false_alarm,

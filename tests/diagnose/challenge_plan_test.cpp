@@ -70,7 +70,7 @@ TEST(ChallengePlan, AmplitudesSpanWhatTheLibraryKnows) {
         const double scale = effect.scale(m), first = std::abs(effect.first),
                      second = std::abs(effect.second);
         const double over = std::abs(c.effects[0].amplitude) / scale;
-        EXPECT_GE(over, 0.5 * first * (1 - 1e-9)) << effect.name;
+        EXPECT_GE(over, 0.1 * first * (1 - 1e-9)) << effect.name;
         EXPECT_LE(over, 1.5 * second * (1 + 1e-9)) << effect.name;
         EXPECT_GE(c.effects[0].amplitude, effect.low * scale) << effect.name;
         EXPECT_LE(c.effects[0].amplitude, effect.high * scale) << effect.name;

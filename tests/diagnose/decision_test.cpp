@@ -32,17 +32,38 @@ Findings clear_case() {
     return f;
 }
 
-void expect_sum_of_one(const Decision& d) {
-    EXPECT_NEAR(std::accumulate(d.confidence.begin(), d.confidence.end(), 0.0), 1, 1e-12);
+double all_confidence(const Decision& d) {
+    return std::accumulate(d.confidence.begin(), d.confidence.end(), 0.0);
 }
+
+// Odds of 0.1 for something unknown, and nothing that speaks for it.
+void expect_sum_of_known(const Decision& d) { EXPECT_NEAR(all_confidence(d), 1 / 1.1, 1e-12); }
 
 TEST(Decision, OneEffect) {
     const Decision d = decide(clear_case(), {});
     EXPECT_EQ(d.verdict, Verdict::effect);
     EXPECT_EQ(d.proposal, 0);
     EXPECT_THAT(d.group, ElementsAre(1));
-    expect_sum_of_one(d);
-    EXPECT_GT(d.confidence[1], 0.99);
+    expect_sum_of_known(d);
+    EXPECT_GT(d.confidence[1], 0.99 / 1.1);
+}
+
+TEST(Decision, ConfidenceFallsWithWhatIsLeft) {
+    Findings f = clear_case();
+    Limits limits;
+    const auto confidence = [&](double misfit, double odds) {
+        f.proposals[0].misfit_p = misfit;
+        limits.unknown_odds = odds;
+        return all_confidence(decide(f, limits));
+    };
+    // Sellke, Bayarri & Berger (2001), table 1: p = 0.05, 0.01, 0.001 weigh 0.407, 0.125, 0.0188.
+    EXPECT_NEAR(confidence(0.05, 1), 0.289, 5e-4);
+    EXPECT_NEAR(confidence(0.01, 1), 0.111, 5e-4);
+    EXPECT_NEAR(confidence(0.001, 1), 0.0184, 5e-4);
+    EXPECT_NEAR(confidence(0.01, 0.1), 0.125 / 0.225, 5e-3);
+    EXPECT_NEAR(confidence(0.9, 0.1), 1 / 1.1, 1e-12);
+    EXPECT_NEAR(confidence(0, 0.1), 0, 1e-12);
+    EXPECT_EQ(confidence(0.01, 0), 1);
 }
 
 TEST(Decision, NoGap) {
@@ -63,7 +84,7 @@ TEST(Decision, GroupWithinTheMarginByGain) {
     const Decision d = decide(f, {});
     EXPECT_EQ(d.verdict, Verdict::group);
     EXPECT_THAT(d.group, ElementsAre(1, 2, 0));
-    expect_sum_of_one(d);
+    expect_sum_of_known(d);
     EXPECT_NEAR(d.confidence[2] / d.confidence[1], std::exp(-1.5), 1e-12);
     EXPECT_NEAR(d.confidence[0] / d.confidence[1], std::exp(-2.5), 1e-12);
 }

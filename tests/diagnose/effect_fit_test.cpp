@@ -72,6 +72,8 @@ TEST(EffectFit, StaysWithinItsBounds) {
     EXPECT_EQ(below.amplitude, 0);
     EXPECT_EQ(below.score, 0);
     EXPECT_FALSE(below.at_bound);
+    // Near a bound that is no effect at all is at no bound.
+    EXPECT_FALSE(fit_effect(s.space(), {&signature, 0, 5000}, signature.linear).at_bound);
     const EffectFit lowest = fit_effect(s.space(), {&signature, -1, 2}, -5 * signature.linear);
     EXPECT_NEAR(lowest.amplitude, -1, 2e-3);
     EXPECT_TRUE(lowest.at_bound);

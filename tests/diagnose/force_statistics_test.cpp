@@ -174,6 +174,11 @@ TEST(FrictionNumbers, TorqueOfBalancedGrainsCancels) {
     ContactResidual pair = residual(0, 1, Vec3::UnitX(), 1);
     pair.force = Vec3(-1, 0, 0.03);
     EXPECT_NEAR(friction_numbers(recording, {}, std::vector{pair}, soft_material())[5], 1, near);
+    // The middle one of three is turned both ways.
+    recording.diameter.assign(3, 0.02);
+    ContactResidual next = residual(1, 2, Vec3::UnitX(), 1);
+    next.force = Vec3(-1, 0, -0.03);
+    EXPECT_NEAR(friction_numbers(recording, {}, std::vector{pair, next}, soft_material())[5], 0.5, near);
 }
 
 }  // namespace

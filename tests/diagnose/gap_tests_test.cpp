@@ -79,6 +79,8 @@ TEST(GapTests, StatisticsOfOneGap) {
     EXPECT_NEAR(s.omnibus, space.whiten(gap).squaredNorm(), 1e-9 * s.omnibus);
     const Eigen::VectorXd left = gap - s.fits[1].amplitude * evidence.library.effects[1].linear;
     EXPECT_NEAR(s.remainder, space.whiten(left).squaredNorm(), 1e-6 * s.remainder);
+    EXPECT_EQ(s.pattern_left,
+              highest_pattern(space, gap - s.fits[1].amplitude * evidence.library.effects[1].linear));
     double refitted = 0;
     const double shift = space.fit_nuisances(gap)[0];
     EXPECT_NEAR(shift, 3, 1.5);
@@ -88,6 +90,57 @@ TEST(GapTests, StatisticsOfOneGap) {
             refitted, std::abs(value - shift * evidence.library.nuisances[0].linear[data.cells[k]]) / sigma);
     }
     EXPECT_NEAR(s.highest_refitted, refitted, 1e-12);
+}
+
+double correlated_size(const Eigen::VectorXd& weights) {  // of SyntheticWorld's noise
+    double square = 0;
+    for (Eigen::Index i = 0; i < weights.size(); ++i)
+        for (Eigen::Index j = 0; j < weights.size(); ++j)
+            square += weights[i] * weights[j] * std::pow(0.5, std::abs(i - j));
+    return std::sqrt(square);
+}
+
+TEST(GapTests, PatternsOfOneObservable) {
+    SyntheticWorld world(3, 5);
+    const Evidence evidence = world.evidence(1, 2000, 0);
+    const GapData data = gap_data(evidence);
+    const GapSpace space(data.noise, 0, data.cells, {});
+    // As the plate passes them: the first four on the way down, the last four, listed by displacement, going
+    // up.
+    Eigen::VectorXd trend{{-3.5, -2.5, -1.5, -0.5, 3.5, 2.5, 1.5, 0.5}};
+    const auto in_second_observable = [&](const Eigen::VectorXd& values) {
+        Eigen::VectorXd gap = Eigen::VectorXd::Zero(data.mean.size());
+        gap.segment(8, 8) = values;
+        return gap;
+    };
+    // 2000 replicates know variances to 3 %, and the smallest of correlations are shrunk away.
+    EXPECT_NEAR(highest_pattern(space, in_second_observable(trend)),
+                trend.squaredNorm() / correlated_size(trend),
+                0.06 * trend.squaredNorm() / correlated_size(trend));
+    const Eigen::VectorXd even = Eigen::VectorXd::Constant(8, 1);
+    EXPECT_NEAR(highest_pattern(space, in_second_observable(even)), 8 / correlated_size(even),
+                0.06 * 8 / correlated_size(even));
+    Eigen::VectorXd one = Eigen::VectorXd::Zero(8);
+    one[2] = 7;
+    EXPECT_NEAR(highest_pattern(space, in_second_observable(one)), 7, 0.06 * 7);
+}
+
+TEST(GapTests, MisfitSeesAPatternThatDrownsInTheSum) {
+    constexpr int tries = 100;
+    int even = 0, thin = 0;
+    for (int k = 0; k < tries; ++k) {
+        SyntheticWorld world(20, 300 + static_cast<std::uint64_t>(k));
+        const Evidence evidence = world.evidence(1, 32);
+        const GapData data = gap_data(evidence);
+        const GapSpace space(data.noise, 32, data.cells, {});
+        const NullDistribution null(data, 32, 1);
+        even += null.misfit_p(space, data.gap) < 0.05;
+        Eigen::VectorXd left = data.gap;
+        left.segment(8, 8).array() += 3;  // one of twenty observables: chi-square 160 +- 18, and 24 more
+        thin += null.misfit_p(space, left) < 0.05;
+    }
+    EXPECT_LE(even, 14) << "5 +- 2.2 of them, and the null's own error";
+    EXPECT_GE(thin, 70);
 }
 
 TEST(NullDistribution, QuantileIsTheInverseOfP) {

@@ -106,7 +106,8 @@ TEST(ContactOccurrence, AcrossGapsAndSilent) {
                      start + Vec3(0, 0.97 * d, 0), start + Vec3(1.99 * d, 0.997 * d, 0)};
     // 0-1 overlap and touch, 2-1 touch across a gap, 0-3 overlap silently, 2-4 hardly overlap.
     const std::vector<ContactResidual> contacts{contact(0, 1, 0.1, 0, 0), contact(2, 1, 0.01, 0, 0.05),
-                                                contact(3, wall_partner(Wall::floor), 0.01, 0, 0.05)};
+                                                contact(3, wall_partner(Wall::floor), 0.01, 0, 0.05),
+                                                contact(4, 1, 0.1, 0, 0)};
     const auto occurrence = contact_occurrence(recording, scan, contacts);
     EXPECT_NEAR(occurrence[0], 1 / 5.0, 1e-12);
     EXPECT_NEAR(occurrence[1], 1 / 5.0, 1e-12);
