@@ -23,6 +23,13 @@ std::vector<std::string> row_of(const std::string& table, const std::string& nam
     return {};
 }
 
+TEST_F(CliTest, CompilesItsKernelsInSilence) {
+    const Finished run = mcdem(run_words("cold"), {"POCL_CACHE_DIR=" + path("cache").string()});
+    expect_done(run);
+    std::istringstream lines(run.err);
+    for (std::string line; std::getline(lines, line);) EXPECT_THAT(line, testing::StartsWith("mcdem: "));
+}
+
 TEST_F(CliTest, RunPrintsSummaryTableAndPaths) {
     const auto run = mcdem({"run", "small.toml", "--out", "a"});
     expect_done(run);

@@ -1,0 +1,35 @@
+#!/usr/bin/env python3
+"""scripts/skipped: a test that did not run is listed, and is an error unless it needs a GPU or double precision."""
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+SCRIPT = pathlib.Path(sys.argv[1]) / "scripts" / "skipped"
+PASSED = '<testcase name="passes" status="run"><system-out>done</system-out></testcase>'
+
+
+def skipped(name, output):
+    return (f'<testcase name="{name}" status="notrun"><skipped message="SKIP_RETURN_CODE=77"/>'
+            f"<system-out>{output}</system-out></testcase>")
+
+
+def run(*cases):
+    with tempfile.NamedTemporaryFile("w", suffix=".xml") as file:
+        file.write(f"<testsuite>{''.join(cases)}</testsuite>")
+        file.flush()
+        done = subprocess.run([sys.executable, SCRIPT, file.name], capture_output=True, text=True)
+    return done.returncode, done.stdout
+
+
+def main():
+    assert run(PASSED) == (0, "")
+    gtest = skipped("precise", "[ RUN ] precise\nstep_test.cpp:77: Skipped\nthe device has no double precision\n\n[ SKIPPED ] precise")
+    assert run(PASSED, gtest) == (0, "did not run: precise: the device has no double precision\n")
+    assert run(skipped("fast", "needs a GPU"))[0] == 0
+    code, said = run(gtest, skipped("slurm", "starting\nslurmctld is not installed"))
+    assert code == 1 and said.splitlines()[1] == "did not run: slurm: slurmctld is not installed", said
+    assert run(skipped("silent", ""))[0] == 1
+
+
+main()
