@@ -87,6 +87,15 @@ std::vector<DeviceInfo> list_devices() {
     return infos;
 }
 
+std::vector<int> alike_devices(const std::string& choice) {
+    const DeviceInfo chosen = choose(choice).info;
+    std::vector<int> alike;
+    for (const DeviceInfo& info : list_devices())
+        if (info.name == chosen.name && info.platform == chosen.platform && info.version == chosen.version)
+            alike.push_back(info.index);
+    return choice == std::to_string(chosen.index) ? std::vector<int>{chosen.index} : alike;
+}
+
 Device::Device(const std::string& choice) {
     const Found found = choose(choice);
     info_ = found.info;

@@ -21,6 +21,10 @@ struct DeviceInfo {
 /// Every OpenCL device, GPUs first (the order of `--device`).
 std::vector<DeviceInfo> list_devices();
 
+/// The numbers of all devices that give the same bits as the one that `choice` means (see Device): of its name,
+/// platform and driver. A choice by number means that one alone.
+std::vector<int> alike_devices(const std::string& choice);
+
 /// One device with its context and in-order queue.
 class Device {
 public:

@@ -2,13 +2,14 @@
 #include "ensemble/challenge_run.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "cli/challenge.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
 #include "cli/messages.h"
 #include "cli/progress.h"
-#include "cli/scene_options.h"
+#include "cli/sharing.h"
 #include "cli/version.h"
 #include "core/atomic_file.h"
 #include "report/diagnosis_json.h"
@@ -21,10 +22,31 @@ struct RunChallengeCommand {
     std::string challenge, scene, library, out, device;
     std::vector<std::string> overrides;
     ChallengeRunOptions options;
+    SharingOptions sharing;
 };
 
-void run(RunChallengeCommand& command, int& exit_code) {
-    const Scene scene = read_scene(command.scene, command.overrides);
+/// The command line without what says where and how it runs.
+std::vector<std::string> words_of(const RunChallengeCommand& command) {
+    const ChallengeRunOptions& options = command.options;
+    std::vector<std::string> words{"challenge", "run", command.challenge, "--scene", command.scene};
+    for (const auto& setting : command.overrides) words.insert(words.end(), {"--set", setting});
+    const auto add = [&](const char* option, const std::string& value) {
+        words.insert(words.end(), {option, value});
+    };
+    add("--library", command.library);
+    add("--out", command.out);
+    add("--replicates", std::to_string(options.replicates));
+    add("--confirmations", std::to_string(options.confirmations));
+    add("--library-packings", std::to_string(options.library.packings));
+    add("--library-replicates", std::to_string(options.library.replicates));
+    add("--library-pairs", std::to_string(options.library.pairs));
+    if (!options.library.candidates.empty())
+        add("--candidates", fmt::format("{}", fmt::join(options.library.candidates, ",")));
+    add("--seed", std::to_string(options.seed));
+    return words;
+}
+
+void fill_in(RunChallengeCommand& command) {
     ChallengeRunOptions& options = command.options;
     options.challenge = command.challenge;
     options.out = command.out;
@@ -33,24 +55,65 @@ void run(RunChallengeCommand& command, int& exit_code) {
     options.keep = [](const std::filesystem::path& file, const Diagnosis& diagnosis) {
         replace_file(file, diagnosis_json(diagnosis));
     };
+    options.on_problem = [](const std::string& message) { spdlog::warn("{}", message); };
+    options.stop_wanted = Interrupt::wanted;
+}
+
+int report(const RunChallengeCommand& command) {
+    fmt::print("{}: all cases are diagnosed\n", command.out);
+    return exit_done;
+}
+
+int run_alone(RunChallengeCommand& command, const Scene& scene) {
     Device device(command.device);
     const Interrupt interrupt;
     Progress progress(stderr, progress_style(stderr));
-    options.on_progress = [&](double fraction) { progress.show(fraction); };
-    options.on_problem = [&](const std::string& message) {
+    command.options.on_progress = [&](double fraction) { progress.show(fraction); };
+    command.options.on_problem = [&](const std::string& message) {
         progress.clear();
         spdlog::warn("{}", message);
     };
-    options.stop_wanted = Interrupt::wanted;
     try {
-        run_challenge(device, scene, options);
-        progress.clear();
-        fmt::print("{}: all cases are diagnosed\n", command.out);
+        run_challenge(device, scene, command.options);
     } catch (const Interrupted& interrupted) {
         progress.clear();
         spdlog::warn("{}", interrupted.what());
-        exit_code = exit_interrupted;
+        return exit_interrupted;
     }
+    progress.clear();
+    return report(command);
+}
+
+SharedWork shared_work(RunChallengeCommand& command, const Scene& scene) {
+    SharedWork work;
+    work.words = words_of(command);
+    work.out = command.out;
+    const auto here = std::make_shared<double>(0);  // by this program's own count, which knows of the library
+    work.join = [&command, &scene, here](Device& device, std::size_t, const std::function<void()>& tick) {
+        command.options.share = true;
+        command.options.on_progress = [here, &tick](double fraction) {
+            *here = fraction;
+            tick();
+        };
+        try {
+            run_challenge(device, scene, command.options);
+        } catch (const Interrupted&) {
+            return false;
+        }
+        return true;
+    };
+    work.fraction = [&command, here] { return std::max(*here, cases_done(command.options)); };
+    work.done = [&command] { return cases_done(command.options) >= 1; };
+    work.report = [&command] { return report(command); };
+    return work;
+}
+
+int run(RunChallengeCommand& command) {
+    const Scene scene = read_scene(command.scene, command.overrides);
+    fill_in(command);
+    if (is_shared(command.sharing, command.device))
+        return share(shared_work(command, scene), command.sharing, command.device);
+    return run_alone(command, scene);
 }
 
 void add_numbers(CLI::App& sub, ChallengeRunOptions& options) {
@@ -85,9 +148,15 @@ void add_challenge_run(CLI::App& challenge, int& exit_code) {
         ->type_name("FILE");
     sub->add_option("--out", command->out, "Folder for the diagnoses")->required()->type_name("DIR");
     add_numbers(*sub, command->options);
-    add_device_option(*sub, command->device);
-    sub->footer("The same command goes on where an interrupted one stopped.");
-    sub->callback([command, &exit_code] { run(*command, exit_code); });
+    add_sharing_options(*sub, command->sharing, command->device);
+    sub->footer(
+        "The same command goes on where an interrupted one stopped.\n"
+        "Shared by many devices or nodes, each takes cases that no other has; those of a worker that is lost "
+        "are done\n"
+        "again by the others. Example:\n"
+        "  mpirun -n 4 --enable-recovery mcdem challenge run out/challenge --scene scenes/challenge.toml \\\n"
+        "      --library out/library.json --out out/answers --mpi");
+    sub->callback([command, &exit_code] { exit_code = run(*command); });
 }
 
 }  // namespace mcdem

@@ -7,9 +7,11 @@
 #include "cli/pictures.h"
 #include "cli/progress.h"
 #include "cli/scene_options.h"
+#include "cli/sharing.h"
+#include "cli/shell_word.h"
 #include "cli/version.h"
 #include "core/errors.h"
-#include "ensemble/run_scene.h"
+#include "ensemble/share_run.h"
 #include "io/result_folder.h"
 #include "io/results.h"
 #include "metrics/model_table.h"
@@ -22,23 +24,28 @@ struct RunCommand {
     SceneOptions scene;
     std::string out, device;
     bool resume = false, no_figures = false;
+    SharingOptions sharing;
+    std::size_t part_replicas = 0;
 };
 
-/// A word as a shell takes it.
-std::string shell_word(const std::string& word) {
-    const auto plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./=:+,-";
-    if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) return word;
-    std::string quoted = "'";
-    for (const char c : word) quoted += c == '\'' ? "'\\''" : std::string(1, c);
-    return quoted + "'";
+/// The command line without what says where and how it runs.
+std::vector<std::string> words_of(const RunCommand& command) {
+    std::vector<std::string> words{"run", command.scene.file};
+    for (const auto& setting : command.scene.overrides) words.insert(words.end(), {"--set", setting});
+    words.insert(words.end(), {"--out", command.out});
+    return words;
 }
 
 std::string resume_command(const RunCommand& command) {
-    std::string text = "mcdem run " + shell_word(command.scene.file);
-    for (const auto& setting : command.scene.overrides) text += " --set " + shell_word(setting);
-    text += " --out " + shell_word(command.out);
+    std::string text = "mcdem " + shell_words(words_of(command));
     if (!command.device.empty()) text += " --device " + shell_word(command.device);
     return text + " --resume";
+}
+
+void warn_of_failure(const Replica& replica, const Failure& failure) {
+    spdlog::warn("replica {} stopped at step {}{}: {}", replica.label.empty() ? "1" : replica.label,
+                 failure.step, failure.grain < 0 ? "" : fmt::format(", grain {}", failure.grain),
+                 failure.cause);
 }
 
 RunSummary run_with_progress(Device& device, const Scene& scene, const RunCommand& command) {
@@ -51,9 +58,7 @@ RunSummary run_with_progress(Device& device, const Scene& scene, const RunComman
     options.on_progress = [&](double fraction) { progress.show(fraction); };
     options.on_failure = [&](const Replica& replica, const Failure& failure) {
         progress.clear();
-        spdlog::warn("replica {} stopped at step {}{}: {}", replica.label.empty() ? "1" : replica.label,
-                     failure.step, failure.grain < 0 ? "" : fmt::format(", grain {}", failure.grain),
-                     failure.cause);
+        warn_of_failure(replica, failure);
     };
     options.on_warning = [&](const std::string& message) {
         progress.clear();
@@ -103,8 +108,35 @@ int report_run(const RunCommand& command, const RunSummary& summary) {
     return exit_failed;
 }
 
+/// The run as work that many share.
+SharedWork shared_work(const RunCommand& command, const Scene& scene) {
+    SharedWork work;
+    work.words = words_of(command);
+    if (command.part_replicas > 0)
+        work.words.insert(work.words.end(), {"--part-replicas", std::to_string(command.part_replicas)});
+    work.out = command.out;
+    work.join = [&](Device& device, std::size_t workers, const std::function<void()>& tick) {
+        ShareOptions options;
+        options.folder = command.out;
+        options.part_replicas = command.part_replicas;
+        options.workers = workers;
+        options.program = version_text;
+        options.on_tick = tick;
+        options.on_failure = warn_of_failure;
+        options.on_warning = [](const std::string& message) { spdlog::warn("{}", message); };
+        options.stop_wanted = Interrupt::wanted;
+        return share_run(device, scene, options) != RunEnd::interrupted;
+    };
+    work.done = [&] { return shared_state(command.out).done; };
+    work.fraction = [&] { return shared_state(command.out).fraction; };
+    work.report = [&] { return report_run(command, {}); };
+    return work;
+}
+
 int run(const RunCommand& command) {
     const Scene scene = command.scene.read();
+    if (is_shared(command.sharing, command.device) || (command.resume && is_shared_run(command.out)))
+        return share(shared_work(command, scene), command.sharing, command.device);
     Device device(command.device);
     spdlog::info("{}: {} on {}", scene.name, size_text(scene), device.info().name);
     const auto summary = run_with_progress(device, scene, command);
@@ -125,20 +157,31 @@ void add_run(CLI::App& app, int& exit_code) {
     sub->add_option("--out", command->out, "Folder for the results; made where it is missing")
         ->required()
         ->type_name("DIR");
-    add_device_option(*sub, command->device);
     sub->add_flag("--resume", command->resume, "Go on with the interrupted run in DIR");
     sub->add_flag("--no-figures", command->no_figures, "Draw no pictures at the end");
+    add_sharing_options(*sub, command->sharing, command->device);
+    sub->add_option("--part-replicas", command->part_replicas,
+                    "Replicas that a worker takes at a time; without it enough to fill a device")
+        ->check(CLI::Range(1, 10'000))
+        ->type_name("N")
+        ->group("Many devices and nodes");
     sub->footer(
         "Writes run.h5 (everything, HDF5), plate.csv (forces and averages) and pictures into DIR. A replica "
         "that\n"
         "cannot go on is named and recorded; the others go on. The exit code is 1 only where all failed.\n"
         "Interrupted by Ctrl-C, a crash or a power cut, a run loses no more than the time since its last\n"
         "checkpoint (output.checkpoint_minutes) and ends, resumed, with the same bits.\n"
+        "Shared by many devices or nodes, the result is the same to the last bit; work of a worker that is "
+        "lost\n"
+        "is done again by the others, and the same command goes on with what was left.\n"
         "Examples:\n"
         "  mcdem run scenes/small.toml --out out/small\n"
         "  mcdem run scenes/compression.toml --out out/soft --set grains.youngs_modulus=10e3\n"
         "  mcdem run scenes/compression.toml --out out/one --set contact.model=elastic_sphere\n"
-        "  mcdem run scenes/compression.toml --out out/one --set contact.model=elastic_sphere --resume");
+        "  mcdem run scenes/compression.toml --out out/one --set contact.model=elastic_sphere --resume\n"
+        "  mcdem run scenes/replicas.toml --out out/shared --device all\n"
+        "  mpirun -n 4 --enable-recovery mcdem run scenes/replicas.toml --out out/shared --mpi\n"
+        "  mcdem run scenes/replicas.toml --out out/shared --slurm --slurm-tasks 8 --slurm-time 2:00:00");
     sub->callback([command, &exit_code] { exit_code = run(*command); });
 }
 

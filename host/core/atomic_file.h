@@ -11,8 +11,12 @@ namespace mcdem {
 void replace_file(const std::filesystem::path& file,
                   const std::function<void(const std::filesystem::path& temporary)>& write);
 
-/// The same for a text that is at hand.
+/// The same for a text that is at hand. Several programs may write one file at a time: the last one stays.
 void replace_file(const std::filesystem::path& file, std::string_view text);
+
+/// Puts the text into the file, whole, unless there is such a file: false where there is one, be it that
+/// another program was quicker by a moment.
+bool create_file(const std::filesystem::path& file, std::string_view text);
 
 /// Moves `from` to `to` (same folder) in one step and forces the folder to the disk.
 void move_file(const std::filesystem::path& from, const std::filesystem::path& to);

@@ -1,15 +1,20 @@
 #include "ensemble/challenge_run.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <chrono>
+#include <fstream>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "core/atomic_file.h"
 #include "core/errors.h"
 #include "core/sha256.h"
 #include "diagnose/challenge_evidence.h"
 #include "diagnose/challenge_files.h"
+#include "ensemble/agreement.h"
 #include "ensemble/make_packings.h"
 #include "scene/random.h"
 
@@ -22,6 +27,11 @@ namespace fs = std::filesystem;
 double work_for(const ChallengeLibrary& library, std::size_t probes) {
     return library.packings * (library.replicates + 2.0 * library.pairs * static_cast<double>(probes));
 }
+
+constexpr std::chrono::milliseconds pause{500};  ///< of a program that waits for the others
+
+fs::path claims_folder(const fs::path& out) { return out / "claims"; }
+fs::path case_file(const fs::path& folder, const OpenCase& c) { return folder / (c.folder + ".json"); }
 
 class Running {
 public:
@@ -37,21 +47,62 @@ public:
     }
 
     void all() {
-        std::vector<const OpenCase*> missing;
-        for (const OpenCase& c : challenge_.cases)
-            if (!fs::exists(file_of(c, ""))) missing.push_back(&c);
-        if (missing.empty()) return;
-        work_done_ = work_a_case() * static_cast<double>(challenge_.cases.size() - missing.size());
-        make_library(*missing.front());
-        for (const OpenCase* c : missing) {
-            diagnose(*c);
-            work_done_ += work_a_case();
+        const auto left = missing();
+        if (left.empty()) return;
+        left_ = left.size();
+        make_library(challenge_.cases.front());
+        for (const OpenCase* c : left) {
+            diagnose(*c, nullptr);
+            --left_;
         }
+    }
+
+    /// With other programs: each takes a case that no other has.
+    void share() {
+        left_ = missing().size();
+        if (left_ == 0) return;
+        Claims claims(claims_folder(options_.out));
+        claims_ = &claims;
+        agree(claims_folder(options_.out) / "agreement.json", common(), {});
+        make_library(challenge_.cases.front());
+        for (auto left = missing(); !left.empty(); left = missing()) {
+            left_ = left.size();
+            std::vector<std::string> names;
+            for (const OpenCase* c : left) names.push_back(c->folder);
+            show(0);
+            if (options_.stop_wanted()) throw Interrupted();
+            const auto claim = claims.take_one_of(names);
+            if (!claim)
+                std::this_thread::sleep_for(pause);
+            else if (const OpenCase& c = **std::ranges::find(left, claim->task(), &OpenCase::folder);
+                     !is_done(c))
+                diagnose(c, claim.get());
+        }
+        std::error_code used_by_another;  // .. which removes it in its turn
+        fs::remove_all(claims_folder(options_.out), used_by_another);
     }
 
 private:
     fs::path file_of(const OpenCase& c, const std::string& folder) const {
-        return options_.out / folder / (c.folder + ".json");
+        return case_file(options_.out / folder, c);
+    }
+    bool is_done(const OpenCase& c) const { return fs::exists(file_of(c, "")); }
+    std::vector<const OpenCase*> missing() const {
+        std::vector<const OpenCase*> cases;
+        for (const OpenCase& c : challenge_.cases)
+            if (!is_done(c)) cases.push_back(&c);
+        return cases;
+    }
+    Common common() const {
+        Common all = common_of(device_, scene_, options_.program);
+        std::ifstream open_part(options_.challenge / "challenge.json", std::ios::binary);
+        all["challenge"] = Sha256().add(std::string(std::istreambuf_iterator<char>(open_part), {})).hex();
+        const ChallengeLibrary& library = options_.library;
+        all["options"] = fmt::format(
+            "replicates {}, confirmations {}, library {} packings, {} replicates, {} pairs, of {}, seed {}",
+            options_.replicates, options_.confirmations, library.packings, library.replicates, library.pairs,
+            fmt::join(library.candidates, ","), options_.seed);
+        return all;
     }
     fs::path library_file() const { return options_.out / "library.json"; }
     double work_a_case() const { return options_.replicates + 2.0 * options_.confirmations; }
@@ -102,6 +153,7 @@ private:
         TrialOptions trials;
         trials.on_progress = [&](double fraction) { show(fraction * work_of_library_); };
         trials.stop_wanted = options_.stop_wanted;
+        trials.claims = claims_;
         return build_library(device_, question, model, plan, ObservationStore(options_.out / "simulations"),
                              trials);
     }
@@ -111,7 +163,6 @@ private:
         const fs::path& file = options_.library.file;
         if (!fs::exists(file)) {
             write_library(file, new_library(read_experiment(options_.challenge / first.folder)));
-            work_done_ += work_of_library_;
         }
         library_ = read_library(file);
         write_library(library_file(), library_);
@@ -125,7 +176,7 @@ private:
         return names;
     }
 
-    void diagnose(const OpenCase& c) {
+    void diagnose(const OpenCase& c, Claim* claim) {
         DiagnoseOptions how;
         how.folder = options_.out;
         how.candidates = candidates_of(c);
@@ -136,7 +187,9 @@ private:
         how.library = library_file();
         how.program = options_.program;
         how.on_progress = [&](const std::string& stage, double fraction) {
-            show(work_a_case() * (stage == "baseline" ? 0.5 * fraction : 0.5 + 0.5 * fraction));
+            const double part = stage == "baseline" ? 0.5 * fraction : 0.5 + 0.5 * fraction;
+            show(work_a_case() * part);
+            if (claim) claim->show(part);
         };
         how.stop_wanted = options_.stop_wanted;
         how.on_evidence = [&](const Evidence& evidence) {
@@ -154,9 +207,12 @@ private:
         }
     }
 
+    /// `work_now`: of the library while it is made, else of this case.
     void show(double work_now) const {
-        const double all = work_of_library_ + work_a_case() * static_cast<double>(challenge_.cases.size());
-        options_.on_progress((work_done_ + work_now) / all);
+        const auto cases = static_cast<double>(challenge_.cases.size());
+        const double done = (library_.effects.empty() ? 0 : work_of_library_) +
+                            work_a_case() * (cases - static_cast<double>(left_));
+        options_.on_progress((done + work_now) / (work_of_library_ + work_a_case() * cases));
     }
 
     Device& device_;
@@ -164,13 +220,33 @@ private:
     const ChallengeRunOptions& options_;
     OpenChallenge challenge_;
     Library library_;
-    double work_of_library_ = 0, work_done_ = 0;
+    double work_of_library_ = 0;
+    std::size_t left_ = 0;      ///< cases
+    Claims* claims_ = nullptr;  ///< where the work is shared
 };
 
 }  // namespace
 
 void run_challenge(Device& device, const Scene& scene, const ChallengeRunOptions& options) {
-    Running(device, scene, options).all();
+    Running running(device, scene, options);
+    if (!options.share) return running.all();
+    try {
+        running.share();
+    } catch (const RunError&) {
+        if (cases_done(options) < 1) throw;  // else others have ended all, and taken the claims away
+    }
+}
+
+double cases_done(const ChallengeRunOptions& options) {
+    const OpenChallenge challenge = read_open_challenge(options.challenge);
+    std::map<std::string, double> under_way;
+    if (fs::exists(claims_folder(options.out))) under_way = Claims(claims_folder(options.out)).under_way();
+    double done = 0;
+    for (const OpenCase& c : challenge.cases) {
+        const auto held = under_way.find(c.folder);
+        done += fs::exists(case_file(options.out, c)) ? 1 : held == under_way.end() ? 0 : 0.99 * held->second;
+    }
+    return challenge.cases.empty() ? 1 : done / static_cast<double>(challenge.cases.size());
 }
 
 }  // namespace mcdem

@@ -27,9 +27,13 @@ struct ChallengeRunOptions {
     /// A case could not be diagnosed; its file says why, and it counts as a miss.
     std::function<void(const std::string& message)> on_problem = [](const std::string&) {};
     std::function<bool()> stop_wanted = [] { return false; };
+    bool share = false;  ///< with other programs that work on the same folder
 };
 
 /// Throws InputError, RunError or Interrupted.
 void run_challenge(Device& device, const Scene& scene, const ChallengeRunOptions& options);
+
+/// The part of the cases that are diagnosed, with those under way; 1 when all are.
+double cases_done(const ChallengeRunOptions& options);
 
 }  // namespace mcdem

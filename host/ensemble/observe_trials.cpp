@@ -1,7 +1,10 @@
 #include "ensemble/observe_trials.h"
 
+#include <chrono>
 #include <map>
+#include <numeric>
 #include <optional>
+#include <thread>
 
 #include "core/in_parallel.h"
 #include "core/sha256.h"
@@ -15,6 +18,10 @@ namespace mcdem {
 namespace {
 
 constexpr std::size_t most_grains_at_once = 32'768;
+/// .. of one program among several: less, so that each of them gets some.
+constexpr std::size_t most_grains_of_a_share = 8'192;
+
+constexpr std::chrono::milliseconds pause{200};  // of a program that waits for the others
 
 /// What the simulation of a trial is made of.
 std::string simulation_name(const Device& device, const Question& question, const Trial& trial) {
@@ -79,40 +86,110 @@ public:
                                             not_available)) {}
 
     Eigen::MatrixXd all() {
-        const std::vector<Job> jobs = missing_jobs();
-        for (std::size_t first = 0; first < jobs.size();) {
-            std::size_t last = first, grains = 0;
-            while (last < jobs.size() && (last == first || grains < most_grains_at_once))
-                grains += trials_[jobs[last++].trials.front()].packing.size();
-            run({jobs.begin() + static_cast<std::ptrdiff_t>(first),
-                 jobs.begin() + static_cast<std::ptrdiff_t>(last)},
-                static_cast<double>(first) / jobs.size(), static_cast<double>(last) / jobs.size());
-            first = last;
+        for (std::size_t t = 0; t < trials_.size(); ++t) {
+            simulations_.push_back(simulation_name(device_, question_, trials_[t]));
+            names_[t] = observation_name(simulations_[t], question_, trials_[t].model.instrument);
         }
+        options_.claims ? share() : alone();
         return std::move(result_);
     }
 
 private:
-    std::vector<Job> missing_jobs() {
-        std::map<std::string, std::size_t> job_of;
-        std::vector<Job> jobs;
-        for (std::size_t t = 0; t < trials_.size(); ++t) {
-            const std::string simulation = simulation_name(device_, question_, trials_[t]);
-            names_[t] = observation_name(simulation, question_, trials_[t].model.instrument);
+    /// Trials whose observations (and recordings, where wanted) the store has are filled in; the others go to
+    /// `left`.
+    std::vector<std::size_t> take_from_store(const std::vector<std::size_t>& trials) {
+        std::vector<std::size_t> left;
+        for (const std::size_t t : trials) {
             const bool lacks_recording = trials_[t].keep_recording && !store_.has_recording(names_[t]);
             const auto kept = lacks_recording ? std::nullopt : store_.find(names_[t]);
-            if (kept && kept->size() == result_.cols()) {
+            if (kept && kept->size() == result_.cols())
                 result_.row(static_cast<Eigen::Index>(t)) = *kept;
-                continue;
-            }
-            const auto [place, is_new] = job_of.emplace(simulation, jobs.size());
+            else
+                left.push_back(t);
+        }
+        return left;
+    }
+
+    std::vector<Job> jobs_of(const std::vector<std::size_t>& trials) const {
+        std::map<std::string, std::size_t> job_of;
+        std::vector<Job> jobs;
+        for (const std::size_t t : trials) {
+            const auto [place, is_new] = job_of.emplace(simulations_[t], jobs.size());
             if (is_new) jobs.emplace_back();
             jobs[place->second].trials.push_back(t);
         }
         return jobs;
     }
 
-    void run(const std::vector<Job>& jobs, double from, double to) {
+    /// Jobs that a device does at a time.
+    std::vector<std::vector<Job>> batches_of(const std::vector<Job>& jobs, std::size_t most_grains) const {
+        std::vector<std::vector<Job>> batches;
+        std::size_t grains = most_grains;
+        for (const Job& job : jobs) {
+            if (grains >= most_grains) {
+                batches.emplace_back();
+                grains = 0;
+            }
+            batches.back().push_back(job);
+            grains += trials_[job.trials.front()].packing.size();
+        }
+        return batches;
+    }
+
+    std::vector<std::size_t> all_trials() const {
+        std::vector<std::size_t> trials(trials_.size());
+        std::iota(trials.begin(), trials.end(), std::size_t{0});
+        return trials;
+    }
+
+    void alone() {
+        const std::vector<Job> jobs = jobs_of(take_from_store(all_trials()));
+        double done = 0;
+        for (const auto& batch : batches_of(jobs, most_grains_at_once)) {
+            const double part = static_cast<double>(batch.size()) / static_cast<double>(jobs.size());
+            run(batch, done, done + part, nullptr);
+            done += part;
+        }
+    }
+
+    /// All programs make the same batches of the same trials, whatever is done already: a batch's name means
+    /// the same to each.
+    void share() {
+        const auto batches = batches_of(jobs_of(all_trials()), most_grains_of_a_share);
+        std::map<std::string, std::vector<std::size_t>> left;  // trials by the batch's name
+        for (const auto& batch : batches) {
+            Sha256 digest;
+            std::vector<std::size_t> trials;
+            for (const Job& job : batch)
+                for (const std::size_t t : job.trials) {
+                    digest.add(names_[t]).add(trials_[t].keep_recording ? "+" : " ");
+                    trials.push_back(t);
+                }
+            left.emplace("trials-" + digest.hex(), std::move(trials));
+        }
+        while (true) {
+            std::vector<std::string> names;
+            for (auto& [name, trials] : left)
+                if (!(trials = take_from_store(trials)).empty()) names.push_back(name);
+            if (names.empty()) return;
+            const double done = 1 - static_cast<double>(names.size()) / static_cast<double>(batches.size());
+            options_.on_progress(done);
+            if (options_.stop_wanted()) throw Interrupted();
+            if (const auto claim = options_.claims->take_one_of(names))
+                observe_share(*claim, left.at(claim->task()), done,
+                              1.0 / static_cast<double>(batches.size()));
+            else
+                std::this_thread::sleep_for(pause);
+        }
+    }
+
+    void observe_share(Claim& claim, std::vector<std::size_t>& trials, double done, double part) {
+        trials = take_from_store(trials);  // another may have ended it between looking and taking
+        if (!trials.empty()) run(jobs_of(trials), done, done + part, &claim);
+        trials.clear();
+    }
+
+    void run(const std::vector<Job>& jobs, double from, double to, Claim* claim) {
         Scene batch = question_.scene;
         batch.output.positions = batch.output.contacts = true;
         batch.replicas.clear();
@@ -139,6 +216,7 @@ private:
         };
         while (simulation.advance(keep, note)) {
             options_.on_progress(from + (to - from) * simulation.progress());
+            if (claim) claim->show(simulation.progress());
             if (options_.stop_wanted()) throw Interrupted();
         }
         look(jobs, recordings);
@@ -170,7 +248,7 @@ private:
     const std::vector<Trial>& trials_;
     const ObservationStore& store_;
     const TrialOptions& options_;
-    std::vector<std::string> names_;
+    std::vector<std::string> simulations_, names_;  ///< by trial
     Eigen::MatrixXd result_;
 };
 

@@ -9,6 +9,7 @@
 #include "diagnose/effects.h"
 #include "diagnose/observation.h"
 #include "ensemble/observation_store.h"
+#include "io/claims.h"
 
 namespace mcdem {
 
@@ -35,6 +36,9 @@ struct Question {
 struct TrialOptions {
     std::function<void(double fraction)> on_progress = [](double) {};
     std::function<bool()> stop_wanted = [] { return false; };
+    /// Where several programs observe the same trials into one store: what each of them is at. Every one gets
+    /// all observations.
+    Claims* claims = nullptr;
 };
 
 /// Row: trial, column: cell; not-a-number where a simulation failed. Trials that differ in the instrument

@@ -11,6 +11,7 @@
 
 #include "core/atomic_file.h"
 #include "core/errors.h"
+#include "io/parts.h"
 #include "io/result_file.h"
 
 namespace mcdem {
@@ -33,7 +34,8 @@ std::optional<int> segment_index(const fs::path& file) {
 
 bool belongs_to_a_run(const fs::path& file) {
     const std::string name = file.filename().string();
-    return name == "run.h5" || name.starts_with("checkpoint.") || segment_index(file);
+    return name == "run.h5" || name.starts_with("checkpoint.") || segment_index(file) ||
+           file == parts_folder(file.parent_path());
 }
 
 int lock_folder(const fs::path& folder) {

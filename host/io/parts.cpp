@@ -1,0 +1,52 @@
+#include "io/parts.h"
+
+#include "core/atomic_file.h"
+#include "core/errors.h"
+#include "io/result_file.h"
+
+namespace mcdem {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What reading part `number` gives. What is wrong in a file is an InputError, like any other damaged file.
+template <class Read>
+auto from_part(std::size_t number, Read read) {
+    try {
+        return read();
+    } catch (const InputError& error) {
+        throw DamagedPart(number, error.what());
+    }
+}
+
+}  // namespace
+
+fs::path parts_folder(const fs::path& folder) { return folder / "parts"; }
+
+void merge_parts(const std::vector<fs::path>& parts, const fs::path& merged) {
+    Run all;
+    std::vector<std::size_t> first{0};  // replica of each part
+    for (std::size_t p = 0; p < parts.size(); ++p) {
+        Run part = from_part(p, [&] { return read_run_header({parts[p]}); });
+        if (p == 0)
+            all = std::move(part);
+        else
+            std::ranges::move(part.recordings, std::back_inserter(all.recordings));
+        first.push_back(all.recordings.size());
+    }
+    replace_file(merged, [&](const fs::path& temporary) {
+        ResultWriter writer(temporary, all);
+        for (std::size_t p = 0; p < parts.size(); ++p) {
+            const ResultFile file = from_part(p, [&] { return ResultFile(parts[p]); });
+            for (std::size_t r = first[p]; r < first[p + 1]; ++r) {
+                auto scans = from_part(
+                    p, [&] { return file.scans(all.recordings[r], r - first[p], ReadWhat::everything); });
+                for (Scan& scan : scans) writer.append(r, std::move(scan));
+                writer.end(r, all.recordings[r].failure);
+            }
+        }
+        writer.close();
+    });
+}
+
+}  // namespace mcdem

@@ -1,0 +1,134 @@
+"""Runs and challenges over MPI: `mpirun -n 3`, a rank killed in the middle, the bytes of one process.
+
+mpi_test.py MCDEM; skipped (77) where MPI is missing.
+"""
+import json
+import sys
+import threading
+
+import shared_runs
+from shared_runs import PARTS, PartsSeen, command_of, finish, kill_a_worker, program, skip, wait_until
+
+SURVIVE = ["--enable-recovery"]
+
+
+def mpirun(place, words, options=()):
+    return place.start([program("mpirun", "openmpi-bin"), "--allow-run-as-root", "--oversubscribe", "-n", "3", *options,
+                        place.mcdem, *words, "--mpi"])
+
+
+def run_words(out):
+    return [*command_of("sweep.toml", out), *PARTS]
+
+
+def survivors_do_the_work_of_a_killed_rank(place):
+    """With --enable-recovery mpirun lets the others go on."""
+    place.run_alone()
+    process = mpirun(place, run_words("ranks"), SURVIVE)
+    kill_a_worker(place.path / "ranks/parts")
+    said = finish(process)
+    assert said.count("8 of 8 replicas done") <= 1, f"more than one rank tells of it:\n{said}"
+    place.expect_like_alone("ranks")
+
+
+def the_same_command_goes_on(place):
+    """Without it mpirun ends all ranks; what was done is not done again."""
+    place.run_alone()
+    process = mpirun(place, run_words("ranks"))
+    parts = PartsSeen(place.path / "ranks/parts")
+    wait_until(lambda: list(parts.folder.glob("*.h5")), "a part")
+    parts.look()
+    kill_a_worker(parts.folder)
+    finish(process, exit_codes=range(1, 256))
+    parts.look()
+    assert not (place.path / "ranks/run.h5").exists(), "all was done before a rank was killed"
+    process = mpirun(place, run_words("ranks"))
+    watcher = threading.Thread(target=parts.watch, args=[process])
+    watcher.start()
+    said = finish(process)
+    watcher.join()
+    assert said.count("8 of 8 replicas done") == 1, said
+    parts.expect_each_once()
+    place.expect_like_alone("ranks")
+
+
+TINY = """name = "tiny"
+[box]
+size_x = 0.083
+size_y = 0.083
+[contact]
+model = "independent"
+friction_law = "mindlin"
+[packing]
+count = 64
+packing_fraction = 0.59
+[plate]
+start = 0.0835
+end = 0.0685
+speed = 0.2
+[protocol]
+stop_at_scans = false
+scans_per_stroke = 6
+relax_time = 0.1
+"""
+
+
+def challenge_words(name):
+    return ["challenge", "run", "challenge", "--scene", "tiny.toml", "--library", f"{name}.json", "--out", name,
+            "--candidates", "friction,force_bias", "--library-packings", "8", "--library-replicates", "2",
+            "--replicates", "3", "--confirmations", "2"]
+
+
+def diagnoses(folder):
+    """All files of a challenge's answers but the simulations; without the time that each diagnosis took."""
+    found = {}
+    for file in sorted(folder.rglob("*.json")):
+        text = file.read_text()
+        if file.parent == folder and file.name.startswith("case"):
+            found[file.name] = {key: value for key, value in json.loads(text).items() if key != "seconds"}
+        else:
+            found[str(file.relative_to(folder))] = text
+    found["simulations"] = {file.name: file.read_bytes() for file in sorted((folder / "simulations").iterdir())}
+    return found
+
+
+def a_challenge_is_shared(place):
+    """A rank is killed while the cases are diagnosed; the answers are those of one process."""
+    (place.path / "tiny.toml").write_text(TINY)
+    place.run([place.mcdem, "challenge", "make", "tiny.toml", "--out", "challenge", "--truth", "truth.json", "--seed",
+               "3", "--effects", "friction,force_bias", "--none", "3", "--per-effect", "1", "--pairs", "0", "--unknown",
+               "0", "--outside", "0", "--packings", "2"])
+    place.run([place.mcdem, *challenge_words("alone")])
+    process = mpirun(place, challenge_words("ranks"), SURVIVE)
+    claims = place.path / "ranks/claims"
+
+    def victim():
+        for claim in claims.glob("case*.claim-*"):
+            text = json.loads(claim.read_text())
+            if text["state"] == "held":
+                return text["process"]
+        return None
+
+    import os
+    import signal
+    os.kill(wait_until(victim, "a case that is diagnosed"), signal.SIGKILL)
+    finish(process)
+    expected, got = (diagnoses(place.path / name) for name in ("alone", "ranks"))
+    assert expected.keys() == got.keys(), expected.keys() ^ got.keys()
+    differing = [name for name in expected if expected[name] != got[name]]
+    assert len(expected) > 10 and not differing, differing
+    assert not claims.exists()
+
+
+def main():
+    program("mpirun", "openmpi-bin")
+    with shared_runs.Place(sys.argv[1]) as place:
+        built = finish(place.start([place.mcdem, *run_words("try"), "--mpi", "--set", "nothing=1"]), exit_codes=(2,))
+        without = finish(place.start([place.mcdem, *run_words("try"), "--mpi"]), exit_codes=(0, 2))
+    assert "nothing" in built
+    if "built without MPI" in without:
+        skip("mcdem was built without MPI (CMake found none: libopenmpi-dev)")
+    shared_runs.run_tests([survivors_do_the_work_of_a_killed_rank, the_same_command_goes_on, a_challenge_is_shared])
+
+
+main()
