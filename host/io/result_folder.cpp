@@ -114,6 +114,11 @@ std::vector<fs::path> segment_files(const fs::path& folder) {
 std::vector<fs::path> result_files(const fs::path& file_or_folder) {
     if (!fs::is_directory(file_or_folder)) return {file_or_folder};
     if (fs::exists(run_file(file_or_folder))) return {run_file(file_or_folder)};
+    if (fs::exists(parts_folder(file_or_folder)))
+        throw InputError(
+            file_or_folder.string() +
+            ": holds parts of a run that are not merged yet: wait for the programs that share it, or "
+            "go on with --resume");
     const auto segments = segment_files(file_or_folder);
     if (segments.empty())
         throw InputError(file_or_folder.string() + ": holds no run (neither run.h5 nor segment-000000.h5)");

@@ -3,9 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <thread>
 
 #include "ensemble/small_trials.h"
 #include "scene/keys.h"
@@ -260,6 +262,37 @@ TEST(TrialNames, TellQuestionsApart) {
     expect_apart("program");
     question.scene.precision = Precision::double_precision;
     expect_apart("precision");
+}
+
+TEST(ObserveTrials, SharedByTwoEachGetsAllAndNothingIsSimulatedTwice) {
+    const SmallTrials small, alone;
+    const std::vector<Trial> trials{small.trial(1), small.trial(2), small.trial(3)};
+    Device device;
+    const auto expected = observe_trials(device, alone.question, trials, alone.store, {});
+    std::atomic<int> simulated{0};
+    std::vector<Eigen::MatrixXd> got(2);
+    {
+        std::vector<std::jthread> workers;
+        for (auto& mine : got)
+            workers.emplace_back([&] {
+                Device own;
+                Claims claims(small.folder.path / "claims");
+                bool worked = false;
+                TrialOptions options;
+                options.claims = &claims;
+                options.on_progress = [&](double fraction) {
+                    worked = worked || (fraction > 0 && fraction < 1);
+                };
+                mine = observe_trials(own, small.question, trials, small.store, options);
+                simulated += worked;
+            });
+    }
+    EXPECT_EQ(simulated, 1) << "three small trials are one batch, for one of the two";
+    for (const auto& mine : got)
+        for (Eigen::Index t = 0; t < expected.rows(); ++t) {
+            EXPECT_TRUE(same(mine.row(t), expected.row(t))) << t;
+        }
+    EXPECT_EQ(files_in(small.folder.path / "simulations"), 3);
 }
 
 }  // namespace

@@ -59,10 +59,16 @@ TEST_P(PartsTest, ADamagedOneIsNamedAndNothingIsWritten) {
 
 INSTANTIATE_TEST_SUITE_P(Precisions, PartsTest, testing::Values("double", "float"));
 
-TEST(result_folder, with_parts_in_it_is_not_begun_anew) {
+TEST(result_folder, with_parts_in_it_is_not_begun_anew_nor_taken_for_a_run) {
     TemporaryFolder place;
     std::filesystem::create_directories(parts_folder(place / "out"));
     EXPECT_THROW(ResultFolder::create(place / "out"), InputError);
+    try {
+        read_run(place / "out");
+        ADD_FAILURE() << "read";
+    } catch (const InputError& error) {
+        EXPECT_THAT(error.what(), testing::HasSubstr("not merged yet"));
+    }
 }
 
 }  // namespace
