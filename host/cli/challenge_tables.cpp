@@ -85,7 +85,7 @@ TextTable table_of_merits(const ChallengeScore& score) {
     rows.share("one effect, 1.5 limits or more: detected", &Merits::detected_clear);
     rows.at_least(".. of these detected: named first", &Merits::led_by_truth, bars.led_by_truth);
     rows.at_least(".. of these detected: in the group named", &Merits::truth_in_group, bars.truth_in_group);
-    rows.number("mean size of the group named", arm.first.group_size, arm.second.group_size,
+    rows.number(".. of these detected: mean size of the group", arm.first.group_size, arm.second.group_size,
                 fmt::format("at most {}", bars.group_size), met(arm.second.group_size <= bars.group_size));
     rows.at_most("unknown effect: a known one is named", &Merits::named_unknown, bars.named_unknown);
     rows.at_most("nuisance outside its prior: an effect is named", &Merits::named_outside_prior,

@@ -25,16 +25,15 @@ void add_effect(Merits& m, Sums& sums, const ScoredCase& scored) {
     m.detected_by_effect[effect].add(answer.detected());
     m.named.add(leads);
     m.named_by_effect[effect].add(leads);
-    if (answer.names()) {
-        sums.group += static_cast<double>(answer.group.size());
-        ++sums.groups;
-    }
     if (scored.over_limit < clear) return;
     m.detected_clear.add(answer.detected());
     sums.sharpness += in_group ? 1.0 / static_cast<double>(answer.group.size()) : 0;
     if (!answer.detected()) return;
     m.led_by_truth.add(leads);
     m.truth_in_group.add(in_group);
+    if (!answer.names()) return;
+    sums.group += static_cast<double>(answer.group.size());
+    ++sums.groups;
 }
 
 void add_pair(Merits& m, const ScoredCase& scored) {

@@ -30,7 +30,7 @@ struct Merits {
     Share led_by_truth;     ///< .. of those: the effect named first is the true one
     Share truth_in_group;   ///< .. of those: the true effect is among those named
     Share named;            ///< one effect, any amplitude: the effect named first is the true one
-    double group_size = 0;  ///< mean over cases with one effect that is named
+    double group_size = 0;  ///< .. of those: mean over the ones that are named
     double sharpness =
         0;  ///< one clear effect: mean of 1/(effects named) where the true one is among them, else 0
     Share named_unknown;        ///< an effect outside the library: effects of the library are named

@@ -46,28 +46,34 @@ double trust(double misfit_p, double unknown_odds) {
     return factor / (factor + unknown_odds);
 }
 
-}  // namespace
-
-Decision decide(const Findings& findings, const Limits& limits) {
-    Decision decision;
-    const std::vector<double> gains = known_gains(findings);
-    const int single = best_single(findings);
-    decision.confidence.assign(gains.size(), 0);
-    if (single < 0) return decision;
-    const double best = findings.proposals[static_cast<std::size_t>(single)].best_gain();
-    const double margin = std::max(limits.group, limits.group_share * best);
+/// Each candidate's share of the likelihood, gains that differ by the group's margin weighing as
+/// `limits.group`.
+std::vector<double> shares(const std::vector<double>& gains, double best, double margin,
+                           const Limits& limits) {
+    std::vector<double> parts;
     double sum = 0;
+    for (const double gain : gains)
+        sum += parts.emplace_back(std::exp(std::min(0.0, gain - best) * limits.group / margin));
+    for (double& part : parts) part /= sum;
+    return parts;
+}
+
+/// The leader, and who is within the margin behind it, by gain.
+std::vector<std::size_t> group_of(std::size_t leader, const std::vector<double>& gains, double best,
+                                  double margin) {
+    std::vector<std::size_t> group{leader};
     for (std::size_t c = 0; c < gains.size(); ++c)
-        sum += decision.confidence[c] = std::exp(std::min(0.0, gains[c] - best) * limits.group / margin);
-    const double whole =
-        trust(findings.proposals[static_cast<std::size_t>(single)].best_misfit(), limits.unknown_odds);
-    for (double& p : decision.confidence) p *= whole / sum;
-    decision.group = findings.proposals[static_cast<std::size_t>(single)].candidates;
-    for (std::size_t c = 0; c < gains.size(); ++c)
-        if (c != decision.group[0] && gains[c] > 0 && best - gains[c] <= margin) decision.group.push_back(c);
-    std::sort(decision.group.begin() + 1, decision.group.end(),
-              [&](auto a, auto b) { return gains[a] > gains[b]; });
+        if (c != leader && gains[c] > 0 && best - gains[c] <= margin) group.push_back(c);
+    std::sort(group.begin() + 1, group.end(), [&](auto a, auto b) { return gains[a] > gains[b]; });
+    return group;
+}
+
+/// Verdict, proposal and group.
+Decision chosen(const Findings& findings, int single, std::vector<std::size_t> group, double best,
+                const Limits& limits) {
+    Decision decision;
     decision.proposal = single;
+    decision.group = std::move(group);
     if (findings.p_value >= limits.false_alarm) return decision;
     if (findings.proposals[static_cast<std::size_t>(single)].best_misfit() < limits.misfit) {
         const int pair = worthy_pair(findings, best, limits);
@@ -76,13 +82,27 @@ Decision decide(const Findings& findings, const Limits& limits) {
             decision.proposal = pair;
             decision.group = findings.proposals[static_cast<std::size_t>(pair)].candidates;
         }
-        return decision;
-    }
-    const auto is_effect = [&](std::size_t c) { return static_cast<int>(c) < findings.effects; };
-    if (!is_effect(decision.group[0]))
+    } else if (static_cast<int>(decision.group[0]) >= findings.effects) {
         decision.verdict = Verdict::calibration_suspect;
-    else
+    } else {
         decision.verdict = decision.group.size() > 1 ? Verdict::group : Verdict::effect;
+    }
+    return decision;
+}
+
+}  // namespace
+
+Decision decide(const Findings& findings, const Limits& limits) {
+    const std::vector<double> gains = known_gains(findings);
+    const int single = best_single(findings);
+    if (single < 0) return {Verdict::no_gap, -1, {}, std::vector<double>(gains.size(), 0.0)};
+    const Proposal& leader = findings.proposals[static_cast<std::size_t>(single)];
+    const double best = leader.best_gain(), margin = std::max(limits.group, limits.group_share * best);
+    Decision decision =
+        chosen(findings, single, group_of(leader.candidates[0], gains, best, margin), best, limits);
+    const double left = findings.proposals[static_cast<std::size_t>(decision.proposal)].best_misfit();
+    decision.confidence = shares(gains, best, margin, limits);
+    for (double& p : decision.confidence) p *= trust(left, limits.unknown_odds);
     return decision;
 }
 

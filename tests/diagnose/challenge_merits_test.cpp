@@ -52,7 +52,7 @@ TEST(Merits, OfOneEffect) {
     expect_share(m.led_by_truth, 1, 4);
     expect_share(m.truth_in_group, 2, 4);
     expect_share(m.named, 2, 7);
-    EXPECT_DOUBLE_EQ(m.group_size, (1 + 2 + 1 + 3) / 4.0);
+    EXPECT_DOUBLE_EQ(m.group_size, (1 + 2 + 1) / 3.0);
     EXPECT_DOUBLE_EQ(m.sharpness, (1 + 0.5) / 5);
     EXPECT_NEAR(m.brier, (0.01 + 0.36 + 0.64 + 0) / 4, 1e-15);
     expect_share(m.detected_by_effect.at("plate_tilt"), 2, 4);

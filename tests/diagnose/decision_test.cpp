@@ -135,6 +135,8 @@ TEST(Decision, APairWhereOneIsNotEnough) {
     EXPECT_EQ(d.verdict, Verdict::effect);
     EXPECT_EQ(d.proposal, 2);
     EXPECT_THAT(d.group, ElementsAre(1, 3));
+    // What the pair leaves counts, not what one leaves: p = 0.05 weighs 0.407 against odds of 0.1.
+    EXPECT_NEAR(all_confidence(d), 0.407 / 0.507, 1e-3);
 
     Findings single_is_enough = f;
     single_is_enough.proposals[0].misfit_p = 0.5;
