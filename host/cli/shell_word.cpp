@@ -12,7 +12,10 @@ std::string shell_word(const std::string& word) {
 
 std::string shell_words(const std::vector<std::string>& words) {
     std::string text;
-    for (const auto& word : words) text += (text.empty() ? "" : " ") + shell_word(word);
+    for (const auto& word : words) {
+        if (!text.empty()) text += ' ';
+        text += shell_word(word);
+    }
     return text;
 }
 

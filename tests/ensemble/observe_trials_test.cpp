@@ -107,8 +107,9 @@ TEST(ObserveTrials, KeptRecordings) {
     EXPECT_NE(recordings[0].diameter[0], small.packing.diameter[0]);  // as measured
     const Eigen::VectorXd seen = observe(recordings[0], small.question.grid, small.question.material);
     for (Eigen::Index cell = 0; cell < seen.size(); ++cell)
-        if (std::isfinite(seen[cell]))
+        if (std::isfinite(seen[cell])) {
             EXPECT_NEAR(seen[cell], row(0, cell), 1e-4) << cell;  // positions are kept as floats: 1e-8 m
+        }
     EXPECT_EQ(seen.array().isFinite().count(), row.array().isFinite().count());
     Watched again;
     observe_trials(device, small.question, {kept}, small.store, again.options());
