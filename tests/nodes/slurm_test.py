@@ -100,6 +100,9 @@ def slurm():
                 print(f"--- {log.name}\n{log.read_text()[-3000:]}")
             raise
         yield
+        # Jobs whose Slurm is gone would wait for it for good.
+        wait_until(lambda: not subprocess.run(["squeue", "--noheader"], env=environment, capture_output=True).stdout.strip(),
+                   "the last job to end")
 
 
 def run_words(place, out, more=()):
