@@ -108,7 +108,9 @@ TEST(ChallengePlan, UnknownEffectsAreNotInTheLibraryOfTheirDiagnosis) {
             outside.insert(name);
         } else {
             EXPECT_THAT(c.struck, testing::Contains(name));
-            if (name == "plate_tilt") EXPECT_THAT(c.struck, testing::Contains("plate_tilt_y"));
+            if (name == "plate_tilt") {
+                EXPECT_THAT(c.struck, testing::Contains("plate_tilt_y"));
+            }
             ++struck;
         }
     }

@@ -60,7 +60,9 @@ TEST(Adhesion, FadesInAGapWithinAHundredthOfTheRadius) {
         const double force = grain.squeeze(-step), gap = -grain.overlap();
         const double expected = SqueezedGrain::hertz(-gap) - most * std::clamp(1 - gap / range, 0.0, 1.0);
         EXPECT_NEAR(force, expected, 1e-4 * most) << gap;
-        if (gap > 0) EXPECT_LT(std::abs(force - before), 1.1 * most * step / range) << "a jump at " << gap;
+        if (gap > 0) {
+            EXPECT_LT(std::abs(force - before), 1.1 * most * step / range) << "a jump at " << gap;
+        }
         before = force;
     }
     EXPECT_EQ(before, 0);

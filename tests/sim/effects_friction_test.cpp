@@ -55,7 +55,9 @@ TEST(FrictionHistory, AShareOfEachForce) {
         };
         most = std::max({most, std::abs(force(0)), std::abs(force(1))});
         EXPECT_NEAR(force(2), 0.7 * force(0) + 0.3 * force(1), 1e-3 * most) << step;
-        if (step == 3) EXPECT_GT(std::abs(force(0) - force(1)), 0.1 * most) << "the laws differ";
+        if (step == 3) {
+            EXPECT_GT(std::abs(force(0) - force(1)), 0.1 * most) << "the laws differ";
+        }
     }
     EXPECT_GT(most, 0);
 }
@@ -129,8 +131,9 @@ TEST(RollingResistance, SlowsTwistingAndKeepsAngularMomentum) {
         EXPECT_NEAR(now[0].x() + now[1].x(), 2, has_double() ? 1e-12 : 1e-4);
         const double slower = spin[0].x() - spin[1].x() - (now[0].x() - now[1].x());
         const double expected = 2 * resistance * radius / 2 * force / inertia * batch.engine().time_step(0);
-        if (step > 0)
+        if (step > 0) {
             EXPECT_NEAR(slower / expected, 1, 0.01) << step << ": the couple fades at 0.2 of 4 per second";
+        }
         ASSERT_EQ(state.contacts.size(), 1u);
         force = state.contacts.front().force.norm();
         spin = now;

@@ -119,9 +119,10 @@ TEST(PlateCompliance, ForceAndPositionAgree) {
                         1e-3 * std::max(2e-4, low - scan.plate_z))
                 << compliance << " at " << scan.plate_z;
             for (const auto& contact : scan.contacts)
-                if (contact.partner == mcdem::wall_partner(mcdem::Wall::plate))
+                if (contact.partner == mcdem::wall_partner(mcdem::Wall::plate)) {
                     EXPECT_NEAR(contact.point.z() - scan.plate_z, compliance * scan.top_force(),
                                 1e-3 * std::max(2e-4, low - scan.plate_z));
+                }
         }
         EXPECT_EQ(all[2].plate_z, replica.plate.end) << "the recorded position is the commanded one";
     }
