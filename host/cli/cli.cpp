@@ -17,6 +17,7 @@ const char* const first_steps =
     "  mcdem run scenes/small.toml --out out/small        a first run, done in seconds\n"
     "  mcdem run scenes/compression.toml --out out/first  the experiment, six contact models\n"
     "  mcdem table out/first                              the models side by side, again\n"
+    "  mcdem report out/small --out out/small.html        a page to look at, and to send\n"
     "  mcdem COMMAND --help                               more on a command, with examples\n"
     "\n"
     "Exit codes: 0 done, 1 failed, 2 bad input, 130 interrupted (go on with --resume).\n"
@@ -52,8 +53,8 @@ int run_cli(int argc, const char* const* argv) {
     app.set_version_flag("--version", std::string("mcdem ") + version_text);
     int exit_code = exit_done;
     for (const auto add :
-         {add_devices, add_validate, add_run, add_table, add_compare, add_figures, add_calibrate, add_export,
-          add_experiment, add_diagnose, add_challenge})
+         {add_devices, add_validate, add_run, add_table, add_compare, add_figures, add_report, add_calibrate,
+          add_export, add_experiment, add_diagnose, add_challenge})
         add(app, exit_code);
     try {
         app.parse(argc, argv);

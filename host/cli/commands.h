@@ -16,6 +16,7 @@ void add_run(CLI::App& app, int& exit_code);
 void add_table(CLI::App& app, int& exit_code);
 void add_compare(CLI::App& app, int& exit_code);
 void add_figures(CLI::App& app, int& exit_code);
+void add_report(CLI::App& app, int& exit_code);
 void add_calibrate(CLI::App& app, int& exit_code);
 void add_export(CLI::App& app, int& exit_code);
 void add_diagnose(CLI::App& app, int& exit_code);

@@ -49,17 +49,6 @@ void print_figures(const CompareCommand& command) {
     print_pictures(draw_into(command.out, loaded.settings, setting, command.figures));
 }
 
-void add_figure_options(CLI::App& sub, FigureOptions& figures) {
-    sub.add_option("--displacement", figures.distribution_displacement,
-                   "Force distribution at the level nearest to this plate displacement [m]")
-        ->type_name("M")
-        ->capture_default_str();
-    sub.add_option("--threshold", figures.threshold,
-                   "Contact forces below it do not count in the picture of Z, without a reference [N]")
-        ->type_name("N")
-        ->capture_default_str();
-}
-
 }  // namespace
 
 void add_compare(CLI::App& app, int&) {

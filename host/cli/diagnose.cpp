@@ -76,9 +76,10 @@ int run(const DiagnoseCommand& command) {
         const Diagnosis diagnosis = diagnose(command);
         const std::filesystem::path folder = command.out;
         replace_file(folder / "diagnosis.json", diagnosis_json(diagnosis));
-        const auto files = write_diagnosis_page(diagnosis, folder);
         fmt::print("{}\nwrote\n  {}\n", diagnosis_text(diagnosis), (folder / "diagnosis.json").string());
-        for (const auto& file : files) fmt::print("  {}\n", file.string());
+        write_diagnosis_page(diagnosis, folder / "diagnosis.html");
+        fmt::print("  {}\n", (folder / "diagnosis.html").string());
+        for (const auto& file : draw_diagnosis(diagnosis, folder)) fmt::print("  {}\n", file.string());
         return exit_done;
     } catch (const Interrupted& interrupted) {
         spdlog::warn("{}", interrupted.what());

@@ -45,4 +45,17 @@ std::vector<std::filesystem::path> draw_run(const std::filesystem::path& folder)
     }
 }
 
+void add_figure_options(CLI::App& command, FigureOptions& figures) {
+    command
+        .add_option("--displacement", figures.distribution_displacement,
+                    "Force distribution at the level nearest to this plate displacement [m]")
+        ->type_name("M")
+        ->capture_default_str();
+    command
+        .add_option("--threshold", figures.threshold,
+                    "Contact forces below it do not count in the picture of Z, without a reference [N]")
+        ->type_name("N")
+        ->capture_default_str();
+}
+
 }  // namespace mcdem

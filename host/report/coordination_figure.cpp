@@ -4,20 +4,17 @@
 #include "report/figure_parts.h"
 
 namespace mcdem {
-namespace {
-
 double threshold_of(const Series& series, const FigureOptions& options) {
     if (!series.comparison) return options.threshold;
     return series.comparison->tau.available() ? series.comparison->tau.value : 0;
 }
 
-/// Z at the series' threshold; as recorded where there are no contacts, and for the reference.
-std::vector<LevelMean> coordination_means(const Series& series, bool is_reference,
+std::vector<LevelMean> coordination_means(const Cast& cast, const Series& series,
                                           const FigureOptions& options) {
     const auto walls = options.compare.walls_in_coordination;
     Eigen::ArrayXXd z = reference_coordination(series.levels, series.setting.replicas, walls);
     if (const Coordination counted(series.levels, series.setting.replicas, walls);
-        !is_reference && counted.known())
+        !cast.is_reference(series) && counted.known())
         z = counted.at_threshold(threshold_of(series, options));
     std::vector<LevelMean> means;
     for (std::size_t l = 0; l < series.levels.size(); ++l) {
@@ -28,15 +25,8 @@ std::vector<LevelMean> coordination_means(const Series& series, bool is_referenc
     return means;
 }
 
-}  // namespace
-
 std::optional<Figure> coordination_figure(const Cast& cast, const FigureOptions& options) {
-    const auto is_reference = [&](const Series& series) {
-        return cast.reference && &series == &*cast.reference;
-    };
-    const auto means_of = [&](const Series& series) {
-        return coordination_means(series, is_reference(series), options);
-    };
+    const auto means_of = [&](const Series& series) { return coordination_means(cast, series, options); };
     bool any = false;
     for (const auto& series : cast.simulated)
         for (const auto& level : means_of(series)) any = any || level.mean.available();
@@ -51,7 +41,7 @@ std::optional<Figure> coordination_figure(const Cast& cast, const FigureOptions&
     script.set("ylabel 'contacts per grain Z'");
     draw_curves(script, cast, means_of);
     draw_key(script, cast, [&](const Series& series) {
-        if (is_reference(series) || !thresholded) return series.words;
+        if (cast.is_reference(series) || !thresholded) return series.words;
         return fmt::format("{}, tau {:.2f} mN", series.words, threshold_of(series, options) * 1e3);
     });
     return script.figure();

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "report/diagnosis_figures.h"
+#include "report/diagnosis_parts.h"
 #include "report/diagnosis_words.h"
 #include "report/gnuplot.h"
 #include "report/labels.h"
@@ -19,15 +20,11 @@ struct Axes {
 };
 constexpr Axes forces{0.075, 0.56}, beside_forces{0.72, 0.95}, alone{0.2, 0.9};
 
-/// Without rows that are not known in full.
 Rows force_rows(const Shrink& shrink) {
     Rows rows;
-    for (const auto& row : shrink.top_force) {
-        const auto& [displacement, experiment, before, after] = row;
-        if (std::all_of(row.begin(), row.end(), [](double value) { return std::isfinite(value); }))
-            rows.push_back({csv_number(displacement * 1e3), csv_number(experiment), csv_number(before),
-                            csv_number(after)});
-    }
+    for (const auto& [displacement, experiment, before, after] : known_forces(shrink))
+        rows.push_back(
+            {csv_number(displacement * 1e3), csv_number(experiment), csv_number(before), csv_number(after)});
     return rows;
 }
 
@@ -65,26 +62,8 @@ void draw_forces(PlotScript& script, const Shrink& shrink, const std::string& af
     script.key(after, line(diagnosis_colour::after, 1));
 }
 
-struct Bar {
-    std::string words, colour;
-    double value;  ///< part of the gap before
-    std::optional<std::array<double, 2>> interval;
-};
-
-std::vector<Bar> bars_of(const Shrink& shrink) {
-    std::vector<Bar> bars{{"before", diagnosis_colour::before, 1, {}},
-                          {shrink.confirmed ? "after, predicted" : "after",
-                           diagnosis_colour::after,
-                           1 - shrink.fraction,
-                           {{1 - shrink.interval[1], 1 - shrink.interval[0]}}}};
-    if (shrink.confirmed)
-        bars.push_back({"after, simulated", diagnosis_colour::after, 1 - *shrink.confirmed, {}});
-    bars.push_back({"placebo", diagnosis_colour::faint, 1 - shrink.placebo, {}});
-    return bars;
-}
-
 void draw_gap(PlotScript& script, const Shrink& shrink, const Axes& axes) {
-    const auto bars = bars_of(shrink);
+    const auto bars = gap_bars(shrink);
     for (const char* setting : {"border 1", "ytics scale 0 ('' 0)", "format x '%g'", "grid xtics noytics",
                                 "key off", "offsets 0, 0, 0, 0", "xtics nomirror 25", "xrange [*<0:110<*]",
                                 "xlabel 'gap left on data held out [%]' textcolor rgb '#222222'"})
@@ -115,6 +94,32 @@ void draw_gap(PlotScript& script, const Shrink& shrink, const Axes& axes) {
 
 }  // namespace
 
+std::vector<std::array<double, 4>> known_forces(const Shrink& shrink) {
+    auto rows = shrink.top_force;
+    std::erase_if(rows, [](const auto& row) {
+        return !std::all_of(row.begin(), row.end(), [](double value) { return std::isfinite(value); });
+    });
+    return rows;
+}
+
+std::string words_after(const Diagnosis& diagnosis) {
+    if (diagnosis.verdict == Verdict::calibration_suspect) return "simulated, recalibrated";
+    const auto added = diagnosis.causes.empty() ? "the effect" : words_of(diagnosis.causes.front().effect);
+    return shortened("simulated with " + added, 40);
+}
+
+std::vector<GapBar> gap_bars(const Shrink& shrink) {
+    std::vector<GapBar> bars{{"before", diagnosis_colour::before, 1, {}},
+                             {shrink.confirmed ? "after, predicted" : "after",
+                              diagnosis_colour::after,
+                              1 - shrink.fraction,
+                              {{1 - shrink.interval[1], 1 - shrink.interval[0]}}}};
+    if (shrink.confirmed)
+        bars.push_back({"after, simulated", diagnosis_colour::after, 1 - *shrink.confirmed, {}});
+    bars.push_back({"placebo", diagnosis_colour::faint, 1 - shrink.placebo, {}});
+    return bars;
+}
+
 std::optional<Figure> how_far_figure(const Diagnosis& diagnosis) {
     if (!diagnosis.shrink || !(diagnosis.shrink->before > 0)) return std::nullopt;
     const auto& shrink = *diagnosis.shrink;
@@ -124,12 +129,8 @@ std::optional<Figure> how_far_figure(const Diagnosis& diagnosis) {
     script.size(1000, 460);
     const bool with_forces = force_rows(shrink).size() > 1;
     if (with_forces) {
-        const bool calibration = diagnosis.verdict == Verdict::calibration_suspect;
-        const auto added =
-            diagnosis.causes.empty() ? "the effect" : words_of(diagnosis.causes.front().effect);
         script.title("Force on the top plate");
-        draw_forces(script, shrink,
-                    calibration ? "simulated, recalibrated" : shortened("simulated with " + added, 40));
+        draw_forces(script, shrink, words_after(diagnosis));
         script.panel();
     }
     script.title("Gap that is left");

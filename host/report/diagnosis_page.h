@@ -1,24 +1,23 @@
-// The page of a diagnosis: one HTML file that needs nothing else and no network.
+// A diagnosis on a page.
 #pragma once
 #include <filesystem>
 #include <string>
 #include <vector>
 
 #include "diagnose/diagnosis.h"
+#include "report/page.h"
 
 namespace mcdem {
 
-/// The SVG files of the three pictures; empty where one could not be drawn for want of data.
-struct DiagnosisPictures {
-    std::string where, which, how_far;
-};
+/// Verdict, charts, tables and provenance; `name` tells it from others on the page, empty: it stands alone.
+void add_diagnosis(Page& page, const Diagnosis& diagnosis, const std::string& name);
 
-std::string diagnosis_page(const Diagnosis& diagnosis, const DiagnosisPictures& pictures);
+/// A page of this diagnosis alone. Throws RunError where it cannot be made.
+void write_diagnosis_page(const Diagnosis& diagnosis, const std::filesystem::path& file);
 
-/// Draws the pictures where.*, which.* and how_far.* into `folder`, which must exist, and writes
-/// diagnosis.html beside them with the same pictures within. Returns the page and the PNG files. Throws
-/// RunError where it cannot.
-std::vector<std::filesystem::path> write_diagnosis_page(const Diagnosis& diagnosis,
-                                                        const std::filesystem::path& folder);
+/// Draws the pictures where.*, which.* and how_far.* into `folder`, which must exist. Returns the PNG files.
+/// Throws RunError where it cannot.
+std::vector<std::filesystem::path> draw_diagnosis(const Diagnosis& diagnosis,
+                                                  const std::filesystem::path& folder);
 
 }  // namespace mcdem

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "report/diagnosis_figures.h"
+#include "report/diagnosis_parts.h"
 #include "report/diagnosis_words.h"
 #include "report/gnuplot.h"
 
@@ -17,33 +18,36 @@ constexpr int narrowest_number = 27;  // a cell with its z score written in [pix
 /// Displacements that differ by less are one column [m].
 constexpr double same_displacement = 1e-5;
 
-struct Column {
-    std::string phase;
-    double displacement;
-    double x = 0;  ///< of its middle, within a panel
-};
-
-struct HeatMap {
-    std::vector<std::string> observables;  ///< from top to bottom
-    std::vector<Column> columns;           ///< in the order of the measurement: loading, then back
-    double width = 0;                      ///< of a panel
-
-    int row(const WhereCell& cell) const {
-        return std::find(observables.begin(), observables.end(), cell.observable) - observables.begin();
-    }
-    const Column& column(const WhereCell& cell) const {
-        return *std::find_if(columns.begin(), columns.end(), [&](const Column& c) {
-            return c.phase == cell.phase && std::fabs(c.displacement - cell.displacement) < same_displacement;
-        });
-    }
-};
-
 int phase_order(const std::string& phase) { return phase == "load" ? 0 : phase == "unload" ? 1 : 2; }
+
+using Column = HeatMap::Column;
+
+bool same(const Column& a, const Column& b) {
+    return a.phase == b.phase && std::fabs(a.displacement - b.displacement) < same_displacement;
+}
 
 bool earlier(const Column& a, const Column& b) {
     if (a.phase != b.phase)
         return std::pair(phase_order(a.phase), a.phase) < std::pair(phase_order(b.phase), b.phase);
     return a.phase == "unload" ? a.displacement > b.displacement : a.displacement < b.displacement;
+}
+
+bool within(const WhereCell& cell, const WhereEntry& entry) {
+    return cell.observable == entry.observable && (entry.phase.empty() || entry.phase == cell.phase) &&
+           cell.displacement >= entry.displacement[0] - same_displacement &&
+           cell.displacement <= entry.displacement[1] + same_displacement;
+}
+
+}  // namespace
+
+int HeatMap::row(const WhereCell& cell) const {
+    return std::find(observables.begin(), observables.end(), cell.observable) - observables.begin();
+}
+
+const HeatMap::Column& HeatMap::column(const WhereCell& cell) const {
+    return *std::find_if(columns.begin(), columns.end(), [&](const Column& c) {
+        return same(c, {cell.phase, cell.displacement});
+    });
 }
 
 HeatMap heat_map_of(const std::vector<WhereCell>& cells) {
@@ -54,9 +58,6 @@ HeatMap heat_map_of(const std::vector<WhereCell>& cells) {
         map.columns.push_back({cell.phase, cell.displacement});
     }
     std::sort(map.columns.begin(), map.columns.end(), earlier);
-    const auto same = [](const Column& a, const Column& b) {
-        return a.phase == b.phase && std::fabs(a.displacement - b.displacement) < same_displacement;
-    };
     map.columns.erase(std::unique(map.columns.begin(), map.columns.end(), same), map.columns.end());
     for (std::size_t c = 0; c < map.columns.size(); ++c) {
         if (c > 0 && map.columns[c].phase != map.columns[c - 1].phase) map.width += phase_gap;
@@ -66,13 +67,11 @@ HeatMap heat_map_of(const std::vector<WhereCell>& cells) {
     return map;
 }
 
-bool within(const WhereCell& cell, const WhereEntry& entry) {
-    return cell.observable == entry.observable && (entry.phase.empty() || entry.phase == cell.phase) &&
-           cell.displacement >= entry.displacement[0] - same_displacement &&
-           cell.displacement <= entry.displacement[1] + same_displacement;
+bool has_cells(const Diagnosis& diagnosis) {
+    return std::any_of(diagnosis.cells.begin(), diagnosis.cells.end(),
+                       [](const WhereCell& cell) { return std::isfinite(cell.z_score); });
 }
 
-/// Where the threshold is not known, the cells of the entries stand out before recalibration, and none after.
 bool stands_out(const Diagnosis& diagnosis, const WhereCell& cell, bool refitted) {
     if (diagnosis.where_threshold > 0)
         return std::fabs(refitted ? cell.z_score_refitted : cell.z_score) >= diagnosis.where_threshold;
@@ -80,12 +79,13 @@ bool stands_out(const Diagnosis& diagnosis, const WhereCell& cell, bool refitted
                                     [&](const WhereEntry& entry) { return within(cell, entry); });
 }
 
-/// The colours end at this many sigmas: outliers must not fade all others, nor noise look like a gap.
 double colour_range(const std::vector<WhereCell>& cells) {
     double largest = 0;
     for (const auto& cell : cells) largest = std::max(largest, std::fabs(cell.z_score));
     return std::clamp(std::ceil(largest), 6.0, 8.0);
 }
+
+namespace {
 
 using Rows = std::vector<std::vector<std::string>>;
 
@@ -186,9 +186,7 @@ void set_colours(PlotScript& script, double range, int height) {
 }  // namespace
 
 std::optional<Figure> where_figure(const Diagnosis& diagnosis) {
-    if (std::none_of(diagnosis.cells.begin(), diagnosis.cells.end(),
-                     [](const WhereCell& cell) { return std::isfinite(cell.z_score); }))
-        return std::nullopt;
+    if (!has_cells(diagnosis)) return std::nullopt;
     const auto map = heat_map_of(diagnosis.cells);
     const int height = top + bottom + row_height * static_cast<int>(map.observables.size());
     const double range = colour_range(diagnosis.cells);

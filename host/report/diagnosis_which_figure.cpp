@@ -5,6 +5,7 @@
 #include <set>
 
 #include "report/diagnosis_figures.h"
+#include "report/diagnosis_parts.h"
 #include "report/diagnosis_words.h"
 #include "report/gnuplot.h"
 
@@ -22,15 +23,6 @@ struct Axes {
 };
 constexpr Axes scores{0.245, 0.50}, amplitudes{0.54, 0.75};
 constexpr double amount_x = 0.765, probability_x = 0.985;
-
-/// Candidates that the verdict names: the leader and its group, none where no effect explains the gap.
-std::set<std::string> named_effects(const Diagnosis& diagnosis) {
-    if (diagnosis.verdict != Verdict::effect && diagnosis.verdict != Verdict::group) return {};
-    const auto& leader = diagnosis.ranking.front();
-    std::set<std::string> named(leader.group.begin(), leader.group.end());
-    named.insert(leader.effect);
-    return named;
-}
 
 /// Score and amplitude are drawn in the same rows.
 void set_rows(PlotScript& script, const Axes& axes, std::size_t rows, int height) {
@@ -100,24 +92,13 @@ void draw_scores(PlotScript& script, const Diagnosis& diagnosis) {
                     "using 1:2 with points pointtype 12 pointsize 1.1 linecolor rgb '#222222'");
 }
 
-/// Fitted amplitudes over the smallest detectable ones: that makes all units one.
 Rows amplitude_rows(const Diagnosis& diagnosis, bool named) {
     const auto all_named = named_effects(diagnosis);
-    const auto& ranking = diagnosis.ranking;
     Rows rows;
-    for (std::size_t i = 0; i < ranking.size(); ++i) {
-        if (all_named.contains(ranking[i].effect) != named) continue;
-        const auto limit =
-            std::find_if(diagnosis.detection_limits.begin(), diagnosis.detection_limits.end(),
-                         [&](const DetectionLimit& l) { return l.effect == ranking[i].effect; });
-        if (limit == diagnosis.detection_limits.end() || !std::isfinite(limit->minimum_amplitude) ||
-            !(limit->minimum_amplitude > 0))
-            continue;
-        const double over = ranking[i].amplitude / limit->minimum_amplitude;
-        const double half = interval_90 * ranking[i].amplitude_error / limit->minimum_amplitude;
-        rows.push_back(
-            {csv_number(over), csv_number(-double(i)), csv_number(over - half), csv_number(over + half)});
-    }
+    for (const auto& [place, over, half] : shown_amplitudes(diagnosis))
+        if (all_named.contains(diagnosis.ranking[place].effect) == named)
+            rows.push_back({csv_number(over), csv_number(-double(place)), csv_number(over - half),
+                            csv_number(over + half)});
     return rows;
 }
 
@@ -160,6 +141,30 @@ void label_rows(PlotScript& script, const std::vector<Cause>& ranking) {
 }
 
 }  // namespace
+
+std::set<std::string> named_effects(const Diagnosis& diagnosis) {
+    if (diagnosis.verdict != Verdict::effect && diagnosis.verdict != Verdict::group) return {};
+    const auto& leader = diagnosis.ranking.front();
+    std::set<std::string> named(leader.group.begin(), leader.group.end());
+    named.insert(leader.effect);
+    return named;
+}
+
+std::vector<ShownAmplitude> shown_amplitudes(const Diagnosis& diagnosis) {
+    std::vector<ShownAmplitude> shown;
+    const auto& ranking = diagnosis.ranking;
+    for (std::size_t i = 0; i < ranking.size(); ++i) {
+        const auto limit =
+            std::find_if(diagnosis.detection_limits.begin(), diagnosis.detection_limits.end(),
+                         [&](const DetectionLimit& l) { return l.effect == ranking[i].effect; });
+        if (limit == diagnosis.detection_limits.end() || !std::isfinite(limit->minimum_amplitude) ||
+            !(limit->minimum_amplitude > 0))
+            continue;
+        shown.push_back({i, ranking[i].amplitude / limit->minimum_amplitude,
+                         interval_90 * ranking[i].amplitude_error / limit->minimum_amplitude});
+    }
+    return shown;
+}
 
 std::vector<std::string> group_letters(const std::vector<Cause>& ranking) {
     std::vector<std::set<std::string>> groups;

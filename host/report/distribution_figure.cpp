@@ -31,16 +31,11 @@ const Level* nearest_level(const Series& series, const FigureOptions& options) {
     return nearest;
 }
 
-struct Shown {
-    const Series* series;
-    const Level* level;
-};
-
-std::vector<Shown> shown_levels(const Cast& cast, const FigureOptions& options) {
-    std::vector<Shown> shown;
-    for (const auto& series : cast.simulated) shown.push_back({&series, nearest_level(series, options)});
-    if (cast.reference) shown.push_back({&*cast.reference, nearest_level(*cast.reference, options)});
-    std::erase_if(shown, [](const Shown& s) { return !s.level; });
+std::vector<ShownDensity> shown_levels(const Cast& cast, const FigureOptions& options) {
+    std::vector<ShownDensity> shown;
+    for (const auto& series : cast.simulated) shown.push_back({&series, nearest_level(series, options), {}});
+    if (cast.reference) shown.push_back({&*cast.reference, nearest_level(*cast.reference, options), {}});
+    std::erase_if(shown, [](const ShownDensity& s) { return !s.level; });
     return shown;
 }
 
@@ -49,9 +44,9 @@ struct Bins {
     double largest = 0;  ///< [N]
     int count = 100;
 };
-Bins common_bins(const std::vector<Shown>& shown, WallContacts walls) {
+Bins common_bins(const std::vector<ShownDensity>& shown, WallContacts walls) {
     Bins bins;
-    for (const auto& [series, level] : shown) {
+    for (const auto& [series, level, density] : shown) {
         std::vector<double> forces;
         for (const auto& scans : level->scans) {
             const auto of_replica = contact_forces(scans, walls);
@@ -67,9 +62,9 @@ Bins common_bins(const std::vector<Shown>& shown, WallContacts walls) {
     return bins;
 }
 
-Rows density_rows(const Shown& shown, const Bins& bins, WallContacts walls) {
+Rows density_rows(const ShownDensity& shown) {
     Rows rows;
-    const auto density = force_density(*shown.level, bins.count, bins.largest, walls);
+    const auto& density = shown.density;
     for (std::size_t b = 0; b < density.force.size(); ++b)
         if (density.density[b].value > 0)  // the logarithm of an empty bin cannot be drawn
             rows.push_back({csv_number(density.force[b] / mN), csv_number(density.density[b].value * mN),
@@ -96,11 +91,18 @@ void draw_series(PlotScript& script, const Series& series, int block, bool is_re
 
 }  // namespace
 
-std::optional<Figure> distribution_figure(const Cast& cast, const FigureOptions& options) {
+std::vector<ShownDensity> shown_densities(const Cast& cast, const FigureOptions& options) {
     const auto walls = options.compare.walls_in_distribution;
-    const auto shown = shown_levels(cast, options);
+    auto shown = shown_levels(cast, options);
     const auto bins = common_bins(shown, walls);
-    if (!(bins.largest > 0)) return std::nullopt;
+    if (!(bins.largest > 0)) return {};
+    for (auto& one : shown) one.density = force_density(*one.level, bins.count, bins.largest, walls);
+    return shown;
+}
+
+std::optional<Figure> distribution_figure(const Cast& cast, const FigureOptions& options) {
+    const auto shown = shown_densities(cast, options);
+    if (shown.empty()) return std::nullopt;
     PlotScript script("force_distribution", "Density of contact forces at one compression level.",
                       "force_mN,density_per_mN,standard_error_per_mN,displacement_mm,phase,setting");
     script.title(fmt::format("Contact forces at {:.1f} mm, {}ing", shown.front().level->displacement * 1e3,
@@ -113,10 +115,9 @@ std::optional<Figure> distribution_figure(const Cast& cast, const FigureOptions&
     bool bands = false;
     for (const auto& one : shown) {
         bands = bands || one.series->setting.replicas.size() > 1;
-        const auto rows = density_rows(one, bins, walls);
+        const auto rows = density_rows(one);
         if (!rows.empty())
-            draw_series(script, *one.series, script.add_block(rows),
-                        cast.reference && one.series == &*cast.reference);
+            draw_series(script, *one.series, script.add_block(rows), cast.is_reference(*one.series));
     }
     if (bands) script.key("± standard error", "with filledcurves linecolor rgb '#666666'");
     return script.figure();

@@ -66,16 +66,23 @@ Cast cast_of(const std::vector<Setting>& settings, const std::optional<Setting>&
     return cast;
 }
 
-Rows curve_rows(const Series& series, const std::vector<LevelMean>& means, Phase phase) {
-    Rows rows;
-    const LevelMean *turning = nullptr, *last = nullptr;
+std::vector<LevelMean> curve_levels(const std::vector<LevelMean>& means, Phase phase) {
+    std::vector<LevelMean> levels;
+    const LevelMean* turning = nullptr;
     for (const auto& level : means) {
         if (!level.mean.available()) continue;
         if (level.phase == Phase::load) turning = &level;
-        if (level.phase == phase) rows.push_back(curve_row(series, level)), last = &level;
+        if (level.phase == phase) levels.push_back(level);
     }
-    if (phase == Phase::unload && turning && last && turning->displacement > last->displacement)
-        rows.push_back(curve_row(series, *turning));
+    if (phase == Phase::unload && turning && !levels.empty() &&
+        turning->displacement > levels.back().displacement)
+        levels.push_back(*turning);
+    return levels;
+}
+
+Rows curve_rows(const Series& series, const std::vector<LevelMean>& means, Phase phase) {
+    Rows rows;
+    for (const auto& level : curve_levels(means, phase)) rows.push_back(curve_row(series, level));
     return rows;
 }
 

@@ -3,6 +3,7 @@
 #include <functional>
 #include <optional>
 
+#include "metrics/force_distribution.h"
 #include "report/figures.h"
 #include "report/plot_script.h"
 
@@ -21,14 +22,18 @@ struct Series {
 struct Cast {
     std::vector<Series> simulated;
     std::optional<Series> reference;
+    bool is_reference(const Series& series) const { return reference && &series == &*reference; }
 };
 
 /// The settings that have scans left after their discarded cycles.
 Cast cast_of(const std::vector<Setting>& settings, const std::optional<Setting>& reference,
              const FigureOptions& options);
 
-/// Rows `displacement [mm], value, standard error, phase, setting` of one phase. Unloading starts at the
-/// turning point, which is the last scan of loading.
+/// The levels of one phase that are known. Unloading starts at the turning point, the last level of loading,
+/// which then comes last.
+std::vector<LevelMean> curve_levels(const std::vector<LevelMean>& means, Phase phase);
+
+/// Rows `displacement [mm], value, standard error, phase, setting` of those levels.
 using Rows = std::vector<std::vector<std::string>>;
 Rows curve_rows(const Series& series, const std::vector<LevelMean>& means, Phase phase);
 
@@ -40,6 +45,21 @@ void draw_curves(PlotScript& script, const Cast& cast,
 /// The key: the series in the order given, then what lines, points and bands mean.
 void draw_key(PlotScript& script, const Cast& cast,
               const std::function<std::string(const Series&)>& words_of);
+
+/// Z of the series at its threshold; as recorded where there are no contacts, and for the reference.
+std::vector<LevelMean> coordination_means(const Cast& cast, const Series& series,
+                                          const FigureOptions& options);
+/// Below which contact forces are left out in that [N].
+double threshold_of(const Series& series, const FigureOptions& options);
+
+/// p(f) of one series at the level nearest to the one asked for.
+struct ShownDensity {
+    const Series* series;
+    const Level* level;
+    ForceDensity density;
+};
+/// On bins common to all, to the force that all but a few contacts stay below; empty where nothing is known.
+std::vector<ShownDensity> shown_densities(const Cast& cast, const FigureOptions& options);
 
 Figure top_force_figure(const Cast& cast);
 std::optional<Figure> distribution_figure(const Cast& cast, const FigureOptions& options);

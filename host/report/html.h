@@ -15,9 +15,4 @@ std::string html_table(const TextTable& table);
 /// A <ul> of texts; empty where there are none.
 std::string html_list(const std::vector<std::string>& texts);
 
-/// An SVG file of gnuplot made part of a page: its ids start with `name`, nothing refers to anything outside
-/// of the page, and inks and grid follow the page's CSS variables --ink, --axis and --grid. `about` is read
-/// out in its place.
-std::string inline_svg(const std::string& svg, const std::string& name, const std::string& about);
-
 }  // namespace mcdem

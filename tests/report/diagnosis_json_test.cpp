@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "core/errors.h"
 #include "report/diagnosis_samples.h"
 
 namespace mcdem {
@@ -134,6 +135,42 @@ TEST(DiagnosisJson, verdicts_have_names_of_their_own) {
     for (const auto verdict : samples::all_verdicts) names.insert(verdict_name(verdict));
     EXPECT_EQ(names,
               (std::set<std::string>{"no_gap", "effect", "group", "unknown_effect", "calibration_suspect"}));
+}
+
+TEST(DiagnosisJson, is_read_again_as_it_was_written) {
+    for (const auto verdict : samples::all_verdicts) {
+        auto d = samples::diagnosis(verdict);
+        d.cells.front().z_score = std::nan("");
+        d.detection_limits.front().minimum_amplitude = std::numeric_limits<double>::infinity();
+        const auto text = diagnosis_json(d);
+        EXPECT_EQ(diagnosis_json(diagnosis_of_json(text, "here")), text);
+    }
+    const auto bare = diagnosis_json({});
+    EXPECT_EQ(diagnosis_json(diagnosis_of_json(bare, "here")), bare);
+}
+
+TEST(DiagnosisJson, what_is_none_is_refused_with_its_place) {
+    auto json = parsed(samples::diagnosis(Verdict::effect));
+    json.erase("ranking");
+    auto wrong = parsed(samples::diagnosis(Verdict::effect));
+    wrong["verdict"] = "perhaps";
+    auto text_for_number = parsed(samples::diagnosis(Verdict::effect));
+    text_for_number["cells"][3]["z_score"] = "six";
+    for (const auto& [text, part] :
+         std::vector<std::pair<std::string, std::string>>{{json.dump(), "ranking"},
+                                                          {wrong.dump(), "perhaps"},
+                                                          {text_for_number.dump(), "number"},
+                                                          {"{\"verdict\":", "parse"},
+                                                          {"[]", "type"},
+                                                          {"", "parse"}}) {
+        try {
+            diagnosis_of_json(text, "out/diagnosis.json");
+            FAIL() << text;
+        } catch (const InputError& error) {
+            EXPECT_THAT(error.what(), testing::StartsWith("out/diagnosis.json: must be a diagnosis.json"));
+            EXPECT_THAT(error.what(), testing::HasSubstr(part));
+        }
+    }
 }
 
 }  // namespace

@@ -1,0 +1,95 @@
+// The page itself: unpacks the plotting library, draws the charts and draws them again in other colours.
+const plotSettings = {responsive: true, displaylogo: false, modeBarButtonsToRemove: ['lasso2d', 'select2d']};
+const narrow = 640;  // pixels, below which legends go under the charts
+
+async function unpackedLibrary() {
+  const packed = Uint8Array.from(atob(document.getElementById('library').textContent), c => c.charCodeAt(0));
+  const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream('gzip'));
+  return await new Response(stream).text();
+}
+
+const axisLook = {gridcolor: 'var(--grid)', linecolor: 'var(--axis)', tickcolor: 'var(--axis)', showline: true,
+                  zeroline: false, automargin: true};
+
+const toolLook = {bgcolor: 'rgba(0,0,0,0)', color: 'var(--line)', activecolor: 'var(--ink)'};
+
+/// What the chart says of its layout, in the page's look.
+function layoutOf(chart, width) {
+  const layout = {
+    height: chart.height, margin: {l: 60, r: 16, t: 24, b: 48}, paper_bgcolor: 'rgba(0,0,0,0)',
+    plot_bgcolor: 'rgba(0,0,0,0)', modebar: toolLook, hovermode: 'closest', font: {family: 'system-ui, sans-serif', size: 13,
+    color: 'var(--ink)'}, hoverlabel: {bgcolor: 'var(--card)', bordercolor: 'var(--line)', align: 'left',
+    font: {color: 'var(--ink)'}, namelength: -1}, ...chart.layout};
+  for (const key of Object.keys(layout).filter(key => /^[xy]axis/.test(key))) {
+    const axis = layout[key] = {...axisLook, ...layout[key]};
+    if (chart.logged && chart.log.includes(key[0]))
+      Object.assign(axis, {type: 'log', dtick: 'D2', rangemode: 'normal', exponentformat: 'power'});
+  }
+  layout.legend = width < narrow ? {orientation: 'h', y: -0.2, ...layout.legend} : {...layout.legend};
+  return layout;
+}
+
+function drawChart(chart, width) {
+  const place = document.getElementById(chart.id);
+  const layout = layoutOf(chart, width || place.clientWidth);
+  if (width) layout.width = width;
+  return Plotly.react(place, themed(chart.data), themed(layout), plotSettings);
+}
+
+function sayTrouble(error) {
+  const trouble = document.getElementById('trouble');
+  trouble.hidden = false;
+  trouble.textContent = `The charts cannot be shown: ${error.message}. They need a browser of 2023 or later.`;
+}
+
+function addLogButtons(charts) {
+  for (const button of document.querySelectorAll('button[data-log]')) {
+    const chart = charts.find(({id}) => id === button.dataset.log);
+    button.addEventListener('click', () => {
+      chart.logged = !chart.logged;
+      button.setAttribute('aria-pressed', chart.logged);
+      drawChart(chart);
+    });
+  }
+}
+
+/// Paper is bright, and as wide as it is.
+function addPrinting(charts, packings, drawAll) {
+  const paper = 690;  // pixels of A4 between its margins
+  let theme;
+  addEventListener('beforeprint', () => {
+    theme = root.dataset.theme;
+    root.dataset.theme = 'light';
+    for (const folded of document.querySelectorAll('details')) folded.open = true;
+    charts.forEach(chart => drawChart(chart, paper));
+    packings.forEach(packing => packing.print(paper));
+  });
+  addEventListener('afterprint', () => {
+    if (theme) root.dataset.theme = theme; else delete root.dataset.theme;
+    packings.forEach(packing => packing.printed());
+    drawAll();
+  });
+}
+
+async function showPage() {
+  const content = JSON.parse(document.getElementById('content').textContent);
+  (0, eval)(await unpackedLibrary());
+  const packings = content.packings.map(({id, view}) => new PackingView(id, view));
+  const drawAll = () => Promise.all([...content.charts.map(chart => drawChart(chart)),
+                                     ...packings.map(packing => packing.draw())]);
+  const button = document.getElementById('theme');
+  const named = () => { button.textContent = isDark() ? 'bright' : 'dark'; };
+  button.addEventListener('click', () => {
+    root.dataset.theme = isDark() ? 'light' : 'dark';
+    named();
+    drawAll();
+  });
+  screenIsDark.addEventListener('change', () => { named(); drawAll(); });
+  named();
+  addLogButtons(content.charts);
+  addPrinting(content.charts, packings, drawAll);
+  await drawAll();
+  root.dataset.ready = 'yes';
+}
+
+showPage().catch(sayTrouble);

@@ -1,0 +1,38 @@
+"""An installed program finds what it needs beside it, wherever that is, and says what is missing where it does not.
+
+install_test.py CMAKE BUILD_FOLDER
+"""
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+DIAGNOSIS = """{"verdict": "no_gap", "gap": {"detected": false, "p_value": 0.5, "p_omnibus": 0.5, "p_directed": 0.5},
+"where": [], "causes": [], "shrink": null, "detection_limits": [], "not_measured": [], "seconds": 1, "sentence": "",
+"where_threshold": null, "cells": [], "ranking": [], "nuisances": [], "not_testable": [], "provenance": {}}"""
+
+
+def report(program, folder):
+    return subprocess.run([program, "report", "diagnosis.json", "--out", "page.html"], cwd=folder, text=True,
+                          capture_output=True, timeout=60)
+
+
+def main():
+    cmake, build = sys.argv[1:3]
+    with tempfile.TemporaryDirectory(prefix="mcdem-install-") as name:
+        folder = pathlib.Path(name)
+        subprocess.run([cmake, "--install", build, "--prefix", folder / "there"], check=True,
+                       stdout=subprocess.DEVNULL)
+        (folder / "diagnosis.json").write_text(DIAGNOSIS)
+        (folder / "there").rename(folder / "elsewhere")
+        program = folder / "elsewhere/bin/mcdem"
+        done = report(program, folder)
+        assert done.returncode == 0 and (folder / "page.html").exists(), done.stderr
+        (folder / "elsewhere/share/mcdem/plotly.js.gz").unlink()
+        refused = report(program, folder)
+        assert refused.returncode == 1 and "install python3-plotly" in refused.stderr, refused.stderr
+        assert str(folder / "elsewhere/share/mcdem") in refused.stderr, refused.stderr
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,102 @@
+#include "report/packing_view.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace mcdem {
+namespace {
+
+using testing::ElementsAre;
+
+/// Grains on a line along y, each touching the next, the first the floor.
+Recording row_of_grains(int grains, int scans) {
+    Recording made;
+    made.box = {0.1, 0.2};
+    made.plate_start = 0.15;
+    made.diameter.assign(static_cast<std::size_t>(grains), 0.0123456);
+    for (int s = 0; s < scans; ++s) {
+        Scan scan;
+        scan.frame = s;
+        scan.plate_z = 0.15 - 1e-3 * s;
+        for (int g = 0; g < grains; ++g)
+            scan.position.push_back({0.05, 0.2 * (g + 0.5) / grains, 0.0617234567});
+        scan.contacts.push_back({0, wall_partner(Wall::floor), {0, 0, 0}, {0, 0, 2e-3}, 0});
+        for (int g = 0; g + 1 < grains; ++g)
+            scan.contacts.push_back({g, g + 1, {0, 0, 0}, {3e-3 * (s + 1), 4e-3 * (s + 1), 0}, 0});
+        made.scans.push_back(scan);
+    }
+    return made;
+}
+
+TEST(PackingView, lengths_are_millimetres_and_forces_millinewtons) {
+    const auto view = *packing_view({{"mc_dem", row_of_grains(3, 2)}});
+    const auto& setting = view["settings"][0];
+    EXPECT_EQ(setting["label"], "mc_dem");
+    EXPECT_EQ(setting["box_mm"], (Json{100.0, 200.0}));
+    EXPECT_EQ(setting["top_mm"], 150.0);
+    EXPECT_EQ(setting["diameter_mm"][0], 12.346);
+    const auto& scan = setting["scans"][1];
+    EXPECT_EQ(scan["plate_mm"], 149.0);
+    EXPECT_EQ(scan["displacement_mm"], 1.0);
+    EXPECT_EQ(scan["z_mm"], (Json{61.723, 61.723, 61.723}));
+    EXPECT_EQ(scan["grain"], (Json{0, 0, 1}));
+    EXPECT_EQ(scan["partner"], (Json{wall_partner(Wall::floor), 1, 2}));
+    EXPECT_EQ(scan["force_mN"], (Json{2.0, 10.0, 10.0}));
+    EXPECT_EQ(scan["title"], "scan 1: 1.00 mm, loading, cycle 1, top force 0 N");
+    EXPECT_EQ(view["force_mN"], 10.0);
+    EXPECT_EQ(view["load_mN"], 20.0);
+}
+
+TEST(PackingView, needs_positions) {
+    auto bare = row_of_grains(3, 2);
+    for (auto& scan : bare.scans) scan.position.clear();
+    EXPECT_FALSE(packing_view({{"mc_dem", bare}}));
+    const auto view = *packing_view({{"bare", bare}, {"whole", row_of_grains(3, 1)}});
+    ASSERT_EQ(view["settings"].size(), 1u);
+    EXPECT_EQ(view["settings"][0]["label"], "whole");
+}
+
+TEST(PackingView, of_large_packings_shows_the_grains_nearest_to_the_middle_plane) {
+    PackingLimits limits;
+    limits.most_grains = 4;
+    const auto view = *packing_view({{"large", row_of_grains(100, 1)}}, limits);
+    const auto& setting = view["settings"][0];
+    EXPECT_EQ(setting["number"], (Json{48, 49, 50, 51}));
+    const auto& scan = setting["scans"][0];
+    EXPECT_EQ(scan["y_mm"], (Json{97.0, 99.0, 101.0, 103.0}));
+    EXPECT_EQ(scan["grain"], (Json{0, 1, 2}));  // contacts among them
+    EXPECT_EQ(scan["partner"], (Json{1, 2, 3}));
+}
+
+/// So many scans down to the one `lowest`, and back.
+Recording stroke(std::size_t scans, std::size_t lowest) {
+    Recording made;
+    for (std::size_t s = 0; s < scans; ++s) {
+        Scan scan;
+        scan.plate_z = std::abs(static_cast<double>(s) - static_cast<double>(lowest));
+        made.scans.push_back(scan);
+    }
+    return made;
+}
+
+TEST(ScansShown, are_all_or_evenly_spread_with_both_ends) {
+    EXPECT_THAT(scans_shown(stroke(4, 2), 1000), ElementsAre(0, 1, 2, 3));
+    PackingLimits limits;
+    limits.scans = 3;
+    EXPECT_THAT(scans_shown(stroke(61, 60), 1000, limits), ElementsAre(0, 30, 60));
+    limits.scans = 1;
+    EXPECT_THAT(scans_shown(stroke(61, 30), 1000, limits), ElementsAre(60));
+    EXPECT_TRUE(scans_shown(stroke(0, 0), 1000).empty());
+    EXPECT_EQ(scans_shown(stroke(61, 30), 60'000).size(), 10u);                    // what finds room
+    EXPECT_THAT(scans_shown(stroke(61, 30), 10'000'000), ElementsAre(0, 30, 60));  // these always do
+}
+
+TEST(ScansShown, have_the_most_compressed_one_among_them) {
+    PackingLimits limits;
+    limits.scans = 5;
+    EXPECT_THAT(scans_shown(stroke(61, 28), 1000, limits), ElementsAre(0, 15, 28, 45, 60));
+    EXPECT_THAT(scans_shown(stroke(61, 0), 1000, limits), ElementsAre(0, 15, 30, 45, 60));
+}
+
+}  // namespace
+}  // namespace mcdem
