@@ -151,7 +151,7 @@ std::optional<Chart> which_chart(const Diagnosis& diagnosis) {
                     {"bargap", 0.3},
                     {"annotations", annotations_of(ranking)},
                     {"xaxis", axis("gain in log likelihood", 0, 0.3)},
-                    {"xaxis2", axis("fitted amplitude / detection limit", 0.37, 0.58)},
+                    {"xaxis2", axis("amplitude / limit", 0.37, 0.58)},
                     {"yaxis",
                      {{"tickvals", places},
                       {"ticktext", names},
