@@ -17,8 +17,8 @@ def mpirun(place, words, options=()):
                         place.mcdem, *words, "--mpi"])
 
 
-def run_words(out):
-    return [*command_of("sweep.toml", out), *PARTS]
+def run_words(out, parts=PARTS):
+    return [*command_of("sweep.toml", out), *parts]
 
 
 def survivors_do_the_work_of_a_killed_rank(place):
@@ -34,7 +34,9 @@ def survivors_do_the_work_of_a_killed_rank(place):
 def the_same_command_goes_on(place):
     """Without it mpirun ends all ranks; what was done is not done again."""
     place.run_alone()
-    process = mpirun(place, run_words("ranks"))
+    # Parts of one replica: after the first there is more to do than three ranks get through before they are ended.
+    words = run_words("ranks", ["--part-replicas", "1"])
+    process = mpirun(place, words)
     parts = PartsSeen(place.path / "ranks/parts")
     wait_until(lambda: list(parts.folder.glob("*.h5")), "a part")
     parts.look()
@@ -42,7 +44,7 @@ def the_same_command_goes_on(place):
     finish(process, exit_codes=range(1, 256))
     parts.look()
     assert not (place.path / "ranks/run.h5").exists(), "all was done before a rank was killed"
-    process = mpirun(place, run_words("ranks"))
+    process = mpirun(place, words)
     watcher = threading.Thread(target=parts.watch, args=[process])
     watcher.start()
     said = finish(process)

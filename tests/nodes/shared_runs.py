@@ -22,6 +22,7 @@ packing_fraction = 0.55
 [plate]
 start = 0.09
 end = 0.075
+speed = 0.05
 [protocol]
 scans_per_stroke = 6
 [output]
