@@ -10,7 +10,7 @@ if(PLOTLY_JS)
     COMMAND ${GZIP} -9 -n -c ${PLOTLY_JS} > ${PACKED_PLOTLY_JS}
     DEPENDS ${PLOTLY_JS})
   add_custom_target(plotting_library ALL DEPENDS ${PACKED_PLOTLY_JS})
-  install(FILES ${PACKED_PLOTLY_JS} DESTINATION ${CMAKE_INSTALL_DATADIR}/mcdem)
+  install(FILES ${PACKED_PLOTLY_JS} DESTINATION ${CMAKE_INSTALL_DATADIR}/mcdem COMPONENT program)
 else()
   message(WARNING "plotly.js is not there, so `mcdem report` will make no pages: install python3-plotly")
   add_custom_target(plotting_library)

@@ -21,6 +21,8 @@ FLOORS = {
     "ensemble": ["diagnose", "calibrate", "metrics", "sim", "io", "experiment", "scene", "cl", "core"],
     "cli": ["ensemble", "report", "diagnose", "calibrate", "metrics", "sim", "io", "experiment", "scene", "cl",
             "core"],
+    "python": ["ensemble", "report", "diagnose", "calibrate", "metrics", "sim", "io", "experiment", "scene", "cl",
+               "core"],
 }
 LONGEST_FILE = 400
 LONGEST_FUNCTION = 70

@@ -8,9 +8,9 @@
 #include "cli/progress.h"
 #include "cli/results.h"
 #include "cli/scene_options.h"
-#include "cli/version.h"
 #include "core/atomic_file.h"
 #include "core/errors.h"
+#include "core/version.h"
 #include "ensemble/calibrate_scene.h"
 #include "report/tables.h"
 

@@ -10,8 +10,8 @@
 #include "cli/messages.h"
 #include "cli/progress.h"
 #include "cli/sharing.h"
-#include "cli/version.h"
 #include "core/atomic_file.h"
+#include "core/version.h"
 #include "report/diagnosis_json.h"
 #include "scene/read_scene.h"
 

@@ -2,7 +2,7 @@
 
 #include "cli/commands.h"
 #include "cli/messages.h"
-#include "cli/version.h"
+#include "core/version.h"
 
 namespace mcdem {
 namespace {
@@ -54,7 +54,7 @@ int run_cli(int argc, const char* const* argv) {
     int exit_code = exit_done;
     for (const auto add :
          {add_devices, add_validate, add_run, add_table, add_compare, add_figures, add_report, add_calibrate,
-          add_export, add_experiment, add_diagnose, add_challenge})
+          add_export, add_experiment, add_diagnose, add_challenge, add_completion, add_manual})
         add(app, exit_code);
     try {
         app.parse(argc, argv);

@@ -22,5 +22,7 @@ void add_export(CLI::App& app, int& exit_code);
 void add_diagnose(CLI::App& app, int& exit_code);
 void add_challenge(CLI::App& app, int& exit_code);
 void add_experiment(CLI::App& app, int& exit_code);
+void add_completion(CLI::App& app, int& exit_code);
+void add_manual(CLI::App& app, int& exit_code);
 
 }  // namespace mcdem

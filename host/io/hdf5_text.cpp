@@ -51,7 +51,10 @@ void File::write_attribute(const std::string& object, const std::string& name, h
 void File::set_attribute(const std::string& object, const std::string& name, std::string_view text) {
     std::string padded(text);
     padded.resize(std::max<std::size_t>(text.size(), 1));
-    write_attribute(object, name, text_type(text.size()), scalar(), padded.data());
+    const Handle type = text_type(text.size());
+    // ParaView 5.11 refuses the types of its files in UTF-8, even where that is the same bytes.
+    if (std::ranges::all_of(text, [](unsigned char c) { return c < 128; })) H5Tset_cset(type, H5T_CSET_ASCII);
+    write_attribute(object, name, type, scalar(), padded.data());
 }
 
 void File::set_attribute(const std::string& object, const std::string& name,

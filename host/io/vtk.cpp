@@ -23,8 +23,8 @@ replica_00000/contacts_000000.hdf, ..   its contacts
    numbered files as one time series), reader `VTKHDF`, Apply.
 2. Grains: Filters > Glyph; Glyph Type `Sphere` with Radius 0.5, Orientation Array `No orientation array`,
    Scale Array `diameter`, Scale Factor 1, Glyph Mode `All Points`. Colour by `coordination_number` or `force_magnitude`.
-3. Contacts: open `contacts_..hdf`, Filters > Tube; Scalars `force_magnitude`, Vary Radius `By Scalar`. Colour by
-   `force_magnitude`: the force chains.
+3. Contacts: open `contacts_..hdf`, Filters > Extract Surface, then Filters > Tube; Scalars `force_magnitude`, Vary
+   Radius `By Scalar`. Colour by `force_magnitude`: the force chains.
 
 Lengths in metres, forces in newtons. Each file carries frame, time, plate_z and top_force as field data.
 Walls are partners -1 to -6: x_min, x_max, y_min, y_max, floor, plate.

@@ -1,6 +1,7 @@
 // CSV, ParaView files and example scripts, read by the programs that users read them with.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <hdf5.h>
 
 #include <fstream>
 #include <sstream>
@@ -11,6 +12,7 @@
 #include "io/results.h"
 #include "io/synthetic_run.h"
 #include "io/vtk.h"
+#include "io/xyz.h"
 
 namespace mcdem::test {
 namespace {
@@ -105,6 +107,55 @@ TEST(vtk, a_scan_without_contacts_still_makes_files) {
     EXPECT_EQ(finished.exit_code, 0) << finished.output;
 }
 
+TEST(vtk, the_kind_of_grid_is_in_the_characters_that_paraview_takes) {
+    TemporaryFolder folder;
+    export_vtk(synthetic_run({.replicas = 1, .scans = 1}), folder.path());
+    const auto file = folder / "replica_00000/grains_000000.hdf";
+    const hid_t id = H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+    const hid_t attribute = H5Aopen_by_name(id, "/VTKHDF", "Type", H5P_DEFAULT, H5P_DEFAULT);
+    const hid_t type = H5Aget_type(attribute);
+    EXPECT_EQ(H5Tget_cset(type), H5T_CSET_ASCII);
+    H5Tclose(type);
+    H5Aclose(attribute);
+    H5Fclose(id);
+}
+
+int frames_in(const std::filesystem::path& file, const std::string& mark) {
+    const std::string text = read_bytes(file);
+    int count = 0;
+    for (auto at = text.find(mark); at != text.npos; at = text.find(mark, at + 1)) ++count;
+    return count;
+}
+
+TEST(xyz, export_from_files_equals_export_from_memory_and_leaves_out_scans_without_positions) {
+    TemporaryFolder folder;
+    auto run = synthetic_run({.replicas = 2, .scans = 4});
+    run.recordings[0].scans[1].position.clear();
+    for (Scan& scan : run.recordings[1].scans) scan.position.clear();
+    write_run(folder / "run.h5", run);
+    EXPECT_EQ(export_xyz(folder / "run.h5", folder / "a"), 2);
+    EXPECT_EQ(export_xyz(run, folder / "b"), 2);
+    for (const std::string name : {"replica_00000.xyz", "replica_00000.contacts.dump", "OVITO.txt"})
+        EXPECT_EQ(read_bytes(folder / ("a/" + name)), read_bytes(folder / ("b/" + name)));
+    EXPECT_EQ(frames_in(folder / "a/replica_00000.xyz", "Lattice="), 3);
+    EXPECT_EQ(frames_in(folder / "a/replica_00000.contacts.dump", "ITEM: TIMESTEP"), 3);
+    EXPECT_FALSE(std::filesystem::exists(folder / "a/replica_00001.xyz"));
+}
+
+TEST(xyz, a_label_cannot_end_its_quotes_or_its_line) {
+    TemporaryFolder folder;
+    auto run = synthetic_run({.replicas = 1, .scans = 1});
+    run.recordings[0].label = "a \"b\"\nc";
+    export_xyz(run, folder.path());
+    EXPECT_THAT(read_bytes(folder / "replica_00000.xyz"), HasSubstr(" label=\"a 'b' c\"\nX "));
+}
+
+TEST(xyz, what_cannot_be_written_is_an_error) {
+    TemporaryFolder folder;
+    write_bytes(folder / "file", "");
+    EXPECT_THROW(export_xyz(synthetic_run(), folder / "file"), RunError);
+}
+
 class examples : public ::testing::Test {
 protected:
     void SetUp() override {
@@ -133,6 +184,15 @@ TEST_F(examples, read_run_prints_a_row_for_each_replica_and_phase) {
         EXPECT_THAT(finished.output, HasSubstr("mc_dem, packing 1"));
         EXPECT_THAT(finished.output, HasSubstr("1.10"));  // largest top force of replica 1: 0.5 * 2 * 1.1 N
     }
+}
+
+TEST_F(examples, scan_table_prints_means_of_each_replica_and_phase) {
+    if (run_command("/usr/bin/python3 -c 'import pandas'").exit_code != 0)
+        GTEST_SKIP() << "python3-pandas is not installed";
+    const Finished finished = example("scan_table.py", folder.path().string());
+    EXPECT_EQ(finished.exit_code, 0) << finished.output;
+    EXPECT_THAT(finished.output, HasSubstr("mc_dem, packing 1"));
+    EXPECT_THAT(finished.output, HasSubstr("unload"));
 }
 
 TEST_F(examples, scripts_make_pictures) {

@@ -1,0 +1,58 @@
+# What `cmake --install` puts where, in three parts: the program with its manual and completions; the engine for
+# other programs, found by find_package(mcdem); the Python module.
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+
+install(TARGETS mcdem RUNTIME COMPONENT program)
+
+# Manual and completions are written by the program, so that they say what it does.
+set(described ${CMAKE_BINARY_DIR}/described)
+add_custom_command(OUTPUT ${described}/done
+  COMMAND ${CMAKE_COMMAND} -E rm -rf ${described}
+  COMMAND mcdem manual --out ${described}/man
+  COMMAND mcdem completion bash > ${described}/mcdem.bash
+  COMMAND mcdem completion zsh > ${described}/mcdem.zsh
+  COMMAND mcdem completion fish > ${described}/mcdem.fish
+  COMMAND ${CMAKE_COMMAND} -E touch ${described}/done
+  DEPENDS mcdem VERBATIM)
+add_custom_target(mcdem_described ALL DEPENDS ${described}/done)
+install(DIRECTORY ${described}/man/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT program)
+set(share ${CMAKE_INSTALL_DATAROOTDIR})
+install(FILES ${described}/mcdem.bash DESTINATION ${share}/bash-completion/completions RENAME mcdem COMPONENT program)
+install(FILES ${described}/mcdem.zsh DESTINATION ${share}/zsh/vendor-completions RENAME _mcdem COMPONENT program)
+install(FILES ${described}/mcdem.fish DESTINATION ${share}/fish/vendor_completions.d COMPONENT program)
+install(DIRECTORY scenes DESTINATION ${share}/mcdem COMPONENT program)
+
+# The engine: every floor below the command line and the Python module.
+set(floors core scene cl sim io experiment metrics calibrate diagnose report ensemble)
+add_library(mcdem_engine INTERFACE)
+target_link_libraries(mcdem_engine INTERFACE mcdem_ensemble mcdem_report)
+set_target_properties(mcdem_engine PROPERTIES EXPORT_NAME mcdem)
+set(targets mcdem_engine mcdem_options mcdem_kernel_sources mcdem_version)
+foreach(floor ${floors})
+  set_target_properties(mcdem_${floor} PROPERTIES EXPORT_NAME ${floor})
+  list(APPEND targets mcdem_${floor})
+  install(DIRECTORY host/${floor} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/mcdem COMPONENT development
+    FILES_MATCHING PATTERN "*.h")
+endforeach()
+install(DIRECTORY kernels DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/mcdem COMPONENT development
+  FILES_MATCHING PATTERN "*.h")
+install(TARGETS ${targets} EXPORT mcdemTargets COMPONENT development)
+set(package ${CMAKE_INSTALL_LIBDIR}/cmake/mcdem)
+install(EXPORT mcdemTargets NAMESPACE mcdem:: DESTINATION ${package} COMPONENT development)
+configure_package_config_file(cmake/mcdemConfig.cmake.in ${CMAKE_BINARY_DIR}/mcdemConfig.cmake
+  INSTALL_DESTINATION ${package})
+write_basic_package_version_file(${CMAKE_BINARY_DIR}/mcdemConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${CMAKE_BINARY_DIR}/mcdemConfig.cmake ${CMAKE_BINARY_DIR}/mcdemConfigVersion.cmake
+  DESTINATION ${package} COMPONENT development)
+
+if(MCDEM_PYTHON)
+  # Where this Python looks below a prefix; Debian's calls the folder dist-packages.
+  execute_process(COMMAND ${Python3_EXECUTABLE} -c "import site, sys; print('lib/python%d.%d/' % sys.version_info[:2] \
++ site.getsitepackages()[0].rsplit('/', 1)[1])" OUTPUT_VARIABLE site OUTPUT_STRIP_TRAILING_WHITESPACE)
+  set(MCDEM_PYTHON_DIR ${site} CACHE STRING "Folder of the Python module, below the prefix")
+  install(TARGETS mcdem_python LIBRARY DESTINATION ${MCDEM_PYTHON_DIR}/mcdem COMPONENT python)
+  install(FILES host/python/mcdem/__init__.py host/python/mcdem/__init__.pyi host/python/mcdem/py.typed
+    DESTINATION ${MCDEM_PYTHON_DIR}/mcdem COMPONENT python)
+endif()
+include(cmake/debian.cmake)

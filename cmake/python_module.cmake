@@ -1,0 +1,31 @@
+# The Python module mcdem, in <build>/python, where pybind11 and Python's headers are there (MCDEM_PYTHON).
+# Debian's pybind11 and NumPy belong to Debian's Python, also where another one comes first in PATH.
+if(NOT DEFINED Python3_EXECUTABLE AND EXISTS /etc/debian_version AND EXISTS /usr/bin/python3)
+  set(Python3_EXECUTABLE /usr/bin/python3)
+endif()
+set(PYBIND11_NOPYTHON ON)
+find_package(pybind11 2.10 CONFIG QUIET)
+find_package(Python3 QUIET COMPONENTS Interpreter Development.Module)
+# Python itself has no sanitizers and cannot load what has.
+if(pybind11_FOUND AND Python3_Development.Module_FOUND AND NOT MCDEM_SANITIZE AND NOT MCDEM_FUZZ)
+  set(can_build ON)
+else()
+  set(can_build OFF)
+endif()
+option(MCDEM_PYTHON "Build the Python module" ${can_build})
+if(NOT MCDEM_PYTHON)
+  return()
+endif()
+if(NOT can_build)
+  message(FATAL_ERROR "MCDEM_PYTHON needs pybind11 2.10 and Python's headers (Debian: pybind11-dev, python3-dev)")
+endif()
+
+file(GLOB sources CONFIGURE_DEPENDS host/python/*.cpp)
+Python3_add_library(mcdem_python MODULE WITH_SOABI ${sources})
+target_link_libraries(mcdem_python PRIVATE mcdem_version mcdem_ensemble mcdem_report mcdem_experiment
+  pybind11::headers)
+set_target_properties(mcdem_python PROPERTIES OUTPUT_NAME _engine CXX_VISIBILITY_PRESET hidden
+  LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/python/mcdem)
+foreach(file __init__.py __init__.pyi py.typed)
+  configure_file(host/python/mcdem/${file} ${CMAKE_BINARY_DIR}/python/mcdem/${file} COPYONLY)
+endforeach()

@@ -1,0 +1,156 @@
+#include "io/xyz.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <functional>
+
+#include "core/atomic_file.h"
+#include "core/errors.h"
+#include "io/results.h"
+
+namespace mcdem {
+namespace {
+
+const char* const how_to_look = R"(replica_*.xyz            grains, one frame a scan, SI units (extended XYZ)
+replica_*.contacts.dump  contacts between grains, the same frames (LAMMPS dump local)
+
+OVITO: load a .xyz file. For contacts as bonds add the modifier "Load trajectory", open the .contacts.dump file in it
+and name its columns: Particle Identifiers.1, Particle Identifiers.2, force_magnitude, Force.X, Force.Y, Force.Z,
+overlap. Colour and width of the bonds can follow force_magnitude [N]. In Python:
+
+    from ovito.io import import_file
+    from ovito.modifiers import LoadTrajectoryModifier
+    pipeline = import_file("replica_00000.xyz")
+    contacts = LoadTrajectoryModifier()
+    contacts.source.load("replica_00000.contacts.dump", columns=["Particle Identifiers.1",
+        "Particle Identifiers.2", "force_magnitude", "Force.X", "Force.Y", "Force.Z", "overlap"])
+    pipeline.modifiers.append(contacts)
+
+Of a grain: radius [m], id, coordination_number (walls counted), force_magnitude (sum of its contacts' [N]), wall_force
+(by the walls [N]). Of a contact: its force on the first of the two grains [N], its overlap [m].
+)";
+
+/// What the contacts are to one grain.
+struct Loads {
+    int contacts = 0;
+    double force_magnitude = 0;
+    Vec3 wall_force = Vec3::Zero();
+};
+
+std::vector<Loads> loads_of(const Scan& scan) {
+    std::vector<Loads> loads(scan.position.size());
+    for (const Contact& contact : scan.contacts) {
+        for (const int grain : {contact.grain, contact.partner}) {
+            if (is_wall(grain)) continue;
+            Loads& load = loads[static_cast<std::size_t>(grain)];
+            load.contacts += 1;
+            load.force_magnitude += contact.force.norm();
+        }
+        if (is_wall(contact.partner))
+            loads[static_cast<std::size_t>(contact.grain)].wall_force += contact.force;
+    }
+    return loads;
+}
+
+/// In double quotes; extended XYZ knows no way to write one.
+std::string in_quotes(std::string text) {
+    std::ranges::replace(text, '"', '\'');
+    std::ranges::replace(text, '\n', ' ');
+    return '"' + text + '"';
+}
+
+void append_grains(fmt::memory_buffer& text, const Recording& recording, const Scan& scan) {
+    const auto out = fmt::appender(text);
+    fmt::format_to(
+        out,
+        "{}\nLattice=\"{:.9g} 0 0 0 {:.9g} 0 0 0 {:.9g}\" Origin=\"0 0 0\" pbc=\"F F F\" "
+        "Properties=species:S:1:pos:R:3:id:I:1:radius:R:1:coordination_number:I:1:force_magnitude:R:1:"
+        "wall_force:R:3 Time={:.9g} frame={} cycle={} phase={} plate_z={:.9g} top_force={:.9g} label={}\n",
+        scan.position.size(), recording.box.size_x, recording.box.size_y, recording.plate_start, scan.time,
+        scan.frame, scan.cycle, name(scan.phase), scan.plate_z, scan.top_force(), in_quotes(recording.label));
+    const auto loads = loads_of(scan);
+    for (std::size_t i = 0; i < scan.position.size(); ++i) {
+        const Vec3 &at = scan.position[i], &wall = loads[i].wall_force;
+        fmt::format_to(out, "X {:.9g} {:.9g} {:.9g} {} {:.9g} {} {:.9g} {:.9g} {:.9g} {:.9g}\n", at.x(),
+                       at.y(), at.z(), i, recording.diameter[i] / 2, loads[i].contacts,
+                       loads[i].force_magnitude, wall.x(), wall.y(), wall.z());
+    }
+}
+
+void append_contacts(fmt::memory_buffer& text, const Recording& recording, const Scan& scan) {
+    const auto out = fmt::appender(text);
+    const auto between_grains =
+        std::ranges::count_if(scan.contacts, [](const Contact& c) { return !is_wall(c.partner); });
+    fmt::format_to(
+        out,
+        "ITEM: TIMESTEP\n{}\nITEM: NUMBER OF ENTRIES\n{}\nITEM: BOX BOUNDS ff ff ff\n0 {:.9g}\n0 {:.9g}\n"
+        "0 {:.9g}\nITEM: ENTRIES grain partner force_magnitude fx fy fz overlap\n",
+        scan.frame, between_grains, recording.box.size_x, recording.box.size_y, recording.plate_start);
+    for (const Contact& contact : scan.contacts)
+        if (!is_wall(contact.partner))
+            fmt::format_to(out, "{} {} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g}\n", contact.grain, contact.partner,
+                           contact.force.norm(), contact.force.x(), contact.force.y(), contact.force.z(),
+                           contact.overlap);
+}
+
+/// Both files of one replica, its scans read one after the other.
+int export_replica(const Recording& recording, std::size_t number, const std::filesystem::path& folder,
+                   const std::function<Scan(std::size_t)>& read_scan) {
+    const auto write_frames = [&](const std::filesystem::path& file, auto append) {
+        bool any = false;
+        std::ofstream out(file, std::ios::binary);
+        for (std::size_t s = 0; s < recording.scans.size(); ++s) {
+            const Scan scan = read_scan(s);
+            if (scan.position.empty()) continue;
+            fmt::memory_buffer text;
+            append(text, recording, scan);
+            out.write(text.data(), static_cast<std::streamsize>(text.size()));
+            any = true;
+        }
+        out.close();
+        if (!out) throw RunError(file.string() + ": cannot be written");
+        return any;
+    };
+    const auto grains = folder / fmt::format("replica_{:05}.xyz", number);
+    const auto contacts = folder / fmt::format("replica_{:05}.contacts.dump", number);
+    bool any = false;
+    replace_file(grains, [&](const auto& temporary) { any = write_frames(temporary, append_grains); });
+    if (!any) {
+        std::filesystem::remove(grains);
+        return 0;
+    }
+    replace_file(contacts, [&](const auto& temporary) { write_frames(temporary, append_contacts); });
+    return 2;
+}
+
+void start_folder(const std::filesystem::path& folder) {
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    if (error) throw RunError(folder.string() + ": cannot be made: " + error.message());
+    replace_file(folder / "OVITO.txt", how_to_look);
+}
+
+}  // namespace
+
+int export_xyz(const Run& run, const std::filesystem::path& folder) {
+    start_folder(folder);
+    int files = 0;
+    for (std::size_t r = 0; r < run.recordings.size(); ++r)
+        files += export_replica(run.recordings[r], r, folder,
+                                [&](std::size_t s) { return run.recordings[r].scans[s]; });
+    return files;
+}
+
+int export_xyz(const std::filesystem::path& file_or_folder, const std::filesystem::path& folder) {
+    RunReader reader(file_or_folder);
+    start_folder(folder);
+    int files = 0;
+    for (std::size_t r = 0; r < reader.run().recordings.size(); ++r)
+        files += export_replica(reader.run().recordings[r], r, folder,
+                                [&](std::size_t s) { return reader.read_scan(r, s); });
+    return files;
+}
+
+}  // namespace mcdem

@@ -1,0 +1,19 @@
+// Grains and contacts for OVITO: extended XYZ, which ASE and others read too, and LAMMPS' `dump local` for
+// the bonds.
+#pragma once
+#include <filesystem>
+
+#include "core/recording.h"
+
+namespace mcdem {
+
+/// Writes `<folder>/replica_00000.xyz` and `replica_00000.contacts.dump`, .., one frame in each for every
+/// scan with positions, and OVITO.txt that says how to look at them; numbers with nine digits. Returns the
+/// number of files of grains and contacts: none where there are no positions. Throws RunError where it cannot
+/// write.
+int export_xyz(const Run& run, const std::filesystem::path& folder);
+
+/// The same from a result file or folder, scan by scan, for runs larger than memory.
+int export_xyz(const std::filesystem::path& file_or_folder, const std::filesystem::path& folder);
+
+}  // namespace mcdem

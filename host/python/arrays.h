@@ -1,0 +1,17 @@
+// NumPy arrays that are the memory of a recording: nothing is copied, and they keep what they show alive.
+#pragma once
+#include <pybind11/numpy.h>
+
+#include "core/recording.h"
+
+namespace mcdem {
+
+/// Each is read-only and has `owner` as its base. Shapes: [S] rows named as in run.h5, [S], [N], [N][3], [C]
+/// rows.
+pybind11::array scans_array(const Recording& recording, pybind11::handle owner);
+pybind11::array top_force_array(const Recording& recording, pybind11::handle owner);
+pybind11::array diameter_array(const Recording& recording, pybind11::handle owner);
+pybind11::array position_array(const Scan& scan, pybind11::handle owner);
+pybind11::array contact_array(const Scan& scan, pybind11::handle owner);
+
+}  // namespace mcdem

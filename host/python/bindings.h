@@ -1,0 +1,19 @@
+// The parts of the Python module; mcdem/__init__.pyi has the signatures as Python's users see them.
+#pragma once
+#include <pybind11/pybind11.h>
+
+#include <memory>
+
+#include "core/recording.h"
+
+namespace mcdem {
+
+void bind_scene(pybind11::module_& module);
+void bind_results(pybind11::module_& module);
+void bind_simulation(pybind11::module_& module);
+void bind_diagnosis(pybind11::module_& module);
+
+/// A run as Python holds it: arrays and recordings share it, and nobody changes it.
+using SharedRun = std::shared_ptr<Run>;
+
+}  // namespace mcdem

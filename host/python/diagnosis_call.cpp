@@ -1,0 +1,99 @@
+// mcdem.diagnose
+#include <fmt/format.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <algorithm>
+
+#include "core/atomic_file.h"
+#include "core/errors.h"
+#include "core/version.h"
+#include "ensemble/diagnose_experiment.h"
+#include "python/bindings.h"
+#include "python/watch.h"
+#include "report/diagnosis_json.h"
+#include "report/diagnosis_page.h"
+
+namespace mcdem {
+namespace {
+
+namespace py = pybind11;
+
+struct Numbers {
+    int replicas, pairs, confirmations;
+};
+
+void check(const Numbers& numbers) {
+    std::vector<std::string> problems;
+    const auto expect = [&](const char* name, int value, int least) {
+        if (value < least)
+            problems.push_back(fmt::format("{}: must be {} or more, got {}", name, least, value));
+    };
+    expect("replicates", numbers.replicas, 8);
+    expect("pairs", numbers.pairs, 2);
+    expect("confirmations", numbers.confirmations, 0);
+    if (!problems.empty()) throw InputError(problems);
+}
+
+/// The text of diagnosis.json, written beside the simulations like it and the page.
+std::string diagnose_into(const Scene& scene, const std::filesystem::path& folder,
+                          const DiagnoseOptions& options, const std::filesystem::path& experiment,
+                          const std::string& choice, bool page) {
+    const Experiment measured = read_experiment(experiment);
+    Device device(choice);
+    const Diagnosis diagnosis = diagnose_experiment(device, scene, measured, options);
+    const std::string text = diagnosis_json(diagnosis);
+    replace_file(folder / "diagnosis.json", text);
+    if (page) write_diagnosis_page(diagnosis, folder);
+    return text;
+}
+
+py::object diagnose(const Scene& scene, const std::filesystem::path& experiment,
+                    const std::filesystem::path& folder, const std::vector<std::string>& candidates,
+                    int replicates, int pairs, int confirmations, std::uint64_t seed,
+                    std::optional<std::filesystem::path> library, const std::string& choice, bool page,
+                    py::object progress) {
+    check({replicates, pairs, confirmations});
+    Watch watch(std::move(progress));
+    DiagnoseOptions options;
+    options.folder = folder;
+    options.candidates = candidates;
+    options.replicates = replicates;
+    options.pairs = std::min(pairs, replicates);
+    options.confirmations = confirmations;
+    options.seed = seed;
+    options.library = std::move(library);
+    options.program = version_text;
+    options.on_progress = [&](const std::string& stage, double part) { watch.show_progress(stage, part); };
+    options.stop_wanted = [&] { return watch.stop_wanted(); };
+    if (scene.replicas.size() > 1)
+        watch.warn(fmt::format("the scene has {} replicas; the first one is diagnosed: {}",
+                               scene.replicas.size(), scene.replicas.front().label));
+    std::string text;
+    try {
+        const py::gil_scoped_release others_go_on;
+        text = diagnose_into(scene, folder, options, experiment, choice, page);
+    } catch (const Interrupted&) {
+    }
+    watch.raise();
+    return py::module_::import("json").attr("loads")(text);
+}
+
+}  // namespace
+
+void bind_diagnosis(py::module_& module) {
+    module.def("diagnose", &diagnose, py::arg("scene"), py::arg("experiment"), py::arg("folder"),
+               py::kw_only(), py::arg("candidates") = std::vector<std::string>{}, py::arg("replicates") = 32,
+               py::arg("pairs") = 8, py::arg("confirmations") = 8, py::arg("seed") = 1,
+               py::arg("library") = py::none(), py::arg("device") = "", py::arg("page") = true,
+               py::arg("progress") = py::none(),
+               "Where a scene and an experiment part, and which effect is to blame: what diagnosis.json "
+               "says, as a dict.\n\n"
+               "Writes diagnosis.json and, with `page`, diagnosis.html into `folder`, as `mcdem diagnose` "
+               "does; simulations "
+               "are\nkept there, so that the same call goes on where Ctrl-C ended it. `progress(stage, "
+               "fraction)` is called as "
+               "it\ngoes. host/report/DIAGNOSIS_OUTPUT.md explains the keys.");
+}
+
+}  // namespace mcdem

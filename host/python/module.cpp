@@ -1,0 +1,35 @@
+// The extension module mcdem._engine; mcdem/__init__.py is what users import.
+#include <fmt/format.h>
+
+#include "cl/opencl.h"
+#include "core/errors.h"
+#include "core/version.h"
+#include "python/bindings.h"
+
+namespace mcdem {
+namespace {
+
+/// Bad input is a ValueError with the text that the program prints; what fails in spite of good input a
+/// RuntimeError.
+void translate(std::exception_ptr error) {
+    try {
+        if (error) std::rethrow_exception(error);
+    } catch (const InputError& input) {
+        PyErr_SetString(PyExc_ValueError, input.what());
+    } catch (const cl::Error& opencl) {
+        PyErr_SetString(PyExc_RuntimeError,
+                        fmt::format("OpenCL: {} failed with code {}", opencl.what(), opencl.err()).c_str());
+    }
+}
+
+}  // namespace
+}  // namespace mcdem
+
+PYBIND11_MODULE(_engine, module) {
+    pybind11::register_exception_translator(mcdem::translate);
+    module.attr("__version__") = mcdem::version_text;
+    mcdem::bind_scene(module);
+    mcdem::bind_results(module);
+    mcdem::bind_simulation(module);
+    mcdem::bind_diagnosis(module);
+}

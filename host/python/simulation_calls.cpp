@@ -1,0 +1,131 @@
+// mcdem.devices, simulate, run and read
+#include <fmt/format.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <limits>
+
+#include "core/errors.h"
+#include "core/version.h"
+#include "ensemble/make_packings.h"
+#include "ensemble/run_scene.h"
+#include "ensemble/simulate.h"
+#include "io/results.h"
+#include "python/bindings.h"
+#include "python/watch.h"
+
+namespace mcdem {
+namespace {
+
+namespace py = pybind11;
+
+py::list devices() {
+    py::list all;
+    for (const DeviceInfo& device : list_devices())
+        all.append(
+            py::dict(py::arg("index") = device.index, py::arg("name") = device.name,
+                     py::arg("platform") = device.platform, py::arg("version") = device.version,
+                     py::arg("gpu") = device.gpu, py::arg("double_precision") = device.double_precision,
+                     py::arg("compute_units") = device.compute_units, py::arg("memory") = device.memory));
+    return all;
+}
+
+std::string failure_text(const std::string& label, const Failure& failure) {
+    return fmt::format("replica {} stopped at step {}{}: {}", label.empty() ? "1" : label, failure.step,
+                       failure.grain < 0 ? "" : fmt::format(", grain {}", failure.grain), failure.cause);
+}
+
+/// As the program does: one that stops is a warning, all of them a failure.
+void expect_one_alive(const Run& run) {
+    std::string causes;
+    for (const Recording& recording : run.recordings) {
+        if (!recording.failure) return;
+        causes += (causes.empty() ? "" : "\n") + failure_text(recording.label, *recording.failure);
+    }
+    if (!causes.empty()) throw RunError("no replica came to its end:\n" + causes);
+}
+
+struct Stopped {};
+
+SharedRun simulate_scene(const Scene& scene, const std::string& choice, py::object progress) {
+    Watch watch(std::move(progress));
+    auto run = std::make_shared<Run>();
+    try {
+        const py::gil_scoped_release others_go_on;
+        Device device(choice);
+        *run = {
+            scene.name, scene.text, version_text, device.description(), std::string(name(scene.precision)),
+            {}};
+        const auto packings = make_packings(scene, [&] { return watch.stop_wanted(); });
+        if (watch.stop_wanted()) throw Stopped();
+        run->recordings =
+            simulate(device, scene, packings, std::numeric_limits<std::size_t>::max(), [&](double part) {
+                watch.show_progress(part);
+                if (watch.stop_wanted()) throw Stopped();
+            });
+        for (const Recording& recording : run->recordings)
+            if (recording.failure) watch.warn(failure_text(recording.label, *recording.failure));
+    } catch (const Stopped&) {
+    }
+    watch.raise();
+    expect_one_alive(*run);
+    return run;
+}
+
+SharedRun run_into(const Scene& scene, const std::filesystem::path& folder, bool resume,
+                   const std::string& choice, py::object progress) {
+    Watch watch(std::move(progress));
+    RunOptions options;
+    options.folder = folder;
+    options.start = resume ? Start::resume : Start::fresh;
+    options.program = version_text;
+    options.on_progress = [&](double part) { watch.show_progress(part); };
+    options.on_failure = [&](const Replica& replica, const Failure& failure) {
+        watch.warn(failure_text(replica.label, failure));
+    };
+    options.on_warning = [&](const std::string& message) { watch.warn(message); };
+    options.stop_wanted = [&] { return watch.stop_wanted(); };
+    auto run = std::make_shared<Run>();
+    {
+        const py::gil_scoped_release others_go_on;
+        Device device(choice);
+        if (run_scene(device, scene, options).end != RunEnd::interrupted) *run = read_run(folder);
+    }
+    watch.raise();
+    expect_one_alive(*run);
+    return run;
+}
+
+ReadWhat what_of(const std::string& word) {
+    if (word == "everything") return ReadWhat::everything;
+    if (word == "observables") return ReadWhat::observables;
+    if (word == "positions") return ReadWhat::positions;
+    if (word == "contacts") return ReadWhat::contacts;
+    throw InputError("what: must be one of everything, observables, positions, contacts; got " + word);
+}
+
+SharedRun read(const std::filesystem::path& path, const std::string& what) {
+    const py::gil_scoped_release others_go_on;
+    if (!std::filesystem::exists(path))
+        throw InputError(path.string() + ": must be a result folder or file, got nothing there");
+    return std::make_shared<Run>(read_run(path, what_of(what)));
+}
+
+}  // namespace
+
+void bind_simulation(py::module_& module) {
+    module.def("devices", &devices,
+               "The OpenCL devices that a run can use, in the order of `device` numbers.");
+    module.def("simulate", &simulate_scene, py::arg("scene"), py::kw_only(), py::arg("device") = "",
+               py::arg("progress") = py::none(),
+               "Runs a scene in memory. `progress(fraction)` is called after every round.");
+    module.def("run", &run_into, py::arg("scene"), py::arg("folder"), py::kw_only(),
+               py::arg("resume") = false, py::arg("device") = "", py::arg("progress") = py::none(),
+               "Runs a scene into a folder, as `mcdem run` does, and reads what it holds.\n\n"
+               "Ctrl-C and what `progress(fraction)` raises end it in good order, to be gone on with by "
+               "resume=True.");
+    module.def("read", &read, py::arg("path"), py::kw_only(), py::arg("what") = "everything",
+               "A result folder or file. `what`: everything, positions, contacts or observables (neither).");
+}
+
+}  // namespace mcdem

@@ -1,0 +1,110 @@
+#include "python/toml_text.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "core/errors.h"
+
+namespace mcdem {
+namespace {
+
+namespace py = pybind11;
+
+std::string in_quotes(const std::string& text) {
+    std::string all = "\"";
+    for (const char c : text) {
+        const auto code = static_cast<unsigned char>(c);
+        if (c == '"' || c == '\\')
+            all += fmt::format("\\{}", c);
+        else if (code < 32 || code == 127)
+            all += fmt::format("\\u{:04x}", code);
+        else
+            all += c;
+    }
+    return all + "\"";
+}
+
+/// Dotted keys stay dotted.
+std::string key_text(py::handle key) {
+    if (!py::isinstance<py::str>(key))
+        throw InputError(fmt::format("a key must be text, got {}", std::string(py::repr(key))));
+    const auto text = py::cast<std::string>(key);
+    const bool plain = !text.empty() && std::ranges::all_of(text, [](unsigned char c) {
+        return std::isalnum(c) || c == '_' || c == '-' || c == '.';
+    });
+    return plain ? text : in_quotes(text);
+}
+
+bool is_bool(py::handle value) {
+    return PyBool_Check(value.ptr()) ||
+           py::str(py::type::handle_of(value).attr("__name__")).equal(py::str("bool_"));
+}
+
+bool is_list(py::handle value) {
+    return PySequence_Check(value.ptr()) && py::hasattr(value, "__len__") && !py::isinstance<py::dict>(value);
+}
+
+std::string value_text(py::handle value, const std::string& where);
+
+std::string list_text(py::handle value, const std::string& where) {
+    std::vector<std::string> items;
+    for (const py::handle item : value) items.push_back(value_text(item, where));
+    return fmt::format("[{}]", fmt::join(items, ", "));
+}
+
+std::string table_text(const py::dict& table, const std::string& where) {
+    std::vector<std::string> items;
+    for (const auto& [key, value] : table)
+        items.push_back(
+            fmt::format("{} = {}", key_text(key), value_text(value, where + "." + key_text(key))));
+    return fmt::format("{{{}}}", fmt::join(items, ", "));
+}
+
+/// On one line.
+std::string value_text(py::handle value, const std::string& where) {
+    if (is_bool(value))
+        return py::cast<bool>(py::bool_(py::reinterpret_borrow<py::object>(value))) ? "true" : "false";
+    if (py::isinstance<py::str>(value)) return in_quotes(py::cast<std::string>(value));
+    if (py::hasattr(value, "__fspath__")) return in_quotes(py::cast<std::string>(value.attr("__fspath__")()));
+    if (py::isinstance<py::dict>(value)) return table_text(py::reinterpret_borrow<py::dict>(value), where);
+    if (is_list(value)) return list_text(value, where);
+    if (PyIndex_Check(value.ptr())) return py::str(py::int_(py::reinterpret_borrow<py::object>(value)));
+    if (py::hasattr(value, "__float__"))
+        return py::repr(py::float_(py::reinterpret_borrow<py::object>(value)));  // reads back to the last bit
+    throw InputError(fmt::format("{} must be a number, true or false, text, a list or a table, got {}", where,
+                                 std::string(py::repr(value))));
+}
+
+/// Values first: in TOML what follows a table's heading belongs to it.
+void append_table(std::string& text, const std::string& name, const py::dict& table) {
+    const std::string inside = name.empty() ? "" : name + ".";
+    for (const auto& [key, value] : table)
+        if (!py::isinstance<py::dict>(value))
+            text += fmt::format("{} = {}\n", key_text(key), value_text(value, inside + key_text(key)));
+    for (const auto& [key, value] : table)
+        if (py::isinstance<py::dict>(value)) {
+            text += fmt::format("[{}{}]\n", inside, key_text(key));
+            append_table(text, inside + key_text(key), py::reinterpret_borrow<py::dict>(value));
+        }
+}
+
+}  // namespace
+
+std::string toml_text(const py::dict& tables) {
+    std::string text;
+    append_table(text, "", tables);
+    return text;
+}
+
+std::vector<std::string> overrides_of(const py::dict& values) {
+    std::vector<std::string> overrides;
+    for (const auto& [key, value] : values) {
+        const std::string name = key_text(key);
+        overrides.push_back(name + "=" + value_text(value, name));
+    }
+    return overrides;
+}
+
+}  // namespace mcdem

@@ -1,0 +1,78 @@
+"""Completion: what the shells offer, asked of the shells themselves.
+
+completion_test.py PROGRAM; shells that are not installed are named and left out.
+"""
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+
+program = pathlib.Path(sys.argv[1]).resolve()
+
+
+def run(*words, **more):
+    return subprocess.run(words, text=True, capture_output=True, check=True, **more).stdout
+
+
+def bash(script, *words):
+    """What bash completes the last word to. compopt works only while somebody types."""
+    code = ('compopt() { :; }; source "$1"; shift; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _mcdem; '
+            'printf "%s\\n" "${COMPREPLY[@]}"')
+    return set(run("bash", "-c", code, "bash", script, "mcdem", *words).split())
+
+
+def fish(script, *words):
+    line = " ".join(("mcdem", *words))
+    said = run("fish", "--no-config", "-c", f"source {script}; complete -C '{line}'")
+    return {one.split("\t")[0] for one in said.splitlines()}
+
+
+def zsh(script, *words):
+    """compadd and its like work only while somebody types; _describe and the others are asked what they were given."""
+    code = ('compdef() { :; }; compadd() { print -l -- "$@" }; _files() { print files "$@" }; _message() { :; }; '
+            '_describe() { print -l -- "${(@P)@[-1]%%:*}" }; source "$1"; shift; words=("$@"); CURRENT=$#; _mcdem')
+    return set(run("zsh", "-f", "-c", code, "zsh", script, "mcdem", *words).split())
+
+
+def check(complete, script):
+    assert "run" in complete(script, "ru"), complete(script, "ru")
+    assert "check" in complete(script, "experiment", "ch"), complete(script, "experiment", "ch")
+    assert "--resume" in complete(script, "run", "--re"), complete(script, "run", "--re")
+    assert "--vtk" in complete(script, "export", "--v") and "--resume" not in complete(script, "export", "--")
+    keys = complete(script, "run", "scene.toml", "--set", "grains.fr")
+    assert "grains.friction=" in keys or {"grains.friction", "="} <= keys, keys
+    assert {"bash", "zsh", "fish"} <= complete(script, "completion", ""), complete(script, "completion", "")
+
+
+def check_all_commands(script):
+    """Every command that the help lists, and every option of `run`."""
+    listed = [line.split()[0] for line in run(program, "--help").split("Subcommands:")[1].split("\n\n")[0].splitlines()
+              if line]
+    assert len(listed) > 8 and set(listed) <= bash(script, ""), listed
+    options = {word for line in run(program, "run", "--help").splitlines() if line.startswith("  -")
+               for word in line.split()[0].split(",")}
+    assert len(options) > 4 and options == bash(script, "run", "-"), options
+
+
+def main():
+    with tempfile.TemporaryDirectory(prefix="mcdem-completion-") as name:
+        os.chdir(name)
+        pathlib.Path("scene.toml").touch()
+        pathlib.Path("results").mkdir()
+        for shell, complete in (("bash", bash), ("fish", fish), ("zsh", zsh)):
+            if not shutil.which(shell):
+                print(f"{shell}: not installed, not tried")
+                continue
+            script = str(pathlib.Path(name) / f"mcdem.{shell}")
+            pathlib.Path(script).write_text(run(program, "completion", shell))
+            check(complete, script)
+        script = str(pathlib.Path(name) / "mcdem.bash")
+        assert bash(script, "run", "sc") == {"scene.toml"}
+        assert bash(script, "run", "scene.toml", "--out", "") == {"results"}
+        check_all_commands(script)
+
+
+if __name__ == "__main__":
+    main()

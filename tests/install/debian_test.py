@@ -1,0 +1,32 @@
+"""The Debian packages: made by CPack, unpacked into an empty root, and used from there.
+
+debian_test.py SOURCE BUILD CMAKE [PYTHON]; exit code 77 where Debian's tools are missing.
+"""
+import pathlib
+import shutil
+import sys
+import tempfile
+
+from installed import arguments, check_module, check_program, run
+
+if not all(shutil.which(tool) for tool in ("dpkg-deb", "dpkg-shlibdeps")):
+    print("skipped: dpkg-dev is not installed")
+    sys.exit(77)
+
+source, build, cmake, python = arguments()
+with tempfile.TemporaryDirectory(prefix="mcdem-deb-") as name:
+    folder, root = pathlib.Path(name), pathlib.Path(name) / "root"
+    run(pathlib.Path(cmake).parent / "cpack", "-G", "DEB", "-B", folder / "packages", "--config",
+        build / "CPackConfig.cmake", cwd=build)
+    packages = {run("dpkg-deb", "-f", file, "Package").strip(): file for file in (folder / "packages").glob("*.deb")}
+    wanted = {"mcdem", "libmcdem-dev"} | ({"python3-mcdem"} if python else set())
+    assert set(packages) == wanted, packages
+    for package, file in packages.items():
+        run("dpkg-deb", "-x", file, root)
+        depends = run("dpkg-deb", "-f", file, "Depends")
+        for library in {"mcdem": ("libhdf5", "opencl-icd", "libc6"), "python3-mcdem": ("libhdf5", "python3-numpy"),
+                        "libmcdem-dev": ("libhdf5-dev",)}[package]:
+            assert library in depends, f"{package}: depends on {depends}, not on {library}"
+    check_program(root / "usr", folder)
+    if python:
+        check_module(python, root / "usr")

@@ -1,0 +1,46 @@
+"""What the tests of installed files share: commands, and what an installed program must be able to do."""
+import os
+import pathlib
+import subprocess
+import sys
+
+
+def run(*words, **more):
+    """Runs a command and returns what it prints; ends the test with all it said where it fails."""
+    done = subprocess.run([str(word) for word in words], text=True, capture_output=True, **more)
+    if done.returncode != 0:
+        sys.exit(f"exit code {done.returncode}: {' '.join(map(str, words))}\n{done.stdout}{done.stderr}")
+    return done.stdout
+
+
+def environment_without_source(**more):
+    """The kernels and modules of a build tree must not help out."""
+    kept = {name: value for name, value in os.environ.items() if name not in ("MCDEM_KERNELS", "PYTHONPATH")}
+    return {**kept, **{name: str(value) for name, value in more.items()}}
+
+
+def check_program(prefix, folder):
+    """Says its version, and takes an installed scene through a short run."""
+    program, scene = prefix / "bin/mcdem", prefix / "share/mcdem/scenes/small.toml"
+    environment = environment_without_source()
+    assert run(program, "--version", env=environment).startswith("mcdem "), program
+    run(program, "run", scene, "--out", folder / "run", "--no-figures", "--set", "packing.count=30",
+        "--set", "protocol.scans_per_stroke=2", env=environment, cwd=folder)
+    assert (folder / "run/run.h5").is_file()
+
+
+def check_module(python, prefix):
+    """Installed for the interpreter that it was built with."""
+    modules = sorted(prefix.glob("lib/python3*/*-packages/mcdem/_engine*.so"))
+    assert len(modules) == 1, f"{prefix}: {modules}"
+    site = modules[0].parent.parent
+    said = run(python, "-c", "import mcdem; print(mcdem.__file__, len(mcdem.Scene()))",
+               env=environment_without_source(PYTHONPATH=site))
+    assert said.split() == [str(site / "mcdem/__init__.py"), "1"], said
+    assert (site / "mcdem/py.typed").exists() and (site / "mcdem/__init__.pyi").exists()
+
+
+def arguments():
+    """SOURCE BUILD CMAKE PYTHON; PYTHON is empty where the module is not built."""
+    source, build = (pathlib.Path(word).resolve() for word in sys.argv[1:3])
+    return source, build, sys.argv[3], sys.argv[4] if len(sys.argv) > 4 else ""

@@ -1,0 +1,17 @@
+// A program of somebody else that embeds the engine: outside SCENE FOLDER runs a scene and prints what comes
+// out.
+#include <mcdem/ensemble/run_scene.h>
+#include <mcdem/io/results.h>
+#include <mcdem/scene/read_scene.h>
+
+#include <cstdio>
+
+int main(int, char** arguments) {
+    const mcdem::Scene scene = mcdem::read_scene(arguments[1]);
+    mcdem::Device device;
+    mcdem::RunOptions options;
+    options.folder = arguments[2];
+    mcdem::run_scene(device, scene, options);
+    for (const mcdem::Recording& recording : mcdem::read_run(arguments[2]).recordings)
+        std::printf("%s: %zu scans\n", recording.label.c_str(), recording.scans.size());
+}

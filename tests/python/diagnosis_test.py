@@ -1,0 +1,69 @@
+"""mcdem.diagnose: the same as `mcdem diagnose`, key by key.
+
+diagnosis_test.py PROGRAM
+"""
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import mcdem
+from small import SMALL
+
+PROGRAM = sys.argv.pop(1)
+FEW = {"candidates": ["adhesion", "friction"], "replicates": 8, "pairs": 2, "confirmations": 2, "page": False}
+
+
+class Diagnoses(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        kept = tempfile.TemporaryDirectory(prefix="mcdem-diagnosis-")
+        cls.addClassCleanup(kept.cleanup)
+        cls.folder = pathlib.Path(kept.name)
+        cls.scene = mcdem.Scene(SMALL, contact={"model": "elastic_sphere"})
+        reality = mcdem.Scene({**SMALL, "protocol": {**SMALL["protocol"], "scan_at_start": True}},
+                              contact={"model": "elastic_sphere"}, effects={"adhesion": 0.5})
+        mcdem.run(reality, cls.folder / "run")
+        cls.program("experiment", "from-run", "run", "--out", "measured")
+
+    @classmethod
+    def program(cls, *words):
+        subprocess.run([PROGRAM, *words], cwd=cls.folder, check=True, capture_output=True)
+
+    def test_equals_the_file_and_the_program(self):
+        told = []
+        said = mcdem.diagnose(self.scene, self.folder / "measured", self.folder / "out", **FEW,
+                              progress=lambda stage, fraction: told.append((stage, fraction)))
+        self.assertEqual(said, json.loads((self.folder / "out/diagnosis.json").read_text()))
+        self.assertIn(said["verdict"], ("no_gap", "effect", "group", "unknown_effect", "calibration_suspect"))
+        self.assertEqual({one["effect"] for one in said["ranking"]}, {"adhesion", "friction"})
+        self.assertIn("library", {stage for stage, _ in told})
+        (self.folder / "scene.toml").write_text(self.scene.text)
+        self.program("diagnose", "scene.toml", "--experiment", "measured", "--out", "out", "--candidates",
+                     "adhesion,friction", "--replicates", "8", "--pairs", "2", "--confirmations", "2")
+        other = json.loads((self.folder / "out/diagnosis.json").read_text())
+        for varying in ("seconds", "provenance"):
+            del said[varying], other[varying]
+        self.assertEqual(said, other)
+
+    def test_interrupted_by_its_callback_it_goes_on_from_what_is_kept(self):
+        def refuse(stage, fraction):
+            raise InterruptedError(stage)
+
+        with self.assertRaises(InterruptedError):
+            mcdem.diagnose(self.scene, self.folder / "measured", self.folder / "refused", **FEW, progress=refuse)
+        self.assertFalse((self.folder / "refused/diagnosis.json").exists())
+
+    def test_bad_input(self):
+        with self.assertRaisesRegex(ValueError, "replicates: must be 8 or more, got 1\npairs: must be 2 or more"):
+            mcdem.diagnose(self.scene, self.folder / "measured", self.folder / "bad", replicates=1, pairs=1)
+        with self.assertRaisesRegex(ValueError, "nowhere"):
+            mcdem.diagnose(self.scene, self.folder / "nowhere", self.folder / "bad")
+        with self.assertRaisesRegex(ValueError, "gremlins"):
+            mcdem.diagnose(self.scene, self.folder / "measured", self.folder / "bad", candidates=["gremlins"])
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,234 @@
+"""The Python module: scenes, runs, arrays and errors, as its users meet them."""
+import gc
+import os
+import pathlib
+import signal
+import tempfile
+import threading
+import time
+import unittest
+import warnings
+import weakref
+
+import h5py
+import numpy as np
+
+import mcdem
+from small import MODELS, SMALL
+
+
+class Folder(unittest.TestCase):
+    def setUp(self):
+        kept = tempfile.TemporaryDirectory(prefix="mcdem-python-")
+        self.addCleanup(kept.cleanup)
+        self.folder = pathlib.Path(kept.name)
+
+
+class Scenes(Folder):
+    def test_tables_nested_dotted_and_from_text_are_one_scene(self):
+        nested = mcdem.Scene({"grains": {"friction": 0.25}}, **SMALL)
+        dotted = mcdem.Scene({"grains.friction": np.float64(0.25)}, **SMALL)
+        parsed = mcdem.Scene.parse(nested.text)
+        self.assertEqual(nested.parameters, dotted.parameters)
+        self.assertEqual(nested.parameters, parsed.parameters)
+        self.assertEqual(nested.parameters[0]["grains.friction"], "0.25")
+        self.assertEqual(nested.name, "small")
+
+    def test_values_of_every_type_arrive(self):
+        scene = mcdem.Scene(name='a "b"\\\u00e9', packing={"count": np.int32(30), "seed": 7},
+                            output={"positions": False, "contacts": np.bool_(True)}, plate={"end": np.float32(0.125)},
+                            batch={"vary": {"grains.friction": np.array([0.0, 0.1, 1 / 3])}})
+        self.assertEqual(scene.name, 'a "b"\\\u00e9')
+        self.assertEqual([one["grains.friction"] for one in scene.parameters], ["0", "0.1", repr(1 / 3)])
+        self.assertEqual(scene.parameters[0]["plate.end"], "0.125")
+        self.assertEqual(scene.parameters[0]["packing.count"], "30")
+        self.assertEqual(len(scene), 3)
+        self.assertEqual(len(scene.labels), 3)
+
+    def test_files_are_read_and_overridden(self):
+        file = self.folder / "soft.toml"
+        file.write_text("[grains]\nfriction = 0.1\n")
+        scene = mcdem.Scene.read(file, set={"grains.friction": 0.5, "contact.model": "mc_dem"})
+        self.assertEqual(scene.parameters[0]["grains.friction"], "0.5")
+        self.assertEqual(scene.parameters[0]["contact.model"], "mc_dem")
+
+    def test_every_problem_is_a_line_of_one_value_error(self):
+        file = self.folder / "bad.toml"
+        file.write_text("[grains]\nfriction = -1\nyoungs_modulus = true\n")
+        with self.assertRaises(ValueError) as raised:
+            mcdem.Scene.read(file)
+        problems = str(raised.exception).splitlines()
+        self.assertEqual(len(problems), 2)
+        self.assertTrue(problems[0].startswith(f"{file}:2: grains.friction must be "), problems[0])
+        with self.assertRaisesRegex(ValueError, "grains.colour"):
+            mcdem.Scene(grains={"colour": 1})
+        with self.assertRaisesRegex(ValueError, "grains.friction must be a number.*None"):
+            mcdem.Scene(grains={"friction": None})
+        with self.assertRaisesRegex(ValueError, "--set grains.friction"):
+            mcdem.Scene.parse("", set={"grains.friction": -1})
+
+
+class Arrays(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.run_ = mcdem.simulate(mcdem.Scene(SMALL, **MODELS))
+
+    def test_shapes_and_meaning(self):
+        recording = self.run_["elastic_sphere"]
+        scans = recording.scans
+        self.assertEqual(len(self.run_), 2)
+        self.assertEqual([one.label for one in self.run_], ["independent", "elastic_sphere"])
+        self.assertEqual(scans.shape, (len(recording),))
+        self.assertEqual(recording.diameter.shape, (30,))
+        self.assertTrue(np.array_equal(recording.top_force, scans["wall_force"][:, 5, 2]))
+        self.assertTrue((np.diff(scans["frame"]) == 1).all())
+        self.assertGreater(recording.top_force.max(), 0)
+        last = int(np.argmax(recording.top_force))
+        position, contacts = recording.positions(last), recording.contacts(last)
+        self.assertEqual(position.shape, (30, 3))
+        self.assertTrue((position[:, 0] > 0).all() and (position[:, 0] < recording.box[0]).all())
+        plate = contacts["partner"] == -6
+        self.assertAlmostEqual(-contacts["force"][plate, 2].sum(), recording.top_force[last], delta=1e-4)
+        between = contacts["partner"] >= 0
+        distance = np.linalg.norm(position[contacts["grain"][between]] - position[contacts["partner"][between]], axis=1)
+        self.assertLess(distance.max(), recording.diameter.max() * 1.05)
+        self.assertTrue(np.array_equal(recording.positions(-1), recording.positions(len(recording) - 1)))
+
+    def test_memory_is_shared_not_copied(self):
+        recording = self.run_[0]
+        for array in (lambda r: r.scans, lambda r: r.top_force, lambda r: r.diameter, lambda r: r.positions(1),
+                      lambda r: r.contacts(2)):
+            first, second = array(recording), array(self.run_[0])
+            self.assertEqual(first.__array_interface__["data"][0], second.__array_interface__["data"][0])
+            self.assertTrue(np.shares_memory(first, second))
+            self.assertFalse(first.flags.owndata)
+            self.assertFalse(first.flags.writeable)
+            self.assertIs(first.base, recording)
+        self.assertTrue(np.shares_memory(recording.top_force, recording.scans))
+
+    def test_arrays_keep_the_run_alive_and_let_it_go(self):
+        run = mcdem.simulate(mcdem.Scene(SMALL))
+        position, before = run[0].positions(1), run[0].positions(1).copy()
+        alive, owner = weakref.ref(run), weakref.ref(position.base)
+        del run
+        gc.collect()
+        self.assertIsNone(alive())
+        filler = [np.full(position.shape, 7.0) for _ in range(200)]  # where freed memory would be taken again
+        self.assertTrue(np.array_equal(position, before), len(filler))
+        self.assertIsNotNone(owner())
+        del position
+        gc.collect()
+        self.assertIsNone(owner())
+
+    def test_what_is_not_there_is_an_error(self):
+        with self.assertRaises(IndexError):
+            self.run_[2]
+        with self.assertRaises(KeyError):
+            self.run_["soft"]
+        with self.assertRaises(IndexError):
+            self.run_[0].positions(99)
+        self.assertIsNone(self.run_[0].failure)
+
+
+class Runs(Folder):
+    def test_a_run_is_written_and_read_as_h5py_reads_it(self):
+        told = []
+        run = mcdem.run(mcdem.Scene(SMALL, **MODELS), self.folder / "out", progress=told.append)
+        again = mcdem.read(self.folder / "out")
+        self.assertEqual(told, sorted(told))
+        self.assertEqual(told[-1], 1)
+        with h5py.File(self.folder / "out/run.h5") as file:
+            for number, recording in enumerate(again):
+                table = file[f"observables/replica_{number:05}"][:]
+                for name in table.dtype.names:
+                    self.assertTrue(np.array_equal(table[name], recording.scans[name], equal_nan=True), name)
+                stored = file[f"contacts/replica_{number:05}/contact"][:]
+                contacts = np.concatenate([recording.contacts(s) for s in range(len(recording))])
+                for name in stored.dtype.names:
+                    self.assertTrue(np.array_equal(stored[name], contacts[name]), name)
+                stored = file[f"particles/replica_{number:05}/position/value"][:]
+                self.assertTrue(np.array_equal(stored, [recording.positions(s) for s in range(len(recording))]))
+        self.assertEqual(run.scene, again.scene)
+        self.assertEqual(mcdem.read(self.folder / "out", what="observables")[0].positions(0).shape, (0, 3))
+
+    def test_simulate_and_run_agree(self):
+        scene = mcdem.Scene(SMALL)
+        self.assertTrue(np.array_equal(mcdem.simulate(scene)[0].top_force,
+                                       mcdem.run(scene, self.folder / "out")[0].top_force))
+
+    def test_control_c_ends_in_good_order_and_the_run_goes_on(self):
+        scene = mcdem.Scene(SMALL)
+        asked = []
+
+        def interrupt_once(fraction):
+            if not asked and fraction > 0.2:
+                asked.append(fraction)
+                os.kill(os.getpid(), signal.SIGINT)
+
+        with self.assertRaises(KeyboardInterrupt):
+            mcdem.run(scene, self.folder / "out", progress=interrupt_once)
+        self.assertFalse((self.folder / "out/run.h5").exists())
+        with self.assertRaisesRegex(ValueError, "resume"):
+            mcdem.run(scene, self.folder / "out")
+        told = []
+        run = mcdem.run(scene, self.folder / "out", resume=True, progress=told.append)
+        self.assertGreater(told[0], 0.1)
+        self.assertTrue(np.array_equal(run[0].top_force, mcdem.simulate(scene)[0].top_force))
+        with self.assertRaises(KeyboardInterrupt):
+            asked.clear()
+            mcdem.simulate(scene, progress=interrupt_once)
+
+    def test_what_a_callback_raises_comes_out(self):
+        def refuse(fraction):
+            raise LookupError(f"at {fraction:.0%}")
+
+        with self.assertRaisesRegex(LookupError, "at "):
+            mcdem.simulate(mcdem.Scene(SMALL), progress=refuse)
+        with self.assertRaisesRegex(LookupError, "at "):
+            mcdem.run(mcdem.Scene(SMALL), self.folder / "out", progress=refuse)
+
+    def test_other_threads_go_on_while_it_simulates(self):
+        counts, done = [0], threading.Event()
+
+        def count():
+            while not done.is_set():
+                counts[0] += 1
+                time.sleep(0.001)
+
+        thread = threading.Thread(target=count)
+        thread.start()
+        at_start = counts[0]
+        mcdem.simulate(mcdem.Scene(SMALL))
+        at_end = counts[0]
+        done.set()
+        thread.join()
+        self.assertGreater(at_end - at_start, 5)
+
+    def test_errors(self):
+        with self.assertRaisesRegex(ValueError, "got nothing there"):
+            mcdem.read(self.folder / "nowhere")
+        with self.assertRaisesRegex(ValueError, "what: must be one of"):
+            mcdem.read(self.folder, what="all")
+        with self.assertRaisesRegex(ValueError, "no such device|device"):
+            mcdem.simulate(mcdem.Scene(SMALL), device="abacus")
+        (self.folder / "file").touch()
+        with self.assertRaisesRegex(RuntimeError, "file"):
+            mcdem.run(mcdem.Scene(SMALL), self.folder / "file/below")
+
+    def test_where_all_replicas_fail_the_run_fails(self):
+        # far beyond what a half space bears: the corrections run away
+        scene = mcdem.Scene(SMALL, plate={"start": 0.088, "end": 0.03}, contact={"model": "mc_dem", "gamma": 1.8})
+        with warnings.catch_warnings(record=True) as said:
+            warnings.simplefilter("always")
+            with self.assertRaisesRegex(RuntimeError, "no replica came to its end"):
+                mcdem.simulate(scene)
+        self.assertTrue(any("stopped at step" in str(one.message) for one in said))
+
+    def test_devices(self):
+        devices = mcdem.devices()
+        self.assertEqual([one["index"] for one in devices], list(range(len(devices))))
+        self.assertTrue(all(one["compute_units"] > 0 for one in devices))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,45 @@
+"""What the viewers' tests share: a run, its export, and what the run's file says of it."""
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+SKIPPED = 77
+
+
+def skip(why):
+    print(f"skipped: {why}")
+    sys.exit(SKIPPED)
+
+
+def missing(python, module):
+    """Whether this Python has not the module."""
+    return subprocess.run([str(python), "-c", f"import {module}"], capture_output=True).returncode != 0
+
+
+class Exported:
+    """A small run of two replicas, exported in one of the formats, in a folder that goes with the test."""
+
+    def __init__(self, program, source, form):
+        self._kept = tempfile.TemporaryDirectory(prefix=f"mcdem-{form}-")
+        self.folder = pathlib.Path(self._kept.name)
+        for words in (("run", source / "scenes/small.toml", "--out", "run", "--no-figures"),
+                      ("export", "run", f"--{form}", "--out", "view")):
+            subprocess.run([str(word) for word in (program, *words)], cwd=self.folder, check=True, capture_output=True)
+        self.view = self.folder / "view"
+
+    def open(self):
+        import h5py
+        return h5py.File(self.folder / "run/run.h5")
+
+
+def scan_of(file, replica, scan):
+    """Positions, contacts and the row of observables of one scan, from run.h5."""
+    offset = file[f"contacts/{replica}/offset"]
+    return (file[f"particles/{replica}/position/value"][scan], file[f"contacts/{replica}/contact"][
+        offset[scan]:offset[scan + 1]], file[f"observables/{replica}"][scan])
+
+
+def arguments():
+    """PROGRAM SOURCE and the rest."""
+    return pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve(), sys.argv[3:]

@@ -1,0 +1,16 @@
+"""Runs the lines given on standard input, which make a `pipeline` in OVITO, and prints what it holds, as JSON."""
+import json
+import sys
+
+code = sys.stdin.read()
+names = {}
+exec(compile(code, "OVITO.txt", "exec"), names)  # lines of the project's own OVITO.txt
+frames = []
+for number in range(names["pipeline"].num_frames):
+    data = names["pipeline"].compute(number)
+    particles, bonds = data.particles, data.particles.bonds
+    frames.append({"position": particles.positions[...].tolist(), "radius": particles["Radius"][...].tolist(),
+                   "identifier": particles.identifiers[...].tolist(), "topology": bonds.topology[...].tolist(),
+                   "force": bonds["Force"][...].tolist(), "overlap": bonds["overlap"][...].tolist(),
+                   "top_force": float(data.attributes["top_force"])})
+print(json.dumps(frames))
