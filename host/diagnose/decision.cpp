@@ -6,11 +6,14 @@
 namespace mcdem {
 namespace {
 
-/// Gain by candidate: from real runs where there are some.
-std::vector<double> known_gains(const Findings& findings) {
+/// Gain by candidate: from real runs where there are some, else as far behind the leader as by signatures.
+std::vector<double> known_gains(const Findings& findings, const Proposal& leader) {
     std::vector<double> gains = findings.gain;
+    for (double& gain : gains)
+        if (gain > 0) gain += leader.best_gain() - leader.gain;
     for (const Proposal& proposal : findings.proposals)
-        if (proposal.candidates.size() == 1) gains[proposal.candidates[0]] = proposal.best_gain();
+        if (proposal.candidates.size() == 1 && proposal.confirmed_gain)
+            gains[proposal.candidates[0]] = *proposal.confirmed_gain;
     return gains;
 }
 
@@ -68,6 +71,20 @@ std::vector<std::size_t> group_of(std::size_t leader, const std::vector<double>&
     return group;
 }
 
+/// Index of the proposal of one candidate alone, -1 where there is none.
+int proposal_of(std::size_t candidate, const Findings& findings) {
+    const auto found = std::ranges::find(findings.proposals, std::vector{candidate}, &Proposal::candidates);
+    return found == findings.proposals.end() ? -1 : static_cast<int>(found - findings.proposals.begin());
+}
+
+/// A stated parameter that may be wrong comes before any effect that it cannot be told from.
+void suspect_calibration(Decision& decision, const Findings& findings) {
+    const auto nuisance = [&](std::size_t c) { return static_cast<int>(c) >= findings.effects; };
+    std::ranges::stable_partition(decision.group, nuisance);
+    if (const int proposal = proposal_of(decision.group[0], findings); proposal >= 0) decision.proposal = proposal;
+    decision.verdict = Verdict::calibration_suspect;
+}
+
 /// Verdict, proposal and group.
 Decision chosen(const Findings& findings, int single, std::vector<std::size_t> group, double best,
                 const Limits& limits) {
@@ -82,8 +99,8 @@ Decision chosen(const Findings& findings, int single, std::vector<std::size_t> g
             decision.proposal = pair;
             decision.group = findings.proposals[static_cast<std::size_t>(pair)].candidates;
         }
-    } else if (static_cast<int>(decision.group[0]) >= findings.effects) {
-        decision.verdict = Verdict::calibration_suspect;
+    } else if (static_cast<int>(std::ranges::max(decision.group)) >= findings.effects) {
+        suspect_calibration(decision, findings);
     } else {
         decision.verdict = decision.group.size() > 1 ? Verdict::group : Verdict::effect;
     }
@@ -93,10 +110,10 @@ Decision chosen(const Findings& findings, int single, std::vector<std::size_t> g
 }  // namespace
 
 Decision decide(const Findings& findings, const Limits& limits) {
-    const std::vector<double> gains = known_gains(findings);
     const int single = best_single(findings);
-    if (single < 0) return {Verdict::no_gap, -1, {}, std::vector<double>(gains.size(), 0.0)};
+    if (single < 0) return {Verdict::no_gap, -1, {}, std::vector<double>(findings.gain.size(), 0.0)};
     const Proposal& leader = findings.proposals[static_cast<std::size_t>(single)];
+    const std::vector<double> gains = known_gains(findings, leader);
     const double best = leader.best_gain(), margin = std::max(limits.group, limits.group_share * best);
     Decision decision =
         chosen(findings, single, group_of(leader.candidates[0], gains, best, margin), best, limits);

@@ -153,9 +153,16 @@ void Draft::confirm(std::size_t proposal, const Eigen::MatrixXd& runs) {
     decision_ = decide(findings_, limits_);
 }
 
+bool Draft::may_gain(std::size_t proposal) const {
+    const Proposal& p = findings_.proposals[proposal];
+    return p.candidates.size() == 1 && static_cast<int>(p.candidates[0]) >= findings_.effects &&
+           decision_.proposal != static_cast<int>(proposal) &&
+           std::abs((*step_[proposal])[whole_[proposal].nuisances.size()]) > p.errors[0];
+}
+
 bool Draft::refit(std::size_t proposal) {
     const Proposal& p = findings_.proposals[proposal];
-    if (!step_[proposal] || p.best_misfit() >= limits_.misfit) return false;
+    if (!step_[proposal] || (p.best_misfit() >= limits_.misfit && !may_gain(proposal))) return false;
     PartialFit& fit = whole_[proposal];
     const auto nuisances = fit.nuisances.size();
     const auto before = fit.amplitudes;

@@ -95,6 +95,21 @@ std::array<double, 7> force_distribution_numbers(const Recording& recording, con
             quantile(forces, 0.95) / average};
 }
 
+// A force f on a grain at z from a neighbour at z' passes the sections between the two: f (z - z') over the
+// height in the mean. The floor's and the side walls' passes those below the grain, the plate's those above.
+double section_load(const Scan& scan) {
+    const auto height = [&](int grain) { return scan.position[static_cast<std::size_t>(grain)].z(); };
+    double moment = 0;
+    for (const Contact& contact : scan.contacts) {
+        const double from = !is_wall(contact.partner)                   ? height(contact.partner)
+                            : wall_of(contact.partner) == Wall::plate ? scan.plate_z
+                                                                        : 0;
+        moment += contact.force.z() * (height(contact.grain) - from);
+    }
+    const double top = scan.top_force();
+    return top > 0 ? moment / (scan.plate_z * top) : not_available;
+}
+
 namespace {
 
 /// Root mean square of the displacements since the first scan less their best affine map, over the mean

@@ -19,6 +19,10 @@ std::array<double, 5> wall_loads(const Recording& recording, const Scan& scan);
 std::array<double, 7> force_distribution_numbers(const Recording& recording, const Scan& scan,
                                                  const ReferenceMaterial& material);
 
+/// Vertical force through a horizontal section and that of the side walls' friction above it, mean over all
+/// sections, over the plate's reading: at rest it is 1 (less the weight above), whatever the grains are made of.
+double section_load(const Scan& scan);
+
 /// Anisotropy, vertical gradient, non-affine displacement, part of the contacts that pull.
 std::array<double, 4> fabric(const Recording& recording, const Scan& scan,
                              std::span<const ContactResidual> contacts);

@@ -7,6 +7,7 @@
 namespace mcdem {
 namespace {
 
+/// .. and the best nuisance beyond them, so that no effect is named for what a wrong parameter does.
 constexpr std::size_t most_singles = 3;
 /// Effects this much behind the leader, in log likelihood or as a part of its gain, are not tried.
 constexpr double far_behind = 8, far_behind_share = 0.25;
@@ -79,11 +80,13 @@ std::vector<Proposal> propose(const GapSpace& space, const GapData& data, const 
         order, [&](auto a, auto b) { return statistics.fits[a].score > statistics.fits[b].score; });
     const double best = statistics.directed;
     std::vector<Proposal> proposals;
+    bool nuisance_tried = false;
     for (const std::size_t c : order) {
         const EffectFit& fit = statistics.fits[c];
-        if (proposals.size() == most_singles || !(fit.score > 0) ||
-            best - fit.score > std::max(far_behind, far_behind_share * best))
-            break;
+        if (!(fit.score > 0) || best - fit.score > std::max(far_behind, far_behind_share * best)) break;
+        const bool nuisance = static_cast<int>(c) >= data.effects;
+        if (proposals.size() >= most_singles && (nuisance_tried || !nuisance)) continue;
+        nuisance_tried = nuisance_tried || nuisance;
         Proposal& proposal = proposals.emplace_back();
         proposal.candidates = {c};
         proposal.amplitudes = {fit.amplitude};

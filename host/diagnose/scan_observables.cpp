@@ -27,6 +27,7 @@ constexpr Observable table[] = {
     {"strong_forces", Needs::contacts, 0.003, "", "strong", "part of the contacts above 2 mean forces"},
     {"strongest_forces", Needs::contacts, 0.01, "", "strong", "95 % quantile of contact forces over their mean"},
 
+    {"section_load", Needs::positions, 0.002, "", "", "vertical force through horizontal sections, what the side walls carry above them added, over the plate's reading"},
     {"force_anisotropy", Needs::positions, 0.001, "", "", "vertical share of normal forces, less a third"},
     {"vertical_gradient", Needs::positions, 0.01, "", "", "change of the mean contact force with depth, over the height"},
     {"non_affine", Needs::positions, 0.001, "", "", "what an affine map leaves of the displacements since the first scan, over the mean diameter"},
@@ -84,6 +85,7 @@ Eigen::VectorXd scan_observables(const Recording& recording, const Scan& scan,
     row.add(force_distribution_numbers(recording, scan, material));
     if (scan.position.empty()) return row.done();
     const auto residuals = contact_residuals(recording, scan, material);
+    row.add(std::array{section_load(scan)});
     row.add(fabric(recording, scan, residuals));
     row.add(friction_numbers(recording, scan, residuals, material));
     row.add(contact_occurrence(recording, scan, residuals));

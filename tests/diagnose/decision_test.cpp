@@ -81,7 +81,9 @@ TEST(Decision, NoGap) {
 TEST(Decision, GroupWithinTheMarginByGain) {
     Findings f = clear_case();
     f.gain = {47.5, 50, 48.5, 46.9, 20};
-    const Decision d = decide(f, {});
+    Limits limits;
+    limits.group = 3;
+    const Decision d = decide(f, limits);
     EXPECT_EQ(d.verdict, Verdict::group);
     EXPECT_THAT(d.group, ElementsAre(1, 2, 0));
     expect_sum_of_known(d);
@@ -93,7 +95,10 @@ TEST(Decision, MarginGrowsWithTheLeadersGain) {
     Findings f = clear_case();
     f.gain = {481, 500, 479, 0, 0};
     f.proposals = {proposal({1}, 500, 0.5)};
-    const Decision d = decide(f, {});  // 4 % of 500
+    Limits limits;
+    limits.group = 3;
+    limits.group_share = 0.04;  // 20 of 500
+    const Decision d = decide(f, limits);
     EXPECT_THAT(d.group, ElementsAre(1, 0));
     EXPECT_NEAR(d.confidence[0] / d.confidence[1], std::exp(-19 * 3.0 / 20), 1e-12);
 }
@@ -114,6 +119,22 @@ TEST(Decision, CalibrationIsSuspectWhereANuisanceLeads) {
     EXPECT_THAT(d.group, ElementsAre(4, 1));
     f.effects = 5;  // were it an effect
     EXPECT_EQ(decide(f, {}).verdict, Verdict::group);
+}
+
+TEST(Decision, CalibrationIsSuspectWhereANuisanceDoesNearlyAsWell) {
+    Findings f = clear_case();
+    const Limits limits;
+    f.gain[4] = 50 - 0.99 * limits.group;
+    f.proposals[1].gain = f.gain[4];
+    f.proposals[1].misfit_p = 0.5;
+    Decision d = decide(f, limits);
+    EXPECT_EQ(d.verdict, Verdict::calibration_suspect);
+    EXPECT_THAT(d.group, ElementsAre(4, 1));
+    EXPECT_EQ(d.proposal, 1);
+    f.gain[4] = f.proposals[1].gain = 50 - 1.01 * limits.group;
+    d = decide(f, limits);
+    EXPECT_EQ(d.verdict, Verdict::effect);
+    EXPECT_EQ(d.proposal, 0);
 }
 
 TEST(Decision, UnknownWhereTheBestLeavesAGap) {
@@ -149,9 +170,9 @@ TEST(Decision, APairWhereOneIsNotEnough) {
     EXPECT_EQ(decide(does_not_fit, limits).verdict, Verdict::unknown_effect);
     Findings large = f;
     large.proposals[0].gain = large.gain[1] = 1000;
-    large.proposals[2].gain = 1079;  // 8 % of 1000 are needed
+    large.proposals[2].gain = 1000 + 990 * limits.second_share;
     EXPECT_EQ(decide(large, limits).verdict, Verdict::unknown_effect);
-    large.proposals[2].gain = 1081;
+    large.proposals[2].gain = 1000 + 1010 * limits.second_share;
     EXPECT_EQ(decide(large, limits).verdict, Verdict::effect);
 }
 
@@ -170,6 +191,18 @@ TEST(Decision, RealRunsTakeOver) {
     f.proposals[1].misfit_p = 1e-6;
     f.proposals[1].confirmed_misfit_p = 0.5;
     EXPECT_EQ(decide(f, {}).verdict, Verdict::calibration_suspect);
+}
+
+// Adhesion was not run. By signatures it lay 1 behind the leader, of whose gain half was left by real runs.
+TEST(Decision, WhatWasNotRunStaysAsFarBehindAsBySignatures) {
+    Findings f = clear_case();
+    f.gain = {49, 50, 2, 0, 20};
+    f.proposals[0].confirmed_gain = 25;
+    const Decision d = decide(f, {});
+    EXPECT_THAT(d.group, ElementsAre(1, 0));
+    EXPECT_NEAR(d.confidence[0] / d.confidence[1], std::exp(-1.0), 1e-12);
+    f.gain[0] = 30;  // more than what real runs left of the leader's 50
+    EXPECT_THAT(decide(f, {}).group, ElementsAre(1));
 }
 
 TEST(Decision, SameFindingsSameDecision) {

@@ -65,6 +65,31 @@ TEST(Proposals, TwoEffectsTogether) {
                 1e-6 * pair.gain);
 }
 
+/// What is proposed for a gap in the first effect's direction, where `others` gain 1, 2, .. less and the nuisance
+/// beyond its prior `behind` less.
+std::vector<std::size_t> singles_with_nuisance(Case& c, double behind) {
+    GapStatistics statistics = c.statistics;
+    for (std::size_t k = 0; k < statistics.fits.size(); ++k) {
+        statistics.fits[k].score = 50 - static_cast<double>(k);
+        statistics.fits[k].amplitude = 1;
+    }
+    statistics.fits.back().score = 50 - behind;
+    statistics.directed = 50;
+    statistics.omnibus = 0;  // no pair gains
+    std::vector<std::size_t> list;
+    for (const Proposal& p : propose(c.space, c.data, c.null, statistics, replicates))
+        if (p.candidates.size() == 1) list.push_back(p.candidates[0]);
+    return list;
+}
+
+TEST(Proposals, ANuisanceIsAlwaysRunUnlessFarBehind) {
+    Case c({4});
+    ASSERT_EQ(c.data.candidates.size(), 5u);
+    EXPECT_THAT(singles_with_nuisance(c, 10), ElementsAre(0, 1, 2, 4));
+    EXPECT_THAT(singles_with_nuisance(c, 13), ElementsAre(0, 1, 2));  // a quarter of 50 is 12.5
+    EXPECT_THAT(singles_with_nuisance(c, 0.5), ElementsAre(0, 4, 1));
+}
+
 TEST(Proposals, ExplainedBySignatures) {
     const Case c({});
     Proposal p;
