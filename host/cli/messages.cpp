@@ -16,6 +16,20 @@ void say_lines(const std::string& text) {
     for (std::string line; std::getline(lines, line);) spdlog::error("{}", line);
 }
 
+/// What a user can do about an OpenCL error. Drivers use CL_OUT_OF_RESOURCES for both.
+const char* remedy_of(cl_int code) {
+    switch (code) {
+        case CL_MEM_OBJECT_ALLOCATION_FAILURE:
+            return "the device has not enough memory; run fewer replicas at a time";
+        case CL_OUT_OF_RESOURCES:
+            return "the device has not enough memory (run fewer replicas at a time), or it has failed "
+                   "(`mcdem devices` lists "
+                   "those that answer)";
+        default:
+            return "the device or its driver has failed; `mcdem devices` lists those that answer";
+    }
+}
+
 }  // namespace
 
 void set_up_messages() {
@@ -31,11 +45,8 @@ int report_error(const std::exception& error) {
         return exit_bad_input;
     }
     if (const auto* opencl = dynamic_cast<const cl::Error*>(&error))
-        spdlog::error(
-            "OpenCL: {} failed with code {}{}", opencl->what(), opencl->err(),
-            opencl->err() == CL_MEM_OBJECT_ALLOCATION_FAILURE || opencl->err() == CL_OUT_OF_RESOURCES
-                ? ": the device has not enough memory; run fewer replicas at a time"
-                : "");
+        spdlog::error("OpenCL: {} failed with code {}: {}", opencl->what(), opencl->err(),
+                      remedy_of(opencl->err()));
     else if (dynamic_cast<const std::bad_alloc*>(&error))
         spdlog::error("needs more memory than there is");
     else

@@ -12,6 +12,7 @@
 #include "core/errors.h"
 #include "core/version.h"
 #include "ensemble/share_run.h"
+#include "io/checkpoint.h"
 #include "io/result_folder.h"
 #include "io/results.h"
 #include "metrics/model_table.h"
@@ -133,19 +134,38 @@ SharedWork shared_work(const RunCommand& command, const Scene& scene) {
     return work;
 }
 
-int run(const RunCommand& command) {
-    const Scene scene = command.scene.read();
-    if (is_shared(command.sharing, command.device) || (command.resume && is_shared_run(command.out)))
-        return share(shared_work(command, scene), command.sharing, command.device);
+/// What went wrong, and how to go on from what was recorded before.
+int failed_run(const RunCommand& command, const std::exception& error) {
+    const int code = report_error(error);
+    if (has_checkpoint(command.out))
+        spdlog::warn("what was recorded before is kept; go on with\n  {}", resume_command(command));
+    return code;
+}
+
+int run_alone(const RunCommand& command, const Scene& scene) {
     Device device(command.device);
     spdlog::info("{}: {} on {}", scene.name, size_text(scene), device.info().name);
-    const auto summary = run_with_progress(device, scene, command);
+    RunSummary summary;
+    try {
+        summary = run_with_progress(device, scene, command);
+    } catch (const cl::Error& error) {
+        return failed_run(command, error);
+    } catch (const RunError& error) {
+        return failed_run(command, error);
+    }
     if (summary.end == RunEnd::interrupted) {
         spdlog::warn("interrupted; go on with\n  {}", resume_command(command));
         return exit_interrupted;
     }
     if (summary.end == RunEnd::was_done) spdlog::info("{}: this run is done already", command.out);
     return report_run(command, summary);
+}
+
+int run(const RunCommand& command) {
+    const Scene scene = command.scene.read();
+    if (is_shared(command.sharing, command.device) || (command.resume && is_shared_run(command.out)))
+        return share(shared_work(command, scene), command.sharing, command.device);
+    return run_alone(command, scene);
 }
 
 }  // namespace

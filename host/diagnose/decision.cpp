@@ -81,7 +81,8 @@ int proposal_of(std::size_t candidate, const Findings& findings) {
 void suspect_calibration(Decision& decision, const Findings& findings) {
     const auto nuisance = [&](std::size_t c) { return static_cast<int>(c) >= findings.effects; };
     std::ranges::stable_partition(decision.group, nuisance);
-    if (const int proposal = proposal_of(decision.group[0], findings); proposal >= 0) decision.proposal = proposal;
+    if (const int proposal = proposal_of(decision.group[0], findings); proposal >= 0)
+        decision.proposal = proposal;
     decision.verdict = Verdict::calibration_suspect;
 }
 

@@ -28,7 +28,8 @@ public:
     /// Real runs with whole_fit(); row: replicate.
     void confirm(std::size_t proposal, const Eigen::MatrixXd& runs);
     /// Moves the parameters of a confirmed proposal by what its runs leave (a step of Gauss and Newton's
-    /// method) where they leave a gap of their own, or where a nuisance may gain by it. False where there is nothing to gain.
+    /// method) where they leave a gap of their own, or where a nuisance may gain by it. False where there is
+    /// nothing to gain.
     bool refit(std::size_t proposal);
 
     bool wants_held_out() const { return decision_.verdict != Verdict::no_gap && decision_.proposal >= 0; }
@@ -42,8 +43,8 @@ public:
     Diagnosis diagnosis() const;
 
 private:
-    /// A nuisance that does not lead although runs ask for more of it: it is to have every chance before an effect
-    /// is named.
+    /// A nuisance that does not lead although runs ask for more of it: it is to have every chance before an
+    /// effect is named.
     bool may_gain(std::size_t proposal) const;
 
     const Evidence& evidence_;

@@ -101,9 +101,9 @@ double section_load(const Scan& scan) {
     const auto height = [&](int grain) { return scan.position[static_cast<std::size_t>(grain)].z(); };
     double moment = 0;
     for (const Contact& contact : scan.contacts) {
-        const double from = !is_wall(contact.partner)                   ? height(contact.partner)
+        const double from = !is_wall(contact.partner)                 ? height(contact.partner)
                             : wall_of(contact.partner) == Wall::plate ? scan.plate_z
-                                                                        : 0;
+                                                                      : 0;
         moment += contact.force.z() * (height(contact.grain) - from);
     }
     const double top = scan.top_force();

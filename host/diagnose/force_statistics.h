@@ -20,7 +20,8 @@ std::array<double, 7> force_distribution_numbers(const Recording& recording, con
                                                  const ReferenceMaterial& material);
 
 /// Vertical force through a horizontal section and that of the side walls' friction above it, mean over all
-/// sections, over the plate's reading: at rest it is 1 (less the weight above), whatever the grains are made of.
+/// sections, over the plate's reading: at rest it is 1 (less the weight above), whatever the grains are made
+/// of.
 double section_load(const Scan& scan);
 
 /// Anisotropy, vertical gradient, non-affine displacement, part of the contacts that pull.

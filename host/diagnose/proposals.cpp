@@ -7,7 +7,8 @@
 namespace mcdem {
 namespace {
 
-/// .. and the best nuisance beyond them, so that no effect is named for what a wrong parameter does.
+/// .. and the best nuisance however far behind, so that no effect is named for what a wrong parameter does: signatures are
+/// least right for parameters far off.
 constexpr std::size_t most_singles = 3;
 /// Effects this much behind the leader, in log likelihood or as a part of its gain, are not tried.
 constexpr double far_behind = 8, far_behind_share = 0.25;
@@ -15,6 +16,7 @@ constexpr double pair_gain = 4;
 /// Part by which a signature may be wrong, cell by cell.
 constexpr double signature_error = 0.1;
 constexpr int rounds = 6;
+constexpr Eigen::Index fewest_runs = 2;
 
 Eigen::VectorXd without(const Eigen::VectorXd& gap, const GapData& data, const Proposal& proposal,
                         std::size_t but = SIZE_MAX) {
@@ -66,6 +68,14 @@ Proposal fit_pair(const GapSpace& space, const GapData& data, const Eigen::Vecto
     return pair;
 }
 
+/// The runs that came to their end: packings may run away at amplitudes at which others hold.
+Eigen::MatrixXd whole_runs(const Eigen::MatrixXd& runs, const CellChoice& cells) {
+    std::vector<Eigen::Index> whole;
+    for (Eigen::Index r = 0; r < runs.rows(); ++r)
+        if (pick(runs.row(r).transpose(), cells).allFinite()) whole.push_back(r);
+    return runs(whole, Eigen::all);
+}
+
 }  // namespace
 
 Eigen::VectorXd explained_by(const Proposal& proposal, const GapData& data) {
@@ -83,9 +93,10 @@ std::vector<Proposal> propose(const GapSpace& space, const GapData& data, const 
     bool nuisance_tried = false;
     for (const std::size_t c : order) {
         const EffectFit& fit = statistics.fits[c];
-        if (!(fit.score > 0) || best - fit.score > std::max(far_behind, far_behind_share * best)) break;
+        if (!(fit.score > 0)) break;
         const bool nuisance = static_cast<int>(c) >= data.effects;
-        if (proposals.size() >= most_singles && (nuisance_tried || !nuisance)) continue;
+        const bool near = best - fit.score <= std::max(far_behind, far_behind_share * best);
+        if (!(near && proposals.size() < most_singles) && !(nuisance && !nuisance_tried)) continue;
         nuisance_tried = nuisance_tried || nuisance;
         Proposal& proposal = proposals.emplace_back();
         proposal.candidates = {c};
@@ -109,10 +120,11 @@ std::vector<Proposal> propose(const GapSpace& space, const GapData& data, const 
 
 std::optional<Eigen::VectorXd> confirm(Proposal& proposal, const GapData& data, const NullDistribution& null,
                                        const Eigen::VectorXd& observed, double omnibus,
-                                       const Eigen::MatrixXd& runs) {
+                                       const Eigen::MatrixXd& all_runs) {
     constexpr double still_free = 0.25;  // part of an amplitude
+    const Eigen::MatrixXd runs = whole_runs(all_runs, data.cells);
+    if (runs.rows() < fewest_runs) return std::nullopt;
     const Eigen::VectorXd left = observed - runs.colwise().mean().transpose();
-    if (!pick(left, data.cells).allFinite()) return std::nullopt;
     std::vector<FreeParameter> free = data.free;
     for (std::size_t k = 0; k < proposal.candidates.size(); ++k)
         free.push_back({data.candidates[proposal.candidates[k]].signature->slope(proposal.amplitudes[k]),

@@ -11,7 +11,7 @@ std::vector<Proposal> propose(const GapSpace& space, const GapData& data, const 
 
 /// What real runs say of a proposal: gain and misfit. Within its error and a quarter of its size the
 /// amplitude may still move, and the nuisances within their priors: the steps that they take are returned
-/// (nuisances, then amplitudes). Nothing where a run has failed. `runs`: row a replicate.
+/// (nuisances, then amplitudes). Nothing where fewer than two runs came to their end. `runs`: row a replicate.
 std::optional<Eigen::VectorXd> confirm(Proposal& proposal, const GapData& data, const NullDistribution& null,
                                        const Eigen::VectorXd& observed, double omnibus,
                                        const Eigen::MatrixXd& runs);

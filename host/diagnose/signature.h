@@ -14,7 +14,7 @@ struct Signature {
     Eigen::VectorXd curvature;  ///< per unit amplitude squared
     Eigen::VectorXd variance;   ///< of `linear`, from the scatter over pairs
     Eigen::VectorXd spread;     ///< variance over pairs at the second amplitude, over its square: how much
-                             ///< packings (and random draws of the effect) differ in it, chaos included
+                                ///< packings (and random draws of the effect) differ in it, chaos included
     int pairs = 0;
 
     Eigen::VectorXd at(double amplitude) const;

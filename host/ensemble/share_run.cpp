@@ -9,6 +9,7 @@
 #include "core/errors.h"
 #include "ensemble/agreement.h"
 #include "ensemble/run_state.h"
+#include "io/checkpoint.h"
 #include "io/claims.h"
 #include "io/csv.h"
 #include "io/parts.h"
@@ -202,7 +203,7 @@ void expect_no_run_of_one(const fs::path& folder) {
     if (fs::exists(folder) && !fs::is_directory(folder))
         throw InputError(folder.string() + ": is a file; give a folder for the results");
     if (!fs::exists(folder) || fs::exists(parts_folder(folder))) return;
-    if (fs::exists(folder / "checkpoint.h5") || !segment_files(folder).empty())
+    if (has_checkpoint(folder) || !segment_files(folder).empty())
         throw InputError(
             folder.string() +
             ": holds an interrupted run of one program: go on with it by --resume alone, or give "

@@ -114,6 +114,10 @@ std::optional<Checkpoint> read_checkpoint(const fs::path& folder) {
     throw InputError(problems);
 }
 
+bool has_checkpoint(const fs::path& folder) {
+    return fs::exists(newest(folder)) || fs::exists(previous(folder));
+}
+
 void remove_checkpoints(const fs::path& folder) {
     fs::remove(newest(folder));
     fs::remove(previous(folder));

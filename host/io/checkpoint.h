@@ -24,6 +24,8 @@ void write_checkpoint(const std::filesystem::path& folder, const Checkpoint& che
 /// and all are damaged.
 std::optional<Checkpoint> read_checkpoint(const std::filesystem::path& folder);
 
+bool has_checkpoint(const std::filesystem::path& folder);
+
 /// Removes what write_checkpoint wrote: a finished run needs none.
 void remove_checkpoints(const std::filesystem::path& folder);
 

@@ -92,8 +92,8 @@ TEST(Ablations, TopForceAloneSeesWhatShowsInIt) {
 }
 
 TEST(Ablations, WithoutPairingThePackingsScatterHidesIt) {
-    // Over packings sigma is 3: gains fall by a factor of ten, and the mean is of eight packings. Some of it comes back by
-    // the covariance of 32 rows, another amount by every draw.
+    // Over packings sigma is 3: gains fall by a factor of ten, and the mean is of eight packings. Some of it
+    // comes back by the covariance of 32 rows, another amount by every draw.
     const Evidence e = evidence(1.5, 0);
     const double paired = ablated_findings(e, ablation("without confirming runs")).gain.at(0);
     const double unpaired = ablated_findings(e, ablation("without pairing")).gain.at(0);

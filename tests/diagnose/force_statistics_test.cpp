@@ -98,7 +98,8 @@ Lattice lattice_with_wall_friction(int n) {
         }
     for (Contact& contact : lattice.scan.contacts) {
         const bool from_below = contact.partner == wall_partner(Wall::floor);
-        if (std::abs(contact.force.z()) < carried * 1.5 || contact.partner == wall_partner(Wall::plate)) continue;
+        if (std::abs(contact.force.z()) < carried * 1.5 || contact.partner == wall_partner(Wall::plate))
+            continue;
         const int layers_above = n - contact.grain / (n * n) - (from_below ? 0 : 1);
         const int walls = side_walls[static_cast<std::size_t>(contact.grain)];
         contact.force.z() = (from_below ? 1 : -1) * (push - carried * walls * layers_above);
@@ -121,8 +122,9 @@ TEST(SectionLoad, IsThePlatesWhereverItIsCarried) {
     EXPECT_TRUE(std::isnan(section_load(lattice.scan)));
 }
 
-// Of a column's six vertical contacts four lie a fifth of the sections apart, those at both ends half of that: errors are
-// sqrt(4 + 2/4)/5 of the plate's, which are 5 % / sqrt(25). 400 draws give them within 3.5 %.
+// Of a column's six vertical contacts four lie a fifth of the sections apart, those at both ends half of
+// that: errors are sqrt(4 + 2/4)/5 of the plate's, which are 5 % / sqrt(25). 400 draws give them within 3.5
+// %.
 TEST(SectionLoad, AveragesOverAllContacts) {
     const Lattice exact(5);
     Random random(7, Stream::measured_forces);

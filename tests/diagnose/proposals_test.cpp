@@ -65,8 +65,8 @@ TEST(Proposals, TwoEffectsTogether) {
                 1e-6 * pair.gain);
 }
 
-/// What is proposed for a gap in the first effect's direction, where `others` gain 1, 2, .. less and the nuisance
-/// beyond its prior `behind` less.
+/// What is proposed for a gap in the first effect's direction, where `others` gain 1, 2, .. less and the
+/// nuisance beyond its prior `behind` less.
 std::vector<std::size_t> singles_with_nuisance(Case& c, double behind) {
     GapStatistics statistics = c.statistics;
     for (std::size_t k = 0; k < statistics.fits.size(); ++k) {
@@ -82,11 +82,12 @@ std::vector<std::size_t> singles_with_nuisance(Case& c, double behind) {
     return list;
 }
 
-TEST(Proposals, ANuisanceIsAlwaysRunUnlessFarBehind) {
+TEST(Proposals, ANuisanceIsAlwaysRun) {
     Case c({4});
     ASSERT_EQ(c.data.candidates.size(), 5u);
     EXPECT_THAT(singles_with_nuisance(c, 10), ElementsAre(0, 1, 2, 4));
-    EXPECT_THAT(singles_with_nuisance(c, 13), ElementsAre(0, 1, 2));  // a quarter of 50 is 12.5
+    EXPECT_THAT(singles_with_nuisance(c, 49), ElementsAre(0, 1, 2, 4));
+    EXPECT_THAT(singles_with_nuisance(c, 51), ElementsAre(0, 1, 2));  // gains nothing
     EXPECT_THAT(singles_with_nuisance(c, 0.5), ElementsAre(0, 4, 1));
 }
 
@@ -144,11 +145,23 @@ TEST(Confirmation, StepSaysHowFarTheAmplitudeMissed) {
     EXPECT_NEAR((*step)[1], 1, 0.6);  // one sigma of the amplitude is 0.2, and the prior pulls a little
 }
 
-TEST(Confirmation, OfAFailedRunThereIsNone) {
+TEST(Confirmation, FailedRunsAreLeftOut) {
+    Case c({0, 4}, 2);
+    Proposal p = c.proposals().at(0), without = p;
+    Eigen::MatrixXd failed = runs(c, 4 * c.evidence.library.effects[1].linear, 4);
+    const Eigen::MatrixXd whole = failed(std::vector{0, 1, 3}, Eigen::all);
+    failed(2, c.data.cells.back()) = not_available;
+    ASSERT_TRUE(confirm(p, c.data, c.null, c.evidence.observed, c.statistics.omnibus, failed));
+    ASSERT_TRUE(confirm(without, c.data, c.null, c.evidence.observed, c.statistics.omnibus, whole));
+    EXPECT_EQ(*p.confirmed_gain, *without.confirmed_gain);
+    EXPECT_EQ(*p.confirmed_misfit_p, *without.confirmed_misfit_p);
+}
+
+TEST(Confirmation, WithOneRunLeftThereIsNone) {
     Case c({0, 4}, 2);
     Proposal p = c.proposals().at(0);
     Eigen::MatrixXd failed = runs(c, Eigen::VectorXd::Zero(c.data.mean.size()), 4);
-    failed.row(2).setConstant(not_available);
+    failed.bottomRows(3).setConstant(not_available);
     EXPECT_FALSE(confirm(p, c.data, c.null, c.evidence.observed, c.statistics.omnibus, failed));
     EXPECT_FALSE(p.confirmed_gain);
 }

@@ -1,0 +1,56 @@
+// A device that stops answering in the middle of a run: what was recorded stays, and the run goes on
+// elsewhere or later.
+#include "cli/cli_test.h"
+
+namespace mcdem {
+namespace {
+
+using testing::HasSubstr;
+
+class VanishingDeviceTest : public CliTest {
+protected:
+    static std::vector<std::string> words(const std::string& out, bool resume) {
+        auto all = run_words(out, {"--set", "output.checkpoint_minutes=1e-6"});
+        if (resume) all.push_back("--resume");
+        return all;
+    }
+    Finished run_until_it_vanishes(const std::string& out, long kernels, bool resume) const {
+        return mcdem(words(out, resume), {"OPENCL_LAYERS=" MCDEM_VANISHING_DEVICE,
+                                          "MCDEM_TEST_KERNELS=" + std::to_string(kernels)});
+    }
+};
+
+TEST_F(VanishingDeviceTest, TheRunSaysSoKeepsWhatItHasAndGoesOn) {
+    expect_done(mcdem(words("whole", false)));
+    int vanished = 0;
+    Finished finished;
+    for (const long kernels : {3000, 20000, 60000, 100'000'000}) {  // a step launches about six
+        finished = run_until_it_vanishes("a", kernels, vanished > 0);
+        if (finished.exit_code == 0) break;
+        ++vanished;
+        EXPECT_EQ(finished.exit_code, 1) << finished.err;
+        EXPECT_THAT(finished.err, HasSubstr("the device or its driver has failed"));
+        EXPECT_THAT(finished.err, HasSubstr("--out a --resume"));
+    }
+    expect_done(finished);
+    EXPECT_GE(vanished, 2);
+    EXPECT_TRUE(bytes_of_file(path("a/run.h5")) == bytes_of_file(path("whole/run.h5")));
+}
+
+TEST_F(VanishingDeviceTest, CompletedScansCanBeRead) {
+    const auto finished = run_until_it_vanishes("a", 60000, false);
+    ASSERT_EQ(finished.exit_code, 1) << finished.err;
+    const auto table = mcdem({"table", "a"});
+    expect_done(table);
+    EXPECT_THAT(table.out, HasSubstr("independent"));
+}
+
+TEST_F(VanishingDeviceTest, FromTheStart) {
+    const auto finished = run_until_it_vanishes("a", 0, false);
+    EXPECT_EQ(finished.exit_code, 1);
+    EXPECT_THAT(finished.err, HasSubstr("the device or its driver has failed"));
+    expect_done(mcdem(words("a", true)));
+}
+
+}  // namespace
+}  // namespace mcdem

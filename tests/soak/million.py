@@ -1,0 +1,62 @@
+"""A million grains, a thousand steps: the whole program stays below 4 GB.
+
+million.py MCDEM [GRAINS]
+"""
+import pathlib
+import resource
+import subprocess
+import sys
+import tempfile
+
+import numpy as np
+
+MOST_MEMORY = 4e9  # [bytes]
+DIAMETER = 0.02    # [m]
+
+
+def write_packing(file, across):
+    """A simple cubic lattice, its rows a little compressed so that every grain has six contacts; returns its edge [m]."""
+    edge = 0.99 * DIAMETER
+    places = (np.indices((across,) * 3).reshape(3, -1).T + 0.5) * edge
+    places += np.random.default_rng(1).normal(0, 1e-3 * DIAMETER, places.shape)
+    np.savetxt(file, np.column_stack([places, np.full(len(places), DIAMETER)]), delimiter=",", fmt="%.6f",
+               header="x_m,y_m,z_m,diameter_m", comments="")
+    return across * edge
+
+
+def write_scene(file, size):
+    """One step is 126 microseconds (0.1 of the Rayleigh time); the plate goes down and up 6.3 mm at 0.1 m/s: 1000 steps."""
+    file.write_text(f"""name = "a million"
+[box]
+size_x = {size}
+size_y = {size}
+[packing]
+file = "packing.csv"
+[plate]
+start = {size}
+end = {size - 0.0063}
+[protocol]
+scans_per_stroke = 1
+stop_at_scans = false
+relax_time = 0
+""")
+
+
+def main():
+    program = sys.argv[1]
+    grains = int(sys.argv[2]) if len(sys.argv) > 2 else 1_000_000
+    across = round(grains ** (1 / 3))
+    with tempfile.TemporaryDirectory(prefix="mcdem-soak-") as name:
+        folder = pathlib.Path(name)
+        write_scene(folder / "scene.toml", write_packing(folder / "packing.csv", across))
+        done = subprocess.run([program, "run", str(folder / "scene.toml"), "--out", str(folder / "run"), "--no-figures"])
+    used = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss * 1024
+    print(f"{across ** 3} grains: {used / 1e9:.2f} GB at most")
+    if done.returncode != 0:
+        sys.exit("the run failed")
+    if used > MOST_MEMORY * across ** 3 / 1e6:
+        sys.exit(f"more than {MOST_MEMORY / 1e9:.0f} GB")
+
+
+if __name__ == "__main__":
+    main()
