@@ -7,8 +7,8 @@
 namespace mcdem {
 namespace {
 
-/// .. and the best nuisance however far behind, so that no effect is named for what a wrong parameter does: signatures are
-/// least right for parameters far off.
+/// .. and the best nuisance however far behind, so that no effect is named for what a wrong parameter does:
+/// signatures are least right for parameters far off.
 constexpr std::size_t most_singles = 3;
 /// Effects this much behind the leader, in log likelihood or as a part of its gain, are not tried.
 constexpr double far_behind = 8, far_behind_share = 0.25;
