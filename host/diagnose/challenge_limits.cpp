@@ -13,7 +13,7 @@ struct Choice {
 
 // clang-format off
 const std::vector<Choice> choices{
-    {"false_alarm",  &Limits::false_alarm,  {0.01, 0.02, 0.03, 0.05, 0.08}},
+    {"false_alarm",  &Limits::false_alarm,  {0.01}},  // a level of significance says what it means, and is not tuned
     {"misfit",       &Limits::misfit,       {1e-4, 1e-3, 3e-3, 0.01, 0.03, 0.1}},
     {"pair_misfit",  &Limits::pair_misfit,  {0.01, 0.03, 0.05, 0.1, 0.2}},
     {"group",        &Limits::group,        {1, 2, 3, 5}},

@@ -139,7 +139,7 @@ Draft::Draft(const Evidence& evidence, const Limits& limits)
 void Draft::confirm(std::size_t proposal, const Eigen::MatrixXd& runs) {
     Proposal tried = findings_.proposals[proposal];
     tried.amplitudes = whole_[proposal].amplitudes;
-    step_[proposal] = mcdem::confirm(tried, data_, null_, evidence_.observed, statistics_.omnibus, runs);
+    step_[proposal] = mcdem::confirm(tried, data_, null_, evidence_.observed, whole_[proposal].nuisances, runs);
     if (!step_[proposal]) return;
     // The signature's amplitude and the one that the runs ask for enclose the truth where signatures bend.
     for (std::size_t k = 0; k < tried.amplitudes.size(); ++k) {

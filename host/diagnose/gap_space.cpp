@@ -109,6 +109,11 @@ Eigen::VectorXd GapSpace::whiten_chosen(const Eigen::VectorXd& chosen) const {
     return total_.matrixL().solve(chosen);
 }
 
+double GapSpace::log_likelihood(const Eigen::VectorXd& all) const {
+    const auto factor = total_.matrixLLT().diagonal().array();
+    return -0.5 * whiten(all).squaredNorm() - factor.log().sum();
+}
+
 Eigen::VectorXd GapSpace::fit_nuisances(const Eigen::VectorXd& all) const {
     return posterior_ * (directions_.transpose() * noise_.solve(pick(all, cells_)));
 }

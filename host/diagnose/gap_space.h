@@ -44,6 +44,8 @@ public:
     /// Whitens a vector on all cells: its square is a chi-square of the gap with nuisances marginalised.
     Eigen::VectorXd whiten(const Eigen::VectorXd& all) const { return whiten_chosen(pick(all, cells_)); }
     Eigen::VectorXd whiten_chosen(const Eigen::VectorXd& chosen) const;
+    /// Of a difference on all cells, nuisances marginalised, but for a constant of the number of cells.
+    double log_likelihood(const Eigen::VectorXd& all) const;
     /// One sigma of each chosen cell by itself, moderated over its observable; nuisances not counted.
     const Eigen::ArrayXd& sigma() const { return sigma_; }
     /// The nuisances' most probable values given a difference on all cells, and their errors after it.

@@ -34,9 +34,11 @@ double passage(Eigen::Index place, Eigen::Index places) {
 }
 
 /// Mean and trend of every observable with three cells or more, as weights of the chosen cells, which lie
-/// observable by observable, loading before unloading, each by displacement (cells_of).
-std::vector<Eigen::VectorXd> observable_patterns(const CellChoice& cells, Eigen::Index all) {
+/// observable by observable, loading before unloading, each by displacement (cells_of). Cells weigh by what
+/// is known of them, 1/sigma^2.
+std::vector<Eigen::VectorXd> observable_patterns(const GapSpace& space, Eigen::Index all) {
     constexpr std::size_t fewest = 3;
+    const CellChoice& cells = space.cells();
     const Eigen::Index each = all / static_cast<Eigen::Index>(observables().size());
     std::vector<Eigen::VectorXd> patterns;
     for (std::size_t first = 0, end = 0; first < cells.size(); first = end) {
@@ -44,10 +46,11 @@ std::vector<Eigen::VectorXd> observable_patterns(const CellChoice& cells, Eigen:
         if (end - first < fewest) continue;
         Eigen::VectorXd mean = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(cells.size())), trend = mean;
         for (std::size_t k = first; k < end; ++k) {
-            mean[static_cast<Eigen::Index>(k)] = 1.0 / static_cast<double>(end - first);
-            trend[static_cast<Eigen::Index>(k)] = passage(cells[k] % each, each);
+            const auto cell = static_cast<Eigen::Index>(k);
+            mean[cell] = 1 / (space.sigma()[cell] * space.sigma()[cell]);
+            trend[cell] = mean[cell] * passage(cells[k] % each, each);
         }
-        trend -= trend.sum() * mean;
+        trend -= trend.sum() / mean.sum() * mean;
         patterns.push_back(mean);
         patterns.push_back(trend);
     }
@@ -75,7 +78,7 @@ GapStatistics gap_statistics(const GapSpace& space, const GapData& data, const E
 double highest_pattern(const GapSpace& space, const Eigen::VectorXd& gap) {
     const Eigen::VectorXd left = space.refitted(gap);
     double highest = (left.array() / space.sigma()).abs().maxCoeff();
-    for (const Eigen::VectorXd& weights : observable_patterns(space.cells(), gap.size()))
+    for (const Eigen::VectorXd& weights : observable_patterns(space, gap.size()))
         highest = std::max(highest, std::abs(weights.dot(left)) / space.sigma_of(weights));
     return highest;
 }

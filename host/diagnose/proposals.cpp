@@ -76,6 +76,14 @@ Eigen::MatrixXd whole_runs(const Eigen::MatrixXd& runs, const CellChoice& cells)
     return runs(whole, Eigen::all);
 }
 
+/// Of nuisances that the runs were made with, in log likelihood.
+double prior_cost(const Eigen::VectorXd& nuisances, const std::vector<FreeParameter>& free) {
+    double cost = 0;
+    for (std::size_t k = 0; k < free.size(); ++k)
+        cost += 0.5 * std::pow(nuisances[static_cast<Eigen::Index>(k)] / free[k].sigma, 2);
+    return cost;
+}
+
 }  // namespace
 
 Eigen::VectorXd explained_by(const Proposal& proposal, const GapData& data) {
@@ -119,7 +127,7 @@ std::vector<Proposal> propose(const GapSpace& space, const GapData& data, const 
 }
 
 std::optional<Eigen::VectorXd> confirm(Proposal& proposal, const GapData& data, const NullDistribution& null,
-                                       const Eigen::VectorXd& observed, double omnibus,
+                                       const Eigen::VectorXd& observed, const Eigen::VectorXd& nuisances,
                                        const Eigen::MatrixXd& all_runs) {
     constexpr double still_free = 0.25;  // part of an amplitude
     const Eigen::MatrixXd runs = whole_runs(all_runs, data.cells);
@@ -129,10 +137,11 @@ std::optional<Eigen::VectorXd> confirm(Proposal& proposal, const GapData& data, 
     for (std::size_t k = 0; k < proposal.candidates.size(); ++k)
         free.push_back({data.candidates[proposal.candidates[k]].signature->slope(proposal.amplitudes[k]),
                         2 * proposal.errors[k] + still_free * std::abs(proposal.amplitudes[k])});
-    const GapSpace space(data.noise, static_cast<int>(runs.rows()), data.cells, free,
-                         effect_scatter(data, proposal));
-    const double remainder = space.whiten(left).squaredNorm();
-    proposal.confirmed_gain = 0.5 * (omnibus - remainder);
+    const int mean_of = static_cast<int>(runs.rows());
+    const GapSpace plain(data.noise, mean_of, data.cells, data.free);
+    const GapSpace space(data.noise, mean_of, data.cells, free, effect_scatter(data, proposal));
+    proposal.confirmed_gain =
+        space.log_likelihood(left) - prior_cost(nuisances, data.free) - plain.log_likelihood(data.gap);
     proposal.confirmed_misfit_p = null.misfit_p(space, left);
     return space.fit_nuisances(left);
 }

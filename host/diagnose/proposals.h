@@ -9,11 +9,13 @@ namespace mcdem {
 std::vector<Proposal> propose(const GapSpace& space, const GapData& data, const NullDistribution& null,
                               const GapStatistics& statistics, int mean_of);
 
-/// What real runs say of a proposal: gain and misfit. Within its error and a quarter of its size the
-/// amplitude may still move, and the nuisances within their priors: the steps that they take are returned
-/// (nuisances, then amplitudes). Nothing where fewer than two runs came to their end. `runs`: row a replicate.
+/// What real runs say of a proposal: its gain in log likelihood over no effect, with what its scatter and its
+/// free parameters cost (their determinants, and the prior of the `nuisances` that it was run with), and its
+/// misfit. Within its error and a quarter of its size the amplitude may still move, and the nuisances within
+/// their priors: the steps that they take are returned (nuisances, then amplitudes). Nothing where fewer than
+/// two runs came to their end. `runs`: row a replicate.
 std::optional<Eigen::VectorXd> confirm(Proposal& proposal, const GapData& data, const NullDistribution& null,
-                                       const Eigen::VectorXd& observed, double omnibus,
+                                       const Eigen::VectorXd& observed, const Eigen::VectorXd& nuisances,
                                        const Eigen::MatrixXd& runs);
 
 /// The sum of a proposal's signatures, or its best fit on other cells.

@@ -133,6 +133,28 @@ TEST(GapSpace, SigmasAreDrawnTowardsTheirObservables) {
         EXPECT_NEAR(sigma[k] * sigma[k], (20 * own[k] + 8 * (k < 4 ? first : second)) / 28, 1e-12) << k;
 }
 
+// The normal density of four cells, written out with the inverse and the determinant.
+TEST(GapSpace, LogLikelihoodIsTheNormalDensity) {
+    Random random(5, Stream::positions);
+    const auto cells_all = static_cast<Eigen::Index>(cells_of(synthetic_grid).size());
+    Eigen::MatrixXd noise(50, cells_all);
+    for (Eigen::Index k = 0; k < noise.size(); ++k) noise.data()[k] = random.normal();
+    const CellChoice cells{0, 1, 2, 3};
+    const FreeParameter free{Eigen::VectorXd::Constant(cells_all, 2), 1.5};
+    const Eigen::VectorXd extra = Eigen::VectorXd::Constant(cells_all, 0.3);
+    const GapSpace space(noise, 4, cells, {free}, extra);
+    const auto covariance = [&]() -> Eigen::MatrixXd {
+        Eigen::MatrixXd c = 1.25 * shrunk_covariance(pick_columns(noise, cells));
+        c.diagonal().array() += resolutions(cells, cells_all).square() + 0.3;
+        return c.array() + 2 * 2 * 1.5 * 1.5;
+    }();
+    const Eigen::VectorXd gap = Eigen::VectorXd::LinSpaced(cells_all, 0.5, 60);
+    const Eigen::VectorXd chosen = pick(gap, cells);
+    const double expected =
+        -0.5 * chosen.dot(covariance.inverse() * chosen) - 0.5 * std::log(covariance.determinant());
+    EXPECT_NEAR(space.log_likelihood(gap), expected, 1e-9 * std::abs(expected));
+}
+
 TEST(GapSpace, FitsNuisancesAsRidgeRegression) {
     const DenseSpace d;
     // |L^-1 (gap - S shift)|^2 + |shift / prior|^2 as one system of least squares.
