@@ -145,6 +145,10 @@ void add_instrument_options(CLI::App& sub, Instrument& instrument) {
         "Not stated: lengths are read larger by this part", CLI::Range(-0.05, 0.05));
     add("--strain-offset", instrument.strain_offset, "M",
         "Not stated: plate positions are read higher by this [m]", CLI::Range(-1.0, 1.0));
+    add("--gauge-drift", instrument.gauge_drift, "PART",
+        "Not stated: in the end the top force is read larger by this part, before in proportion to the "
+        "plate's path",
+        bias);
 }
 
 }  // namespace

@@ -5,13 +5,6 @@
 namespace mcdem {
 namespace {
 
-void drift_of_gauge(Recording& recording, double amplitude) {
-    if (recording.scans.empty()) return;
-    const double end = recording.scans.back().time;
-    for (Scan& scan : recording.scans)
-        scan.wall_force[static_cast<std::size_t>(Wall::plate)].z() *= 1 + amplitude * scan.time / end;
-}
-
 void stretch_heights(Recording& recording, double amplitude) {
     for (Scan& scan : recording.scans) {
         for (Vec3& position : scan.position) position.z() *= 1 + amplitude;
@@ -28,8 +21,6 @@ void add_backlash(Recording& recording, double amplitude) {
 const OutsideEffect table[] = {
     {"soft_walls", "", "Young's modulus of the walls over that of the grains",
      0.5, 3, false, [](Replica& r, double a) { r.walls.youngs_modulus = a * r.grains.youngs_modulus; }, nullptr},
-    {"gauge_drift", "", "part by which the top force is read too large at the end, in proportion to time",
-     0.05, 0.2, true, nullptr, drift_of_gauge},
     {"vertical_stretch", "", "part by which the heights of grains, not of the plate, are read too large",
      0.005, 0.015, true, nullptr, stretch_heights},
     {"box_error", "", "part by which the box is narrower along x than stated",

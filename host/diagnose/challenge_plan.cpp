@@ -16,7 +16,8 @@ namespace {
 
 constexpr std::string_view tried[] = {"cross_contact",   "friction",   "adhesion",         "viscoelasticity",
                                       "stiffening",      "plasticity", "buoyancy",         "diameter_error",
-                                      "modulus_scatter", "plate_tilt", "plate_compliance", "force_bias"};
+                                      "modulus_scatter", "plate_tilt", "plate_compliance", "force_bias",
+                                      "gauge_drift"};
 
 /// Effects that are the same thing in another direction.
 constexpr std::array<std::string_view, 2> twins[] = {{"plate_tilt", "plate_tilt_y"}};

@@ -93,7 +93,8 @@ Decision chosen(const Findings& findings, int single, std::vector<std::size_t> g
     decision.proposal = single;
     decision.group = std::move(group);
     if (findings.p_value >= limits.false_alarm) return decision;
-    if (findings.proposals[static_cast<std::size_t>(single)].best_misfit() < limits.misfit) {
+    // An explanation that gains nothing in real runs is none, however little it leaves.
+    if (best <= 0 || findings.proposals[static_cast<std::size_t>(single)].best_misfit() < limits.misfit) {
         const int pair = worthy_pair(findings, best, limits);
         decision.verdict = pair < 0 ? Verdict::unknown_effect : Verdict::effect;
         if (pair >= 0) {

@@ -50,6 +50,7 @@ std::string observation_name(const std::string& simulation, const Question& ques
                               instrument.threshold_shift,
                               instrument.position_bias,
                               instrument.strain_offset,
+                              instrument.gauge_drift,
                               m.youngs_modulus,
                               m.poisson_ratio,
                               m.wall_youngs_modulus,

@@ -1,6 +1,7 @@
 #include "experiment/instrument.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "experiment/measurements.h"
@@ -18,13 +19,15 @@ public:
           position_noise_(seed, Stream::measured_positions),
           force_noise_(seed, Stream::measured_forces) {}
 
-    Scan read(const Scan& truth, std::size_t frame) const {
+    /// `path`: part of the plate's whole path up to this scan.
+    Scan read(const Scan& truth, std::size_t frame, double path) const {
         Scan scan = unknown_scan();
         scan.frame = static_cast<int>(frame);
         scan.cycle = truth.cycle;
         scan.phase = truth.phase;
         scan.plate_z = truth.plate_z + instrument_.strain_offset;
-        scan.wall_force[static_cast<std::size_t>(Wall::plate)].z() = truth.top_force();
+        scan.wall_force[static_cast<std::size_t>(Wall::plate)].z() =
+            (1 + instrument_.gauge_drift * path) * truth.top_force();
         const auto shift = shifts(frame);
         scan.position.reserve(truth.position.size());
         for (std::size_t i = 0; i < truth.position.size(); ++i)
@@ -81,6 +84,17 @@ private:
     KeyedNormal position_noise_, force_noise_;
 };
 
+/// How far the plate has gone, up and down, up to each scan, over the whole of it; 0 where it does not move.
+std::vector<double> parts_of_path(const std::vector<Scan>& scans) {
+    std::vector<double> path(scans.size(), 0);
+    for (std::size_t s = 1; s < scans.size(); ++s)
+        path[s] = path[s - 1] + std::abs(scans[s].plate_z - scans[s - 1].plate_z);
+    const double whole = path.empty() ? 0 : path.back();
+    if (whole > 0)
+        for (double& part : path) part /= whole;
+    return path;
+}
+
 }  // namespace
 
 Recording measured(const Recording& truth, const Instrument& instrument, std::uint64_t seed) {
@@ -96,8 +110,9 @@ Recording measured(const Recording& truth, const Instrument& instrument, std::ui
         recording.diameter[i] += instrument.stated.diameter_error * diameter_noise(i, 0);
     const Reading reading(truth, instrument, seed);
     recording.scans.reserve(truth.scans.size());
+    const std::vector<double> path = parts_of_path(truth.scans);
     for (std::size_t s = 0; s < truth.scans.size(); ++s)
-        recording.scans.push_back(reading.read(truth.scans[s], s));
+        recording.scans.push_back(reading.read(truth.scans[s], s, path[s]));
     average_contacts(recording, instrument.stated.force_threshold);
     return recording;
 }

@@ -14,14 +14,17 @@ struct Instrument {
     double threshold_shift = 0;  ///< true force threshold less the stated one [N]
     double position_bias = 0;    ///< lengths between centres are read (1 + position_bias) times too large
     double strain_offset = 0;    ///< plate positions are read too high by this [m]
+    double gauge_drift = 0;  ///< in the end the top force is read (1 + gauge_drift) times too large; it grows
+                             ///< with the plate's path
 };
 
 /// `truth` as the instrument reads it, in the form in which read_experiment would give it: normal noise on
 /// positions (anew in each scan), on diameters and on the size of contact forces; contact points err with the
-/// centres beside them; contacts below the threshold are gone. Lengths are read too large from the middle of the
-/// floor. Of the walls' forces the top force is read exactly, the others are the sums of the contacts seen; what
-/// an experiment does not know (energies, overlaps, packing fraction) is not-a-number. The noise depends on the
-/// seed and on what is measured (scan, grain, partner) only: of two similar packings it is alike.
+/// centres beside them; contacts below the threshold are gone. Lengths are read too large from the middle of
+/// the floor. Of the walls' forces the top force is read without noise, the others are the sums of the
+/// contacts seen; what an experiment does not know (energies, overlaps, packing fraction) is not-a-number.
+/// The noise depends on the seed and on what is measured (scan, grain, partner) only: of two similar packings
+/// it is alike.
 Recording measured(const Recording& truth, const Instrument& instrument, std::uint64_t seed);
 
 }  // namespace mcdem

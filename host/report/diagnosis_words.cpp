@@ -21,8 +21,9 @@ const std::map<std::string, std::string>& special_words() {
         {"polydispersity", "scatter of diameters"},      {"modulus_scatter", "scatter of moduli"},
         {"plate_tilt", "tilt of the plate along x"},     {"plate_tilt_y", "tilt of the plate along y"},
         {"plate_compliance", "compliance of the plate"}, {"force_bias", "bias of contact forces"},
-        {"force_threshold", "shifted force threshold"},  {"position_bias", "bias of positions"},
-        {"strain_offset", "zero of the displacement"},   {"non_affine", "non-affine displacement"},
+        {"gauge_drift", "drift of the plate's gauge"},   {"force_threshold", "shifted force threshold"},
+        {"position_bias", "bias of positions"},          {"strain_offset", "zero of the displacement"},
+        {"non_affine", "non-affine displacement"},
     };
     return words;
 }

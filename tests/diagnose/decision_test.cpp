@@ -137,6 +137,14 @@ TEST(Decision, CalibrationIsSuspectWhereANuisanceDoesNearlyAsWell) {
     EXPECT_EQ(d.proposal, 0);
 }
 
+TEST(Decision, UnknownWhereRealRunsLeaveNoGain) {
+    Findings f = clear_case();
+    for (Proposal& p : f.proposals) p.confirmed_gain = -1;
+    EXPECT_EQ(decide(f, {}).verdict, Verdict::unknown_effect);
+    f.proposals[0].confirmed_gain = 1;
+    EXPECT_EQ(decide(f, {}).verdict, Verdict::effect);
+}
+
 TEST(Decision, UnknownWhereTheBestLeavesAGap) {
     Findings f = clear_case();
     const Limits limits;

@@ -56,6 +56,7 @@ std::map<std::string, double> numbers_of(const Model& m) {
             {"threshold_shift", i.threshold_shift},
             {"position_bias", i.position_bias},
             {"strain_offset", i.strain_offset},
+            {"gauge_drift", i.gauge_drift},
             {"mean_diameter", m.mean_diameter}};
 }
 
@@ -86,6 +87,7 @@ const std::map<std::string, std::set<std::string>> moves{
     {"plate_tilt_y", {"plate_tilt_y"}},
     {"plate_compliance", {"plate_compliance"}},
     {"force_bias", {"force_bias"}},
+    {"gauge_drift", {"gauge_drift"}},
     {"force_threshold", {"threshold_shift"}},
     {"position_bias", {"position_bias"}}};
 
@@ -117,6 +119,7 @@ Model full_model() {
                              .plate_tilt_y = -0.01,
                              .plate_compliance = 1e-4};
     model.instrument.force_bias = 0.05;
+    model.instrument.gauge_drift = 0.02;
     model.instrument.threshold_shift = 1e-3;
     model.instrument.position_bias = 1e-3;
     return model;

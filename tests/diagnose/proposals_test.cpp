@@ -147,7 +147,8 @@ TEST(Confirmation, NuisancesCostTheirPrior) {
     EXPECT_NEAR(*p.confirmed_gain - *far.confirmed_gain, 4.5, 1e-9);
 }
 
-// An effect that scatters by itself leaves less chi-square; that it would have scattered and the data did not counts.
+// An effect that scatters by itself leaves less chi-square; that it would have scattered and the data did not
+// counts.
 TEST(Confirmation, ScatterThatTheDataDoNotShowCosts) {
     Case c({});
     c.evidence.library.effects[1].spread.setConstant(1);

@@ -198,6 +198,23 @@ TEST(measured, biases_stretch_lengths_forces_and_plate_positions) {
     EXPECT_EQ(seen.diameter, real.diameter);
 }
 
+TEST(measured, gauge_drifts_with_the_plates_path_up_and_down) {
+    Recording real = truth();
+    const double path[] = {0, 0.01, 0.03, 0.04};  // down, down, up
+    const double height[] = {0.1, 0.09, 0.07, 0.08};
+    real.scans.resize(4, real.scans.back());
+    for (int s = 0; s < 4; ++s) real.scans[s].plate_z = height[s];
+    Instrument drifting;
+    drifting.gauge_drift = 0.2;
+    const Recording seen = measured(real, drifting, 1);
+    for (int s = 0; s < 4; ++s) {
+        EXPECT_DOUBLE_EQ(seen.scans[s].top_force(), (1 + 0.2 * path[s] / 0.04) * real.scans[s].top_force());
+        EXPECT_EQ(seen.scans[s].plate_z, real.scans[s].plate_z);
+    }
+    real.scans.resize(1);
+    EXPECT_EQ(measured(real, drifting, 1).scans[0].top_force(), real.scans[0].top_force());
+}
+
 TEST(measured, threshold_is_the_true_one_and_counts_what_is_read) {
     const Recording real = truth();
     for (const double shift : {-0.05, 0.0, 0.05}) {
