@@ -13,13 +13,13 @@ namespace mcdem {
 /// (challenge/README.md).
 struct Limits {
     double false_alarm = 0.01;   ///< p below which there is a gap
-    double misfit = 0.01;        ///< p below which what one effect leaves is a gap of its own
+    double misfit = 0.001;       ///< p below which what one effect leaves is a gap of its own
     double pair_misfit = 0.05;   ///< .. what two leave: two can mimic much
-    double group = 5.0;          ///< log likelihood by which members of a group differ at most ..
+    double group = 2.0;          ///< log likelihood by which members of a group differ at most ..
     double group_share = 0.01;   ///< .. or this part of the leader's gain
     double second_gain = 8.0;    ///< log likelihood that a second effect must gain ..
     double second_share = 0.02;  ///< .. and this part of the leader's gain
-    double unknown_odds = 0.1;   ///< of an effect that the library lacks, before what is left was looked at
+    double unknown_odds = 0.03;  ///< of an effect that the library lacks, before what is left was looked at
     double shrink_margin = 0.1;  ///< what signatures get wrong in the shrink, on either side of its interval
 };
 

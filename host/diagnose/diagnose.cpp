@@ -15,6 +15,7 @@ namespace mcdem {
 namespace {
 
 constexpr std::size_t fewest_cells = 4;
+constexpr double worth_another_run = 0.01;  ///< p of what a proposal leaves, below
 
 GapData checked_data(const Evidence& evidence) {
     GapData data = gap_data(evidence);
@@ -139,7 +140,8 @@ Draft::Draft(const Evidence& evidence, const Limits& limits)
 void Draft::confirm(std::size_t proposal, const Eigen::MatrixXd& runs) {
     Proposal tried = findings_.proposals[proposal];
     tried.amplitudes = whole_[proposal].amplitudes;
-    step_[proposal] = mcdem::confirm(tried, data_, null_, evidence_.observed, whole_[proposal].nuisances, runs);
+    step_[proposal] =
+        mcdem::confirm(tried, data_, null_, evidence_.observed, whole_[proposal].nuisances, runs);
     if (!step_[proposal]) return;
     // The signature's amplitude and the one that the runs ask for enclose the truth where signatures bend.
     for (std::size_t k = 0; k < tried.amplitudes.size(); ++k) {
@@ -162,7 +164,7 @@ bool Draft::may_gain(std::size_t proposal) const {
 
 bool Draft::refit(std::size_t proposal) {
     const Proposal& p = findings_.proposals[proposal];
-    if (!step_[proposal] || (p.best_misfit() >= limits_.misfit && !may_gain(proposal))) return false;
+    if (!step_[proposal] || (p.best_misfit() >= worth_another_run && !may_gain(proposal))) return false;
     PartialFit& fit = whole_[proposal];
     const auto nuisances = fit.nuisances.size();
     const auto before = fit.amplitudes;

@@ -36,8 +36,10 @@ double all_confidence(const Decision& d) {
     return std::accumulate(d.confidence.begin(), d.confidence.end(), 0.0);
 }
 
-// Odds of 0.1 for something unknown, and nothing that speaks for it.
-void expect_sum_of_known(const Decision& d) { EXPECT_NEAR(all_confidence(d), 1 / 1.1, 1e-12); }
+// Nothing speaks for something unknown but its odds.
+void expect_sum_of_known(const Decision& d) {
+    EXPECT_NEAR(all_confidence(d), 1 / (1 + Limits{}.unknown_odds), 1e-12);
+}
 
 TEST(Decision, OneEffect) {
     const Decision d = decide(clear_case(), {});
@@ -45,7 +47,7 @@ TEST(Decision, OneEffect) {
     EXPECT_EQ(d.proposal, 0);
     EXPECT_THAT(d.group, ElementsAre(1));
     expect_sum_of_known(d);
-    EXPECT_GT(d.confidence[1], 0.99 / 1.1);
+    EXPECT_GT(d.confidence[1], 0.99 / (1 + Limits{}.unknown_odds));
 }
 
 TEST(Decision, ConfidenceFallsWithWhatIsLeft) {
@@ -164,8 +166,8 @@ TEST(Decision, APairWhereOneIsNotEnough) {
     EXPECT_EQ(d.verdict, Verdict::effect);
     EXPECT_EQ(d.proposal, 2);
     EXPECT_THAT(d.group, ElementsAre(1, 3));
-    // What the pair leaves counts, not what one leaves: p = 0.05 weighs 0.407 against odds of 0.1.
-    EXPECT_NEAR(all_confidence(d), 0.407 / 0.507, 1e-3);
+    // What the pair leaves counts, not what one leaves: p = 0.05 weighs 0.407 against the odds.
+    EXPECT_NEAR(all_confidence(d), 0.407 / (0.407 + limits.unknown_odds), 1e-3);
 
     Findings single_is_enough = f;
     single_is_enough.proposals[0].misfit_p = 0.5;
