@@ -49,5 +49,37 @@ TEST(Draft, AParameterPulledFarOutIsASymptom) {
     EXPECT_EQ(d.causes.at(0).effect, "modulus");
 }
 
+/// Runs of a few replicates that come out `shift` off the baseline.
+Eigen::MatrixXd runs_at(SyntheticWorld& world, const Evidence& evidence, const Eigen::VectorXd& shift) {
+    Eigen::MatrixXd runs(64, shift.size());
+    const Eigen::VectorXd centre = evidence.baseline.colwise().mean().transpose() + shift;
+    for (Eigen::Index r = 0; r < runs.rows(); ++r) runs.row(r) = (centre + world.noise()).transpose();
+    return runs;
+}
+
+// Effect and parameter act alike; the effect's runs meet the data, the parameter's stop short and leave a
+// little more.
+TEST(Draft, AParameterThatTrailsIsRunAgainWhereItsRunsAskForMore) {
+    SyntheticWorld world(6, 4);
+    Evidence evidence = world.evidence(1, 32);
+    const Eigen::VectorXd pattern = world.pattern(2);
+    world.add_effect(evidence, "adhesion", pattern);
+    world.add_nuisance(evidence, "modulus", pattern, 1);
+    evidence.observed += 9 * pattern;
+    Draft draft(evidence, {});
+    const auto& proposals = draft.findings().proposals;
+    ASSERT_GE(proposals.size(), 2u);
+    ASSERT_THAT(proposals[0].candidates, ElementsAre(0u));
+    ASSERT_THAT(proposals[1].candidates, ElementsAre(1u));
+    draft.confirm(0, runs_at(world, evidence, 9 * pattern));
+    draft.confirm(1, runs_at(world, evidence, 7.5 * pattern + 0.6 * world.pattern(1)));
+    ASSERT_EQ(draft.decision().proposal, 0);
+    ASSERT_GT(proposals[1].best_misfit(), 0.01);
+    const double before = draft.whole_fit(1).amplitudes[0];
+    EXPECT_TRUE(draft.refit(1));
+    EXPECT_NEAR(draft.whole_fit(1).amplitudes[0] - before, 1.5, 0.5);
+    EXPECT_FALSE(draft.refit(0));
+}
+
 }  // namespace
 }  // namespace mcdem
