@@ -80,7 +80,7 @@ int proposal_of(std::size_t candidate, const Findings& findings) {
 /// A stated parameter that may be wrong comes before any effect that it cannot be told from.
 void suspect_calibration(Decision& decision, const Findings& findings) {
     const auto nuisance = [&](std::size_t c) { return static_cast<int>(c) >= findings.effects; };
-    std::ranges::stable_partition(decision.group, nuisance);
+    std::stable_partition(decision.group.begin(), decision.group.end(), nuisance);
     if (const int proposal = proposal_of(decision.group[0], findings); proposal >= 0)
         decision.proposal = proposal;
     decision.verdict = Verdict::calibration_suspect;
