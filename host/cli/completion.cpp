@@ -187,8 +187,8 @@ _mcdem() {{
     if [[ ${{words[CURRENT]}} == -* ]]; then
         _describe -o option options
     else
-        (( $#words_here )) && _describe command words_here
-        [[ -n $files ]] && _files
+        if (( $#words_here )); then _describe command words_here; fi
+        if [[ -n $files ]]; then _files; fi
     fi
 }}
 if [[ $funcstack[1] == _mcdem ]]; then _mcdem "$@"; else compdef _mcdem mcdem; fi

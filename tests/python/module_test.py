@@ -35,13 +35,13 @@ class Scenes(Folder):
         self.assertEqual(nested.name, "small")
 
     def test_values_of_every_type_arrive(self):
-        scene = mcdem.Scene(name='a "b"\\\u00e9', packing={"count": np.int32(30), "seed": 7},
+        scene = mcdem.Scene(name='a "b"\\\u00e9', packing={"count": np.int32(514), "seed": 7},
                             output={"positions": False, "contacts": np.bool_(True)}, plate={"end": np.float32(0.125)},
                             batch={"vary": {"grains.friction": np.array([0.0, 0.1, 1 / 3])}})
         self.assertEqual(scene.name, 'a "b"\\\u00e9')
         self.assertEqual([one["grains.friction"] for one in scene.parameters], ["0", "0.1", repr(1 / 3)])
         self.assertEqual(scene.parameters[0]["plate.end"], "0.125")
-        self.assertEqual(scene.parameters[0]["packing.count"], "30")
+        self.assertEqual(scene.parameters[0]["packing.count"], "514")
         self.assertEqual(len(scene), 3)
         self.assertEqual(len(scene.labels), 3)
 

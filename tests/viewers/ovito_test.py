@@ -6,6 +6,7 @@ import json
 import pathlib
 import subprocess
 import sys
+import textwrap
 
 import numpy as np
 
@@ -18,8 +19,7 @@ if not pythons:
 
 exported = Exported(program, source, "xyz")
 guide = (exported.view / "OVITO.txt").read_text()
-code = "\n".join(line.strip() if "columns" not in line else line for line in guide.split("In Python:")[1].split("\n\nOf a")[0]
-                 .splitlines())
+code = textwrap.dedent(guide.split("In Python:")[1].split("\n\nOf a")[0])
 with exported.open() as file:
     for replica in file["observables"]:
         done = subprocess.run([pythons[0], str(pathlib.Path(__file__).parent / "read_ovito.py")],
