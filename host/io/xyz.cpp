@@ -17,7 +17,7 @@ const char* const how_to_look = R"(replica_*.xyz            grains, one frame a 
 replica_*.contacts.dump  contacts between grains, the same frames (LAMMPS dump local)
 
 OVITO: load a .xyz file. For contacts as bonds add the modifier "Load trajectory", open the .contacts.dump file in it
-and name its columns: Particle Identifiers.1, Particle Identifiers.2, force_magnitude, Force.X, Force.Y, Force.Z,
+and name its columns: Particle Identifiers.1, Particle Identifiers.2, force_magnitude, force_x, force_y, force_z,
 overlap. Colour and width of the bonds can follow force_magnitude [N]. In Python:
 
     from ovito.io import import_file
@@ -25,7 +25,7 @@ overlap. Colour and width of the bonds can follow force_magnitude [N]. In Python
     pipeline = import_file("replica_00000.xyz")
     contacts = LoadTrajectoryModifier()
     contacts.source.load("replica_00000.contacts.dump", columns=["Particle Identifiers.1",
-        "Particle Identifiers.2", "force_magnitude", "Force.X", "Force.Y", "Force.Z", "overlap"])
+        "Particle Identifiers.2", "force_magnitude", "force_x", "force_y", "force_z", "overlap"])
     pipeline.modifiers.append(contacts)
 
 Of a grain: radius [m], id, coordination_number (walls counted), force_magnitude (sum of its contacts' [N]), wall_force

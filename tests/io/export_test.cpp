@@ -74,7 +74,7 @@ TEST(vtk, vtk_reads_grains_and_contacts) {
             << (folder / "view/replica_00001").string() << " 000002 " << scan.position.size() << ' '
             << scan.contacts.size() << ' ' << last.force.z() << ' ' << scan.plate_z;
     const Finished finished = run_command(command.str());
-    if (finished.exit_code == module_missing) GTEST_SKIP() << "python3-vtk9 is not installed";
+    if (finished.exit_code == module_missing) GTEST_SKIP() << "neither python3-paraview nor python3-vtk9 is installed";
     EXPECT_EQ(finished.exit_code, 0) << finished.output;
 }
 
@@ -103,7 +103,7 @@ TEST(vtk, a_scan_without_contacts_still_makes_files) {
             << (folder / "view/replica_00000").string() << " 000000 27 0 0 "
             << run.recordings[0].scans[0].plate_z;
     const Finished finished = run_command(command.str());
-    if (finished.exit_code == module_missing) GTEST_SKIP() << "python3-vtk9 is not installed";
+    if (finished.exit_code == module_missing) GTEST_SKIP() << "neither python3-paraview nor python3-vtk9 is installed";
     EXPECT_EQ(finished.exit_code, 0) << finished.output;
 }
 

@@ -35,6 +35,6 @@ with exported.open() as file:
             assert np.allclose(frame["radius"], file[f"particles/{replica}/diameter"][:] / 2, rtol=1e-6)
             assert frame["identifier"] == list(range(len(position)))
             assert frame["topology"] == [[int(c["grain"]), int(c["partner"])] for c in between]
-            assert np.allclose(np.reshape(frame["force"], (-1, 3)), between["force"], rtol=1e-6, atol=1e-12)
+            assert np.allclose(np.transpose(frame["force"]), between["force"], rtol=1e-6, atol=1e-12)
             assert np.allclose(frame["overlap"], between["overlap"], rtol=1e-6, atol=1e-12)
             assert abs(frame["top_force"] - row["wall_force"][5, 2]) < 1e-6

@@ -11,6 +11,7 @@ for number in range(names["pipeline"].num_frames):
     particles, bonds = data.particles, data.particles.bonds
     frames.append({"position": particles.positions[...].tolist(), "radius": particles["Radius"][...].tolist(),
                    "identifier": particles.identifiers[...].tolist(), "topology": bonds.topology[...].tolist(),
-                   "force": bonds["Force"][...].tolist(), "overlap": bonds["overlap"][...].tolist(),
+                   "force": [bonds[f"force_{axis}"][...].tolist() for axis in "xyz"],
+                   "overlap": bonds["overlap"][...].tolist(),
                    "top_force": float(data.attributes["top_force"])})
 print(json.dumps(frames))
