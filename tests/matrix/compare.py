@@ -1,7 +1,7 @@
 """Runs of scripts/matrix against one another: FOLDER holds COMPILER-PRECISION-THREADS/run.h5.
 
 One thread or two: the same file. GCC or Clang, float or double: the same forces but for rounding, which rearranging grains
-make grow.
+make grow. Measured with GCC 12 and Clang 14: nothing between compilers (the kernels are PoCL's), 1.3e-4 between precisions.
 """
 import itertools
 import pathlib
@@ -10,7 +10,7 @@ import sys
 import h5py
 import numpy as np
 
-MOST_APART = {"compilers": 1e-3, "precisions": 0.02}  # of the largest top force, root mean square over the scans
+MOST_APART = {"compilers": 1e-4, "precisions": 5e-3}  # of the largest top force, root mean square over the scans
 
 
 def top_forces(file):
