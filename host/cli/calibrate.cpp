@@ -9,7 +9,7 @@
 #include "cli/results.h"
 #include "cli/scene_options.h"
 #include "core/atomic_file.h"
-#include "core/errors.h"
+#include "core/make_folder.h"
 #include "core/version.h"
 #include "ensemble/calibrate_scene.h"
 #include "report/tables.h"
@@ -91,9 +91,7 @@ void calibrate(CalibrateCommand& command) {
     }
     print_calibration(result);
     if (command.out.empty()) return;
-    std::error_code error;
-    std::filesystem::create_directories(command.out, error);
-    if (error) throw RunError(command.out + ": cannot be made: " + error.message());
+    make_folder(command.out);
     const auto file = std::filesystem::path(command.out) / "calibration.json";
     replace_file(file, json_of(result, scene, reference).dump(2) + "\n");
     fmt::print("wrote {}\n", file.string());

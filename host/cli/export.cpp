@@ -20,9 +20,6 @@ void export_run(const ExportCommand& command) {
         throw InputError("export: must be told what to write, with --vtk, --xyz or both");
     if (!std::filesystem::exists(command.run))
         throw InputError(command.run + ": must be a result folder or file, got nothing there");
-    std::error_code error;
-    std::filesystem::create_directories(command.out, error);
-    if (error) throw RunError(command.out + ": cannot be made: " + error.message());
     int files = 0;
     if (command.vtk) files += export_vtk(command.run, command.out);
     if (command.xyz) files += export_xyz(command.run, command.out);

@@ -7,6 +7,7 @@
 
 #include "cli/commands.h"
 #include "core/atomic_file.h"
+#include "core/make_folder.h"
 #include "core/version.h"
 
 namespace mcdem {
@@ -106,7 +107,7 @@ void add_manual(CLI::App& app, int&) {
         "  mcdem manual --out out/manual\n"
         "  man -l out/manual/mcdem-run.1");
     sub->callback([&app, folder] {
-        std::filesystem::create_directories(*folder);
+        make_folder(*folder);
         const std::string version = std::string(version_text).substr(0, std::string(version_text).find(' '));
         for (const auto& [name, text] : manual_pages(command_tree(app), version))
             replace_file(std::filesystem::path(*folder) / name, text);

@@ -23,8 +23,7 @@ const char* remedy_of(cl_int code) {
             return "the device has not enough memory; run fewer replicas at a time";
         case CL_OUT_OF_RESOURCES:
             return "the device has not enough memory (run fewer replicas at a time), or it has failed "
-                   "(`mcdem devices` lists "
-                   "those that answer)";
+                   "(`mcdem devices` lists those that answer)";
         default:
             return "the device or its driver has failed; `mcdem devices` lists those that answer";
     }

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "cli/messages.h"
-#include "core/errors.h"
+#include "core/make_folder.h"
 #include "io/result_folder.h"
 #include "io/results.h"
 
@@ -19,9 +19,7 @@ std::vector<std::filesystem::path> draw_into(const std::filesystem::path& folder
                                              const std::vector<Setting>& settings,
                                              const std::optional<Setting>& reference,
                                              const FigureOptions& options) {
-    std::error_code error;
-    std::filesystem::create_directories(folder, error);
-    if (error) throw RunError(folder.string() + ": cannot be made: " + error.message());
+    make_folder(folder);
     const auto drawn = draw_figures(settings, reference, folder, options);
     for (const auto& note : drawn.notes) spdlog::info("{}", note);
     std::vector<std::filesystem::path> pictures;

@@ -79,7 +79,7 @@ int proposal_of(std::size_t candidate, const Findings& findings) {
 
 /// A stated parameter that may be wrong comes before any effect that it cannot be told from.
 void suspect_calibration(Decision& decision, const Findings& findings) {
-    const auto nuisance = [&](std::size_t c) { return static_cast<int>(c) >= findings.effects; };
+    const auto nuisance = [&](std::size_t c) { return findings.is_nuisance(c); };
     std::stable_partition(decision.group.begin(), decision.group.end(), nuisance);
     if (const int proposal = proposal_of(decision.group[0], findings); proposal >= 0)
         decision.proposal = proposal;
@@ -101,7 +101,7 @@ Decision chosen(const Findings& findings, int single, std::vector<std::size_t> g
             decision.proposal = pair;
             decision.group = findings.proposals[static_cast<std::size_t>(pair)].candidates;
         }
-    } else if (static_cast<int>(std::ranges::max(decision.group)) >= findings.effects) {
+    } else if (findings.is_nuisance(std::ranges::max(decision.group))) {
         suspect_calibration(decision, findings);
     } else {
         decision.verdict = decision.group.size() > 1 ? Verdict::group : Verdict::effect;

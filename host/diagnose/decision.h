@@ -40,6 +40,7 @@ struct Findings {
     int effects = 0;                  ///< how many of them are effects
     std::vector<double> gain;         ///< by candidate, by the signatures
     std::vector<Proposal> proposals;  ///< single effects by gain, then the best pair
+    bool is_nuisance(std::size_t candidate) const { return static_cast<int>(candidate) >= effects; }
 };
 
 struct Decision {

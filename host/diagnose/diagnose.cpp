@@ -157,7 +157,7 @@ void Draft::confirm(std::size_t proposal, const Eigen::MatrixXd& runs) {
 
 bool Draft::may_gain(std::size_t proposal) const {
     const Proposal& p = findings_.proposals[proposal];
-    return p.candidates.size() == 1 && static_cast<int>(p.candidates[0]) >= findings_.effects &&
+    return p.candidates.size() == 1 && findings_.is_nuisance(p.candidates[0]) &&
            decision_.proposal != static_cast<int>(proposal) &&
            std::abs((*step_[proposal])[whole_[proposal].nuisances.size()]) > p.errors[0];
 }

@@ -6,6 +6,7 @@
 
 #include "core/atomic_file.h"
 #include "core/errors.h"
+#include "core/make_folder.h"
 #include "experiment/experiment.h"
 #include "experiment/measurements.h"
 #include "experiment/settings.h"
@@ -71,9 +72,7 @@ void write_table(const std::filesystem::path& folder, const std::string& name,
 }  // namespace
 
 void write_experiment(const std::filesystem::path& folder, const Experiment& experiment, Packed packed) {
-    std::error_code error;
-    std::filesystem::create_directories(folder, error);
-    if (error) throw RunError(folder.string() + ": cannot be made: " + error.message());
+    make_folder(folder);
     const Recording& recording = experiment.recording;
     write_table(folder, "contacts.csv", contact_columns(), contact_rows(recording), packed);
     write_table(folder, "grains.csv", grain_columns(), grain_rows(recording), packed);

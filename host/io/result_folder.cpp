@@ -11,6 +11,7 @@
 
 #include "core/atomic_file.h"
 #include "core/errors.h"
+#include "core/make_folder.h"
 #include "io/parts.h"
 #include "io/result_file.h"
 
@@ -126,11 +127,9 @@ std::vector<fs::path> result_files(const fs::path& file_or_folder) {
 }
 
 ResultFolder ResultFolder::create(const fs::path& folder) {
-    std::error_code error;
     if (fs::exists(folder) && !fs::is_directory(folder))
         throw InputError(folder.string() + ": is a file; give a folder for the results");
-    fs::create_directories(folder, error);
-    if (error) throw RunError(folder.string() + ": cannot be made: " + error.message());
+    make_folder(folder);
     ResultFolder made(folder, lock_folder(folder));
     for (const auto& entry : fs::directory_iterator(folder))
         if (belongs_to_a_run(entry.path()))

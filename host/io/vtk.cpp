@@ -3,7 +3,8 @@
 #include <fmt/format.h>
 
 #include "core/atomic_file.h"
-#include "core/errors.h"
+#include "core/make_folder.h"
+#include "io/grain_loads.h"
 #include "io/hdf5.h"
 #include "io/results.h"
 
@@ -107,9 +108,7 @@ int export_scan(const Recording& recording, std::size_t replica, const Scan& sca
 }
 
 void start_folder(const std::filesystem::path& folder) {
-    std::error_code error;
-    std::filesystem::create_directories(folder, error);
-    if (error) throw RunError(folder.string() + ": cannot be made: " + error.message());
+    make_folder(folder);
     replace_file(folder / "README.txt", readme);
 }
 
@@ -117,18 +116,15 @@ void start_folder(const std::filesystem::path& folder) {
 
 void write_vtk_grains(const std::filesystem::path& file, const Recording& recording, const Scan& scan) {
     const std::size_t grains = scan.position.size();
-    std::vector<double> points, force(grains, 0.0);
-    std::vector<int> number(grains), contacts(grains, 0);
+    const std::vector<GrainLoad> loads = grain_loads(scan);
+    std::vector<double> points, force(grains);
+    std::vector<int> number(grains), contacts(grains);
     for (std::size_t i = 0; i < grains; ++i) {
         add(points, scan.position[i]);
         number[i] = static_cast<int>(i);
+        contacts[i] = loads[i].contacts;
+        force[i] = loads[i].force_magnitude;
     }
-    for (const Contact& contact : scan.contacts)
-        for (int grain : {contact.grain, contact.partner}) {
-            if (is_wall(grain)) continue;
-            contacts[static_cast<std::size_t>(grain)] += 1;
-            force[static_cast<std::size_t>(grain)] += contact.force.norm();
-        }
     replace_file(file, [&](const std::filesystem::path& temporary) {
         Grid grid(temporary, vtk_vertex, 1, points);
         grid.point_data("grain", number);

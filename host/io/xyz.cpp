@@ -8,6 +8,8 @@
 
 #include "core/atomic_file.h"
 #include "core/errors.h"
+#include "core/make_folder.h"
+#include "io/grain_loads.h"
 #include "io/results.h"
 
 namespace mcdem {
@@ -32,28 +34,6 @@ Of a grain: radius [m], id, coordination_number (walls counted), force_magnitude
 (by the walls [N]). Of a contact: its force on the first of the two grains [N], its overlap [m].
 )";
 
-/// What the contacts are to one grain.
-struct Loads {
-    int contacts = 0;
-    double force_magnitude = 0;
-    Vec3 wall_force = Vec3::Zero();
-};
-
-std::vector<Loads> loads_of(const Scan& scan) {
-    std::vector<Loads> loads(scan.position.size());
-    for (const Contact& contact : scan.contacts) {
-        for (const int grain : {contact.grain, contact.partner}) {
-            if (is_wall(grain)) continue;
-            Loads& load = loads[static_cast<std::size_t>(grain)];
-            load.contacts += 1;
-            load.force_magnitude += contact.force.norm();
-        }
-        if (is_wall(contact.partner))
-            loads[static_cast<std::size_t>(contact.grain)].wall_force += contact.force;
-    }
-    return loads;
-}
-
 /// In double quotes; extended XYZ knows no way to write one.
 std::string in_quotes(std::string text) {
     std::ranges::replace(text, '"', '\'');
@@ -70,7 +50,7 @@ void append_grains(fmt::memory_buffer& text, const Recording& recording, const S
         "wall_force:R:3 Time={:.9g} frame={} cycle={} phase={} plate_z={:.9g} top_force={:.9g} label={}\n",
         scan.position.size(), recording.box.size_x, recording.box.size_y, recording.plate_start, scan.time,
         scan.frame, scan.cycle, name(scan.phase), scan.plate_z, scan.top_force(), in_quotes(recording.label));
-    const auto loads = loads_of(scan);
+    const auto loads = grain_loads(scan);
     for (std::size_t i = 0; i < scan.position.size(); ++i) {
         const Vec3 &at = scan.position[i], &wall = loads[i].wall_force;
         fmt::format_to(out, "X {:.9g} {:.9g} {:.9g} {} {:.9g} {} {:.9g} {:.9g} {:.9g} {:.9g}\n", at.x(),
@@ -126,9 +106,7 @@ int export_replica(const Recording& recording, std::size_t number, const std::fi
 }
 
 void start_folder(const std::filesystem::path& folder) {
-    std::error_code error;
-    std::filesystem::create_directories(folder, error);
-    if (error) throw RunError(folder.string() + ": cannot be made: " + error.message());
+    make_folder(folder);
     replace_file(folder / "OVITO.txt", how_to_look);
 }
 
