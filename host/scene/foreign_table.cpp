@@ -43,6 +43,37 @@ std::string bytes_of(const fs::path& file) {
     return bytes;
 }
 
+bool is_utf8(std::string_view text) {
+    for (std::size_t i = 0; i < text.size();) {
+        const auto byte = static_cast<unsigned char>(text[i]);
+        const std::size_t more = byte < 0x80                   ? 0
+                                 : byte >= 0xC2 && byte < 0xE0 ? 1
+                                 : byte >= 0xE0 && byte < 0xF0 ? 2
+                                                               : 3;
+        if (byte >= 0x80 && (byte < 0xC2 || byte > 0xF4)) return false;
+        for (std::size_t k = 1; k <= more; ++k)
+            if (i + k >= text.size() || (static_cast<unsigned char>(text[i + k]) & 0xC0) != 0x80)
+                return false;
+        const auto next = more > 0 ? static_cast<unsigned char>(text[i + 1]) : 0;
+        if ((byte == 0xE0 && next < 0xA0) || (byte == 0xED && next > 0x9F) || (byte == 0xF0 && next < 0x90) ||
+            (byte == 0xF4 && next > 0x8F))
+            return false;  // longer than needed, half of a pair, or beyond Unicode
+        i += more + 1;
+    }
+    return true;
+}
+
+/// ISO 8859-1 in UTF-8: what European spreadsheets write where they do not write UTF-8.
+std::string from_latin1(std::string_view text) {
+    std::string utf8;
+    for (const char c : text) {
+        const auto byte = static_cast<unsigned char>(c);
+        if (byte >= 0x80) utf8 += static_cast<char>(0xC0 | (byte >> 6));
+        utf8 += byte < 0x80 ? c : static_cast<char>(0x80 | (byte & 0x3F));
+    }
+    return utf8;
+}
+
 /// LAMMPS data files: read as packings are, then told again as columns.
 bool looks_like_data(std::string_view text) {
     TextLines lines(text.substr(0, 100'000));
@@ -136,7 +167,7 @@ ForeignTable parse_foreign_table(std::string bytes, const std::string& file,
     ForeignTable table;
     table.file = file;
     if (bytes.starts_with("\xEF\xBB\xBF")) bytes.erase(0, 3);
-    table.text = std::move(bytes);
+    table.text = is_utf8(bytes) ? std::move(bytes) : from_latin1(bytes);
     if (table.text.find('\0') != table.text.npos)
         problems.add("must be text, got zero bytes: save it as text in UTF-8");
     else if (looks_like_dump(table.text))
