@@ -78,5 +78,23 @@ TEST_F(ImportTest, ForcesOfWhichOnlyTheSizeIsKnown) {
     expect_truth(import_tables(tables, known_).experiment.recording);
 }
 
+TEST_F(ImportTest, APlatesForceIsMeasuredByItsContacts) {
+    auto files = write_lab({});
+    std::string plate = lab_plate(truth_, {});
+    write("kraft.csv", plate.replace(plate.find(" [mN]"), 5, ""));
+    known_.materials.clear();  // no Hertz's law
+    const auto tables = guess_tables(files, known_);
+    EXPECT_EQ(of(tables, Role::plate).word("force_unit", ""), "mN");
+    EXPECT_THAT(unclear(tables), IsEmpty());
+}
+
+TEST_F(ImportTest, ATableOfNothingKnownMustBeNamed) {
+    auto files = write_lab({});
+    files.push_back(write("wetter.csv", "Tag;Regen;Wind\n1;2,5;3\n2;0;1\n"));
+    EXPECT_THAT(unclear(guess_tables(files, known_)),
+                ::testing::ElementsAre(
+                    ::testing::HasSubstr("role must be confirmed, got \"?aside\": its columns say nothing")));
+}
+
 }  // namespace
 }  // namespace mcdem::test

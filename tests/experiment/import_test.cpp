@@ -14,6 +14,7 @@ TEST_F(ImportTest, AGermanLaboratorysTablesWithUnitsAreSafe) {
     EXPECT_EQ(of(tables, Role::grains).word("length_unit", ""), "mm");
     EXPECT_EQ(of(tables, Role::grains).form, (TextForm{';', ','}));
     EXPECT_EQ(of(tables, Role::contacts).walls.at("Boden").word(), "floor");
+    EXPECT_EQ(of(tables, Role::contacts).walls.at("Boden").why, "its name");
     expect_truth(import_tables(tables, known_).experiment.recording);
 }
 

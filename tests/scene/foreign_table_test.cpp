@@ -218,8 +218,10 @@ TEST(PackingFrame, IsAKeyOfScenes) {
     };
     EXPECT_EQ(grains(""), 1u);
     EXPECT_EQ(grains("frame = 100\n"), 2u);
-    EXPECT_THAT(problems_of([&] { grains("frame = 7\n"); }),
-                ElementsAre(HasSubstr("must be one of its 2 timesteps")));
+    const std::string scene_file = (folder.path() / "s.toml").string();
+    EXPECT_THAT(problems_of([&] { parse_scene(box + "frame = 7\n", scene_file); }),
+                ElementsAre(HasSubstr("must be one of its 2 timesteps")))
+        << "told with the scene's other problems";
     EXPECT_THAT(problems_of([&] { parse_scene("[packing]\nframe = 7\n", "s.toml"); }),
                 ElementsAre("s.toml:2: packing.frame must be left out where no packing.file is given"));
 }
