@@ -82,7 +82,7 @@ TEST_F(ImportCommandTest, ALaboratorysTablesBecomeTheExperimentOfTheirRun) {
     EXPECT_EQ(done.err, "");
     EXPECT_THAT(done.out, HasSubstr("grains.csv: grains (sure: its columns are named so)\n"));
     EXPECT_THAT(done.out,
-                HasSubstr("  radius        Radius [mm]        sure     its name; neighbours touch"));
+                HasSubstr("  radius        Radius [mm]        sure    its name; neighbours touch"));
     EXPECT_THAT(done.out, HasSubstr("lab: 9 frames, 30 grains in 9 of them, "));
     expect_truth("lab", true);
     EXPECT_EQ(read_experiment(path("lab")).name, "lab");
@@ -106,7 +106,7 @@ TEST_F(ImportCommandTest, WhatIsNotSafeIsConfirmedInTheMapping) {
     write_lab({';', ',', false, 1e3, 1e3});
     const auto refused = import({"contacts.csv", "plate.csv", "grains.csv", "--out", "lab"});
     EXPECT_EQ(refused.exit_code, 2);
-    EXPECT_THAT(refused.out, HasSubstr("  length_unit   mm                 unclear  no name says it"));
+    EXPECT_THAT(refused.out, HasSubstr("  length_unit   mm                 unclear no name says it"));
     EXPECT_THAT(
         refused.err,
         testing::ContainsRegex(
