@@ -53,7 +53,7 @@ private:
             return {};
         }
         for (std::string& word : words)
-            if (word.front() == '?') {
+            if (word.front() == '?' && key != "files") {
                 wrong(node,
                       fmt::format(
                           "{} must be confirmed, got {}: put in what is right, without the question mark",

@@ -81,8 +81,7 @@ TEST_F(ImportCommandTest, ALaboratorysTablesBecomeTheExperimentOfTheirRun) {
     expect_done(done);
     EXPECT_EQ(done.err, "");
     EXPECT_THAT(done.out, HasSubstr("grains.csv: grains (sure: its columns are named so)\n"));
-    EXPECT_THAT(done.out,
-                HasSubstr("  radius        Radius [mm]        sure    its name; neighbours touch"));
+    EXPECT_THAT(done.out, HasSubstr("  radius        Radius [mm]        sure    its name; neighbours touch"));
     EXPECT_THAT(done.out, HasSubstr("lab: 9 frames, 30 grains in 9 of them, "));
     expect_truth("lab", true);
     EXPECT_EQ(read_experiment(path("lab")).name, "lab");

@@ -63,6 +63,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
     } catch (const mcdem::InputError&) {
         return 0;
     }
+    if (tables.empty()) return 0;
     const std::string text = mapping_text(confirmed(mapping_of(tables)));
     try {
         mcdem::parse_mapping(text, "mapping.toml");
