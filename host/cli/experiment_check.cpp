@@ -7,8 +7,6 @@
 namespace mcdem {
 namespace {
 
-constexpr std::size_t line_length = 110;
-
 std::string_view title(Severity severity) {
     switch (severity) {
         case Severity::note:
@@ -19,23 +17,6 @@ std::string_view title(Severity severity) {
             return "what looks odd";
     }
     return "";
-}
-
-/// Lines of words, those after the first indented under the text.
-std::string wrapped(const std::string& head, const std::string& text) {
-    const std::string indent(head.size(), ' ');
-    std::string all, line = head;
-    for (std::size_t first = 0; first < text.size();) {
-        const auto end = std::min(text.find(' ', first), text.size());
-        const std::string word = text.substr(first, end - first);
-        if (line.size() + 1 + word.size() > line_length && line.size() > head.size()) {
-            all += line + '\n';
-            line = indent;
-        }
-        line += (line.size() > head.size() ? " " : "") + word;
-        first = end + 1;
-    }
-    return all + line + '\n';
 }
 
 void print_check(const std::string& folder) {

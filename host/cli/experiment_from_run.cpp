@@ -83,17 +83,6 @@ void expect_small_errors(const Measurement& errors, const Recording& truth) {
     if (!problems.empty()) throw InputError(problems);
 }
 
-void expect_free(const fs::path& out) {
-    for (const char* taken : {"experiment.toml", "run.h5", "checkpoint.h5"})
-        if (fs::exists(out / taken))
-            throw InputError(
-                fmt::format("--out: {} holds another experiment or run: name another folder, or remove "
-                            "it first",
-                            out.string()));
-    if (fs::exists(out) && !fs::is_directory(out))
-        throw InputError(fmt::format("--out: {} must be a folder, got a file", out.string()));
-}
-
 void warn_of_start(const Recording& truth) {
     const Scan& first = truth.scans.front();
     if (first.position.empty())

@@ -19,7 +19,8 @@ std::string start_of(const Replica& replica) {
     std::string text = fmt::format("{} {} {} {} {} {} {}", replica.box.size_x, replica.box.size_y,
                                    replica.plate.start, replica.effects.plate_tilt_x,
                                    replica.effects.plate_tilt_y, from.position_jitter, from.seed);
-    if (const auto* file = std::get_if<PackingFile>(&from.source)) return text + " file " + file->path;
+    if (const auto* file = std::get_if<PackingFile>(&from.source))
+        return text + fmt::format(" file {} {}", file->path, file->step.value_or(-1));
     const auto& drawn = std::get<GeneratedPacking>(from.source);
     return text + fmt::format(" drawn {} {} {} {} {} {}", drawn.count, drawn.diameter_mean, drawn.diameter_sd,
                               drawn.diameter_min, drawn.diameter_max, drawn.packing_fraction);

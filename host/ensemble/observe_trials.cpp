@@ -30,7 +30,8 @@ std::string simulation_name(const Device& device, const Question& question, cons
     Settings settings;
     settings.replica = trial.model.replica;
     for (const Key& key : keys())
-        if (key.scope == Scope::replica && !is_generator_key(key.name) && key.name != "packing.file")
+        if (key.scope == Scope::replica && !is_generator_key(key.name) && key.name != "packing.file" &&
+            key.name != "packing.frame")
             digest.add(key.name).add("=").add(value_text(key, settings)).add("\n");
     for (const Vec3& position : trial.packing.position) digest.add(std::span(position.data(), 3));
     digest.add(trial.packing.diameter);

@@ -7,8 +7,10 @@ namespace {
 constexpr std::size_t most_told = 20;
 }
 
+bool ExperimentProblems::full() const { return first_.size() >= most_told; }
+
 void ExperimentProblems::add(const std::string& where, const std::string& what) {
-    if (first_.size() < most_told) first_.push_back(where + ": " + what);
+    if (!full()) first_.push_back(where + ": " + what);
     ++count_;
 }
 

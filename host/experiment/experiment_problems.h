@@ -12,6 +12,9 @@ public:
     void add(const std::string& where, const std::string& what);
     /// The same, told once for each `topic`: a column in millimetres is one problem, not one for each line.
     void add_once(const std::string& topic, const std::string& where, const std::string& what);
+    /// Further ones are only counted.
+    bool full() const;
+    bool was_told(const std::string& topic) const { return told_.contains(topic); }
     bool empty() const { return count_ == 0; }
     long count() const { return count_; }
     /// Throws InputError where there are any.

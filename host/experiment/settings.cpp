@@ -4,9 +4,12 @@
 #include <toml++/toml.h>
 
 #include <cmath>
+#include <fstream>
 #include <limits>
 #include <span>
 #include <sstream>
+
+#include "scene/packing_fields.h"
 
 namespace mcdem {
 namespace {
@@ -70,7 +73,8 @@ public:
 
 private:
     void problem(const toml::node& node, const std::string& what) {
-        problems_.add(fmt::format("{}:{}", file_, node.source().begin.line), what);
+        const auto line = node.source().begin.line;  // 0: from an override
+        problems_.add(line > 0 ? fmt::format("{}:{}", file_, line) : "--set", what);
     }
 
     void known(std::string_view key) { known_.insert(std::string(key)); }
@@ -92,12 +96,13 @@ private:
         const auto node = root.at_path("box.size");
         const auto* size = node.as_array();
         if (!size || size->size() != 2 || !size->is_homogeneous<double>()) {
-            const std::string where =
-                node ? fmt::format("{}:{}", file_, node.node()->source().begin.line) : file_;
-            problems_.add(
-                where,
+            constexpr auto what =
                 "box.size must be the inner width and depth of the box, two decimal numbers [m], such as "
-                "[0.165, 0.166]");
+                "[0.165, 0.166]";
+            if (node)
+                problem(*node.node(), what);
+            else
+                problems_.add(file_, what);
             return;
         }
         box = {size->get_as<double>(0)->get(), size->get_as<double>(1)->get()};
@@ -150,16 +155,53 @@ const std::vector<std::string>& material_keys() {
     return keys;
 }
 
-void read_settings(const std::filesystem::path& file, Experiment& experiment, ExperimentProblems& problems) {
+namespace {
+
+/// Puts "a.b=value" into the table; a value that is no TOML is a text.
+void override_key(toml::table& root, const std::string& word, ExperimentProblems& problems) {
+    const auto equals = word.find('=');
+    std::string_view path = std::string_view(word).substr(0, std::min(equals, word.size()));
+    if (equals == word.npos || path.empty() || path.front() == '.' || path.back() == '.' ||
+        path.find("..") != path.npos)
+        return problems.add("--set", fmt::format("must be KEY=VALUE such as box.size=[0.165,0.166], got {}",
+                                                 quoted(std::string_view(word))));
+    toml::table value;
     try {
-        const toml::table root = toml::parse_file(file.string());
-        Reader(file.string(), problems).read(root, experiment);
+        value = toml::parse("value = " + word.substr(equals + 1));
+    } catch (const toml::parse_error&) {
+        value.insert("value", word.substr(equals + 1));
+    }
+    toml::table* table = &root;
+    for (auto dot = path.find('.'); dot != path.npos; dot = path.find('.')) {
+        const auto part = path.substr(0, dot);
+        if (!table->contains(part)) table->insert(part, toml::table());
+        table = table->get(part)->as_table();
+        if (!table) return problems.add("--set", fmt::format("{} must be a table, got a value before", part));
+        path.remove_prefix(dot + 1);
+    }
+    // Visited, so that the copy does not know the line of a text that nobody wrote.
+    value.get("value")->visit([&](const auto& concrete) { table->insert_or_assign(path, concrete); });
+}
+
+}  // namespace
+
+void parse_settings(std::string_view text, const std::string& file, const std::vector<std::string>& overrides,
+                    Experiment& experiment, ExperimentProblems& problems) {
+    try {
+        toml::table root = toml::parse(text, file);
+        for (const std::string& word : overrides) override_key(root, word, problems);
+        Reader(file, problems).read(root, experiment);
     } catch (const toml::parse_error& error) {
-        problems.add(fmt::format("{}:{}", file.string(), error.source().begin.line),
-                     std::string(error.description()));
+        problems.add(fmt::format("{}:{}", file, error.source().begin.line), std::string(error.description()));
     }
     for (const auto& [key, value] : experiment.materials)
         experiment.recording.parameters[key] = fmt::format("{}", value);
+}
+
+void read_settings(const std::filesystem::path& file, Experiment& experiment, ExperimentProblems& problems) {
+    std::stringstream text;
+    text << std::ifstream(file, std::ios::binary).rdbuf();
+    parse_settings(text.str(), file.string(), {}, experiment, problems);
 }
 
 std::string settings_text(const Experiment& experiment) {

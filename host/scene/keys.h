@@ -18,6 +18,7 @@ struct Settings {
     Replica replica;
     GeneratedPacking generated;
     std::string packing_file;  ///< empty: generated
+    int packing_frame = -1;    ///< timestep of a dump; -1: its last
     int copies = 1;
 };
 

@@ -63,7 +63,7 @@ Packing make_packing(const Replica& replica) {
     Packing packing;
     std::string source = "generated packing";
     if (const auto* file = std::get_if<PackingFile>(&from.source)) {
-        packing = read_packing(file->path);
+        packing = read_packing(file->path, file->step);
         source = file->path;
     } else {
         packing = generate_packing(std::get<GeneratedPacking>(from.source), replica.box, from.seed);

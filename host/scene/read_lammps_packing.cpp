@@ -6,20 +6,10 @@
 
 #include "scene/packing_fields.h"
 #include "scene/read_packing.h"
+#include "scene/text_lines.h"
 
 namespace mcdem {
 namespace {
-
-std::vector<std::string_view> split(std::string_view line) {
-    constexpr std::string_view blank = " \t\r";
-    std::vector<std::string_view> words;
-    for (std::size_t begin = line.find_first_not_of(blank); begin != line.npos;) {
-        const std::size_t end = std::min(line.find_first_of(blank, begin), line.size());
-        words.push_back(line.substr(begin, end - begin));
-        begin = line.find_first_not_of(blank, end);
-    }
-    return words;
-}
 
 bool is_letter(char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z'); }
 
@@ -42,8 +32,8 @@ private:
         if (!std::getline(input_, text_)) return false;
         ++line_;
         const std::size_t comment = std::min(text_.find('#'), text_.size());
-        words_ = split(std::string_view(text_).substr(0, comment));
-        hint_ = split(std::string_view(text_).substr(std::min(comment + 1, text_.size())));
+        split_at_blanks(std::string_view(text_).substr(0, comment), words_);
+        split_at_blanks(std::string_view(text_).substr(std::min(comment + 1, text_.size())), hint_);
         return true;
     }
 

@@ -5,10 +5,11 @@
 #include <fstream>
 
 #include "core/errors.h"
+#include "scene/foreign_table.h"
 
 namespace mcdem {
 
-Packing read_packing(const std::filesystem::path& file) {
+Packing read_packing(const std::filesystem::path& file, std::optional<long> step) {
     std::error_code error;
     if (!std::filesystem::exists(file, error))
         throw InputError(fmt::format("{}: must be a packing, got no such file", file.string()));
@@ -22,6 +23,18 @@ Packing read_packing(const std::filesystem::path& file) {
     if (!input)
         throw InputError(
             fmt::format("{}: must be a packing, got a file that cannot be opened", file.string()));
+    if (file.extension() != ".csv") {
+        std::string beginning(1 << 16, '\0');
+        input.read(beginning.data(), static_cast<std::streamsize>(beginning.size()));
+        beginning.resize(static_cast<std::size_t>(input.gcount()));
+        if (looks_like_dump(beginning) || looks_like_yade(beginning))
+            return packing_of(read_foreign_table(file), step);
+        input.clear();
+        input.seekg(0);
+    }
+    if (step)
+        throw InputError(fmt::format(
+            "{}: must be a dump where packing.frame is given, got a file with one packing", file.string()));
     return file.extension() == ".csv" ? read_csv_packing(input, file.string())
                                       : read_lammps_packing(input, file.string());
 }

@@ -2,6 +2,7 @@
 #pragma once
 #include <filesystem>
 #include <istream>
+#include <optional>
 #include <string>
 
 #include "core/packing.h"
@@ -11,8 +12,10 @@ namespace mcdem {
 /// The most grains that a file may hold.
 inline constexpr long largest_packing = 10'000'000;
 
-/// By its name's end: `.csv`, anything else a LIGGGHTS/LAMMPS data file. Throws InputError.
-Packing read_packing(const std::filesystem::path& file);
+/// By its name's end `.csv`, else by its content: a text dump of LIGGGHTS/LAMMPS, Yade's text (`x y z r`),
+/// anything else a LIGGGHTS/LAMMPS data file. Of a dump the frame of timestep `step`, the last where it is
+/// left out. Throws InputError.
+Packing read_packing(const std::filesystem::path& file, std::optional<long> step = {});
 
 /// LIGGGHTS/LAMMPS data file, atom style sphere or granular: lines `id type diameter density x y z` in
 /// its `Atoms` section, in metres. Grains are numbered from 0 in the order of the file's ids. Type,

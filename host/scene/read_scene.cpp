@@ -114,6 +114,9 @@ private:
             if (from_file && is_generator_key(key))
                 problems_.add(entry.place, key + " must be left out where packing.file is given");
         }
+        if (!from_file && (settings_.packing_frame >= 0 || varies("packing.frame")))
+            problems_.add(document_.place_of("packing.frame"),
+                          "packing.frame must be left out where no packing.file is given");
         if (settings_.copies > 1 && varies("packing.seed"))
             problems_.add(
                 document_.place_of("batch.replicas"),

@@ -25,6 +25,11 @@ std::string label_part(const Key& key, const Settings& settings, const std::vect
     return fmt::format("{}={}", alike > 1 ? key.name : last_part(key.name), value);
 }
 
+PackingFile packing_file(const Settings& settings) {
+    if (settings.packing_frame < 0) return {settings.packing_file};
+    return {settings.packing_file, settings.packing_frame};
+}
+
 std::map<std::string, std::string> parameters(const Settings& settings) {
     std::map<std::string, std::string> all;
     for (const Key& key : keys()) {
@@ -74,7 +79,7 @@ std::vector<Replica> make_replicas(const std::vector<Combination>& combinations)
             if (settings.packing_file.empty())
                 replica.packing.source = settings.generated;
             else
-                replica.packing.source = PackingFile{settings.packing_file};
+                replica.packing.source = packing_file(settings);
             replicas.push_back(std::move(replica));
         }
     }

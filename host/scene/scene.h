@@ -36,9 +36,10 @@ struct ContactLaw {
     double sliding_velocity = 1e-3;  ///< below it saturated friction fades to zero [m/s]
 };
 
-/// Read from a LIGGGHTS/LAMMPS data file (.data) or a CSV (x_m,y_m,z_m,diameter_m).
+/// Read from a LIGGGHTS/LAMMPS data file or dump, Yade's text or a CSV (x_m,y_m,z_m,diameter_m).
 struct PackingFile {
     std::string path;
+    std::optional<long> step = std::nullopt;  ///< of a dump; its last frame where left out
 };
 
 /// Drawn at random: truncated normal diameters, grown and relaxed without weight or friction.

@@ -114,11 +114,12 @@ std::vector<CrossProblem> cross_problems(const Settings& settings,
 
 std::vector<std::string> packing_file_problems(const Settings& settings, CheckedFiles& files) {
     if (settings.packing_file.empty()) return {};
-    const auto [place, is_new] = files.try_emplace(settings.packing_file);
+    const auto [place, is_new] = files.try_emplace({settings.packing_file, settings.packing_frame});
     CheckedFile& file = place->second;
     if (is_new) {
         try {
-            file.packing = read_packing(settings.packing_file);
+            const int step = settings.packing_frame;
+            file.packing = read_packing(settings.packing_file, step < 0 ? std::optional<long>() : step);
             file.count = file.packing.size();
             file.smallest = *std::ranges::min_element(file.packing.diameter);
         } catch (const InputError& error) {
@@ -140,7 +141,7 @@ std::vector<std::string> packing_file_problems(const Settings& settings, Checked
 
 std::size_t grain_count(const Settings& settings, const CheckedFiles& files) {
     if (settings.packing_file.empty()) return static_cast<std::size_t>(settings.generated.count);
-    const auto found = files.find(settings.packing_file);
+    const auto found = files.find({settings.packing_file, settings.packing_frame});
     return found == files.end() ? 0 : found->second.count;
 }
 

@@ -16,14 +16,14 @@ struct CrossProblem {
     std::string what;  ///< "must be .., got .."
 };
 
-/// Packing files that were read for checking, by path: each is read once.
+/// Packing files that were read for checking, by path and frame: each is read once.
 struct CheckedFile {
     std::size_t count = 0;
     double smallest = 0;  ///< diameter [m]
     Packing packing;
     std::vector<std::string> problems;  ///< of reading, each with its own place
 };
-using CheckedFiles = std::map<std::string, CheckedFile>;
+using CheckedFiles = std::map<std::pair<std::string, int>, CheckedFile>;
 
 /// Checks one setting. Keys in `bad` had problems of their own: what they demand of others is not checked.
 std::vector<CrossProblem> cross_problems(const Settings& settings,

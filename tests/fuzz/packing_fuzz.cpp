@@ -1,10 +1,11 @@
-// Any bytes as a packing, in both formats: grains with sound numbers come out or an InputError.
+// Any bytes as a packing, in each format: grains with sound numbers come out or an InputError.
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <sstream>
 
 #include "core/errors.h"
+#include "scene/foreign_table.h"
 #include "scene/read_packing.h"
 
 namespace {
@@ -25,6 +26,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
             expect_sound(read(input, "packing"));
         } catch (const mcdem::InputError&) {
         }
+    }
+    try {
+        expect_sound(packing_of(mcdem::parse_foreign_table({reinterpret_cast<const char*>(bytes), size}, "packing")));
+    } catch (const mcdem::InputError&) {
     }
     return 0;
 }

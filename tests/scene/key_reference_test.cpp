@@ -90,7 +90,7 @@ TEST(Keys, CoverEveryMember) {
     EXPECT_EQ(count_keys("grains."), 7u);
     EXPECT_EQ(count_keys("walls."), 4u);
     EXPECT_EQ(count_keys("contact."), 4u);
-    EXPECT_EQ(count_keys("packing."), 6u + 3) << "file, jitter and seed too";
+    EXPECT_EQ(count_keys("packing."), 6u + 4) << "file, frame, jitter and seed too";
     EXPECT_EQ(count_keys("plate."), 3u);
     EXPECT_EQ(count_keys("protocol."), 10u);
     EXPECT_EQ(count_keys("numerics."), 4u + 2) << "precision and slots too";
@@ -103,7 +103,7 @@ TEST(Keys, AcceptTheirOwnDefaults) {
         std::string text = value_text(key, defaults);
         if (text.empty()) continue;  // no default
         if (!std::holds_alternative<double& (*)(Settings&)>(key.member) && text != "true" &&
-            text != "false" && text.find_first_not_of("0123456789") != text.npos)
+            text != "false" && text.find_first_not_of("-0123456789") != text.npos)
             text = '"' + text + '"';
         const toml::table parsed = toml::parse("value = " + text);
         Settings settings;

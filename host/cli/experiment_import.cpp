@@ -1,0 +1,212 @@
+// mcdem experiment import
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <fstream>
+#include <sstream>
+
+#include "cli/experiment.h"
+#include "cli/messages.h"
+#include "core/atomic_file.h"
+#include "core/errors.h"
+#include "experiment/import_experiment.h"
+#include "experiment/settings.h"
+
+namespace mcdem {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ImportCommand {
+    std::vector<std::string> tables, settings;
+    std::string out, mapping, metadata, name;
+    bool gzip = false;
+};
+
+std::string text_of_file(const std::string& file) {
+    std::error_code error;
+    if (!fs::is_regular_file(file, error) || fs::file_size(file, error) > 1'000'000 || error)
+        throw InputError(fmt::format("{}: must be a text of at most 1 MB, got {}", file,
+                                     fs::exists(file, error) ? "something else" : "no such file"));
+    std::ostringstream text;
+    text << std::ifstream(file, std::ios::binary).rdbuf();
+    return text.str();
+}
+
+/// What the tables do not tell; its problems are told with all others.
+Experiment known_of(const ImportCommand& command, ExperimentProblems& problems) {
+    Experiment known;
+    known.recording.plate_start = std::nan("");
+    const std::string text = command.metadata.empty() ? "" : text_of_file(command.metadata);
+    parse_settings(text, command.metadata.empty() ? "--set" : command.metadata, command.settings, known,
+                   problems);
+    if (!command.name.empty())
+        known.name = command.name;
+    else if (!text.starts_with("name") && text.find("\nname") == text.npos)
+        known.name = fs::path(command.out).filename().string();
+    return known;
+}
+
+void print_entry(const std::string& key, const Guess& guess) {
+    fmt::print("{}", wrapped(fmt::format("  {:<13} {:<18} {:<8}", key,
+                                         fmt::format("{}", fmt::join(guess.words, " + ")), name(guess.sure)),
+                             guess.why));
+}
+
+/// What each table is taken for, column by column.
+void print_mapping(const Mapping& mapping) {
+    for (const MappedTable& table : mapping.tables) {
+        const auto more =
+            table.files.size() > 1 ? fmt::format(" and {} more", table.files.size() - 1) : std::string();
+        fmt::print("{}{}: {} ({}{}{})\n", table.files.front(), more, name(table.role), name(table.role_sure),
+                   table.role_why.empty() ? "" : ": ", table.role_why);
+        for (const MappingKey& key : mapping_keys(table.role))
+            if (const Guess* guess = table.find(key.name)) print_entry(std::string(key.name), *guess);
+        for (const auto& [word, guess] : table.walls) print_entry("wall " + word, guess);
+        if (!table.aside.empty())
+            fmt::print("{}", wrapped("  left aside   ", fmt::format("{}", fmt::join(table.aside, ", "))));
+    }
+}
+
+/// The mapping for the user to correct, and every problem.
+[[noreturn]] void refuse(const ImportCommand& command, const std::string& mapping,
+                         std::vector<std::string> problems) {
+    const std::string file = (fs::path(command.out) / "mapping.toml").string();
+    std::error_code error;
+    fs::create_directories(command.out, error);
+    if (error) throw RunError(command.out + ": cannot be made: " + error.message());
+    replace_file(file, mapping);
+    problems.push_back(
+        fmt::format("nothing is imported: put what is right into {0}, without question marks, and import "
+                    "again with --mapping {0}",
+                    file));
+    throw InputError(problems);
+}
+
+/// Written beside its place and read back first: what `out` gets can be read.
+void write_whole(const ImportCommand& command, const Experiment& experiment) {
+    const fs::path out = command.out, beside = out.string() + ".importing";
+    fs::remove_all(beside);
+    write_experiment(beside, experiment, command.gzip ? Packed::gzip : Packed::plain);
+    try {
+        read_experiment(beside);
+    } catch (const InputError& error) {
+        fs::remove_all(beside);
+        std::vector<std::string> problems{
+            "the tables make no experiment that can be read, as they stand in the mapping:"};
+        problems.insert(problems.end(), error.problems().begin(), error.problems().end());
+        throw InputError(problems);
+    }
+    fs::create_directories(out);
+    for (const char* table : {"contacts.csv", "grains.csv", "plate.csv", "experiment.toml"})
+        for (const std::string end : {"", ".gz"})
+            if (fs::exists(beside / (table + end))) fs::rename(beside / (table + end), out / (table + end));
+    fs::remove_all(beside);
+}
+
+std::vector<std::string> problems_in(const ExperimentProblems& problems) {
+    try {
+        problems.report();
+    } catch (const InputError& error) {
+        return error.problems();
+    }
+    return {};
+}
+
+/// The tables by their mapping, or by a guess that is safe; its text is what `out` keeps.
+std::vector<ImportTable> tables_of(const ImportCommand& command, const Experiment& known,
+                                   const ExperimentProblems& settings, std::string& mapping_toml) {
+    const fs::path kept = fs::path(command.out) / "mapping.toml";
+    if (!command.mapping.empty()) {
+        auto tables = read_import_tables(read_mapping(command.mapping), command.tables);
+        mapping_toml = text_of_file(command.mapping);
+        print_mapping(mapping_of(tables));
+        settings.report();
+        return tables;
+    }
+    if (command.tables.empty())
+        throw InputError("TABLE: must be at least one file, or --mapping must name them, got neither");
+    if (fs::exists(kept))
+        throw InputError(
+            fmt::format("{0}: is there already: import with --mapping {0}, or remove it", kept.string()));
+    auto tables = guess_tables(command.tables, known);
+    const Mapping mapping = mapping_of(tables);
+    mapping_toml = mapping_text(mapping);
+    print_mapping(mapping);
+    std::fflush(stdout);
+    auto problems = unclear_entries(mapping_toml, kept.string());
+    for (const std::string& problem : problems_in(settings)) problems.push_back(problem);
+    if (!problems.empty()) refuse(command, mapping_toml, problems);
+    return tables;
+}
+
+void run_import(const ImportCommand& command) {
+    expect_free(command.out);
+    ExperimentProblems settings;
+    const Experiment known = known_of(command, settings);
+    std::string mapping;
+    const auto tables = tables_of(command, known, settings, mapping);
+    const Imported imported = [&] {
+        try {
+            Imported all = import_tables(tables, known);
+            write_whole(command, all.experiment);
+            return all;
+        } catch (const InputError& error) {
+            if (command.mapping.empty()) refuse(command, mapping, error.problems());
+            throw;
+        }
+    }();
+    replace_file(fs::path(command.out) / "mapping.toml", mapping);
+    for (const std::string& note : imported.notes) spdlog::warn("{}", note);
+    const Recording& recording = imported.experiment.recording;
+    std::size_t contacts = 0, measured = 0;
+    for (const Scan& scan : recording.scans)
+        contacts += scan.contacts.size(), measured += scan.position.empty() ? 0 : 1;
+    fmt::print("{}: {} frames, {} grains in {} of them, {} contacts\n", command.out, recording.scans.size(),
+               recording.diameter.size(), measured, contacts);
+}
+
+}  // namespace
+
+void add_experiment_import(CLI::App& experiment) {
+    auto* sub = experiment.add_subcommand("import",
+                                          "Make an experiment of a laboratory's or another program's tables");
+    auto command = std::make_shared<ImportCommand>();
+    sub->add_option(
+        "TABLE", command->tables,
+        "Tables of the plate, the grains and the contacts: text, dumps of LAMMPS and LIGGGHTS, text "
+        "and VTK of Yade; any may be packed with gzip");
+    sub->add_option("--out", command->out, "Folder to be made")->required()->type_name("DIR");
+    sub->add_option("--mapping", command->mapping,
+                    "What the columns are: the mapping.toml that an import without it has written, corrected")
+        ->type_name("FILE");
+    sub->add_option("--set", command->settings,
+                    "What the tables do not tell, by the keys of experiment.toml, such as "
+                    "'box.size=[0.165, 0.166]'; may come several times")
+        ->type_name("KEY=VALUE")
+        ->allow_extra_args(false);
+    sub->add_option("--metadata", command->metadata, "The same as a file like experiment.toml")
+        ->type_name("FILE");
+    sub->add_option("--name", command->name,
+                    "Name of the experiment (else that of the metadata, or of the folder)")
+        ->type_name("TEXT");
+    sub->add_flag("--gzip", command->gzip, "Pack the tables");
+    sub->footer(
+        "Without --mapping it guesses what the columns are and in which units, says so, and writes the guess "
+        "as\n"
+        "DIR/mapping.toml. Where a guess is not safe, nothing is imported (exit code 2): the lines with a "
+        "question mark\n"
+        "are to be corrected, and the import repeated with --mapping. Tables given beside --mapping take the "
+        "place of\n"
+        "those it names: one mapping serves all experiments of a laboratory. The box must be given.\n"
+        "Examples:\n"
+        "  mcdem experiment import data/plate.csv data/grains.csv data/contacts.csv --set 'box.size=[0.165, "
+        "0.166]' \\\n"
+        "      --set grains.youngs_modulus=23300 --out out/lab\n"
+        "  mcdem experiment import --mapping out/lab/mapping.toml --metadata data/known.toml --out out/lab\n"
+        "  mcdem experiment import data/second/* --mapping out/lab/mapping.toml --metadata data/known.toml "
+        "--out out/second");
+    sub->callback([command] { run_import(*command); });
+}
+
+}  // namespace mcdem

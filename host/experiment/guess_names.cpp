@@ -1,0 +1,89 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "experiment/column_names.h"
+#include "experiment/guess.h"
+
+namespace mcdem {
+namespace {
+
+using Found = std::map<std::string, std::vector<std::string>, std::less<>>;  ///< columns by key
+
+Found columns_by_key(Role role, const std::vector<std::string>& columns) {
+    Found found;
+    for (const std::string& column : columns)
+        if (const auto key = key_of_name(role, column_name(column)))
+            found[std::string(*key)].push_back(column);
+    return found;
+}
+
+bool has(const Found& found, std::initializer_list<std::string_view> keys) {
+    return std::ranges::all_of(keys, [&](auto key) { return found.contains(key); });
+}
+
+std::optional<Role> role_of(const std::vector<std::string>& columns) {
+    const Found contacts = columns_by_key(Role::contacts, columns),
+                grains = columns_by_key(Role::grains, columns), plate = columns_by_key(Role::plate, columns);
+    if (has(contacts, {"grain", "partner"}) &&
+        (has(contacts, {"fx", "fy", "fz"}) || has(contacts, {"force"})))
+        return Role::contacts;
+    if (has(grains, {"x", "y", "z"}) && (has(grains, {"diameter"}) || has(grains, {"radius"})))
+        return Role::grains;
+    if (has(plate, {"top_force"}) && (has(plate, {"plate_z"}) || has(plate, {"displacement"})))
+        return Role::plate;
+    return std::nullopt;
+}
+
+bool is_length(std::string_view key) {
+    return key == "x" || key == "y" || key == "z" || key == "diameter" || key == "radius" ||
+           key == "plate_z" || key == "displacement";
+}
+bool is_force(std::string_view key) {
+    return key == "fx" || key == "fy" || key == "fz" || key == "force" || key == "top_force";
+}
+
+/// The unit that the names of these columns state, if they agree.
+void note_unit(MappedTable& map, const std::string& key, bool (*belongs)(std::string_view),
+               double (*factor)(std::string_view)) {
+    std::set<std::string> units;
+    for (const auto& [entry, guess] : map.entries) {
+        if (!belongs(entry)) continue;
+        const std::string unit = column_name(guess.word()).unit;
+        if (std::isfinite(factor(unit))) units.insert(unit);
+    }
+    if (units.size() == 1) map.entries[key] = guess(*units.begin(), Sure::sure, "the columns' names say so");
+    if (units.size() > 1)
+        map.entries[key] =
+            guess(*units.begin(), Sure::unclear,
+                  "the columns' names say different units, and a table has one: change the table");
+}
+
+}  // namespace
+
+void guess_by_names(ImportTable& table) {
+    MappedTable& map = table.map;
+    const auto& columns = table.parts.front()->columns;
+    const auto role = role_of(columns);
+    map.role = role.value_or(Role::aside);
+    map.role_sure = role ? Sure::sure : Sure::unclear;
+    map.role_why = role ? "its columns are named so" : "its columns say nothing that is known";
+    if (!role) return;
+    Found found = columns_by_key(*role, columns);
+    if (found.contains("displacement") && found.contains("plate_z")) found.erase("displacement");
+    if (found.contains("diameter") && found.contains("radius")) found.erase("radius");
+    if (has(found, {"fx", "fy", "fz"})) found.erase("force");
+    if (*role == Role::contacts && !has(found, {"x", "y", "z"}))
+        for (const char* key : {"x", "y", "z"}) found.erase(key);
+    for (const auto& [key, names] : found) {
+        // "time" beside "frame" is another way to say the same.
+        const bool one = names.size() == 1 || key == "frame";
+        map.entries[key] = guess(names.front(), one ? Sure::sure : Sure::unclear,
+                                 one ? "its name" : fmt::format("{} columns have such a name", names.size()));
+    }
+    note_unit(map, "length_unit", is_length, length_factor);
+    note_unit(map, "force_unit", is_force, force_factor);
+}
+
+}  // namespace mcdem

@@ -1,0 +1,225 @@
+#include "experiment/import_experiment.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "experiment/findings.h"
+
+namespace mcdem {
+namespace {
+
+/// Puts plate, grains and contacts together into one recording.
+class Assembly {
+public:
+    Assembly(const std::vector<ImportTable>& tables, Experiment known)
+        : tables_(tables), experiment_(std::move(known)) {}
+
+    Imported run() {
+        const auto plates = of(Role::plate), grains = of(Role::grains);
+        if (plates.size() != 1)
+            problems_.add(
+                "plate",
+                fmt::format("must be one table with the plate's position and force by frame, got {}: say "
+                            "`role = \"plate\"` in the mapping, or give the table",
+                            plates.size()));
+        else
+            plate_ = import_plate(*plates.front(), recording().plate_start, problems_);
+        grains_ = import_grains(grains, problems_);
+        if (!of(Role::contacts).empty() && grains.empty())
+            problems_.add("grains", "must be a table of the grains, for contacts name them, got none");
+        problems_.report();
+        place_grains(grains);
+        for (const ImportTable* table : of(Role::contacts)) place_contacts(*table);
+        problems_.report();
+        finish();
+        return {std::move(experiment_), std::move(notes_)};
+    }
+
+private:
+    Recording& recording() { return experiment_.recording; }
+
+    std::vector<const ImportTable*> of(Role role) const {
+        std::vector<const ImportTable*> found;
+        for (const ImportTable& table : tables_)
+            if (table.map.role == role) found.push_back(&table);
+        return found;
+    }
+
+    void place_grains(const std::vector<const ImportTable*>& tables) {
+        recording().scans = plate_.scans;
+        if (tables.empty()) return;
+        const bool by_order = tables.front()->map.word("frames_by", "plate") == "order";
+        recording().diameter = grains_.diameter;
+        for (std::size_t f = 0; f < grains_.keys.size(); ++f) {
+            const int scan = by_order ? static_cast<int>(f) : plate_.index.find(grains_.keys[f]);
+            if (scan < 0 || static_cast<std::size_t>(scan) >= plate_.scans.size()) {
+                problem_once(grains_.first_row[f], "frame",
+                             fmt::format("frame {} must be one of the plate's {} rows, got none like it: see "
+                                         "frame and frames_by in the mapping",
+                                         grains_.keys[f], plate_.scans.size()));
+                continue;
+            }
+            scan_of_grain_frame_.push_back(scan);
+            recording().scans[static_cast<std::size_t>(scan)].position = grains_.position[f];
+            check_inside(f, recording().scans[static_cast<std::size_t>(scan)].plate_z);
+        }
+        if (!scan_of_grain_frame_.empty()) drop_before(*std::ranges::min_element(scan_of_grain_frame_));
+    }
+
+    void problem_once(const RowAt& row, const std::string& topic, const std::string& what) {
+        add_problem_once(problems_, topic, row, what);
+    }
+
+    void check_inside(std::size_t frame, double plate_z) {
+        const Vec3 size(recording().box.size_x, recording().box.size_y, plate_z);
+        for (const Vec3& at : grains_.position[frame])
+            if ((at.array() < 0).any() || (at.array() > size.array()).any())
+                return problem_once(
+                    grains_.first_row[frame], "inside",
+                    fmt::format("centres must lie in the box of {} by {} m below the plate at {} m, got "
+                                "{:.4g}, {:.4g}, "
+                                "{:.4g} in frame {}: see length_unit, origin_x, origin_y, origin_z and "
+                                "frames_by in the mapping",
+                                size.x(), size.y(), size.z(), at.x(), at.y(), at.z(), grains_.keys[frame]));
+    }
+
+    /// An experiment begins with the grains; rows of the plate before are left out.
+    void drop_before(int first) {
+        if (first == 0) return;
+        notes_.push_back(
+            fmt::format("the plate's first {} rows are left out: grains are known from then on", first));
+        dropped_ = first;
+    }
+
+    int scan_of(double key, const std::string& by, std::size_t index) const {
+        if (by == "order") return static_cast<int>(index);
+        if (by == "plate") return plate_.index.find(key);
+        const int frame = grains_.index.find(key);
+        return frame < 0 ? -1 : scan_of_grain_frame_[static_cast<std::size_t>(frame)];
+    }
+
+    void place_contacts(const ImportTable& table) {
+        ContactFrames frames = import_contacts(table, grains_, problems_);
+        const std::string by = table.map.word("frames_by", "plate");
+        for (std::size_t f = 0; f < frames.keys.size() && scan_of_grain_frame_.size() == grains_.keys.size();
+             ++f) {
+            auto& contacts = frames.contacts[f];
+            if (contacts.empty()) continue;
+            const int found = scan_of(frames.keys[f], by, f);
+            if (found < 0 || static_cast<std::size_t>(found) >= recording().scans.size()) {
+                problem_once(contacts.front().row, "frame",
+                             fmt::format("frame {} must be one of the {}, got none like it: see frame and "
+                                         "frames_by in the mapping",
+                                         frames.keys[f], by == "grains" ? "grains' frames" : "plate's rows"));
+                continue;
+            }
+            Scan& scan = recording().scans[static_cast<std::size_t>(found)];
+            join(contacts, table.map.word("sides", "one") == "both", scan);
+            for (auto& one : contacts) {
+                if (!one.contact.point.allFinite() && !put_point(one.contact, scan)) {
+                    problem_once(one.row, "point",
+                                 fmt::format("a contact must have a point, or its grains a position in its "
+                                             "frame {}, got neither",
+                                             frames.keys[f]));
+                    break;
+                }
+                scan.contacts.push_back(one.contact);
+            }
+        }
+    }
+
+    /// Each contact once, grain < partner; the mean of both sides where both are listed.
+    void join(std::vector<ContactFrames::One>& contacts, bool both, const Scan& scan) {
+        std::map<std::pair<int, int>, std::pair<std::size_t, int>> places;
+        std::vector<ContactFrames::One> joined;
+        for (const Contact& contact : scan.contacts)
+            places[{contact.grain, contact.partner}] = {contacts.size(), 0};
+        for (ContactFrames::One one : contacts) {
+            Contact& contact = one.contact;
+            const bool turned = !is_wall(contact.partner) && contact.partner < contact.grain;
+            if (turned) {
+                std::swap(contact.grain, contact.partner);
+                contact.force = -contact.force;
+            }
+            const auto [place, is_new] =
+                places.try_emplace({contact.grain, contact.partner}, joined.size(), 1);
+            if (is_new) {
+                joined.push_back(one);
+                continue;
+            }
+            auto& [index, times] = place->second;
+            if (!both || times != 1 || is_wall(contact.partner)) {
+                problem_once(one.row, "twice",
+                             "each contact must be there once in a frame, got it again: write `sides = "
+                             "\"both\"` in the "
+                             "mapping where each is listed from either side");
+                continue;
+            }
+            times = 2;
+            Contact& first = joined[index].contact;
+            first.force = (first.force + contact.force) / 2;
+            first.point = (first.point + contact.point) / 2;
+        }
+        contacts = std::move(joined);
+    }
+
+    /// Midway between the surfaces; on a wall under the centre.
+    bool put_point(Contact& contact, const Scan& scan) const {
+        if (scan.position.empty()) return false;
+        const Vec3& centre = at(scan.position, contact.grain);
+        if (is_wall(contact.partner)) {
+            const Box& box = experiment_.recording.box;
+            const double place[] = {0, box.size_x, 0, box.size_y, 0, scan.plate_z};
+            const int wall = static_cast<int>(wall_of(contact.partner));
+            contact.point = centre;
+            contact.point[wall / 2] = place[wall];
+            return true;
+        }
+        const Vec3 line = at(scan.position, contact.partner) - centre;
+        const double distance = line.norm();
+        if (!(distance > 0)) return false;
+        const double first = radius_of(experiment_.recording, contact.grain),
+                     second = radius_of(experiment_.recording, contact.partner);
+        contact.point = centre + (first + distance - second) / (2 * distance) * line;
+        return true;
+    }
+
+    void finish() {
+        Recording& all = recording();
+        if (std::isnan(all.plate_start))
+            for (const Scan& scan : all.scans) all.plate_start = std::fmax(all.plate_start, scan.plate_z);
+        all.scans.erase(all.scans.begin(), all.scans.begin() + dropped_);
+        const int cycle = all.scans.empty() ? 0 : all.scans.front().cycle;
+        for (std::size_t s = 0; s < all.scans.size(); ++s) {
+            all.scans[s].frame = static_cast<int>(s);
+            all.scans[s].cycle -= cycle;
+        }
+        all.label = experiment_.name;
+    }
+
+    const std::vector<ImportTable>& tables_;
+    Experiment experiment_;
+    ExperimentProblems problems_;
+    std::vector<std::string> notes_;
+    PlateRows plate_;
+    GrainFrames grains_;
+    std::vector<int> scan_of_grain_frame_;
+    int dropped_ = 0;
+};
+
+}  // namespace
+
+Imported import_tables(const std::vector<ImportTable>& tables, Experiment known) {
+    return Assembly(tables, std::move(known)).run();
+}
+
+Mapping mapping_of(const std::vector<ImportTable>& tables) {
+    Mapping mapping;
+    for (const ImportTable& table : tables) mapping.tables.push_back(table.map);
+    return mapping;
+}
+
+}  // namespace mcdem

@@ -1,0 +1,119 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "experiment/import_tables.h"
+#include "scene/read_packing.h"
+
+namespace mcdem {
+namespace {
+
+struct Grain {
+    long id;
+    Vec3 position;    ///< [m]
+    double diameter;  ///< [m]
+    RowAt row;
+};
+
+/// The grains of one frame after another.
+class GrainReader {
+public:
+    GrainReader(GrainFrames& frames, ExperimentProblems& problems) : frames_(frames), problems_(problems) {}
+
+    void read(const ImportTable& table) {
+        const MappedTable& map = table.map;
+        const Rows rows(table, problems_);
+        const bool radii = rows.has_column("radius");
+        for (const char* key : {"x", "y", "z", radii ? "radius" : "diameter"})
+            if (!rows.has_column(key))
+                return problems_.add(
+                    map.files.front(),
+                    fmt::format("must have a column for {}, got none: name it in the mapping", key));
+        const double unit = length_factor(map.word("length_unit", "m"));
+        const Vec3 origin(number(map, "origin_x"), number(map, "origin_y"), number(map, "origin_z"));
+        frames_.origin = unit * origin;
+        const long first = static_cast<long>(number(map, "first_grain"));
+        double key = 0;
+        for (const RowAt& row : rows.all()) {
+            if (!grains_.empty() && row.key != key) end_frame(key);
+            key = row.key;
+            const auto x = rows.number(row, "x"), y = rows.number(row, "y"), z = rows.number(row, "z"),
+                       size = rows.number(row, radii ? "radius" : "diameter");
+            const auto id = rows.has_column("grain") ? rows.whole_number(row, "grain")
+                                                     : first + static_cast<long>(grains_.size());
+            if (size && !(*size > 0))
+                rows.problem_once(
+                    "size", row, fmt::format("{} must be > 0, got {}", radii ? "radius" : "diameter", *size));
+            if (x && y && z && size && id)
+                grains_.push_back(
+                    {*id, unit * (Vec3(*x, *y, *z) - origin), (radii ? 2 : 1) * unit * *size, row});
+        }
+        if (!grains_.empty()) end_frame(key);
+    }
+
+private:
+    static double number(const MappedTable& map, std::string_view key) {
+        return to_number(map.word(key, "0")).value_or(0);
+    }
+
+    void problem(const RowAt& row, const std::string& what) { add_problem(problems_, row, what); }
+
+    void end_frame(double key) {
+        std::ranges::stable_sort(grains_, {}, &Grain::id);
+        for (std::size_t i = 1; i < grains_.size(); ++i)
+            if (grains_[i].id == grains_[i - 1].id)
+                add_problem_once(
+                    problems_, "twice", grains_[i].row,
+                    fmt::format(
+                        "each grain must be there once in frame {}, got {} again: see frame in the mapping",
+                        key, grains_[i].id));
+        if (!used_.insert(key).second)
+            problem(
+                grains_.front().row,
+                fmt::format("the rows of frame {} must follow one another, got more behind others: sort them",
+                            key));
+        if (frames_.keys.empty())
+            for (const Grain& grain : grains_) {
+                frames_.number_of.emplace(grain.id, static_cast<int>(frames_.diameter.size()));
+                frames_.diameter.push_back(grain.diameter);
+            }
+        else
+            expect_all(key);
+        frames_.keys.push_back(key);
+        frames_.first_row.push_back(grains_.front().row);
+        auto& position = frames_.position.emplace_back();
+        for (const Grain& grain : grains_) position.push_back(grain.position);
+        grains_.clear();
+    }
+
+    void expect_all(double key) {
+        std::size_t missing = frames_.number_of.size();
+        for (const Grain& grain : grains_) missing -= frames_.number_of.count(grain.id);
+        if (missing > 0 || grains_.size() != frames_.number_of.size())
+            add_problem_once(
+                problems_, "all", grains_.front().row,
+                fmt::format("frame {} must list the {} grains of the first frame, got {}, of which {} are "
+                            "other ones: "
+                            "number grains alike in all frames, and leave a frame out where one is missing",
+                            key, frames_.number_of.size(), grains_.size(),
+                            grains_.size() + missing - frames_.number_of.size()));
+    }
+
+    GrainFrames& frames_;
+    ExperimentProblems& problems_;
+    std::vector<Grain> grains_;
+    std::set<double> used_;
+};
+
+}  // namespace
+
+GrainFrames import_grains(const std::vector<const ImportTable*>& tables, ExperimentProblems& problems) {
+    GrainFrames frames;
+    GrainReader reader(frames, problems);
+    for (const ImportTable* table : tables) reader.read(*table);
+    frames.index = FrameIndex(frames.keys);
+    return frames;
+}
+
+}  // namespace mcdem

@@ -1,0 +1,108 @@
+#include "experiment/import_mapping.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace mcdem {
+namespace {
+
+using Kind = MappingKey::Kind;
+constexpr std::string_view lengths = "m cm mm um", forces = "N mN uN kN gf kgf";
+
+// clang-format off
+constexpr MappingKey plate_keys[] = {
+    {"frame", Kind::column, "", "a row's frame number, time or step; without it the rows count"},
+    {"cycle", Kind::column, "", "compression cycle, rising; without it from the plate's turns"},
+    {"phase", Kind::column, "", "load or unload (down or up, compression or decompression); without it from the plate's direction"},
+    {"plate_z", Kind::column, "", "height of the plate over the floor; this or displacement"},
+    {"displacement", Kind::column, "", "how far the plate has gone down from plate.start"},
+    {"top_force", Kind::columns, "", "force on the plate"},
+    {"length_unit", Kind::word, lengths, ""},
+    {"force_unit", Kind::word, forces, ""},
+    {"force_sign", Kind::word, "+ -", "+: upward force on the plate is positive; -: negative"},
+};
+constexpr MappingKey grain_keys[] = {
+    {"frame", Kind::column, "", "which rows belong together: frame number, time or step"},
+    {"frames_by", Kind::word, "plate order", "plate: frames have the plate's numbers, times or steps; order: the first is the plate's first row, and so on"},
+    {"grain", Kind::column, "", "a grain's number, alike in all frames; without it the rows of a frame count"},
+    {"first_grain", Kind::number, "", "the number of the first row's grain, where no column has it"},
+    {"x", Kind::column, "", "centre"},
+    {"y", Kind::column, "", "centre"},
+    {"z", Kind::column, "", "centre, upwards"},
+    {"diameter", Kind::column, "", "this or radius"},
+    {"radius", Kind::column, "", "this or diameter"},
+    {"length_unit", Kind::word, lengths, ""},
+    {"origin_x", Kind::number, "", "where the wall x_min stands, in the table's unit"},
+    {"origin_y", Kind::number, "", "where the wall y_min stands"},
+    {"origin_z", Kind::number, "", "where the floor is"},
+};
+constexpr MappingKey contact_keys[] = {
+    {"frame", Kind::column, "", "which rows belong together: frame number, time or step"},
+    {"frames_by", Kind::word, "plate grains order", "whose frame numbers, times or steps these are; order: the plate's rows, one after the other"},
+    {"grain", Kind::column, "", "the grain"},
+    {"partner", Kind::column, "", "the other grain, or a wall; or one wall's name, where all rows are its"},
+    {"where", Kind::column, "", "rows with 0 here are no contacts"},
+    {"id_offset", Kind::number, "", "added to grain and partner gives the numbers of the grains' table"},
+    {"x", Kind::column, "", "contact point; without it midway between the surfaces"},
+    {"y", Kind::column, "", "contact point"},
+    {"z", Kind::column, "", "contact point"},
+    {"fx", Kind::columns, "", "force; several columns are added up, such as normal and tangential parts"},
+    {"fy", Kind::columns, "", "force"},
+    {"fz", Kind::columns, "", "force"},
+    {"force", Kind::columns, "", "in place of fx, fy, fz: size of a force along the line of centres, > 0 where it pushes"},
+    {"force_on", Kind::word, "grain partner", "on which of the two the force is"},
+    {"sides", Kind::word, "one both", "both: each contact is listed from either side, and the mean counts"},
+    {"length_unit", Kind::word, lengths, "of contact points"},
+    {"force_unit", Kind::word, forces, ""},
+};
+// clang-format on
+
+double factor(std::string_view unit, std::span<const std::pair<std::string_view, double>> table) {
+    for (const auto& [name, value] : table)
+        if (name == unit) return value;
+    return std::nan("");
+}
+
+}  // namespace
+
+std::span<const MappingKey> mapping_keys(Role role) {
+    switch (role) {
+        case Role::plate:
+            return plate_keys;
+        case Role::grains:
+            return grain_keys;
+        case Role::contacts:
+            return contact_keys;
+        case Role::aside:
+            return {};
+    }
+    return {};
+}
+
+std::vector<std::string> left_aside(const MappedTable& map, const std::vector<std::string>& columns) {
+    std::vector<std::string> aside;
+    for (const std::string& column : columns) {
+        const bool used = std::ranges::any_of(map.entries, [&](const auto& entry) {
+            return std::ranges::find(entry.second.words, column) != entry.second.words.end();
+        });
+        if (!used) aside.push_back(column);
+    }
+    return aside;
+}
+
+double length_factor(std::string_view unit) {
+    constexpr std::array<std::pair<std::string_view, double>, 4> table{
+        {{"m", 1}, {"cm", 1e-2}, {"mm", 1e-3}, {"um", 1e-6}}};
+    return factor(unit, table);
+}
+
+double force_factor(std::string_view unit) {
+    constexpr std::array<std::pair<std::string_view, double>, 6> table{
+        {{"N", 1}, {"mN", 1e-3}, {"uN", 1e-6}, {"kN", 1e3}, {"gf", 9.80665e-3}, {"kgf", 9.80665}}};
+    return factor(unit, table);
+}
+
+}  // namespace mcdem

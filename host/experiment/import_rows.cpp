@@ -1,0 +1,124 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "experiment/import_tables.h"
+#include "scene/packing_fields.h"
+
+namespace mcdem {
+
+Rows::Rows(const ImportTable& table, ExperimentProblems& problems, std::size_t most) : problems_(problems) {
+    for (const auto& part : table.parts) parts_.push_back(part.get());
+    const long before = problems.count();
+    find_columns(table);
+    if (problems.count() > before) return;
+    const bool has_key = has_column("frame");
+    keyed_ = has_key;
+    for (std::size_t p = 0; p < parts_.size(); ++p) {
+        const ForeignTable& part = *parts_[p];
+        keyed_ = keyed_ || !part.frames.empty();
+        std::size_t frame = 0;
+        for (std::size_t r = 0; r < std::min(part.rows(), most); ++r) {
+            RowAt row{&part, r, static_cast<double>(p)};
+            while (frame + 1 < part.frames.size() && part.frames[frame + 1].first_row <= r) ++frame;
+            if (!part.frames.empty()) row.key = static_cast<double>(part.frames[frame].step);
+            if (has_key) {
+                const auto key = number(row, "frame");
+                if (!key) continue;
+                row.key = *key;
+            }
+            rows_.push_back(row);
+        }
+    }
+}
+
+void Rows::find_columns(const ImportTable& table) {
+    for (const MappingKey& key : mapping_keys(table.map.role)) {
+        const Guess* guess = table.map.find(key.name);
+        if (!guess || (key.kind != MappingKey::Kind::column && key.kind != MappingKey::Kind::columns))
+            continue;
+        if (key.name == "partner" && parse<Wall>(guess->word())) continue;
+        auto& of_parts = columns_[std::string(key.name)];
+        for (const ForeignTable* part : parts_) {
+            auto& found = of_parts.emplace_back();
+            for (const std::string& word : guess->words) {
+                const auto column = part->find(word);
+                found.push_back(column.value_or(0));
+                if (!column)
+                    problems_.add(part->file,
+                                  fmt::format("must have the column {} that the mapping names for {}, got {}",
+                                              mcdem::quoted(std::string_view(word)), key.name,
+                                              fmt::join(part->columns, ", ")));
+            }
+        }
+    }
+}
+
+std::size_t Rows::part_of(const RowAt& row) const {
+    return static_cast<std::size_t>(std::ranges::find(parts_, row.part) - parts_.begin());
+}
+
+std::optional<double> Rows::number(const RowAt& row, std::string_view key) const {
+    const auto found = columns_.find(key);
+    if (found == columns_.end()) return std::nullopt;
+    double sum = 0;
+    for (const std::size_t column : found->second[part_of(row)]) {
+        const auto value = row.part->number(row.row, column);
+        if (!value) {
+            problem(row,
+                    fmt::format(
+                        "{} must be a finite number, got {}: leave the row out where nothing was measured",
+                        row.part->columns[column], mcdem::quoted(row.part->cell(row.row, column))));
+            return std::nullopt;
+        }
+        sum += *value;
+    }
+    return sum;
+}
+
+std::optional<long> Rows::whole_number(const RowAt& row, std::string_view key) const {
+    const auto value = number(row, key);
+    if (!value) return std::nullopt;
+    if (std::abs(*value) <= 2e9 && *value == std::round(*value)) return static_cast<long>(*value);
+    problem(row, fmt::format("{} must be a whole number, got {}", key, *value));
+    return std::nullopt;
+}
+
+std::size_t Rows::column_of(const RowAt& row, std::string_view key) const {
+    return columns_.find(key)->second[part_of(row)].front();
+}
+
+std::string_view Rows::text(const RowAt& row, std::string_view key) const {
+    return row.part->cell(row.row, column_of(row, key));
+}
+
+void add_problem(ExperimentProblems& problems, const RowAt& row, const std::string& what) {
+    problems.add(problems.full() ? row.part->file : row.part->where(row.row), what);
+}
+
+void add_problem_once(ExperimentProblems& problems, const std::string& topic, const RowAt& row,
+                      const std::string& what) {
+    const std::string name = row.part->file + topic;
+    if (!problems.was_told(name)) problems.add_once(name, row.part->where(row.row), what);
+}
+
+FrameIndex::FrameIndex(const std::vector<double>& keys) {
+    for (std::size_t i = 0; i < keys.size(); ++i) sorted_.emplace_back(keys[i], static_cast<int>(i));
+    std::ranges::sort(sorted_);
+    double shortest = INFINITY;
+    for (std::size_t i = 1; i < sorted_.size(); ++i)
+        if (const double step = sorted_[i].first - sorted_[i - 1].first; step > 0)
+            shortest = std::min(shortest, step);
+    tolerance_ = std::isfinite(shortest) ? 1e-3 * shortest
+                 : sorted_.empty()       ? 0
+                                         : 1e-9 * std::abs(sorted_.front().first);
+}
+
+int FrameIndex::find(double key) const {
+    const auto next = std::ranges::lower_bound(sorted_, key - tolerance_, {}, &std::pair<double, int>::first);
+    return next != sorted_.end() && next->first <= key + tolerance_ ? next->second : -1;
+}
+
+}  // namespace mcdem

@@ -1,0 +1,116 @@
+// Tables with what their columns mean, read into frames of SI values.
+#pragma once
+#include <cstddef>
+#include <limits>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "experiment/experiment.h"
+#include "experiment/import_mapping.h"
+
+namespace mcdem {
+
+/// A table of the mapping with its files. Copies share what the files hold.
+struct ImportTable {
+    MappedTable map;
+    std::vector<std::shared_ptr<const ForeignTable>> parts;
+};
+
+/// One row of a table.
+struct RowAt {
+    const ForeignTable* part;
+    std::size_t row;
+    double key;  ///< of its frame: number, time or step
+};
+
+/// Reports what is wrong with a row, by file and line. Lines are counted only for problems that are told.
+void add_problem(ExperimentProblems& problems, const RowAt& row, const std::string& what);
+/// The same, told once for each topic and file.
+void add_problem_once(ExperimentProblems& problems, const std::string& topic, const RowAt& row,
+                      const std::string& what);
+
+inline constexpr std::size_t all_rows = std::numeric_limits<std::size_t>::max();
+
+/// The rows in the order of the files, and what their columns hold.
+class Rows {
+public:
+    /// Columns that are not there are problems. Reads `most` rows of each file.
+    Rows(const ImportTable& table, ExperimentProblems& problems, std::size_t most = all_rows);
+    const std::vector<RowAt>& all() const { return rows_; }
+    bool keyed() const { return keyed_; }  ///< frames have numbers, times or steps of their own
+    /// The entry's value in that row: of several columns their sum; anything else than numbers is a problem.
+    std::optional<double> number(const RowAt& row, std::string_view key) const;
+    /// The same of one column, without a problem.
+    std::optional<double> number_if_any(const RowAt& row, std::string_view key) const {
+        return row.part->number(row.row, column_of(row, key));
+    }
+    std::optional<long> whole_number(const RowAt& row, std::string_view key) const;
+    std::string_view text(const RowAt& row, std::string_view key) const;
+    bool has_column(std::string_view key) const { return columns_.contains(key); }
+    void problem(const RowAt& row, const std::string& what) const { add_problem(problems_, row, what); }
+    void problem_once(const std::string& topic, const RowAt& row, const std::string& what) const {
+        add_problem_once(problems_, topic, row, what);
+    }
+
+private:
+    void find_columns(const ImportTable& table);
+    std::size_t column_of(const RowAt& row, std::string_view key) const;
+    ExperimentProblems& problems_;
+    std::map<std::string, std::vector<std::vector<std::size_t>>, std::less<>> columns_;  ///< by key and part
+    std::vector<const ForeignTable*> parts_;
+    std::vector<RowAt> rows_;
+    bool keyed_ = false;
+    std::size_t part_of(const RowAt& row) const;
+};
+
+/// Frames by their number, time or step. Times may differ by a thousandth of the shortest interval.
+class FrameIndex {
+public:
+    FrameIndex() = default;
+    explicit FrameIndex(const std::vector<double>& keys);
+    int find(double key) const;  ///< -1: none
+
+private:
+    std::vector<std::pair<double, int>> sorted_;
+    double tolerance_ = 0;
+};
+
+/// The plate's rows: scans without grains, and the frame's number, time or step of each.
+struct PlateRows {
+    std::vector<Scan> scans;
+    std::vector<double> keys;
+    FrameIndex index;
+    bool keyed = false;
+};
+/// Heights need `plate_start` [m] where the table states displacements; not-a-number where it is not known.
+PlateRows import_plate(const ImportTable& table, double plate_start, ExperimentProblems& problems);
+
+/// Grains by frame, each frame whole, in the order of their ids.
+struct GrainFrames {
+    std::vector<double> keys;
+    FrameIndex index;
+    std::vector<std::vector<Vec3>> position;  ///< [m]
+    std::vector<double> diameter;             ///< of the first frame [m]
+    std::map<long, int> number_of;            ///< from the table's number of a grain
+    std::vector<RowAt> first_row;             ///< of each frame, for messages
+    Vec3 origin = Vec3::Zero();               ///< of the box, as the tables count [m]
+};
+GrainFrames import_grains(const std::vector<const ImportTable*>& tables, ExperimentProblems& problems);
+
+/// Contacts by frame, numbered as `grains`. Points that were not measured are not-a-number.
+struct ContactFrames {
+    struct One {
+        Contact contact;
+        RowAt row;
+    };
+    std::vector<double> keys;
+    FrameIndex index;
+    std::vector<std::vector<One>> contacts;
+};
+ContactFrames import_contacts(const ImportTable& table, const GrainFrames& grains,
+                              ExperimentProblems& problems, std::size_t most = all_rows);
+
+}  // namespace mcdem

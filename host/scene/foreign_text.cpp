@@ -1,0 +1,236 @@
+// Text in rows and columns, cut by commas, semicolons, tabs or blanks, with decimal points or commas. What
+// comes before the first row with a number in it may name the columns, and in a line below state their units;
+// Yade's `#format` line, and a line of words behind a # where nothing else does, name them too.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+
+#include "scene/foreign_table.h"
+#include "scene/text_lines.h"
+
+namespace mcdem {
+namespace {
+
+using Words = std::vector<std::string_view>;
+constexpr std::size_t sampled_lines = 100;
+constexpr std::size_t most_columns = 10'000;
+
+/// Cells of a line; a cell in quotes may hold the separator.
+void cut(std::string_view line, char separator, Words& cells) {
+    if (separator == ' ') return split_at_blanks(line, cells);
+    cells.clear();
+    bool quoted_cell = false;
+    std::size_t first = 0;
+    const auto add = [&](std::size_t end) {
+        std::string_view cell = without_blanks(line.substr(first, end - first));
+        if (cell.size() >= 2 && cell.front() == '"' && cell.back() == '"')
+            cell = cell.substr(1, cell.size() - 2);
+        cells.push_back(cell);
+        first = end + 1;
+    };
+    for (std::size_t i = 0; i < line.size(); ++i) {
+        if (line[i] == '"') quoted_cell = !quoted_cell;
+        if (line[i] == separator && !quoted_cell) add(i);
+    }
+    add(line.size());
+}
+
+bool is_number(std::string_view cell, char decimal) {
+    if (decimal == '.' || cell.find(',') == cell.npos) return to_number(cell).has_value();
+    if (cell.size() > 64 || cell.find('.') != cell.npos) return false;
+    std::string point(cell);
+    point[point.find(',')] = '.';
+    return to_number(point).has_value();
+}
+
+long numbers_in(const Words& cells, char decimal) {
+    return std::ranges::count_if(cells, [&](std::string_view cell) { return is_number(cell, decimal); });
+}
+
+/// Lines that may hold data, from the first hundred.
+std::vector<std::string_view> sample(std::string_view text) {
+    std::vector<std::string_view> lines;
+    TextLines all(text);
+    for (auto line = all.next(); line && lines.size() < sampled_lines; line = all.next())
+        if (const auto words = without_blanks(*line); !words.empty() && words.front() != '#')
+            lines.push_back(*line);
+    return lines;
+}
+
+/// The number of cells that most lines have; of several the largest.
+std::size_t usual_width(const std::vector<std::string_view>& lines, char separator) {
+    Words cells;
+    std::map<std::size_t, long> counts;
+    for (const std::string_view line : lines) {
+        cut(line, separator, cells);
+        ++counts[cells.size()];
+    }
+    return std::ranges::max_element(counts, {},
+                                    [](const auto& count) { return std::pair(count.second, count.first); })
+        ->first;
+}
+
+/// How well a form cuts the sample: the share of lines as wide as most, times that of numbers among their
+/// cells.
+double merit(const std::vector<std::string_view>& lines, TextForm form) {
+    const std::size_t width = usual_width(lines, form.separator);
+    Words cells;
+    double alike = 0, numbers = 0;
+    for (const std::string_view line : lines) {
+        cut(line, form.separator, cells);
+        if (cells.size() != width) continue;
+        ++alike;
+        numbers += static_cast<double>(numbers_in(cells, form.decimal)) / static_cast<double>(width);
+    }
+    const double of_lines = alike / static_cast<double>(lines.size());
+    return (width > 1 ? 1 : 0.1) * of_lines * (0.01 + numbers / alike);
+}
+
+TextForm guess_form(std::string_view text) {
+    const auto lines = sample(text);
+    TextForm best{',', '.'};
+    if (lines.empty()) return best;
+    double most = -1;
+    // In the order in which equally good ones are preferred.
+    for (const TextForm form :
+         {TextForm{';', '.'}, TextForm{';', ','}, TextForm{'\t', '.'}, TextForm{'\t', ','},
+          TextForm{',', '.'}, TextForm{' ', '.'}, TextForm{' ', ','}}) {
+        const double good = merit(lines, form);
+        if (good <= most * (1 + 1e-9)) continue;
+        most = good;
+        best = form;
+    }
+    return best;
+}
+
+/// Yade's `#format x_y_z_r_matId`: what the columns are.
+std::vector<std::string> yade_columns(std::string_view format) {
+    std::vector<std::string> names;
+    for (std::size_t first = 0; first < format.size();) {
+        const auto end = std::min(format.find('_', first), format.size());
+        names.emplace_back(format.substr(first, end - first));
+        first = end + 1;
+    }
+    if (!names.empty() && names.back() == "attrs") names.pop_back();
+    return names;
+}
+
+class TextParser {
+public:
+    TextParser(ForeignTable& table, FileProblems& problems)
+        : table_(table), problems_(problems), lines_(table.text) {}
+
+    void parse() {
+        while (!problems_.full()) {
+            const auto line = lines_.next();
+            if (!line) break;
+            const std::string_view words = without_blanks(*line);
+            if (words.empty()) continue;
+            if (words.front() == '#')
+                read_comment(words.substr(1));
+            else
+                read_line(*line);
+        }
+        if (table_.rows() == 0 && problems_.empty())
+            problems_.add("must have at least one row with a number in it, got none");
+    }
+
+private:
+    void read_comment(std::string_view words) {
+        if (table_.rows() > 0) return;
+        words = without_blanks(words);
+        if (words.starts_with("format ")) {
+            format_ = yade_columns(without_blanks(words.substr(7)));
+            return;
+        }
+        cut(words, words.find(table_.form.separator) == words.npos ? ' ' : table_.form.separator, cells_);
+        comment_.assign(cells_.begin(), cells_.end());
+    }
+
+    void read_line(std::string_view line) {
+        cut(line, table_.form.separator, cells_);
+        const bool has_numbers = numbers_in(cells_, table_.form.decimal) > 0;
+        if (cells_.size() > 1 && cells_.back().empty() && has_numbers) {  // a separator at the line's end
+            if (table_.rows() == 0) trailing_ = true;
+            if (trailing_) cells_.pop_back();
+        }
+        if (table_.rows() == 0 && !has_numbers) {
+            headings_.emplace_back(cells_.begin(), cells_.end());
+        } else {
+            if (table_.rows() == 0) name_columns();
+            add_row();
+        }
+    }
+
+    /// The last line of names before the first row counts, or the two last, where the second states units.
+    void name_columns() {
+        const std::size_t width = cells_.size();
+        if (width > most_columns)
+            problems_.add(lines_.number(),
+                          fmt::format("must have at most {} columns, got {}", most_columns, width));
+        std::erase_if(headings_,
+                      [&](const auto& names) { return names.size() != width && names.size() != width + 1; });
+        std::vector<std::string> names = format_;
+        if (comment_.size() == width) names = comment_;
+        if (!headings_.empty()) {
+            names = headings_.back();
+            if (headings_.size() > 1 && are_units(names)) {
+                const auto units = names;
+                names = headings_[headings_.size() - 2];
+                for (std::size_t i = 0; i < std::min(names.size(), units.size()); ++i)
+                    if (const auto unit = without_brackets(units[i]); !unit.empty())
+                        names[i] += fmt::format(" [{}]", unit);
+            }
+        }
+        table_.name_columns(names, width);
+    }
+
+    static bool are_units(const std::vector<std::string>& names) {
+        return std::ranges::all_of(names, [](const std::string& name) {
+            constexpr std::array<std::string_view, 19> units{"",  "-",  "m",  "cm", "mm", "um", "µm",
+                                                             "N", "mN", "kN", "uN", "µN", "g",  "gf",
+                                                             "s", "ms", "%",  "1",  "min"};
+            return std::ranges::find(units, without_brackets(name)) != units.end();
+        });
+    }
+
+    static std::string_view without_brackets(std::string_view word) {
+        const bool has = word.size() >= 2 && (word.front() == '[' || word.front() == '(');
+        return has ? word.substr(1, word.size() - 2) : word;
+    }
+
+    void add_row() {
+        if (cells_.size() == table_.columns.size()) return table_.add_row(cells_);
+        problems_.add(lines_.number(), fmt::format("must have {} columns as the first row, got {}",
+                                                   table_.columns.size(), cells_.size()));
+    }
+
+    ForeignTable& table_;
+    FileProblems& problems_;
+    TextLines lines_;
+    Words cells_;
+    std::vector<std::string> format_, comment_;
+    std::vector<std::vector<std::string>> headings_;
+    bool trailing_ = false;  ///< rows end with a separator
+};
+
+}  // namespace
+
+bool looks_like_yade(std::string_view text) {
+    if (text.starts_with("#format ") || text.starts_with("# format ")) return true;
+    const auto lines = sample(text.substr(0, 100'000));
+    Words cells;
+    if (lines.empty()) return false;
+    split_at_blanks(lines.front(), cells);
+    return cells.size() >= 4 && numbers_in(cells, '.') == static_cast<long>(cells.size());
+}
+
+void parse_text(ForeignTable& table, const std::optional<TextForm>& form, FileProblems& problems) {
+    table.format = TableFormat::text;
+    table.form = form ? *form : guess_form(table.text);
+    TextParser(table, problems).parse();
+}
+
+}  // namespace mcdem

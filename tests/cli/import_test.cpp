@@ -1,0 +1,183 @@
+// `mcdem experiment import`: a run, told as a laboratory and as another program would, comes back as from-run
+// gives it.
+#include <zlib.h>
+
+#include <fstream>
+#include <regex>
+
+#include "cli/cli_test.h"
+#include "experiment/experiment.h"
+#include "experiment/lab_tables.h"
+#include "io/results.h"
+
+namespace mcdem {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+namespace fs = std::filesystem;
+
+class ImportCommandTest : public CliTest {
+protected:
+    /// A run with the packing at rest first, and the same as a perfect instrument measures it, folder "seen".
+    void run() {
+        expect_done(
+            mcdem(run_words("a", {"--set", "protocol.scan_at_start=true", "--set", "contact.model=mc_dem"})));
+        expect_done(mcdem({"experiment", "from-run", "a", "--position-error", "0", "--diameter-error", "0",
+                           "--force-error", "0", "--force-threshold", "0", "--out", "seen"}));
+        truth_ = read_experiment(path("seen")).recording;
+    }
+    void write_lab(const test::LabStyle& style) {
+        std::ofstream(path("plate.csv")) << test::lab_plate(truth_, style);
+        std::ofstream(path("grains.csv")) << test::lab_grains(truth_, style);
+        std::ofstream(path("contacts.csv")) << test::lab_contacts(truth_, style);
+    }
+    Finished import(std::vector<std::string> more) {
+        more.insert(more.begin(), {"experiment", "import"});
+        return mcdem(more);
+    }
+    std::vector<std::string> lab_words(const std::string& out) const {
+        return {"contacts.csv",
+                "plate.csv",
+                "grains.csv",
+                "--set",
+                "box.size=[0.06, 0.06]",
+                "--set",
+                "grains.youngs_modulus=23300",
+                "--set",
+                "grains.poisson_ratio=0.5",
+                "--out",
+                out};
+    }
+    /// Numbers were printed with nine digits.
+    void expect_truth(const std::string& folder, bool contacts) {
+        const Recording read = read_experiment(path(folder)).recording;
+        ASSERT_EQ(read.scans.size(), truth_.scans.size());
+        for (std::size_t s = 0; s < truth_.scans.size(); ++s) {
+            const Scan &a = read.scans[s], &b = truth_.scans[s];
+            EXPECT_EQ(a.phase, b.phase) << s;
+            EXPECT_NEAR(a.plate_z, b.plate_z, 1e-10);
+            EXPECT_NEAR(a.top_force(), b.top_force(), 1e-8);
+            ASSERT_EQ(a.position.size(), b.position.size());
+            for (std::size_t i = 0; i < b.position.size(); ++i)
+                EXPECT_LT((a.position[i] - b.position[i]).norm(), 1e-9);
+            if (!contacts) continue;
+            ASSERT_EQ(a.contacts.size(), b.contacts.size());
+            for (std::size_t c = 0; c < b.contacts.size(); ++c) {
+                EXPECT_EQ(a.contacts[c].partner, b.contacts[c].partner);
+                EXPECT_LT((a.contacts[c].force - b.contacts[c].force).norm(), 1e-8);
+                EXPECT_LT((a.contacts[c].point - b.contacts[c].point).norm(), 1e-9);
+            }
+        }
+    }
+    std::string text_of(const std::string& file) const { return bytes_of_file(path(file)); }
+    Recording truth_;
+};
+
+TEST_F(ImportCommandTest, ALaboratorysTablesBecomeTheExperimentOfTheirRun) {
+    run();
+    write_lab({});
+    const auto done = import(lab_words("lab"));
+    expect_done(done);
+    EXPECT_EQ(done.err, "");
+    EXPECT_THAT(done.out, HasSubstr("grains.csv: grains (sure: its columns are named so)\n"));
+    EXPECT_THAT(done.out, HasSubstr("  radius        Radius [mm]        sure    its name; neighbours touch"));
+    EXPECT_THAT(done.out, HasSubstr("lab: 9 frames, 30 grains in 9 of them, "));
+    expect_truth("lab", true);
+    EXPECT_EQ(read_experiment(path("lab")).name, "lab");
+    const auto checked = mcdem({"experiment", "check", "lab"});
+    expect_done(checked);
+    EXPECT_THAT(checked.out, HasSubstr("30 grains"));
+    EXPECT_FALSE(fs::exists(path("lab.importing")));
+    // The mapping that was kept reads the same tables again, and others of the laboratory, packed ones too.
+    const gzFile packed = gzopen(path("plate2.csv.gz").c_str(), "wb");
+    gzputs(packed, text_of("plate.csv").c_str());
+    gzclose(packed);
+    expect_done(import({"plate2.csv.gz", "grains.csv", "contacts.csv", "--mapping", "lab/mapping.toml",
+                        "--metadata", "lab/experiment.toml", "--out", "again", "--gzip", "--name", "again"}));
+    expect_truth("again", true);
+    EXPECT_TRUE(fs::exists(path("again/contacts.csv.gz")));
+    EXPECT_EQ(text_of("again/mapping.toml"), text_of("lab/mapping.toml"));
+}
+
+TEST_F(ImportCommandTest, WhatIsNotSafeIsConfirmedInTheMapping) {
+    run();
+    write_lab({';', ',', false, 1e3, 1e3});
+    const auto refused = import({"contacts.csv", "plate.csv", "grains.csv", "--out", "lab"});
+    EXPECT_EQ(refused.exit_code, 2);
+    EXPECT_THAT(refused.out, HasSubstr("  length_unit   mm                 unclear no name says it"));
+    EXPECT_THAT(
+        refused.err,
+        testing::ContainsRegex(
+            "mcdem: lab/mapping.toml:[0-9]+: length_unit must be confirmed, got \"\\?mm\": no name says it"));
+    EXPECT_THAT(refused.err, HasSubstr("mcdem: --set: box.size must be the inner width and depth of the box"))
+        << "all at once";
+    EXPECT_THAT(refused.err, HasSubstr("put what is right into lab/mapping.toml, without question marks, and "
+                                       "import again with --mapping"));
+    EXPECT_FALSE(fs::exists(path("lab/experiment.toml")));
+    EXPECT_FALSE(fs::exists(path("lab/plate.csv")));
+
+    const std::vector<std::string> again{
+        "--mapping", "lab/mapping.toml", "--set", "box.size=[0.06, 0.06]", "--out", "lab"};
+    const auto unchanged = import(again);
+    EXPECT_EQ(unchanged.exit_code, 2);
+    EXPECT_THAT(unchanged.err, HasSubstr("put in what is right, without the question mark"));
+    expect_bad_input(
+        import(lab_words("lab")),
+        "lab/mapping.toml: is there already: import with --mapping lab/mapping.toml, or remove it");
+
+    std::string mapping = text_of("lab/mapping.toml");
+    mapping = std::regex_replace(mapping, std::regex("(length_unit = )\"\\?[a-z]*\""), "$1\"mm\"");
+    mapping = std::regex_replace(mapping, std::regex("(force_unit = )\"\\?[a-zA-Z]*\""), "$1\"mN\"");
+    mapping = std::regex_replace(mapping, std::regex("\"\\?"), "\"");
+    std::ofstream(path("lab/mapping.toml")) << mapping;
+    expect_done(import(again));
+    expect_truth("lab", true);
+    EXPECT_EQ(text_of("lab/mapping.toml"), mapping);
+}
+
+TEST_F(ImportCommandTest, DumpsOfAnotherProgram) {
+    run();
+    std::string plate = "step plate_z top_force\n";
+    for (const Scan& scan : truth_.scans)
+        plate += fmt::format("{} {} {}\n", 100 * scan.frame, scan.plate_z, scan.top_force());
+    std::ofstream(path("plate.txt")) << plate;
+    std::ofstream(path("grains.dump")) << test::dump_of_grains(truth_);
+    std::ofstream(path("pairs.dump")) << test::dump_of_contacts(truth_, false);
+    const auto done =
+        import({"plate.txt", "grains.dump", "pairs.dump", "--set", "box.size=[0.06, 0.06]", "--set",
+                "grains.youngs_modulus=23300", "--set", "grains.poisson_ratio=0.5", "--out", "dumped"});
+    expect_done(done);
+    expect_truth("dumped", false);
+    expect_done(mcdem({"experiment", "check", "dumped"}));
+}
+
+TEST_F(ImportCommandTest, MistakesAreBadInput) {
+    std::ofstream(path("odd.csv")) << "a,b\n1,2\n1,2,3\n";
+    expect_bad_input(import({"--out", "e"}), "TABLE: must be at least one file, or --mapping must name them");
+    expect_bad_input(import({"none", "odd.csv", "--out", "e"}), "none: must be a table, got no such file");
+    expect_bad_input(import({"none", "odd.csv", "--out", "e"}),
+                     "odd.csv:3: must have 2 columns as the first row, got 3");
+    expect_bad_input(import({"--mapping", "none", "--out", "e"}),
+                     "none: must be a mapping of at most 1 MB, got no such file");
+    expect_bad_input(import({"odd.csv", "--metadata", "none", "--out", "e"}),
+                     "none: must be a text of at most 1 MB, got no such file");
+    expect_bad_input(import({"odd.csv", "--out", "small.toml"}),
+                     "--out: small.toml must be a folder, got a file");
+    EXPECT_FALSE(fs::exists(path("e")));
+    std::ofstream(path("odd.csv")) << "a,b\n1,2\n";
+    const auto wrong = import({"odd.csv", "--set", "box.size=[60.0, 60.0]", "--set", "grains.friktion=1",
+                               "--set", "nothing", "--out", "e"});
+    EXPECT_EQ(wrong.exit_code, 2);
+    EXPECT_THAT(
+        wrong.err,
+        HasSubstr(
+            "--set: box.size must be > 0 and <= 20 [m], got 60: divide by 1000 if it is in millimetres"));
+    EXPECT_THAT(wrong.err, HasSubstr("--set: grains.friktion is not a key of an experiment"));
+    EXPECT_THAT(wrong.err, HasSubstr("--set: must be KEY=VALUE"));
+    EXPECT_THAT(wrong.err, HasSubstr("role must be confirmed"));
+    EXPECT_TRUE(fs::exists(path("e/mapping.toml")));
+}
+
+}  // namespace
+}  // namespace mcdem

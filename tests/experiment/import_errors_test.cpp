@@ -1,0 +1,87 @@
+// Tables and mappings that cannot be imported: told with file and line.
+#include "experiment/import_fixture.h"
+
+namespace mcdem::test {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+TEST_F(ImportTest, WrongRowsAreToldWithTheirLines) {
+    const auto files = write_lab({});
+    const auto tables = guess_tables(files, known_);
+    const Mapping mapping = mapping_of(tables);
+    const auto problems_with = [&](const std::string& name, const std::string& from, const std::string& to) {
+        const std::string before = name == "kraft.csv"     ? lab_plate(truth_, {})
+                                   : name == "koerner.csv" ? lab_grains(truth_, {})
+                                                           : lab_contacts(truth_, {});
+        std::string text = before;
+        EXPECT_NE(text.find(from), std::string::npos) << from;
+        write(name, text.replace(text.find(from), from.size(), to));
+        const auto problems = problems_of([&] { import_tables(read_import_tables(mapping), known_); });
+        write(name, before);
+        return problems;
+    };
+    EXPECT_THAT(problems_with("kraft.csv", ";0;60,5", ";null;60,5"),
+                ElementsAre("kraft.csv:2: Zeit [s] must be a finite number, got \"null\": leave the row out "
+                            "where nothing was measured"));
+    EXPECT_THAT(problems_with("kraft.csv", ";0,5;", ";-0,5;"),
+                ElementsAre(HasSubstr("kraft.csv:3: frame must rise from row to row, got -0.5 after 0")));
+    EXPECT_THAT(problems_with("koerner.csv", ";2;", ";1;"),
+                ::testing::Contains(HasSubstr("koerner.csv:3: each grain must be there once in frame 0, got "
+                                              "1 again: see frame in the mapping")));
+    EXPECT_THAT(
+        problems_with("kontakte.csv", "Boden", "Keller"),
+        ElementsAre(HasSubstr(
+            "partner must be a grain, or a wall that [table.walls] of the mapping names, got \"Keller\"")));
+    EXPECT_THAT(problems_with("kontakte.csv", "Korn 1", "Korn 3"),
+                ElementsAre(HasSubstr(
+                    "kontakte.csv: must have the column \"Korn 1\" that the mapping names for grain")));
+    std::string grains = lab_grains(truth_, {});
+    write("koerner.csv", grains.substr(0, grains.rfind('\n', grains.size() - 2) + 1));
+    EXPECT_THAT(problems_of([&] { import_tables(read_import_tables(mapping), known_); }),
+                ElementsAre(HasSubstr("frame 3 must list the 36 grains of the first frame, got 35")));
+    write("koerner.csv", grains);
+    EXPECT_THAT(
+        problems_of([&] {
+            read_import_tables(
+                parse_mapping("[[table]]\nrole = \"plate\"\nfiles = [\"none\", \"neither\"]\n", "m"));
+        }),
+        ElementsAre("none: must be a table, got no such file", "neither: must be a table, got no such file"));
+}
+
+TEST_F(ImportTest, WrongMappingsAreToldAtOnce) {
+    const auto problems = [&](const std::string& text) {
+        return problems_of([&] { parse_mapping(text, "m"); });
+    };
+    EXPECT_THAT(problems(""), ElementsAre("m: must hold at least one [[table]], got none"));
+    EXPECT_THAT(problems("[[table]\n"), ElementsAre(HasSubstr("m:1: must be TOML, got")));
+    EXPECT_THAT(problems("x = 1\n[[table]]\nrole = \"sand\"\nseparator = \"|\"\n"),
+                ElementsAre("m:1: \"x\" must be a list of tables, [[table]], got something else",
+                            "m:3: role must be one of plate, grains, contacts, aside, got \"sand\"",
+                            "m:2: files must name at least one file, got none",
+                            "m:4: separator must be one of \",\", \";\", tab, blanks, got \"|\""));
+    EXPECT_THAT(problems("[[table]]\nrole = \"grains\"\nfiles = [\"a\"]\nx = 3\nlength_unit = "
+                         "\"ft\"\norigin_x = \"left\"\nfx = \"f\"\ndiameter = [\"a\", \"b\"]\n"),
+                ElementsAre("m:8: diameter must be one text, got 2",
+                            HasSubstr("m:7: \"fx\" must be a key of a table of grains, got another"),
+                            "m:5: length_unit must be one of m cm mm um, got \"ft\"",
+                            "m:6: origin_x must be a number in quotes, got \"left\"",
+                            HasSubstr("m:4: \"x\" must be a text, or a list of texts")));
+    EXPECT_THAT(problems("[[table]]\nrole = \"contacts\"\nfiles = [\"a\"]\n[table.walls]\n1 = \"roof\"\n"),
+                ElementsAre("m:5: a wall must be one of x_min, x_max, y_min, y_max, floor, plate, by "
+                            "direction, got \"roof\""));
+}
+
+TEST_F(ImportTest, WhatIsMissingIsTold) {
+    EXPECT_THAT(problems_of([&] { import_tables(guess_tables({write_lab({})[1]}, known_), known_); }),
+                ElementsAre(HasSubstr(
+                    "plate: must be one table with the plate's position and force by frame, got 0")));
+    EXPECT_THAT(problems_of([&] {
+                    guess_tables({(folder_ / "a").string(), (folder_ / "b").string()}, known_);
+                }),
+                ::testing::SizeIs(2));
+}
+
+}  // namespace
+}  // namespace mcdem::test
