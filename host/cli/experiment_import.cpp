@@ -9,6 +9,7 @@
 #include "cli/messages.h"
 #include "core/atomic_file.h"
 #include "core/errors.h"
+#include "core/make_folder.h"
 #include "experiment/import_experiment.h"
 #include "experiment/settings.h"
 
@@ -72,9 +73,7 @@ void print_mapping(const Mapping& mapping) {
 [[noreturn]] void refuse(const ImportCommand& command, const std::string& mapping,
                          std::vector<std::string> problems) {
     const std::string file = (fs::path(command.out) / "mapping.toml").string();
-    std::error_code error;
-    fs::create_directories(command.out, error);
-    if (error) throw RunError(command.out + ": cannot be made: " + error.message());
+    make_folder(command.out);
     replace_file(file, mapping);
     problems.push_back(
         fmt::format("nothing is imported: put what is right into {0}, without question marks, and import "
@@ -97,7 +96,7 @@ void write_whole(const ImportCommand& command, const Experiment& experiment) {
         problems.insert(problems.end(), error.problems().begin(), error.problems().end());
         throw InputError(problems);
     }
-    fs::create_directories(out);
+    make_folder(out);
     for (const char* table : {"contacts.csv", "grains.csv", "plate.csv", "experiment.toml"})
         for (const std::string end : {"", ".gz"})
             if (fs::exists(beside / (table + end))) fs::rename(beside / (table + end), out / (table + end));

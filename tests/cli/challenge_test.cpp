@@ -138,10 +138,11 @@ TEST_F(ChallengeTest, RealitiesHaveWhatTheTruthSays) {
         const auto recording =
             read_experiment(path("challenge/" + c.at("folder").get<std::string>())).recording;
         for (const auto& shift : c.at("nuisances"))
-            if (shift.at("name") == "strain_offset")
+            if (shift.at("name") == "strain_offset") {
                 EXPECT_NEAR(recording.scans.front().plate_z - 0.0835, shift.at("amplitude").get<double>(),
                             1e-8)
                     << c;
+            }
         double bias = 0;
         for (const auto& effect : c.at("effects"))
             if (effect.at("name") == "force_bias") bias = effect.at("amplitude");
@@ -219,8 +220,9 @@ TEST_F(ChallengeTest, OnlyStruckCandidatesShowInTheOpenFile) {
     for (const auto& c : truth.at("cases"))
         for (const auto& struck : c.at("struck"))
             for (const auto& open : challenge.at("cases"))
-                if (open.at("folder") == c.at("folder"))
+                if (open.at("folder") == c.at("folder")) {
                     EXPECT_EQ(open.at("candidates").dump().find(struck.dump()), std::string::npos);
+                }
     EXPECT_EQ(challenge.size(), 4u) << challenge;
 }
 
