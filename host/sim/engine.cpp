@@ -165,7 +165,7 @@ void Engine::find_neighbours(const std::vector<char>& active) {
     kernels_.list_neighbours(blocks, block, f.slot_count, f.replicas, f.relisted_blocks, f.replica_of_block, f.position.now(0),
                              f.cell_head, f.cell_next, f.partner, f.bulge.now(0), f.bulge_history,
                              f.spring_x, f.spring_y, f.spring_z, f.deepest, f.relaxed, f.listed_position, f.status);
-    kernels_.link_mirrors(blocks, block, f.slot_count, f.relisted_blocks, f.partner, f.mirror);
+    if (f.has_bulges()) kernels_.link_mirrors(blocks, block, f.slot_count, f.relisted_blocks, f.partner, f.mirror);
     for (int r : stale.replicas) {
         relist_[r] = 0;
         plate_moved_[r] = 0;

@@ -32,8 +32,8 @@ Fields::Fields(Device& device, const KernelBuild& build, const Layout& layout, s
     make(status, grains, sizeof(int));
     make(energy, grains, 4 * real);
     make(partner, slots, sizeof(int));
-    make(mirror, slots, sizeof(int));
     const std::size_t bulge_slots = needs.bulges ? slots : 1;
+    make(mirror, bulge_slots, sizeof(int));
     slot_count = static_cast<int>(bulge_slots);
     make_pair(bulge, bulge_slots + 1, real);
     make(bulge_history, 4 * bulge_slots, real);
@@ -51,7 +51,7 @@ Fields::Fields(Device& device, const KernelBuild& build, const Layout& layout, s
     make(cell_head, cells, sizeof(int));
     make(cell_next, grains, sizeof(int));
     partner.write(std::vector<int>(slots, -1).data());
-    mirror.write(std::vector<int>(slots, slot_count).data());
+    mirror.write(std::vector<int>(bulge_slots, slot_count).data());
 }
 
 Kernels::Kernels(Device& device, const KernelBuild& build) : Kernels(device, build_program(device, build)) {}

@@ -109,6 +109,8 @@ struct Fields {
         visit("relaxed", relaxed);
     }
     std::size_t bytes() const { return bytes_; }
+    /// Some replica's surfaces move; else no mirror is ever looked up.
+    bool has_bulges() const { return slot_count > 1; }
     int slot_count = 0;  ///< of all grains that have surface displacements; 1 if none
 
 private:
