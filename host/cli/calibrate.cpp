@@ -79,6 +79,7 @@ void print_calibration(const SceneCalibration& result) {
 void calibrate(CalibrateCommand& command) {
     const auto reference = load_reference(command.reference, ReadWhat::observables);
     const Scene scene = command.scene.read();
+    if (!command.out.empty()) make_folder(command.out);
     Device device(command.device);
     SceneCalibration result;
     {
@@ -91,7 +92,6 @@ void calibrate(CalibrateCommand& command) {
     }
     print_calibration(result);
     if (command.out.empty()) return;
-    make_folder(command.out);
     const auto file = std::filesystem::path(command.out) / "calibration.json";
     replace_file(file, json_of(result, scene, reference).dump(2) + "\n");
     fmt::print("wrote {}\n", file.string());

@@ -12,6 +12,7 @@
 #include "cli/subprocess.h"
 #include "core/atomic_file.h"
 #include "core/errors.h"
+#include "core/make_folder.h"
 
 namespace mcdem {
 namespace {
@@ -77,7 +78,7 @@ std::string submit(const SlurmJob& job) {
             return before;
         }
     }
-    fs::create_directories(job.folder);
+    make_folder(job.folder);
     replace_file(job.folder / "job.sh", job_script(job));
     std::vector<std::string> words{"sbatch",
                                    "--parsable",

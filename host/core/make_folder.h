@@ -3,7 +3,11 @@
 
 namespace mcdem {
 
-/// With the folders above it; nothing where it is there. Throws RunError that names it where it cannot be made.
+/// A folder to write into, with the folders above it; there may be one already. Throws RunError that names it where it
+/// cannot be made or written to: asked before long work, not after.
 void make_folder(const std::filesystem::path& folder);
+
+/// The second half: it must be there.
+void expect_writable(const std::filesystem::path& folder);
 
 }  // namespace mcdem

@@ -98,6 +98,7 @@ GapSpace::GapSpace(const Eigen::MatrixXd& noise, int mean_of, const CellChoice& 
     }
     noise_.compute(covariance);
     total_.compute(total);
+    if (free.empty()) return;  // Eigen's solvers take the address of the first number, and there is none
     Eigen::MatrixXd precision = directions_.transpose() * noise_.solve(directions_);
     for (std::size_t k = 0; k < free.size(); ++k)
         precision(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(k)) +=

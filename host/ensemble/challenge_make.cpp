@@ -9,6 +9,7 @@
 
 #include "core/atomic_file.h"
 #include "core/errors.h"
+#include "core/make_folder.h"
 #include "diagnose/challenge_files.h"
 #include "diagnose/challenge_truth.h"
 #include "ensemble/challenge_realities.h"
@@ -149,8 +150,8 @@ private:
         const fs::path open_file = options_.folder / "challenge.json";
         const std::string open = open_text(seal);
         if (fs::exists(open_file) && text_of(open_file) != open) throw of_another_challenge(open_file);
-        fs::create_directories(options_.folder);
-        if (options_.truth.has_parent_path()) fs::create_directories(options_.truth.parent_path());
+        make_folder(options_.folder);
+        if (options_.truth.has_parent_path()) make_folder(options_.truth.parent_path());
         if (!is_sealed_) replace_file(options_.truth, truth);
         if (!fs::exists(open_file)) replace_file(open_file, open);
         return seal;

@@ -11,6 +11,7 @@
 
 #include "core/atomic_file.h"
 #include "core/errors.h"
+#include "core/make_folder.h"
 #include "core/sha256.h"
 #include "diagnose/challenge_evidence.h"
 #include "diagnose/challenge_files.h"
@@ -43,7 +44,7 @@ public:
         if (Sha256().add(scene.text).hex() != challenge_.scene)
             throw InputError(fmt::format("{}: is not the scene that {} was made with", scene.name,
                                          (options.challenge / "challenge.json").string()));
-        for (const char* folder : {"evidence", "findings"}) fs::create_directories(options.out / folder);
+        for (const char* folder : {"evidence", "findings"}) make_folder(options.out / folder);
     }
 
     void all() {

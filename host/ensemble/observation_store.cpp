@@ -4,6 +4,7 @@
 #include <fstream>
 
 #include "core/atomic_file.h"
+#include "core/make_folder.h"
 #include "core/sha256.h"
 #include "io/results.h"
 
@@ -18,7 +19,7 @@ std::string digest_of(const Eigen::VectorXd& values) {
 }  // namespace
 
 ObservationStore::ObservationStore(std::filesystem::path folder) : folder_(std::move(folder)) {
-    std::filesystem::create_directories(folder_);
+    make_folder(folder_);
 }
 
 std::filesystem::path ObservationStore::file_of(const std::string& name) const {

@@ -47,10 +47,21 @@ public:
         folder_.drop_segments_from(checkpoint ? checkpoint->segments : 0);
         if (!checkpoint) return;
         if (!checkpoint->warning.empty()) options_.on_warning(checkpoint->warning);
+        folder_.expect_whole_segments();
         simulation_.restore(checkpoint->fields);
     }
 
     RunSummary go_on() {
+        try {
+            return make_steps();
+        } catch (...) {
+            keep_what_is_recorded();
+            throw;
+        }
+    }
+
+private:
+    RunSummary make_steps() {
         const auto start = Clock::now();
         last_checkpoint_ = start;
         bool more = true, stop = false;
@@ -65,7 +76,15 @@ public:
         return {more ? RunEnd::interrupted : RunEnd::done, simulation_.grain_steps(), seconds_since(start)};
     }
 
-private:
+    /// The device or the disk has failed: what was recorded since the last checkpoint can be read all the same, where
+    /// there is room for it. Resuming drops and makes it again.
+    void keep_what_is_recorded() noexcept {
+        try {
+            if (anything_new_) folder_.append_segment(pending_);
+        } catch (const std::exception&) {  // the first failure is what the user must hear of
+        }
+    }
+
     void keep(int replica, Scan scan) {
         bytes_held_ += bytes_of(scan);
         anything_new_ = true;

@@ -9,6 +9,7 @@
 
 #include "core/atomic_file.h"
 #include "core/errors.h"
+#include "core/make_folder.h"
 #include "io/process_identity.h"
 
 namespace mcdem {
@@ -86,7 +87,7 @@ void Claim::write(const char* state) {
 }
 
 Claims::Claims(fs::path folder, Seconds lease) : folder_(std::move(folder)), lease_(lease) {
-    fs::create_directories(folder_);
+    make_folder(folder_);
 }
 
 fs::path Claims::file_of(const std::string& task, int holder) const {

@@ -143,6 +143,7 @@ ResultFolder ResultFolder::create(const fs::path& folder) {
 ResultFolder ResultFolder::open_for_resume(const fs::path& folder) {
     if (!fs::is_directory(folder))
         throw InputError(folder.string() + ": no such folder, so nothing to resume");
+    expect_writable(folder);
     ResultFolder found(folder, lock_folder(folder));
     remove_temporaries(folder);
     if (found.is_finished()) {
@@ -170,6 +171,22 @@ int ResultFolder::append_segment(const Run& scans_since_last) {
 void ResultFolder::drop_segments_from(int index) {
     // The last first: a crash in between leaves no gap.
     for (; segments_ > index; --segments_) fs::remove(segment_file(folder_, segments_ - 1));
+}
+
+void ResultFolder::expect_whole_segments() const {
+    try {
+        const auto files = segment_files(folder_);
+        if (files.empty()) return;
+        const Run run = read_run_header(files);
+        for (const auto& file : files) {
+            const ResultFile segment(file);
+            for (std::size_t r = 0; r < run.recordings.size(); ++r)
+                segment.scans(run.recordings[r], r, ReadWhat::everything);
+        }
+    } catch (const InputError& error) {
+        throw InputError(fmt::format("{}; scans that are gone cannot be gone on from: run anew, into another folder",
+                                     error.what()));
+    }
 }
 
 void ResultFolder::remove_segments() {

@@ -34,6 +34,8 @@ public:
     int append_segment(const Run& scans_since_last);
     /// Forgets segment `index` and all later ones: they are newer than the checkpoint.
     void drop_segments_from(int index);
+    /// Reads all segments. Throws InputError that says which is damaged and what to do.
+    void expect_whole_segments() const;
     /// Merges all segments into run.h5 and removes them. Needs memory for one segment.
     void finish();
 

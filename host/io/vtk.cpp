@@ -101,7 +101,7 @@ int export_scan(const Recording& recording, std::size_t replica, const Scan& sca
                 const std::filesystem::path& folder) {
     if (scan.position.empty()) return 0;
     const auto sub = folder / fmt::format("replica_{:05}", replica);
-    std::filesystem::create_directories(sub);
+    make_folder(sub);
     write_vtk_grains(sub / fmt::format("grains_{:06}.hdf", scan.frame), recording, scan);
     write_vtk_contacts(sub / fmt::format("contacts_{:06}.hdf", scan.frame), recording, scan);
     return 2;

@@ -164,6 +164,18 @@ public:
     SmallDisk(const SmallDisk&) = delete;
     SmallDisk& operator=(const SmallDisk&) = delete;
     bool is_there() const { return mounted_; }
+    void fill() const {
+        std::ofstream out(folder_ / "filler", std::ios::binary);
+        const std::string block(1 << 16, 'x');
+        while (out.write(block.data(), static_cast<std::streamsize>(block.size()))) {
+        }
+    }
+    void empty() const { fs::remove(folder_ / "filler"); }
+    /// Works with files open for writing too: what they have written stays, nothing new comes in.
+    bool make_read_only() const {
+        return ::mount("", folder_.c_str(), nullptr, MS_REMOUNT | MS_RDONLY, nullptr) == 0;
+    }
+    bool make_writable() const { return ::mount("", folder_.c_str(), nullptr, MS_REMOUNT, nullptr) == 0; }
 
 private:
     fs::path folder_;
@@ -174,14 +186,77 @@ TEST_F(InterruptionTest, FullDiskEndsTheRunWhichGoesOnOnceThereIsSpace) {
     const SmallDisk disk(path("disk"));
     if (!disk.is_there()) GTEST_SKIP() << "needs the right to mount a small disk";
     expect_done(mcdem(words("whole", false)));
-    std::ofstream(path("disk/filler")) << std::string(33'500'000, 'x');
+    disk.fill();
     const auto full = mcdem(words("disk/a", false));
     EXPECT_EQ(full.exit_code, 1) << full.err;
     EXPECT_THAT(full.err, HasSubstr("No space left"));
     EXPECT_FALSE(fs::exists(path("disk/a/run.h5")));
-    fs::remove(path("disk/filler"));
+    disk.empty();
     expect_done(mcdem(words("disk/a", true)));
     EXPECT_TRUE(result("disk/a") == result("whole"));
+}
+
+TEST_F(InterruptionTest, DiskThatFillsUpOnTheWayCostsNoScan) {
+    const SmallDisk disk(path("disk"));
+    if (!disk.is_there()) GTEST_SKIP() << "needs the right to mount a small disk";
+    expect_done(mcdem(words("whole", false)));
+    Child child(folder_.path, words("disk/a", false));
+    wait_for_checkpoint(child, "disk/a");
+    disk.fill();
+    const auto full = child.wait();
+    EXPECT_EQ(full.exit_code, 1) << full.err;
+    EXPECT_THAT(full.err, HasSubstr("No space left"));
+    const auto table = mcdem({"table", "disk/a"});
+    expect_done(table);
+    EXPECT_THAT(table.out, HasSubstr("load"));
+    disk.empty();
+    expect_done(mcdem(words("disk/a", true)));
+    EXPECT_TRUE(result("disk/a") == result("whole"));
+}
+
+TEST_F(InterruptionTest, FolderThatCannotBeWrittenToIsRefusedAtOnce) {
+    const SmallDisk disk(path("disk"));
+    if (!disk.is_there()) GTEST_SKIP() << "needs the right to mount a small disk";
+    for (const char* folder : {"disk/empty", "disk/shared"}) fs::create_directory(path(folder));
+    interrupt("disk/begun", SIGINT);
+    ASSERT_TRUE(disk.make_read_only());
+    auto shared = run_words("disk/shared", {"--worker"});
+    for (const auto& arguments : {words("disk/empty", false), words("disk/begun", true), shared}) {
+        const auto refused = mcdem(arguments);
+        EXPECT_EQ(refused.exit_code, 1) << refused.err;
+        EXPECT_THAT(refused.err, HasSubstr("mcdem: " + arguments[3]));
+        EXPECT_THAT(refused.err, HasSubstr("Read-only file system"));
+        EXPECT_THAT(refused.err, testing::Not(HasSubstr("% done"))) << "before the work, not after";
+    }
+}
+
+TEST_F(InterruptionTest, FolderThatTurnsReadOnlyEndsTheRunWhichGoesOnLater) {
+    const SmallDisk disk(path("disk"));
+    if (!disk.is_there()) GTEST_SKIP() << "needs the right to mount a small disk";
+    expect_done(mcdem(words("whole", false)));
+    Child child(folder_.path, words("disk/a", false));
+    wait_for_checkpoint(child, "disk/a");
+    while (child.is_running() && !disk.make_read_only()) std::this_thread::sleep_for(100us);  // busy while a file is open
+    const auto stopped = child.wait();
+    EXPECT_EQ(stopped.exit_code, 1) << stopped.err;
+    EXPECT_THAT(stopped.err, HasSubstr("disk/a"));
+    expect_done(mcdem({"table", "disk/a"}));
+    ASSERT_TRUE(disk.make_writable());
+    expect_done(mcdem(words("disk/a", true)));
+    EXPECT_TRUE(result("disk/a") == result("whole"));
+}
+
+TEST_F(InterruptionTest, DamagedScansAreFoundBeforeTheWorkGoesOn) {
+    interrupt("a", SIGINT);
+    const auto segment = path("a/segment-000000.h5");
+    ASSERT_TRUE(fs::exists(segment));
+    std::string bytes = bytes_of_file(segment);
+    std::ofstream(segment, std::ios::binary) << bytes.substr(0, bytes.size() / 2);
+    const auto refused = mcdem(words("a", true));
+    EXPECT_EQ(refused.exit_code, 2) << refused.err;
+    EXPECT_THAT(refused.err, HasSubstr("segment-000000.h5"));
+    EXPECT_THAT(refused.err, HasSubstr("run anew, into another folder"));
+    EXPECT_THAT(refused.err, testing::Not(HasSubstr("% done")));
 }
 
 }  // namespace

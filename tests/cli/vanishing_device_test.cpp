@@ -47,6 +47,20 @@ TEST_F(VanishingDeviceTest, CompletedScansCanBeRead) {
     EXPECT_THAT(table.out, testing::ContainsRegex("4\n"));  // scans of the loading stroke
 }
 
+TEST_F(VanishingDeviceTest, ScansSinceTheLastCheckpointCanBeReadToo) {
+    const auto run = run_words("a", {"--set", "output.checkpoint_minutes=60"});
+    expect_done(mcdem(run_words("whole", {"--set", "output.checkpoint_minutes=60"})));
+    const auto finished = mcdem(run, {"OPENCL_LAYERS=" MCDEM_VANISHING_DEVICE, "MCDEM_TEST_KERNELS=5000"});
+    ASSERT_EQ(finished.exit_code, 1) << finished.err;
+    const auto table = mcdem({"table", "a"});
+    expect_done(table);
+    EXPECT_THAT(table.out, HasSubstr("load"));
+    auto resume = run;
+    resume.push_back("--resume");
+    expect_done(mcdem(resume));
+    EXPECT_TRUE(bytes_of_file(path("a/run.h5")) == bytes_of_file(path("whole/run.h5")));
+}
+
 TEST_F(VanishingDeviceTest, FromTheStart) {
     const auto finished = run_until_it_vanishes("a", 0, false);
     EXPECT_EQ(finished.exit_code, 1);
