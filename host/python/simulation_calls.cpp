@@ -42,7 +42,7 @@ void expect_one_alive(const Run& run) {
         if (!recording.failure) return;
         causes += (causes.empty() ? "" : "\n") + failure_text(recording.label, *recording.failure);
     }
-    if (!causes.empty()) throw RunError("no replica came to its end:\n" + causes);
+    if (!causes.empty()) throw RunError(fmt::format("no replica came to its end:\n{}", causes));
 }
 
 struct Stopped {};

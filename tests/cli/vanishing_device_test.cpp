@@ -1,11 +1,27 @@
 // A device that stops answering in the middle of a run: what was recorded stays, and the run goes on
 // elsewhere or later.
+#include <sstream>
+
 #include "cli/cli_test.h"
 
 namespace mcdem {
 namespace {
 
+using testing::Each;
+using testing::Gt;
 using testing::HasSubstr;
+using testing::Lt;
+using testing::SizeIs;
+
+/// The last column of `mcdem table` in the rows of one phase: how many scans are used.
+std::vector<int> levels(const std::string& table, const std::string& phase) {
+    std::vector<int> found;
+    std::istringstream lines(table);
+    for (std::string line; std::getline(lines, line);)
+        if (line.find(" " + phase + " ") != std::string::npos)
+            found.push_back(std::stoi(line.substr(line.rfind(' '))));
+    return found;
+}
 
 class VanishingDeviceTest : public CliTest {
 protected:
@@ -43,8 +59,9 @@ TEST_F(VanishingDeviceTest, CompletedScansCanBeRead) {
     ASSERT_EQ(finished.exit_code, 1) << finished.err;
     const auto table = mcdem({"table", "a"});
     expect_done(table);
-    EXPECT_THAT(table.out, HasSubstr("load"));
-    EXPECT_THAT(table.out, testing::ContainsRegex("4\n"));  // scans of the loading stroke
+    // The whole stroke, or less of it where a disk is so slow that checkpoints become rare.
+    EXPECT_THAT(levels(table.out, "load"), testing::AllOf(SizeIs(2), Each(Gt(0)))) << table.out;
+    EXPECT_THAT(levels(table.out, "unload"), testing::AllOf(SizeIs(2), Each(Lt(4)))) << table.out;
 }
 
 TEST_F(VanishingDeviceTest, ScansSinceTheLastCheckpointCanBeReadToo) {

@@ -2,15 +2,29 @@
 
 debian_test.py SOURCE BUILD CMAKE [PYTHON]; exit code 77 where Debian's tools are missing.
 """
+import os
 import pathlib
 import shutil
+import subprocess
 import sys
 import tempfile
 
-from installed import arguments, check_module, check_program, run
+from installed import arguments, check_described, check_module, check_program, run
 
-if not all(shutil.which(tool) for tool in ("dpkg-deb", "dpkg-shlibdeps")):
-    print("skipped: dpkg-dev is not installed")
+
+
+def check_installable(files):
+    """apt finds all that the packages depend on, and would install them."""
+    done = subprocess.run(["apt-get", "-s", "--no-install-recommends", "install", *map(str, files)], text=True,
+                          capture_output=True, env={**os.environ, "LC_ALL": "C"})
+    assert done.returncode == 0, done.stdout + done.stderr
+    for file in files:
+        package = file.name.split("_")[0]
+        assert f"Inst {package} " in done.stdout, f"{package}: {done.stdout}"
+
+
+if not all(shutil.which(tool) for tool in ("dpkg-deb", "dpkg-shlibdeps", "apt-get")):
+    print("skipped: dpkg-dev or apt is not installed")
     sys.exit(77)
 
 source, build, cmake, python = arguments()
@@ -27,6 +41,8 @@ with tempfile.TemporaryDirectory(prefix="mcdem-deb-") as name:
         for library in {"mcdem": ("libhdf5", "opencl-icd", "libc6"), "python3-mcdem": ("libhdf5", "python3-numpy"),
                         "libmcdem-dev": ("libhdf5-dev",)}[package]:
             assert library in depends, f"{package}: depends on {depends}, not on {library}"
+    check_installable(packages.values())
+    check_described(root / "usr")
     check_program(root / "usr", folder)
     if python:
         check_module(python, root / "usr")

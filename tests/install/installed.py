@@ -29,6 +29,16 @@ def check_program(prefix, folder):
     assert (folder / "run/run.h5").is_file()
 
 
+def check_described(prefix):
+    """Manual and completions lie where man and the shells look, and are this program's."""
+    pages = {page.name for page in (prefix / "share/man/man1").iterdir()}
+    assert {"mcdem.1", "mcdem-run.1", "mcdem-experiment.1", "mcdem-experiment-check.1"} <= pages, pages
+    for shell, file in {"bash": "bash-completion/completions/mcdem", "zsh": "zsh/vendor-completions/_mcdem",
+                        "fish": "fish/vendor_completions.d/mcdem.fish"}.items():
+        text = (prefix / "share" / file).read_text()
+        assert text and text == run(prefix / "bin/mcdem", "completion", shell), file
+
+
 def check_module(python, prefix):
     """Installed for the interpreter that it was built with."""
     modules = sorted(prefix.glob("lib/python3*/*-packages/mcdem/_engine*.so"))

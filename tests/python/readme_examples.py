@@ -1,7 +1,6 @@
-"""Every example in Python of host/python/README.md and README.md works: the ```python blocks of each are run in their
-order, in one empty folder.
+"""Every example in Python of the documents works: their ```python blocks are run in their order, in one empty folder.
 
-readme_examples.py SOURCE PROGRAM; PROGRAM runs the blocks ```sh of the former between them.
+readme_examples.py SOURCE PROGRAM; PROGRAM runs the blocks ```sh of host/python/README.md between them.
 """
 import os
 import pathlib
@@ -10,33 +9,58 @@ import subprocess
 import sys
 import tempfile
 
+MODULE = "host/python/README.md"
+DOCUMENTS = ["README.md", MODULE, "host/io/README.md"]
 
-def blocks(source, document="host/python/README.md"):
+
+def blocks(source, document):
     text = (pathlib.Path(source) / document).read_text()
     return re.findall(r"^```(python|sh)\n(.*?)^```", text, re.DOTALL | re.MULTILINE)
 
 
-def examples(source):
-    return [code for language, code in blocks(source) if language == "python"]
+def examples(source, document=MODULE):
+    return [code for language, code in blocks(source, document) if language == "python"]
+
+
+def documents_with_examples(source):
+    """Of the source folder, without what is built and written there."""
+    folders = [one for one in source.iterdir() if one.is_dir() and not re.match(r"\.|build|out|shared", one.name)]
+    found = [*source.glob("*.md"), *(file for folder in folders for file in folder.rglob("*.md"))]
+    return {str(file.relative_to(source)) for file in found if re.search("^```py", file.read_text(), re.MULTILINE)}
+
+
+def run_document(source, document, names):
+    for language, code in blocks(source, document):
+        if language == "python":
+            exec(compile(code, document, "exec"), names)
+        elif document == MODULE:
+            for line in code.splitlines():
+                if line.startswith("mcdem "):
+                    subprocess.run(line, shell=True, check=True)
+
+
+def check_reader(names):
+    """What h5py read is what the module says."""
+    names["run"].close()
+    recording = names["mcdem"].read("DIR")[0]
+    assert (names["top_force"] == recording.top_force).all()
+    assert len(names["last"]) == len(recording.contacts(len(recording.scans) - 1)) > 0
+    assert names["keys"]["packing.count"] == "60", names["keys"]
 
 
 def main():
     source, program = (pathlib.Path(word).resolve() for word in sys.argv[1:3])
     os.environ["PATH"] = f"{program.parent}:{os.environ['PATH']}"
-    first = [block for block in blocks(source, "README.md") if block[0] == "python"]
+    assert documents_with_examples(source) == set(DOCUMENTS), documents_with_examples(source)
     names = {}
-    assert first and len(examples(source)) >= 3
     with tempfile.TemporaryDirectory(prefix="mcdem-readme-") as folder:
         os.chdir(folder)
         os.environ["MPLCONFIGDIR"] = folder
         os.symlink(source / "scenes", "scenes")
-        for language, code in first + blocks(source):
-            if language == "python":
-                exec(compile(code, "README.md", "exec"), names)
-            else:
-                for line in code.splitlines():
-                    if line.startswith("mcdem "):
-                        subprocess.run(line, shell=True, check=True)
+        os.symlink("results", "DIR")  # the run of host/python/README.md, as host/io/README.md calls it
+        for document in DOCUMENTS:
+            run_document(source, document, names)
+        check_reader(names)
 
 
 if __name__ == "__main__":

@@ -8,10 +8,13 @@ import subprocess
 import sys
 import tempfile
 
+import h5py
 import numpy as np
 
 MOST_MEMORY = 4e9  # [bytes]
 DIAMETER = 0.02    # [m]
+STEPS = 1000
+TIME_STEP = 126e-6  # [s]
 
 
 def write_packing(file, across):
@@ -42,6 +45,14 @@ relax_time = 0
 """)
 
 
+def steps_of(file):
+    """Steps up to the last scan, which ends the last stroke."""
+    with h5py.File(file) as run:
+        scans = run["observables/replica_00000"]
+        assert len(scans) == 2, f"{len(scans)} scans of 2"
+        return scans[-1]["time"] / TIME_STEP
+
+
 def main():
     program = sys.argv[1]
     grains = int(sys.argv[2]) if len(sys.argv) > 2 else 1_000_000
@@ -50,10 +61,13 @@ def main():
         folder = pathlib.Path(name)
         write_scene(folder / "scene.toml", write_packing(folder / "packing.csv", across))
         done = subprocess.run([program, "run", str(folder / "scene.toml"), "--out", str(folder / "run"), "--no-figures"])
+        if done.returncode != 0:
+            sys.exit("the run failed")
+        steps = steps_of(folder / "run/run.h5")
     used = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss * 1024
-    print(f"{across ** 3} grains: {used / 1e9:.2f} GB at most")
-    if done.returncode != 0:
-        sys.exit("the run failed")
+    print(f"{across ** 3} grains, {steps:.0f} steps: {used / 1e9:.2f} GB at most")
+    if abs(steps - STEPS) > 0.02 * STEPS:
+        sys.exit(f"{STEPS} steps were wanted")
     if used > MOST_MEMORY * across ** 3 / 1e6:
         sys.exit(f"more than {MOST_MEMORY / 1e9:.0f} GB")
 

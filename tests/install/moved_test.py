@@ -1,11 +1,12 @@
 """An installed program finds what it needs beside it, wherever that is, and says what is missing where it does not.
 
-install_test.py CMAKE BUILD_FOLDER
+moved_test.py SOURCE BUILD CMAKE [PYTHON]
 """
 import pathlib
 import subprocess
-import sys
 import tempfile
+
+from installed import arguments, run
 
 DIAGNOSIS = """{"verdict": "no_gap", "gap": {"detected": false, "p_value": 0.5, "p_omnibus": 0.5, "p_directed": 0.5},
 "where": [], "causes": [], "shrink": null, "detection_limits": [], "not_measured": [], "seconds": 1, "sentence": "",
@@ -18,11 +19,10 @@ def report(program, folder):
 
 
 def main():
-    cmake, build = sys.argv[1:3]
+    _, build, cmake, _ = arguments()
     with tempfile.TemporaryDirectory(prefix="mcdem-install-") as name:
         folder = pathlib.Path(name)
-        subprocess.run([cmake, "--install", build, "--prefix", folder / "there"], check=True,
-                       stdout=subprocess.DEVNULL)
+        run(cmake, "--install", build, "--prefix", folder / "there")
         (folder / "diagnosis.json").write_text(DIAGNOSIS)
         (folder / "there").rename(folder / "elsewhere")
         program = folder / "elsewhere/bin/mcdem"
