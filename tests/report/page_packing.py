@@ -98,8 +98,12 @@ def check_packing(reader, run, replica, scan, largest):
     return check_chains(reader, position, contacts, [0, width, 0, depth, 0, observed["plate_z"] * 1e3], largest)
 
 
+def to_full_stroke(slider, scans):
+    slider.send_keys(Keys.HOME, *[Keys.ARROW_RIGHT] * (scans // 2))
+
+
 def check_slider(reader, run, first_replicas):
-    """From scan to scan and from setting to setting; at full stroke all classes of chains are there."""
+    """From scan to scan and from setting to setting; ends at full stroke, where all classes of chains are there."""
     slider, largest = reader.element(".packing input"), strongest(run, first_replicas)
     scans, classes = len(run["observables/replica_00000"]), set()
     assert slider.get_attribute("max") == str(scans - 1), "all scans of so small a run are shown"
@@ -108,8 +112,7 @@ def check_slider(reader, run, first_replicas):
     for key, scan in ((Keys.ARROW_RIGHT, 1), (Keys.END, scans - 1), (Keys.HOME, 0)):
         slider.send_keys(key)
         classes |= set(check_packing(reader, run, 0, scan, largest))
-    for _ in range(scans // 2):  # full stroke
-        slider.send_keys(Keys.ARROW_RIGHT)
+    to_full_stroke(slider, scans)
     Select(reader.element(".packing .setting")).select_by_visible_text("MC-DEM")
     classes |= set(check_packing(reader, run, first_replicas[-1], scans // 2, largest))
     assert len(classes) == len(reader.script(CHAINS)), classes
@@ -120,3 +123,4 @@ def check_slider(reader, run, first_replicas):
     Select(reader.element(".packing .what")).select_by_value("both")
     slider.send_keys(Keys.END)
     reader.picture("packing_last.png", ".packing")
+    to_full_stroke(slider, scans)

@@ -42,7 +42,8 @@ def picture(file):
 
 
 def coloured(pixels):
-    """How many pixels are no grey."""
+    """How many pixels are no grey, legends and colour bars on the right left out."""
+    pixels = pixels[:, :pixels.shape[1] * 7 // 10]
     return int((pixels.max(axis=2) - pixels.min(axis=2) > 60).sum())
 
 
