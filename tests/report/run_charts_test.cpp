@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "metrics/synthetic.h"
 
 namespace mcdem {
@@ -74,6 +76,88 @@ TEST(RunCharts, bands_are_the_standard_error_over_replicas) {
             return;
         }
     FAIL() << "no band";
+}
+
+/// The band of a curve, which stands before it: there along mean + error, back along mean - error.
+void expect_band(const Json& band, const Json& curve, const std::string& what) {
+    ASSERT_TRUE(band.contains("fill")) << what;
+    const auto count = curve["y"].size();
+    ASSERT_EQ(band["y"].size(), 2 * count) << what;
+    for (std::size_t i = 0; i < count; ++i) {
+        const double y = curve["y"][i], error = curve["customdata"][i];
+        EXPECT_NEAR(band["y"][i].get<double>(), y + error, 1e-12) << what;
+        EXPECT_NEAR(band["y"][2 * count - 1 - i].get<double>(),
+                    y > 0 ? std::max(y - error, y / 3) : y - error, 1e-12)
+            << what;
+        EXPECT_EQ(band["x"][2 * count - 1 - i], curve["x"][i]) << what;
+    }
+}
+
+TEST(RunCharts, every_curve_of_replicas_says_its_error) {
+    const auto run = two_models(4);
+    for (const auto& chart : run_charts(group_by_setting(run), std::nullopt).charts)
+        for (std::size_t t = 0; t < chart.data.size(); ++t) {
+            const auto& trace = chart.data[t];
+            const std::string mode = trace["mode"];
+            if (mode == "lines") continue;  // bands, and the scaling law's fits
+            EXPECT_THAT(trace["hovertemplate"].get<std::string>(), HasSubstr("± %{customdata")) << chart.name;
+            if (mode == "markers")
+                EXPECT_EQ(trace["error_y"]["array"], trace["customdata"]) << chart.name;
+            else if (t > 0)
+                expect_band(chart.data[t - 1], trace, chart.name);
+            else
+                ADD_FAILURE() << chart.name << ": a line without its band";
+        }
+}
+
+TEST(RunCharts, logarithms_are_for_forces_that_grow_over_decades) {
+    const auto run = two_models(2);
+    const auto made = run_charts(group_by_setting(run), std::nullopt);
+    EXPECT_EQ(chart_named(made, "top_force").log_axes, "xy");
+    EXPECT_EQ(chart_named(made, "scaling").log_axes, "xy");
+    EXPECT_EQ(chart_named(made, "coordination").log_axes, "");
+    EXPECT_EQ(chart_named(made, "force_distribution").log_axes, "");  // is so without a button
+}
+
+/// The made-up packings hold 1/150 m of the force on the plate in their averages.
+TEST(RunCharts, scaling_line_has_the_slope_of_its_points) {
+    const auto run = two_models(1);
+    const auto made = run_charts(group_by_setting(run), std::nullopt);
+    const auto curves = traces_named(chart_named(made, "scaling"), "MC-DEM");
+    ASSERT_EQ(curves.size(), 3u);
+    for (const auto& curve : curves)
+        for (std::size_t i = 0; i < curve["x"].size(); ++i)
+            EXPECT_NEAR(curve["y"][i].get<double>(), 150 * curve["x"][i].get<double>() * 1e-3, 1e-9);
+    EXPECT_EQ(curves[2]["hovertemplate"], "slope 150 /m");
+}
+
+TEST(RunCharts, densities_add_up_to_one) {
+    const auto run = two_models(3, 3000);
+    const auto made = run_charts(group_by_setting(run), std::nullopt);
+    for (const std::string name : {"Independent contacts", "MC-DEM"}) {
+        const auto curve = traces_named(chart_named(made, "force_distribution"), name).front();
+        const double width = 2 * curve["x"][0].get<double>();  // of the first bin, from zero
+        double sum = 0;
+        for (const auto& density : curve["y"]) sum += density.get<double>() * width;
+        EXPECT_NEAR(sum, 1, 2e-3) << name;
+        EXPECT_LE(sum, 1 + 1e-12) << name;
+    }
+}
+
+TEST(RunCharts, contacts_per_grain_are_counted_above_the_threshold) {
+    const auto run = two_models(1);
+    const double threshold = 30e-3;
+    const auto made =
+        run_charts(group_by_setting(run), std::nullopt, {.compare = {}, .threshold = threshold});
+    const auto& recording = run.recordings[1];
+    const auto curve = traces_named(chart_named(made, "coordination"), "MC-DEM, tau 30.00 mN").at(0);
+    ASSERT_EQ(curve["y"].size(), 10u);
+    for (std::size_t i = 0; i < 10; ++i) {
+        int ends = 0;
+        for (const auto& contact : recording.scans[i].contacts)
+            if (contact.force.norm() >= threshold) ends += is_wall(contact.partner) ? 1 : 2;
+        EXPECT_NEAR(curve["y"][i].get<double>(), ends / double(recording.diameter.size()), 1e-12);
+    }
 }
 
 TEST(RunCharts, a_reference_is_points_in_the_pages_ink) {
