@@ -78,7 +78,10 @@ std::size_t fitting_part(const Scene& scene, const ShareOptions& options) {
 class Worker {
 public:
     Worker(Device& device, const Scene& scene, const ShareOptions& options)
-        : device_(device), scene_(scene), options_(options), claims_(parts_folder(options.folder)) {
+        : device_(device),
+          scene_(scene),
+          options_(options),
+          claims_(parts_folder(options.folder), {device.info().index, device.info().name}) {
         const auto chosen = agree(agreement_file(options.folder), common_of(device, scene, options.program),
                                   {{"replicas", std::to_string(scene.replicas.size())},
                                    {"replicas of a part", std::to_string(fitting_part(scene, options))}});
