@@ -128,6 +128,7 @@ SharedWork shared_work(const RunCommand& command, const Scene& scene) {
         options.stop_wanted = Interrupt::wanted;
         return share_run(device, scene, options) != RunEnd::interrupted;
     };
+    work.check = [&] { expect_sharable(command.out, scene); };
     work.done = [&] { return shared_state(command.out).done; };
     work.fraction = [&] { return shared_state(command.out).fraction; };
     work.report = [&] { return report_run(command, {}); };

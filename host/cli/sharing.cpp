@@ -200,8 +200,9 @@ bool is_shared(const SharingOptions& options, const std::string& device) {
 }
 
 int share(const SharedWork& work, const SharingOptions& options, const std::string& device) {
-    if (options.slurm) return work_by_slurm(work, options, device);
     if (options.mpi) return work_as_rank(work, device);
+    if (options.slurm || device == all_devices) work.check();
+    if (options.slurm) return work_by_slurm(work, options, device);
     if (device == all_devices) return work_on_all_devices(work, !options.worker);
     return work_here(work, device, 1, !options.worker);
 }

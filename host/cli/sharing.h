@@ -31,6 +31,8 @@ struct SharedWork {
     /// Joins the work on a device until all of it is done, no matter by whom; calls `tick` often. `workers`:
     /// how many are known to come. Returns false where it was interrupted.
     std::function<bool(Device& device, std::size_t workers, const std::function<void()>& tick)> join;
+    /// Throws InputError where the folder holds, or another program writes there, what cannot be joined.
+    std::function<void()> check = [] {};
     std::function<bool()> done;        ///< all of it
     std::function<double()> fraction;  ///< of all of it
     std::function<int()> report;       ///< once it is done: tells the user, returns the exit code

@@ -62,7 +62,7 @@ public:
     void share() {
         left_ = missing().size();
         if (left_ == 0) return;
-        Claims claims(claims_folder(options_.out));
+        Claims claims(claims_folder(options_.out), {device_.info().index, device_.info().name});
         claims_ = &claims;
         agree(claims_folder(options_.out) / "agreement.json", common(), {});
         make_library(challenge_.cases.front());

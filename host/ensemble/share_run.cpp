@@ -7,12 +7,15 @@
 
 #include "core/atomic_file.h"
 #include "core/errors.h"
+#include "core/make_folder.h"
 #include "ensemble/agreement.h"
 #include "ensemble/run_state.h"
 #include "io/checkpoint.h"
 #include "io/claims.h"
 #include "io/csv.h"
+#include "io/folder_lock.h"
 #include "io/parts.h"
+#include "io/result_file.h"
 #include "io/result_folder.h"
 #include "io/results.h"
 
@@ -75,7 +78,10 @@ std::size_t fitting_part(const Scene& scene, const ShareOptions& options) {
 class Worker {
 public:
     Worker(Device& device, const Scene& scene, const ShareOptions& options)
-        : device_(device), scene_(scene), options_(options), claims_(parts_folder(options.folder)) {
+        : device_(device),
+          scene_(scene),
+          options_(options),
+          claims_(parts_folder(options.folder), {device.info().index, device.info().name}) {
         const auto chosen = agree(agreement_file(options.folder), common_of(device, scene, options.program),
                                   {{"replicas", std::to_string(scene.replicas.size())},
                                    {"replicas of a part", std::to_string(fitting_part(scene, options))}});
@@ -170,9 +176,20 @@ private:
         return run_scene(device_, part, run).end;
     }
 
+    /// Locks keep others away, but not on every network disk.
+    void expect_own_merge() const {
+        if (read_run_header({run_file(options_.folder)}).scene != scene_.text)
+            throw InputError(
+                options_.folder.string() +
+                ": holds the run.h5 of another run beside the parts of this one: move one of them "
+                "(run.h5 and plate.csv; parts/) elsewhere");
+    }
+
     /// Safe to do twice, and after it was cut short anywhere.
     void merge() {
-        if (!fs::exists(run_file(options_.folder))) {
+        if (fs::exists(run_file(options_.folder))) {
+            expect_own_merge();
+        } else {
             std::vector<fs::path> files;
             for (std::size_t part = 0; part < parts_; ++part)
                 files.push_back(part_file(options_.folder, part));
@@ -200,9 +217,7 @@ private:
 
 /// A run of one program in the folder is not touched: it is its own.
 void expect_no_run_of_one(const fs::path& folder) {
-    if (fs::exists(folder) && !fs::is_directory(folder))
-        throw InputError(folder.string() + ": is a file; give a folder for the results");
-    if (!fs::exists(folder) || fs::exists(parts_folder(folder))) return;
+    if (fs::exists(parts_folder(folder))) return;
     if (has_checkpoint(folder) || !segment_files(folder).empty())
         throw InputError(
             folder.string() +
@@ -210,14 +225,33 @@ void expect_no_run_of_one(const fs::path& folder) {
             "another folder");
 }
 
+void expect_no_file(const fs::path& folder) {
+    if (fs::exists(folder) && !fs::is_directory(folder))
+        throw InputError(folder.string() + ": is a file; give a folder for the results");
+}
+
+/// Keeps those away that write alone. What lies in the folder is looked at once they cannot come any more.
+FolderLock lock_for_sharing(const fs::path& folder, const Scene& scene) {
+    FolderLock lock(folder, FolderLock::Use::shared);
+    expect_no_run_of_one(folder);
+    if (is_merged(folder)) expect_scene_of(folder, scene);
+    return lock;
+}
+
 }  // namespace
 
 bool is_shared_run(const fs::path& folder) { return fs::exists(parts_folder(folder)); }
 
+void expect_sharable(const fs::path& folder, const Scene& scene) {
+    expect_no_file(folder);
+    if (fs::exists(folder)) lock_for_sharing(folder, scene);
+}
+
 RunEnd share_run(Device& device, const Scene& scene, const ShareOptions& options) {
-    expect_no_run_of_one(options.folder);
+    expect_no_file(options.folder);
+    make_folder(options.folder);
+    const FolderLock lock = lock_for_sharing(options.folder, scene);
     if (is_merged(options.folder)) {
-        expect_scene_of(options.folder, scene);
         fs::remove_all(old_parts(options.folder));
         return RunEnd::was_done;
     }

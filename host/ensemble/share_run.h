@@ -22,9 +22,13 @@ struct ShareOptions {
 
 /// Joins the run in the folder, or begins it: computes parts that nobody computes, until all are done, and
 /// merges them where nobody does. The folder then holds what run_scene leaves in it, bit for bit. Throws
-/// InputError where another run lies there, or where this device, program or scene is not the one it was
-/// begun with; RunError.
+/// InputError where another run lies there or is written there by one program, or where this device, program
+/// or scene is not the one it was begun with; RunError.
 RunEnd share_run(Device& device, const Scene& scene, const ShareOptions& options);
+
+/// For those who only start others: throws InputError where share_run would because of what lies in the
+/// folder or is written there.
+void expect_sharable(const std::filesystem::path& folder, const Scene& scene);
 
 /// Whether a run is shared in this folder and not yet merged.
 bool is_shared_run(const std::filesystem::path& folder);

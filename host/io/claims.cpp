@@ -26,10 +26,15 @@ std::string text_of(const fs::path& file) {
     return {std::istreambuf_iterator<char>(in), {}};
 }
 
-std::string claim_text(const char* state, long beats, double fraction) {
+std::string claim_text(const char* state, const ClaimDevice& device, long beats, double fraction) {
     const ProcessIdentity self = this_process();
-    return json{{"state", state},          {"machine", self.machine}, {"process", self.process},
-                {"started", self.started}, {"beats", beats},          {"fraction", fraction}}
+    return json{{"state", state},
+                {"machine", self.machine},
+                {"process", self.process},
+                {"started", self.started},
+                {"device", {{"number", device.number}, {"name", device.name}}},
+                {"beats", beats},
+                {"fraction", fraction}}
                .dump() +
            "\n";
 }
@@ -57,10 +62,11 @@ constexpr std::string_view claim_mark = ".claim-";
 
 }  // namespace
 
-Claim::Claim(std::string task, int holder, fs::path file, Seconds beat)
+Claim::Claim(std::string task, int holder, fs::path file, ClaimDevice device, Seconds beat)
     : task_(std::move(task)),
       holder_(holder),
       file_(std::move(file)),
+      device_(std::move(device)),
       heart_([this, beat](const std::stop_token& stop) {
           std::unique_lock lock(mutex_);
           while (!wake_.wait_for(lock, stop, beat, [&stop] { return stop.stop_requested(); })) write(held);
@@ -81,12 +87,13 @@ void Claim::show(double fraction) {
 void Claim::write(const char* state) {
     try {
         ++beats_;
-        replace_file(file_, claim_text(state, beats_, fraction_));
+        replace_file(file_, claim_text(state, device_, beats_, fraction_));
     } catch (const RunError&) {
     }
 }
 
-Claims::Claims(fs::path folder, Seconds lease) : folder_(std::move(folder)), lease_(lease) {
+Claims::Claims(fs::path folder, ClaimDevice device, Seconds lease)
+    : folder_(std::move(folder)), device_(std::move(device)), lease_(lease) {
     make_folder(folder_);
 }
 
@@ -132,8 +139,8 @@ std::unique_ptr<Claim> Claims::take_one_of(const std::vector<std::string>& tasks
     for (const auto& [holder, task] : in_turn) {
         if (holder > 0 && !is_free(file_of(task, holder))) continue;
         const fs::path file = file_of(task, holder + 1);
-        if (create_file(file, claim_text(held, 0, 0)))
-            return std::make_unique<Claim>(task, holder + 1, file, lease_ / 10);
+        if (create_file(file, claim_text(held, device_, 0, 0)))
+            return std::make_unique<Claim>(task, holder + 1, file, device_, lease_ / 10);
     }
     return nullptr;
 }

@@ -15,11 +15,17 @@ namespace mcdem {
 
 using Seconds = std::chrono::duration<double>;
 
+/// What a holder computes on: for those who look at its claims.
+struct ClaimDevice {
+    int number = -1;  ///< as in DeviceInfo::index; -1: none
+    std::string name;
+};
+
 /// A task that is this program's as long as this lives. Then it is free again: whether it was done is told by
 /// its result, which whoever takes it next looks for.
 class Claim {
 public:
-    Claim(std::string task, int holder, std::filesystem::path file, Seconds beat);
+    Claim(std::string task, int holder, std::filesystem::path file, ClaimDevice device, Seconds beat);
     ~Claim();
     Claim(const Claim&) = delete;
     Claim& operator=(const Claim&) = delete;
@@ -36,6 +42,7 @@ private:
     std::string task_;
     int holder_;
     std::filesystem::path file_;
+    ClaimDevice device_;
     double fraction_ = 0;
     long beats_ = 0;
     std::mutex mutex_;
@@ -50,7 +57,7 @@ public:
 
     /// `lease`: a holder on another machine counts as lost once its claim shows no sign of life for so long,
     /// by the clock of this one. A holder on this machine is lost when its process has ended.
-    explicit Claims(std::filesystem::path folder, Seconds lease = usual_lease);
+    explicit Claims(std::filesystem::path folder, ClaimDevice device = {}, Seconds lease = usual_lease);
 
     /// Takes one of these tasks, those first that were held least often; none where others hold all. The
     /// caller must look whether the task was done in the meantime. Throws RunError where the folder cannot be
@@ -69,6 +76,7 @@ private:
     std::filesystem::path file_of(const std::string& task, int holder) const;
     bool is_free(const std::filesystem::path& file);
     std::filesystem::path folder_;
+    ClaimDevice device_;
     Seconds lease_;
     std::map<std::filesystem::path, Seen> seen_;
 };

@@ -1,11 +1,7 @@
 #include "io/result_folder.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
-#include <unistd.h>
 
-#include <cerrno>
 #include <map>
 #include <optional>
 
@@ -37,20 +33,6 @@ bool belongs_to_a_run(const fs::path& file) {
     const std::string name = file.filename().string();
     return name == "run.h5" || name.starts_with("checkpoint.") || segment_index(file) ||
            file == parts_folder(file.parent_path());
-}
-
-int lock_folder(const fs::path& folder) {
-    const int lock = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (lock < 0)
-        throw RunError(folder.string() + ": cannot be opened: " + std::generic_category().message(errno));
-    // Where the file system has no locks (ENOLCK, EBADF on some network disks) go on without.
-    if (::flock(lock, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
-        ::close(lock);
-        throw InputError(folder.string() +
-                         ": another program is writing a run there: wait for it, or give "
-                         "another folder");
-    }
-    return lock;
 }
 
 /// What a write that was cut short has left.
@@ -130,7 +112,7 @@ ResultFolder ResultFolder::create(const fs::path& folder) {
     if (fs::exists(folder) && !fs::is_directory(folder))
         throw InputError(folder.string() + ": is a file; give a folder for the results");
     make_folder(folder);
-    ResultFolder made(folder, lock_folder(folder));
+    ResultFolder made(folder, FolderLock(folder, FolderLock::Use::alone));
     for (const auto& entry : fs::directory_iterator(folder))
         if (belongs_to_a_run(entry.path()))
             throw InputError(
@@ -144,7 +126,11 @@ ResultFolder ResultFolder::open_for_resume(const fs::path& folder) {
     if (!fs::is_directory(folder))
         throw InputError(folder.string() + ": no such folder, so nothing to resume");
     expect_writable(folder);
-    ResultFolder found(folder, lock_folder(folder));
+    ResultFolder found(folder, FolderLock(folder, FolderLock::Use::alone));
+    if (fs::exists(parts_folder(folder)))
+        throw InputError(folder.string() +
+                         ": holds parts of a run that programs share: join it with --worker, "
+                         "or give another folder");
     remove_temporaries(folder);
     if (found.is_finished()) {
         found.remove_segments();  // a finish() cut short after its last write
@@ -152,13 +138,6 @@ ResultFolder ResultFolder::open_for_resume(const fs::path& folder) {
         found.segments_ = static_cast<int>(segment_files(folder).size());
     }
     return found;
-}
-
-ResultFolder::ResultFolder(ResultFolder&& other) noexcept
-    : folder_(std::move(other.folder_)), lock_(std::exchange(other.lock_, -1)), segments_(other.segments_) {}
-
-ResultFolder::~ResultFolder() {
-    if (lock_ >= 0) ::close(lock_);
 }
 
 bool ResultFolder::is_finished() const { return fs::exists(run_file(folder_)); }
@@ -198,6 +177,12 @@ void ResultFolder::remove_segments() {
 void ResultFolder::finish() {
     const auto segments = segment_files(folder_);
     if (segments.empty()) throw RunError(folder_.string() + ": nothing was recorded");
+    // Locks keep others away, but not on every network disk.
+    if (fs::exists(run_file(folder_)) || fs::exists(parts_folder(folder_)))
+        throw RunError(
+            folder_.string() +
+            ": another program has begun a run there meanwhile: both are left as they are; move one "
+            "of them (segments and checkpoints; parts/, run.h5 and plate.csv) elsewhere");
     if (segments.size() == 1)
         move_file(segments.front(), run_file(folder_));
     else

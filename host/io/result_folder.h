@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/recording.h"
+#include "io/folder_lock.h"
 
 namespace mcdem {
 
@@ -16,15 +17,13 @@ std::vector<std::filesystem::path> segment_files(const std::filesystem::path& fo
 /// What `read_run` reads for `file_or_folder`: the file itself, run.h5, or all segments.
 std::vector<std::filesystem::path> result_files(const std::filesystem::path& file_or_folder);
 
-/// Owns a result folder while a run is written to it; a second program is refused.
+/// Owns a result folder while a run is written to it alone; other programs are refused.
 class ResultFolder {
 public:
     /// Makes the folder. Refuses one in which another run lies.
     static ResultFolder create(const std::filesystem::path& folder);
     /// Takes up the folder of a run that was interrupted (or is done: see is_finished).
     static ResultFolder open_for_resume(const std::filesystem::path& folder);
-    ResultFolder(ResultFolder&& other) noexcept;
-    ~ResultFolder();
 
     const std::filesystem::path& path() const { return folder_; }
     int segments() const { return segments_; }
@@ -40,10 +39,11 @@ public:
     void finish();
 
 private:
-    ResultFolder(std::filesystem::path folder, int lock) : folder_(std::move(folder)), lock_(lock) {}
+    ResultFolder(std::filesystem::path folder, FolderLock lock)
+        : folder_(std::move(folder)), lock_(std::move(lock)) {}
     void remove_segments();
     std::filesystem::path folder_;
-    int lock_ = -1;     ///< descriptor that holds the folder's lock
+    FolderLock lock_;
     int segments_ = 0;  ///< the next segment's number
 };
 

@@ -1,12 +1,16 @@
 // Work spread over devices, ranks and jobs: what is said of it, and that no name reaches a shell as a
 // command.
+#include <csignal>
 #include <cstdlib>
+#include <memory>
+#include <thread>
 
 #include "cli/cli_test.h"
 #include "cli/shell_word.h"
 #include "cli/slurm.h"
 #include "cli/subprocess.h"
 #include "core/errors.h"
+#include "io/result_folder.h"
 
 namespace mcdem {
 namespace {
@@ -33,7 +37,17 @@ TEST(Subprocess, ThatIsNotThereIsToldFromOneThatFails) {
     EXPECT_EQ(output_of({"bash", "-c", "kill -9 $$"})->signal, 9);
 }
 
-class SharingTest : public CliTest {};
+class SharingTest : public CliTest {
+protected:
+    /// The run of a worker, stopped in the middle: it holds its folder until it is let go on.
+    std::unique_ptr<Child> stopped_worker(const std::string& out) const {
+        auto worker = std::make_unique<Child>(folder_.path, run_words(out, {"--worker"}));
+        while (worker->is_running() && !fs::exists(path(out) / "parts/agreement.json"))
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        worker->send(SIGSTOP);
+        return worker;
+    }
+};
 
 TEST_F(SharingTest, AJobScriptRunsTheWordsAsTheyAre) {
     SlurmJob job;
@@ -73,6 +87,23 @@ TEST_F(SharingTest, AnotherProgramsRunIsRefused) {
     const auto finished =
         mcdem(run_words("out", {"--device", "all", "--set", "protocol.scans_per_stroke=2"}));
     expect_bad_input(finished, "must be resumed with the scene it was begun with");
+}
+
+TEST_F(SharingTest, WhereAWorkerIsAtWorkNoneWritesAlone) {
+    expect_done(mcdem(run_words("alone")));
+    const auto worker = stopped_worker("shared");
+    expect_bad_input(mcdem(run_words("shared", {"--set", "grains.friction=0.3"})),
+                     "other programs share a run there: wait for them, join them with --worker");
+    worker->send(SIGCONT);
+    expect_done(worker->wait());
+    EXPECT_TRUE(bytes_of_file(path("shared/run.h5")) == bytes_of_file(path("alone/run.h5")));
+}
+
+TEST_F(SharingTest, WhereOneProgramWritesNoWorkerJoins) {
+    const auto one = ResultFolder::create(path("out"));  // as of a run before its first checkpoint
+    for (const char* how : {"--worker", "--device=all"})
+        expect_bad_input(mcdem(run_words("out", {how})), "another program is writing a run there alone");
+    EXPECT_FALSE(fs::exists(path("out/parts")));
 }
 
 }  // namespace

@@ -44,19 +44,34 @@ protected:
         options.stop_wanted = [&] { return fs::exists(parts_folder(folder(name)) / file); };
         ASSERT_EQ(share_run(device_, scene_, options), RunEnd::interrupted);
     }
+    /// By one program alone; `meanwhile` is called once, at work and before anything is written.
+    RunEnd run_alone(const std::string& name, Start start, std::function<void()> meanwhile = {}) {
+        RunOptions options;
+        options.folder = folder(name);
+        options.program = "test";
+        options.start = start;
+        options.on_progress = [&](double) {
+            if (meanwhile) std::exchange(meanwhile, {})();
+        };
+        return run_scene(device_, scene_, options).end;
+    }
     fs::path folder(const std::string& name) const { return temporary_.path / name; }
     void expect_like_whole(const std::string& name) const {
         for (const char* file : {"run.h5", "plate.csv"})
             EXPECT_TRUE(bytes_of_file(folder(name) / file) == bytes_of_file(folder("whole") / file)) << file;
         EXPECT_EQ(std::distance(fs::directory_iterator(folder(name)), {}), 2) << "something is left over";
     }
-    std::string problem(const std::string& name) {
+    template <class Act>
+    static std::string problem_of(Act act) {
         try {
-            share(name);
+            act();
         } catch (const InputError& error) {
             return error.what();
         }
         return "none";
+    }
+    std::string problem(const std::string& name) {
+        return problem_of([&] { share(name); });
     }
 
     TestFolder temporary_;
@@ -150,6 +165,62 @@ TEST_F(ShareRunTest, OtherRunsAreRefused) {
     fs::create_directories(folder("one"));
     std::ofstream(folder("one") / "checkpoint.h5") << "";
     EXPECT_THAT(problem("one"), HasSubstr("--resume"));
+}
+
+TEST_F(ShareRunTest, ARunOfOneProgramUnderWayIsNotJoined) {
+    const std::string alone = "another program is writing a run there alone";
+    std::string joining, looking;
+    EXPECT_EQ(run_alone("one", Start::fresh,
+                        [&] {
+                            ASSERT_TRUE(fs::is_empty(folder("one"))) << "the folder shows that it is taken";
+                            joining = problem("one");
+                            looking = problem_of([&] { expect_sharable(folder("one"), scene_); });
+                        }),
+              RunEnd::done);
+    EXPECT_THAT(joining, HasSubstr(alone));
+    EXPECT_THAT(looking, HasSubstr(alone));
+    expect_like_whole("one");
+}
+
+TEST_F(ShareRunTest, WhereProgramsShareARunNoneWritesAlone) {
+    std::vector<std::string> problems;
+    bool looked = false;
+    ShareOptions options;
+    options.folder = folder("many");
+    options.program = "test";
+    options.on_tick = [&] {
+        if (std::exchange(looked, true)) return;
+        for (const auto start : {Start::fresh, Start::resume})
+            problems.push_back(problem_of([&] { run_alone("many", start); }));
+        EXPECT_EQ(problem_of([&] { expect_sharable(folder("many"), scene_); }), "none");
+    };
+    EXPECT_EQ(share_run(device_, scene_, options), RunEnd::done);
+    EXPECT_THAT(problems, testing::ElementsAre(HasSubstr("other programs share a run there"),
+                                               HasSubstr("other programs share a run there")));
+    expect_like_whole("many");
+}
+
+TEST_F(ShareRunTest, PartsLeftByOthersAreNotResumedAlone) {
+    share_until("parts", "00000.h5");
+    EXPECT_THAT(problem_of([&] { run_alone("parts", Start::resume); }), HasSubstr("holds parts of a run"));
+    share("parts");
+    expect_like_whole("parts");
+}
+
+/// As on a network disk whose locks do not reach from one machine to the other.
+TEST_F(ShareRunTest, WithoutLocksTwoRunsAreLeftAsTheyAre) {
+    const auto mine = scene_;
+    share_until("both", "00005.h5");
+    scene_ = small_scene({"batch.replicas=3", "protocol.scans_per_stroke=3"});
+    run_alone("other", Start::fresh);
+    fs::copy_file(folder("other") / "run.h5", folder("both") / "run.h5");
+    scene_ = mine;
+    EXPECT_THAT(problem("both"), HasSubstr("the run.h5 of another run beside the parts"));
+    EXPECT_TRUE(fs::exists(parts_folder(folder("both")) / "00005.h5"));
+    EXPECT_THROW(run_alone("late", Start::fresh, [&] { fs::create_directory(parts_folder(folder("late"))); }),
+                 RunError);
+    EXPECT_TRUE(fs::exists(folder("late") / "segment-000000.h5"));
+    EXPECT_FALSE(fs::exists(folder("late") / "run.h5"));
 }
 
 }  // namespace

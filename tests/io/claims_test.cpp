@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "core/atomic_file.h"
@@ -32,6 +33,18 @@ TEST(claims, a_task_has_one_holder_and_is_free_when_that_one_goes) {
     const auto next = theirs.take_one_of(one);
     ASSERT_TRUE(next);
     EXPECT_EQ(next->holder(), 2);
+}
+
+TEST(claims, say_on_which_device_their_holder_works) {
+    TemporaryFolder place;
+    Claims claims(place.path(), {3, "some device"});
+    const auto device = [&] {
+        return nlohmann::json::parse(std::ifstream(place / "a.claim-000001"))["device"];
+    };
+    auto claim = claims.take_one_of(one);
+    EXPECT_EQ(device(), nlohmann::json({{"number", 3}, {"name", "some device"}}));
+    claim.reset();
+    EXPECT_EQ(device()["number"], 3);
 }
 
 TEST(claims, tasks_that_were_held_least_often_come_first) {
@@ -97,7 +110,7 @@ void claim_elsewhere(const TemporaryFolder& place, int beat) {
 TEST(claims, of_another_machine_are_kept_as_long_as_they_show_life) {
     TemporaryFolder place;
     constexpr Seconds lease{3};
-    Claims claims(place.path(), lease);
+    Claims claims(place.path(), {}, lease);
     auto last_change = std::chrono::steady_clock::now();
     for (int beat = 0; beat < 3; ++beat) {
         claim_elsewhere(place, beat);
@@ -114,7 +127,7 @@ TEST(claims, of_another_machine_are_kept_as_long_as_they_show_life) {
 TEST(claims, that_are_damaged_are_waited_for_and_then_taken) {
     TemporaryFolder place;
     write_bytes(place / "a.claim-000001", "{");
-    Claims claims(place.path(), Seconds(0.1));
+    Claims claims(place.path(), {}, Seconds(0.1));
     EXPECT_FALSE(claims.take_one_of(one));
     std::this_thread::sleep_for(150ms);
     EXPECT_TRUE(claims.take_one_of(one));
@@ -122,7 +135,7 @@ TEST(claims, that_are_damaged_are_waited_for_and_then_taken) {
 
 TEST(claims, show_life_and_how_far_they_are) {
     TemporaryFolder place;
-    Claims claims(place.path(), Seconds(0.2));
+    Claims claims(place.path(), {}, Seconds(0.2));
     const auto claim = claims.take_one_of(one);
     claim->show(0.75);
     for (int tries = 0; tries < 100 && claims.under_way().at("a") != 0.75; ++tries)

@@ -2,37 +2,36 @@
 
 devices_test.py MCDEM; PoCL stands for a machine with two devices (POCL_DEVICES).
 """
-import re
 import sys
 
 import shared_runs
-from shared_runs import PARTS, command_of, finish, kill_a_worker, skip
-
-TWO = {"POCL_DEVICES": "pthread pthread", "MCDEM_DEVICE": ""}
+from shared_runs import PARTS, TWO_DEVICES, command_of, finish, kill_a_worker, skip
 
 
-def all_devices(place, out):
-    return place.start([place.mcdem, *command_of("sweep.toml", out), "--device", "all", *PARTS], TWO)
+def all_devices(place, out, more=()):
+    words = [place.mcdem, *command_of("sweep.toml", out), "--device", "all", *PARTS, *more]
+    return place.start(words, TWO_DEVICES)
 
 
 def uses_all_of_them(place):
     """Two devices, a worker on each, the bytes of one process."""
     place.run_alone()
     process = all_devices(place, "both")
-    claims = set()
-    folder = place.path / "both/parts"
-    while process.poll() is None:
-        for claim in folder.glob("*.claim-*"):
-            try:
-                found = re.search(r'"process":(\d+)', claim.read_text())
-            except OSError:
-                continue
-            claims.update(found.groups() if found else ())
+    devices = shared_runs.devices_of_parts(place.path / "both/parts", process)
     said = finish(process)
     assert "2 devices, a worker on each" in said and "8 of 8 replicas done" in said, said
-    assert len(claims) >= 2, f"parts were claimed by {claims}"
+    assert {number for number, _ in devices} == {0, 1}, f"parts were computed on {devices}"
     place.expect_like_alone("both")
     assert "8 of 8 replicas done" in finish(all_devices(place, "both")), "a run that is done is told of again"
+
+
+def refuses_another_run(place):
+    """What lies in the folder is another run: told once, not reported as done, and left as it is."""
+    place.run_alone()
+    before = (place.path / "alone/run.h5").read_bytes()
+    said = finish(all_devices(place, "alone", ["--set", "protocol.scans_per_stroke=5"]), exit_codes=(2,))
+    assert said.count("the scene it was begun with") == 1 and "done" not in said, said
+    assert (place.path / "alone/run.h5").read_bytes() == before
 
 
 def outlives_a_killed_worker(place):
@@ -60,10 +59,10 @@ def goes_on_as_one(place):
 
 def main():
     with shared_runs.Place(sys.argv[1]) as place:
-        devices = place.run([place.mcdem, "devices"], TWO)
-    if len(re.findall(r"(?m)^ *\d+ ", devices)) < 2:
+        two = shared_runs.has_two_devices(place)
+    if not two:
         skip("this OpenCL has no two devices alike (PoCL makes them: POCL_DEVICES)")
-    shared_runs.run_tests([uses_all_of_them, outlives_a_killed_worker, goes_on_as_one])
+    shared_runs.run_tests([uses_all_of_them, refuses_another_run, outlives_a_killed_worker, goes_on_as_one])
 
 
 main()

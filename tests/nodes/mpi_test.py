@@ -7,14 +7,14 @@ import sys
 import threading
 
 import shared_runs
-from shared_runs import PARTS, PartsSeen, command_of, finish, kill_a_worker, program, skip, wait_until
+from shared_runs import PARTS, TWO_DEVICES, PartsSeen, command_of, finish, kill_a_worker, program, skip, wait_until
 
 SURVIVE = ["--enable-recovery"]
 
 
-def mpirun(place, words, options=()):
+def mpirun(place, words, options=(), environment=None):
     return place.start([program("mpirun", "openmpi-bin"), "--allow-run-as-root", "--oversubscribe", "-n", "3", *options,
-                        place.mcdem, *words, "--mpi"])
+                        place.mcdem, *words, "--mpi"], environment)
 
 
 def run_words(out, parts=PARTS):
@@ -51,6 +51,19 @@ def the_same_command_goes_on(place):
     watcher.join()
     assert said.count("8 of 8 replicas done") == 1, said
     parts.expect_each_once()
+    place.expect_like_alone("ranks")
+
+
+def ranks_take_the_devices_in_turn(place):
+    """Three ranks of a machine with two devices work on both."""
+    if not shared_runs.has_two_devices(place):
+        print("left out: this OpenCL has no two devices alike")
+        return
+    place.run_alone()
+    process = mpirun(place, run_words("ranks", ["--part-replicas", "1"]), environment=TWO_DEVICES)
+    devices = shared_runs.devices_of_parts(place.path / "ranks/parts", process)
+    finish(process)
+    assert {number for number, _ in devices} == {0, 1}, f"parts were computed on {devices}"
     place.expect_like_alone("ranks")
 
 
@@ -130,7 +143,8 @@ def main():
     assert "nothing" in built
     if "built without MPI" in without:
         skip("mcdem was built without MPI (CMake found none: libopenmpi-dev)")
-    shared_runs.run_tests([survivors_do_the_work_of_a_killed_rank, the_same_command_goes_on, a_challenge_is_shared])
+    shared_runs.run_tests([ranks_take_the_devices_in_turn, survivors_do_the_work_of_a_killed_rank,
+                           the_same_command_goes_on, a_challenge_is_shared])
 
 
 main()

@@ -2,6 +2,7 @@
 import json
 import os
 import pathlib
+import re
 import signal
 import subprocess
 import sys
@@ -34,6 +35,7 @@ replicas = 2
 "grains.friction" = [0.01, 0.1]
 """
 PARTS = ["--part-replicas", "2"]
+TWO_DEVICES = {"POCL_DEVICES": "pthread pthread", "MCDEM_DEVICE": ""}  # PoCL stands for a machine with two
 
 
 def skip(reason):
@@ -137,11 +139,30 @@ def holder_at_work(folder):
     return None
 
 
+def devices_of_parts(folder, process):
+    """Numbers and names of the devices on which parts in the folder are computed until the process has ended."""
+    devices = set()
+    while process.poll() is None:
+        for claim in folder.glob("0*.claim-*"):
+            try:
+                device = json.loads(claim.read_text())["device"]
+            except (OSError, ValueError):
+                continue
+            devices.add((device["number"], device["name"]))
+        time.sleep(0.002)
+    return devices
+
+
 def kill_a_worker(folder):
     """kill -9 of one that is in the middle of a part."""
     victim = wait_until(lambda: holder_at_work(folder), "a worker with a checkpoint")
     os.kill(victim, signal.SIGKILL)
     return victim
+
+
+def has_two_devices(place):
+    devices = place.run([place.mcdem, "devices"], TWO_DEVICES)
+    return len(re.findall(r"(?m)^ *\d+ ", devices)) >= 2
 
 
 class PartsSeen:

@@ -1,0 +1,51 @@
+#include "io/folder_lock.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <system_error>
+#include <utility>
+
+#include "core/errors.h"
+
+namespace mcdem {
+namespace {
+
+/// False where others hold it; true also where the file system has no locks (ENOLCK, EBADF on some network
+/// disks).
+bool lock(int descriptor, int operation) {
+    return ::flock(descriptor, operation | LOCK_NB) == 0 || errno != EWOULDBLOCK;
+}
+
+/// What is in the way of one that did not get the lock, and what to do.
+const char* obstacle(int descriptor, FolderLock::Use use) {
+    if (use == FolderLock::Use::shared)
+        return ": another program is writing a run there alone, which cannot be shared: wait for it, or give "
+               "another folder";
+    const bool is_shared = lock(descriptor, LOCK_SH);
+    return is_shared ? ": other programs share a run there: wait for them, join them with --worker, or give "
+                       "another folder"
+                     : ": another program is writing a run there: wait for it, or give another folder";
+}
+
+}  // namespace
+
+FolderLock::FolderLock(const std::filesystem::path& folder, Use use)
+    : descriptor_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+    if (descriptor_ < 0)
+        throw RunError(folder.string() + ": cannot be opened: " + std::generic_category().message(errno));
+    if (lock(descriptor_, use == Use::alone ? LOCK_EX : LOCK_SH)) return;
+    const std::string problem = folder.string() + obstacle(descriptor_, use);
+    ::close(descriptor_);
+    throw InputError(problem);
+}
+
+FolderLock::FolderLock(FolderLock&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
+
+FolderLock::~FolderLock() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+}  // namespace mcdem
