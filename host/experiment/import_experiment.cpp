@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "core/errors.h"
 #include "experiment/findings.h"
 
 namespace mcdem {
@@ -241,6 +242,12 @@ private:
     int dropped_ = 0;
 };
 
+Guess not_guessed(Role role, std::string_view key) {
+    const auto keys = mapping_keys(role);
+    const std::string_view words = std::ranges::find(keys, key, &MappingKey::name)->words;
+    return {{std::string(words.substr(0, words.find(' ')))}, Sure::unclear, "nothing tells it", 0};
+}
+
 }  // namespace
 
 Imported import_tables(const std::vector<ImportTable>& tables, Experiment known) {
@@ -249,8 +256,31 @@ Imported import_tables(const std::vector<ImportTable>& tables, Experiment known)
 
 Mapping mapping_of(const std::vector<ImportTable>& tables) {
     Mapping mapping;
-    for (const ImportTable& table : tables) mapping.tables.push_back(table.map);
+    for (const ImportTable& table : tables) {
+        MappedTable& map = mapping.tables.emplace_back(table.map);
+        for (const std::string_view key : must_be_stated(map))
+            if (!map.has(key)) map.entries[std::string(key)] = not_guessed(map.role, key);
+    }
     return mapping;
+}
+
+std::vector<std::string> wrong_rows(const std::vector<ImportTable>& tables) {
+    std::vector<std::string> all;
+    for (const ImportTable& table : tables) {
+        const bool columns_known = std::ranges::all_of(table.map.entries, [](const auto& entry) {
+            return entry.second.sure != Sure::unclear || entry.first.find("_") != std::string::npos;
+        });
+        if (!columns_known || table.map.role_sure == Sure::unclear) continue;
+        ExperimentProblems problems;
+        if (table.map.role == Role::plate) import_plate(table, 1, problems);
+        if (table.map.role == Role::grains) import_grains({&table}, problems);
+        try {
+            problems.report();
+        } catch (const InputError& error) {
+            all.insert(all.end(), error.problems().begin(), error.problems().end());
+        }
+    }
+    return all;
 }
 
 }  // namespace mcdem
