@@ -49,6 +49,22 @@ long numbers_in(const Words& cells, char decimal) {
     return std::ranges::count_if(cells, [&](std::string_view cell) { return is_number(cell, decimal); });
 }
 
+/// 1.306 or 12.345,6 where the decimal is a comma, 1,306 where it is a point.
+bool has_thousands(std::string_view cell, char decimal) {
+    const char mark = decimal == ',' ? '.' : ',';
+    if (cell.find(mark) == cell.npos) return false;
+    if (cell.front() == '-' || cell.front() == '+') cell.remove_prefix(1);
+    cell = cell.substr(0, cell.find(decimal));
+    const auto digits = [](std::string_view text) {
+        return std::ranges::all_of(text, [](char c) { return c >= '0' && c <= '9'; });
+    };
+    const auto first = cell.find(mark);
+    if (first < 1 || first > 3 || cell.front() == '0' || !digits(cell.substr(0, first))) return false;
+    for (cell.remove_prefix(first); !cell.empty(); cell.remove_prefix(4))
+        if (cell.size() < 4 || cell.front() != mark || !digits(cell.substr(1, 3))) return false;
+    return true;
+}
+
 /// Lines that may hold data, from the first hundred.
 std::vector<std::string_view> sample(std::string_view text) {
     std::vector<std::string_view> lines;
@@ -202,6 +218,13 @@ private:
     }
 
     void add_row() {
+        for (const std::string_view cell : cells_)
+            if (has_thousands(cell, table_.form.decimal))
+                return problems_.add(
+                    lines_.number(),
+                    fmt::format("numbers must have no separators of thousands, got {} where the decimal is "
+                                "\"{}\": write the table without them",
+                                quoted(cell), table_.form.decimal));
         if (cells_.size() == table_.columns.size()) return table_.add_row(cells_);
         problems_.add(lines_.number(), fmt::format("must have {} columns as the first row, got {}",
                                                    table_.columns.size(), cells_.size()));

@@ -72,6 +72,15 @@ TEST(ForeignText, WrongOnesAreTold) {
     EXPECT_EQ(table_problems("a,b\n1,2\n" + std::string(10000, ',') + std::string(1000, '\n')).size(), 1u);
 }
 
+TEST(ForeignText, SeparatorsOfThousandsAreRefused) {
+    for (const std::string cell : {"1.306", "-12.345", "1.306.217", "3.217,5"})
+        EXPECT_THAT(
+            table_problems("x;F\n0,5;1,5\n1,5;" + cell + "\n"),
+            ElementsAre(HasSubstr("t:3: numbers must have no separators of thousands, got \"" + cell)));
+    EXPECT_THAT(table_problems("x,F\n0.5,1.5\n1.5,\"1,306\"\n"), ElementsAre(HasSubstr("thousands")));
+    EXPECT_EQ(table("x;F\n0,5;1,5\n1,5;0.306\n").number(1, 1), 0.306);
+}
+
 TEST(ForeignText, YadesFormatsNameTheirColumns) {
     EXPECT_THAT(table("#format x_y_z_r\n1\t2\t3\t0.5\n").columns, ElementsAre("x", "y", "z", "r"));
     EXPECT_THAT(table("#format id_x_y_z_r_matId\n7\t1\t2\t3\t0.5\t0\n").columns,
