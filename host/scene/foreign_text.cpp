@@ -133,10 +133,31 @@ std::vector<std::string> yade_columns(std::string_view format) {
     return names;
 }
 
+/// Lines before the first as wide as most, where they hold a word: `Probe;17` is no row.
+std::size_t lines_above(std::string_view text, char separator) {
+    const auto lines = sample(text);
+    if (lines.empty()) return 0;
+    const std::size_t width = usual_width(lines, separator);
+    Words cells;
+    std::size_t above = 0;
+    for (const std::string_view line : lines) {
+        cut(line, separator, cells);
+        const bool has_word = std::ranges::any_of(cells, [](std::string_view cell) {
+            return !cell.empty() && !is_number(cell, '.') && !is_number(cell, ',');
+        });
+        if (cells.size() == width || !has_word) return above;
+        ++above;
+    }
+    return above;
+}
+
 class TextParser {
 public:
     TextParser(ForeignTable& table, FileProblems& problems)
-        : table_(table), problems_(problems), lines_(table.text) {}
+        : table_(table),
+          problems_(problems),
+          lines_(table.text),
+          above_(lines_above(table.text, table.form.separator)) {}
 
     void parse() {
         while (!problems_.full()) {
@@ -172,7 +193,9 @@ private:
             if (table_.rows() == 0) trailing_ = true;
             if (trailing_) cells_.pop_back();
         }
-        if (table_.rows() == 0 && !has_numbers) {
+        const bool above = above_ > 0;
+        if (above) --above_;
+        if (table_.rows() == 0 && (above || !has_numbers)) {
             headings_.emplace_back(cells_.begin(), cells_.end());
         } else {
             if (table_.rows() == 0) name_columns();
@@ -233,6 +256,7 @@ private:
     ForeignTable& table_;
     FileProblems& problems_;
     TextLines lines_;
+    std::size_t above_;  ///< lines still to come that are none of the table's
     Words cells_;
     std::vector<std::string> format_, comment_;
     std::vector<std::vector<std::string>> headings_;

@@ -41,6 +41,7 @@ TEST(ForeignText, IsCutHoweverItIsWritten) {
     expect_the_table(table("1.5,2\n2.5,-4\n"), none);
     expect_the_table(table("# x F\n1.5 2\n2.5 -4\n"), names);
     expect_the_table(table("Probe: 3\nDatum;gestern\nx;F\n1,5;2\n2,5;-4\n"), names);
+    expect_the_table(table("Probe;17;a\nLast;0,5;N\nx;F\n1,5;2\n2,5;-4\n"), names);
     expect_the_table(table("x;F\n[mm];[mN]\n1,5;2\n2,5;-4\n"), {"x [mm]", "F [mN]"});
     expect_the_table(table("H\xF6he [\xB5m];F\n1,5;2\n2,5;-4\n"), {"H\xC3\xB6he [\xC2\xB5m]", "F"});
     expect_the_table(table("x;?\n1,5;2\n2,5;-4\n"), {"x", "column 2"});
