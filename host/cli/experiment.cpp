@@ -12,14 +12,26 @@ constexpr std::size_t line_length = 110;
 }
 
 void expect_free(const std::filesystem::path& out) {
+    std::error_code ignored;
     for (const char* taken : {"experiment.toml", "run.h5", "checkpoint.h5"})
-        if (std::filesystem::exists(out / taken))
+        if (std::filesystem::exists(out / taken, ignored))
             throw InputError(
                 fmt::format("--out: {} holds another experiment or run: name another folder, or remove "
                             "it first",
                             out.string()));
-    if (std::filesystem::exists(out) && !std::filesystem::is_directory(out))
-        throw InputError(fmt::format("--out: {} must be a folder, got a file", out.string()));
+    for (const char* table : {"contacts.csv", "grains.csv", "plate.csv"})
+        for (const char* end : {"", ".gz"})
+            if (std::filesystem::exists(out / (std::string(table) + end), ignored))
+                throw InputError(
+                    fmt::format("--out: {} holds a table {}{} that would be of this experiment "
+                                "then: name another folder, or remove it first",
+                                out.string(), table, end));
+    for (auto path = std::filesystem::absolute(out); path.has_relative_path(); path = path.parent_path())
+        if (std::filesystem::exists(path, ignored) && !std::filesystem::is_directory(path, ignored))
+            throw InputError(fmt::format("--out: {} must be a folder, got a file{}", out.string(),
+                                         path.filename() == out.filename()
+                                             ? ""
+                                             : fmt::format(" in its way, {}", path.filename().string())));
 }
 
 std::string wrapped(const std::string& head, const std::string& text) {

@@ -1,7 +1,10 @@
 // mcdem experiment import
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <stdlib.h>
 
+#include <cerrno>
+#include <cstring>
 #include <fstream>
 #include <sstream>
 
@@ -34,6 +37,12 @@ std::string text_of_file(const std::string& file) {
     return text.str();
 }
 
+/// The folder's path in full, without a slash at its end.
+fs::path whole_path(const std::string& folder) {
+    const fs::path path = fs::absolute(folder).lexically_normal();
+    return path.has_filename() ? path : path.parent_path();
+}
+
 /// What the tables do not tell; its problems are told with all others.
 Experiment known_of(const ImportCommand& command, ExperimentProblems& problems) {
     Experiment known;
@@ -43,8 +52,8 @@ Experiment known_of(const ImportCommand& command, ExperimentProblems& problems) 
                    problems);
     if (!command.name.empty())
         known.name = command.name;
-    else if (!text.starts_with("name") && text.find("\nname") == text.npos)
-        known.name = fs::path(command.out).filename().string();
+    else if (known.name.empty())
+        known.name = whole_path(command.out).filename().string();
     return known;
 }
 
@@ -71,36 +80,69 @@ void print_mapping(const Mapping& mapping) {
 
 /// The mapping for the user to correct, and every problem.
 [[noreturn]] void refuse(const ImportCommand& command, const std::string& mapping,
-                         std::vector<std::string> problems) {
+                         std::vector<std::string> problems, bool wrong_rows) {
     const std::string file = (fs::path(command.out) / "mapping.toml").string();
     make_folder(command.out);
     replace_file(file, mapping);
     problems.push_back(
-        fmt::format("nothing is imported: put what is right into {0}, without question marks, and import "
-                    "again with --mapping {0}",
-                    file));
+        wrong_rows
+            ? fmt::format("nothing is imported: repair the tables, remove {0}, and import again; or put what "
+                          "is right into it, where its entries are wrong, and import with --mapping {0}",
+                          file)
+            : fmt::format("nothing is imported: put what is right into {0}, without question marks, and "
+                          "import again with --mapping {0}",
+                          file));
     throw InputError(problems);
 }
 
-/// Written beside its place and read back first: what `out` gets can be read.
-void write_whole(const ImportCommand& command, const Experiment& experiment) {
-    const fs::path out = command.out, beside = out.string() + ".importing";
-    fs::remove_all(beside);
-    write_experiment(beside, experiment, command.gzip ? Packed::gzip : Packed::plain);
+/// A new folder beside another, removed with what is in it at the end.
+class FolderBeside {
+public:
+    explicit FolderBeside(const fs::path& other) {
+        make_folder(other.parent_path());
+        std::string pattern = other.string() + ".importing-XXXXXX";
+        if (!mkdtemp(pattern.data()))
+            throw RunError(fmt::format("{}: cannot be made: {}", pattern, std::strerror(errno)));
+        path_ = pattern;
+    }
+    FolderBeside(const FolderBeside&) = delete;
+    FolderBeside& operator=(const FolderBeside&) = delete;
+    ~FolderBeside() {
+        std::error_code ignored;
+        fs::remove_all(path_, ignored);
+    }
+    const fs::path& path() const { return path_; }
+
+private:
+    fs::path path_;
+};
+
+/// Reads it back: what `out` gets can be read. Files are told as they would be in `out`.
+void expect_readable(const fs::path& folder, const std::string& out) {
     try {
-        read_experiment(beside);
+        read_experiment(folder);
     } catch (const InputError& error) {
-        fs::remove_all(beside);
         std::vector<std::string> problems{
-            "the tables make no experiment that can be read, as they stand in the mapping:"};
-        problems.insert(problems.end(), error.problems().begin(), error.problems().end());
+            "the tables make no experiment that can be read, as they stand in the mapping; it would have:"};
+        for (std::string problem : error.problems()) {
+            if (problem.starts_with(folder.string())) problem.replace(0, folder.string().size(), out);
+            problems.push_back(problem);
+        }
         throw InputError(problems);
     }
+}
+
+/// Written beside its place and read back first.
+void write_whole(const ImportCommand& command, const Experiment& experiment) {
+    const fs::path out = whole_path(command.out);
+    const FolderBeside beside(out);
+    write_experiment(beside.path(), experiment, command.gzip ? Packed::gzip : Packed::plain);
+    expect_readable(beside.path(), fs::path(command.out).lexically_normal().string());
     make_folder(out);
     for (const char* table : {"contacts.csv", "grains.csv", "plate.csv", "experiment.toml"})
         for (const std::string end : {"", ".gz"})
-            if (fs::exists(beside / (table + end))) fs::rename(beside / (table + end), out / (table + end));
-    fs::remove_all(beside);
+            if (fs::exists(beside.path() / (table + end)))
+                fs::rename(beside.path() / (table + end), out / (table + end));
 }
 
 std::vector<std::string> problems_in(const ExperimentProblems& problems) {
@@ -118,7 +160,8 @@ std::vector<ImportTable> tables_of(const ImportCommand& command, const Experimen
     const fs::path kept = fs::path(command.out) / "mapping.toml";
     if (!command.mapping.empty()) {
         auto tables = read_import_tables(read_mapping(command.mapping), command.tables);
-        mapping_toml = text_of_file(command.mapping);
+        mapping_toml =
+            command.tables.empty() ? text_of_file(command.mapping) : mapping_text(mapping_of(tables));
         print_mapping(mapping_of(tables));
         settings.report();
         return tables;
@@ -135,8 +178,10 @@ std::vector<ImportTable> tables_of(const ImportCommand& command, const Experimen
     std::fflush(stdout);
     auto problems = unclear_entries(mapping_toml, kept.string());
     for (const std::string& problem : problems_in(settings)) problems.push_back(problem);
-    if (!problems.empty()) refuse(command, mapping_toml, problems);
-    return tables;
+    if (problems.empty()) return tables;
+    const auto rows = wrong_rows(tables);
+    problems.insert(problems.end(), rows.begin(), rows.end());
+    refuse(command, mapping_toml, problems, !rows.empty());
 }
 
 void run_import(const ImportCommand& command) {
@@ -151,7 +196,7 @@ void run_import(const ImportCommand& command) {
             write_whole(command, all.experiment);
             return all;
         } catch (const InputError& error) {
-            if (command.mapping.empty()) refuse(command, mapping, error.problems());
+            if (command.mapping.empty()) refuse(command, mapping, error.problems(), true);
             throw;
         }
     }();

@@ -281,7 +281,10 @@ void guess_force_unit(ImportTable& table, const GrainFrames& grains, const Exper
 }  // namespace
 
 void guess_contact_meaning(ImportTable& table, const GrainFrames& grains, const Experiment& known) {
-    if (grains.keys.empty()) return;
+    if (grains.keys.empty()) {
+        table.map.entries["id_offset"] = guess("0", Sure::unclear, "the grains' table cannot be read so far");
+        return;
+    }
     guess_offset(table, grains);
     guess_force_on(table, grains, known.recording.box);
     const ContactFrames frames = read(table, grains);

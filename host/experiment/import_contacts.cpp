@@ -5,6 +5,7 @@
 #include <limits>
 #include <set>
 
+#include "experiment/findings.h"
 #include "experiment/import_tables.h"
 
 namespace mcdem {
@@ -22,8 +23,12 @@ Wall wall_by_direction(const Vec3& force) {
 class ContactImporter {
 public:
     ContactImporter(const ImportTable& table, const GrainFrames& grains, ExperimentProblems& problems,
-                    std::size_t most)
-        : map_(table.map), rows_(table, problems, most), grains_(grains), problems_(problems) {
+                    std::size_t most, const CentresOf& centres)
+        : map_(table.map),
+          rows_(table, problems, most),
+          grains_(grains),
+          problems_(problems),
+          centres_(centres ? centres : by_key_or_order()) {
         length_ = length_factor(map_.word("length_unit", "m"));
         force_ =
             force_factor(map_.word("force_unit", "N")) * (map_.word("force_on", "grain") == "grain" ? 1 : -1);
@@ -38,7 +43,6 @@ public:
         std::set<double> used;
         if (!has_columns()) return frames;
         for (const RowAt& row : rows_.all()) {
-            if (rows_.has_column("where") && rows_.number(row, "where").value_or(0) == 0) continue;
             if (frames.keys.empty() || frames.keys.back() != row.key) {
                 if (!used.insert(row.key).second)
                     rows_.problem_once(
@@ -48,7 +52,10 @@ public:
                             row.key));
                 frames.keys.push_back(row.key);
                 frames.contacts.emplace_back();
+                at_ = centres_(row.key, frames.keys.size() - 1);
             }
+            // Behind the frame: one without contacts counts in the order too.
+            if (rows_.has_column("where") && rows_.number(row, "where").value_or(0) == 0) continue;
             const auto contact = read_row(row);
             // Without any force grains are only near: LAMMPS lists them too.
             if (contact && !contact->force.isZero(0)) frames.contacts.back().push_back({*contact, row});
@@ -58,6 +65,14 @@ public:
     }
 
 private:
+    /// Before the plate's rows are known: frames in order are the grains' ones.
+    CentresOf by_key_or_order() const {
+        return [this, order = map_.word("frames_by", "plate") == "order"](double key, std::size_t index) {
+            const auto frame = order ? index : static_cast<std::size_t>(grains_.index.find(key));
+            return frame < grains_.position.size() ? &grains_.position[frame] : nullptr;
+        };
+    }
+
     bool has_columns() {
         const long before = problems_.count();
         std::vector<const char*> needed{"grain"};
@@ -141,17 +156,13 @@ private:
             const int axis = static_cast<int>(*partner.wall) / 2;
             away = Vec3::Unit(axis) * (static_cast<int>(*partner.wall) % 2 == 0 ? 1 : -1);
         } else {
-            const int frame = grains_.index.find(row.key);
-            if (frame < 0 || partner.by_force) {
+            if (!at_ || partner.by_force) {
                 rows_.problem_once(
                     "size", row,
                     "a force's size needs to know its direction: both centres in this frame, or which wall");
                 return false;
             }
-            const auto& at = grains_.position[static_cast<std::size_t>(frame)];
-            away =
-                (at[static_cast<std::size_t>(contact.grain)] - at[static_cast<std::size_t>(contact.partner)])
-                    .normalized();
+            away = (at(*at_, contact.grain) - at(*at_, contact.partner)).normalized();
         }
         contact.force = std::abs(force_) * *size * away;
         return true;
@@ -161,7 +172,9 @@ private:
     Rows rows_;
     const GrainFrames& grains_;
     ExperimentProblems& problems_;
-    double length_, force_;  ///< SI in the table's units
+    CentresOf centres_;
+    const std::vector<Vec3>* at_ = nullptr;  ///< the grains of the frame being read
+    double length_, force_;                  ///< SI in the table's units
     long offset_;
     std::optional<Wall> one_wall_;
     bool has_point_, has_size_;
@@ -170,8 +183,8 @@ private:
 }  // namespace
 
 ContactFrames import_contacts(const ImportTable& table, const GrainFrames& grains,
-                              ExperimentProblems& problems, std::size_t most) {
-    return ContactImporter(table, grains, problems, most).read();
+                              ExperimentProblems& problems, std::size_t most, const CentresOf& centres) {
+    return ContactImporter(table, grains, problems, most, centres).read();
 }
 
 }  // namespace mcdem

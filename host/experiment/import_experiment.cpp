@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "core/errors.h"
 #include "experiment/findings.h"
 
 namespace mcdem {
@@ -94,49 +95,61 @@ private:
         dropped_ = first;
     }
 
-    int scan_of(double key, const std::string& by, std::size_t index) const {
-        if (by == "order") return static_cast<int>(index);
-        if (by == "plate") return plate_.index.find(key);
-        const int frame = grains_.index.find(key);
-        return frame < 0 ? -1 : scan_of_grain_frame_[static_cast<std::size_t>(frame)];
+    /// The scan of a table's frame by its key and its place in the order; none: a problem of the caller's.
+    Scan* scan_of(const MappedTable& map, double key, std::size_t index) {
+        const std::string by = map.word("frames_by", "plate");
+        int found = by == "plate" ? plate_.index.find(key) : static_cast<int>(index);
+        if (by == "grains") {
+            const int frame = grains_.index.find(key);
+            found = frame < 0 ? -1 : scan_of_grain_frame_[static_cast<std::size_t>(frame)];
+        }
+        const bool known = found >= 0 && static_cast<std::size_t>(found) < recording().scans.size();
+        return known ? &recording().scans[static_cast<std::size_t>(found)] : nullptr;
     }
 
     void place_contacts(const ImportTable& table) {
-        ContactFrames frames = import_contacts(table, grains_, problems_);
-        const std::string by = table.map.word("frames_by", "plate");
-        for (std::size_t f = 0; f < frames.keys.size() && scan_of_grain_frame_.size() == grains_.keys.size();
-             ++f) {
+        if (scan_of_grain_frame_.size() != grains_.keys.size()) return;  // told before
+        ContactFrames frames =
+            import_contacts(table, grains_, problems_, all_rows, [&](double key, std::size_t index) {
+                const Scan* scan = scan_of(table.map, key, index);
+                return scan && !scan->position.empty() ? &scan->position : nullptr;
+            });
+        for (std::size_t f = 0; f < frames.keys.size(); ++f) {
             auto& contacts = frames.contacts[f];
             if (contacts.empty()) continue;
-            const int found = scan_of(frames.keys[f], by, f);
-            if (found < 0 || static_cast<std::size_t>(found) >= recording().scans.size()) {
+            Scan* scan = scan_of(table.map, frames.keys[f], f);
+            if (!scan) {
+                const bool by_grains = table.map.word("frames_by", "plate") == "grains";
                 problem_once(contacts.front().row, "frame",
                              fmt::format("frame {} must be one of the {}, got none like it: see frame and "
                                          "frames_by in the mapping",
-                                         frames.keys[f], by == "grains" ? "grains' frames" : "plate's rows"));
+                                         frames.keys[f], by_grains ? "grains' frames" : "plate's rows"));
                 continue;
             }
-            Scan& scan = recording().scans[static_cast<std::size_t>(found)];
-            join(contacts, table.map.word("sides", "one") == "both", scan);
-            for (auto& one : contacts) {
-                if (!one.contact.point.allFinite() && !put_point(one.contact, scan)) {
-                    problem_once(one.row, "point",
-                                 fmt::format("a contact must have a point, or its grains a position in its "
-                                             "frame {}, got neither",
-                                             frames.keys[f]));
-                    break;
-                }
-                scan.contacts.push_back(one.contact);
-            }
+            join(contacts, table.map.word("sides", "one") == "both", *scan);
+            add_contacts(contacts, frames.keys[f], *scan);
         }
     }
 
-    /// Each contact once, grain < partner; the mean of both sides where both are listed.
+    void add_contacts(std::vector<ContactFrames::One>& contacts, double key, Scan& scan) {
+        for (auto& one : contacts) {
+            if (!one.contact.point.allFinite() && !put_point(one.contact, scan))
+                return problem_once(one.row, "point",
+                                    fmt::format("a contact must have a point, or its grains a position in "
+                                                "its frame {}, got neither",
+                                                key));
+            scan.contacts.push_back(one.contact);
+        }
+    }
+
+    /// Each contact once, grain < partner; the mean of both sides where each is listed from either.
     void join(std::vector<ContactFrames::One>& contacts, bool both, const Scan& scan) {
-        std::map<std::pair<int, int>, std::pair<std::size_t, int>> places;
+        enum Seen { before, as_listed, turned_round, from_both };
+        std::map<std::pair<int, int>, std::pair<std::size_t, Seen>> places;
         std::vector<ContactFrames::One> joined;
-        for (const Contact& contact : scan.contacts)
-            places[{contact.grain, contact.partner}] = {contacts.size(), 0};
+        double largest = 0;
+        for (const auto& one : contacts) largest = std::max(largest, one.contact.force.norm());
+        for (const Contact& contact : scan.contacts) places[{contact.grain, contact.partner}] = {0, before};
         for (ContactFrames::One one : contacts) {
             Contact& contact = one.contact;
             const bool turned = !is_wall(contact.partner) && contact.partner < contact.grain;
@@ -144,26 +157,45 @@ private:
                 std::swap(contact.grain, contact.partner);
                 contact.force = -contact.force;
             }
+            const Seen side = turned ? turned_round : as_listed;
             const auto [place, is_new] =
-                places.try_emplace({contact.grain, contact.partner}, joined.size(), 1);
-            if (is_new) {
+                places.try_emplace({contact.grain, contact.partner}, joined.size(), side);
+            auto& [index, seen] = place->second;
+            if (is_new)
                 joined.push_back(one);
-                continue;
+            else if (!both || seen == before || seen == from_both || seen == side)
+                tell_twice(one.row, seen != before && seen != from_both && seen != side);
+            else {
+                seen = from_both;
+                take_mean(joined[index].contact, one, largest);
             }
-            auto& [index, times] = place->second;
-            if (!both || times != 1 || is_wall(contact.partner)) {
-                problem_once(one.row, "twice",
-                             "each contact must be there once in a frame, got it again: write `sides = "
-                             "\"both\"` in the "
-                             "mapping where each is listed from either side");
-                continue;
-            }
-            times = 2;
-            Contact& first = joined[index].contact;
-            first.force = (first.force + contact.force) / 2;
-            first.point = (first.point + contact.point) / 2;
         }
         contacts = std::move(joined);
+    }
+
+    void tell_twice(const RowAt& row, bool reversed) {
+        problem_once(row, "twice",
+                     reversed
+                         ? "each contact must be there once in a frame, got it from its other side too: "
+                           "write `sides = \"both\"` in the mapping where each is listed from either side"
+                         : "each contact must be there once in a frame, got it again in the same "
+                           "direction or in another table: make one row of rows of normal and "
+                           "tangential parts, and leave out what is there twice");
+    }
+
+    /// Of both sides, turned alike. Weak forces may differ more: their errors are those of the strong ones.
+    void take_mean(Contact& first, const ContactFrames::One& other, double largest) {
+        constexpr double most_apart = 0.5, weak = 0.01;
+        const Vec3 &a = first.force, &b = other.contact.force;
+        if ((a - b).norm() > std::max(most_apart * std::max(a.norm(), b.norm()), weak * largest))
+            problem_once(
+                other.row, "sides",
+                fmt::format("the forces of a contact's two sides must be opposite, got sizes of "
+                            "{:.4g} and {:.4g} N, {:.4g} N apart when one is turned round: leave one "
+                            "of the sides out of the table and write `sides = \"one\"`",
+                            a.norm(), b.norm(), (a - b).norm()));
+        first.force = (a + b).eval() / 2;
+        first.point = (first.point + other.contact.point).eval() / 2;
     }
 
     /// Midway between the surfaces; on a wall under the centre.
@@ -210,6 +242,12 @@ private:
     int dropped_ = 0;
 };
 
+Guess not_guessed(Role role, std::string_view key) {
+    const auto keys = mapping_keys(role);
+    const std::string_view words = std::ranges::find(keys, key, &MappingKey::name)->words;
+    return {{std::string(words.substr(0, words.find(' ')))}, Sure::unclear, "nothing tells it", 0};
+}
+
 }  // namespace
 
 Imported import_tables(const std::vector<ImportTable>& tables, Experiment known) {
@@ -218,8 +256,31 @@ Imported import_tables(const std::vector<ImportTable>& tables, Experiment known)
 
 Mapping mapping_of(const std::vector<ImportTable>& tables) {
     Mapping mapping;
-    for (const ImportTable& table : tables) mapping.tables.push_back(table.map);
+    for (const ImportTable& table : tables) {
+        MappedTable& map = mapping.tables.emplace_back(table.map);
+        for (const std::string_view key : must_be_stated(map))
+            if (!map.has(key)) map.entries[std::string(key)] = not_guessed(map.role, key);
+    }
     return mapping;
+}
+
+std::vector<std::string> wrong_rows(const std::vector<ImportTable>& tables) {
+    std::vector<std::string> all;
+    for (const ImportTable& table : tables) {
+        const bool columns_known = std::ranges::all_of(table.map.entries, [](const auto& entry) {
+            return entry.second.sure != Sure::unclear || entry.first.find("_") != std::string::npos;
+        });
+        if (!columns_known || table.map.role_sure == Sure::unclear) continue;
+        ExperimentProblems problems;
+        if (table.map.role == Role::plate) import_plate(table, 1, problems);
+        if (table.map.role == Role::grains) import_grains({&table}, problems);
+        try {
+            problems.report();
+        } catch (const InputError& error) {
+            all.insert(all.end(), error.problems().begin(), error.problems().end());
+        }
+    }
+    return all;
 }
 
 }  // namespace mcdem

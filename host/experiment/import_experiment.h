@@ -17,7 +17,11 @@ std::vector<ImportTable> read_import_tables(const Mapping& mapping,
 /// 0: not known). Files that are alike are frames of one table.
 std::vector<ImportTable> guess_tables(const std::vector<std::string>& files, const Experiment& known);
 
+/// Units and signs that a guess leaves out are unclear in it.
 Mapping mapping_of(const std::vector<ImportTable>& tables);
+
+/// Wrong rows of plate and grains, where the guess knows their columns: they are why it does not know more.
+std::vector<std::string> wrong_rows(const std::vector<ImportTable>& tables);
 
 struct Imported {
     Experiment experiment;

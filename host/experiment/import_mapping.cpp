@@ -93,6 +93,19 @@ std::vector<std::string> left_aside(const MappedTable& map, const std::vector<st
     return aside;
 }
 
+std::vector<std::string_view> must_be_stated(const MappedTable& table) {
+    const auto any = [&](std::initializer_list<std::string_view> keys) {
+        return std::ranges::any_of(keys, [&](auto key) { return table.has(key); });
+    };
+    const bool contacts = table.role == Role::contacts;
+    std::vector<std::string_view> keys;
+    if (any({"plate_z", "displacement", "x", "y", "z", "diameter", "radius"})) keys.push_back("length_unit");
+    if (any({"top_force", "force", "fx", "fy", "fz"})) keys.push_back("force_unit");
+    if (table.role == Role::plate && any({"top_force"})) keys.push_back("force_sign");
+    if (contacts && any({"fx", "fy", "fz"})) keys.push_back("force_on");
+    return keys;
+}
+
 double length_factor(std::string_view unit) {
     constexpr std::array<std::pair<std::string_view, double>, 4> table{
         {{"m", 1}, {"cm", 1e-2}, {"mm", 1e-3}, {"um", 1e-6}}};

@@ -78,6 +78,9 @@ struct Mapping {
 /// A wall of which the direction of each force decides which one it is.
 inline constexpr std::string_view by_direction = "by direction";
 
+/// Units and signs that the table's columns need: no mapping may leave them out.
+std::vector<std::string_view> must_be_stated(const MappedTable& table);
+
 double length_factor(std::string_view unit);  ///< metres in a unit
 double force_factor(std::string_view unit);   ///< newtons in a unit
 

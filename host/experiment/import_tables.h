@@ -1,6 +1,7 @@
 // Tables with what their columns mean, read into frames of SI values.
 #pragma once
 #include <cstddef>
+#include <functional>
 #include <limits>
 #include <map>
 #include <memory>
@@ -110,7 +111,11 @@ struct ContactFrames {
     FrameIndex index;
     std::vector<std::vector<One>> contacts;
 };
+/// The grains' centres in a frame of contacts, by its key and its place in the order; none where unknown.
+using CentresOf = std::function<const std::vector<Vec3>*(double key, std::size_t index)>;
+/// Forces of which only the size is known need `centres`; those of the mapping's frames_by where left out.
 ContactFrames import_contacts(const ImportTable& table, const GrainFrames& grains,
-                              ExperimentProblems& problems, std::size_t most = all_rows);
+                              ExperimentProblems& problems, std::size_t most = all_rows,
+                              const CentresOf& centres = {});
 
 }  // namespace mcdem

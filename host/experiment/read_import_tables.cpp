@@ -80,6 +80,14 @@ std::vector<ImportTable> read_import_tables(const Mapping& mapping, const std::v
     }
     if (!files.empty()) {
         distribute(files, tables, problems);
+        for (std::size_t t = 0; problems.empty() && t < tables.size(); ++t)
+            if (tables[t].map.role != Role::aside && tables[t].map.files.empty())
+                problems.push_back(
+                    fmt::format("{}:{}: the table of {}, {} there, must have a file too, got none among "
+                                "those given: give "
+                                "it, or remove the table from the mapping",
+                                mapping.file, mapping.tables[t].line, name(tables[t].map.role),
+                                mapping.tables[t].files.front()));
         std::erase_if(tables, [](const ImportTable& table) { return table.map.files.empty(); });
     }
     if (!problems.empty()) throw InputError(problems);

@@ -153,7 +153,16 @@ private:
                           "{} must be a key of a table of {}, got another: remove it, or choose from {}",
                           mcdem::quoted(key), name(table.role), key_list(keys)));
         }
+        for (const std::string_view key : must_be_stated(table))
+            if (!node.contains(key)) wrong(node, needed_text(table.role, key));
         return table;
+    }
+
+    static std::string needed_text(Role role, std::string_view key) {
+        const auto keys = mapping_keys(role);
+        const auto found = std::ranges::find(keys, key, &MappingKey::name);
+        return fmt::format("{} must be stated, one of {}{}{}, got none", key, found->words,
+                           found->meaning.empty() ? "" : ": ", found->meaning);
     }
 
     static std::string key_list(std::span<const MappingKey> keys) {

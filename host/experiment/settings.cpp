@@ -55,8 +55,7 @@ public:
     void read(const toml::table& root, Experiment& experiment) {
         const auto name = root.get("name");
         if (name && !name->is_string()) problem(*name, "name must be a text");
-        experiment.name =
-            name ? name->value_or(std::string()) : std::filesystem::path(file_).parent_path().stem().string();
+        if (name) experiment.name = name->value_or(std::string());
         read_box(root, experiment.recording.box);
         experiment.recording.plate_start = number(root, plate_start).value_or(std::nan(""));
         for (const Setting& setting : materials)
@@ -201,6 +200,7 @@ void parse_settings(std::string_view text, const std::string& file, const std::v
 void read_settings(const std::filesystem::path& file, Experiment& experiment, ExperimentProblems& problems) {
     std::stringstream text;
     text << std::ifstream(file, std::ios::binary).rdbuf();
+    experiment.name = file.parent_path().stem().string();
     parse_settings(text.str(), file.string(), {}, experiment, problems);
 }
 

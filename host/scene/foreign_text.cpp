@@ -49,6 +49,22 @@ long numbers_in(const Words& cells, char decimal) {
     return std::ranges::count_if(cells, [&](std::string_view cell) { return is_number(cell, decimal); });
 }
 
+/// 1.306 or 12.345,6 where the decimal is a comma, 1,306 where it is a point.
+bool has_thousands(std::string_view cell, char decimal) {
+    const char mark = decimal == ',' ? '.' : ',';
+    if (cell.find(mark) == cell.npos) return false;
+    if (cell.front() == '-' || cell.front() == '+') cell.remove_prefix(1);
+    cell = cell.substr(0, cell.find(decimal));
+    const auto digits = [](std::string_view text) {
+        return std::ranges::all_of(text, [](char c) { return c >= '0' && c <= '9'; });
+    };
+    const auto first = cell.find(mark);
+    if (first < 1 || first > 3 || cell.front() == '0' || !digits(cell.substr(0, first))) return false;
+    for (cell.remove_prefix(first); !cell.empty(); cell.remove_prefix(4))
+        if (cell.size() < 4 || cell.front() != mark || !digits(cell.substr(1, 3))) return false;
+    return true;
+}
+
 /// Lines that may hold data, from the first hundred.
 std::vector<std::string_view> sample(std::string_view text) {
     std::vector<std::string_view> lines;
@@ -117,10 +133,31 @@ std::vector<std::string> yade_columns(std::string_view format) {
     return names;
 }
 
+/// Lines before the first as wide as most, where they hold a word: `Probe;17` is no row.
+std::size_t lines_above(std::string_view text, char separator) {
+    const auto lines = sample(text);
+    if (lines.empty()) return 0;
+    const std::size_t width = usual_width(lines, separator);
+    Words cells;
+    std::size_t above = 0;
+    for (const std::string_view line : lines) {
+        cut(line, separator, cells);
+        const bool has_word = std::ranges::any_of(cells, [](std::string_view cell) {
+            return !cell.empty() && !is_number(cell, '.') && !is_number(cell, ',');
+        });
+        if (cells.size() == width || !has_word) return above;
+        ++above;
+    }
+    return above;
+}
+
 class TextParser {
 public:
     TextParser(ForeignTable& table, FileProblems& problems)
-        : table_(table), problems_(problems), lines_(table.text) {}
+        : table_(table),
+          problems_(problems),
+          lines_(table.text),
+          above_(lines_above(table.text, table.form.separator)) {}
 
     void parse() {
         while (!problems_.full()) {
@@ -156,7 +193,9 @@ private:
             if (table_.rows() == 0) trailing_ = true;
             if (trailing_) cells_.pop_back();
         }
-        if (table_.rows() == 0 && !has_numbers) {
+        const bool above = above_ > 0;
+        if (above) --above_;
+        if (table_.rows() == 0 && (above || !has_numbers)) {
             headings_.emplace_back(cells_.begin(), cells_.end());
         } else {
             if (table_.rows() == 0) name_columns();
@@ -202,6 +241,13 @@ private:
     }
 
     void add_row() {
+        for (const std::string_view cell : cells_)
+            if (has_thousands(cell, table_.form.decimal))
+                return problems_.add(
+                    lines_.number(),
+                    fmt::format("numbers must have no separators of thousands, got {} where the decimal is "
+                                "\"{}\": write the table without them",
+                                quoted(cell), table_.form.decimal));
         if (cells_.size() == table_.columns.size()) return table_.add_row(cells_);
         problems_.add(lines_.number(), fmt::format("must have {} columns as the first row, got {}",
                                                    table_.columns.size(), cells_.size()));
@@ -210,6 +256,7 @@ private:
     ForeignTable& table_;
     FileProblems& problems_;
     TextLines lines_;
+    std::size_t above_;  ///< lines still to come that are none of the table's
     Words cells_;
     std::vector<std::string> format_, comment_;
     std::vector<std::vector<std::string>> headings_;

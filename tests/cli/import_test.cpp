@@ -97,7 +97,7 @@ TEST_F(ImportCommandTest, ALaboratorysTablesBecomeTheExperimentOfTheirRun) {
                         "--metadata", "lab/experiment.toml", "--out", "again", "--gzip", "--name", "again"}));
     expect_truth("again", true);
     EXPECT_TRUE(fs::exists(path("again/contacts.csv.gz")));
-    EXPECT_EQ(text_of("again/mapping.toml"), text_of("lab/mapping.toml"));
+    EXPECT_THAT(text_of("again/mapping.toml"), HasSubstr("files = [\"plate2.csv.gz\"]"));
 }
 
 TEST_F(ImportCommandTest, WhatIsNotSafeIsConfirmedInTheMapping) {
@@ -150,6 +150,25 @@ TEST_F(ImportCommandTest, DumpsOfAnotherProgram) {
     expect_done(done);
     expect_truth("dumped", false);
     expect_done(mcdem({"experiment", "check", "dumped"}));
+}
+
+TEST_F(ImportCommandTest, OnlyItsOwnFilesAreTouched) {
+    run();
+    write_lab({});
+    fs::create_directories(path("lab.importing/kept"));
+    fs::create_directories(path("old"));
+    std::ofstream(path("old/contacts.csv.gz")) << "others";
+    expect_bad_input(import(lab_words("old")), "--out: old holds a table contacts.csv.gz");
+    expect_bad_input(import(lab_words("plate.csv/x")), "must be a folder, got a file in its way, plate.csv");
+    auto words = lab_words("lab/");
+    words.insert(words.end(), {"--set", "name=\"Probe 7\""});
+    expect_done(import(words));
+    EXPECT_EQ(read_experiment(path("lab")).name, "Probe 7");
+    expect_done(import(lab_words("second/")));
+    EXPECT_EQ(read_experiment(path("second")).name, "second");
+    EXPECT_TRUE(fs::exists(path("lab.importing/kept")));
+    for (const auto& entry : fs::directory_iterator(path("")))
+        EXPECT_THAT(entry.path().string(), Not(HasSubstr(".importing-")));
 }
 
 TEST_F(ImportCommandTest, MistakesAreBadInput) {

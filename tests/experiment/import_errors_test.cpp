@@ -73,6 +73,33 @@ TEST_F(ImportTest, WrongMappingsAreToldAtOnce) {
                             "direction, got \"roof\""));
 }
 
+TEST_F(ImportTest, UnitsAndSignsMustBeStated) {
+    const auto problems = [&](const std::string& text) {
+        return problems_of([&] { parse_mapping("[[table]]\nfiles = [\"a\"]\n" + text, "m"); });
+    };
+    EXPECT_THAT(problems("role = \"plate\"\nplate_z = \"h\"\ntop_force = \"F\"\n"),
+                ElementsAre("m:1: length_unit must be stated, one of m cm mm um, got none",
+                            "m:1: force_unit must be stated, one of N mN uN kN gf kgf, got none",
+                            HasSubstr("m:1: force_sign must be stated, one of + -: +: upward force")));
+    EXPECT_THAT(problems("role = \"grains\"\nx = \"h\"\n"), ElementsAre(HasSubstr("length_unit must")));
+    EXPECT_THAT(problems("role = \"contacts\"\nfx = \"F\"\n"),
+                ElementsAre(HasSubstr("force_unit must"),
+                            HasSubstr("force_on must be stated, one of grain partner: on which")));
+    EXPECT_THAT(problems("role = \"contacts\"\nforce = \"F\"\nx = \"x\"\n"),
+                ElementsAre(HasSubstr("length_unit must"), HasSubstr("force_unit must")));
+}
+
+TEST_F(ImportTest, WhatWrongRowsHideIsUnclear) {
+    const auto files = write_lab({';', '.', false, 1e3, 1e3});
+    std::string grains = lab_grains(truth_, {';', '.', false, 1e3, 1e3});
+    const auto cell = grains.find('\n') + 1;
+    write("koerner.csv", grains.replace(cell, grains.find(';', cell) - cell, "NaN"));
+    const auto tables = guess_tables(files, known_);
+    for (const std::string key : {"id_offset", "force_on", "length_unit", "force_unit"})
+        EXPECT_EQ(mapping_of(tables).tables[2].find(key)->sure, Sure::unclear) << key;
+    EXPECT_THAT(wrong_rows(tables), ::testing::Contains(HasSubstr("must be a finite number, got \"NaN\"")));
+}
+
 TEST_F(ImportTest, WhatIsMissingIsTold) {
     EXPECT_THAT(problems_of([&] { import_tables(guess_tables({write_lab({})[1]}, known_), known_); }),
                 ElementsAre(HasSubstr(

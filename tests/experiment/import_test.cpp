@@ -104,6 +104,9 @@ files = ["{0}/plate.csv"]
 frame = "step"
 plate_z = "plate_z_m"
 top_force = "force_N"
+length_unit = "m"
+force_unit = "N"
+force_sign = "+"
 [[table]]
 role = "grains"
 files = ["{0}/grains.dump"]
@@ -112,6 +115,7 @@ x = "x"
 y = "y"
 z = "z"
 radius = "radius"
+length_unit = "m"
 [[table]]
 role = "contacts"
 files = ["{0}/pairs.dump"]
@@ -120,6 +124,8 @@ partner = "c_p[2]"
 fx = "c_p[4]"
 fy = ["c_p[5]", "c_p[3]"]
 fz = "c_p[6]"
+force_unit = "N"
+force_on = "grain"
 [[table]]
 role = "contacts"
 files = ["{0}/walls.dump"]
@@ -128,6 +134,8 @@ partner = "c_p[1]"
 fx = "c_p[4]"
 fy = "c_p[5]"
 fz = "c_p[6]"
+force_unit = "N"
+force_on = "grain"
 [table.walls]
 0 = "x_min"
 1 = "by direction"
@@ -248,6 +256,12 @@ TEST_F(ImportTest, AMappingServesOtherFiles) {
     expect_truth(import_tables(others, known_).experiment.recording);
     EXPECT_THAT(problems_of([&] { read_import_tables(mapping, {write("odd", "a,b\n1,2\n")}); }),
                 ElementsAre("odd: must have the columns of a table of the mapping, got others"));
+    EXPECT_THAT(problems_of([&] {
+                    read_import_tables(
+                        mapping, {write("p3", lab_plate(truth_, {})), write("g3", lab_grains(truth_, {}))});
+                }),
+                ElementsAre(HasSubstr("the table of contacts, kontakte.csv there, must have a file too, got "
+                                      "none among those given: give it, or remove the table")));
 }
 
 }  // namespace

@@ -41,6 +41,7 @@ TEST(ForeignText, IsCutHoweverItIsWritten) {
     expect_the_table(table("1.5,2\n2.5,-4\n"), none);
     expect_the_table(table("# x F\n1.5 2\n2.5 -4\n"), names);
     expect_the_table(table("Probe: 3\nDatum;gestern\nx;F\n1,5;2\n2,5;-4\n"), names);
+    expect_the_table(table("Probe;17;a\nLast;0,5;N\nx;F\n1,5;2\n2,5;-4\n"), names);
     expect_the_table(table("x;F\n[mm];[mN]\n1,5;2\n2,5;-4\n"), {"x [mm]", "F [mN]"});
     expect_the_table(table("H\xF6he [\xB5m];F\n1,5;2\n2,5;-4\n"), {"H\xC3\xB6he [\xC2\xB5m]", "F"});
     expect_the_table(table("x;?\n1,5;2\n2,5;-4\n"), {"x", "column 2"});
@@ -70,6 +71,15 @@ TEST(ForeignText, WrongOnesAreTold) {
     EXPECT_THAT(table_problems(std::string("a,b\n1,2\n\0", 9)),
                 ElementsAre(HasSubstr("got zero bytes: save it as text in UTF-8")));
     EXPECT_EQ(table_problems("a,b\n1,2\n" + std::string(10000, ',') + std::string(1000, '\n')).size(), 1u);
+}
+
+TEST(ForeignText, SeparatorsOfThousandsAreRefused) {
+    for (const std::string cell : {"1.306", "-12.345", "1.306.217", "3.217,5"})
+        EXPECT_THAT(
+            table_problems("x;F\n0,5;1,5\n1,5;" + cell + "\n"),
+            ElementsAre(HasSubstr("t:3: numbers must have no separators of thousands, got \"" + cell)));
+    EXPECT_THAT(table_problems("x,F\n0.5,1.5\n1.5,\"1,306\"\n"), ElementsAre(HasSubstr("thousands")));
+    EXPECT_EQ(table("x;F\n0,5;1,5\n1,5;0.306\n").number(1, 1), 0.306);
 }
 
 TEST(ForeignText, YadesFormatsNameTheirColumns) {
