@@ -21,11 +21,10 @@ constexpr double near =
 /// The contacts with the grains' places: in frames in which these are known.
 class Places {
 public:
-    Places(const ContactFrames& frames, const GrainFrames& grains) : grains_(grains) {
-        const bool alike = frames.keys.size() == grains.keys.size();  // else frames go by their keys
+    Places(const ImportTable& table, const ContactFrames& frames, const GrainFrames& grains)
+        : grains_(grains) {
         for (std::size_t f = 0; f < frames.keys.size(); ++f) {
-            int at = grains.index.find(frames.keys[f]);
-            if (at < 0 && alike) at = static_cast<int>(f);
+            const int at = grains.frame_of(table.map.word("frames_by", "plate"), frames.keys[f], f);
             if (at < 0) continue;
             for (const One& one : frames.contacts[f])
                 all_.push_back({&one.contact, static_cast<std::size_t>(at)});
@@ -119,7 +118,7 @@ void guess_offset(ImportTable& table, const GrainFrames& grains) {
         set_walls(trial, others);
         const ContactFrames frames = read(trial, grains);
         long touching = 0, known = 0;
-        Places(frames, grains).pairs([&](const Contact&, const Vec3& line, double a, double b) {
+        Places(table, frames, grains).pairs([&](const Contact&, const Vec3& line, double a, double b) {
             ++known;
             touching += line.norm() < near * (a + b) ? 1 : 0;
         });
@@ -168,7 +167,7 @@ double outward(const Places& places, const Box& box) {
 void guess_force_on(ImportTable& table, const GrainFrames& grains, const Box& box) {
     if (!table.map.has("fx")) return;
     const ContactFrames frames = read(table, grains);
-    const double sign = outward(Places(frames, grains), box);
+    const double sign = outward(Places(table, frames, grains), box);
     table.map.entries["force_on"] =
         guess(sign < 0 ? "partner" : "grain", std::abs(sign) > 0.5 ? Sure::sure : Sure::unclear,
               std::abs(sign) > 0.5 ? "so forces push grains apart"
@@ -228,7 +227,7 @@ void guess_point_unit(ImportTable& table, const GrainFrames& grains) {
         trial.map.entries["length_unit"] = guess(unit, Sure::stated, "");
         const ContactFrames frames = read(trial, grains);
         std::vector<double> ratios;
-        Places(frames, grains).all([&](const Contact& contact, const Vec3& centre, double radius) {
+        Places(table, frames, grains).all([&](const Contact& contact, const Vec3& centre, double radius) {
             ratios.push_back((contact.point - centre).norm() / radius);
         });
         if (ratios.empty()) continue;
@@ -256,7 +255,7 @@ void guess_force_unit(ImportTable& table, const GrainFrames& grains, const Exper
     trial.map.entries["force_unit"] = guess("N", Sure::stated, "");
     const ContactFrames frames = read(trial, grains);
     std::vector<double> ratios;
-    Places(frames, grains).pairs([&](const Contact& contact, const Vec3& line, double a, double b) {
+    Places(table, frames, grains).pairs([&](const Contact& contact, const Vec3& line, double a, double b) {
         const double overlap = a + b - line.norm();
         if (overlap > 0.01 * (a + b))
             ratios.push_back(contact.force.norm() / hertz_force(known, a, b, overlap));

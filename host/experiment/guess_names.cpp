@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "experiment/column_names.h"
@@ -44,19 +45,28 @@ bool is_force(std::string_view key) {
     return key == "fx" || key == "fy" || key == "fz" || key == "force" || key == "top_force";
 }
 
-/// The unit that the names of these columns state, if they agree.
+/// The unit that the names of these columns state, if they agree and it is one of `known`.
 void note_unit(MappedTable& map, const std::string& key, bool (*belongs)(std::string_view),
-               double (*factor)(std::string_view)) {
-    std::set<std::string> units;
+               double (*factor)(std::string_view), std::string_view known) {
+    std::set<std::string> units, others;
     for (const auto& [entry, guess] : map.entries) {
         if (!belongs(entry)) continue;
-        const std::string unit = column_name(guess.word()).unit;
-        if (std::isfinite(factor(unit))) units.insert(unit);
+        const ColumnName name = column_name(guess.word());
+        if (std::isfinite(factor(name.unit)))
+            units.insert(name.unit);
+        else if (!name.unit.empty() || !name.unknown.empty())
+            others.insert(name.unit + name.unknown);
     }
-    if (units.size() == 1) map.entries[key] = guess(*units.begin(), Sure::sure, "the columns' names say so");
-    if (units.size() > 1)
+    const std::string first = units.empty() ? std::string(known.substr(0, known.find(' '))) : *units.begin();
+    if (!others.empty())
+        map.entries[key] = guess(
+            first, Sure::unclear,
+            fmt::format("a name says [{}], which is none of {}: change the table", *others.begin(), known));
+    else if (units.size() == 1)
+        map.entries[key] = guess(first, Sure::sure, "the columns' names say so");
+    else if (units.size() > 1)
         map.entries[key] =
-            guess(*units.begin(), Sure::unclear,
+            guess(first, Sure::unclear,
                   "the columns' names say different units, and a table has one: change the table");
 }
 
@@ -82,8 +92,8 @@ void guess_by_names(ImportTable& table) {
         map.entries[key] = guess(names.front(), one ? Sure::sure : Sure::unclear,
                                  one ? "its name" : fmt::format("{} columns have such a name", names.size()));
     }
-    note_unit(map, "length_unit", is_length, length_factor);
-    note_unit(map, "force_unit", is_force, force_factor);
+    note_unit(map, "length_unit", is_length, length_factor, length_units);
+    note_unit(map, "force_unit", is_force, force_factor, force_units);
 }
 
 }  // namespace mcdem

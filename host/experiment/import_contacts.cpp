@@ -48,6 +48,7 @@ public:
                             row.key));
                 frames.keys.push_back(row.key);
                 frames.contacts.emplace_back();
+                frame_ = grains_.frame_of(map_.word("frames_by", "plate"), row.key, frames.keys.size() - 1);
             }
             const auto contact = read_row(row);
             // Without any force grains are only near: LAMMPS lists them too.
@@ -141,7 +142,7 @@ private:
             const int axis = static_cast<int>(*partner.wall) / 2;
             away = Vec3::Unit(axis) * (static_cast<int>(*partner.wall) % 2 == 0 ? 1 : -1);
         } else {
-            const int frame = grains_.index.find(row.key);
+            const int frame = frame_;
             if (frame < 0 || partner.by_force) {
                 rows_.problem_once(
                     "size", row,
@@ -163,6 +164,7 @@ private:
     ExperimentProblems& problems_;
     double length_, force_;  ///< SI in the table's units
     long offset_;
+    int frame_ = -1;  ///< of the grains, for the row being read; -1: none
     std::optional<Wall> one_wall_;
     bool has_point_, has_size_;
 };

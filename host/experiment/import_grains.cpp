@@ -116,4 +116,20 @@ GrainFrames import_grains(const std::vector<const ImportTable*>& tables, Experim
     return frames;
 }
 
+int GrainFrames::frame_of(std::string_view by, double key, std::size_t place) const {
+    if (by == "grains" || row.empty()) return index.find(key);
+    const int wanted = by == "order" ? static_cast<int>(place) : plate.find(key);
+    const auto found = std::ranges::find(row, wanted);
+    return wanted < 0 || found == row.end() ? -1 : static_cast<int>(found - row.begin());
+}
+
+void place_frames(GrainFrames& grains, bool by_order, const PlateRows& plate) {
+    grains.plate = plate.index;
+    grains.row.clear();
+    for (std::size_t f = 0; f < grains.keys.size(); ++f) {
+        const int row = by_order ? static_cast<int>(f) : plate.index.find(grains.keys[f]);
+        grains.row.push_back(row < static_cast<int>(plate.scans.size()) ? row : -1);
+    }
+}
+
 }  // namespace mcdem
