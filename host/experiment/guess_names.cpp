@@ -70,6 +70,21 @@ void note_unit(MappedTable& map, const std::string& key, bool (*belongs)(std::st
                   "the columns' names say different units, and a table has one: change the table");
 }
 
+/// A size of the normal force beside a tangential one, whose direction nothing tells.
+void note_tangential(MappedTable& map, const std::vector<std::string>& columns) {
+    for (const std::string& column : columns) {
+        const std::string base = column_name(column).base;
+        const bool tangential = base.starts_with("ft") || base.starts_with("fs") ||
+                                base.find("tang") != base.npos || base.find("shear") != base.npos ||
+                                base.find("scher") != base.npos;
+        if (!tangential) continue;
+        Guess& force = map.entries["force"];
+        force.sure = Sure::unclear;
+        force.why = fmt::format(
+            "{} would be left aside: give fx, fy, fz, or confirm that the normal part is enough", column);
+    }
+}
+
 }  // namespace
 
 void guess_by_names(ImportTable& table) {
@@ -92,8 +107,9 @@ void guess_by_names(ImportTable& table) {
         map.entries[key] = guess(names.front(), one ? Sure::sure : Sure::unclear,
                                  one ? "its name" : fmt::format("{} columns have such a name", names.size()));
     }
-    note_unit(map, "length_unit", is_length, length_factor, length_units);
-    note_unit(map, "force_unit", is_force, force_factor, force_units);
+    if (map.has("force")) note_tangential(map, columns);
+    note_unit(map, "length_unit", is_length, length_factor, length_words);
+    note_unit(map, "force_unit", is_force, force_factor, force_words);
 }
 
 }  // namespace mcdem

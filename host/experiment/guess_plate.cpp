@@ -64,6 +64,7 @@ void guess_height(ImportTable& table, const PlateRows& plate, const GrainFrames&
         }
     }
     const Guess* named = map.find("length_unit");
+    if (named && named->sure == Sure::unclear) return;
     if (named && (fits.empty() ? seen.empty() : std::ranges::find(fits, named->word()) != fits.end())) return;
     if (named)
         map.entries["length_unit"] =
@@ -156,12 +157,14 @@ void guess_force(ImportTable& table, const std::vector<ImportTable>& others, con
                                                by_sum ? "of the contacts with the plate"
                                                       : "of Hertz from the overlaps with the plate");
     const Guess* named = map.find("force_unit");
+    if (named && named->sure == Sure::unclear) return;
     if (named && (!by_sum || std::ranges::find(fits, named->word()) != fits.end())) return;
     if (named)
         map.entries["force_unit"] =
             guess(named->word(), Sure::unclear, "the columns' names say so, but " + seen);
     else if (fits.size() == 1)
-        map.entries["force_unit"] = guess(fits.front(), Sure::sure, seen);
+        map.entries["force_unit"] =
+            guess(fits.front(), by_sum || hertz_tells(fits.front()) ? Sure::sure : Sure::unclear, seen);
     else
         map.entries["force_unit"] =
             guess("N", Sure::unclear,

@@ -78,6 +78,8 @@ struct Mapping {
 /// A wall of which the direction of each force decides which one it is.
 inline constexpr std::string_view by_direction = "by direction";
 
+inline constexpr std::string_view length_words = "m cm mm um", force_words = "N mN uN kN cN daN gf kgf lbf";
+
 double length_factor(std::string_view unit);  ///< metres in a unit
 double force_factor(std::string_view unit);   ///< newtons in a unit
 

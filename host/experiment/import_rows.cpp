@@ -56,7 +56,7 @@ Rows::Rows(const ImportTable& table, ExperimentProblems& problems, std::size_t m
         if (!has_key && !part.frames.empty()) keyed_by_ = KeyedBy::step;
         std::size_t frame = 0;
         for (std::size_t r = 0; r < std::min(part.rows(), most); ++r) {
-            RowAt row{&part, r, keys[p]};
+            RowAt row{&part, r, p, keys[p]};
             while (frame + 1 < part.frames.size() && part.frames[frame + 1].first_row <= r) ++frame;
             if (!part.frames.empty()) row.key = static_cast<double>(part.frames[frame].step);
             if (has_key) {
@@ -91,15 +91,11 @@ void Rows::find_columns(const ImportTable& table) {
     }
 }
 
-std::size_t Rows::part_of(const RowAt& row) const {
-    return static_cast<std::size_t>(std::ranges::find(parts_, row.part) - parts_.begin());
-}
-
 std::optional<double> Rows::number(const RowAt& row, std::string_view key) const {
     const auto found = columns_.find(key);
     if (found == columns_.end()) return std::nullopt;
     double sum = 0;
-    for (const std::size_t column : found->second[part_of(row)]) {
+    for (const std::size_t column : found->second[row.part_index]) {
         const auto value = row.part->number(row.row, column);
         if (!value) {
             problem(row,
@@ -122,11 +118,21 @@ std::optional<long> Rows::whole_number(const RowAt& row, std::string_view key) c
 }
 
 std::size_t Rows::column_of(const RowAt& row, std::string_view key) const {
-    return columns_.find(key)->second[part_of(row)].front();
+    return columns_.find(key)->second[row.part_index].front();
 }
 
 std::string_view Rows::text(const RowAt& row, std::string_view key) const {
     return row.part->cell(row.row, column_of(row, key));
+}
+
+long whole_entry(const MappedTable& map, std::string_view key, ExperimentProblems& problems) {
+    const auto number = to_number(map.word(key, "0"));
+    if (number && std::abs(*number) <= 2e9 && *number == std::round(*number))
+        return static_cast<long>(*number);
+    problems.add(map.files.front(),
+                 fmt::format("{} must be a whole number of at most 2e9, got \"{}\": see the mapping", key,
+                             map.word(key, "0")));
+    return 0;
 }
 
 void add_problem(ExperimentProblems& problems, const RowAt& row, const std::string& what) {

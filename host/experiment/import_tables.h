@@ -23,7 +23,8 @@ struct ImportTable {
 struct RowAt {
     const ForeignTable* part;
     std::size_t row;
-    double key;  ///< of its frame: number, time [s where the column names a unit] or step
+    std::size_t part_index;  ///< among the table's files
+    double key;              ///< of its frame: number, time [s where the column names a unit] or step
 };
 
 /// Reports what is wrong with a row, by file and line. Lines are counted only for problems that are told.
@@ -37,6 +38,9 @@ inline constexpr std::size_t all_rows = std::numeric_limits<std::size_t>::max();
 /// What tells the rows' frames: the files' places in the list, the last numbers in their names, a dump's
 /// steps, a column.
 enum class KeyedBy { place, file, step, column };
+
+/// A whole number of the mapping, 0 where it has none; anything else is a problem.
+long whole_entry(const MappedTable& map, std::string_view key, ExperimentProblems& problems);
 
 /// The rows in the order of the files, and what their columns hold.
 class Rows {
@@ -69,7 +73,6 @@ private:
     std::vector<const ForeignTable*> parts_;
     std::vector<RowAt> rows_;
     KeyedBy keyed_by_ = KeyedBy::place;
-    std::size_t part_of(const RowAt& row) const;
 };
 
 /// Frames by their number, time or step. Times may differ by a thousandth of the shortest interval.
