@@ -102,6 +102,19 @@ std::string cut_unit(std::string_view& name, std::string& unknown) {
     return "";
 }
 
+std::string without_umlauts(std::string_view name) {
+    std::string text(name);
+    for (const auto& [from, to] : {std::pair<std::string_view, std::string_view>{"\xC3\xA4", "ae"},
+                                   {"\xC3\xB6", "oe"},
+                                   {"\xC3\xBC", "ue"},
+                                   {"\xC3\x9F", "ss"},
+                                   {"\xC3\x84", "ae"},
+                                   {"\xC3\x96", "oe"},
+                                   {"\xC3\x9C", "ue"}})
+        for (auto at = text.find(from); at != text.npos; at = text.find(from)) text.replace(at, 2, to);
+    return text;
+}
+
 std::span<const Word> words_of(Role role) {
     switch (role) {
         case Role::plate:
@@ -128,7 +141,8 @@ ColumnName column_name(std::string_view name) {
     ColumnName all;
     name = without(name, " \t");
     all.unit = cut_unit(name, all.unknown);
-    for (const char c : name)
+    const std::string folded = without_umlauts(name);
+    for (const char c : folded)
         if (std::isalnum(static_cast<unsigned char>(c)))
             all.base += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
     return all;

@@ -100,7 +100,8 @@ TEST_F(ImportTest, NothingAndMissingGrainsAreNoWalls) {
             line.find(";17;") == line.npos)
             fewer += line;
     write("koerner.csv", fewer);
-    EXPECT_THAT(unclear(guess_tables(files, known_)), Contains(HasSubstr("\"17\" must be confirmed, got \"?by direction\"")));
+    EXPECT_THAT(unclear(guess_tables(files, known_)),
+                Contains(HasSubstr("\"17\" must be confirmed, got \"?by direction\"")));
 }
 
 TEST_F(ImportTest, UnitsThatAreNotKnownMustBeConfirmed) {
@@ -109,6 +110,13 @@ TEST_F(ImportTest, UnitsThatAreNotKnownMustBeConfirmed) {
     write("kraft.csv", text.replace(text.find("[mN]"), 4, "[MPa]"));
     EXPECT_THAT(unclear(guess_tables(files, known_)),
                 Contains(HasSubstr("a name says [MPa], which is none of")));
+}
+
+TEST_F(ImportTest, UmlautsAreLetters) {
+    const auto files = write_lab({});
+    std::string text = lab_plate(truth_, {});
+    write("kraft.csv", text.replace(text.find("Hoehe"), 5, "H\xC3\xB6he"));
+    EXPECT_THAT(unclear(guess_tables(files, known_)), ::testing::IsEmpty());
 }
 
 }  // namespace
