@@ -51,6 +51,9 @@ constexpr Word contact_words[] = {
     {"force", " force f forcemagnitude fn normalforce kraft fabs fmag forcenorm "},
 };
 
+constexpr std::pair<std::string_view, double> time_units[] = {
+    {"s", 1}, {"sec", 1}, {"ms", 1e-3}, {"min", 60}, {"h", 3600}};
+
 std::string_view without(std::string_view text, std::string_view set) {
     const auto first = text.find_first_not_of(set);
     if (first == text.npos) return {};
@@ -70,20 +73,22 @@ std::string known_unit(std::string_view word) {
                                         {"newton", "N"},
                                         {"meter", "m"}})
         if (word == written) return std::string(unit);
-    for (const std::string_view time : {"s", "ms", "min", "h", "sec"})
+    for (const auto& [time, seconds] : time_units)
         if (word == time) return std::string(word);
     return std::isnan(length_factor(word)) && std::isnan(force_factor(word)) ? "" : std::string(word);
 }
 
 /// Cuts the unit off: in brackets, behind a slash, behind " in " or an underscore.
-std::string cut_unit(std::string_view& name) {
+std::string cut_unit(std::string_view& name, std::string& unknown) {
     if (name.size() > 2 && (name.back() == ']' || name.back() == ')')) {
         const auto open = name.find_last_of("[(");
         if (open != name.npos && open > 0) {
             const std::string_view inside = without(name.substr(open + 1, name.size() - open - 2), " \t");
             if (inside.find_first_of("0123456789") != inside.npos) return "";  // a number, as in c_force[1]
             name = name.substr(0, open);
-            return known_unit(inside);
+            const std::string unit = known_unit(inside);
+            if (unit.empty()) unknown = inside;
+            return unit;
         }
     }
     for (const std::string_view mark : {" in ", "/", "_", " "}) {
@@ -95,6 +100,19 @@ std::string cut_unit(std::string_view& name) {
         return unit;
     }
     return "";
+}
+
+std::string without_umlauts(std::string_view name) {
+    std::string text(name);
+    for (const auto& [from, to] : {std::pair<std::string_view, std::string_view>{"\xC3\xA4", "ae"},
+                                   {"\xC3\xB6", "oe"},
+                                   {"\xC3\xBC", "ue"},
+                                   {"\xC3\x9F", "ss"},
+                                   {"\xC3\x84", "ae"},
+                                   {"\xC3\x96", "oe"},
+                                   {"\xC3\x9C", "ue"}})
+        for (auto at = text.find(from); at != text.npos; at = text.find(from)) text.replace(at, 2, to);
+    return text;
 }
 
 std::span<const Word> words_of(Role role) {
@@ -113,11 +131,18 @@ std::span<const Word> words_of(Role role) {
 
 }  // namespace
 
+double time_factor(std::string_view unit) {
+    for (const auto& [word, seconds] : time_units)
+        if (word == unit) return seconds;
+    return std::nan("");
+}
+
 ColumnName column_name(std::string_view name) {
     ColumnName all;
     name = without(name, " \t");
-    all.unit = cut_unit(name);
-    for (const char c : name)
+    all.unit = cut_unit(name, all.unknown);
+    const std::string folded = without_umlauts(name);
+    for (const char c : folded)
         if (std::isalnum(static_cast<unsigned char>(c)))
             all.base += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
     return all;

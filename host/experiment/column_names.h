@@ -9,12 +9,16 @@
 namespace mcdem {
 
 struct ColumnName {
-    std::string base;  ///< small letters and digits only, without the unit: "toppressure"
-    std::string unit;  ///< of length_factor or force_factor; empty where none is named
+    std::string base;     ///< small letters and digits only, without the unit: "toppressure"
+    std::string unit;     ///< of length_factor, force_factor or time_factor; empty where none is named
+    std::string unknown;  ///< what stands in brackets in a unit's place and is none that is known
 };
 
 /// "Kraft [mN]", "x_mm" and "z in mm" name units, "c_force[1]" does not.
 ColumnName column_name(std::string_view name);
+
+/// Seconds in a unit of time; not-a-number where it is none.
+double time_factor(std::string_view unit);
 
 /// The key of a table of that role that a column of this name stands for.
 std::optional<std::string_view> key_of_name(Role role, const ColumnName& name);

@@ -2,6 +2,7 @@
 // do not contradict, or where the numbers leave one possibility; unclear where they leave several.
 #pragma once
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,14 @@ void guess_plate_by_values(ImportTable& table);
 void guess_grain_lengths(ImportTable& table, const Experiment& known);
 /// Numbers, walls, sides, on which of the two a force is, units.
 void guess_contact_meaning(ImportTable& table, const GrainFrames& grains, const Experiment& known);
+/// What stands for a grain and is none, in the first `most` rows: what the table may call its walls.
+std::set<std::string> strangers(const ImportTable& table, const GrainFrames& grains, long offset,
+                                std::size_t most, std::string_view key = "");
+/// Names these walls, by their words or by the way of their forces.
+void set_walls(ImportTable& table, const std::set<std::string>& names);
+/// Walls that only have a number: where nearly all their forces point one way, that one. Unclear where the
+/// grains are not at the wall, for then a grain may be missing.
+void guess_walls(ImportTable& table, const ContactFrames& frames, const GrainFrames& grains, const Box& box);
 /// Units and sign of the plate's table.
 void guess_plate_units(ImportTable& table, const std::vector<ImportTable>& others, const GrainFrames& grains,
                        const Experiment& known);
@@ -40,7 +49,12 @@ double nearest_over_radii(const std::vector<Vec3>& position, const std::vector<d
 /// Of the units those for which `value` in that unit over `scale` lies between `low` and `high`.
 std::vector<std::string> fitting_units(std::string_view units, double (*factor)(std::string_view),
                                        double value, double scale, double low, double high);
+/// Those that numbers alone may tell: the others are too near to these.
 inline constexpr std::string_view length_units = "m cm mm um", force_units = "N mN uN kN gf kgf";
+
+/// Whether Hertz's law tells this unit from its neighbours: with a modulus wrong by three, newtons look like
+/// weights in gf or kgf.
+inline bool hertz_tells(std::string_view unit) { return unit != "gf" && unit != "kgf"; }
 
 /// Hertz's force of two grains, or of a grain and a rigid wall (radius 0) [N]; not-a-number where E is not
 /// known.

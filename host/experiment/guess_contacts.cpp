@@ -6,7 +6,6 @@
 #include <cmath>
 #include <set>
 
-#include "experiment/column_names.h"
 #include "experiment/findings.h"
 #include "experiment/guess.h"
 
@@ -21,11 +20,10 @@ constexpr double near =
 /// The contacts with the grains' places: in frames in which these are known.
 class Places {
 public:
-    Places(const ContactFrames& frames, const GrainFrames& grains) : grains_(grains) {
-        const bool alike = frames.keys.size() == grains.keys.size();  // else frames go by their keys
+    Places(const ImportTable& table, const ContactFrames& frames, const GrainFrames& grains)
+        : grains_(grains) {
         for (std::size_t f = 0; f < frames.keys.size(); ++f) {
-            int at = grains.index.find(frames.keys[f]);
-            if (at < 0 && alike) at = static_cast<int>(f);
+            const int at = grains.frame_of(table.map.word("frames_by", "plate"), frames.keys[f], f);
             if (at < 0) continue;
             for (const One& one : frames.contacts[f])
                 all_.push_back({&one.contact, static_cast<std::size_t>(at)});
@@ -57,55 +55,6 @@ ContactFrames read(const ImportTable& table, const GrainFrames& grains) {
     return import_contacts(table, grains, ignored, most_rows);
 }
 
-std::string key_text(double number) { return fmt::format("{}", number); }
-
-/// What stands for a grain and is none, in the first `most` rows: what the table may call its walls.
-std::set<std::string> strangers(const ImportTable& table, const GrainFrames& grains, long offset,
-                                std::size_t most) {
-    std::set<std::string> found;
-    for (const char* key : {"grain", "partner"}) {
-        const std::string name = table.map.word(key, "");
-        if (parse<Wall>(name)) continue;
-        for (const auto& part : table.parts) {
-            const auto column = part->find(name);
-            for (std::size_t row = 0; column && row < std::min(part->rows(), most) && found.size() < 20;
-                 ++row) {
-                const auto number = part->number(row, *column);
-                const std::string_view cell = part->cell(row, *column);
-                if (!number && !parse<Wall>(cell)) found.insert(std::string(cell));
-                if (number && std::abs(*number) < 2e9 &&
-                    !grains.number_of.contains(static_cast<long>(*number) + offset))
-                    found.insert(key_text(*number));
-            }
-        }
-    }
-    return found;
-}
-
-/// Words for walls, in lower case; others are decided by direction.
-std::string wall_word(const std::string& text) {
-    const std::string base = column_name(text).base;
-    const std::pair<std::string_view, std::string_view> words[] = {
-        {" floor bottom boden base zmin zlo ", "floor"},
-        {" plate top lid piston deckel platte stempel zmax zhi ", "plate"},
-        {" xmin left links xlo ", "x_min"},
-        {" xmax right rechts xhi ", "x_max"},
-        {" ymin front vorn ylo ", "y_min"},
-        {" ymax back rear hinten yhi ", "y_max"}};
-    for (const auto& [names, wall] : words)
-        if (!base.empty() && names.find(" " + base + " ") != names.npos) return std::string(wall);
-    return std::string(by_direction);
-}
-
-void set_walls(ImportTable& table, const std::set<std::string>& names) {
-    table.map.walls.clear();
-    for (const std::string& name : names) {
-        const std::string word = wall_word(name);
-        table.map.walls[name] =
-            guess(word, Sure::likely, word == by_direction ? "no grain has this number" : "its name");
-    }
-}
-
 /// The offset with which nearly all pairs touch.
 void guess_offset(ImportTable& table, const GrainFrames& grains) {
     double most = -1;
@@ -119,7 +68,7 @@ void guess_offset(ImportTable& table, const GrainFrames& grains) {
         set_walls(trial, others);
         const ContactFrames frames = read(trial, grains);
         long touching = 0, known = 0;
-        Places(frames, grains).pairs([&](const Contact&, const Vec3& line, double a, double b) {
+        Places(table, frames, grains).pairs([&](const Contact&, const Vec3& line, double a, double b) {
             ++known;
             touching += line.norm() < near * (a + b) ? 1 : 0;
         });
@@ -168,37 +117,11 @@ double outward(const Places& places, const Box& box) {
 void guess_force_on(ImportTable& table, const GrainFrames& grains, const Box& box) {
     if (!table.map.has("fx")) return;
     const ContactFrames frames = read(table, grains);
-    const double sign = outward(Places(frames, grains), box);
+    const double sign = outward(Places(table, frames, grains), box);
     table.map.entries["force_on"] =
         guess(sign < 0 ? "partner" : "grain", std::abs(sign) > 0.5 ? Sure::sure : Sure::unclear,
               std::abs(sign) > 0.5 ? "so forces push grains apart"
                                    : "forces neither push grains apart nor together");
-}
-
-/// Walls that have a number of their own: where nearly all their forces point one way, that one.
-void guess_walls(ImportTable& table, const ContactFrames& frames) {
-    std::map<std::string, std::map<Wall, long>> counts;
-    for (const auto& contacts : frames.contacts)
-        for (const One& one : contacts) {
-            const auto column = one.row.part->find(table.map.word("partner", ""));
-            if (!column || !is_wall(one.contact.partner)) continue;
-            const auto number = one.row.part->number(one.row.row, *column);
-            const std::string name =
-                number ? key_text(*number) : std::string(one.row.part->cell(one.row.row, *column));
-            ++counts[name][wall_of(one.contact.partner)];
-        }
-    for (auto& [name, wall] : table.map.walls) {
-        if (wall.word() != by_direction) continue;
-        long all = 0;
-        for (const auto& [which, count] : counts[name]) all += count;
-        const auto most =
-            std::ranges::max_element(counts[name], {}, [](const auto& count) { return count.second; });
-        if (all > 0 && most->second > 0.9 * static_cast<double>(all))
-            wall = guess(std::string(mcdem::name(most->first)), Sure::likely,
-                         fmt::format("{} of its {} forces point away from there", most->second, all));
-        else
-            wall.why += "; its forces point several ways";
-    }
 }
 
 void guess_sides(ImportTable& table, const ContactFrames& frames) {
@@ -228,7 +151,7 @@ void guess_point_unit(ImportTable& table, const GrainFrames& grains) {
         trial.map.entries["length_unit"] = guess(unit, Sure::stated, "");
         const ContactFrames frames = read(trial, grains);
         std::vector<double> ratios;
-        Places(frames, grains).all([&](const Contact& contact, const Vec3& centre, double radius) {
+        Places(table, frames, grains).all([&](const Contact& contact, const Vec3& centre, double radius) {
             ratios.push_back((contact.point - centre).norm() / radius);
         });
         if (ratios.empty()) continue;
@@ -256,7 +179,7 @@ void guess_force_unit(ImportTable& table, const GrainFrames& grains, const Exper
     trial.map.entries["force_unit"] = guess("N", Sure::stated, "");
     const ContactFrames frames = read(trial, grains);
     std::vector<double> ratios;
-    Places(frames, grains).pairs([&](const Contact& contact, const Vec3& line, double a, double b) {
+    Places(table, frames, grains).pairs([&](const Contact& contact, const Vec3& line, double a, double b) {
         const double overlap = a + b - line.norm();
         if (overlap > 0.01 * (a + b))
             ratios.push_back(contact.force.norm() / hertz_force(known, a, b, overlap));
@@ -265,7 +188,7 @@ void guess_force_unit(ImportTable& table, const GrainFrames& grains, const Exper
     const auto fits = fitting_units(force_units, force_factor, ratio, 1, 1 / 3.1, 3.1);
     if (fits.size() == 1)
         map.entries["force_unit"] =
-            guess(fits.front(), Sure::sure,
+            guess(fits.front(), hertz_tells(fits.front()) ? Sure::sure : Sure::unclear,
                   fmt::format("then forces are {:.2g} times Hertz's from the overlaps",
                               ratio * force_factor(fits.front())));
     else if (table.parts.front()->format != TableFormat::text && grains_in_metres)
@@ -288,7 +211,7 @@ void guess_contact_meaning(ImportTable& table, const GrainFrames& grains, const 
     guess_offset(table, grains);
     guess_force_on(table, grains, known.recording.box);
     const ContactFrames frames = read(table, grains);
-    guess_walls(table, frames);
+    guess_walls(table, frames, grains, known.recording.box);
     guess_sides(table, frames);
     guess_point_unit(table, grains);
     const double size = grains.diameter.front();

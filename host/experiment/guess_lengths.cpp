@@ -122,7 +122,14 @@ GrainFrames grains_so_far(const std::vector<ImportTable>& tables) {
         if (table.map.role == Role::grains) of_grains.push_back(&table);
     ExperimentProblems problems;
     GrainFrames grains = import_grains(of_grains, problems);
-    return problems.empty() ? grains : GrainFrames();
+    if (!problems.empty() || grains.keys.empty()) return {};
+    for (const ImportTable& table : tables)
+        if (table.map.role == Role::plate) {
+            ExperimentProblems ignored;
+            place_frames(grains, of_grains.front()->map.word("frames_by", "plate") == "order",
+                         import_plate(table, 0, ignored));
+        }
+    return grains;
 }
 
 void guess_grain_lengths(ImportTable& table, const Experiment& known) {

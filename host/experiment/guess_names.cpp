@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "experiment/column_names.h"
@@ -44,20 +45,44 @@ bool is_force(std::string_view key) {
     return key == "fx" || key == "fy" || key == "fz" || key == "force" || key == "top_force";
 }
 
-/// The unit that the names of these columns state, if they agree.
+/// The unit that the names of these columns state, if they agree and it is one of `known`.
 void note_unit(MappedTable& map, const std::string& key, bool (*belongs)(std::string_view),
-               double (*factor)(std::string_view)) {
-    std::set<std::string> units;
+               double (*factor)(std::string_view), std::string_view known) {
+    std::set<std::string> units, others;
     for (const auto& [entry, guess] : map.entries) {
         if (!belongs(entry)) continue;
-        const std::string unit = column_name(guess.word()).unit;
-        if (std::isfinite(factor(unit))) units.insert(unit);
+        const ColumnName name = column_name(guess.word());
+        if (std::isfinite(factor(name.unit)))
+            units.insert(name.unit);
+        else if (!name.unit.empty() || !name.unknown.empty())
+            others.insert(name.unit + name.unknown);
     }
-    if (units.size() == 1) map.entries[key] = guess(*units.begin(), Sure::sure, "the columns' names say so");
-    if (units.size() > 1)
+    const std::string first = units.empty() ? std::string(known.substr(0, known.find(' '))) : *units.begin();
+    if (!others.empty())
+        map.entries[key] = guess(
+            first, Sure::unclear,
+            fmt::format("a name says [{}], which is none of {}: change the table", *others.begin(), known));
+    else if (units.size() == 1)
+        map.entries[key] = guess(first, Sure::sure, "the columns' names say so");
+    else if (units.size() > 1)
         map.entries[key] =
-            guess(*units.begin(), Sure::unclear,
+            guess(first, Sure::unclear,
                   "the columns' names say different units, and a table has one: change the table");
+}
+
+/// A size of the normal force beside a tangential one, whose direction nothing tells.
+void note_tangential(MappedTable& map, const std::vector<std::string>& columns) {
+    for (const std::string& column : columns) {
+        const std::string base = column_name(column).base;
+        const bool tangential = base.starts_with("ft") || base.starts_with("fs") ||
+                                base.find("tang") != base.npos || base.find("shear") != base.npos ||
+                                base.find("scher") != base.npos;
+        if (!tangential) continue;
+        Guess& force = map.entries["force"];
+        force.sure = Sure::unclear;
+        force.why = fmt::format(
+            "{} would be left aside: give fx, fy, fz, or confirm that the normal part is enough", column);
+    }
 }
 
 }  // namespace
@@ -82,8 +107,9 @@ void guess_by_names(ImportTable& table) {
         map.entries[key] = guess(names.front(), one ? Sure::sure : Sure::unclear,
                                  one ? "its name" : fmt::format("{} columns have such a name", names.size()));
     }
-    note_unit(map, "length_unit", is_length, length_factor);
-    note_unit(map, "force_unit", is_force, force_factor);
+    if (map.has("force")) note_tangential(map, columns);
+    note_unit(map, "length_unit", is_length, length_factor, length_words);
+    note_unit(map, "force_unit", is_force, force_factor, force_words);
 }
 
 }  // namespace mcdem

@@ -30,9 +30,7 @@ PlateRows plain_rows(const ImportTable& table, double plate_start) {
 
 /// The plate's row that belongs to a frame of the grains; -1 where none does.
 int row_of(const PlateRows& plate, const GrainFrames& grains, std::size_t frame) {
-    const int row = plate.index.find(grains.keys[frame]);
-    if (row >= 0 || grains.keys.size() != plate.keys.size()) return row;
-    return static_cast<int>(frame);
+    return grains.row.empty() ? plate.index.find(grains.keys[frame]) : grains.row[frame];
 }
 
 void guess_height(ImportTable& table, const PlateRows& plate, const GrainFrames& grains, double plate_start) {
@@ -66,6 +64,7 @@ void guess_height(ImportTable& table, const PlateRows& plate, const GrainFrames&
         }
     }
     const Guess* named = map.find("length_unit");
+    if (named && named->sure == Sure::unclear) return;
     if (named && (fits.empty() ? seen.empty() : std::ranges::find(fits, named->word()) != fits.end())) return;
     if (named)
         map.entries["length_unit"] =
@@ -81,18 +80,25 @@ void guess_height(ImportTable& table, const PlateRows& plate, const GrainFrames&
                 : seen);
 }
 
-/// Force of the grains on the plate in a frame, from their contacts with it; not-a-number where none is
-/// listed.
-double contact_force(const std::vector<ContactFrames>& contacts, double key) {
-    double sum = 0;
-    bool any = false;
-    for (const ContactFrames& frames : contacts) {
-        const int frame = frames.index.find(key);
-        if (frame < 0) continue;
-        for (const auto& one : frames.contacts[static_cast<std::size_t>(frame)])
-            if (one.contact.partner == wall_partner(Wall::plate)) sum -= one.contact.force.z(), any = true;
+/// Force of the grains on the plate in each of their frames, from their contacts with it; not-a-number where
+/// none is listed.
+std::vector<double> contact_forces(const std::vector<ImportTable>& tables, const GrainFrames& grains) {
+    std::vector<double> sums(grains.keys.size(), std::nan(""));
+    for (const ImportTable& table : tables) {
+        const Guess* unit = table.map.find("force_unit");
+        if (table.map.role != Role::contacts || !unit || unit->sure == Sure::unclear) continue;
+        ExperimentProblems ignored;
+        const ContactFrames frames = import_contacts(table, grains, ignored);
+        for (std::size_t f = 0; f < frames.keys.size(); ++f) {
+            const int frame = grains.frame_of(table.map.word("frames_by", "plate"), frames.keys[f], f);
+            if (frame < 0) continue;
+            double& sum = sums[static_cast<std::size_t>(frame)];
+            for (const auto& one : frames.contacts[f])
+                if (one.contact.partner == wall_partner(Wall::plate))
+                    sum = (std::isnan(sum) ? 0 : sum) - one.contact.force.z();
+        }
     }
-    return any ? sum : std::nan("");
+    return sums;
 }
 
 double hertz_on_plate(const Experiment& known, const GrainFrames& grains, std::size_t frame, double plate_z) {
@@ -103,17 +109,6 @@ double hertz_on_plate(const Experiment& known, const GrainFrames& grains, std::s
         if (overlap > 0) sum += hertz_force(known, radius, 0, overlap);
     }
     return sum;
-}
-
-std::vector<ContactFrames> contacts_of(const std::vector<ImportTable>& tables, const GrainFrames& grains) {
-    std::vector<ContactFrames> all;
-    for (const ImportTable& table : tables) {
-        const Guess* unit = table.map.find("force_unit");
-        if (table.map.role != Role::contacts || !unit || unit->sure == Sure::unclear) continue;
-        ExperimentProblems ignored;
-        all.push_back(import_contacts(table, grains, ignored));
-    }
-    return all;
 }
 
 /// Median over the loaded frames of the table's force over the one that `truth` gives.
@@ -145,9 +140,8 @@ void guess_force(ImportTable& table, const std::vector<ImportTable>& others, con
     map.entries["force_sign"] =
         guess(down ? "-" : "+", clear ? Sure::sure : Sure::unclear,
               fmt::format("forces reach from {:.4g} to {:.4g}, and the grains push", low, high));
-    const auto contacts = contacts_of(others, grains);
-    const double sum = force_ratio(
-        plate, grains, [&](std::size_t f, const Scan&) { return contact_force(contacts, grains.keys[f]); });
+    const auto sums = contact_forces(others, grains);
+    const double sum = force_ratio(plate, grains, [&](std::size_t f, const Scan&) { return sums[f]; });
     const double hertz = force_ratio(plate, grains, [&](std::size_t f, const Scan& scan) {
         return hertz_on_plate(
             known, grains, f,
@@ -163,12 +157,14 @@ void guess_force(ImportTable& table, const std::vector<ImportTable>& others, con
                                                by_sum ? "of the contacts with the plate"
                                                       : "of Hertz from the overlaps with the plate");
     const Guess* named = map.find("force_unit");
+    if (named && named->sure == Sure::unclear) return;
     if (named && (!by_sum || std::ranges::find(fits, named->word()) != fits.end())) return;
     if (named)
         map.entries["force_unit"] =
             guess(named->word(), Sure::unclear, "the columns' names say so, but " + seen);
     else if (fits.size() == 1)
-        map.entries["force_unit"] = guess(fits.front(), Sure::sure, seen);
+        map.entries["force_unit"] =
+            guess(fits.front(), by_sum || hertz_tells(fits.front()) ? Sure::sure : Sure::unclear, seen);
     else
         map.entries["force_unit"] =
             guess("N", Sure::unclear,

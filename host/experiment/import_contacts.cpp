@@ -32,7 +32,7 @@ public:
         length_ = length_factor(map_.word("length_unit", "m"));
         force_ =
             force_factor(map_.word("force_unit", "N")) * (map_.word("force_on", "grain") == "grain" ? 1 : -1);
-        offset_ = static_cast<long>(to_number(map_.word("id_offset", "0")).value_or(0));
+        offset_ = whole_entry(map_, "id_offset", problems);
         one_wall_ = parse<Wall>(map_.word("partner", ""));
         has_point_ = rows_.has_column("x") && rows_.has_column("y") && rows_.has_column("z");
         has_size_ = rows_.has_column("force");

@@ -54,9 +54,10 @@ private:
         if (tables.empty()) return;
         const bool by_order = tables.front()->map.word("frames_by", "plate") == "order";
         recording().diameter = grains_.diameter;
+        place_frames(grains_, by_order, plate_);
         for (std::size_t f = 0; f < grains_.keys.size(); ++f) {
-            const int scan = by_order ? static_cast<int>(f) : plate_.index.find(grains_.keys[f]);
-            if (scan < 0 || static_cast<std::size_t>(scan) >= plate_.scans.size()) {
+            const int scan = grains_.row[f];
+            if (scan < 0) {
                 problem_once(grains_.first_row[f], "frame",
                              fmt::format("frame {} must be one of the plate's {} rows, got none like it: see "
                                          "frame and frames_by in the mapping",

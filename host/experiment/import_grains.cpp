@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "experiment/import_tables.h"
@@ -33,8 +34,9 @@ public:
         const double unit = length_factor(map.word("length_unit", "m"));
         const Vec3 origin(number(map, "origin_x"), number(map, "origin_y"), number(map, "origin_z"));
         frames_.origin = unit * origin;
-        const long first = static_cast<long>(number(map, "first_grain"));
+        const long first = whole_entry(map, "first_grain", problems_);
         double key = 0;
+        by_place_ = !rows.has_column("grain");
         for (const RowAt& row : rows.all()) {
             if (!grains_.empty() && row.key != key) end_frame(key);
             key = row.key;
@@ -78,8 +80,10 @@ private:
                 frames_.number_of.emplace(grain.id, static_cast<int>(frames_.diameter.size()));
                 frames_.diameter.push_back(grain.diameter);
             }
-        else
+        else {
             expect_all(key);
+            if (by_place_ && grains_.size() == frames_.diameter.size()) expect_diameters(key);
+        }
         frames_.keys.push_back(key);
         frames_.first_row.push_back(grains_.front().row);
         auto& position = frames_.position.emplace_back();
@@ -100,9 +104,27 @@ private:
                             grains_.size() + missing - frames_.number_of.size()));
     }
 
+    /// Without numbers, rows in another order show in their diameters. All may swell alike.
+    void expect_diameters(double key) {
+        double swelling = 0, differ = 0;
+        const auto count = static_cast<double>(grains_.size());
+        for (std::size_t i = 0; i < grains_.size(); ++i)
+            swelling += grains_[i].diameter / frames_.diameter[i] / count;
+        for (std::size_t i = 0; i < grains_.size(); ++i)
+            differ += std::abs(grains_[i].diameter / frames_.diameter[i] / swelling - 1) / count;
+        if (differ > 0.02)
+            add_problem_once(
+                problems_, "diameters", grains_.front().row,
+                fmt::format("grains without numbers must stand in the same order in all frames, got "
+                            "diameters in frame {} that differ by {:.0f} % from those of the first: "
+                            "number the grains",
+                            key, 100 * differ));
+    }
+
     GrainFrames& frames_;
     ExperimentProblems& problems_;
     std::vector<Grain> grains_;
+    bool by_place_ = false;  ///< rows count the grains
     std::set<double> used_;
 };
 
@@ -114,6 +136,22 @@ GrainFrames import_grains(const std::vector<const ImportTable*>& tables, Experim
     for (const ImportTable* table : tables) reader.read(*table);
     frames.index = FrameIndex(frames.keys);
     return frames;
+}
+
+int GrainFrames::frame_of(std::string_view by, double key, std::size_t place) const {
+    if (by == "grains" || row.empty()) return index.find(key);
+    const int wanted = by == "order" ? static_cast<int>(place) : plate.find(key);
+    const auto found = std::ranges::find(row, wanted);
+    return wanted < 0 || found == row.end() ? -1 : static_cast<int>(found - row.begin());
+}
+
+void place_frames(GrainFrames& grains, bool by_order, const PlateRows& plate) {
+    grains.plate = plate.index;
+    grains.row.clear();
+    for (std::size_t f = 0; f < grains.keys.size(); ++f) {
+        const int row = by_order ? static_cast<int>(f) : plate.index.find(grains.keys[f]);
+        grains.row.push_back(row < static_cast<int>(plate.scans.size()) ? row : -1);
+    }
 }
 
 }  // namespace mcdem

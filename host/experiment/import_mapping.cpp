@@ -10,7 +10,7 @@ namespace mcdem {
 namespace {
 
 using Kind = MappingKey::Kind;
-constexpr std::string_view lengths = "m cm mm um", forces = "N mN uN kN gf kgf";
+constexpr std::string_view lengths = length_words, forces = force_words;
 
 // clang-format off
 constexpr MappingKey plate_keys[] = {
@@ -113,8 +113,15 @@ double length_factor(std::string_view unit) {
 }
 
 double force_factor(std::string_view unit) {
-    constexpr std::array<std::pair<std::string_view, double>, 6> table{
-        {{"N", 1}, {"mN", 1e-3}, {"uN", 1e-6}, {"kN", 1e3}, {"gf", 9.80665e-3}, {"kgf", 9.80665}}};
+    constexpr std::array<std::pair<std::string_view, double>, 9> table{{{"N", 1},
+                                                                        {"mN", 1e-3},
+                                                                        {"uN", 1e-6},
+                                                                        {"kN", 1e3},
+                                                                        {"cN", 1e-2},
+                                                                        {"daN", 10},
+                                                                        {"gf", 9.80665e-3},
+                                                                        {"kgf", 9.80665},
+                                                                        {"lbf", 4.4482216152605}}};
     return factor(unit, table);
 }
 

@@ -80,6 +80,7 @@ inline constexpr std::string_view by_direction = "by direction";
 
 /// Units and signs that the table's columns need: no mapping may leave them out.
 std::vector<std::string_view> must_be_stated(const MappedTable& table);
+inline constexpr std::string_view length_words = "m cm mm um", force_words = "N mN uN kN cN daN gf kgf lbf";
 
 double length_factor(std::string_view unit);  ///< metres in a unit
 double force_factor(std::string_view unit);   ///< newtons in a unit

@@ -87,6 +87,23 @@ std::optional<Scan> read_scan(const Rows& rows, const RowAt& row, const MappedTa
     return scan;
 }
 
+/// A little above the start is noise; further up than down is a wrong sign.
+void expect_below(const PlateRows& plate, double start, const Rows& rows) {
+    std::size_t highest = 0;
+    double low = INFINITY;
+    for (std::size_t i = 0; i < plate.scans.size(); ++i) {
+        if (plate.scans[i].plate_z > plate.scans[highest].plate_z) highest = i;
+        low = std::fmin(low, plate.scans[i].plate_z);
+    }
+    const double high = plate.scans[highest].plate_z;
+    if (high - start > 1e-9 * high && high - start > start - low)
+        rows.problem(rows.all()[highest],
+                     fmt::format("the plate must go down from plate.start, {} m, got {} m: {}", start, high,
+                                 rows.has_column("displacement")
+                                     ? "change the sign of the displacements, which count downwards"
+                                     : "see length_unit, and --set plate.start=.."));
+}
+
 }  // namespace
 
 PlateRows import_plate(const ImportTable& table, double plate_start, ExperimentProblems& problems) {
@@ -111,6 +128,7 @@ PlateRows import_plate(const ImportTable& table, double plate_start, ExperimentP
         plate.keys.push_back(key);
     }
     plate.index = FrameIndex(plate.keys);
+    if (!plate.scans.empty()) expect_below(plate, plate_start, rows);
     int least_cycle = 0;
     if (rows.has_column("cycle") && !plate.scans.empty()) least_cycle = plate.scans.front().cycle;
     for (std::size_t i = 0; i < plate.scans.size(); ++i) {

@@ -3,11 +3,43 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
+#include "experiment/column_names.h"
 #include "experiment/import_tables.h"
 #include "scene/packing_fields.h"
 
 namespace mcdem {
+
+namespace {
+
+/// The last number in a file's name, its endings left aside: 3 of "scan2/grains_003.csv.gz".
+std::optional<double> number_in_name(const std::string& file) {
+    std::string name = std::filesystem::path(file).filename().string();
+    if (name.ends_with(".gz")) name.resize(name.size() - 3);
+    name = std::filesystem::path(name).stem().string();
+    constexpr std::string_view digits = "0123456789";
+    const auto last = name.find_last_of(digits);
+    if (last == name.npos) return std::nullopt;
+    const auto before = name.find_last_not_of(digits, last);
+    const auto first = before == name.npos ? 0 : before + 1;
+    return to_number(name.substr(first, last + 1 - first));
+}
+
+/// The files' numbers where all have one and they rise; else their places.
+std::vector<double> keys_of_files(const std::vector<const ForeignTable*>& parts, KeyedBy& by) {
+    std::vector<double> places, numbers;
+    for (const ForeignTable* part : parts) {
+        places.push_back(static_cast<double>(places.size()));
+        const auto number = number_in_name(part->file);
+        if (number && (numbers.empty() || *number > numbers.back())) numbers.push_back(*number);
+    }
+    const bool numbered = parts.size() > 1 && numbers.size() == parts.size();
+    by = numbered ? KeyedBy::file : KeyedBy::place;
+    return numbered ? numbers : places;
+}
+
+}  // namespace
 
 Rows::Rows(const ImportTable& table, ExperimentProblems& problems, std::size_t most) : problems_(problems) {
     for (const auto& part : table.parts) parts_.push_back(part.get());
@@ -15,19 +47,22 @@ Rows::Rows(const ImportTable& table, ExperimentProblems& problems, std::size_t m
     find_columns(table);
     if (problems.count() > before) return;
     const bool has_key = has_column("frame");
-    keyed_ = has_key;
+    const std::vector<double> keys = keys_of_files(parts_, keyed_by_);
+    const double time = time_factor(column_name(table.map.word("frame", "")).unit),
+                 unit = std::isfinite(time) ? time : 1;
+    if (has_key) keyed_by_ = KeyedBy::column;
     for (std::size_t p = 0; p < parts_.size(); ++p) {
         const ForeignTable& part = *parts_[p];
-        keyed_ = keyed_ || !part.frames.empty();
+        if (!has_key && !part.frames.empty()) keyed_by_ = KeyedBy::step;
         std::size_t frame = 0;
         for (std::size_t r = 0; r < std::min(part.rows(), most); ++r) {
-            RowAt row{&part, r, static_cast<double>(p)};
+            RowAt row{&part, r, p, keys[p]};
             while (frame + 1 < part.frames.size() && part.frames[frame + 1].first_row <= r) ++frame;
             if (!part.frames.empty()) row.key = static_cast<double>(part.frames[frame].step);
             if (has_key) {
                 const auto key = number(row, "frame");
                 if (!key) continue;
-                row.key = *key;
+                row.key = unit * *key;
             }
             rows_.push_back(row);
         }
@@ -56,15 +91,11 @@ void Rows::find_columns(const ImportTable& table) {
     }
 }
 
-std::size_t Rows::part_of(const RowAt& row) const {
-    return static_cast<std::size_t>(std::ranges::find(parts_, row.part) - parts_.begin());
-}
-
 std::optional<double> Rows::number(const RowAt& row, std::string_view key) const {
     const auto found = columns_.find(key);
     if (found == columns_.end()) return std::nullopt;
     double sum = 0;
-    for (const std::size_t column : found->second[part_of(row)]) {
+    for (const std::size_t column : found->second[row.part_index]) {
         const auto value = row.part->number(row.row, column);
         if (!value) {
             problem(row,
@@ -87,11 +118,21 @@ std::optional<long> Rows::whole_number(const RowAt& row, std::string_view key) c
 }
 
 std::size_t Rows::column_of(const RowAt& row, std::string_view key) const {
-    return columns_.find(key)->second[part_of(row)].front();
+    return columns_.find(key)->second[row.part_index].front();
 }
 
 std::string_view Rows::text(const RowAt& row, std::string_view key) const {
     return row.part->cell(row.row, column_of(row, key));
+}
+
+long whole_entry(const MappedTable& map, std::string_view key, ExperimentProblems& problems) {
+    const auto number = to_number(map.word(key, "0"));
+    if (number && std::abs(*number) <= 2e9 && *number == std::round(*number))
+        return static_cast<long>(*number);
+    problems.add(map.files.front(),
+                 fmt::format("{} must be a whole number of at most 2e9, got \"{}\": see the mapping", key,
+                             map.word(key, "0")));
+    return 0;
 }
 
 void add_problem(ExperimentProblems& problems, const RowAt& row, const std::string& what) {

@@ -24,7 +24,8 @@ struct ImportTable {
 struct RowAt {
     const ForeignTable* part;
     std::size_t row;
-    double key;  ///< of its frame: number, time or step
+    std::size_t part_index;  ///< among the table's files
+    double key;              ///< of its frame: number, time [s where the column names a unit] or step
 };
 
 /// Reports what is wrong with a row, by file and line. Lines are counted only for problems that are told.
@@ -35,13 +36,22 @@ void add_problem_once(ExperimentProblems& problems, const std::string& topic, co
 
 inline constexpr std::size_t all_rows = std::numeric_limits<std::size_t>::max();
 
+/// What tells the rows' frames: the files' places in the list, the last numbers in their names, a dump's
+/// steps, a column.
+enum class KeyedBy { place, file, step, column };
+
+/// A whole number of the mapping, 0 where it has none; anything else is a problem.
+long whole_entry(const MappedTable& map, std::string_view key, ExperimentProblems& problems);
+
 /// The rows in the order of the files, and what their columns hold.
 class Rows {
 public:
     /// Columns that are not there are problems. Reads `most` rows of each file.
     Rows(const ImportTable& table, ExperimentProblems& problems, std::size_t most = all_rows);
     const std::vector<RowAt>& all() const { return rows_; }
-    bool keyed() const { return keyed_; }  ///< frames have numbers, times or steps of their own
+    KeyedBy keyed_by() const { return keyed_by_; }
+    /// Frames have numbers, times or steps of their own.
+    bool keyed() const { return keyed_by_ == KeyedBy::step || keyed_by_ == KeyedBy::column; }
     /// The entry's value in that row: of several columns their sum; anything else than numbers is a problem.
     std::optional<double> number(const RowAt& row, std::string_view key) const;
     /// The same of one column, without a problem.
@@ -63,8 +73,7 @@ private:
     std::map<std::string, std::vector<std::vector<std::size_t>>, std::less<>> columns_;  ///< by key and part
     std::vector<const ForeignTable*> parts_;
     std::vector<RowAt> rows_;
-    bool keyed_ = false;
-    std::size_t part_of(const RowAt& row) const;
+    KeyedBy keyed_by_ = KeyedBy::place;
 };
 
 /// Frames by their number, time or step. Times may differ by a thousandth of the shortest interval.
@@ -98,7 +107,13 @@ struct GrainFrames {
     std::map<long, int> number_of;            ///< from the table's number of a grain
     std::vector<RowAt> first_row;             ///< of each frame, for messages
     Vec3 origin = Vec3::Zero();               ///< of the box, as the tables count [m]
+    std::vector<int> row;                     ///< of the plate, of each frame; -1: none; empty: no plate
+    FrameIndex plate;                         ///< the plate's rows
+    /// The frame of another table's frame, its `place`-th, that has this key; `by` as in frames_by. -1: none.
+    int frame_of(std::string_view by, double key, std::size_t place) const;
 };
+/// Finds each frame's row of the plate, by its key or in order.
+void place_frames(GrainFrames& grains, bool by_order, const PlateRows& plate);
 GrainFrames import_grains(const std::vector<const ImportTable*>& tables, ExperimentProblems& problems);
 
 /// Contacts by frame, numbered as `grains`. Points that were not measured are not-a-number.

@@ -4,6 +4,7 @@
 namespace mcdem::test {
 namespace {
 
+using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
@@ -79,7 +80,7 @@ TEST_F(ImportTest, UnitsAndSignsMustBeStated) {
     };
     EXPECT_THAT(problems("role = \"plate\"\nplate_z = \"h\"\ntop_force = \"F\"\n"),
                 ElementsAre("m:1: length_unit must be stated, one of m cm mm um, got none",
-                            "m:1: force_unit must be stated, one of N mN uN kN gf kgf, got none",
+                            "m:1: force_unit must be stated, one of N mN uN kN cN daN gf kgf lbf, got none",
                             HasSubstr("m:1: force_sign must be stated, one of + -: +: upward force")));
     EXPECT_THAT(problems("role = \"grains\"\nx = \"h\"\n"), ElementsAre(HasSubstr("length_unit must")));
     EXPECT_THAT(problems("role = \"contacts\"\nfx = \"F\"\n"),
@@ -108,6 +109,41 @@ TEST_F(ImportTest, WhatIsMissingIsTold) {
                     guess_tables({(folder_ / "a").string(), (folder_ / "b").string()}, known_);
                 }),
                 ::testing::SizeIs(2));
+}
+
+TEST_F(ImportTest, NothingAndMissingGrainsAreNoWalls) {
+    const auto files = write_lab({});
+    const std::string contacts = lab_contacts(truth_, {}), grains = lab_grains(truth_, {});
+    std::string text = contacts;
+    write("kontakte.csv", text.replace(text.find("Boden"), 5, "NaN"));
+    const auto tables = guess_tables(files, known_);
+    EXPECT_FALSE(of(tables, Role::contacts).walls.contains("NaN"));
+    EXPECT_THAT(problems_of([&] { import_tables(tables, known_); }),
+                ElementsAre(HasSubstr("partner must be a grain, or a wall")));
+    write("kontakte.csv", contacts);
+    std::string fewer;
+    for (std::size_t first = 0; first < grains.size(); first = grains.find('\n', first) + 1)
+        if (const std::string line = grains.substr(first, grains.find('\n', first) + 1 - first);
+            line.find(";17;") == line.npos)
+            fewer += line;
+    write("koerner.csv", fewer);
+    EXPECT_THAT(unclear(guess_tables(files, known_)),
+                Contains(HasSubstr("\"17\" must be confirmed, got \"?by direction\"")));
+}
+
+TEST_F(ImportTest, UnitsThatAreNotKnownMustBeConfirmed) {
+    const auto files = write_lab({});
+    std::string text = lab_plate(truth_, {});
+    write("kraft.csv", text.replace(text.find("[mN]"), 4, "[MPa]"));
+    EXPECT_THAT(unclear(guess_tables(files, known_)),
+                Contains(HasSubstr("a name says [MPa], which is none of")));
+}
+
+TEST_F(ImportTest, UmlautsAreLetters) {
+    const auto files = write_lab({});
+    std::string text = lab_plate(truth_, {});
+    write("kraft.csv", text.replace(text.find("Hoehe"), 5, "H\xC3\xB6he"));
+    EXPECT_THAT(unclear(guess_tables(files, known_)), ::testing::IsEmpty());
 }
 
 }  // namespace

@@ -24,6 +24,8 @@ where = "f_{wall}[1]"
 fx = "f_{wall}[2]"
 fy = "f_{wall}[3]"
 fz = "f_{wall}[4]"
+force_unit = "N"
+force_on = "grain"
 """
 LIGGGHTS_WALLS = """
 [[table]]
@@ -34,6 +36,8 @@ partner = "c_walls[1]"
 fx = "c_walls[4]"
 fy = "c_walls[5]"
 fz = "c_walls[6]"
+force_unit = "N"
+force_on = "grain"
 [table.walls]
 """ + "".join(f'{number} = "{wall}"\n' for number, wall in enumerate(realities.WALLS))
 
