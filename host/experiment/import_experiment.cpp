@@ -27,7 +27,7 @@ public:
                             "`role = \"plate\"` in the mapping, or give the table",
                             plates.size()));
         else
-            plate_ = import_plate(*plates.front(), recording().plate_start, problems_);
+            place_plate(*plates.front());
         grains_ = import_grains(grains, problems_);
         if (!of(Role::contacts).empty() && grains.empty())
             problems_.add("grains", "must be a table of the grains, for contacts name them, got none");
@@ -40,6 +40,16 @@ public:
     }
 
 private:
+    void place_plate(const ImportTable& table) {
+        const double start = recording().plate_start;
+        if (table.map.find("displacement") && std::isnan(start))
+            problems_.add(table.map.files.front(),
+                          "displacements count downwards from plate.start, which must be given [m]: --set "
+                          "plate.start=..");
+        else
+            plate_ = import_plate(table, start, problems_);
+    }
+
     Recording& recording() { return experiment_.recording; }
 
     std::vector<const ImportTable*> of(Role role) const {

@@ -240,6 +240,9 @@ TEST_F(ImportTest, DisplacementsCyclesAndEarlyRowsOfThePlate) {
     EXPECT_EQ(scans[7].cycle, 1) << "down again";
     EXPECT_EQ(scans[7].phase, Phase::load);
     EXPECT_EQ(scans[8].phase, Phase::unload);
+    known_.recording.plate_start = std::nan("");
+    EXPECT_THAT(problems_of([&] { import_tables(tables, known_); }),
+                ElementsAre(HasSubstr("plate.csv: displacements count downwards from plate.start")));
 }
 
 TEST_F(ImportTest, AMappingServesOtherFiles) {
