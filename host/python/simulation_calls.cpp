@@ -40,7 +40,8 @@ void expect_one_alive(const Run& run) {
     std::string causes;
     for (const Recording& recording : run.recordings) {
         if (!recording.failure) return;
-        causes += (causes.empty() ? "" : "\n") + failure_text(recording.label, *recording.failure);
+        if (!causes.empty()) causes += '\n';
+        causes += failure_text(recording.label, *recording.failure);
     }
     if (!causes.empty()) throw RunError(fmt::format("no replica came to its end:\n{}", causes));
 }
