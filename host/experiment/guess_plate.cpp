@@ -28,9 +28,11 @@ PlateRows plain_rows(const ImportTable& table, double plate_start) {
     return import_plate(plain, plate_start, ignored);
 }
 
-/// The plate's row that belongs to a frame of the grains; -1 where none does.
+/// The plate's row that belongs to a frame of the grains; -1 where none does. Frames are placed by the first table that is
+/// taken for the plate's; a second one may be shorter.
 int row_of(const PlateRows& plate, const GrainFrames& grains, std::size_t frame) {
-    return grains.row.empty() ? plate.index.find(grains.keys[frame]) : grains.row[frame];
+    const int row = grains.row.empty() ? plate.index.find(grains.keys[frame]) : grains.row[frame];
+    return row < static_cast<int>(plate.scans.size()) ? row : -1;
 }
 
 void guess_height(ImportTable& table, const PlateRows& plate, const GrainFrames& grains, double plate_start) {
