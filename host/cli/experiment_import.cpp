@@ -145,24 +145,15 @@ void write_whole(const ImportCommand& command, const Experiment& experiment) {
                 fs::rename(beside.path() / (table + end), out / (table + end));
 }
 
-std::vector<std::string> problems_in(const ExperimentProblems& problems) {
-    try {
-        problems.report();
-    } catch (const InputError& error) {
-        return error.problems();
-    }
-    return {};
-}
-
 /// The tables by their mapping, or by a guess that is safe; its text is what `out` keeps.
 std::vector<ImportTable> tables_of(const ImportCommand& command, const Experiment& known,
                                    const ExperimentProblems& settings, std::string& mapping_toml) {
     const fs::path kept = fs::path(command.out) / "mapping.toml";
     if (!command.mapping.empty()) {
         auto tables = read_import_tables(read_mapping(command.mapping), command.tables);
-        mapping_toml =
-            command.tables.empty() ? text_of_file(command.mapping) : mapping_text(mapping_of(tables));
-        print_mapping(mapping_of(tables));
+        const Mapping mapping = mapping_of(tables);
+        mapping_toml = command.tables.empty() ? text_of_file(command.mapping) : mapping_text(mapping);
+        print_mapping(mapping);
         settings.report();
         return tables;
     }
@@ -177,7 +168,7 @@ std::vector<ImportTable> tables_of(const ImportCommand& command, const Experimen
     print_mapping(mapping);
     std::fflush(stdout);
     auto problems = unclear_entries(mapping_toml, kept.string());
-    for (const std::string& problem : problems_in(settings)) problems.push_back(problem);
+    for (const std::string& problem : settings.lines()) problems.push_back(problem);
     if (problems.empty()) return tables;
     const auto rows = wrong_rows(tables);
     problems.insert(problems.end(), rows.begin(), rows.end());

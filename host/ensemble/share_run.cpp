@@ -225,11 +225,6 @@ void expect_no_run_of_one(const fs::path& folder) {
             "another folder");
 }
 
-void expect_no_file(const fs::path& folder) {
-    if (fs::exists(folder) && !fs::is_directory(folder))
-        throw InputError(folder.string() + ": is a file; give a folder for the results");
-}
-
 /// Keeps those away that write alone. What lies in the folder is looked at once they cannot come any more.
 FolderLock lock_for_sharing(const fs::path& folder, const Scene& scene) {
     FolderLock lock(folder, FolderLock::Use::shared);

@@ -19,12 +19,15 @@ void ExperimentProblems::add_once(const std::string& topic, const std::string& w
     if (told_.insert(topic).second) add(where, what);
 }
 
-void ExperimentProblems::report() const {
-    if (empty()) return;
+std::vector<std::string> ExperimentProblems::lines() const {
     auto problems = first_;
     const long more = count_ - static_cast<long>(first_.size());
     if (more > 0) problems.push_back(".. and " + std::to_string(more) + " more");
-    throw InputError(problems);
+    return problems;
+}
+
+void ExperimentProblems::report() const {
+    if (!empty()) throw InputError(lines());
 }
 
 }  // namespace mcdem

@@ -17,6 +17,8 @@ public:
     bool was_told(const std::string& topic) const { return told_.contains(topic); }
     bool empty() const { return count_ == 0; }
     long count() const { return count_; }
+    /// Each problem, and how many more there are.
+    std::vector<std::string> lines() const;
     /// Throws InputError where there are any.
     void report() const;
 

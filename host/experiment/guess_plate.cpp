@@ -10,14 +10,6 @@
 namespace mcdem {
 namespace {
 
-/// Top of the grains in a frame [m].
-double top_of(const GrainFrames& grains, std::size_t frame) {
-    double top = 0;
-    for (std::size_t i = 0; i < grains.diameter.size(); ++i)
-        top = std::max(top, grains.position[frame][i].z() + grains.diameter[i] / 2);
-    return top;
-}
-
 /// The plate's table as it stands, in the units m and N.
 PlateRows plain_rows(const ImportTable& table, double plate_start) {
     ImportTable plain = table;
@@ -48,8 +40,8 @@ void guess_height(ImportTable& table, const PlateRows& plate, const GrainFrames&
             if (const int row = row_of(plate, grains, f);
                 row >= 0 && plate.scans[static_cast<std::size_t>(row)].plate_z < lowest_z)
                 lowest = f, lowest_z = plate.scans[static_cast<std::size_t>(row)].plate_z;
-        const double top = top_of(grains, lowest);
-        const double first_top = top_of(grains, 0);
+        const double top = grains.top(lowest);
+        const double first_top = grains.top(0);
         if (std::isfinite(lowest_z) && !goes_down) {
             fits = fitting_units(length_units, length_factor, lowest_z, top, 0.6, 1.6);
             seen = fmt::format("at the lowest the plate is at {:.4g}, the grains reach up to {:.4g} m",

@@ -45,14 +45,6 @@ struct Touches {
     long all = 0, at_wall = 0;    ///< of those whose grain has a place
 };
 
-/// Of the grains' surfaces, in a frame.
-double top_of(const GrainFrames& grains, std::size_t frame) {
-    double top = 0;
-    for (std::size_t i = 0; i < grains.diameter.size(); ++i)
-        top = std::max(top, grains.position[frame][i].z() + grains.diameter[i] / 2);
-    return top;
-}
-
 bool is_at(Wall wall, const Vec3& centre, double radius, const Box& box, double top) {
     const int axis = static_cast<int>(wall) / 2;
     const double places[] = {0, box.size_x, 0, box.size_y, 0, top};
@@ -77,7 +69,7 @@ std::map<std::string, Touches> touches_of(const ImportTable& table, const Contac
     std::map<std::string, Touches> touches;
     for (std::size_t f = 0; f < frames.contacts.size(); ++f) {
         const int frame = grains.frame_of(table.map.word("frames_by", "plate"), frames.keys[f], f);
-        const double top = frame < 0 ? 0 : top_of(grains, static_cast<std::size_t>(frame));
+        const double top = frame < 0 ? 0 : grains.top(static_cast<std::size_t>(frame));
         for (const ContactFrames::One& one : frames.contacts[f]) {
             if (!is_wall(one.contact.partner)) continue;
             Touches& of_name = touches[name_in(one, table.map)];
@@ -141,7 +133,8 @@ void set_walls(ImportTable& table, const std::set<std::string>& names) {
 
 void guess_walls(ImportTable& table, const ContactFrames& frames, const GrainFrames& grains, const Box& box) {
     auto touches = touches_of(table, frames, grains, box);
-    const long offset = static_cast<long>(to_number(table.map.word("id_offset", "0")).value_or(0));
+    ExperimentProblems ignored;
+    const long offset = whole_entry(table.map, "id_offset", ignored);
     const auto first = strangers(table, grains, offset, all_rows, "grain"),
                second = strangers(table, grains, offset, all_rows, "partner");
     for (auto& [name, wall] : table.map.walls) {

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <map>
 
-#include "core/errors.h"
 #include "experiment/findings.h"
 
 namespace mcdem {
@@ -254,8 +253,7 @@ private:
 };
 
 Guess not_guessed(Role role, std::string_view key) {
-    const auto keys = mapping_keys(role);
-    const std::string_view words = std::ranges::find(keys, key, &MappingKey::name)->words;
+    const std::string_view words = find_mapping_key(role, key)->words;
     return {{std::string(words.substr(0, words.find(' ')))}, Sure::unclear, "nothing tells it", 0};
 }
 
@@ -285,11 +283,8 @@ std::vector<std::string> wrong_rows(const std::vector<ImportTable>& tables) {
         ExperimentProblems problems;
         if (table.map.role == Role::plate) import_plate(table, 1, problems);
         if (table.map.role == Role::grains) import_grains({&table}, problems);
-        try {
-            problems.report();
-        } catch (const InputError& error) {
-            all.insert(all.end(), error.problems().begin(), error.problems().end());
-        }
+        const auto lines = problems.lines();
+        all.insert(all.end(), lines.begin(), lines.end());
     }
     return all;
 }

@@ -145,6 +145,13 @@ int GrainFrames::frame_of(std::string_view by, double key, std::size_t place) co
     return wanted < 0 || found == row.end() ? -1 : static_cast<int>(found - row.begin());
 }
 
+double GrainFrames::top(std::size_t frame) const {
+    double top = 0;
+    for (std::size_t i = 0; i < diameter.size(); ++i)
+        top = std::max(top, position[frame][i].z() + diameter[i] / 2);
+    return top;
+}
+
 void place_frames(GrainFrames& grains, bool by_order, const PlateRows& plate) {
     grains.plate = plate.index;
     grains.row.clear();

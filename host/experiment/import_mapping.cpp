@@ -82,6 +82,12 @@ std::span<const MappingKey> mapping_keys(Role role) {
     return {};
 }
 
+const MappingKey* find_mapping_key(Role role, std::string_view name) {
+    const auto keys = mapping_keys(role);
+    const auto found = std::ranges::find(keys, name, &MappingKey::name);
+    return found == keys.end() ? nullptr : &*found;
+}
+
 std::vector<std::string> left_aside(const MappedTable& map, const std::vector<std::string>& columns) {
     std::vector<std::string> aside;
     for (const std::string& column : columns) {

@@ -45,6 +45,7 @@ struct MappingKey {
 };
 
 std::span<const MappingKey> mapping_keys(Role role);
+const MappingKey* find_mapping_key(Role role, std::string_view name);  ///< null: none of this name
 
 struct MappedTable {
     Role role = Role::aside;

@@ -111,6 +111,7 @@ struct GrainFrames {
     FrameIndex plate;                         ///< the plate's rows
     /// The frame of another table's frame, its `place`-th, that has this key; `by` as in frames_by. -1: none.
     int frame_of(std::string_view by, double key, std::size_t place) const;
+    double top(std::size_t frame) const;  ///< of the highest grain [m]
 };
 /// Finds each frame's row of the plate, by its key or in order.
 void place_frames(GrainFrames& grains, bool by_order, const PlateRows& plate);

@@ -138,20 +138,19 @@ private:
         if (const auto* files = node.get("files")) table.files = words_of("files", *files);
         if (table.files.empty()) wrong(node, "files must name at least one file, got none");
         read_form(node, table);
-        const auto keys = mapping_keys(table.role);
         for (const auto& [word, value] : node) {
             const std::string_view key = word.str();
             if (key == "role" || key == "files" || key == "separator" || key == "decimal") continue;
-            const auto found = std::ranges::find(keys, key, &MappingKey::name);
+            const MappingKey* found = find_mapping_key(table.role, key);
             if (key == "walls" && table.role == Role::contacts)
                 read_walls(value, table);
-            else if (found != keys.end())
+            else if (found)
                 read_entry(*found, value, table);
             else if (table.role != Role::aside)
                 wrong(value,
                       fmt::format(
                           "{} must be a key of a table of {}, got another: remove it, or choose from {}",
-                          mcdem::quoted(key), name(table.role), key_list(keys)));
+                          mcdem::quoted(key), name(table.role), key_list(mapping_keys(table.role))));
         }
         for (const std::string_view key : must_be_stated(table))
             if (!node.contains(key)) wrong(node, needed_text(table.role, key));
@@ -159,8 +158,7 @@ private:
     }
 
     static std::string needed_text(Role role, std::string_view key) {
-        const auto keys = mapping_keys(role);
-        const auto found = std::ranges::find(keys, key, &MappingKey::name);
+        const MappingKey* found = find_mapping_key(role, key);
         return fmt::format("{} must be stated, one of {}{}{}, got none", key, found->words,
                            found->meaning.empty() ? "" : ": ", found->meaning);
     }

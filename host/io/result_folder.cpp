@@ -108,9 +108,13 @@ std::vector<fs::path> result_files(const fs::path& file_or_folder) {
     return segments;
 }
 
-ResultFolder ResultFolder::create(const fs::path& folder) {
+void expect_no_file(const fs::path& folder) {
     if (fs::exists(folder) && !fs::is_directory(folder))
         throw InputError(folder.string() + ": is a file; give a folder for the results");
+}
+
+ResultFolder ResultFolder::create(const fs::path& folder) {
+    expect_no_file(folder);
     make_folder(folder);
     ResultFolder made(folder, FolderLock(folder, FolderLock::Use::alone));
     for (const auto& entry : fs::directory_iterator(folder))

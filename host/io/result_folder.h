@@ -17,6 +17,9 @@ std::vector<std::filesystem::path> segment_files(const std::filesystem::path& fo
 /// What `read_run` reads for `file_or_folder`: the file itself, run.h5, or all segments.
 std::vector<std::filesystem::path> result_files(const std::filesystem::path& file_or_folder);
 
+/// Throws InputError for a file where the folder of a run is to be.
+void expect_no_file(const std::filesystem::path& folder);
+
 /// Owns a result folder while a run is written to it alone; other programs are refused.
 class ResultFolder {
 public:

@@ -38,6 +38,12 @@ protected:
     }
     std::string result(const std::string& out) const { return bytes_of_file(path(out) / "run.h5"); }
 
+    /// Resumed, it ends with the bits of the run that did not stop.
+    void expect_goes_on(const std::string& out) const {
+        expect_done(mcdem(words(out, true)));
+        EXPECT_TRUE(result(out) == result("whole"));
+    }
+
     /// Starts a run and stops it by `signal` after its first checkpoint.
     Finished interrupt(const std::string& out, int signal) const {
         Child child(folder_.path, words(out, false));
@@ -78,8 +84,7 @@ TEST_F(InterruptionTest, KilledBeforeItsFirstCheckpointStartsAnew) {
     while (child.is_running() && !fs::exists(path("killed"))) std::this_thread::sleep_for(100us);
     child.send(SIGKILL);
     ASSERT_EQ(child.wait().signal, SIGKILL);
-    expect_done(mcdem(words("killed", true)));
-    EXPECT_TRUE(result("killed") == result("whole"));
+    expect_goes_on("killed");
 }
 
 TEST_F(InterruptionTest, InterruptedSaysHowToGoOn) {
@@ -192,8 +197,7 @@ TEST_F(InterruptionTest, FullDiskEndsTheRunWhichGoesOnOnceThereIsSpace) {
     EXPECT_THAT(full.err, HasSubstr("No space left"));
     EXPECT_FALSE(fs::exists(path("disk/a/run.h5")));
     disk.empty();
-    expect_done(mcdem(words("disk/a", true)));
-    EXPECT_TRUE(result("disk/a") == result("whole"));
+    expect_goes_on("disk/a");
 }
 
 TEST_F(InterruptionTest, DiskThatFillsUpOnTheWayCostsNoScan) {
@@ -210,8 +214,7 @@ TEST_F(InterruptionTest, DiskThatFillsUpOnTheWayCostsNoScan) {
     expect_done(table);
     EXPECT_THAT(table.out, HasSubstr("load"));
     disk.empty();
-    expect_done(mcdem(words("disk/a", true)));
-    EXPECT_TRUE(result("disk/a") == result("whole"));
+    expect_goes_on("disk/a");
 }
 
 TEST_F(InterruptionTest, FolderThatCannotBeWrittenToIsRefusedAtOnce) {
@@ -243,8 +246,7 @@ TEST_F(InterruptionTest, FolderThatTurnsReadOnlyEndsTheRunWhichGoesOnLater) {
     EXPECT_THAT(stopped.err, HasSubstr("disk/a"));
     expect_done(mcdem({"table", "disk/a"}));
     ASSERT_TRUE(disk.make_writable());
-    expect_done(mcdem(words("disk/a", true)));
-    EXPECT_TRUE(result("disk/a") == result("whole"));
+    expect_goes_on("disk/a");
 }
 
 TEST_F(InterruptionTest, DamagedScansAreFoundBeforeTheWorkGoesOn) {
