@@ -7,20 +7,22 @@ constexpr double slots = 16;
 
 // Flops. A square root, division, minimum or maximum counts as one operation; selections, comparisons and
 // conversions as none. The sums of each header, in the order of its lines:
-constexpr double see_neighbours = 3 + 5 + 1 + 1 + 3 + 3;
+constexpr double inverse_root = 6;  // estimate and a step of Newton's method; elsewhere a root and a division
+constexpr double see_neighbours = 3 + 5 + 1 + inverse_root + 3 + 3;
 constexpr double hertz = 2 + 2 + 2 + 2 + 2;  // gap, delta, a, S, F
 constexpr double reduced = 12;               // R* and m*
 constexpr double damping = 5 + 5;            // v_n, F_d
 constexpr double own_bulge = 4;
 constexpr double contact_point = 5 + 1;
 constexpr double sliding = 9 + 18 + 2;  // both spins, v_t, limit
-constexpr double saturated = 7 + 1 + 1 + 1 + 3;
+constexpr double saturated = 6 + inverse_root + 1 + 1 + 3;
 constexpr double mindlin = 6 + 5 + 6 + 9 + 6 + 1 + 3 + 1 + 12 + 2 + 3;
 constexpr double force_and_torque = 6 + 18;
 constexpr double checks = 2 + 1;
 constexpr double half_space_term =
-    5 + 7 + 2 + 6 + 3 + 3;  // cosine, distance, root, u . n, bracket, times F and sum
-constexpr double sphere_term = 5 + 3 + 2 + 1 + 17 + 3;      // cosine, s, root, s, polynomial, times F and sum
+    5 + 7 + inverse_root + 6 + 3 + 3;  // cosine, distance, its inverse, u . n, bracket, times F and sum
+constexpr double sphere_term =
+    5 + 3 + inverse_root + 1 + 17 + 3;                      // cosine, s, root, s, polynomial, times F and sum
 constexpr double finite_size_term = 1 + 12 + 4;             // spread, polynomial, product
 constexpr double self_term = 1 + 3 * (2 + 21 + 4 + 4 + 6);  // three Newton steps
 constexpr double extrapolation = 1 + 5;

@@ -21,19 +21,24 @@ typedef struct {
 INLINE void insert_walls(global const Replica* restrict replica, const int effects, real plate_z, real4 own, slots partner,
                                 lanes4* restrict position, lanes4* restrict velocity, lanes4* restrict spin) {
     const mask wall = AS_MASK(partner < EMPTY);
-    lanes along[3] = {WHERE(wall, own.x, position->x), WHERE(wall, own.y, position->y), WHERE(wall, own.z, position->z)};
-    for (int w = 0; w < 6; ++w)
-        along[w / 2] = WHERE(AS_MASK(partner == WALL_PARTNER(w)), w == 5 ? plate_z : replica->wall_position[w], along[w / 2]);
+    lanes3 foot = {WHERE(wall, own.x, position->x), WHERE(wall, own.y, position->y), WHERE(wall, own.z, position->z)};
+    /* Written out: a loop over axes would go through memory. */
+    foot.x = WHERE(AS_MASK(partner == WALL_PARTNER(0)), replica->wall_position[0], foot.x);
+    foot.x = WHERE(AS_MASK(partner == WALL_PARTNER(1)), replica->wall_position[1], foot.x);
+    foot.y = WHERE(AS_MASK(partner == WALL_PARTNER(2)), replica->wall_position[2], foot.y);
+    foot.y = WHERE(AS_MASK(partner == WALL_PARTNER(3)), replica->wall_position[3], foot.y);
+    foot.z = WHERE(AS_MASK(partner == WALL_PARTNER(4)), replica->wall_position[4], foot.z);
+    foot.z = WHERE(AS_MASK(partner == WALL_PARTNER(5)), plate_z, foot.z);
     if (effects & EFFECT_PLATE_TILT) {
         const mask plate = AS_MASK(partner == WALL_PARTNER(5));
-        const real3 foot = plate_foot(replica, plate_z, own);
-        along[0] = WHERE(plate, foot.x, along[0]);
-        along[1] = WHERE(plate, foot.y, along[1]);
-        along[2] = WHERE(plate, foot.z, along[2]);
+        const real3 leaning = plate_foot(replica, plate_z, own);
+        foot.x = WHERE(plate, leaning.x, foot.x);
+        foot.y = WHERE(plate, leaning.y, foot.y);
+        foot.z = WHERE(plate, leaning.z, foot.z);
     }
-    position->x = along[0];
-    position->y = along[1];
-    position->z = along[2];
+    position->x = foot.x;
+    position->y = foot.y;
+    position->z = foot.z;
     position->w = WHERE(wall, R(0), position->w);
     velocity->w = WHERE(wall, R(0), velocity->w);
     velocity->x = WHERE(wall, R(0), velocity->x);
@@ -64,7 +69,7 @@ INLINE Neighbours see_neighbours(global const Replica* restrict replica, const i
     /* An empty slot is given a distance of one, so that nothing is divided by zero. */
     const lanes squared = WHERE(seen.occupied, dot3(apart, apart), R(1));
     seen.distance = sqrt(squared);
-    const lanes inverse = R(1) / seen.distance;
+    const lanes inverse = inverse_root(squared);
     seen.normal = (lanes3){apart.x * inverse, apart.y * inverse, apart.z * inverse};
     seen.radius = there.w;
     seen.velocity = (lanes3){moving.x - own_velocity.x, moving.y - own_velocity.y, moving.z - own_velocity.z};

@@ -3,8 +3,8 @@
 /* Always saturated [paper]: mu F_n against the sliding. Below `sliding_velocity`, and where a step's
    friction could do more than stop the sliding, it fades to a viscous force so that it cannot chatter. */
 INLINE lanes3 saturated_friction(lanes limit, lanes3 sliding, real sliding_velocity, lanes most_viscosity) {
-    const lanes speed = sqrt(dot3(sliding, sliding) + sliding_velocity * sliding_velocity);
-    const lanes viscosity = fmin(limit / speed, most_viscosity);
+    const lanes slowness = inverse_root(dot3(sliding, sliding) + sliding_velocity * sliding_velocity);
+    const lanes viscosity = fmin(limit * slowness, most_viscosity);
     return (lanes3){viscosity * sliding.x, viscosity * sliding.y, viscosity * sliding.z};
 }
 

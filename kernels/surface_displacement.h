@@ -13,7 +13,7 @@ typedef struct {
    n = -e at both, all products follow from cos(theta) = e_k . e_c and the two arms. */
 INLINE lanes half_space_displacement(global const Replica* restrict replica, lanes cosine, lanes arm, real arm_k) {
     const lanes squared = arm * arm + arm_k * arm_k - R(2) * arm * arm_k * cosine;
-    const lanes inverse = R(1) / sqrt(squared);
+    const lanes inverse = inverse_root(squared);
     const lanes along_k = (arm_k - arm * cosine) * inverse;  /* n_k . u */
     const lanes along_c = (arm_k * cosine - arm) * inverse;  /* n_c . u */
     lanes bracket = along_k * along_c + replica->half_space_normal * cosine;
@@ -42,7 +42,7 @@ INLINE lanes size_polynomial(global const real* t, lanes s) {
    (2/5 a_k^2 + 2/3 a_c^2)/R^2 of the two contact radii. */
 INLINE lanes sphere_displacement(global const Replica* restrict replica, lanes cosine, lanes spread) {
     const lanes squared = fmax(R(0.5) - R(0.5) * cosine, (lanes)(SMALLEST_SINE * SMALLEST_SINE));
-    const lanes inverse = R(1) / sqrt(squared);
+    const lanes inverse = inverse_root(squared);
     const lanes s = squared * inverse;
     lanes value = point_polynomial(replica->sphere_point, s);
     if (replica->finite_contacts)
