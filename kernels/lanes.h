@@ -101,15 +101,10 @@ INLINE lanes inverse_root(lanes x) {
 #if MCDEM_DOUBLE || !defined(__AVX__)
     return R(1) / sqrt(x);
 #else
-#ifdef __AVX512F__
-    lanes estimate;
-    __asm__("vrsqrt14ps %1, %0" : "=v"(estimate) : "v"(x));
-#else
     real8 low, high;
     __asm__("vrsqrtps %1, %0" : "=x"(low) : "x"(x.lo));
     __asm__("vrsqrtps %1, %0" : "=x"(high) : "x"(x.hi));
     const lanes estimate = (lanes)(low, high);
-#endif
     return estimate * (R(1.5) - R(0.5) * x * (estimate * estimate));
 #endif
 }
