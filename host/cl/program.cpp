@@ -1,12 +1,12 @@
 #include "cl/program.h"
 
+#include <fmt/format.h>
+
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <set>
 #include <sstream>
-
-#include <fmt/format.h>
 
 #include "cl/kernel_sources.h"
 #include "core/errors.h"
@@ -15,9 +15,13 @@ namespace mcdem {
 namespace {
 
 std::string kernel_source(const std::string& name) {
-    if (const char* folder = std::getenv("MCDEM_KERNELS")) {
+    if (const char* folder = std::getenv("MCDEM_KERNELS"); folder && *folder) {
         std::ifstream file(std::filesystem::path(folder) / name);
-        if (!file) throw RunError(fmt::format("MCDEM_KERNELS: cannot read {} in {}", name, folder));
+        if (!file)
+            throw InputError(fmt::format(
+                "MCDEM_KERNELS: must name the folder of the kernels, got '{}', where {} cannot be "
+                "read: give `kernels` of the sources, or unset it for those built in",
+                folder, name));
         return {std::istreambuf_iterator<char>(file), {}};
     }
     return embedded_kernel_sources().at(name);
@@ -53,8 +57,8 @@ KernelBuild kernel_build(const Device& device, Precision precision, int slots) {
             throw InputError(fmt::format("MCDEM_LANES: must be 1 or 16, got '{}'", lanes));
     }
     if (precision == Precision::double_precision && !device.info().double_precision)
-        throw InputError(fmt::format("numerics.precision: must be float on {}, which has no double",
-                                     device.info().name));
+        throw InputError(
+            fmt::format("numerics.precision: must be float on {}, which has no double", device.info().name));
     return build;
 }
 
@@ -67,15 +71,15 @@ std::string program_text() {
 
 cl::Program build_program(const Device& device, const KernelBuild& build) {
     // -w: what the compiler finds odd about a device's own headers and vector widths is no user's concern.
-    const auto options =
-        fmt::format("-w -cl-std=CL1.2 -DMCDEM_DOUBLE={} -DLANES={} -DSLOTS={} -DBLOCK={}",
-                    build.precision == Precision::double_precision ? 1 : 0, build.lanes, build.slots, build.block);
+    const auto options = fmt::format("-w -cl-std=CL1.2 -DMCDEM_DOUBLE={} -DLANES={} -DSLOTS={} -DBLOCK={}",
+                                     build.precision == Precision::double_precision ? 1 : 0, build.lanes,
+                                     build.slots, build.block);
     cl::Program program(device.context(), program_text());
     try {
         program.build({device.handle()}, options.c_str());
     } catch (const cl::Error&) {
-        throw RunError(fmt::format("the kernels do not compile on {} with {}:\n{}", device.info().name, options,
-                                   program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device.handle())));
+        throw RunError(fmt::format("the kernels do not compile on {} with {}:\n{}", device.info().name,
+                                   options, program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device.handle())));
     }
     return program;
 }

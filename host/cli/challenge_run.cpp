@@ -102,6 +102,7 @@ SharedWork shared_work(RunChallengeCommand& command, const Scene& scene) {
         }
         return true;
     };
+    work.check = [&command] { expect_sharable_challenge(command.options.out); };
     work.fraction = [&command, here] { return std::max(*here, cases_done(command.options)); };
     work.done = [&command] { return cases_done(command.options) >= 1; };
     work.report = [&command] { return report(command); };

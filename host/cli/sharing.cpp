@@ -52,9 +52,18 @@ int work_here(const SharedWork& work, const std::string& device, std::size_t wor
     const Interrupt interrupt;
     Device chosen(device);
     Watch watch(work);
-    const bool done = work.join(chosen, workers, [&] {
-        if (leads) watch.look();
-    });
+    bool done = false;
+    try {
+        done = work.join(chosen, workers, [&] {
+            if (leads) watch.look();
+        });
+    } catch (const cl::Error& error) {
+        watch.clear();
+        const int code = report_error(error);
+        spdlog::warn("what was done stays in {}: other workers go on with it, or the same command",
+                     work.out.string());
+        return code;
+    }
     watch.clear();
     if (!done) return interrupted(work);
     return leads ? work.report() : exit_done;
@@ -118,8 +127,10 @@ int work_on_all_devices(const SharedWork& work, bool leads) {
     const int worst = wait_for(workers, work, leads);
     if (work.done()) return leads ? work.report() : exit_done;
     if (worst == exit_interrupted) return interrupted(work);
-    if (worst == exit_done) spdlog::error("all workers were ended; the same command goes on");
-    return worst == exit_done ? exit_failed : worst;
+    if (worst == exit_bad_input) return worst;
+    spdlog::error("no worker is left; what was done stays in {}, and the same command goes on",
+                  work.out.string());
+    return exit_failed;
 }
 
 int work_by_slurm(const SharedWork& work, const SharingOptions& options, const std::string& device) {

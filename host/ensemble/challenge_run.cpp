@@ -17,6 +17,8 @@
 #include "diagnose/challenge_files.h"
 #include "ensemble/agreement.h"
 #include "ensemble/make_packings.h"
+#include "io/folder_lock.h"
+#include "io/result_folder.h"
 #include "scene/random.h"
 
 namespace mcdem {
@@ -31,6 +33,8 @@ double work_for(const ChallengeLibrary& library, std::size_t probes) {
 
 constexpr std::chrono::milliseconds pause{500};  ///< of a program that waits for the others
 
+const char* const evidence_folder = "evidence";
+const char* const findings_folder = "findings";
 fs::path claims_folder(const fs::path& out) { return out / "claims"; }
 fs::path case_file(const fs::path& folder, const OpenCase& c) { return folder / (c.folder + ".json"); }
 
@@ -44,7 +48,6 @@ public:
         if (Sha256().add(scene.text).hex() != challenge_.scene)
             throw InputError(fmt::format("{}: is not the scene that {} was made with", scene.name,
                                          (options.challenge / "challenge.json").string()));
-        for (const char* folder : {"evidence", "findings"}) make_folder(options.out / folder);
     }
 
     void all() {
@@ -194,10 +197,10 @@ private:
         };
         how.stop_wanted = options_.stop_wanted;
         how.on_evidence = [&](const Evidence& evidence) {
-            replace_file(file_of(c, "evidence"), evidence_text(evidence));
+            replace_file(file_of(c, evidence_folder), evidence_text(evidence));
         };
         how.on_findings = [&](const Findings& findings) {
-            replace_file(file_of(c, "findings"), findings_text(findings));
+            replace_file(file_of(c, findings_folder), findings_text(findings));
         };
         try {
             const Experiment experiment = read_experiment(options_.challenge / c.folder);
@@ -226,10 +229,36 @@ private:
     Claims* claims_ = nullptr;  ///< where the work is shared
 };
 
+/// What lies in the folder is looked at once those cannot come any more whom the lock keeps away.
+FolderLock lock_folder(const fs::path& out, FolderLock::Use use) {
+    FolderLock lock(out, use);
+    if (const fs::path file = file_of_a_run(out); !file.empty())
+        throw InputError(
+            fmt::format("{}: holds a run ({}): give another folder for the answers to a challenge",
+                        out.string(), file.filename().string()));
+    return lock;
+}
+
 }  // namespace
+
+void expect_sharable_challenge(const fs::path& out) {
+    expect_no_file(out);
+    if (fs::exists(out)) lock_folder(out, FolderLock::Use::shared);
+}
+
+void expect_no_challenge(const fs::path& folder) {
+    if (fs::exists(folder / evidence_folder))
+        throw InputError(folder.string() +
+                         ": holds the answers to a challenge: give another folder for a run");
+}
 
 void run_challenge(Device& device, const Scene& scene, const ChallengeRunOptions& options) {
     Running running(device, scene, options);
+    expect_no_file(options.out);
+    make_folder(options.out);
+    const FolderLock lock =
+        lock_folder(options.out, options.share ? FolderLock::Use::shared : FolderLock::Use::alone);
+    for (const char* folder : {evidence_folder, findings_folder}) make_folder(options.out / folder);
     if (!options.share) return running.all();
     try {
         running.share();

@@ -30,8 +30,16 @@ struct ChallengeRunOptions {
     bool share = false;  ///< with other programs that work on the same folder
 };
 
-/// Throws InputError, RunError or Interrupted.
+/// Throws InputError, also where a run lies in the folder or others at work there do not go with this;
+/// RunError or Interrupted.
 void run_challenge(Device& device, const Scene& scene, const ChallengeRunOptions& options);
+
+/// For those who only start others: throws InputError where run_challenge would because of what lies in the
+/// folder or is written there.
+void expect_sharable_challenge(const std::filesystem::path& out);
+
+/// Throws InputError where the answers to a challenge lie, or are made: no folder for a run.
+void expect_no_challenge(const std::filesystem::path& folder);
 
 /// The part of the cases that are diagnosed, with those under way; 1 when all are.
 double cases_done(const ChallengeRunOptions& options);

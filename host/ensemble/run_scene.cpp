@@ -3,6 +3,7 @@
 #include <chrono>
 
 #include "core/errors.h"
+#include "ensemble/challenge_run.h"
 #include "ensemble/make_packings.h"
 #include "ensemble/run_state.h"
 #include "io/csv.h"
@@ -76,8 +77,8 @@ private:
         return {more ? RunEnd::interrupted : RunEnd::done, simulation_.grain_steps(), seconds_since(start)};
     }
 
-    /// The device or the disk has failed: what was recorded since the last checkpoint can be read all the same, where
-    /// there is room for it. Resuming drops and makes it again.
+    /// The device or the disk has failed: what was recorded since the last checkpoint can be read all the
+    /// same, where there is room for it. Resuming drops and makes it again.
     void keep_what_is_recorded() noexcept {
         try {
             if (anything_new_) folder_.append_segment(pending_);
@@ -150,6 +151,7 @@ ResultFolder open_folder(const RunOptions& options) {
 
 RunSummary run_scene(Device& device, const Scene& scene, const RunOptions& options) {
     ResultFolder folder = open_folder(options);
+    expect_no_challenge(folder.path());
     if (folder.is_finished()) {
         expect_scene_of(folder.path(), scene);
         close_folder(folder.path());

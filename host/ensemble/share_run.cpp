@@ -9,6 +9,7 @@
 #include "core/errors.h"
 #include "core/make_folder.h"
 #include "ensemble/agreement.h"
+#include "ensemble/challenge_run.h"
 #include "ensemble/run_state.h"
 #include "io/checkpoint.h"
 #include "io/claims.h"
@@ -228,6 +229,7 @@ void expect_no_run_of_one(const fs::path& folder) {
 /// Keeps those away that write alone. What lies in the folder is looked at once they cannot come any more.
 FolderLock lock_for_sharing(const fs::path& folder, const Scene& scene) {
     FolderLock lock(folder, FolderLock::Use::shared);
+    expect_no_challenge(folder);
     expect_no_run_of_one(folder);
     if (is_merged(folder)) expect_scene_of(folder, scene);
     return lock;

@@ -22,12 +22,12 @@ bool lock(int descriptor, int operation) {
 /// What is in the way of one that did not get the lock, and what to do.
 const char* obstacle(int descriptor, FolderLock::Use use) {
     if (use == FolderLock::Use::shared)
-        return ": another program is writing a run there alone, which cannot be shared: wait for it, or give "
+        return ": another program is writing there alone, which cannot be shared: wait for it, or give "
                "another folder";
     const bool is_shared = lock(descriptor, LOCK_SH);
-    return is_shared ? ": other programs share a run there: wait for them, join them with --worker, or give "
+    return is_shared ? ": other programs share work there: wait for them, join them with --worker, or give "
                        "another folder"
-                     : ": another program is writing a run there: wait for it, or give another folder";
+                     : ": another program is writing there: wait for it, or give another folder";
 }
 
 }  // namespace

@@ -108,6 +108,12 @@ std::vector<fs::path> result_files(const fs::path& file_or_folder) {
     return segments;
 }
 
+fs::path file_of_a_run(const fs::path& folder) {
+    for (const auto& entry : fs::directory_iterator(folder))
+        if (belongs_to_a_run(entry.path())) return entry.path();
+    return {};
+}
+
 void expect_no_file(const fs::path& folder) {
     if (fs::exists(folder) && !fs::is_directory(folder))
         throw InputError(folder.string() + ": is a file; give a folder for the results");
@@ -117,12 +123,11 @@ ResultFolder ResultFolder::create(const fs::path& folder) {
     expect_no_file(folder);
     make_folder(folder);
     ResultFolder made(folder, FolderLock(folder, FolderLock::Use::alone));
-    for (const auto& entry : fs::directory_iterator(folder))
-        if (belongs_to_a_run(entry.path()))
-            throw InputError(
-                fmt::format("{}: holds another run ({}): give another folder, remove it, or go on with "
-                            "--resume",
-                            folder.string(), entry.path().filename().string()));
+    if (const fs::path file = file_of_a_run(folder); !file.empty())
+        throw InputError(
+            fmt::format("{}: holds another run ({}): give another folder, remove it, or go on with "
+                        "--resume",
+                        folder.string(), file.filename().string()));
     return made;
 }
 
@@ -167,8 +172,8 @@ void ResultFolder::expect_whole_segments() const {
                 segment.scans(run.recordings[r], r, ReadWhat::everything);
         }
     } catch (const InputError& error) {
-        throw InputError(fmt::format("{}; scans that are gone cannot be gone on from: run anew, into another folder",
-                                     error.what()));
+        throw InputError(fmt::format(
+            "{}; scans that are gone cannot be gone on from: run anew, into another folder", error.what()));
     }
 }
 

@@ -17,6 +17,9 @@ std::vector<std::filesystem::path> segment_files(const std::filesystem::path& fo
 /// What `read_run` reads for `file_or_folder`: the file itself, run.h5, or all segments.
 std::vector<std::filesystem::path> result_files(const std::filesystem::path& file_or_folder);
 
+/// A file of a run in the folder, of any state; an empty path where there is none.
+std::filesystem::path file_of_a_run(const std::filesystem::path& folder);
+
 /// Throws InputError for a file where the folder of a run is to be.
 void expect_no_file(const std::filesystem::path& folder);
 

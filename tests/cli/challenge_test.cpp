@@ -4,7 +4,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "cli/cli_test.h"
+#include "cli/tiny_challenge.h"
 #include "core/sha256.h"
 #include "diagnose/challenge_outside.h"
 #include "diagnose/effects.h"
@@ -15,56 +15,6 @@ namespace {
 
 using testing::HasSubstr;
 namespace fs = std::filesystem;
-using Words = std::vector<std::string>;
-
-/// 64 grains, as dense as the challenge's.
-const char* const scene_text = R"(name = "tiny"
-[box]
-size_x = 0.083
-size_y = 0.083
-[contact]
-model = "independent"
-friction_law = "mindlin"
-[packing]
-count = 64
-packing_fraction = 0.59
-[plate]
-start = 0.0835
-end = 0.0685
-speed = 0.2
-[protocol]
-stop_at_scans = false
-scans_per_stroke = 6
-relax_time = 0.1
-)";
-constexpr int cases = 7;
-
-const Words make_words{"challenge", "make",       "tiny.toml",
-                       "--out",     "challenge",  "--seed",
-                       "3",         "--effects",  "friction,force_bias",
-                       "--none",    "2",          "--per-effect",
-                       "1",         "--pairs",    "0",
-                       "--unknown", "2",          "--outside",
-                       "1",         "--packings", "2"};
-const Words run_words{"challenge",
-                      "run",
-                      "challenge",
-                      "--scene",
-                      "tiny.toml",
-                      "--library",
-                      "library.json",
-                      "--out",
-                      "answers",
-                      "--candidates",
-                      "friction,force_bias",
-                      "--library-packings",
-                      "8",
-                      "--library-replicates",
-                      "2",
-                      "--replicates",
-                      "3",
-                      "--confirmations",
-                      "2"};
 const Words score_words{"challenge", "score", "challenge", "answers", "--truth", "sealed/truth.json"};
 
 /// Bytes of all files below, by path; compressed ones unpacked.
@@ -87,12 +37,12 @@ class ChallengeTest : public testing::Test {
 protected:
     static void SetUpTestSuite() {
         folder_ = new TestFolder;
-        std::ofstream(path("tiny.toml")) << scene_text;
-        made_ = new Finished(mcdem(make_words));
+        std::ofstream(path("tiny.toml")) << tiny_scene_text;
+        made_ = new Finished(mcdem(make_challenge_words));
         fs::create_directories(path("sealed"));
         if (fs::exists(path("challenge/truth.json")))
             fs::rename(path("challenge/truth.json"), path("sealed/truth.json"));
-        ran_ = new Finished(mcdem(run_words));
+        ran_ = new Finished(mcdem(run_challenge_words));
     }
     static void TearDownTestSuite() {
         delete folder_;
@@ -232,7 +182,7 @@ TEST_F(ChallengeTest, GoesOnWhereItStopped) {
     fs::remove(path("challenge/case_0004/experiment.toml"));
     fs::remove(path("challenge/case_0004/plate.csv.gz"));
     fs::last_write_time(path("challenge/case_0002/plate.csv.gz"), {});
-    const Finished again = mcdem(make_words);
+    const Finished again = mcdem(make_challenge_words);
     EXPECT_EQ(again.exit_code, 0) << again.err;
     EXPECT_EQ(again.out, made_->out);
     EXPECT_EQ(fs::last_write_time(path("challenge/case_0002/plate.csv.gz")), fs::file_time_type{});
@@ -240,19 +190,19 @@ TEST_F(ChallengeTest, GoesOnWhereItStopped) {
     EXPECT_EQ(contents_of(path("challenge")), before);
 
     const std::string kept = bytes_of_file(path("answers/case_0001.json"));
-    EXPECT_EQ(mcdem(run_words).exit_code, 0);
+    EXPECT_EQ(mcdem(run_challenge_words).exit_code, 0);
     EXPECT_EQ(bytes_of_file(path("answers/case_0001.json")), kept);  // its seconds would differ
 }
 
 TEST_F(ChallengeTest, RefusesAFolderOfAnotherChallenge) {
-    auto words = make_words;
+    auto words = make_challenge_words;
     words[6] = "4";
     words.insert(words.end(), {"--truth", "sealed/truth.json"});
     expect_bad_input(mcdem(words), "is of another challenge");
 }
 
 TEST_F(ChallengeTest, RefusesAnotherScene) {
-    auto words = run_words;
+    auto words = run_challenge_words;
     words.insert(words.end(), {"--set", "grains.friction=0.1"});
     expect_bad_input(mcdem(words), "is not the scene that");
 }

@@ -93,7 +93,7 @@ TEST_F(SharingTest, WhereAWorkerIsAtWorkNoneWritesAlone) {
     expect_done(mcdem(run_words("alone")));
     const auto worker = stopped_worker("shared");
     expect_bad_input(mcdem(run_words("shared", {"--set", "grains.friction=0.3"})),
-                     "other programs share a run there: wait for them, join them with --worker");
+                     "other programs share work there: wait for them, join them with --worker");
     worker->send(SIGCONT);
     expect_done(worker->wait());
     EXPECT_TRUE(bytes_of_file(path("shared/run.h5")) == bytes_of_file(path("alone/run.h5")));
@@ -102,7 +102,7 @@ TEST_F(SharingTest, WhereAWorkerIsAtWorkNoneWritesAlone) {
 TEST_F(SharingTest, WhereOneProgramWritesNoWorkerJoins) {
     const auto one = ResultFolder::create(path("out"));  // as of a run before its first checkpoint
     for (const char* how : {"--worker", "--device=all"})
-        expect_bad_input(mcdem(run_words("out", {how})), "another program is writing a run there alone");
+        expect_bad_input(mcdem(run_words("out", {how})), "another program is writing there alone");
     EXPECT_FALSE(fs::exists(path("out/parts")));
 }
 

@@ -168,7 +168,7 @@ TEST_F(ShareRunTest, OtherRunsAreRefused) {
 }
 
 TEST_F(ShareRunTest, ARunOfOneProgramUnderWayIsNotJoined) {
-    const std::string alone = "another program is writing a run there alone";
+    const std::string alone = "another program is writing there alone";
     std::string joining, looking;
     EXPECT_EQ(run_alone("one", Start::fresh,
                         [&] {
@@ -195,8 +195,8 @@ TEST_F(ShareRunTest, WhereProgramsShareARunNoneWritesAlone) {
         EXPECT_EQ(problem_of([&] { expect_sharable(folder("many"), scene_); }), "none");
     };
     EXPECT_EQ(share_run(device_, scene_, options), RunEnd::done);
-    EXPECT_THAT(problems, testing::ElementsAre(HasSubstr("other programs share a run there"),
-                                               HasSubstr("other programs share a run there")));
+    EXPECT_THAT(problems, testing::ElementsAre(HasSubstr("other programs share work there"),
+                                               HasSubstr("other programs share work there")));
     expect_like_whole("many");
 }
 

@@ -1,7 +1,10 @@
 // An OpenCL layer (cl_layer.h; the loader takes it from OPENCL_LAYERS) whose device stops answering: after
-// MCDEM_TEST_KERNELS launches nothing more is launched, read, written or waited for.
+// MCDEM_TEST_KERNELS launches nothing more is launched, read, written or waited for. Of several processes
+// only one's, where MCDEM_TEST_VICTIM names a file: that of the one that launches first, and makes it.
 #define CL_TARGET_OPENCL_VERSION 300
 #include <CL/cl_layer.h>
+#include <fcntl.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <cstdlib>
@@ -12,12 +15,21 @@ namespace {
 cl_icd_dispatch below, layer;
 std::atomic<long> launches_left;
 
+bool is_victim() {
+    const char* file = std::getenv("MCDEM_TEST_VICTIM");
+    if (!file) return true;
+    const int made = open(file, O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+    if (made >= 0) close(made);
+    return made >= 0;
+}
+
 bool gone() { return launches_left.load() < 0; }
 
 cl_int launch(cl_command_queue queue, cl_kernel kernel, cl_uint dimensions, const size_t* offset,
               const size_t* global, const size_t* local, cl_uint events, const cl_event* after,
               cl_event* event) {
-    if (launches_left.fetch_sub(1) <= 0) return CL_DEVICE_NOT_AVAILABLE;
+    static const bool vanishes = is_victim();
+    if (vanishes && launches_left.fetch_sub(1) <= 0) return CL_DEVICE_NOT_AVAILABLE;
     return below.clEnqueueNDRangeKernel(queue, kernel, dimensions, offset, global, local, events, after,
                                         event);
 }

@@ -1,16 +1,22 @@
 """Several devices of one machine: `--device all` uses them all, and the result is that of one.
 
-devices_test.py MCDEM; PoCL stands for a machine with two devices (POCL_DEVICES).
+devices_test.py MCDEM VANISHING_DEVICE; the layer of tests/layers makes devices vanish; PoCL stands for a machine with two devices (POCL_DEVICES).
 """
+import pathlib
 import sys
 
 import shared_runs
-from shared_runs import PARTS, TWO_DEVICES, command_of, finish, kill_a_worker, skip
+from shared_runs import PARTS, SWEEP, TWO_DEVICES, command_of, finish, kill_a_worker, skip
 
 
-def all_devices(place, out, more=()):
+def all_devices(place, out, more=(), environment=None):
     words = [place.mcdem, *command_of("sweep.toml", out), "--device", "all", *PARTS, *more]
-    return place.start(words, TWO_DEVICES)
+    return place.start(words, {**TWO_DEVICES, **(environment or {})})
+
+
+def vanishing():
+    """An environment in which a device stops answering in the middle of a part: it takes more than twice the launches."""
+    return {"OPENCL_LAYERS": str(pathlib.Path(sys.argv[2]).resolve()), "MCDEM_TEST_KERNELS": "6000"}
 
 
 def uses_all_of_them(place):
@@ -44,6 +50,29 @@ def outlives_a_killed_worker(place):
     place.expect_like_alone("both")
 
 
+def outlives_a_vanished_device(place):
+    """One of two devices stops answering: its worker says so, the other does its part."""
+    place.run_alone()
+    said = finish(all_devices(place, "both", environment={**vanishing(), "MCDEM_TEST_VICTIM": str(place.path / "victim")}))
+    assert said.count("the device or its driver has failed") == 1 and "other workers go on with it" in said, said
+    assert "8 of 8 replicas done" in said, said
+    place.expect_like_alone("both")
+
+
+def goes_on_when_all_devices_vanished(place):
+    """Again and again both stop answering: the same command goes on with what was done."""
+    (place.path / "sweep.toml").write_text(SWEEP.replace("checkpoint_minutes = 0.002", "checkpoint_minutes = 1e-6"))
+    place.run_alone()
+    for vanished in range(30):
+        process = all_devices(place, "both", environment=vanishing())
+        said = finish(process, exit_codes=(0, 1))
+        if process.returncode == 0:
+            break
+        assert "the device or its driver has failed" in said and "the same command goes on" in said, said
+    assert vanished >= 2 and "8 of 8 replicas done" in said, f"{vanished}: {said}"
+    place.expect_like_alone("both")
+
+
 def goes_on_as_one(place):
     """All are interrupted; one process alone goes on."""
     place.run_alone()
@@ -62,7 +91,8 @@ def main():
         two = shared_runs.has_two_devices(place)
     if not two:
         skip("this OpenCL has no two devices alike (PoCL makes them: POCL_DEVICES)")
-    shared_runs.run_tests([uses_all_of_them, refuses_another_run, outlives_a_killed_worker, goes_on_as_one])
+    shared_runs.run_tests([uses_all_of_them, refuses_another_run, outlives_a_killed_worker, outlives_a_vanished_device,
+                           goes_on_when_all_devices_vanished, goes_on_as_one])
 
 
 main()

@@ -2,10 +2,10 @@
 
 mpi_test.py MCDEM; skipped (77) where MPI is missing.
 """
-import json
 import sys
 import threading
 
+import shared_challenge
 import shared_runs
 from shared_runs import PARTS, TWO_DEVICES, PartsSeen, command_of, finish, kill_a_worker, program, skip, wait_until
 
@@ -67,72 +67,13 @@ def ranks_take_the_devices_in_turn(place):
     place.expect_like_alone("ranks")
 
 
-TINY = """name = "tiny"
-[box]
-size_x = 0.083
-size_y = 0.083
-[contact]
-model = "independent"
-friction_law = "mindlin"
-[packing]
-count = 64
-packing_fraction = 0.59
-[plate]
-start = 0.0835
-end = 0.0685
-speed = 0.2
-[protocol]
-stop_at_scans = false
-scans_per_stroke = 6
-relax_time = 0.1
-"""
-
-
-def challenge_words(name):
-    return ["challenge", "run", "challenge", "--scene", "tiny.toml", "--library", f"{name}.json", "--out", name,
-            "--candidates", "friction,force_bias", "--library-packings", "8", "--library-replicates", "2",
-            "--replicates", "3", "--confirmations", "2"]
-
-
-def diagnoses(folder):
-    """All files of a challenge's answers but the simulations; without the time that each diagnosis took."""
-    found = {}
-    for file in sorted(folder.rglob("*.json")):
-        text = file.read_text()
-        if file.parent == folder and file.name.startswith("case"):
-            found[file.name] = {key: value for key, value in json.loads(text).items() if key != "seconds"}
-        else:
-            found[str(file.relative_to(folder))] = text
-    found["simulations"] = {file.name: file.read_bytes() for file in sorted((folder / "simulations").iterdir())}
-    return found
-
-
 def a_challenge_is_shared(place):
     """A rank is killed while the cases are diagnosed; the answers are those of one process."""
-    (place.path / "tiny.toml").write_text(TINY)
-    place.run([place.mcdem, "challenge", "make", "tiny.toml", "--out", "challenge", "--truth", "truth.json", "--seed",
-               "3", "--effects", "friction,force_bias", "--none", "3", "--per-effect", "1", "--pairs", "0", "--unknown",
-               "0", "--outside", "0", "--packings", "2"])
-    place.run([place.mcdem, *challenge_words("alone")])
-    process = mpirun(place, challenge_words("ranks"), SURVIVE)
-    claims = place.path / "ranks/claims"
-
-    def victim():
-        for claim in claims.glob("case*.claim-*"):
-            text = json.loads(claim.read_text())
-            if text["state"] == "held":
-                return text["process"]
-        return None
-
-    import os
-    import signal
-    os.kill(wait_until(victim, "a case that is diagnosed"), signal.SIGKILL)
+    shared_challenge.run_alone(place)
+    process = mpirun(place, shared_challenge.command_of("ranks"), SURVIVE)
+    shared_challenge.kill_a_worker(place, "ranks")
     finish(process)
-    expected, got = (diagnoses(place.path / name) for name in ("alone", "ranks"))
-    assert expected.keys() == got.keys(), expected.keys() ^ got.keys()
-    differing = [name for name in expected if expected[name] != got[name]]
-    assert len(expected) > 10 and not differing, differing
-    assert not claims.exists()
+    shared_challenge.expect_like_alone(place, "ranks")
 
 
 def main():

@@ -1,112 +1,24 @@
-"""Runs as Slurm job arrays, on a real Slurm of one node that this test starts: a worker killed in the middle, names that
-a shell would stumble over, the bytes of one process.
+"""Runs and challenges as Slurm job arrays, on a real Slurm of two nodes that this test starts: a worker killed in the
+middle, nodes lost, names that a shell would stumble over, the bytes of one process.
 
 slurm_test.py MCDEM; skipped (77) where a program is missing or this is not root.
 """
-import contextlib
 import os
 import re
-import socket
-import subprocess
-import tempfile
-import pathlib
+import signal
 
+import own_slurm
+import shared_challenge
 import shared_runs
-from shared_runs import PARTS, PartsSeen, command_of, finish, kill_a_worker, program, skip, wait_until
+from shared_runs import PARTS, PartsSeen, command_of, finish, holder_at_work, kill_a_worker, wait_until
 
-CONFIGURATION = """ClusterName=test
-SlurmctldHost={host}(127.0.0.1)
-SlurmctldPort={ports[0]}
-SlurmdPort={ports[1]}
-AuthType=auth/munge
-AuthInfo=socket={folder}/munge.socket
-SlurmUser=root
-SlurmdUser=root
-StateSaveLocation={folder}/state
-SlurmdSpoolDir={folder}/spool
-SlurmctldPidFile={folder}/slurmctld.pid
-SlurmdPidFile={folder}/slurmd.pid
-SlurmdParameters=config_overrides
-ProctrackType=proctrack/linuxproc
-TaskPlugin=task/none
-SelectType=select/cons_tres
-SelectTypeParameters=CR_Core
-SchedulerParameters=batch_sched_delay=0,sched_interval=1
-ReturnToService=2
-MailProg=/bin/true
-NodeName={host} NodeAddr=127.0.0.1 CPUs=4 State=UNKNOWN
-PartitionName=short Nodes={host} Default=NO MaxTime=INFINITE State=UP
-PartitionName=other Nodes={host} Default=YES MaxTime=INFINITE State=DOWN
-"""
-SLURM = {}  # what it takes to speak to it
+cluster = own_slurm.Cluster()
 ODD = "out $(touch hacked) `touch hacked` 'it''s' %j; touch hacked"
-SUBMIT = ["--slurm", "--slurm-tasks", "3", "--slurm-partition", "short", "--slurm-time", "10", *PARTS]
-
-
-def free_ports(count):
-    with contextlib.ExitStack() as open_sockets:
-        sockets = [open_sockets.enter_context(socket.socket()) for _ in range(count)]
-        for one in sockets:
-            one.bind(("127.0.0.1", 0))
-        return [one.getsockname()[1] for one in sockets]
-
-
-@contextlib.contextmanager
-def daemon(words, log, environment):
-    with open(log, "w") as out:
-        process = subprocess.Popen(words, stdout=out, stderr=out, env=environment)
-    try:
-        yield process
-    finally:
-        process.terminate()
-        try:
-            process.wait(timeout=20)
-        except subprocess.TimeoutExpired:
-            process.kill()
-            process.wait()
-
-
-@contextlib.contextmanager
-def slurm():
-    """munged, slurmctld and slurmd of a cluster of this machine alone, in a folder of their own."""
-    programs = [program(name, package) for name, package in
-                (("munged", "munge"), ("slurmctld", "slurm-wlm"), ("slurmd", "slurm-wlm"), ("sbatch", "slurm-wlm"))]
-    if os.geteuid() != 0:
-        skip("only root can start a Slurm of its own")
-    with tempfile.TemporaryDirectory(prefix="mcdem-slurm-") as name, contextlib.ExitStack() as running:
-        folder = pathlib.Path(name)
-        folder.chmod(0o755)  # munge wants its socket to be reached
-        for part in ("state", "spool"):
-            (folder / part).mkdir()
-        (folder / "key").write_bytes(os.urandom(1024))
-        (folder / "key").chmod(0o600)
-        host = socket.gethostname().split(".")[0]
-        (folder / "slurm.conf").write_text(CONFIGURATION.format(folder=folder, host=host, ports=free_ports(2)))
-        SLURM["SLURM_CONF"] = str(folder / "slurm.conf")
-        environment = {**os.environ, **SLURM}
-        start = lambda words: running.enter_context(
-            daemon(words, folder / f"{pathlib.Path(words[0]).name}.log", environment))
-        start([programs[0], "--foreground", "--force", f"--key-file={folder}/key", f"--socket={folder}/munge.socket",
-               f"--pid-file={folder}/munged.pid", f"--log-file={folder}/munged.log", f"--seed-file={folder}/seed"])
-        wait_until((folder / "munge.socket").exists, "munge")
-        start([programs[1], "-D"])
-        start([programs[2], "-D"])
-        ready = lambda: subprocess.run(["sinfo", "--noheader", "--format=%T", "--partition=short"], env=environment,
-                                       capture_output=True, text=True).stdout.strip() == "idle"
-        try:
-            wait_until(ready, "an idle node")
-        except AssertionError:
-            for log in folder.glob("*.log"):
-                print(f"--- {log.name}\n{log.read_text()[-3000:]}")
-            raise
-        yield
-        # Jobs whose Slurm is gone would wait for it for good.
-        wait_until(lambda: not subprocess.run(["squeue", "--noheader"], env=environment, capture_output=True).stdout.strip(),
-                   "the last job to end")
+SUBMIT = ["--slurm", "--slurm-tasks", "3", "--slurm-partition", "short", "--slurm-time", "10"]
 
 
 def run_words(place, out, more=()):
-    return place.start([place.mcdem, *command_of("sweep.toml", out), *SUBMIT, *more], SLURM)
+    return place.start([place.mcdem, *command_of("sweep.toml", out), *SUBMIT, *PARTS, *more], cluster.environment)
 
 
 def outlives_a_killed_worker(place):
@@ -133,8 +45,8 @@ def goes_on_after_a_cancelled_job(place):
     wait_until(lambda: list(parts.folder.glob("*.h5")), "a part")
     parts.look()
     number = (place.path / "jobs/slurm/job").read_text().strip()
-    place.run(["scancel", "--signal=KILL", "--full", number], SLURM)
-    place.run(["scancel", number], SLURM)
+    place.run(["scancel", "--signal=KILL", "--full", number], cluster.environment)
+    place.run(["scancel", number], cluster.environment)
     said = finish(process, exit_codes=(1,))
     assert f"job {number} has ended before the work was done" in said, said
     process = run_words(place, "jobs")
@@ -154,17 +66,60 @@ def is_not_submitted_twice(place):
     place.expect_like_alone("jobs")
 
 
+def stopped_worker(place, out):
+    """One in the middle of a part, which is not done before it is lost."""
+    worker = wait_until(lambda: holder_at_work(place.path / out / "parts"), "a worker with a checkpoint")
+    os.kill(worker, signal.SIGSTOP)
+    return worker
+
+
+def outlives_a_lost_node(place):
+    """The power fails on the node of a worker: those on the other do its part."""
+    place.run_alone()
+    process = run_words(place, "jobs")
+    node = cluster.node_of(stopped_worker(place, "jobs"))
+    cluster.lose(node)
+    said = finish(process)
+    assert "8 of 8 replicas done" in said, said
+    place.expect_like_alone("jobs")
+    cluster.bring_back(node)
+
+
+def outlives_the_loss_of_all_nodes(place):
+    """Slurm queues their tasks again, and the command that waits goes on waiting."""
+    place.run_alone()
+    process = run_words(place, "jobs")
+    stopped_worker(place, "jobs")
+    cluster.lose(*own_slurm.NODES)
+    assert not (place.path / "jobs/run.h5").exists()
+    cluster.bring_back(*own_slurm.NODES)
+    said = finish(process)
+    assert "8 of 8 replicas done" in said, said
+    place.expect_like_alone("jobs")
+
+
 def says_what_slurm_refuses(place):
     """A partition that is not there: exit code 2, and nothing waits."""
     said = finish(place.start([place.mcdem, *command_of("sweep.toml", "jobs"), "--slurm", "--slurm-partition", "none"],
-                              SLURM), exit_codes=(2,))
+                              cluster.environment), exit_codes=(2,))
     assert "sbatch has refused the job" in said and "nvalid partition" in said, said
 
 
+def a_challenge_is_shared(place):
+    """A task is killed while the cases are diagnosed; the answers are those of one process."""
+    shared_challenge.run_alone(place)
+    process = place.start([place.mcdem, *shared_challenge.command_of("jobs"), *SUBMIT], cluster.environment)
+    shared_challenge.kill_a_worker(place, "jobs")
+    said = finish(process)
+    assert "3 workers" in said and "all cases are diagnosed" in said, said
+    shared_challenge.expect_like_alone(place, "jobs")
+
+
 def main():
-    with slurm():
+    with cluster.running():
         shared_runs.run_tests([outlives_a_killed_worker, goes_on_after_a_cancelled_job, is_not_submitted_twice,
-                               says_what_slurm_refuses])
+                               outlives_a_lost_node, outlives_the_loss_of_all_nodes, says_what_slurm_refuses,
+                               a_challenge_is_shared])
 
 
 main()

@@ -1,0 +1,75 @@
+"""What the tests of a challenge that many work at share: a small one, its answers by one process, and a worker killed."""
+import json
+import os
+import signal
+
+from shared_runs import wait_until
+
+TINY = """name = "tiny"
+[box]
+size_x = 0.083
+size_y = 0.083
+[contact]
+model = "independent"
+friction_law = "mindlin"
+[packing]
+count = 64
+packing_fraction = 0.59
+[plate]
+start = 0.0835
+end = 0.0685
+speed = 0.2
+[protocol]
+stop_at_scans = false
+scans_per_stroke = 6
+relax_time = 0.1
+"""
+
+
+def command_of(out):
+    return ["challenge", "run", "challenge", "--scene", "tiny.toml", "--library", f"{out}.json", "--out", out,
+            "--candidates", "friction,force_bias", "--library-packings", "8", "--library-replicates", "2",
+            "--replicates", "3", "--confirmations", "2"]
+
+
+def run_alone(place):
+    """Makes the challenge, and answers it."""
+    (place.path / "tiny.toml").write_text(TINY)
+    place.run([place.mcdem, "challenge", "make", "tiny.toml", "--out", "challenge", "--truth", "truth.json", "--seed",
+               "3", "--effects", "friction,force_bias", "--none", "3", "--per-effect", "1", "--pairs", "0", "--unknown",
+               "0", "--outside", "0", "--packings", "2"])
+    place.run([place.mcdem, *command_of("alone")])
+
+
+def kill_a_worker(place, out):
+    """kill -9 of one that diagnoses a case."""
+    def victim():
+        for file in (place.path / out / "claims").glob("case*.claim-*"):
+            claim = json.loads(file.read_text())
+            if claim["state"] == "held":
+                return claim["process"]
+        return None
+
+    os.kill(wait_until(victim, "a case that is diagnosed"), signal.SIGKILL)
+
+
+def answers(folder):
+    """All files of a challenge's answers; of the diagnoses without the time that each took."""
+    found = {}
+    for file in sorted(folder.rglob("*.json")):
+        text = file.read_text()
+        if file.parent == folder and file.name.startswith("case"):
+            found[file.name] = {key: value for key, value in json.loads(text).items() if key != "seconds"}
+        else:
+            found[str(file.relative_to(folder))] = text
+    found["simulations"] = {file.name: file.read_bytes() for file in sorted((folder / "simulations").iterdir())}
+    return found
+
+
+def expect_like_alone(place, out):
+    expected, got = (answers(place.path / name) for name in ("alone", out))
+    assert expected.keys() == got.keys(), expected.keys() ^ got.keys()
+    differing = [name for name in expected if expected[name] != got[name]]
+    assert len(expected) > 10 and not differing, differing
+    # The last worker may end a little later than who waits for the answers.
+    wait_until(lambda: not (place.path / out / "claims").exists(), "an end of the claims")
