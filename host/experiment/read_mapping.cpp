@@ -48,7 +48,8 @@ private:
             for (const auto& element : *list)
                 if (const auto* text = element.as_string()) words.push_back(text->get());
         const bool all = node.is_string() || (node.is_array() && words.size() == node.as_array()->size());
-        if (!all || words.empty() || std::ranges::any_of(words, &std::string::empty)) {
+        if (!all || words.empty() ||
+            std::ranges::any_of(words, [](const std::string& word) { return word.empty() || word == "-"; })) {
             wrong(node, fmt::format("{} must be {}, got something else", mcdem::quoted(key), choices));
             return {};
         }
@@ -97,8 +98,11 @@ private:
     void read_entry(const MappingKey& key, const toml::node& node, MappedTable& table) {
         Guess guess{words_of(key.name, node), Sure::stated, "", static_cast<long>(node.source().begin.line)};
         if (guess.words.empty()) return;
-        if (guess.words.size() > 1 && key.kind != MappingKey::Kind::columns)
+        if (guess.words.size() > 1 && key.kind != MappingKey::Kind::quantities)
             return wrong(node, fmt::format("{} must be one text, got {}", key.name, guess.words.size()));
+        if (key.kind == MappingKey::Kind::column && guess.word().starts_with('-'))
+            return wrong(node, fmt::format("{} must be a column without a sign, got {}", key.name,
+                                           mcdem::quoted(guess.word())));
         if (key.kind == MappingKey::Kind::number && !to_number(guess.word()))
             return wrong(node, fmt::format("{} must be a number in quotes, got {}", key.name,
                                            mcdem::quoted(guess.word())));
