@@ -27,21 +27,28 @@ int row_of(const PlateRows& plate, const GrainFrames& grains, std::size_t frame)
     return row < static_cast<int>(plate.scans.size()) ? row : -1;
 }
 
-/// A plate below 0 counts from somewhere else than the floor: perhaps from where it would rest on the grains.
+/// A plate below 0 counts from somewhere else than the floor, and so may one that counts downwards and does
+/// not rest on the grains at its lowest.
 void guess_plate_origin(MappedTable& map, const PlateRows& plate, const GrainFrames& grains,
                         const std::string& grains_unit) {
+    constexpr double near = 0.15;  // of the height
+    if (!map.has("plate_z")) return;
     const auto lowest = std::ranges::min_element(plate.scans, {}, &Scan::plate_z);
-    if (!map.has("plate_z") || lowest->plate_z > 0) return;
     double top = 0;
     for (std::size_t f = 0; f < grains.keys.size(); ++f)
         if (row_of(plate, grains, f) == lowest - plate.scans.begin()) top = grains.top(f);
-    const double unit = length_factor(map.word("length_unit", grains_unit)),
-                 sign = signed_column(map.word("plate_z", "")).sign;
+    const std::string word = map.word("plate_z", "");
+    const auto [sign, column] = signed_column(word);
+    const bool rests =
+        top > 0 &&
+        !fitting_units(length_units, length_factor, lowest->plate_z, top, 1 - near, 1 + near).empty();
+    if (lowest->plate_z > 0 && (sign > 0 || rests)) return;
+    const double unit = length_factor(map.word("length_unit", grains_unit));
     map.entries["origin_z"] = guess(
         top > 0 ? fmt::format("{:.6g}", sign * (lowest->plate_z - top / unit)) : "0", Sure::unclear,
         fmt::format(
             "counted from 0 the plate would be at {:.4g} at the lowest: where is the floor, as {} counts?",
-            lowest->plate_z, signed_column(map.word("plate_z", "")).name));
+            lowest->plate_z, column));
 }
 
 void guess_height(ImportTable& table, const PlateRows& plate, const GrainFrames& grains, double plate_start) {

@@ -78,6 +78,11 @@ TEST_F(UpwardsTest, OneTableMayBeDownwardsBesideOthersThatAreNot) {
     EXPECT_EQ(of(tables, Role::plate).word("plate_z", ""), "-Hoehe [mm]");
     EXPECT_THAT(unclear(tables), IsEmpty());
     expect_truth(import_tables(tables, known_).experiment.recording);
+    EXPECT_THAT(unclear(guess_tables({write_downwards(0, {"plate"})[0]}, known_)),
+                ElementsAre(HasSubstr("where is the floor, as Hoehe [mm] counts?")))
+        << "without grains";
+    EXPECT_THAT(unclear(guess_tables(write_downwards(-0.03, {"plate"}), known_)),
+                Contains(HasSubstr("origin_z must be confirmed")));
     tables = guess_tables(write_downwards(0, {"contacts"}), known_);
     EXPECT_EQ(of(tables, Role::contacts).word("fz", ""), "-fz [mN]");
     EXPECT_EQ(of(tables, Role::contacts).word("z", ""), "-z [mm]");
