@@ -48,8 +48,7 @@ private:
             for (const auto& element : *list)
                 if (const auto* text = element.as_string()) words.push_back(text->get());
         const bool all = node.is_string() || (node.is_array() && words.size() == node.as_array()->size());
-        if (!all || words.empty() ||
-            std::ranges::any_of(words, [](const std::string& word) { return word.empty() || word == "-"; })) {
+        if (!all || words.empty() || std::ranges::any_of(words, &std::string::empty)) {
             wrong(node, fmt::format("{} must be {}, got something else", mcdem::quoted(key), choices));
             return {};
         }
@@ -100,6 +99,10 @@ private:
         if (guess.words.empty()) return;
         if (guess.words.size() > 1 && key.kind != MappingKey::Kind::quantities)
             return wrong(node, fmt::format("{} must be one text, got {}", key.name, guess.words.size()));
+        const bool is_quantity =
+            key.kind == MappingKey::Kind::quantity || key.kind == MappingKey::Kind::quantities;
+        if (is_quantity && std::ranges::find(guess.words, "-") != guess.words.end())
+            return wrong(node, fmt::format("{} must be a column, got a sign only", key.name));
         if (key.kind == MappingKey::Kind::column && guess.word().starts_with('-'))
             return wrong(node, fmt::format("{} must be a column without a sign, got {}", key.name,
                                            mcdem::quoted(guess.word())));

@@ -138,7 +138,8 @@ TEST_F(UpwardsTest, SignsStandBeforeColumnsOfQuantitiesOnly) {
     EXPECT_THAT(problems(grains + "radius = \"-r\"\n"),
                 ElementsAre("m:6: radius must be a column without a sign, got \"-r\""));
     EXPECT_THAT(problems(grains + "grain = \"-id\"\n"), SizeIs(1));
-    EXPECT_THAT(problems(grains + "z = \"-\"\n"), SizeIs(1));
+    EXPECT_THAT(problems(grains + "z = \"-\"\n"), ElementsAre("m:6: z must be a column, got a sign only"));
+    EXPECT_THAT(problems("role = \"plate\"\nforce_sign = \"-\"\n"), IsEmpty());
 }
 
 TEST_F(UpwardsTest, WallsOfATurnedAxisMustBeNamed) {
