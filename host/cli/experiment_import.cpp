@@ -234,6 +234,7 @@ void add_experiment_import(CLI::App& experiment) {
         "are to be corrected, and the import repeated with --mapping. Tables given beside --mapping take the "
         "place of\n"
         "those it names: one mapping serves all experiments of a laboratory. The box must be given.\n"
+        "z is upwards: in the mapping a minus before a column's name turns it round, z = \"-depth\".\n"
         "Examples:\n"
         "  mcdem experiment import data/plate.csv data/grains.csv data/contacts.csv --set 'box.size=[0.165, "
         "0.166]' \\\n"

@@ -30,7 +30,9 @@ constexpr Word grain_words[] = {
      " grain id particle label index korn teilchen nr no number atom particleid grainid bead beadid "},
     {"x", " x xc cx posx xpos centroidx xcentroid centerx xcenter xu px positionx "},
     {"y", " y yc cy posy ypos centroidy ycentroid centery ycenter yu py positiony "},
-    {"z", " z zc cz posz zpos centroidz zcentroid centerz zcenter zu pz positionz "},
+    {"z",
+     " z zc cz posz zpos centroidz zcentroid centerz zcenter zu pz positionz depth tiefe profondeur zdown "
+     "zdownwards "},
     {"diameter", " diameter d dia diam durchmesser diametre "},
     {"radius", " radius r rad radii halbmesser rayon "},
 };
@@ -44,7 +46,7 @@ constexpr Word contact_words[] = {
      "neighbor nachbar other contactwith "},
     {"x", " x xc cx px contactx xcontact cpx pointx "},
     {"y", " y yc cy py contacty ycontact cpy pointy "},
-    {"z", " z zc cz pz contactz zcontact cpz pointz "},
+    {"z", " z zc cz pz contactz zcontact cpz pointz depth tiefe profondeur zdown zdownwards "},
     {"fx", " fx forcex xforce f1 kraftx ffx fcx "},
     {"fy", " fy forcey yforce f2 krafty ffy fcy "},
     {"fz", " fz forcez zforce f3 kraftz ffz fcz "},

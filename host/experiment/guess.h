@@ -14,6 +14,12 @@ inline Guess guess(std::string word, Sure sure, std::string why) {
     return {{std::move(word)}, sure, std::move(why), 0};
 }
 
+/// The entry with every column counting the other way.
+inline Guess turned(Guess guess) {
+    for (std::string& word : guess.words) word = word.starts_with('-') ? word.substr(1) : "-" + word;
+    return guess;
+}
+
 /// Role and columns by the names of the columns; units that names state are put into length_unit and
 /// force_unit.
 void guess_by_names(ImportTable& table);
@@ -24,6 +30,10 @@ void guess_contacts_by_values(ImportTable& table, const GrainFrames& grains);
 /// A plate's table: a few columns without names, or unclear.
 void guess_plate_by_values(ImportTable& table);
 
+/// Which way z counts in the tables of grains: turned round where that is sure, unclear where it may be.
+void guess_grains_upwards(std::vector<ImportTable>& tables);
+/// The same of a plate's height or displacement, by its rows as they stand.
+void guess_plate_downwards(MappedTable& map, const std::vector<Scan>& scans);
 /// Unit, origin, diameter or radius of a table of grains.
 void guess_grain_lengths(ImportTable& table, const Experiment& known);
 /// Numbers, walls, sides, on which of the two a force is, units.
@@ -32,7 +42,7 @@ void guess_contact_meaning(ImportTable& table, const GrainFrames& grains, const 
 std::set<std::string> strangers(const ImportTable& table, const GrainFrames& grains, long offset,
                                 std::size_t most, std::string_view key = "");
 /// Names these walls, by their words or by the way of their forces.
-void set_walls(ImportTable& table, const std::set<std::string>& names);
+void set_walls(ImportTable& table, const std::set<std::string>& names, const GrainFrames& grains);
 /// Walls that only have a number: where nearly all their forces point one way, that one. Unclear where the
 /// grains are not at the wall, for then a grain may be missing.
 void guess_walls(ImportTable& table, const ContactFrames& frames, const GrainFrames& grains, const Box& box);

@@ -65,7 +65,7 @@ void guess_offset(ImportTable& table, const GrainFrames& grains) {
         trial.map.entries["id_offset"] = guess(std::to_string(offset), Sure::stated, "");
         const auto others = strangers(trial, grains, offset, most_rows);
         if (others.size() > 12) continue;  // walls are few
-        set_walls(trial, others);
+        set_walls(trial, others, grains);
         const ContactFrames frames = read(trial, grains);
         long touching = 0, known = 0;
         Places(table, frames, grains).pairs([&](const Contact&, const Vec3& line, double a, double b) {
@@ -84,7 +84,7 @@ void guess_offset(ImportTable& table, const GrainFrames& grains) {
               pairs ? fmt::format("{:.0f} % of the pairs touch then{}", 100 * most,
                                   most > 0.9 ? "" : ": numbers of grains, frames or columns may be others")
                     : "no pairs to tell it by");
-    set_walls(table, strangers(table, grains, best, all_rows));
+    set_walls(table, strangers(table, grains, best, all_rows), grains);
     if (table.map.walls.size() > 6)
         table.map.entries["partner"] =
             guess(table.map.word("partner", ""), Sure::unclear, "more than six of its numbers are no grains");
@@ -114,8 +114,35 @@ double outward(const Places& places, const Box& box) {
     return count > 0 ? walls / count : 0;
 }
 
+/// Forces lie along the lines of centres where fz counts the way that it should.
+void guess_force_upwards(ImportTable& table, const GrainFrames& grains, const Box& box) {
+    constexpr double clear = 0.2;
+    ImportTable other = table;
+    Guess &fz = table.map.entries["fz"], &fz_turned = other.map.entries["fz"];
+    fz_turned = turned(fz);
+    const auto aligned = [&](const ImportTable& trial) {
+        const ContactFrames frames = read(trial, grains);
+        return std::abs(outward(Places(trial, frames, grains), box));
+    };
+    const double as_it_is = aligned(table), other_way = aligned(other);
+    if (std::abs(as_it_is - other_way) < clear) {
+        if (grains.sign.z() > 0) return;
+        fz = fz_turned;
+        fz.sure = Sure::unclear;
+        fz.why = "z of the grains is downwards: are the forces too? If not, remove the -";
+    } else if (other_way > as_it_is) {
+        const Sure before = fz.sure;
+        fz = fz_turned;
+        fz.sure = before == Sure::unclear ? Sure::unclear : Sure::sure;
+        fz.why += fmt::format(
+            "; the other way, for so forces lie along the lines of centres (mean cosine {:.2f}, else {:.2f})",
+            other_way, as_it_is);
+    }
+}
+
 void guess_force_on(ImportTable& table, const GrainFrames& grains, const Box& box) {
-    if (!table.map.has("fx")) return;
+    if (!table.map.has("fx") || !table.map.has("fy") || !table.map.has("fz")) return;
+    guess_force_upwards(table, grains, box);
     const ContactFrames frames = read(table, grains);
     const double sign = outward(Places(table, frames, grains), box);
     table.map.entries["force_on"] =
@@ -141,10 +168,8 @@ void guess_sides(ImportTable& table, const ContactFrames& frames) {
               fmt::format("{} of {} pairs are there from either side", 2 * twice, pairs));
 }
 
-/// The unit in which contact points lie at the surfaces of their grains.
-void guess_point_unit(ImportTable& table, const GrainFrames& grains) {
-    if (!table.map.has("x")) return;
-    const Guess* named = table.map.find("length_unit");
+/// The units in which contact points lie at the surfaces of their grains.
+std::vector<std::string> point_units(const ImportTable& table, const GrainFrames& grains) {
     std::vector<std::string> fits;
     for (const std::string unit : {"m", "cm", "mm", "um"}) {
         ImportTable trial = table;
@@ -157,6 +182,22 @@ void guess_point_unit(ImportTable& table, const GrainFrames& grains) {
         if (ratios.empty()) continue;
         const double middle = median(std::move(ratios));
         if (middle > 0.6 && middle < 1.3) fits.push_back(unit);
+    }
+    return fits;
+}
+
+/// Unit and direction of contact points: z may count the other way than it was taken for.
+void guess_point_unit(ImportTable& table, const GrainFrames& grains) {
+    if (!table.map.has("x") || !table.map.has("z")) return;
+    const Guess* named = table.map.find("length_unit");
+    auto fits = point_units(table, grains);
+    if (ImportTable other = table; fits.empty()) {
+        other.map.entries["z"] = turned(other.map.entries["z"]);
+        fits = point_units(other, grains);
+        if (!fits.empty()) {
+            table.map.entries["z"] = other.map.entries["z"];
+            table.map.entries["z"].why += "; the other way, for so the points lie on the grains' surfaces";
+        }
     }
     const bool one = fits.size() == 1;
     if (named && (!one || fits.front() == named->word()))

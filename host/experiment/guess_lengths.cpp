@@ -65,13 +65,13 @@ void guess_origin(MappedTable& map, const Extent& extent, const GrainFrames& gra
             continue;
         }
         const double place = axis < 2 ? (low + high - size[axis]) / 2 : low;
-        const double centred = -size[axis] / 2;
-        map.entries[key] =
-            guess(fmt::format("{:.6g}", axis < 2 && std::abs(place - centred) < margin ? centred : place),
-                  Sure::unclear,
-                  fmt::format("grains reach from {:.4g} to {:.4g}", low, high) +
-                      (axis < 2 ? fmt::format(", the box is {:.4g} wide", size[axis])
-                                : std::string(", and the floor is not at 0")));
+        const double centred = -size[axis] / 2, sign = grains.sign[axis];
+        map.entries[key] = guess(
+            fmt::format("{:.6g}", sign * (axis < 2 && std::abs(place - centred) < margin ? centred : place)),
+            Sure::unclear,
+            fmt::format("grains reach from {:.4g} to {:.4g}", low, high) +
+                (axis < 2 ? fmt::format(", the box is {:.4g} wide", size[axis])
+                          : std::string(", and the floor is not at 0")));
     }
 }
 

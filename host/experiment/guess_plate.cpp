@@ -20,11 +20,35 @@ PlateRows plain_rows(const ImportTable& table, double plate_start) {
     return import_plate(plain, plate_start, ignored);
 }
 
-/// The plate's row that belongs to a frame of the grains; -1 where none does. Frames are placed by the first table that is
-/// taken for the plate's; a second one may be shorter.
+/// The plate's row that belongs to a frame of the grains; -1 where none does. Frames are placed by the first
+/// table that is taken for the plate's; a second one may be shorter.
 int row_of(const PlateRows& plate, const GrainFrames& grains, std::size_t frame) {
     const int row = grains.row.empty() ? plate.index.find(grains.keys[frame]) : grains.row[frame];
     return row < static_cast<int>(plate.scans.size()) ? row : -1;
+}
+
+/// A plate below 0 counts from somewhere else than the floor, and so may one that counts downwards and does
+/// not rest on the grains at its lowest.
+void guess_plate_origin(MappedTable& map, const PlateRows& plate, const GrainFrames& grains,
+                        const std::string& grains_unit) {
+    constexpr double near = 0.15;  // of the height
+    if (!map.has("plate_z")) return;
+    const auto lowest = std::ranges::min_element(plate.scans, {}, &Scan::plate_z);
+    double top = 0;
+    for (std::size_t f = 0; f < grains.keys.size(); ++f)
+        if (row_of(plate, grains, f) == lowest - plate.scans.begin()) top = grains.top(f);
+    const std::string word = map.word("plate_z", "");
+    const auto [sign, column] = signed_column(word);
+    const bool rests =
+        top > 0 &&
+        !fitting_units(length_units, length_factor, lowest->plate_z, top, 1 - near, 1 + near).empty();
+    if (lowest->plate_z > 0 && (sign > 0 || rests)) return;
+    const double unit = length_factor(map.word("length_unit", grains_unit));
+    map.entries["origin_z"] = guess(
+        top > 0 ? fmt::format("{:.6g}", sign * (lowest->plate_z - top / unit)) : "0", Sure::unclear,
+        fmt::format(
+            "counted from 0 the plate would be at {:.4g} at the lowest: where is the floor, as {} counts?",
+            lowest->plate_z, column));
 }
 
 void guess_height(ImportTable& table, const PlateRows& plate, const GrainFrames& grains, double plate_start) {
@@ -171,8 +195,16 @@ void guess_plate_units(ImportTable& table, const std::vector<ImportTable>& other
                        const Experiment& known) {
     if (!table.map.has("top_force") || (!table.map.has("plate_z") && !table.map.has("displacement"))) return;
     const double start = known.recording.plate_start;
-    const PlateRows plate = plain_rows(table, std::isfinite(start) ? start : 0);
+    const auto rows = [&] { return plain_rows(table, std::isfinite(start) ? start : 0); };
+    PlateRows plate = rows();
     if (plate.scans.empty()) return;
+    guess_plate_downwards(table.map, plate.scans);
+    plate = rows();
+    const auto of_grains =
+        std::ranges::find(others, Role::grains, [](const ImportTable& other) { return other.map.role; });
+    guess_plate_origin(table.map, plate, grains,
+                       of_grains == others.end() ? "m" : of_grains->map.word("length_unit", "m"));
+    plate = rows();
     guess_height(table, plate, grains, start);
     guess_force(table, others, plate, grains, known);
 }

@@ -41,6 +41,10 @@ std::vector<ImportTable> group(std::vector<ForeignTable> parts) {
         });
         for (const auto& part : table.parts) table.map.files.push_back(part->file);
         if (table.parts.front()->format == TableFormat::text) table.map.form = table.parts.front()->form;
+        if (std::ranges::none_of(table.parts, [](const auto& part) { return part->decimal_clear; }))
+            table.map.decimal_unclear =
+                "every comma has three digits behind it: if they part thousands, write the table without "
+                "them";
     }
     return tables;
 }
@@ -53,6 +57,7 @@ std::vector<ImportTable> guess_tables(const std::vector<std::string>& files, con
         guess_by_names(table);
         if (table.map.role == Role::aside) guess_grains_by_values(table);
     }
+    guess_grains_upwards(tables);
     for (ImportTable& table : tables)
         if (table.map.role == Role::grains) guess_grain_lengths(table, known);
     guess_frames(tables);

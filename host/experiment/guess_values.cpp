@@ -20,6 +20,12 @@ std::vector<double> numbers_of(const ForeignTable& part, std::size_t column) {
     return numbers;
 }
 
+/// Most of it, for a table may have gaps; text is none.
+bool has_numbers(const std::vector<double>& numbers) {
+    return 2 * std::ranges::count_if(numbers, [](double x) { return std::isfinite(x); }) >
+           std::ssize(numbers);
+}
+
 bool all_whole(const std::vector<double>& numbers) {
     return std::ranges::all_of(numbers, [](double x) { return x == std::round(x) && std::abs(x) < 2e9; });
 }
@@ -56,7 +62,7 @@ void name_leading_columns(MappedTable& map, const ForeignTable& part,
 /// Rows of contacts between grains of known places: which columns are forces.
 struct Pair {
     std::size_t row;
-    Vec3 away;  ///< unit vector from the partner to the grain
+    Vec3 away;  ///< unit vector from the partner to the grain, as the grains' table counts
 };
 
 /// How well three columns are forces along the lines of centres: the median of |cos| of the angle between
@@ -90,7 +96,7 @@ std::vector<Pair> touching_pairs(const ForeignTable& part, const std::vector<dou
         const auto& position = grains.position[static_cast<std::size_t>(at)];
         const Vec3 line = position[i] - position[j];
         if (line.norm() < 0.6 * (grains.diameter[i] + grains.diameter[j]))
-            pairs.push_back({row, line.normalized()});
+            pairs.push_back({row, line.normalized().cwiseProduct(grains.sign)});
     }
     if (known < first.size() / 2 || pairs.size() < 0.9 * static_cast<double>(known)) pairs.clear();
     return pairs;
@@ -168,7 +174,7 @@ void guess_contacts_by_values(ImportTable& table, const GrainFrames& grains) {
         }
         std::size_t others = 0;  // columns that may hold more of the forces
         for (std::size_t c = 0; c < columns.size(); ++c)
-            others += (c < best || c > best + 2) && !all_whole(columns[c]) ? 1 : 0;
+            others += (c < best || c > best + 2) && has_numbers(columns[c]) && !all_whole(columns[c]) ? 1 : 0;
         const bool only = most > 0.9 && good == 1 && others < 3;
         const std::string seen = good > 1 ? fmt::format("one of {} triples of columns that point", good)
                                  : others >= 3
@@ -182,10 +188,10 @@ void guess_contacts_by_values(ImportTable& table, const GrainFrames& grains) {
             guess(part.columns[a], Sure::likely, "names grains that touch those of the next column");
         map.entries["partner"] =
             guess(part.columns[b], Sure::likely, "names grains that touch those of the column before");
-        for (std::size_t k = 0; k < 3; ++k)
-            map.entries[fmt::format("f{}", "xyz"[k])] = guess(
-                part.columns[std::min(best + k, columns.size() - 1)], only ? Sure::likely : Sure::unclear,
-                fmt::format("{} along the lines of centres (median cosine {:.3f})", seen, most));
+        for (std::size_t k = 0; most > 0 && k < 3; ++k)
+            map.entries[fmt::format("f{}", "xyz"[k])] =
+                guess(part.columns[best + k], only ? Sure::likely : Sure::unclear,
+                      fmt::format("{} along the lines of centres (median cosine {:.3f})", seen, most));
         return;
     }
 }
@@ -193,17 +199,21 @@ void guess_contacts_by_values(ImportTable& table, const GrainFrames& grains) {
 void guess_plate_by_values(ImportTable& table) {
     const ForeignTable& part = *table.parts.front();
     MappedTable& map = table.map;
-    if (part.columns.size() < 2 || part.columns.size() > 8) return;
-    const auto first = numbers_of(part, 0);
-    const bool counts = part.columns.size() > 2 && std::ranges::is_sorted(first, std::less_equal<>()) &&
-                        std::ranges::adjacent_find(first, std::equal_to<>()) == first.end();
+    std::vector<std::size_t> numeric;
+    for (std::size_t c = 0; c < std::min<std::size_t>(part.columns.size(), 9); ++c)
+        if (has_numbers(numbers_of(part, c))) numeric.push_back(c);
+    if (numeric.size() < 2 || part.columns.size() > 8) return;
+    const auto first = numbers_of(part, numeric[0]);
+    const bool counts =
+        numeric.size() > 2 && std::ranges::adjacent_find(first, std::greater_equal<>()) == first.end();
     map.role = Role::plate;
     map.role_sure = Sure::unclear;
     map.role_why = "no names, no grains";
     const std::size_t next = counts ? 1 : 0;
-    if (counts) map.entries["frame"] = guess(part.columns[0], Sure::unclear, "rises from row to row");
-    map.entries["plate_z"] = guess(part.columns[next], Sure::unclear, "by its place only");
-    map.entries["top_force"] = guess(part.columns[next + 1], Sure::unclear, "by its place only");
+    if (counts)
+        map.entries["frame"] = guess(part.columns[numeric[0]], Sure::unclear, "rises from row to row");
+    map.entries["plate_z"] = guess(part.columns[numeric[next]], Sure::unclear, "by its place only");
+    map.entries["top_force"] = guess(part.columns[numeric[next + 1]], Sure::unclear, "by its place only");
 }
 
 }  // namespace mcdem

@@ -25,11 +25,13 @@ bool is_nothing(std::string_view cell) {
 }
 
 /// Words for walls, in lower case; others are decided by direction.
-std::string wall_word(const std::string& text) {
+std::string wall_word(const std::string& text, bool downwards) {
     const std::string base = column_name(text).base;
     const std::pair<std::string_view, std::string_view> words[] = {
-        {" floor bottom boden base zmin zlo ", "floor"},
-        {" plate top lid piston deckel platte stempel zmax zhi ", "plate"},
+        {" floor bottom boden base ", "floor"},
+        {" plate top lid piston deckel platte stempel ", "plate"},
+        {downwards ? " zmax zhi " : " zmin zlo ", "floor"},
+        {downwards ? " zmin zlo " : " zmax zhi ", "plate"},
         {" xmin left links xlo ", "x_min"},
         {" xmax right rechts xhi ", "x_max"},
         {" ymin front vorn ylo ", "y_min"},
@@ -122,10 +124,10 @@ std::set<std::string> strangers(const ImportTable& table, const GrainFrames& gra
     return found;
 }
 
-void set_walls(ImportTable& table, const std::set<std::string>& names) {
+void set_walls(ImportTable& table, const std::set<std::string>& names, const GrainFrames& grains) {
     table.map.walls.clear();
     for (const std::string& name : names) {
-        const std::string word = wall_word(name);
+        const std::string word = wall_word(name, grains.sign.z() < 0);
         table.map.walls[name] =
             guess(word, Sure::likely, word == by_direction ? "no grain has this number" : "its name");
     }

@@ -23,12 +23,8 @@ Wall wall_by_direction(const Vec3& force) {
 class ContactImporter {
 public:
     ContactImporter(const ImportTable& table, const GrainFrames& grains, ExperimentProblems& problems,
-                    std::size_t most, const CentresOf& centres)
-        : map_(table.map),
-          rows_(table, problems, most),
-          grains_(grains),
-          problems_(problems),
-          centres_(centres ? centres : by_key_or_order()) {
+                    std::size_t most)
+        : map_(table.map), rows_(table, problems, most), grains_(grains), problems_(problems) {
         length_ = length_factor(map_.word("length_unit", "m"));
         force_ =
             force_factor(map_.word("force_unit", "N")) * (map_.word("force_on", "grain") == "grain" ? 1 : -1);
@@ -52,7 +48,7 @@ public:
                             row.key));
                 frames.keys.push_back(row.key);
                 frames.contacts.emplace_back();
-                at_ = centres_(row.key, frames.keys.size() - 1);
+                at_ = centres(row.key, frames.keys.size() - 1);
             }
             // Behind the frame: one without contacts counts in the order too.
             if (rows_.has_column("where") && rows_.number(row, "where").value_or(0) == 0) continue;
@@ -65,12 +61,10 @@ public:
     }
 
 private:
-    /// Before the plate's rows are known: frames in order are the grains' ones.
-    CentresOf by_key_or_order() const {
-        return [this, order = map_.word("frames_by", "plate") == "order"](double key, std::size_t index) {
-            const auto frame = order ? index : static_cast<std::size_t>(grains_.index.find(key));
-            return frame < grains_.position.size() ? &grains_.position[frame] : nullptr;
-        };
+    /// The grains' centres in the frame of contacts that has begun; null where they are not known.
+    const std::vector<Vec3>* centres(double key, std::size_t place) const {
+        const int frame = grains_.frame_of(map_.word("frames_by", "plate"), key, place);
+        return frame < 0 ? nullptr : &grains_.position[static_cast<std::size_t>(frame)];
     }
 
     bool has_columns() {
@@ -109,7 +103,16 @@ private:
         if (wall != map_.walls.end() && (key == "partner" || grain < 0))
             return wall->second.word() == by_direction ? Side{-1, {}, true}
                                                        : Side{-1, parse<Wall>(wall->second.word()), false};
-        if (const auto named = parse<Wall>(text)) return Side{-1, named, false};
+        if (const auto named = parse<Wall>(text)) {
+            const int axis = static_cast<int>(*named) / 2;
+            if (axis == 2 || grains_.sign[axis] > 0) return Side{-1, named, false};
+            rows_.problem_once(
+                std::string(text), row,
+                fmt::format("{0} must be named in [table.walls] where {1} is turned round, {0} = "
+                            "\"x_min\" or another",
+                            text, "xyz"[axis]));
+            return std::nullopt;
+        }
         if (grain >= 0) return Side{grain, {}, false};
         rows_.problem(
             row, fmt::format("{} must be a grain, or a wall that [table.walls] of the mapping names, got {}",
@@ -172,7 +175,6 @@ private:
     Rows rows_;
     const GrainFrames& grains_;
     ExperimentProblems& problems_;
-    CentresOf centres_;
     const std::vector<Vec3>* at_ = nullptr;  ///< the grains of the frame being read
     double length_, force_;                  ///< SI in the table's units
     long offset_;
@@ -183,8 +185,8 @@ private:
 }  // namespace
 
 ContactFrames import_contacts(const ImportTable& table, const GrainFrames& grains,
-                              ExperimentProblems& problems, std::size_t most, const CentresOf& centres) {
-    return ContactImporter(table, grains, problems, most, centres).read();
+                              ExperimentProblems& problems, std::size_t most) {
+    return ContactImporter(table, grains, problems, most).read();
 }
 
 }  // namespace mcdem

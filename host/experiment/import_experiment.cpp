@@ -73,11 +73,10 @@ private:
                                          grains_.keys[f], plate_.scans.size()));
                 continue;
             }
-            scan_of_grain_frame_.push_back(scan);
             recording().scans[static_cast<std::size_t>(scan)].position = grains_.position[f];
             check_inside(f, recording().scans[static_cast<std::size_t>(scan)].plate_z);
         }
-        if (!scan_of_grain_frame_.empty()) drop_before(*std::ranges::min_element(scan_of_grain_frame_));
+        if (!grains_.row.empty()) drop_before(std::ranges::min(grains_.row));
     }
 
     void problem_once(const RowAt& row, const std::string& topic, const std::string& what) {
@@ -99,45 +98,30 @@ private:
 
     /// An experiment begins with the grains; rows of the plate before are left out.
     void drop_before(int first) {
-        if (first == 0) return;
+        if (first <= 0) return;
         notes_.push_back(
             fmt::format("the plate's first {} rows are left out: grains are known from then on", first));
         dropped_ = first;
     }
 
-    /// The scan of a table's frame by its key and its place in the order; none: a problem of the caller's.
-    Scan* scan_of(const MappedTable& map, double key, std::size_t index) {
-        const std::string by = map.word("frames_by", "plate");
-        int found = by == "plate" ? plate_.index.find(key) : static_cast<int>(index);
-        if (by == "grains") {
-            const int frame = grains_.index.find(key);
-            found = frame < 0 ? -1 : scan_of_grain_frame_[static_cast<std::size_t>(frame)];
-        }
-        const bool known = found >= 0 && static_cast<std::size_t>(found) < recording().scans.size();
-        return known ? &recording().scans[static_cast<std::size_t>(found)] : nullptr;
-    }
-
     void place_contacts(const ImportTable& table) {
-        if (scan_of_grain_frame_.size() != grains_.keys.size()) return;  // told before
-        ContactFrames frames =
-            import_contacts(table, grains_, problems_, all_rows, [&](double key, std::size_t index) {
-                const Scan* scan = scan_of(table.map, key, index);
-                return scan && !scan->position.empty() ? &scan->position : nullptr;
-            });
+        if (std::ranges::find(grains_.row, -1) != grains_.row.end()) return;  // told before
+        const std::string by = table.map.word("frames_by", "plate");
+        ContactFrames frames = import_contacts(table, grains_, problems_);
         for (std::size_t f = 0; f < frames.keys.size(); ++f) {
             auto& contacts = frames.contacts[f];
             if (contacts.empty()) continue;
-            Scan* scan = scan_of(table.map, frames.keys[f], f);
-            if (!scan) {
-                const bool by_grains = table.map.word("frames_by", "plate") == "grains";
+            const int row = grains_.plate_row_of(by, frames.keys[f], f);
+            if (row < 0) {
                 problem_once(contacts.front().row, "frame",
                              fmt::format("frame {} must be one of the {}, got none like it: see frame and "
                                          "frames_by in the mapping",
-                                         frames.keys[f], by_grains ? "grains' frames" : "plate's rows"));
+                                         frames.keys[f], by == "grains" ? "grains' frames" : "plate's rows"));
                 continue;
             }
-            join(contacts, table.map.word("sides", "one") == "both", *scan);
-            add_contacts(contacts, frames.keys[f], *scan);
+            Scan& scan = recording().scans[static_cast<std::size_t>(row)];
+            join(contacts, table.map.word("sides", "one") == "both", scan);
+            add_contacts(contacts, frames.keys[f], scan);
         }
     }
 
@@ -248,7 +232,6 @@ private:
     std::vector<std::string> notes_;
     PlateRows plate_;
     GrainFrames grains_;
-    std::vector<int> scan_of_grain_frame_;
     int dropped_ = 0;
 };
 
@@ -281,7 +264,7 @@ std::vector<std::string> wrong_rows(const std::vector<ImportTable>& tables) {
         });
         if (!columns_known || table.map.role_sure == Sure::unclear) continue;
         ExperimentProblems problems;
-        if (table.map.role == Role::plate) import_plate(table, 1, problems);
+        if (table.map.role == Role::plate) import_plate(table, std::nan(""), problems);
         if (table.map.role == Role::grains) import_grains({&table}, problems);
         const auto lines = problems.lines();
         all.insert(all.end(), lines.begin(), lines.end());

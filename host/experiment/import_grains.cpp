@@ -33,7 +33,9 @@ public:
                     fmt::format("must have a column for {}, got none: name it in the mapping", key));
         const double unit = length_factor(map.word("length_unit", "m"));
         const Vec3 origin(number(map, "origin_x"), number(map, "origin_y"), number(map, "origin_z"));
-        frames_.origin = unit * origin;
+        frames_.sign = {sign(map, "x"), sign(map, "y"), sign(map, "z")};
+        const Vec3 begin = frames_.sign.cwiseProduct(origin);
+        frames_.origin = unit * begin;
         const long first = whole_entry(map, "first_grain", problems_);
         double key = 0;
         by_place_ = !rows.has_column("grain");
@@ -49,12 +51,16 @@ public:
                     "size", row, fmt::format("{} must be > 0, got {}", radii ? "radius" : "diameter", *size));
             if (x && y && z && size && id)
                 grains_.push_back(
-                    {*id, unit * (Vec3(*x, *y, *z) - origin), (radii ? 2 : 1) * unit * *size, row});
+                    {*id, unit * (Vec3(*x, *y, *z) - begin), (radii ? 2 : 1) * unit * *size, row});
         }
         if (!grains_.empty()) end_frame(key);
     }
 
 private:
+    static double sign(const MappedTable& map, std::string_view key) {
+        return signed_column(map.word(key, "")).sign;
+    }
+
     static double number(const MappedTable& map, std::string_view key) {
         return to_number(map.word(key, "0")).value_or(0);
     }
@@ -138,9 +144,17 @@ GrainFrames import_grains(const std::vector<const ImportTable*>& tables, Experim
     return frames;
 }
 
+int GrainFrames::plate_row_of(std::string_view by, double key, std::size_t place) const {
+    if (by == "order") return place < plate_rows ? static_cast<int>(place) : -1;
+    if (by == "plate") return plate.find(key);
+    const int frame = index.find(key);
+    return frame < 0 || row.empty() ? -1 : row[static_cast<std::size_t>(frame)];
+}
+
 int GrainFrames::frame_of(std::string_view by, double key, std::size_t place) const {
-    if (by == "grains" || row.empty()) return index.find(key);
-    const int wanted = by == "order" ? static_cast<int>(place) : plate.find(key);
+    if (by == "grains" || (by == "plate" && row.empty())) return index.find(key);
+    if (row.empty()) return place < keys.size() ? static_cast<int>(place) : -1;
+    const int wanted = plate_row_of(by, key, place);
     const auto found = std::ranges::find(row, wanted);
     return wanted < 0 || found == row.end() ? -1 : static_cast<int>(found - row.begin());
 }
@@ -154,11 +168,10 @@ double GrainFrames::top(std::size_t frame) const {
 
 void place_frames(GrainFrames& grains, bool by_order, const PlateRows& plate) {
     grains.plate = plate.index;
+    grains.plate_rows = plate.scans.size();
     grains.row.clear();
-    for (std::size_t f = 0; f < grains.keys.size(); ++f) {
-        const int row = by_order ? static_cast<int>(f) : plate.index.find(grains.keys[f]);
-        grains.row.push_back(row < static_cast<int>(plate.scans.size()) ? row : -1);
-    }
+    for (std::size_t f = 0; f < grains.keys.size(); ++f)
+        grains.row.push_back(grains.plate_row_of(by_order ? "order" : "plate", grains.keys[f], f));
 }
 
 }  // namespace mcdem

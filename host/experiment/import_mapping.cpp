@@ -17,10 +17,11 @@ constexpr MappingKey plate_keys[] = {
     {"frame", Kind::column, "", "a row's frame number, time or step; without it the rows count"},
     {"cycle", Kind::column, "", "compression cycle, rising; without it from the plate's turns"},
     {"phase", Kind::column, "", "load or unload (down or up, compression or decompression); without it from the plate's direction"},
-    {"plate_z", Kind::column, "", "height of the plate over the floor; this or displacement"},
-    {"displacement", Kind::column, "", "how far the plate has gone down from plate.start"},
-    {"top_force", Kind::columns, "", "force on the plate"},
+    {"plate_z", Kind::quantity, "", "height of the plate; this or displacement; with a - before its name where it counts downwards"},
+    {"displacement", Kind::quantity, "", "how far the plate has gone down from plate.start; with a - where it counts upwards"},
+    {"top_force", Kind::quantities, "", "force on the plate"},
     {"length_unit", Kind::word, lengths, ""},
+    {"origin_z", Kind::number, "", "where the floor is, as plate_z's column counts; 0 where left out"},
     {"force_unit", Kind::word, forces, ""},
     {"force_sign", Kind::word, "+ -", "+: upward force on the plate is positive; -: negative"},
 };
@@ -29,13 +30,13 @@ constexpr MappingKey grain_keys[] = {
     {"frames_by", Kind::word, "plate order", "plate: frames have the plate's numbers, times or steps; order: the first is the plate's first row, and so on"},
     {"grain", Kind::column, "", "a grain's number, alike in all frames; without it the rows of a frame count"},
     {"first_grain", Kind::number, "", "the number of the first row's grain, where no column has it"},
-    {"x", Kind::column, "", "centre"},
-    {"y", Kind::column, "", "centre"},
-    {"z", Kind::column, "", "centre, upwards"},
+    {"x", Kind::quantity, "", "centre"},
+    {"y", Kind::quantity, "", "centre"},
+    {"z", Kind::quantity, "", "centre, upwards; with a - before its name where it counts downwards"},
     {"diameter", Kind::column, "", "this or radius"},
     {"radius", Kind::column, "", "this or diameter"},
     {"length_unit", Kind::word, lengths, ""},
-    {"origin_x", Kind::number, "", "where the wall x_min stands, in the table's unit"},
+    {"origin_x", Kind::number, "", "where the wall x_min stands, in the table's unit, as x's column counts"},
     {"origin_y", Kind::number, "", "where the wall y_min stands"},
     {"origin_z", Kind::number, "", "where the floor is"},
 };
@@ -46,13 +47,13 @@ constexpr MappingKey contact_keys[] = {
     {"partner", Kind::column, "", "the other grain, or a wall; or one wall's name, where all rows are its"},
     {"where", Kind::column, "", "rows with 0 here are no contacts"},
     {"id_offset", Kind::number, "", "added to grain and partner gives the numbers of the grains' table"},
-    {"x", Kind::column, "", "contact point; without it midway between the surfaces"},
-    {"y", Kind::column, "", "contact point"},
-    {"z", Kind::column, "", "contact point"},
-    {"fx", Kind::columns, "", "force; several columns are added up, such as normal and tangential parts"},
-    {"fy", Kind::columns, "", "force"},
-    {"fz", Kind::columns, "", "force"},
-    {"force", Kind::columns, "", "in place of fx, fy, fz: size of a force along the line of centres, > 0 where it pushes"},
+    {"x", Kind::quantity, "", "contact point; without it midway between the surfaces"},
+    {"y", Kind::quantity, "", "contact point"},
+    {"z", Kind::quantity, "", "contact point"},
+    {"fx", Kind::quantities, "", "force; several columns are added up, such as normal and tangential parts, those with a - are taken off"},
+    {"fy", Kind::quantities, "", "force"},
+    {"fz", Kind::quantities, "", "force"},
+    {"force", Kind::quantities, "", "in place of fx, fy, fz: size of a force along the line of centres, > 0 where it pushes"},
     {"force_on", Kind::word, "grain partner", "on which of the two the force is"},
     {"sides", Kind::word, "one both", "both: each contact is listed from either side, and the mean counts"},
     {"length_unit", Kind::word, lengths, "of contact points"},
@@ -92,7 +93,9 @@ std::vector<std::string> left_aside(const MappedTable& map, const std::vector<st
     std::vector<std::string> aside;
     for (const std::string& column : columns) {
         const bool used = std::ranges::any_of(map.entries, [&](const auto& entry) {
-            return std::ranges::find(entry.second.words, column) != entry.second.words.end();
+            return std::ranges::any_of(entry.second.words, [&](const std::string& word) {
+                return signed_column(word).name == column;
+            });
         });
         if (!used) aside.push_back(column);
     }

@@ -28,16 +28,25 @@ struct Names<Sure> {
 };
 
 struct Guess {
-    std::vector<std::string> words;  ///< a word, or the columns that are added up
+    std::vector<std::string> words;  ///< a word, or columns, see SignedColumn
     Sure sure = Sure::stated;
     std::string why;
     long line = 0;  ///< in the mapping
     const std::string& word() const { return words.front(); }
 };
 
+/// A column as a mapping writes it: "-z" where z counts the other way. No column's own name begins so.
+struct SignedColumn {
+    double sign;
+    std::string_view name;
+};
+inline SignedColumn signed_column(std::string_view word) {
+    return word.starts_with('-') ? SignedColumn{-1, word.substr(1)} : SignedColumn{1, word};
+}
+
 /// What an entry of a table may be.
 struct MappingKey {
-    enum class Kind { column, columns, word, number };
+    enum class Kind { column, quantity, quantities, word, number };  ///< quantities may have a sign
     std::string_view name;
     Kind kind;
     std::string_view words;  ///< those that a word may be, parted by blanks
@@ -55,6 +64,7 @@ struct MappedTable {
     std::vector<std::string> files;  ///< alike, in the order of the frames
     std::vector<std::string> aside;  ///< columns that were seen and are not used
     std::optional<TextForm> form;    ///< of text
+    std::string decimal_unclear;     ///< why; empty: it is clear
     std::map<std::string, Guess, std::less<>> entries;
     std::map<std::string, Guess, std::less<>>
         walls;  ///< of contacts: from what the table calls a wall to its name

@@ -68,14 +68,16 @@ std::optional<Scan> read_scan(const Rows& rows, const RowAt& row, const MappedTa
                top = rows.number(row, "top_force");
     if (!z || !top) return std::nullopt;
     Scan scan = unknown_scan();
-    scan.plate_z = goes_down ? plate_start - length * *z : length * *z;
+    const double origin =
+        to_number(map.word("origin_z", "0")).value_or(0) * signed_column(map.word("plate_z", "")).sign;
+    scan.plate_z = goes_down ? plate_start - length * *z : length * (*z - origin);
     scan.wall_force[static_cast<std::size_t>(Wall::plate)].z() =
         (map.word("force_sign", "+") == "-" ? -1 : 1) * force * *top;
     if (scan.plate_z <= 0)
         rows.problem_once(
             "plate", row,
             fmt::format("the plate must be over the floor, got a height of {} m: see length_unit{}",
-                        scan.plate_z, goes_down ? " and plate.start" : ""));
+                        scan.plate_z, goes_down ? " and plate.start" : ", plate_z and origin_z"));
     if (rows.has_column("phase")) {
         const auto phase = phase_of(rows.text(row, "phase"));
         if (!phase)
@@ -97,11 +99,12 @@ void expect_below(const PlateRows& plate, double start, const Rows& rows) {
     }
     const double high = plate.scans[highest].plate_z;
     if (high - start > 1e-9 * high && high - start > start - low)
-        rows.problem(rows.all()[highest],
-                     fmt::format("the plate must go down from plate.start, {} m, got {} m: {}", start, high,
-                                 rows.has_column("displacement")
-                                     ? "change the sign of the displacements, which count downwards"
-                                     : "see length_unit, and --set plate.start=.."));
+        rows.problem(
+            rows.all()[highest],
+            fmt::format("the plate must go down from plate.start, {} m, got {} m: {}", start, high,
+                        rows.has_column("displacement") ? "displacements count downwards, write a - before "
+                                                          "the column's name where it counts upwards"
+                                                        : "see length_unit, and --set plate.start=.."));
 }
 
 }  // namespace

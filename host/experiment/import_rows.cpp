@@ -72,20 +72,19 @@ Rows::Rows(const ImportTable& table, ExperimentProblems& problems, std::size_t m
 void Rows::find_columns(const ImportTable& table) {
     for (const MappingKey& key : mapping_keys(table.map.role)) {
         const Guess* guess = table.map.find(key.name);
-        if (!guess || (key.kind != MappingKey::Kind::column && key.kind != MappingKey::Kind::columns))
-            continue;
+        if (!guess || key.kind == MappingKey::Kind::word || key.kind == MappingKey::Kind::number) continue;
         if (key.name == "partner" && parse<Wall>(guess->word())) continue;
         auto& of_parts = columns_[std::string(key.name)];
         for (const ForeignTable* part : parts_) {
             auto& found = of_parts.emplace_back();
             for (const std::string& word : guess->words) {
-                const auto column = part->find(word);
-                found.push_back(column.value_or(0));
+                const auto [sign, name] = signed_column(word);
+                const auto column = part->find(name);
+                found.push_back({sign, column.value_or(0)});
                 if (!column)
                     problems_.add(part->file,
                                   fmt::format("must have the column {} that the mapping names for {}, got {}",
-                                              mcdem::quoted(std::string_view(word)), key.name,
-                                              fmt::join(part->columns, ", ")));
+                                              mcdem::quoted(name), key.name, fmt::join(part->columns, ", ")));
             }
         }
     }
@@ -95,7 +94,7 @@ std::optional<double> Rows::number(const RowAt& row, std::string_view key) const
     const auto found = columns_.find(key);
     if (found == columns_.end()) return std::nullopt;
     double sum = 0;
-    for (const std::size_t column : found->second[row.part_index]) {
+    for (const auto& [sign, column] : found->second[row.part_index]) {
         const auto value = row.part->number(row.row, column);
         if (!value) {
             problem(row,
@@ -104,7 +103,7 @@ std::optional<double> Rows::number(const RowAt& row, std::string_view key) const
                         row.part->columns[column], mcdem::quoted(row.part->cell(row.row, column))));
             return std::nullopt;
         }
-        sum += *value;
+        sum += sign * *value;
     }
     return sum;
 }
@@ -118,7 +117,7 @@ std::optional<long> Rows::whole_number(const RowAt& row, std::string_view key) c
 }
 
 std::size_t Rows::column_of(const RowAt& row, std::string_view key) const {
-    return columns_.find(key)->second[row.part_index].front();
+    return columns_.find(key)->second[row.part_index].front().index;
 }
 
 std::string_view Rows::text(const RowAt& row, std::string_view key) const {

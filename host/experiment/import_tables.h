@@ -1,7 +1,6 @@
 // Tables with what their columns mean, read into frames of SI values.
 #pragma once
 #include <cstddef>
-#include <functional>
 #include <limits>
 #include <map>
 #include <memory>
@@ -70,7 +69,11 @@ private:
     void find_columns(const ImportTable& table);
     std::size_t column_of(const RowAt& row, std::string_view key) const;
     ExperimentProblems& problems_;
-    std::map<std::string, std::vector<std::vector<std::size_t>>, std::less<>> columns_;  ///< by key and part
+    struct Column {
+        double sign;
+        std::size_t index;
+    };
+    std::map<std::string, std::vector<std::vector<Column>>, std::less<>> columns_;  ///< by key and part
     std::vector<const ForeignTable*> parts_;
     std::vector<RowAt> rows_;
     KeyedBy keyed_by_ = KeyedBy::place;
@@ -106,10 +109,16 @@ struct GrainFrames {
     std::vector<double> diameter;             ///< of the first frame [m]
     std::map<long, int> number_of;            ///< from the table's number of a grain
     std::vector<RowAt> first_row;             ///< of each frame, for messages
-    Vec3 origin = Vec3::Zero();               ///< of the box, as the tables count [m]
-    std::vector<int> row;                     ///< of the plate, of each frame; -1: none; empty: no plate
+    Vec3 origin = Vec3::Zero();               ///< of the box, in the tables' axes once they are turned [m]
+    Vec3 sign = Vec3::Ones();                 ///< -1 where a table's axis counts the other way
+    std::vector<int> row;                     ///< of the plate, of each frame; -1: none; empty: not known
     FrameIndex plate;                         ///< the plate's rows
-    /// The frame of another table's frame, its `place`-th, that has this key; `by` as in frames_by. -1: none.
+    std::size_t plate_rows = 0;
+    /// The plate's row of another table's frame, its `place`-th, that has this key; `by` as in frames_by. -1:
+    /// none.
+    int plate_row_of(std::string_view by, double key, std::size_t place) const;
+    /// The same of the grains' frames. Where the plate's rows are not known, frames in order are the grains'
+    /// own.
     int frame_of(std::string_view by, double key, std::size_t place) const;
     double top(std::size_t frame) const;  ///< of the highest grain [m]
 };
@@ -127,11 +136,7 @@ struct ContactFrames {
     FrameIndex index;
     std::vector<std::vector<One>> contacts;
 };
-/// The grains' centres in a frame of contacts, by its key and its place in the order; none where unknown.
-using CentresOf = std::function<const std::vector<Vec3>*(double key, std::size_t index)>;
-/// Forces of which only the size is known need `centres`; those of the mapping's frames_by where left out.
 ContactFrames import_contacts(const ImportTable& table, const GrainFrames& grains,
-                              ExperimentProblems& problems, std::size_t most = all_rows,
-                              const CentresOf& centres = {});
+                              ExperimentProblems& problems, std::size_t most = all_rows);
 
 }  // namespace mcdem

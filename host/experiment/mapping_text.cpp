@@ -72,9 +72,12 @@ std::string table_text(const MappedTable& table) {
     for (const std::string& file : table.files)
         text += (&file == &table.files.front() ? "" : ", ") + quoted_toml(file);
     text += "]\n";
-    if (table.form)
-        text += fmt::format("separator = \"{}\"\ndecimal = \"{}\"\n", separator_word(table.form->separator),
-                            table.form->decimal);
+    if (table.form) {
+        const Sure sure = table.decimal_unclear.empty() ? Sure::stated : Sure::unclear;
+        text += fmt::format("separator = \"{}\"\n", separator_word(table.form->separator));
+        text += line_text("decimal", {{std::string(1, table.form->decimal)}, sure, table.decimal_unclear},
+                          "a comma or a point");
+    }
     if (!table.aside.empty())
         text += fmt::format("# columns left aside: {}\n",
                             one_line(fmt::format("{}", fmt::join(table.aside, ", "))));

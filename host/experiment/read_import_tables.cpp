@@ -18,7 +18,7 @@ long columns_in(const MappedTable& map, const ForeignTable& part) {
         if (!guess || key.kind == MappingKey::Kind::word || key.kind == MappingKey::Kind::number) continue;
         for (const std::string& word : guess->words) {
             if (key.name == "partner" && parse<Wall>(word)) continue;
-            if (!part.find(word)) return -1;
+            if (!part.find(signed_column(word).name)) return -1;
             ++count;
         }
     }

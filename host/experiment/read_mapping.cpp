@@ -97,8 +97,15 @@ private:
     void read_entry(const MappingKey& key, const toml::node& node, MappedTable& table) {
         Guess guess{words_of(key.name, node), Sure::stated, "", static_cast<long>(node.source().begin.line)};
         if (guess.words.empty()) return;
-        if (guess.words.size() > 1 && key.kind != MappingKey::Kind::columns)
+        if (guess.words.size() > 1 && key.kind != MappingKey::Kind::quantities)
             return wrong(node, fmt::format("{} must be one text, got {}", key.name, guess.words.size()));
+        const bool is_quantity =
+            key.kind == MappingKey::Kind::quantity || key.kind == MappingKey::Kind::quantities;
+        if (is_quantity && std::ranges::find(guess.words, "-") != guess.words.end())
+            return wrong(node, fmt::format("{} must be a column, got a sign only", key.name));
+        if (key.kind == MappingKey::Kind::column && guess.word().starts_with('-'))
+            return wrong(node, fmt::format("{} must be a column without a sign, got {}", key.name,
+                                           mcdem::quoted(guess.word())));
         if (key.kind == MappingKey::Kind::number && !to_number(guess.word()))
             return wrong(node, fmt::format("{} must be a number in quotes, got {}", key.name,
                                            mcdem::quoted(guess.word())));

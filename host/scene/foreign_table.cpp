@@ -148,14 +148,14 @@ void ForeignTable::add_row(const std::vector<std::string_view>& cells) {
             {static_cast<std::uint32_t>(cell.data() - text.data()), static_cast<std::uint32_t>(cell.size())});
 }
 
-/// Names that are missing, were there before or begin with a question mark, which a mapping keeps for what is
-/// not confirmed, give way to the column's number.
+/// Names that are missing, were there before or begin with a question mark or a minus, which a mapping keeps
+/// for what is not confirmed and what counts the other way, give way to the column's number.
 void ForeignTable::name_columns(const std::vector<std::string>& names, std::size_t count) {
     std::set<std::string> taken;
     columns.clear();
     for (std::size_t i = 0; i < count; ++i) {
         std::string name = i < names.size() ? std::string(without_blanks(names[i])) : std::string();
-        if (name.empty() || name.front() == '?' || !taken.insert(name).second)
+        if (name.empty() || name.front() == '?' || name.front() == '-' || !taken.insert(name).second)
             name = fmt::format("column {}", i + 1);
         taken.insert(name);
         columns.push_back(std::move(name));

@@ -43,6 +43,7 @@ public:
     std::string file;
     TableFormat format = TableFormat::text;
     TextForm form;
+    bool decimal_clear = true;         ///< else every comma may part thousands as well: 1,306
     bool named = false;                ///< the file names its columns; else they are "column 1", ..
     std::vector<std::string> columns;  ///< names, each once
     std::vector<Frame> frames;         ///< of a dump, in the order of the file; else empty

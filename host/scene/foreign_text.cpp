@@ -65,6 +65,34 @@ bool has_thousands(std::string_view cell, char decimal) {
     return true;
 }
 
+/// What the cells tell of a table whose decimal is taken for a comma.
+class DecimalComma {
+public:
+    void look_at(std::string_view cell, long line) {
+        if (cell.find_first_of(",.") == cell.npos || !is_number(cell, ',')) return;
+        Seen& seen = cell.find('.') != cell.npos ? point_ : has_thousands(cell, '.') ? either_ : comma_;
+        if (seen.line == 0) seen = {cell, line};
+    }
+    /// No comma that can be nothing but a decimal.
+    bool unclear() const { return either_.line > 0 && comma_.line == 0; }
+    void report(FileProblems& problems) const {
+        if (either_.line > 0 && point_.line > 0)
+            problems.add(
+                either_.line,
+                fmt::format(
+                    "numbers must have one decimal mark and no separators of thousands, got {} beside "
+                    "{} in line {}: write the table with points only",
+                    quoted(either_.cell), quoted(point_.cell), point_.line));
+    }
+
+private:
+    struct Seen {
+        std::string_view cell;
+        long line = 0;
+    };
+    Seen point_, comma_, either_;  ///< the first of each kind
+};
+
 /// Lines that may hold data, from the first hundred.
 std::vector<std::string_view> sample(std::string_view text) {
     std::vector<std::string_view> lines;
@@ -133,19 +161,54 @@ std::vector<std::string> yade_columns(std::string_view format) {
     return names;
 }
 
+enum class CellKind { number, nothing, word };
+
+CellKind kind_of(std::string_view cell) {
+    if (is_number(cell, '.') || is_number(cell, ',')) return CellKind::number;
+    for (const std::string_view nothing :
+         {"", "-", "--", "nan", "NaN", "NAN", "na", "NA", "N/A", "n/a", "null", "NULL", "inf"})
+        if (cell == nothing) return CellKind::nothing;
+    return CellKind::word;
+}
+
+bool has(const Words& cells, CellKind kind) {
+    return std::ranges::any_of(cells, [&](std::string_view cell) { return kind_of(cell) == kind; });
+}
+
+/// Lines above the last one of words only, which names the columns, where each of them has a word in a column
+/// that holds only numbers below it: `Vorkraft;0,5;N` is no row of `Zeit;Weg;Kraft`.
+std::size_t lines_above_names(const std::vector<std::string_view>& lines, char separator, std::size_t width) {
+    Words cells;
+    std::vector<bool> numeric(width, true);
+    std::size_t names = lines.size();
+    for (; names > 0; --names) {
+        cut(lines[names - 1], separator, cells);
+        if (has(cells, CellKind::word) && !has(cells, CellKind::number)) break;
+        for (std::size_t c = 0; c < std::min(width, cells.size()); ++c)
+            numeric[c] = numeric[c] && kind_of(cells[c]) != CellKind::word;
+    }
+    if (names == 0 || names == lines.size() || cells.size() < width) return 0;
+    for (std::size_t line = 0; line + 1 < names; ++line) {
+        cut(lines[line], separator, cells);
+        bool unlike = cells.size() < width || !has(cells, CellKind::number);
+        for (std::size_t c = 0; c < std::min(width, cells.size()); ++c)
+            unlike = unlike || (numeric[c] && kind_of(cells[c]) == CellKind::word);
+        if (!unlike) return 0;
+    }
+    return names - 1;
+}
+
 /// Lines before the first as wide as most, where they hold a word: `Probe;17` is no row.
 std::size_t lines_above(std::string_view text, char separator) {
     const auto lines = sample(text);
     if (lines.empty()) return 0;
     const std::size_t width = usual_width(lines, separator);
+    if (const std::size_t above = lines_above_names(lines, separator, width); above > 0) return above;
     Words cells;
     std::size_t above = 0;
     for (const std::string_view line : lines) {
         cut(line, separator, cells);
-        const bool has_word = std::ranges::any_of(cells, [](std::string_view cell) {
-            return !cell.empty() && !is_number(cell, '.') && !is_number(cell, ',');
-        });
-        if (cells.size() == width || !has_word) return above;
+        if (cells.size() == width || !has(cells, CellKind::word)) return above;
         ++above;
     }
     return above;
@@ -170,6 +233,8 @@ public:
             else
                 read_line(*line);
         }
+        if (table_.form.decimal == ',') comma_.report(problems_);
+        table_.decimal_clear = table_.form.decimal != ',' || !comma_.unclear();
         if (table_.rows() == 0 && problems_.empty())
             problems_.add("must have at least one row with a number in it, got none");
     }
@@ -241,13 +306,15 @@ private:
     }
 
     void add_row() {
-        for (const std::string_view cell : cells_)
+        for (const std::string_view cell : cells_) {
+            if (table_.form.decimal == ',') comma_.look_at(cell, lines_.number());
             if (has_thousands(cell, table_.form.decimal))
                 return problems_.add(
                     lines_.number(),
                     fmt::format("numbers must have no separators of thousands, got {} where the decimal is "
                                 "\"{}\": write the table without them",
                                 quoted(cell), table_.form.decimal));
+        }
         if (cells_.size() == table_.columns.size()) return table_.add_row(cells_);
         problems_.add(lines_.number(), fmt::format("must have {} columns as the first row, got {}",
                                                    table_.columns.size(), cells_.size()));
@@ -258,6 +325,7 @@ private:
     TextLines lines_;
     std::size_t above_;  ///< lines still to come that are none of the table's
     Words cells_;
+    DecimalComma comma_;
     std::vector<std::string> format_, comment_;
     std::vector<std::vector<std::string>> headings_;
     bool trailing_ = false;  ///< rows end with a separator

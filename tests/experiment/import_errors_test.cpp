@@ -139,6 +139,43 @@ TEST_F(ImportTest, UnitsThatAreNotKnownMustBeConfirmed) {
                 Contains(HasSubstr("a name says [MPa], which is none of")));
 }
 
+TEST_F(ImportTest, WhatIsNotANumberInThePlatesTableIsNamedByItsLine) {
+    const auto files = write_lab({});
+    for (const std::string nothing : {"NaN", "nan", "inf", "", "-"})
+        for (const bool units : {true, false}) {
+            std::string text = lab_plate(truth_, {';', ',', units, 1e3, 1e3});
+            const auto second = text.find('\n', text.find('\n') + 1) + 1,
+                       cell = text.rfind(';', text.find('\n', second)) + 1;
+            write("kraft.csv", text.replace(cell, text.find('\n', cell) - cell, nothing));
+            const auto tables = guess_tables(files, known_);
+            EXPECT_THAT(wrong_rows(tables), ElementsAre(HasSubstr("kraft.csv:3: Hoehe"))) << nothing;
+        }
+}
+
+TEST_F(ImportTest, ColumnsOfTextAreNotTakenForNumbersByTheirPlace) {
+    const auto tables =
+        guess_tables({write("a.csv", "load;60,5;start;0\nload;59,5;;0,3\nunload;60;ende;0,1\n")}, known_);
+    const MappedTable& plate = of(tables, Role::plate);
+    EXPECT_EQ(plate.word("plate_z", ""), "column 2");
+    EXPECT_EQ(plate.word("top_force", ""), "column 4");
+    EXPECT_EQ(guess_tables({write("b.csv", "load;a;1,5\nload;b;2,5\n")}, known_).front().map.role,
+              Role::aside);
+}
+
+TEST_F(ImportTest, CommasThatMayPartThousandsMustBeConfirmed) {
+    auto files = write_lab({});
+    std::string text = "Hoehe [mm];Kraft [mN]\n";
+    for (const Scan& scan : truth_.scans)
+        text += fmt::format("{},{:03};{}\n", static_cast<int>(1e3 * scan.plate_z),
+                            static_cast<int>(1e6 * scan.plate_z) % 1000,
+                            static_cast<int>(1e3 * scan.top_force()));
+    files[0] = write("kraft.csv", text);
+    auto problems = unclear(guess_tables(files, known_));
+    EXPECT_THAT(
+        problems,
+        ElementsAre(HasSubstr("decimal must be confirmed, got \"?,\": every comma has three digits")));
+}
+
 TEST_F(ImportTest, UmlautsAreLetters) {
     const auto files = write_lab({});
     std::string text = lab_plate(truth_, {});

@@ -44,6 +44,7 @@ std::vector<std::string> write_files(std::string_view text) {
 mcdem::Mapping confirmed(mcdem::Mapping mapping) {
     for (mcdem::MappedTable& table : mapping.tables) {
         table.role_sure = mcdem::Sure::likely;
+        table.decimal_unclear.clear();
         for (auto* guesses : {&table.entries, &table.walls})
             for (auto& [key, guess] : *guesses) guess.sure = mcdem::Sure::likely;
     }

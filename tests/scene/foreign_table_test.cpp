@@ -45,6 +45,7 @@ TEST(ForeignText, IsCutHoweverItIsWritten) {
     expect_the_table(table("x;F\n[mm];[mN]\n1,5;2\n2,5;-4\n"), {"x [mm]", "F [mN]"});
     expect_the_table(table("H\xF6he [\xB5m];F\n1,5;2\n2,5;-4\n"), {"H\xC3\xB6he [\xC2\xB5m]", "F"});
     expect_the_table(table("x;?\n1,5;2\n2,5;-4\n"), {"x", "column 2"});
+    expect_the_table(table("x;-F\n1,5;2\n2,5;-4\n"), {"x", "column 2"});
     expect_the_table(table("x;x\n1,5;2\n2,5;-4\n"), {"x", "column 2"});
 }
 
@@ -80,6 +81,38 @@ TEST(ForeignText, SeparatorsOfThousandsAreRefused) {
             ElementsAre(HasSubstr("t:3: numbers must have no separators of thousands, got \"" + cell)));
     EXPECT_THAT(table_problems("x,F\n0.5,1.5\n1.5,\"1,306\"\n"), ElementsAre(HasSubstr("thousands")));
     EXPECT_EQ(table("x;F\n0,5;1,5\n1,5;0.306\n").number(1, 1), 0.306);
+}
+
+TEST(ForeignText, CommasThatPartThousandsAreSeenByTheWholeTable) {
+    for (const std::string separator : {";", "\t"}) {
+        std::string text = "x" + separator + "F\n1,306" + separator + "2\n";
+        EXPECT_FALSE(table(text).decimal_clear);
+        EXPECT_TRUE(parse_foreign_table(text + "0,5" + separator + "3\n", "t").decimal_clear);
+        for (int row = 0; row < 200; ++row) text += "1,306" + separator + "2\n";
+        EXPECT_THAT(
+            table_problems(text + "1" + separator + "2.5\n"),
+            ElementsAre(
+                "t:2: numbers must have one decimal mark and no separators of thousands, got \"1,306\" "
+                "beside \"2.5\" in line 203: write the table with points only"));
+        EXPECT_THAT(table_problems(text + "0,5" + separator + "2.5\n"),
+                    ElementsAre(HasSubstr("t:2: numbers must have")));
+    }
+    EXPECT_EQ(table("x;F\n0,5;2\n1,306;3\n").number(1, 0), 1.306);
+    EXPECT_THAT(problems_of([] {
+                    parse_foreign_table("x;F\n1,306;2.5\n", "t", TextForm{';', ','});
+                }),
+                ElementsAre(HasSubstr("must have one decimal mark")));
+}
+
+TEST(ForeignText, LinesOfAnotherKindAboveTheNamesAreNoRows) {
+    const std::vector<std::string> names{"x", "F"};
+    expect_the_table(table("Vorkraft;0,5\nx;F\n1,5;2\n2,5;-4\n"), names);
+    expect_the_table(table("Probe;Sand\nVorkraft;0,5\nWeg;3 mm\nx;F\n[mm];[N]\n1,5;2\n2,5;-4\n"),
+                     {"x [mm]", "F [N]"});
+    expect_the_table(table("Vorkraft,0.5\n\n# later\nx,F\n1.5,2\n2.5,-4\n"), names);
+    EXPECT_EQ(table("load;0,5;a\nload;1,5;b\npause;here;c\nunload;2;d\n").rows(), 4u)
+        << "a row like those below";
+    EXPECT_EQ(table("x;F\nnan;0,5\na;b\n1,5;2\n").rows(), 3u) << "nothing is no word";
 }
 
 TEST(ForeignText, YadesFormatsNameTheirColumns) {
