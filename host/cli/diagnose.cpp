@@ -7,8 +7,11 @@
 #include "cli/progress.h"
 #include "cli/scene_options.h"
 #include "core/atomic_file.h"
+#include "core/make_folder.h"
 #include "core/version.h"
 #include "ensemble/diagnose_experiment.h"
+#include "io/folder_lock.h"
+#include "io/result_folder.h"
 #include "report/diagnosis_json.h"
 #include "report/diagnosis_page.h"
 #include "report/diagnosis_text.h"
@@ -56,9 +59,7 @@ private:
     std::optional<Progress> progress_;
 };
 
-Diagnosis diagnose(const DiagnoseCommand& command) {
-    const Scene scene = command.scene.read();
-    const Experiment experiment = read_experiment(command.experiment);
+Diagnosis diagnose(const DiagnoseCommand& command, const Scene& scene, const Experiment& experiment) {
     Device device(command.device);
     spdlog::info("{} against {} on {}", scene.name, experiment.name, device.info().name);
     if (scene.replicas.size() > 1)
@@ -73,8 +74,13 @@ Diagnosis diagnose(const DiagnoseCommand& command) {
 
 int run(const DiagnoseCommand& command) {
     try {
-        const Diagnosis diagnosis = diagnose(command);
+        const Scene scene = command.scene.read();
+        const Experiment experiment = read_experiment(command.experiment);
         const std::filesystem::path folder = command.out;
+        expect_no_file(folder);
+        make_folder(folder);
+        const FolderLock lock(folder, FolderLock::Use::alone);
+        const Diagnosis diagnosis = diagnose(command, scene, experiment);
         replace_file(folder / "diagnosis.json", diagnosis_json(diagnosis));
         fmt::print("{}\nwrote\n  {}\n", diagnosis_text(diagnosis), (folder / "diagnosis.json").string());
         write_diagnosis_page(diagnosis, folder / "diagnosis.html");

@@ -4,6 +4,7 @@
 #include <fstream>
 
 #include "cli/cli_test.h"
+#include "io/folder_lock.h"
 #include "io/results.h"
 
 namespace mcdem {
@@ -158,6 +159,19 @@ TEST_F(ExperimentCommandTest, SpoiledTablesAreToldWithTheirLines) {
     const auto checked = mcdem({"experiment", "check", "e"});
     expect_bad_input(checked, "mcdem: e/plate.csv:4: phase must be one of load, unload, got \"lode\"");
     EXPECT_THAT(checked.err, HasSubstr("grain must be a grain of grains.csv, 0 to 29, got 77"));
+}
+
+TEST_F(ExperimentCommandTest, IsDiagnosedByOneProgramAFolder) {
+    run("a");
+    expect_done(from_run("e", {"--replica", "1"}));
+    fs::create_directory(path("out"));
+    const std::vector<std::string> words{"diagnose", "small.toml", "--experiment", "e", "--out", "out"};
+    {
+        const FolderLock other(path("out"), FolderLock::Use::alone);
+        expect_bad_input(mcdem(words), "another program is writing there");
+    }
+    const FolderLock others(path("out"), FolderLock::Use::shared);
+    expect_bad_input(mcdem(words), "other programs share work there");
 }
 
 }  // namespace
