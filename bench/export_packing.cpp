@@ -3,6 +3,7 @@
 
 #include <exception>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <string>
 
 #include "bench/dense_packing.h"
@@ -32,6 +33,8 @@ nlohmann::json parameters(const bench::DensePacking& dense, const Replica& repli
             {"size_x", dense.box.size_x},
             {"size_y", dense.box.size_y},
             {"height", dense.height},
+            {"diameter", std::accumulate(dense.packing.diameter.begin(), dense.packing.diameter.end(), 0.0) /
+                             dense.packing.size()},
             {"time_step", time_step(replica, dense.packing)},
             {"youngs_modulus", replica.grains.youngs_modulus},
             {"poisson_ratio", replica.grains.poisson_ratio},
