@@ -77,7 +77,7 @@ def goes_on_as_one(place):
     """All are interrupted; one process alone goes on."""
     place.run_alone()
     process = all_devices(place, "both")
-    shared_runs.wait_until(lambda: shared_runs.holder_at_work(place.path / "both/parts"), "work")
+    shared_runs.wait_until(lambda: shared_runs.holders_at_work(place.path / "both/parts"), "work")
     process.terminate()
     said = finish(process, exit_codes=(130,))
     assert "interrupted" in said, said

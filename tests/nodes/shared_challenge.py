@@ -1,29 +1,13 @@
 """What the tests of a challenge that many work at share: a small one, its answers by one process, and a worker killed."""
 import json
 import os
+import pathlib
+import shutil
 import signal
 
-from shared_runs import wait_until
+from shared_runs import claim_of, files_in, wait_until
 
-TINY = """name = "tiny"
-[box]
-size_x = 0.083
-size_y = 0.083
-[contact]
-model = "independent"
-friction_law = "mindlin"
-[packing]
-count = 64
-packing_fraction = 0.59
-[plate]
-start = 0.0835
-end = 0.0685
-speed = 0.2
-[protocol]
-stop_at_scans = false
-scans_per_stroke = 6
-relax_time = 0.1
-"""
+SCENE = pathlib.Path(__file__).resolve().parents[1] / "ensemble" / "tiny_challenge.toml"
 
 
 def command_of(out):
@@ -34,7 +18,7 @@ def command_of(out):
 
 def run_alone(place):
     """Makes the challenge, and answers it."""
-    (place.path / "tiny.toml").write_text(TINY)
+    shutil.copy(SCENE, place.path / "tiny.toml")
     place.run([place.mcdem, "challenge", "make", "tiny.toml", "--out", "challenge", "--truth", "truth.json", "--seed",
                "3", "--effects", "friction,force_bias", "--none", "3", "--per-effect", "1", "--pairs", "0", "--unknown",
                "0", "--outside", "0", "--packings", "2"])
@@ -44,11 +28,8 @@ def run_alone(place):
 def kill_a_worker(place, out):
     """kill -9 of one that diagnoses a case."""
     def victim():
-        for file in (place.path / out / "claims").glob("case*.claim-*"):
-            claim = json.loads(file.read_text())
-            if claim["state"] == "held":
-                return claim["process"]
-        return None
+        claims = map(claim_of, files_in(place.path / out / "claims", "case*.claim-*"))
+        return next((claim["process"] for claim in claims if claim.get("state") == "held"), None)
 
     os.kill(wait_until(victim, "a case that is diagnosed"), signal.SIGKILL)
 

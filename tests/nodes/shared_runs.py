@@ -126,38 +126,58 @@ def wait_until(condition, what):
     raise AssertionError(f"waited in vain for {what}")
 
 
-def holder_at_work(folder):
-    """Number of a process that holds a task in the folder and has left a checkpoint of it; None where there is none."""
-    for checkpoint in folder.glob("*.work-*/checkpoint.h5"):
-        claim = folder / checkpoint.parent.name.replace(".work-", ".claim-")
-        try:
-            text = json.loads(claim.read_text())
-        except (OSError, ValueError):
-            continue
-        if text["state"] == "held" and not (folder / f"{claim.stem}.h5").exists():
-            return text["process"]
-    return None
+def files_in(folder, pattern):
+    """What lies in a folder that others write to, and remove, at the same time."""
+    try:
+        return list(folder.glob(pattern))
+    except FileNotFoundError:
+        return []
+
+
+def claim_of(file):
+    """What a claim says; an empty one where another program has just moved or removed it."""
+    try:
+        return json.loads(file.read_text())
+    except (OSError, ValueError):
+        return {}
+
+
+def holders_at_work(folder):
+    """Numbers of the processes that hold a part in the folder and have left a checkpoint of it."""
+    holders = set()
+    for checkpoint in files_in(folder, "*.work-*/checkpoint.h5"):
+        file = folder / checkpoint.parent.name.replace(".work-", ".claim-")
+        claim = claim_of(file)
+        if claim.get("state") == "held" and not (folder / f"{file.stem}.h5").exists():
+            holders.add(claim["process"])
+    return holders
 
 
 def devices_of_parts(folder, process):
     """Numbers and names of the devices on which parts in the folder are computed until the process has ended."""
     devices = set()
     while process.poll() is None:
-        for claim in folder.glob("0*.claim-*"):
-            try:
-                device = json.loads(claim.read_text())["device"]
-            except (OSError, ValueError):
-                continue
-            devices.add((device["number"], device["name"]))
+        for claim in map(claim_of, files_in(folder, "0*.claim-*")):
+            if claim:
+                devices.add((claim["device"]["number"], claim["device"]["name"]))
         time.sleep(0.002)
     return devices
 
 
+def signal_a_worker(folder, number, besides=()):
+    victim = min(wait_until(lambda: holders_at_work(folder) - set(besides), "a worker with a checkpoint"))
+    os.kill(victim, number)
+    return victim
+
+
 def kill_a_worker(folder):
     """kill -9 of one that is in the middle of a part."""
-    victim = wait_until(lambda: holder_at_work(folder), "a worker with a checkpoint")
-    os.kill(victim, signal.SIGKILL)
-    return victim
+    return signal_a_worker(folder, signal.SIGKILL)
+
+
+def stop_a_worker(folder, besides=()):
+    """Holds one up that is in the middle of a part, so that this is not done before the worker is lost."""
+    return signal_a_worker(folder, signal.SIGSTOP, besides)
 
 
 def has_two_devices(place):
@@ -172,7 +192,7 @@ class PartsSeen:
         self.folder, self.inodes = folder, {}
 
     def look(self):
-        for file in self.folder.glob("*.h5"):
+        for file in files_in(self.folder, "*.h5"):
             try:
                 self.inodes.setdefault(file.name, set()).add(file.stat().st_ino)
             except OSError:

@@ -3,14 +3,12 @@ middle, nodes lost, names that a shell would stumble over, the bytes of one proc
 
 slurm_test.py MCDEM; skipped (77) where a program is missing or this is not root.
 """
-import os
 import re
-import signal
 
 import own_slurm
 import shared_challenge
 import shared_runs
-from shared_runs import PARTS, PartsSeen, command_of, finish, holder_at_work, kill_a_worker, wait_until
+from shared_runs import PARTS, PartsSeen, command_of, files_in, finish, kill_a_worker, stop_a_worker, wait_until
 
 cluster = own_slurm.Cluster()
 ODD = "out $(touch hacked) `touch hacked` 'it''s' %j; touch hacked"
@@ -42,7 +40,8 @@ def goes_on_after_a_cancelled_job(place):
     place.run_alone()
     process = run_words(place, "jobs")
     parts = PartsSeen(place.path / "jobs/parts")
-    wait_until(lambda: list(parts.folder.glob("*.h5")), "a part")
+    stop_a_worker(parts.folder)
+    wait_until(lambda: files_in(parts.folder, "*.h5"), "a part")
     parts.look()
     number = (place.path / "jobs/slurm/job").read_text().strip()
     place.run(["scancel", "--signal=KILL", "--full", number], cluster.environment)
@@ -66,18 +65,11 @@ def is_not_submitted_twice(place):
     place.expect_like_alone("jobs")
 
 
-def stopped_worker(place, out):
-    """One in the middle of a part, which is not done before it is lost."""
-    worker = wait_until(lambda: holder_at_work(place.path / out / "parts"), "a worker with a checkpoint")
-    os.kill(worker, signal.SIGSTOP)
-    return worker
-
-
 def outlives_a_lost_node(place):
     """The power fails on the node of a worker: those on the other do its part."""
     place.run_alone()
     process = run_words(place, "jobs")
-    node = cluster.node_of(stopped_worker(place, "jobs"))
+    node = cluster.node_of(stop_a_worker(place.path / "jobs/parts"))
     cluster.lose(node)
     said = finish(process)
     assert "8 of 8 replicas done" in said, said
@@ -89,7 +81,7 @@ def outlives_the_loss_of_all_nodes(place):
     """Slurm queues their tasks again, and the command that waits goes on waiting."""
     place.run_alone()
     process = run_words(place, "jobs")
-    stopped_worker(place, "jobs")
+    stop_a_worker(place.path / "jobs/parts")
     cluster.lose(*own_slurm.NODES)
     assert not (place.path / "jobs/run.h5").exists()
     cluster.bring_back(*own_slurm.NODES)
