@@ -7,7 +7,6 @@
 #include "cli/progress.h"
 #include "cli/scene_options.h"
 #include "core/atomic_file.h"
-#include "core/make_folder.h"
 #include "core/version.h"
 #include "ensemble/diagnose_experiment.h"
 #include "io/folder_lock.h"
@@ -77,8 +76,7 @@ int run(const DiagnoseCommand& command) {
         const Scene scene = command.scene.read();
         const Experiment experiment = read_experiment(command.experiment);
         const std::filesystem::path folder = command.out;
-        expect_no_file(folder);
-        make_folder(folder);
+        make_result_folder(folder);
         const FolderLock lock(folder, FolderLock::Use::alone);
         const Diagnosis diagnosis = diagnose(command, scene, experiment);
         replace_file(folder / "diagnosis.json", diagnosis_json(diagnosis));

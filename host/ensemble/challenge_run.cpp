@@ -254,8 +254,7 @@ void expect_no_challenge(const fs::path& folder) {
 
 void run_challenge(Device& device, const Scene& scene, const ChallengeRunOptions& options) {
     Running running(device, scene, options);
-    expect_no_file(options.out);
-    make_folder(options.out);
+    make_result_folder(options.out);
     const FolderLock lock =
         lock_folder(options.out, options.share ? FolderLock::Use::shared : FolderLock::Use::alone);
     for (const char* folder : {evidence_folder, findings_folder}) make_folder(options.out / folder);

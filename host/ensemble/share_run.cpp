@@ -245,8 +245,7 @@ void expect_sharable(const fs::path& folder, const Scene& scene) {
 }
 
 RunEnd share_run(Device& device, const Scene& scene, const ShareOptions& options) {
-    expect_no_file(options.folder);
-    make_folder(options.folder);
+    make_result_folder(options.folder);
     const FolderLock lock = lock_for_sharing(options.folder, scene);
     if (is_merged(options.folder)) {
         fs::remove_all(old_parts(options.folder));

@@ -12,6 +12,9 @@ struct Word {
     std::string_view names;  ///< bases of names, parted by blanks, one at either end
 };
 
+/// Names of z where it counts downwards.
+constexpr std::string_view downward_words = " depth tiefe profondeur zdown zdownwards ";
+
 // The first that fits counts.
 constexpr Word plate_words[] = {
     {"frame", " frame scan image snapshot step timestep bild schritt state time t zeit temps iter "},
@@ -30,9 +33,8 @@ constexpr Word grain_words[] = {
      " grain id particle label index korn teilchen nr no number atom particleid grainid bead beadid "},
     {"x", " x xc cx posx xpos centroidx xcentroid centerx xcenter xu px positionx "},
     {"y", " y yc cy posy ypos centroidy ycentroid centery ycenter yu py positiony "},
-    {"z",
-     " z zc cz posz zpos centroidz zcentroid centerz zcenter zu pz positionz depth tiefe profondeur zdown "
-     "zdownwards "},
+    {"z", " z zc cz posz zpos centroidz zcentroid centerz zcenter zu pz positionz "},
+    {"z", downward_words},
     {"diameter", " diameter d dia diam durchmesser diametre "},
     {"radius", " radius r rad radii halbmesser rayon "},
 };
@@ -46,7 +48,8 @@ constexpr Word contact_words[] = {
      "neighbor nachbar other contactwith "},
     {"x", " x xc cx px contactx xcontact cpx pointx "},
     {"y", " y yc cy py contacty ycontact cpy pointy "},
-    {"z", " z zc cz pz contactz zcontact cpz pointz depth tiefe profondeur zdown zdownwards "},
+    {"z", " z zc cz pz contactz zcontact cpz pointz "},
+    {"z", downward_words},
     {"fx", " fx forcex xforce f1 kraftx ffx fcx "},
     {"fy", " fy forcey yforce f2 krafty ffy fcy "},
     {"fz", " fz forcez zforce f3 kraftz ffz fcz "},
@@ -55,6 +58,10 @@ constexpr Word contact_words[] = {
 
 constexpr std::pair<std::string_view, double> time_units[] = {
     {"s", 1}, {"sec", 1}, {"ms", 1e-3}, {"min", 60}, {"h", 3600}};
+
+bool is_among(const ColumnName& name, std::string_view words) {
+    return !name.base.empty() && words.find(" " + name.base + " ") != words.npos;
+}
 
 std::string_view without(std::string_view text, std::string_view set) {
     const auto first = text.find_first_not_of(set);
@@ -151,10 +158,11 @@ ColumnName column_name(std::string_view name) {
 }
 
 std::optional<std::string_view> key_of_name(Role role, const ColumnName& name) {
-    if (name.base.empty()) return std::nullopt;
     for (const Word& word : words_of(role))
-        if (word.names.find(" " + name.base + " ") != word.names.npos) return word.key;
+        if (is_among(name, word.names)) return word.key;
     return std::nullopt;
 }
+
+bool names_downwards(const ColumnName& name) { return is_among(name, downward_words); }
 
 }  // namespace mcdem

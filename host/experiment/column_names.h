@@ -23,4 +23,7 @@ double time_factor(std::string_view unit);
 /// The key of a table of that role that a column of this name stands for.
 std::optional<std::string_view> key_of_name(Role role, const ColumnName& name);
 
+/// It is one of z where that counts downwards, such as a depth.
+bool names_downwards(const ColumnName& name);
+
 }  // namespace mcdem

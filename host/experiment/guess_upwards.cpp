@@ -45,13 +45,6 @@ Gives end_that_gives(const std::vector<Ends>& frames, double diameter) {
                                      : Gives::both_ends;
 }
 
-bool names_downwards(const std::string& column) {
-    const std::string base = column_name(column).base;
-    for (const std::string_view word : {"depth", "tiefe", "zdown", "zdownwards", "profondeur"})
-        if (base == word) return true;
-    return false;
-}
-
 /// What the ends and the column's name say of a table whose z is not turned yet.
 Guess upwards(const std::string& column, const Guess& now, const std::vector<Ends>& frames, double diameter) {
     const Gives gives = end_that_gives(frames, diameter);
@@ -59,13 +52,12 @@ Guess upwards(const std::string& column, const Guess& now, const std::vector<End
     const Ends& first = frames.front();
     const std::string turned = "-" + column;
     const std::string reach = fmt::format("grains reach from {:.4g} to {:.4g}", first.low, first.high);
-    if (names_downwards(column))
-        return guess(turned,
-                     gives == Gives::high_end || gives == Gives::both_ends ? Sure::unclear : Sure::sure,
-                     gives == Gives::high_end || gives == Gives::both_ends
-                         ? "its name says downwards, but the packing gives way at its upper end: remove the "
-                           "- if z is upwards"
-                         : "its name says downwards");
+    const bool named_so = names_downwards(column_name(column));
+    if (named_so && (gives == Gives::high_end || gives == Gives::both_ends))
+        return guess(turned, Sure::unclear,
+                     "its name says downwards, but the packing gives way at its upper end: remove the - if z "
+                     "is upwards");
+    if (named_so) return guess(turned, Sure::sure, "its name says downwards");
     if (gives == Gives::low_end && std::abs(first.high) < margin)
         return guess(turned, Sure::sure,
                      reach + ", and the packing gives way at its lower end: z is downwards");

@@ -119,9 +119,13 @@ void expect_no_file(const fs::path& folder) {
         throw InputError(folder.string() + ": is a file; give a folder for the results");
 }
 
-ResultFolder ResultFolder::create(const fs::path& folder) {
+void make_result_folder(const fs::path& folder) {
     expect_no_file(folder);
     make_folder(folder);
+}
+
+ResultFolder ResultFolder::create(const fs::path& folder) {
+    make_result_folder(folder);
     ResultFolder made(folder, FolderLock(folder, FolderLock::Use::alone));
     if (const fs::path file = file_of_a_run(folder); !file.empty())
         throw InputError(

@@ -23,6 +23,9 @@ std::filesystem::path file_of_a_run(const std::filesystem::path& folder);
 /// Throws InputError for a file where the folder of a run is to be.
 void expect_no_file(const std::filesystem::path& folder);
 
+/// make_folder, but for a file in its place: InputError.
+void make_result_folder(const std::filesystem::path& folder);
+
 /// Owns a result folder while a run is written to it alone; other programs are refused.
 class ResultFolder {
 public:

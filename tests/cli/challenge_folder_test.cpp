@@ -20,7 +20,7 @@ const char* const shared = "other programs share work there: wait for them, join
 class ChallengeFolderTest : public CliTest {
 protected:
     void SetUp() override {
-        std::ofstream(path("tiny.toml")) << tiny_scene_text;
+        write_tiny_scene(folder_.path);
         expect_done(mcdem({"challenge", "make", "tiny.toml", "--out", "challenge", "--effects",
                            "friction,force_bias", "--none", "1", "--pairs", "0", "--per-effect", "0",
                            "--unknown", "0", "--outside", "0", "--packings", "2"}));

@@ -37,7 +37,7 @@ class ChallengeTest : public testing::Test {
 protected:
     static void SetUpTestSuite() {
         folder_ = new TestFolder;
-        std::ofstream(path("tiny.toml")) << tiny_scene_text;
+        write_tiny_scene(folder_->path);
         made_ = new Finished(mcdem(make_challenge_words));
         fs::create_directories(path("sealed"));
         if (fs::exists(path("challenge/truth.json")))

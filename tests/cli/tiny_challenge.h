@@ -6,26 +6,11 @@ namespace mcdem {
 
 using Words = std::vector<std::string>;
 
-/// 64 grains, as dense as the challenge's.
-inline const char* const tiny_scene_text = R"(name = "tiny"
-[box]
-size_x = 0.083
-size_y = 0.083
-[contact]
-model = "independent"
-friction_law = "mindlin"
-[packing]
-count = 64
-packing_fraction = 0.59
-[plate]
-start = 0.0835
-end = 0.0685
-speed = 0.2
-[protocol]
-stop_at_scans = false
-scans_per_stroke = 6
-relax_time = 0.1
-)";
+/// tiny.toml, of which a challenge is made: 64 grains, as dense as the challenge's.
+inline void write_tiny_scene(const std::filesystem::path& folder) {
+    std::filesystem::copy_file(std::filesystem::path(MCDEM_SOURCE_DIR) / "tests/ensemble/tiny_challenge.toml",
+                               folder / "tiny.toml");
+}
 inline constexpr int cases = 7;
 
 inline const Words make_challenge_words{"challenge", "make",       "tiny.toml",
