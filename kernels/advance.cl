@@ -91,6 +91,7 @@ kernel void advance(const int s, const int slot_count, global const Replica* res
     /* Where barriers follow, the work-items of a waiting replica go through them and write nothing. */
     if (waits && LANES == 16) return;
 
+    fetch_next_bulges(replica, row, mirror, bulge);
     const real plate_z = plate_position(replica, s);
     const OwnSide side = {own.w, own_velocity.w, own_spin.xyz};
     Row sums = {{R(0), R(0), R(0)}, {R(0), R(0), R(0)}, 0, 0};

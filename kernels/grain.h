@@ -74,3 +74,15 @@ INLINE void load_bulges(global const Replica* restrict replica, size_t row, int 
     *here = LOAD_LANES(bulge + row, v);
     *there = gather(bulge, LOAD_LANES(mirror + row, v));
 }
+
+/* Calls for what load_bulges will gather for the next grain: the mirrors lie scattered over the rows of its neighbours, where no
+   processor sees them coming. On a GPU other work-items fill the wait. */
+INLINE void fetch_next_bulges(global const Replica* restrict replica, size_t row, global const int* restrict mirror,
+                              global const real* restrict bulge) {
+#if LANES == 16
+    if (replica->surface == SURFACE_RIGID || (int)get_local_id(0) == BLOCK - 1) return;
+    for (int slot = SLOTS; slot < 2 * SLOTS; ++slot) PREFETCH(bulge + mirror[row + slot]);
+#else
+    (void)replica, (void)row, (void)mirror, (void)bulge;
+#endif
+}

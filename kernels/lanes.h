@@ -20,6 +20,12 @@ typedef int16 slots;
 #define LOAD_LANES(row, v) vload16(v, row)
 #define STORE_LANES(value, row, v) vstore16(value, v, row)
 #define ANY(m) any_lane(m)
+/* Asks for a place in memory ahead of its use; OpenCL's own prefetch() does nothing in PoCL. */
+#if defined(__x86_64__) || defined(__aarch64__)
+#define PREFETCH(place) __builtin_prefetch((const void*)(size_t)(place))
+#else
+#define PREFETCH(place)
+#endif
 #define SLOT_NUMBERS(v) ((int16)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15) + (v) * 16)
 #else
 typedef real lanes;

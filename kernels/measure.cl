@@ -16,6 +16,7 @@ kernel void measure(global const Replica* restrict replicas, global const int* r
     const real4 own = position[grain];
     const real4 own_velocity = velocity[grain];
     const real4 own_spin = angular_velocity[grain];
+    fetch_next_bulges(replica, row, mirror, bulge);
     const real plate_z = plate_position(replica, steps[replica_of_block[block]]);
     const OwnSide side = {own.w, own_velocity.w, own_spin.xyz};
     lanes elastic_energy = R(0), deepest = R(0);
