@@ -46,7 +46,7 @@ Frames frames_of(const ImportTable& table) {
 
 bool all_among(const std::vector<double>& keys, const std::vector<double>& others) {
     const FrameIndex index(others);
-    return !others.empty() && std::ranges::all_of(keys, [&](double key) { return index.find(key) >= 0; });
+    return !keys.empty() && !others.empty() && std::ranges::all_of(keys, [&](double key) { return index.find(key) >= 0; });
 }
 
 /// Of several columns that may tell the frame, the one that the plate's table has too.

@@ -37,6 +37,10 @@ public:
         const Vec3 begin = frames_.sign.cwiseProduct(origin);
         frames_.origin = unit * begin;
         const long first = whole_entry(map, "first_grain", problems_);
+        if (rows.all().empty())
+            return problems_.add(
+                map.files.front(),
+                "must have rows, one for each grain of a frame: leave a table without any out");
         double key = 0;
         by_place_ = !rows.has_column("grain");
         for (const RowAt& row : rows.all()) {

@@ -55,6 +55,20 @@ protected:
     }
 };
 
+TEST_F(FramesTest, ATableWithoutRowsHasNoFramesThatCouldBeOnesOfThePlate) {
+    const auto dump =
+        write("grains.dump",
+              "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n0\nITEM: BOX BOUNDS ff ff ff\n0 1\n0 1\n0 1\n"
+              "ITEM: ATOMS id x y z radius\n");
+    const auto tables = guess_tables({plate("frame [s]"), dump}, known_);
+    const Guess* frames = of(tables, Role::grains).find("frames_by");
+    ASSERT_TRUE(frames);
+    EXPECT_EQ(frames->sure, Sure::unclear);
+    EXPECT_THAT(frames->why, HasSubstr("there are 0 frames here"));
+    EXPECT_THAT(problems_of([&] { import_tables(tables, known_); }),
+                Contains(HasSubstr("grains.dump: must have rows")));
+}
+
 TEST_F(FramesTest, NumbersInFileNamesAreThoseOfThePlate) {
     std::vector<std::string> files{plate("frame")};
     grain_files(files, {{2, "grains_002.txt"}, {3, "grains_003.txt"}, {5, "grains_005.txt"}});
