@@ -79,7 +79,7 @@ struct Protocol {
 
 struct Numerics {
     double time_step = 0.1;      ///< fraction of the Rayleigh time of the smallest grain
-    double skin = 0.1;           ///< neighbour list margin, over the mean radius
+    double skin = 0.2;           ///< neighbour list margin, over the mean radius
     double probe_gap = 0.15;     ///< gap up to which surfaces are probed, over the mean radius
     double overlap_limit = 0.5;  ///< corrected overlap over the sum of radii beyond which no static solution is assumed
 };

@@ -25,7 +25,8 @@ std::string cause_of(const StretchResult& result, const Replica& replica, int sl
     add(STATUS_LOST,
         "the centre of a grain left the box: too fast a plate or too long a time step (lower plate.speed or "
         "numerics.time_step)");
-    add(STATUS_SLOTS, fmt::format("a grain has more than {} near neighbours (raise numerics.slots)", slots));
+    add(STATUS_SLOTS, fmt::format("a grain has more than {} near neighbours (raise numerics.slots, or lower numerics.skin)",
+                                  slots));
     add(STATUS_UNPROBED, fmt::format("a free surface moved out by more than numerics.probe_gap = {} mean radii: "
                                      "contacts could be missed (raise numerics.probe_gap)",
                                      replica.numerics.probe_gap));

@@ -42,7 +42,7 @@ TEST_F(VanishingDeviceTest, TheRunSaysSoKeepsWhatItHasAndGoesOn) {
     int vanished = 0;
     Finished finished;
     while (vanished < most) {
-        finished = run_until_it_vanishes("a", 2500, vanished > 0);  // a third of what the run launches
+        finished = run_until_it_vanishes("a", 1500, vanished > 0);  // a third of what the run launches
         if (finished.exit_code == 0) break;
         ++vanished;
         EXPECT_EQ(finished.exit_code, 1) << finished.err;
@@ -55,7 +55,7 @@ TEST_F(VanishingDeviceTest, TheRunSaysSoKeepsWhatItHasAndGoesOn) {
 }
 
 TEST_F(VanishingDeviceTest, CompletedScansCanBeRead) {
-    const auto finished = run_until_it_vanishes("a", 5000, false);
+    const auto finished = run_until_it_vanishes("a", 3000, false);
     ASSERT_EQ(finished.exit_code, 1) << finished.err;
     const auto table = mcdem({"table", "a"});
     expect_done(table);
@@ -67,7 +67,7 @@ TEST_F(VanishingDeviceTest, CompletedScansCanBeRead) {
 TEST_F(VanishingDeviceTest, ScansSinceTheLastCheckpointCanBeReadToo) {
     const auto run = run_words("a", {"--set", "output.checkpoint_minutes=60"});
     expect_done(mcdem(run_words("whole", {"--set", "output.checkpoint_minutes=60"})));
-    const auto finished = mcdem(run, {"OPENCL_LAYERS=" MCDEM_VANISHING_DEVICE, "MCDEM_TEST_KERNELS=5000"});
+    const auto finished = mcdem(run, {"OPENCL_LAYERS=" MCDEM_VANISHING_DEVICE, "MCDEM_TEST_KERNELS=3000"});
     ASSERT_EQ(finished.exit_code, 1) << finished.err;
     const auto table = mcdem({"table", "a"});
     expect_done(table);

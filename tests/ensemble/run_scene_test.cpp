@@ -79,7 +79,7 @@ TEST_F(RunSceneTest, TwoFreshRunsHaveTheSameBytes) {
 
 TEST_F(RunSceneTest, ResumedRunEndsWithTheSameBytes) {
     run(small_scene(), "whole");
-    for (int rounds : {1, 23, 64}) {
+    for (int rounds : {1, 12, 32}) {
         const auto name = "stopped after " + std::to_string(rounds);
         ASSERT_EQ(run(small_scene(), name, Start::fresh, rounds).end, RunEnd::interrupted);
         EXPECT_FALSE(fs::exists(run_file(folder(name))));
@@ -94,9 +94,9 @@ TEST_F(RunSceneTest, ResumedRunEndsWithTheSameBytes) {
 
 TEST_F(RunSceneTest, SegmentNewerThanTheCheckpointIsDropped) {
     run(small_scene(), "whole");
-    run(small_scene(), "a", Start::fresh, 50);
+    run(small_scene(), "a", Start::fresh, 25);
     const auto checkpoint = bytes_of_file(folder("a") / "checkpoint.h5");
-    run(small_scene(), "a", Start::resume, 50);
+    run(small_scene(), "a", Start::resume, 25);
     ASSERT_GT(segment_files(folder("a")).size(), 1u);
     // As if the power had gone between the segment and its checkpoint.
     fs::remove(folder("a") / "checkpoint.previous.h5");
