@@ -59,10 +59,6 @@ constexpr Word contact_words[] = {
 constexpr std::pair<std::string_view, double> time_units[] = {
     {"s", 1}, {"sec", 1}, {"ms", 1e-3}, {"min", 60}, {"h", 3600}};
 
-bool is_among(const ColumnName& name, std::string_view words) {
-    return !name.base.empty() && words.find(" " + name.base + " ") != words.npos;
-}
-
 std::string_view without(std::string_view text, std::string_view set) {
     const auto first = text.find_first_not_of(set);
     if (first == text.npos) return {};
@@ -157,12 +153,16 @@ ColumnName column_name(std::string_view name) {
     return all;
 }
 
+bool is_among(const std::string& base, std::string_view names) {
+    return !base.empty() && names.find(" " + base + " ") != names.npos;
+}
+
 std::optional<std::string_view> key_of_name(Role role, const ColumnName& name) {
     for (const Word& word : words_of(role))
-        if (is_among(name, word.names)) return word.key;
+        if (is_among(name.base, word.names)) return word.key;
     return std::nullopt;
 }
 
-bool names_downwards(const ColumnName& name) { return is_among(name, downward_words); }
+bool names_downwards(const ColumnName& name) { return is_among(name.base, downward_words); }
 
 }  // namespace mcdem

@@ -20,6 +20,10 @@ ColumnName column_name(std::string_view name);
 /// Seconds in a unit of time; not-a-number where it is none.
 double time_factor(std::string_view unit);
 
+/// `base`, of a column's name, is one of the words in `names`, which stand between blanks. An empty one is
+/// none.
+bool is_among(const std::string& base, std::string_view names);
+
 /// The key of a table of that role that a column of this name stands for.
 std::optional<std::string_view> key_of_name(Role role, const ColumnName& name);
 

@@ -24,7 +24,7 @@ std::string quantity(const std::string& base) {
         {" step timestep schritt iter ", "step"},
         {" frame scan image snapshot bild state ", "scan"}};
     for (const auto& [names, what] : words)
-        if (!base.empty() && names.find(" " + base + " ") != names.npos) return std::string(what);
+        if (is_among(base, names)) return std::string(what);
     return "";
 }
 
@@ -46,7 +46,8 @@ Frames frames_of(const ImportTable& table) {
 
 bool all_among(const std::vector<double>& keys, const std::vector<double>& others) {
     const FrameIndex index(others);
-    return !keys.empty() && !others.empty() && std::ranges::all_of(keys, [&](double key) { return index.find(key) >= 0; });
+    return !keys.empty() && !others.empty() &&
+           std::ranges::all_of(keys, [&](double key) { return index.find(key) >= 0; });
 }
 
 /// Of several columns that may tell the frame, the one that the plate's table has too.

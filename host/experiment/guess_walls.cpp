@@ -37,7 +37,7 @@ std::string wall_word(const std::string& text, bool downwards) {
         {" ymin front vorn ylo ", "y_min"},
         {" ymax back rear hinten yhi ", "y_max"}};
     for (const auto& [names, wall] : words)
-        if (!base.empty() && names.find(" " + base + " ") != names.npos) return std::string(wall);
+        if (is_among(base, names)) return std::string(wall);
     return std::string(by_direction);
 }
 

@@ -5,7 +5,6 @@
 #include <set>
 
 #include "experiment/import_tables.h"
-#include "scene/read_packing.h"
 
 namespace mcdem {
 namespace {
@@ -32,7 +31,8 @@ public:
                     map.files.front(),
                     fmt::format("must have a column for {}, got none: name it in the mapping", key));
         const double unit = length_factor(map.word("length_unit", "m"));
-        const Vec3 origin(number(map, "origin_x"), number(map, "origin_y"), number(map, "origin_z"));
+        const Vec3 origin(number_entry(map, "origin_x"), number_entry(map, "origin_y"),
+                          number_entry(map, "origin_z"));
         frames_.sign = {sign(map, "x"), sign(map, "y"), sign(map, "z")};
         const Vec3 begin = frames_.sign.cwiseProduct(origin);
         frames_.origin = unit * begin;
@@ -63,10 +63,6 @@ public:
 private:
     static double sign(const MappedTable& map, std::string_view key) {
         return signed_column(map.word(key, "")).sign;
-    }
-
-    static double number(const MappedTable& map, std::string_view key) {
-        return to_number(map.word(key, "0")).value_or(0);
     }
 
     void problem(const RowAt& row, const std::string& what) { add_problem(problems_, row, what); }

@@ -6,7 +6,6 @@
 #include "experiment/column_names.h"
 #include "experiment/import_tables.h"
 #include "experiment/measurements.h"
-#include "scene/packing_fields.h"
 
 namespace mcdem {
 namespace {
@@ -68,8 +67,7 @@ std::optional<Scan> read_scan(const Rows& rows, const RowAt& row, const MappedTa
                top = rows.number(row, "top_force");
     if (!z || !top) return std::nullopt;
     Scan scan = unknown_scan();
-    const double origin =
-        to_number(map.word("origin_z", "0")).value_or(0) * signed_column(map.word("plate_z", "")).sign;
+    const double origin = number_entry(map, "origin_z") * signed_column(map.word("plate_z", "")).sign;
     scan.plate_z = goes_down ? plate_start - length * *z : length * (*z - origin);
     scan.wall_force[static_cast<std::size_t>(Wall::plate)].z() =
         (map.word("force_sign", "+") == "-" ? -1 : 1) * force * *top;

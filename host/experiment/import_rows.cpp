@@ -124,6 +124,10 @@ std::string_view Rows::text(const RowAt& row, std::string_view key) const {
     return row.part->cell(row.row, column_of(row, key));
 }
 
+double number_entry(const MappedTable& map, std::string_view key) {
+    return to_number(map.word(key, "0")).value_or(0);
+}
+
 long whole_entry(const MappedTable& map, std::string_view key, ExperimentProblems& problems) {
     const auto number = to_number(map.word(key, "0"));
     if (number && std::abs(*number) <= 2e9 && *number == std::round(*number))

@@ -39,6 +39,9 @@ inline constexpr std::size_t all_rows = std::numeric_limits<std::size_t>::max();
 /// steps, a column.
 enum class KeyedBy { place, file, step, column };
 
+/// A number of the mapping, 0 where it has none.
+double number_entry(const MappedTable& map, std::string_view key);
+
 /// A whole number of the mapping, 0 where it has none; anything else is a problem.
 long whole_entry(const MappedTable& map, std::string_view key, ExperimentProblems& problems);
 

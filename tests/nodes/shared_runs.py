@@ -165,6 +165,7 @@ def devices_of_parts(folder, process):
 
 
 def signal_a_worker(folder, number, besides=()):
+    """To one that is in the middle of a part; its number."""
     victim = min(wait_until(lambda: holders_at_work(folder) - set(besides), "a worker with a checkpoint"))
     os.kill(victim, number)
     return victim
