@@ -68,6 +68,7 @@ Diagnosis diagnose(const DiagnoseCommand& command, const Scene& scene, const Exp
     Stages stages;
     DiagnoseOptions options = options_of(command);
     options.on_progress = [&](const std::string& stage, double fraction) { stages.show(stage, fraction); };
+    options.on_note = [](const std::string& note) { spdlog::warn("{}", note); };
     return diagnose_experiment(device, scene, experiment, options);
 }
 

@@ -33,6 +33,9 @@ void print_check(const std::string& folder) {
             if (finding.severity == severity)
                 fmt::print("{}", wrapped(fmt::format("  {:<16}", finding.about), finding.text));
     }
+    const auto needed = needed_to_diagnose(experiment);
+    fmt::print("\nwhat `mcdem diagnose` needs beside it{}\n", needed.empty() ? ": nothing" : "");
+    for (const std::string& text : needed) fmt::print("{}", wrapped("  ", text));
 }
 
 }  // namespace
@@ -43,6 +46,7 @@ void add_experiment_check(CLI::App& experiment) {
     auto folder = std::make_shared<std::string>();
     sub->add_option("DIR", *folder, "Experiment folder")->required();
     sub->footer(
+        "Says last what must be added before `mcdem diagnose` takes it, which refuses it in the same words.\n"
         "The exit code is 0 where the folder can be read, odd or not, and 2 where it cannot.\n"
         "Example:\n"
         "  mcdem experiment check data/hydrogel");

@@ -53,7 +53,8 @@ std::optional<double> optional_of(const json& value) {
 }
 
 Findings findings_of(const json& j) {
-    Findings findings{j.at("p_value"), j.at("names"), j.at("effects"), j.at("gain"), {}};
+    Findings findings{j.at("p_value"),  j.at("names"),  j.at("effects"), j.at("gain"), {},
+                      j.at("held_out"), j.at("placebo")};
     expect(findings.names.size() == findings.gain.size(), "it has not one gain a candidate", j);
     for (const json& p : j.at("proposals")) {
         Proposal proposal{p.at("candidates"),
@@ -62,7 +63,9 @@ Findings findings_of(const json& j) {
                           p.at("gain"),
                           p.at("misfit_p"),
                           optional_of(p.at("confirmed_gain")),
-                          optional_of(p.at("confirmed_misfit_p"))};
+                          optional_of(p.at("confirmed_misfit_p")),
+                          p.at("reduction"),
+                          optional_of(p.at("confirmed_reduction"))};
         for (const std::size_t candidate : proposal.candidates)
             expect(candidate < findings.names.size(), "it proposes a candidate that there is not", p);
         findings.proposals.push_back(proposal);
@@ -109,12 +112,12 @@ std::string findings_text(const Findings& findings) {
                              {"gain", p.gain},
                              {"misfit_p", p.misfit_p},
                              {"confirmed_gain", optional_json(p.confirmed_gain)},
-                             {"confirmed_misfit_p", optional_json(p.confirmed_misfit_p)}});
-    return json{{"p_value", findings.p_value},
-                {"names", findings.names},
-                {"effects", findings.effects},
-                {"gain", findings.gain},
-                {"proposals", proposals}}
+                             {"confirmed_misfit_p", optional_json(p.confirmed_misfit_p)},
+                             {"reduction", p.reduction},
+                             {"confirmed_reduction", optional_json(p.confirmed_reduction)}});
+    return json{{"p_value", findings.p_value}, {"names", findings.names}, {"effects", findings.effects},
+                {"gain", findings.gain},       {"proposals", proposals},  {"held_out", findings.held_out},
+                {"placebo", findings.placebo}}
         .dump();
 }
 

@@ -14,13 +14,17 @@ struct Choice {
 // clang-format off
 const std::vector<Choice> choices{
     {"false_alarm",  &Limits::false_alarm,  {0.01}},  // a level of significance says what it means, and is not tuned
+    {"reduction",    &Limits::reduction,    {0.5, 0.6, 0.7, 0.8}},
+    {"over_placebo", &Limits::over_placebo, {0.1, 0.2, 0.4}},
     {"misfit",       &Limits::misfit,       {1e-4, 1e-3, 3e-3, 0.01, 0.03, 0.1}},
     {"pair_misfit",  &Limits::pair_misfit,  {0.01, 0.03, 0.05, 0.1, 0.2}},
+    {"pair_remainder", &Limits::pair_remainder, {0, 0.25, 0.5, 0.7}},
     {"group",        &Limits::group,        {1, 2, 3, 5}},
     {"group_share",  &Limits::group_share,  {0.01, 0.02, 0.04, 0.06, 0.1}},
     {"second_gain",  &Limits::second_gain,  {4, 8, 12, 20}},
     {"second_share", &Limits::second_share, {0.02, 0.04, 0.08, 0.15, 0.3}},
-    {"unknown_odds", &Limits::unknown_odds, {0.01, 0.03, 0.1, 0.3, 1}},
+    {"right_below",  &Limits::right_below,  {0.03, 0.1, 0.3}},
+    {"right_above",  &Limits::right_above,  {0.9, 0.94, 0.97, 0.99}},
 };
 // clang-format on
 constexpr int most_rounds = 5;

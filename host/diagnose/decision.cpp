@@ -29,24 +29,38 @@ int best_single(const Findings& findings) {
     return best;
 }
 
-/// Index of a pair that explains what no single effect does and is worth its second effect, -1 where there is
-/// none.
-int worthy_pair(const Findings& findings, double single_gain, const Limits& limits) {
+/// Index of a pair that is worth its second effect by what it gains, -1 where there is none.
+int gaining_pair(const Findings& findings, double single_gain, const Limits& limits) {
     for (std::size_t k = 0; k < findings.proposals.size(); ++k) {
         const Proposal& pair = findings.proposals[k];
-        if (pair.candidates.size() == 2 && pair.best_misfit() >= limits.pair_misfit &&
+        if (pair.candidates.size() == 2 &&
             pair.best_gain() - single_gain > std::max(limits.second_gain, limits.second_share * single_gain))
             return static_cast<int>(k);
     }
     return -1;
 }
 
-/// Probability that an explanation is the whole one. What speaks for it at most is -e p ln p, the smallest
-/// Bayes factor that the p-value of what it leaves allows (Sellke, Bayarri & Berger 2001).
-double trust(double misfit_p, double unknown_odds) {
-    const double p = std::max(misfit_p, 1e-300);
-    const double factor = p < std::exp(-1.0) ? -std::exp(1.0) * p * std::log(p) : 1;
-    return factor / (factor + unknown_odds);
+/// The part of the gap that is to be taken away for a name: most of it, and clearly more than by a placebo.
+double needed_reduction(const Findings& findings, const Limits& limits) {
+    return std::max(limits.reduction, findings.placebo + limits.over_placebo);
+}
+
+bool takes_the_gap_away(const Proposal& proposal, const Findings& findings, const Limits& limits) {
+    return proposal.best_reduction() >= needed_reduction(findings, limits);
+}
+
+/// Two instead of one: where one leaves more than noise, and two leave noise or little of what one does.
+bool is_better(const Proposal& pair, const Proposal& single, const Limits& limits) {
+    return single.best_misfit() < limits.misfit &&
+           (pair.best_misfit() >= limits.pair_misfit ||
+            1 - pair.best_reduction() <= limits.pair_remainder * (1 - single.best_reduction()));
+}
+
+/// Probability that an explanation is right, by the part of the gap that it takes away.
+double trust(const Proposal& proposal, const Findings& findings, const Limits& limits) {
+    const double over = proposal.best_reduction() - needed_reduction(findings, limits);
+    const double above = std::clamp(0.5 + 0.5 * over / limits.reduction_error, 0.0, 1.0);
+    return limits.right_below + above * (limits.right_above - limits.right_below);
 }
 
 /// Each candidate's share of the likelihood, gains that differ by the group's margin weighing as
@@ -77,6 +91,16 @@ int proposal_of(std::size_t candidate, const Findings& findings) {
     return found == findings.proposals.end() ? -1 : static_cast<int>(found - findings.proposals.begin());
 }
 
+/// Who was tried and takes too little away does not stand for the leader, however near in likelihood.
+void keep_those_that_do(std::vector<std::size_t>& group, const Findings& findings, const Limits& limits) {
+    const auto fails = [&](std::size_t candidate) {
+        const int k = proposal_of(candidate, findings);
+        return k >= 0 &&
+               !takes_the_gap_away(findings.proposals[static_cast<std::size_t>(k)], findings, limits);
+    };
+    group.erase(std::remove_if(group.begin() + 1, group.end(), fails), group.end());
+}
+
 /// A stated parameter that may be wrong comes before any effect that it cannot be told from.
 void suspect_calibration(Decision& decision, const Findings& findings) {
     const auto nuisance = [&](std::size_t c) { return findings.is_nuisance(c); };
@@ -87,25 +111,31 @@ void suspect_calibration(Decision& decision, const Findings& findings) {
 }
 
 /// Verdict, proposal and group.
-Decision chosen(const Findings& findings, int single, std::vector<std::size_t> group, double best,
-                const Limits& limits) {
+Decision chosen(const Findings& findings, int single, std::vector<std::size_t> group, const Limits& limits) {
     Decision decision;
     decision.proposal = single;
     decision.group = std::move(group);
     if (findings.p_value >= limits.false_alarm) return decision;
-    // An explanation that gains nothing in real runs is none, however little it leaves.
-    if (best <= 0 || findings.proposals[static_cast<std::size_t>(single)].best_misfit() < limits.misfit) {
-        const int pair = worthy_pair(findings, best, limits);
-        decision.verdict = pair < 0 ? Verdict::unknown_effect : Verdict::effect;
-        if (pair >= 0) {
+    const Proposal& leader = findings.proposals[static_cast<std::size_t>(single)];
+    const int pair = gaining_pair(findings, leader.best_gain(), limits);
+    if (pair >= 0) {
+        const Proposal& two = findings.proposals[static_cast<std::size_t>(pair)];
+        if (takes_the_gap_away(two, findings, limits) && is_better(two, leader, limits)) {
             decision.proposal = pair;
-            decision.group = findings.proposals[static_cast<std::size_t>(pair)].candidates;
+            decision.group = two.candidates;
+            decision.verdict = Verdict::effect;
+            return decision;
         }
-    } else if (findings.is_nuisance(std::ranges::max(decision.group))) {
-        suspect_calibration(decision, findings);
-    } else {
-        decision.verdict = decision.group.size() > 1 ? Verdict::group : Verdict::effect;
     }
+    if (!takes_the_gap_away(leader, findings, limits)) {
+        decision.verdict = Verdict::unknown_effect;
+        return decision;
+    }
+    keep_those_that_do(decision.group, findings, limits);
+    if (findings.is_nuisance(std::ranges::max(decision.group)))
+        suspect_calibration(decision, findings);
+    else
+        decision.verdict = decision.group.size() > 1 ? Verdict::group : Verdict::effect;
     return decision;
 }
 
@@ -117,12 +147,34 @@ Decision decide(const Findings& findings, const Limits& limits) {
     const Proposal& leader = findings.proposals[static_cast<std::size_t>(single)];
     const std::vector<double> gains = known_gains(findings, leader);
     const double best = leader.best_gain(), margin = std::max(limits.group, limits.group_share * best);
-    Decision decision =
-        chosen(findings, single, group_of(leader.candidates[0], gains, best, margin), best, limits);
-    const double left = findings.proposals[static_cast<std::size_t>(decision.proposal)].best_misfit();
+    Decision decision = chosen(findings, single, group_of(leader.candidates[0], gains, best, margin), limits);
+    const Proposal& decided = findings.proposals[static_cast<std::size_t>(decision.proposal)];
     decision.confidence = shares(gains, best, margin, limits);
-    for (double& p : decision.confidence) p *= trust(left, limits.unknown_odds);
+    for (double& p : decision.confidence) p *= trust(decided, findings, limits);
     return decision;
+}
+
+std::vector<std::size_t> contenders(const Findings& findings, const Limits& limits) {
+    std::vector<std::size_t> list;
+    if (const int single = best_single(findings); single >= 0) {
+        list.push_back(static_cast<std::size_t>(single));
+        const int pair = gaining_pair(findings, findings.proposals[list[0]].best_gain(), limits);
+        if (pair >= 0) list.push_back(static_cast<std::size_t>(pair));
+    }
+    return list;
+}
+
+std::optional<Explanation> explanation_of(const Findings& findings, const Decision& decision,
+                                          const Limits& limits) {
+    if (decision.verdict == Verdict::no_gap || decision.proposal < 0) return std::nullopt;
+    const Proposal& decided = findings.proposals[static_cast<std::size_t>(decision.proposal)];
+    return Explanation{.reduction = decided.best_reduction(),
+                       .simulated = decided.confirmed_reduction.has_value(),
+                       .held_out = findings.held_out,
+                       .placebo = findings.placebo,
+                       .needed = needed_reduction(findings, limits),
+                       .remainder_p = decided.best_misfit(),
+                       .leaves_more_than_noise = decided.best_misfit() < limits.misfit};
 }
 
 }  // namespace mcdem

@@ -67,8 +67,14 @@ public:
         cause.explained = statistics_.omnibus > 0 ? 2 * cause.score / statistics_.omnibus : 0;
         cause.group = {cause.effect};
         for (const Proposal& proposal : findings_.proposals)
-            if (proposal.candidates == std::vector{candidate})
+            if (proposal.candidates == std::vector{candidate}) {
                 cause.confirmed_score = proposal.confirmed_gain;
+                if (proposal.confirmed_gain) take_amplitude(cause, candidate, proposal);
+            }
+        // Of an effect that is named there is one amplitude: that of the explanation.
+        if (decision_.verdict != Verdict::no_gap && decision_.proposal >= 0)
+            take_amplitude(cause, candidate,
+                           findings_.proposals[static_cast<std::size_t>(decision_.proposal)]);
         return cause;
     }
 
@@ -86,21 +92,20 @@ public:
     std::vector<Cause> leading() const {
         const Proposal& decided = findings_.proposals[static_cast<std::size_t>(decision_.proposal)];
         std::vector<Cause> list;
-        for (std::size_t k = 0; k < decision_.group.size(); ++k) {
-            list.push_back(of(decision_.group[k]));
-            const auto place =
-                std::ranges::find(decided.candidates, decision_.group[k]) - decided.candidates.begin();
-            if (place < std::ssize(decided.candidates)) {
-                list.back().amplitude = decided.amplitudes[static_cast<std::size_t>(place)];
-                list.back().amplitude_error = decided.errors[static_cast<std::size_t>(place)];
-            }
-        }
+        for (const std::size_t candidate : decision_.group) list.push_back(of(candidate));
         if (decided.candidates.size() == 1)
             for (Cause& cause : list) cause.group = names_of(decision_.group);
         return list;
     }
 
 private:
+    static void take_amplitude(Cause& cause, std::size_t candidate, const Proposal& proposal) {
+        const auto place = std::ranges::find(proposal.candidates, candidate) - proposal.candidates.begin();
+        if (place == std::ssize(proposal.candidates)) return;
+        cause.amplitude = proposal.amplitudes[static_cast<std::size_t>(place)];
+        cause.amplitude_error = proposal.errors[static_cast<std::size_t>(place)];
+    }
+
     std::vector<std::string> names_of(const std::vector<std::size_t>& candidates) const {
         std::vector<std::string> names;
         for (const std::size_t c : candidates) names.push_back(findings_.names[c]);
@@ -121,7 +126,8 @@ Draft::Draft(const Evidence& evidence, const Limits& limits)
       mean_of_(static_cast<int>(evidence.baseline.rows())),
       space_(data_.noise, mean_of_, data_.cells, data_.free),
       null_(data_, mean_of_, evidence.seed),
-      statistics_(gap_statistics(space_, data_, data_.gap)) {
+      statistics_(gap_statistics(space_, data_, data_.gap)),
+      split_(split_cells(data_.cells, evidence.library.grid)) {
     const double omnibus = null_.p_value(&GapStatistics::omnibus, statistics_.omnibus);
     const double directed = null_.p_value(&GapStatistics::directed, statistics_.directed);
     findings_.p_value = std::min(1.0, 2 * std::min(omnibus, directed));
@@ -134,8 +140,30 @@ Draft::Draft(const Evidence& evidence, const Limits& limits)
     for (const Proposal& p : findings_.proposals)
         whole_.push_back({p.amplitudes, space_.fit_nuisances(data_.gap - explained_by(p, data_))});
     step_.resize(whole_.size());
+    runs_.resize(whole_.size());
+    held_out_done_.resize(whole_.size());
+    measure_reductions();
     decision_ = decide(findings_, limits_);
 }
+
+void Draft::measure_reductions() {
+    findings_.held_out = held_out_gap(data_, split_, mean_of_).shows();
+    excess_ =
+        std::max(statistics_.directed, 0.5 * (statistics_.omnibus - null_.mean(&GapStatistics::omnibus)));
+    if (!(excess_ > 0)) return;
+    findings_.placebo = findings_.held_out ? held_out_placebo(data_, split_, mean_of_, evidence_.seed)
+                                           : whole_placebo(space_, data_, excess_, evidence_.seed);
+    for (Proposal& p : findings_.proposals)
+        p.reduction = by_likelihood(p) ? likelihood_reduction(p.gain)
+                                       : held_out_reduction(data_, split_, p.candidates, mean_of_);
+}
+
+bool Draft::by_likelihood(const Proposal& proposal) const {
+    return !findings_.held_out ||
+           std::ranges::any_of(proposal.candidates, [&](std::size_t c) { return findings_.is_nuisance(c); });
+}
+
+double Draft::likelihood_reduction(double gain) const { return std::clamp(gain / excess_, -1.0, 1.0); }
 
 void Draft::confirm(std::size_t proposal, const Eigen::MatrixXd& runs) {
     Proposal tried = findings_.proposals[proposal];
@@ -143,6 +171,8 @@ void Draft::confirm(std::size_t proposal, const Eigen::MatrixXd& runs) {
     step_[proposal] =
         mcdem::confirm(tried, data_, null_, evidence_.observed, whole_[proposal].nuisances, runs);
     if (!step_[proposal]) return;
+    const Eigen::MatrixXd whole = whole_runs(runs, data_.cells);
+    const Runs last{whole_[proposal], whole.colwise().mean().transpose(), static_cast<int>(whole.rows())};
     // The signature's amplitude and the one that the runs ask for enclose the truth where signatures bend.
     for (std::size_t k = 0; k < tried.amplitudes.size(); ++k) {
         const double half =
@@ -151,7 +181,11 @@ void Draft::confirm(std::size_t proposal, const Eigen::MatrixXd& runs) {
         tried.errors[k] = std::hypot(tried.errors[k], half);
     }
     const auto& known = findings_.proposals[proposal].confirmed_gain;
-    if (!known || *tried.confirmed_gain > *known) findings_.proposals[proposal] = tried;
+    if (!known || *tried.confirmed_gain > *known) {
+        if (by_likelihood(tried)) tried.confirmed_reduction = likelihood_reduction(*tried.confirmed_gain);
+        findings_.proposals[proposal] = tried;
+        runs_[proposal] = last;
+    }
     decision_ = decide(findings_, limits_);
 }
 
@@ -178,13 +212,29 @@ bool Draft::refit(std::size_t proposal) {
     return fit.amplitudes != before;
 }
 
-PartialFit Draft::part_fit() const {
-    const Split split = split_cells(data_.cells, evidence_.library.grid);
-    return fit_part(data_, split.fitted.empty() ? data_.cells : split.fitted, data_.gap, decided().candidates,
-                    mean_of_);
+std::optional<std::size_t> Draft::wants_held_out() const {
+    if (!has_decided()) return std::nullopt;
+    auto waiting = contenders(findings_, limits_);
+    waiting.push_back(decided());
+    const auto next = std::ranges::find_if(waiting, [&](std::size_t k) { return !held_out_done_[k]; });
+    return next == waiting.end() ? std::nullopt : std::optional(*next);
 }
 
-void Draft::confirm_held_out(const Eigen::MatrixXd& runs) { held_out_runs_ = runs; }
+PartialFit Draft::part_fit(std::size_t proposal) const {
+    const Proposal& p = findings_.proposals[proposal];
+    const CellChoice& cells = split_.fitted.empty() ? data_.cells : split_.fitted;
+    if (!runs_[proposal]) return fit_part(data_, cells, data_.gap, p.candidates, mean_of_);
+    return refit_part(data_, cells, evidence_.observed - runs_[proposal]->mean, p.candidates,
+                      runs_[proposal]->fit, runs_[proposal]->count);
+}
+
+void Draft::confirm_held_out(std::size_t proposal, const Eigen::MatrixXd& runs) {
+    held_out_done_[proposal] = true;
+    Proposal& p = findings_.proposals[proposal];
+    if (!by_likelihood(p))
+        p.confirmed_reduction = reduction_by_runs(data_, split_, evidence_.observed, runs, mean_of_);
+    decision_ = decide(findings_, limits_);
+}
 
 Diagnosis Draft::diagnosis() const {
     Diagnosis d;
@@ -202,18 +252,16 @@ Diagnosis Draft::diagnosis() const {
     d.nuisances = nuisance_fits(evidence_, space_, data_.gap);
     d.detection_limits = detection_limits(space_, data_, null_, evidence_, limits_);
     d.not_measured = not_measured(evidence_.observed, evidence_.library.grid);
-    if (!wants_held_out()) return d;
+    if (!has_decided()) return d;
     d.causes = causes.leading();
-    const Split split = split_cells(data_.cells, evidence_.library.grid);
-    d.shrink = measure_shrink(data_, split, decided(), mean_of_, evidence_.seed);
+    d.explanation = explanation_of(findings_, decision_, limits_);
+    const Proposal& explaining = findings_.proposals[decided()];
+    d.shrink = measure_shrink(data_, split_, explaining, mean_of_, evidence_.seed);
+    d.shrink->placebo = findings_.placebo;
     d.shrink->interval = {d.shrink->interval[0] - limits_.shrink_margin,
                           std::min(1.0, d.shrink->interval[1] + limits_.shrink_margin)};
     d.shrink->fitted_displacement = {0, fitted_part * evidence_.library.grid.stroke};
-    if (held_out_runs_ && d.shrink->before > 0) {
-        const Eigen::VectorXd left = evidence_.observed - held_out_runs_->colwise().mean().transpose();
-        const double after = gap_size(data_, split.held_out, left, static_cast<int>(held_out_runs_->rows()));
-        if (std::isfinite(after)) d.shrink->confirmed = std::clamp(1 - after / d.shrink->before, -1.0, 1.0);
-    }
+    if (!by_likelihood(explaining)) d.shrink->confirmed = explaining.confirmed_reduction;
     return d;
 }
 

@@ -12,7 +12,7 @@ namespace mcdem {
 ///     Draft draft(evidence, limits);
 ///     for (k ..) draft.confirm(k, runs of draft.whole_fit(k));   // real runs of the proposals, or none
 ///     while (draft.refit(..)) ..                                 // again, where the runs say how they miss
-///     if (draft.wants_held_out()) draft.confirm_held_out(runs of draft.part_fit());
+///     while (k = draft.wants_held_out()) draft.confirm_held_out(k, runs of draft.part_fit(k));
 ///     draft.diagnosis()
 class Draft {
 public:
@@ -32,13 +32,16 @@ public:
     /// nothing to gain.
     bool refit(std::size_t proposal);
 
-    bool wants_held_out() const { return decision_.verdict != Verdict::no_gap && decision_.proposal >= 0; }
-    /// The same for the proposal decided on, fitted on the part that is not held out.
-    PartialFit part_fit() const;
-    const Proposal& decided() const {
-        return findings_.proposals[static_cast<std::size_t>(decision_.proposal)];
-    }
-    void confirm_held_out(const Eigen::MatrixXd& runs);
+    /// The next proposal whose runs with part_fit() the verdict waits for: it hangs on how much of the gap on
+    /// data held out they take away.
+    std::optional<std::size_t> wants_held_out() const;
+    /// What proposal k says the parameters are, fitted on the part that is not held out, by its real runs
+    /// where there were any.
+    PartialFit part_fit(std::size_t proposal) const;
+    void confirm_held_out(std::size_t proposal, const Eigen::MatrixXd& runs);
+    /// Whether there is a gap, and a proposal that the verdict is about.
+    bool has_decided() const { return decision_.verdict != Verdict::no_gap && decision_.proposal >= 0; }
+    std::size_t decided() const { return static_cast<std::size_t>(decision_.proposal); }
 
     Diagnosis diagnosis() const;
 
@@ -46,6 +49,11 @@ private:
     /// A nuisance that does not lead although runs ask for more of it: it is to have every chance before an
     /// effect is named.
     bool may_gain(std::size_t proposal) const;
+    /// Reductions of all proposals by the signatures, and that of a placebo.
+    void measure_reductions();
+    /// .. by a gain in likelihood; nuisances refitted within their priors leave no gap to measure otherwise.
+    bool by_likelihood(const Proposal& proposal) const;
+    double likelihood_reduction(double gain) const;
 
     const Evidence& evidence_;
     Limits limits_;
@@ -58,7 +66,16 @@ private:
     Decision decision_;
     std::vector<PartialFit> whole_;
     std::vector<std::optional<Eigen::VectorXd>> step_;  ///< by proposal: of nuisances, then amplitudes
-    std::optional<Eigen::MatrixXd> held_out_runs_;
+    /// The last runs of a proposal, and what they were made with.
+    struct Runs {
+        PartialFit fit;
+        Eigen::VectorXd mean;
+        int count = 0;
+    };
+    std::vector<std::optional<Runs>> runs_;  ///< by proposal
+    std::vector<bool> held_out_done_;        ///< by proposal
+    Split split_;
+    double excess_ = 0;  ///< what the whole gap would gain in log likelihood
 };
 
 }  // namespace mcdem

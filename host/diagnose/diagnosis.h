@@ -13,7 +13,7 @@ enum class Verdict {
     no_gap,               ///< nothing detectable
     effect,               ///< one effect explains it
     group,                ///< one of several that these data cannot tell apart
-    unknown_effect,       ///< a gap that no effect of the library explains
+    unknown_effect,       ///< a gap of which no effect of the library takes away enough
     calibration_suspect,  ///< a stated parameter lies far outside its uncertainty
 };
 
@@ -42,7 +42,7 @@ struct Cause {
     double amplitude_error = 0;  ///< one sigma
     std::string unit;
     double confidence = 0;           ///< probability among the library's effects
-    double explained = 0;            ///< part of the gap's chi-square that it takes away
+    double explained = 0;            ///< part of the chi-square of all differences, noise included
     std::vector<std::string> group;  ///< effects that these data cannot tell from it, itself included
     double score = 0;                ///< gain in log likelihood over no effect, nuisances refitted in both
     std::optional<double> confirmed_score;  ///< .. from real runs at the fitted amplitude
@@ -70,6 +70,19 @@ struct Shrink {
     std::array<double, 2> fitted_displacement{0, 0};
 };
 
+/// How much of the gap the named explanation takes away, else the best one that there is: what the verdict
+/// hangs on.
+struct Explanation {
+    double reduction = 0;    ///< part of the gap that it takes away
+    bool simulated = false;  ///< by real runs, else by signatures
+    bool held_out = true;    ///< of the gap on data held out; false: those show none, of the whole gap
+    double placebo = 0;      ///< what the best of random signatures takes away
+    double needed = 0;       ///< what it must take away to be named
+    double remainder_p = 1;  ///< of what it leaves being noise
+    bool leaves_more_than_noise = false;
+    double remainder() const { return 1 - reduction; }
+};
+
 struct DetectionLimit {
     std::string effect, unit;
     double minimum_amplitude =
@@ -88,6 +101,7 @@ struct Diagnosis {
     std::vector<Cause> causes;   ///< best first; empty where there is no gap
     std::vector<Cause> ranking;  ///< all candidates by score, for the picture
     std::vector<NuisanceFit> nuisances;
+    std::optional<Explanation> explanation;  ///< nothing where there is no gap
     std::optional<Shrink> shrink;
     std::vector<DetectionLimit> detection_limits;
     std::vector<std::string> not_measured;  ///< what is missing and what could have been told with it

@@ -56,7 +56,8 @@ EffectFit fit_effect(const GapSpace& space, const Candidate& candidate, const Ei
     EffectFit fit;
     fit.amplitude = value < misfit(0) ? amplitude : 0;
     fit.score = 0.5 * (misfit(0) - misfit(fit.amplitude));
-    fit.error = 1 / std::sqrt(std::max(misfit.information(fit.amplitude), 1e-300));
+    const double information = misfit.information(fit.amplitude);
+    fit.error = information > 1e-300 ? 1 / std::sqrt(information) : INFINITY;
     const double margin = 1e-3 * (candidate.high - candidate.low);
     fit.at_bound = fit.amplitude != 0 &&
                    (fit.amplitude < candidate.low + margin ? candidate.low != 0

@@ -12,7 +12,8 @@ struct Candidate {
 
 struct EffectFit {
     double amplitude = 0;
-    double error = 0;  ///< one sigma, from the slope of the signature there
+    double error =
+        0;  ///< one sigma, from the slope of the signature there; infinite: the data do not show it
     double score = 0;  ///< gain in log likelihood over amplitude zero, nuisances marginalised in both
     bool at_bound = false;
 };

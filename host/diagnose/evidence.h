@@ -29,13 +29,19 @@ struct Evidence {
     std::uint64_t seed = 1;                  ///< of everything drawn at random
 };
 
+/// Leaves out what simulations failed to give: replicates without any number, candidates and nuisances
+/// without a signature in most of the cells that are known otherwise. Says what, and why. Throws InputError
+/// where too few replicates are left.
+std::vector<std::string> leave_out_failures(Evidence& evidence);
+
 /// The evidence on chosen cells, with everything that follows from it before the observed is looked at.
 struct GapData {
     CellChoice cells;
-    Eigen::VectorXd mean;   ///< of the baseline
-    Eigen::VectorXd gap;    ///< observed less mean
-    Eigen::MatrixXd noise;  ///< scatter of one replicate
-    std::vector<int> fold;  ///< by row of noise: rows that are left out together, those of one packing
+    Eigen::VectorXd mean;    ///< of the baseline
+    Eigen::VectorXd gap;     ///< observed less mean
+    Eigen::MatrixXd noise;   ///< scatter of one replicate
+    std::vector<int> group;  ///< by row of noise: rows with a mean in common (library.h)
+    std::vector<int> fold;   ///< by row of noise: rows that are left out together, those of one packing
     std::vector<FreeParameter> free;
     std::vector<Candidate> candidates;  ///< effects, then nuisances beyond their priors
     int effects = 0;                    ///< how many of them are effects

@@ -22,18 +22,16 @@ Eigen::MatrixXd shrunk_covariance(const Eigen::MatrixXd& rows) {
     return sigma.asDiagonal() * shrunk * sigma.asDiagonal();
 }
 
-std::vector<Eigen::Index> usable_cells(const Library& library, const Eigen::VectorXd& observed) {
+std::vector<Eigen::Index> usable_cells(const Eigen::MatrixXd& baseline,
+                                       const std::vector<const Signature*>& used,
+                                       const Eigen::VectorXd& observed) {
     std::vector<Eigen::Index> cells;
-    const auto usable = [](const std::vector<Signature>& list, Eigen::Index cell) {
-        return std::ranges::all_of(list, [&](const Signature& s) {
-            return std::isfinite(s.linear[cell]) && std::isfinite(s.curvature[cell]);
-        });
-    };
     for (Eigen::Index cell = 0; cell < observed.size(); ++cell) {
-        const auto column = library.baseline.col(cell).array();
+        const auto column = baseline.col(cell).array();
         const bool varies = column.isFinite().all() && (column - column[0]).abs().maxCoeff() > 0;
-        if (varies && std::isfinite(observed[cell]) && usable(library.effects, cell) &&
-            usable(library.nuisances, cell))
+        if (varies && std::isfinite(observed[cell]) && std::ranges::all_of(used, [&](const Signature* s) {
+                return std::isfinite(s->linear[cell]) && std::isfinite(s->curvature[cell]);
+            }))
             cells.push_back(cell);
     }
     return cells;

@@ -13,8 +13,10 @@ namespace mcdem {
 /// Covariance of rows with mean zero, shrunk towards its own diagonal (Ledoit & Wolf 2004, on correlations).
 Eigen::MatrixXd shrunk_covariance(const Eigen::MatrixXd& rows);
 
-/// Cells whose value is finite in every vector and that vary at all.
-std::vector<Eigen::Index> usable_cells(const Library& library, const Eigen::VectorXd& observed);
+/// Cells whose value is finite in every replicate and every signature that is used, and that vary at all.
+std::vector<Eigen::Index> usable_cells(const Eigen::MatrixXd& baseline,
+                                       const std::vector<const Signature*>& used,
+                                       const Eigen::VectorXd& observed);
 
 /// What a space may leave out: the ablations, and the split into fitted and held-out cells.
 using CellChoice = std::vector<Eigen::Index>;

@@ -1,6 +1,7 @@
 #include "diagnose/gap_tests.h"
 
-#include <boost/math/distributions/gamma.hpp>
+#include <algorithm>
+#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <set>
 
@@ -11,21 +12,76 @@ namespace {
 
 constexpr int draws_a_replicate = 3;
 
-/// Rows of all folds but one.
-Eigen::MatrixXd without_fold(const GapData& data, int fold) {
-    std::vector<Eigen::Index> kept;
-    for (std::size_t r = 0; r < data.fold.size(); ++r)
-        if (data.fold[r] != fold) kept.push_back(static_cast<Eigen::Index>(r));
-    return data.noise(kept, Eigen::all);
-}
+/// The null's replicates without one fold, and that fold as if it had been observed: what is left out has no
+/// part in the mean either. Kept in it, few replicates would all lie in the directions of the others'
+/// scatter, where an experiment does not.
+class LeftOut {
+public:
+    LeftOut(const GapData& data, int fold) : data_(data) {
+        for (std::size_t r = 0; r < data.fold.size(); ++r)
+            (data.fold[r] == fold ? out_ : kept_).push_back(static_cast<Eigen::Index>(r));
+    }
 
-boost::math::gamma_distribution<> fitted_gamma(const std::vector<GapStatistics>& draws,
-                                               double GapStatistics::*statistic) {
+    Eigen::MatrixXd noise() const {
+        std::vector<Eigen::Index> rows;
+        std::vector<int> group;
+        for (const auto r : kept_) {
+            const auto alike = [&](Eigen::Index other) { return group_of(other) == group_of(r); };
+            if (std::ranges::count_if(kept_, alike) < 2) continue;  // its own mean
+            rows.push_back(r);
+            group.push_back(group_of(r));
+        }
+        return apart_from_mean(unscaled(rows), group);
+    }
+    const std::vector<Eigen::Index>& rows() const { return out_; }
+
+    /// A row less the mean of those that were kept, scaled to the variance of one.
+    Eigen::VectorXd row(Eigen::Index r) const {
+        Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(data_.noise.cols());
+        int kept = 0;
+        for (const auto other : kept_)
+            if (group_of(other) == group_of(r)) sum += data_.noise.row(other), ++kept;
+        if (kept == 0) return data_.noise.row(r).transpose();
+        return unscaling(r) / std::sqrt(1 + 1.0 / kept) * (data_.noise.row(r) - sum / kept).transpose();
+    }
+
+private:
+    /// Rows as they were before they were scaled to the variance of one.
+    Eigen::MatrixXd unscaled(const std::vector<Eigen::Index>& rows) const {
+        Eigen::MatrixXd some = data_.noise(rows, Eigen::all);
+        for (std::size_t k = 0; k < rows.size(); ++k)
+            some.row(static_cast<Eigen::Index>(k)) *= unscaling(rows[k]);
+        return some;
+    }
+    double unscaling(Eigen::Index r) const {
+        const double n = static_cast<double>(std::ranges::count(data_.group, group_of(r)));
+        return std::sqrt(std::max(1.0, n - 1) / n);
+    }
+    int group_of(Eigen::Index r) const { return data_.group[static_cast<std::size_t>(r)]; }
+    const GapData& data_;
+    std::vector<Eigen::Index> kept_, out_;
+};
+
+/// A statistic's cube root is nearly normal (Wilson & Hilferty 1931). Its mean and variance are known from
+/// few replicates: what one more gives follows Student's t.
+struct Predicted {
+    double mean = 0, sigma = 0;
+    boost::math::students_t_distribution<> t;
+
+    double complement_at(double value) const { return cdf(complement(t, (std::cbrt(value) - mean) / sigma)); }
+    double quantile(double p) const {
+        return std::pow(std::max(0.0, mean + sigma * boost::math::quantile(complement(t, p))), 3);
+    }
+};
+
+Predicted predicted(const std::vector<GapStatistics>& draws, double GapStatistics::*statistic,
+                    int replicates) {
+    const double count = static_cast<double>(draws.size()), n = replicates;
     double mean = 0, square = 0;
-    for (const GapStatistics& draw : draws) mean += draw.*statistic / static_cast<double>(draws.size());
-    for (const GapStatistics& draw : draws)
-        square += std::pow(draw.*statistic - mean, 2) / static_cast<double>(draws.size() - 1);
-    return {mean * mean / square, square / mean};
+    for (const GapStatistics& draw : draws) mean += std::cbrt(draw.*statistic) / count;
+    for (const GapStatistics& draw : draws) square += std::pow(std::cbrt(draw.*statistic) - mean, 2) / count;
+    const double variance = std::max(square * n / (n - 1), 1e-12 * mean * mean);
+    return {mean, std::sqrt(variance * (1 + 1 / n)), boost::math::students_t_distribution<>(n - 1)};
 }
 
 /// When the plate passes a cell, by its place among those of its observable: loading, then unloading back.
@@ -88,22 +144,29 @@ NullDistribution::NullDistribution(const GapData& data, int mean_of, std::uint64
     const double both = std::sqrt(1 + (mean_of > 0 ? 1.0 / mean_of : 0));
     const std::set<int> folds(data.fold.begin(), data.fold.end());
     for (const int fold : folds) {
-        const GapSpace space(without_fold(data, fold), mean_of, data.cells, data.free);
-        for (std::size_t r = 0; r < data.fold.size(); ++r) {
-            if (data.fold[r] != fold) continue;
+        const LeftOut left_out(data, fold);
+        const GapSpace space(left_out.noise(), mean_of, data.cells, data.free);
+        for (const Eigen::Index r : left_out.rows())
             for (int draw = 0; draw < draws_a_replicate; ++draw) {
-                Eigen::VectorXd gap = both * data.noise.row(static_cast<Eigen::Index>(r)).transpose();
+                Eigen::VectorXd gap = both * left_out.row(r);
                 for (const FreeParameter& parameter : data.free)
                     gap += parameter.sigma * random.normal() * parameter.direction;
                 draws_.push_back(gap_statistics(space, data, gap));
             }
-        }
     }
 }
 
 double NullDistribution::p_value(double GapStatistics::*statistic, double value) const {
-    return value > 0 ? cdf(complement(fitted_gamma(draws_, statistic), value)) : 1;
+    return value > 0 ? predicted(draws_, statistic, replicates()).complement_at(value) : 1;
 }
+
+double NullDistribution::mean(double GapStatistics::*statistic) const {
+    double sum = 0;
+    for (const GapStatistics& draw : draws_) sum += draw.*statistic;
+    return sum / static_cast<double>(draws_.size());
+}
+
+int NullDistribution::replicates() const { return static_cast<int>(draws_.size()) / draws_a_replicate; }
 
 double NullDistribution::misfit_p(const GapSpace& space, const Eigen::VectorXd& left) const {
     const double together = p_value(&GapStatistics::remainder, space.whiten(left).squaredNorm());
@@ -112,7 +175,7 @@ double NullDistribution::misfit_p(const GapSpace& space, const Eigen::VectorXd& 
 }
 
 double NullDistribution::quantile(double GapStatistics::*statistic, double p) const {
-    return boost::math::quantile(complement(fitted_gamma(draws_, statistic), p));
+    return predicted(draws_, statistic, replicates()).quantile(p);
 }
 
 }  // namespace mcdem

@@ -26,8 +26,8 @@ double highest_pattern(const GapSpace& space, const Eigen::VectorXd& gap);
 class NullDistribution {
 public:
     NullDistribution(const GapData& data, int mean_of, std::uint64_t seed);
-    /// Probability of a statistic at least as large: from a gamma distribution with the replicates' mean and
-    /// variance.
+    /// Probability of a statistic at least as large in one more replicate: by Student's t of its cube root,
+    /// whose mean and variance are the replicates'.
     double p_value(double GapStatistics::*statistic, double value) const;
     /// Probability that what an explanation leaves is noise: by its chi-square over all cells, in which a gap
     /// of few cells drowns, and by its highest pattern, which sees no gap that is spread thin. The smaller
@@ -35,9 +35,11 @@ public:
     double misfit_p(const GapSpace& space, const Eigen::VectorXd& left) const;
     /// The value that a part `p` of the null exceeds.
     double quantile(double GapStatistics::*statistic, double p) const;
+    double mean(double GapStatistics::*statistic) const;
     const std::vector<GapStatistics>& draws() const { return draws_; }
 
 private:
+    int replicates() const;
     std::vector<GapStatistics> draws_;
 };
 

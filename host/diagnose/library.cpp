@@ -66,25 +66,27 @@ Library library_of(const json& j) {
 
 }  // namespace
 
-Eigen::MatrixXd scatter(const Library& library) {
+std::vector<int> mean_groups(const Library& library) {
+    std::map<int, int> rows;
+    for (const int packing : library.packing) ++rows[packing];
+    const bool repeated = std::ranges::all_of(rows, [](const auto& of) { return of.second > 1; });
+    return repeated ? library.packing : std::vector<int>(library.packing.size(), 0);
+}
+
+Eigen::MatrixXd apart_from_mean(Eigen::MatrixXd rows, const std::vector<int>& group) {
     std::map<int, std::vector<Eigen::Index>> of;
-    for (std::size_t r = 0; r < library.packing.size(); ++r)
-        of[library.packing[r]].push_back(static_cast<Eigen::Index>(r));
-    const bool repeated = std::ranges::all_of(of, [](const auto& rows) { return rows.second.size() > 1; });
-    if (!repeated) {
-        of.clear();
-        for (std::size_t r = 0; r < library.packing.size(); ++r)
-            of[0].push_back(static_cast<Eigen::Index>(r));
+    for (std::size_t r = 0; r < group.size(); ++r) of[group[r]].push_back(static_cast<Eigen::Index>(r));
+    for (const auto& [_, members] : of) {
+        const double n = static_cast<double>(members.size());
+        const Eigen::RowVectorXd mean = rows(members, Eigen::all).colwise().sum() / n;
+        for (const auto row : members)
+            rows.row(row) = (rows.row(row) - mean) * std::sqrt(n / std::max(1.0, n - 1));
     }
-    Eigen::MatrixXd apart = library.baseline;
-    for (const auto& [packing, rows] : of) {
-        Eigen::RowVectorXd mean = Eigen::RowVectorXd::Zero(apart.cols());
-        const double n = static_cast<double>(rows.size());
-        for (const auto row : rows) mean += library.baseline.row(row) / n;
-        for (const auto row : rows)
-            apart.row(row) = (apart.row(row) - mean) * std::sqrt(n / std::max(1.0, n - 1));
-    }
-    return apart;
+    return rows;
+}
+
+Eigen::MatrixXd scatter(const Library& library) {
+    return apart_from_mean(library.baseline, mean_groups(library));
 }
 
 void write_library(const std::filesystem::path& file, const Library& library) {

@@ -20,6 +20,12 @@ struct Library {
     std::map<std::string, std::string> provenance;  ///< scene, program, device
 };
 
+/// Which replicates have a mean in common: those of a packing; all of them where a packing has but one.
+std::vector<int> mean_groups(const Library& library);
+
+/// Rows less the mean over those of their group, scaled to the variance of one row.
+Eigen::MatrixXd apart_from_mean(Eigen::MatrixXd rows, const std::vector<int>& group);
+
 /// Baseline replicates less the mean over those of the same packing, scaled to the variance of one replicate;
 /// with one replicate a packing, less the mean over packings.
 Eigen::MatrixXd scatter(const Library& library);

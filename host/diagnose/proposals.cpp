@@ -68,14 +68,6 @@ Proposal fit_pair(const GapSpace& space, const GapData& data, const Eigen::Vecto
     return pair;
 }
 
-/// The runs that came to their end: packings may run away at amplitudes at which others hold.
-Eigen::MatrixXd whole_runs(const Eigen::MatrixXd& runs, const CellChoice& cells) {
-    std::vector<Eigen::Index> whole;
-    for (Eigen::Index r = 0; r < runs.rows(); ++r)
-        if (pick(runs.row(r).transpose(), cells).allFinite()) whole.push_back(r);
-    return runs(whole, Eigen::all);
-}
-
 /// Of nuisances that the runs were made with, in log likelihood.
 double prior_cost(const Eigen::VectorXd& nuisances, const std::vector<FreeParameter>& free) {
     double cost = 0;
@@ -85,6 +77,13 @@ double prior_cost(const Eigen::VectorXd& nuisances, const std::vector<FreeParame
 }
 
 }  // namespace
+
+Eigen::MatrixXd whole_runs(const Eigen::MatrixXd& runs, const CellChoice& cells) {
+    std::vector<Eigen::Index> whole;
+    for (Eigen::Index r = 0; r < runs.rows(); ++r)
+        if (pick(runs.row(r).transpose(), cells).allFinite()) whole.push_back(r);
+    return runs(whole, Eigen::all);
+}
 
 Eigen::VectorXd explained_by(const Proposal& proposal, const GapData& data) {
     return -without(Eigen::VectorXd::Zero(data.mean.size()), data, proposal);

@@ -18,6 +18,9 @@ std::optional<Eigen::VectorXd> confirm(Proposal& proposal, const GapData& data, 
                                        const Eigen::VectorXd& observed, const Eigen::VectorXd& nuisances,
                                        const Eigen::MatrixXd& runs);
 
+/// The runs that came to their end: packings may run away at amplitudes at which others hold.
+Eigen::MatrixXd whole_runs(const Eigen::MatrixXd& runs, const CellChoice& cells);
+
 /// The sum of a proposal's signatures, or its best fit on other cells.
 Eigen::VectorXd explained_by(const Proposal& proposal, const GapData& data);
 

@@ -79,14 +79,22 @@ Signature random_signature(const GapData& data, Random& random) {
     return s;
 }
 
-double placebo(const GapData& data, const Arms& arms, std::uint64_t seed) {
+/// The largest of what `part` says of random signatures.
+template <class Part>
+double best_placebo(const GapData& data, std::uint64_t seed, Part part) {
     Random random(seed, Stream::placebo);
     double best = 0;
     for (int k = 0; k < placebo_signatures; ++k) {
         const Signature signature = random_signature(data, random);
-        best = std::max(best, part_gone(arms.sizes(data.gap, {{&signature, -50, 50}})));
+        best = std::max(best, part(Candidate{&signature, -50, 50}));
     }
     return best;
+}
+
+std::vector<Candidate> chosen_candidates(const GapData& data, const std::vector<std::size_t>& chosen) {
+    std::vector<Candidate> candidates;
+    for (const auto c : chosen) candidates.push_back(data.candidates[c]);
+    return candidates;
 }
 
 }  // namespace
@@ -118,9 +126,70 @@ double gap_size(const GapData& data, const CellChoice& cells, const Eigen::Vecto
 
 PartialFit fit_part(const GapData& data, const CellChoice& cells, const Eigen::VectorXd& gap,
                     const std::vector<std::size_t>& chosen, int mean_of) {
-    std::vector<Candidate> candidates;
-    for (const auto c : chosen) candidates.push_back(data.candidates[c]);
-    return Arms(data, {cells, {}}, mean_of).fit(gap, candidates);
+    return Arms(data, {cells, {}}, mean_of).fit(gap, chosen_candidates(data, chosen));
+}
+
+PartialFit refit_part(const GapData& data, const CellChoice& cells, const Eigen::VectorXd& left,
+                      const std::vector<std::size_t>& candidates, const PartialFit& at, int mean_of) {
+    std::vector<FreeParameter> free = data.free;
+    Eigen::VectorXd without_nuisances = left;
+    for (std::size_t k = 0; k < data.free.size(); ++k)
+        without_nuisances += at.nuisances[static_cast<Eigen::Index>(k)] * data.free[k].direction;
+    for (std::size_t k = 0; k < candidates.size(); ++k) {
+        const Candidate& candidate = data.candidates[candidates[k]];
+        free.push_back({candidate.signature->slope(at.amplitudes[k]), candidate.high - candidate.low});
+    }
+    const Eigen::VectorXd step = GapSpace(data.noise, mean_of, cells, free).fit_nuisances(without_nuisances);
+    PartialFit fit{at.amplitudes, step.head(at.nuisances.size())};
+    for (std::size_t k = 0; k < candidates.size(); ++k) {
+        const Candidate& candidate = data.candidates[candidates[k]];
+        fit.amplitudes[k] =
+            std::clamp(fit.amplitudes[k] + step[at.nuisances.size() + static_cast<Eigen::Index>(k)],
+                       candidate.low, candidate.high);
+    }
+    return fit;
+}
+
+HeldOutGap held_out_gap(const GapData& data, const Split& split, int mean_of) {
+    if (split.fitted.empty() || split.held_out.empty()) return {};
+    const Arms arms(data, split, mean_of);
+    const double both = std::sqrt(1 + (mean_of > 0 ? 1.0 / mean_of : 0));
+    const auto size = [&](const Eigen::VectorXd& gap) {
+        return gap_size(data, split.held_out, arms.refitted(gap), mean_of);
+    };
+    double square = 0;
+    for (const auto& row : data.noise.rowwise()) square += std::pow(size(both * row.transpose()), 2);
+    return {size(data.gap), std::sqrt(square / static_cast<double>(data.noise.rows()))};
+}
+
+double held_out_reduction(const GapData& data, const Split& split, const std::vector<std::size_t>& candidates,
+                          int mean_of) {
+    if (split.fitted.empty() || split.held_out.empty()) return 0;
+    return part_gone(Arms(data, split, mean_of).sizes(data.gap, chosen_candidates(data, candidates)));
+}
+
+std::optional<double> reduction_by_runs(const GapData& data, const Split& split,
+                                        const Eigen::VectorXd& observed, const Eigen::MatrixXd& all_runs,
+                                        int mean_of) {
+    const Eigen::MatrixXd runs = whole_runs(all_runs, split.held_out);
+    const double before = held_out_gap(data, split, mean_of).size;
+    if (runs.rows() == 0 || !(before > 0)) return std::nullopt;
+    const Eigen::VectorXd left = observed - runs.colwise().mean().transpose();
+    const double after = gap_size(data, split.held_out, left, static_cast<int>(runs.rows()));
+    return std::clamp(1 - after / before, -1.0, 1.0);
+}
+
+double held_out_placebo(const GapData& data, const Split& split, int mean_of, std::uint64_t seed) {
+    if (split.fitted.empty() || split.held_out.empty()) return 0;
+    const Arms arms(data, split, mean_of);
+    return best_placebo(data, seed,
+                        [&](const Candidate& random) { return part_gone(arms.sizes(data.gap, {random})); });
+}
+
+double whole_placebo(const GapSpace& space, const GapData& data, double excess, std::uint64_t seed) {
+    return best_placebo(data, seed, [&](const Candidate& random) {
+        return std::min(1.0, fit_effect(space, random, data.gap).score / excess);
+    });
 }
 
 Shrink measure_shrink(const GapData& data, const Split& split, const Proposal& proposal, int mean_of,
@@ -128,8 +197,7 @@ Shrink measure_shrink(const GapData& data, const Split& split, const Proposal& p
     Shrink shrink;
     shrink.held_out = "unloading, and loading beyond 85 % of the stroke";
     if (split.fitted.empty() || split.held_out.empty()) return shrink;
-    std::vector<Candidate> candidates;
-    for (const auto c : proposal.candidates) candidates.push_back(data.candidates[c]);
+    const std::vector<Candidate> candidates = chosen_candidates(data, proposal.candidates);
     const Arms arms(data, split, mean_of);
     const auto sizes = arms.sizes(data.gap, candidates);
     shrink.before = sizes[0];
@@ -145,7 +213,6 @@ Shrink measure_shrink(const GapData& data, const Split& split, const Proposal& p
     }
     std::ranges::sort(drawn);
     shrink.interval = {drawn[bootstrap_draws / 20], drawn[bootstrap_draws - 1 - bootstrap_draws / 20]};
-    shrink.placebo = placebo(data, arms, seed);
     return shrink;
 }
 

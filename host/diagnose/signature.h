@@ -23,7 +23,9 @@ struct Signature {
 
 /// From differences of paired runs (row: pair, column: cell) at two amplitudes. What does not stand out of
 /// the scatter over pairs is shrunk towards zero (positive-part James & Stein 1961, cell by cell), the
-/// curvature first.
+/// curvature first. Pairs of which a run failed (not-a-number throughout) are left out. Where fewer than two
+/// are left, it is a straight line through those of the one amplitude at which runs hold; not-a-number where
+/// they hold at neither.
 Signature learn_signature(const std::string& name, double first, double second,
                           const Eigen::MatrixXd& at_first, const Eigen::MatrixXd& at_second);
 

@@ -8,6 +8,7 @@
 
 #include "core/errors.h"
 #include "ensemble/paper_metrics.h"
+#include "experiment/check_experiment.h"
 
 namespace mcdem {
 namespace {
@@ -110,6 +111,10 @@ private:
         }
         for (const Nuisance& nuisance : plan_.nuisances)
             evidence.nuisances.push_back({nuisance.name, nuisance.unit, nuisance.sigma});
+        for (const std::string& note : leave_out_failures(evidence)) {
+            options_.on_note(note);
+            choice_.hindered.push_back(note);
+        }
         return evidence;
     }
 
@@ -122,11 +127,12 @@ private:
             run(draft, tried);
             std::erase_if(tried, [&](std::size_t k) { return !draft.refit(k); });
         }
-        if (!draft.wants_held_out()) return;
-        if (options_.paper_metrics) recorded(trials_of(draft, draft.decided(), draft.part_fit()));
-        draft.confirm_held_out(observe_trials(device_, question_,
-                                              trials_of(draft, draft.decided(), draft.part_fit()), store_,
-                                              stage(options_, "held-out confirmation")));
+        while (const auto k = draft.wants_held_out()) {
+            const std::vector<Trial> trials = held_out_trials(draft, *k);
+            if (options_.paper_metrics) recorded(trials);
+            draft.confirm_held_out(*k, observe_trials(device_, question_, trials, store_,
+                                                      stage(options_, "held-out confirmation")));
+        }
     }
 
     void run(Draft& draft, const std::vector<std::size_t>& proposals) {
@@ -143,9 +149,9 @@ private:
     BeforeAfter before_after(const Draft& draft) {
         LibraryPlan plan = plan_;
         plan.replicates = std::min(options_.replicates, options_.confirmations);
-        return {kept_recordings(device_, question_, recorded(baseline_trials(model_, plan)), store_),
-                kept_recordings(device_, question_,
-                                recorded(trials_of(draft, draft.decided(), draft.part_fit())), store_)};
+        return {
+            kept_recordings(device_, question_, recorded(baseline_trials(model_, plan)), store_),
+            kept_recordings(device_, question_, recorded(held_out_trials(draft, draft.decided())), store_)};
     }
 
     /// The first few trials, with their whole recordings kept.
@@ -164,6 +170,10 @@ private:
         LibraryPlan plan = plan_;
         plan.replicates = options_.confirmations;
         return baseline_trials(fitted(draft.data(), proposal, fit), plan);
+    }
+
+    std::vector<Trial> held_out_trials(const Draft& draft, std::size_t proposal) const {
+        return trials_of(draft, draft.findings().proposals[proposal], draft.part_fit(proposal));
     }
 
     /// The model with the fitted effects and nuisances.
@@ -236,6 +246,7 @@ Model model_of(const Scene& scene, const Experiment& experiment) {
 
 Diagnosis diagnose_experiment(Device& device, const Scene& scene, const Experiment& experiment,
                               const DiagnoseOptions& options) {
+    if (const auto needed = needed_to_diagnose(experiment); !needed.empty()) throw InputError(needed);
     const auto begin = std::chrono::steady_clock::now();
     Diagnosis diagnosis = Diagnosing(device, scene, experiment, options).all();
     diagnosis.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

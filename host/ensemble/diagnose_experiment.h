@@ -22,6 +22,8 @@ struct DiagnoseOptions {
     std::function<void(const std::string& stage, double fraction)> on_progress = [](const std::string&,
                                                                                     double) {};
     std::function<bool()> stop_wanted = [] { return false; };
+    /// Gets what is left out because its simulations failed.
+    std::function<void(const std::string&)> on_note = [](const std::string&) {};
     /// Gets what the diagnosis rests on, once it is gathered: limits and ablations are tried on it without
     /// simulations.
     std::function<void(const Evidence&)> on_evidence = [](const Evidence&) {};

@@ -20,12 +20,16 @@ struct Finding {
 };
 
 struct ExperimentCheck {
-    std::vector<Finding> findings;  ///< by severity in the order above
+    std::vector<Finding> findings;                         ///< by severity in the order above
     std::vector<std::string> of(Severity severity) const;  ///< their texts
 };
 
-/// Finds nothing odd in what `measured` gives of a simulation that has settled at every scan, its stated diameters and
-/// moduli true. What an experiment lacks (severity missing) limits every conclusion from it.
+/// Finds nothing odd in what `measured` gives of a simulation that has settled at every scan, its stated
+/// diameters and moduli true. What an experiment lacks (severity missing) limits every conclusion from it.
 ExperimentCheck check_experiment(const Experiment& experiment);
+
+/// What `mcdem diagnose` needs and the experiment lacks, each with what to add; empty where it can be
+/// diagnosed.
+std::vector<std::string> needed_to_diagnose(const Experiment& experiment);
 
 }  // namespace mcdem

@@ -87,6 +87,18 @@ Json shrink_json(const std::optional<Shrink>& shrink) {
             {"top_force", list(shrink->top_force, top_force_json)}};
 }
 
+Json explanation_json(const std::optional<Explanation>& explanation) {
+    if (!explanation) return {};
+    return {{"reduction", explanation->reduction},
+            {"simulated", explanation->simulated},
+            {"held_out", explanation->held_out},
+            {"placebo", explanation->placebo},
+            {"needed", explanation->needed},
+            {"remainder", explanation->remainder()},
+            {"remainder_p", explanation->remainder_p},
+            {"leaves_more_than_noise", explanation->leaves_more_than_noise}};
+}
+
 Json limit_json(const DetectionLimit& limit) {
     return {{"effect", limit.effect},
             {"minimum_amplitude", limit.minimum_amplitude},
@@ -127,6 +139,7 @@ std::string diagnosis_json(const Diagnosis& diagnosis) {
                       {"p_directed", diagnosis.p_directed}}},
                     {"where", list(diagnosis.where, where_json)},
                     {"causes", list(diagnosis.causes, cause_json)},
+                    {"explanation", explanation_json(diagnosis.explanation)},
                     {"shrink", shrink_json(diagnosis.shrink)},
                     {"detection_limits", list(diagnosis.detection_limits, limit_json)},
                     {"not_measured", diagnosis.not_measured},

@@ -13,8 +13,8 @@ std::string verdict_name(Verdict verdict);
 /// null, bytes that are no UTF-8 replacement characters.
 std::string diagnosis_json(const Diagnosis& diagnosis);
 
-/// The diagnosis that such a text was made from. Throws InputError that begins with `where` and names the first
-/// thing that is not as it must be.
+/// The diagnosis that such a text was made from. Throws InputError that begins with `where` and names the
+/// first thing that is not as it must be.
 Diagnosis diagnosis_of_json(const std::string& text, const std::string& where);
 
 }  // namespace mcdem

@@ -16,22 +16,6 @@
 namespace mcdem {
 namespace {
 
-std::string headline(Verdict verdict) {
-    switch (verdict) {
-        case Verdict::no_gap:
-            return "No detectable gap";
-        case Verdict::effect:
-            return "A gap, consistent with one effect";
-        case Verdict::group:
-            return "A gap, consistent with a group of effects";
-        case Verdict::unknown_effect:
-            return "A gap that no known effect explains";
-        case Verdict::calibration_suspect:
-            break;
-    }
-    return "A stated parameter is suspect";
-}
-
 void add_gap(Page& page, const Diagnosis& diagnosis) {
     page.section("Gap");
     page.paragraph(
@@ -91,7 +75,7 @@ void add_list(Page& page, const std::string& heading, const std::vector<std::str
 
 void add_diagnosis(Page& page, const Diagnosis& diagnosis, const std::string& name) {
     page.lead("Diagnosis of the gap between simulation and experiment" + (name.empty() ? "" : ": " + name),
-              headline(diagnosis.verdict), verdict_sentence(diagnosis));
+              verdict_headline(diagnosis), verdict_sentence(diagnosis));
     std::vector<std::pair<std::string, std::string>> lines;
     for (const auto& [about, says] : verdict_lines(diagnosis)) lines.emplace_back(about, says);
     page.definitions(lines);
@@ -115,7 +99,7 @@ void add_diagnosis(Page& page, const Diagnosis& diagnosis, const std::string& na
 }
 
 void write_diagnosis_page(const Diagnosis& diagnosis, const std::filesystem::path& file) {
-    Page page("Diagnosis: " + headline(diagnosis.verdict));
+    Page page("Diagnosis: " + verdict_headline(diagnosis));
     add_diagnosis(page, diagnosis, "");
     write_page(page, file);
 }

@@ -53,7 +53,7 @@ WhereCell cell_of(const Json& json) {
 Cause cause_of(const Json& json) {
     return {.effect = json.at("effect"),
             .amplitude = number(json.at("amplitude")),
-            .amplitude_error = number(json.at("amplitude_error")),
+            .amplitude_error = number(json.at("amplitude_error"), std::numeric_limits<double>::infinity()),
             .unit = json.at("unit"),
             .confidence = number(json.at("confidence")),
             .explained = number(json.at("explained")),
@@ -74,6 +74,16 @@ DetectionLimit limit_of(const Json& json) {
         .minimum_amplitude = number(json.at("minimum_amplitude"), std::numeric_limits<double>::infinity()),
         .absorbed_by_calibration = number(json.at("absorbed_by_calibration")),
         .group = json.at("group")};
+}
+
+Explanation explanation_of(const Json& json) {
+    return {.reduction = number(json.at("reduction")),
+            .simulated = json.at("simulated"),
+            .held_out = json.at("held_out"),
+            .placebo = number(json.at("placebo")),
+            .needed = number(json.at("needed")),
+            .remainder_p = number(json.at("remainder_p")),
+            .leaves_more_than_noise = json.at("leaves_more_than_noise")};
 }
 
 Shrink shrink_of(const Json& json) {
@@ -114,6 +124,8 @@ Diagnosis read(const Json& json) {
     d.causes = list_of(json.at("causes"), cause_of);
     d.ranking = list_of(json.at("ranking"), cause_of);
     d.nuisances = list_of(json.at("nuisances"), nuisance_of);
+    if (const auto found = json.find("explanation"); found != json.end() && !found->is_null())
+        d.explanation = explanation_of(*found);  // files of earlier versions have none
     if (!json.at("shrink").is_null()) d.shrink = shrink_of(json.at("shrink"));
     d.detection_limits = list_of(json.at("detection_limits"), limit_of);
     d.not_measured = json.at("not_measured");

@@ -50,7 +50,7 @@ TextTable table_of_causes(const Diagnosis& diagnosis) {
     table.columns = {{"effect", Align::left},
                      {"amplitude"},
                      {"probability"},
-                     {"of the gap"},
+                     {"of chi-square"},
                      {"gain in log likelihood"},
                      {"simulated in full"},
                      {"cannot be told from", Align::left}};

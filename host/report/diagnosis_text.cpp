@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "report/diagnosis_parts.h"
 #include "report/diagnosis_words.h"
 #include "report/labels.h"
 
@@ -69,9 +70,46 @@ std::string gap_line(const Diagnosis& diagnosis) {
         p_words(diagnosis.p_value));
 }
 
+/// The strongest of the cells that are framed in the picture, and how many there are.
+struct Framed {
+    const WhereCell* strongest = nullptr;
+    int count = 0;
+};
+Framed framed_cells(const Diagnosis& diagnosis, bool refitted) {
+    const auto size = [&](const WhereCell& cell) {
+        return std::fabs(refitted ? cell.z_score_refitted : cell.z_score);
+    };
+    Framed framed;
+    for (const auto& cell : diagnosis.cells) {
+        if (!std::isfinite(size(cell)) || !stands_out(diagnosis, cell, refitted)) continue;
+        ++framed.count;
+        if (!framed.strongest || size(cell) > size(*framed.strongest)) framed.strongest = &cell;
+    }
+    return framed;
+}
+
+/// Where no entry stands for them: single cells beyond the threshold, so that the words say what the picture
+/// shows.
+std::string framed_line(const Diagnosis& diagnosis) {
+    const Framed refitted = framed_cells(diagnosis, true), stated = framed_cells(diagnosis, false);
+    if (refitted.count + stated.count == 0) return "no single part of the data stands out of the noise.";
+    const bool after = refitted.count > 0;
+    const Framed& shown = after ? refitted : stated;
+    auto text = fmt::format(
+        "{} of {} parts of the data {} beyond {:.1f} sigma {} (the strongest: {}, {:.1f} sigma)", shown.count,
+        diagnosis.cells.size(), shown.count == 1 ? "is" : "are", diagnosis.where_threshold,
+        after ? "after recalibration" : "as stated", words_of(shown.strongest->observable),
+        after ? shown.strongest->z_score_refitted : shown.strongest->z_score);
+    if (!after)
+        text += ", and none after recalibration";
+    else if (!diagnosis.detected)
+        text += "; all tests together, that is no more than chance allows";
+    return text + ".";
+}
+
 /// The strongest entry of each observable first.
 std::string where_line(const Diagnosis& diagnosis) {
-    if (diagnosis.where.empty()) return "no single part of the data stands out of the noise.";
+    if (diagnosis.where.empty()) return framed_line(diagnosis);
     auto entries = diagnosis.where;
     std::stable_sort(entries.begin(), entries.end(), [](const WhereEntry& a, const WhereEntry& b) {
         return std::fabs(a.z_score) > std::fabs(b.z_score);
@@ -91,11 +129,24 @@ std::string where_line(const Diagnosis& diagnosis) {
     return text + ".";
 }
 
+/// "97 % of the gap": the number that the verdict hangs on.
+std::string reduction_words(const Diagnosis& diagnosis) {
+    return diagnosis.explanation ? percent(diagnosis.explanation->reduction) + " of the gap" : "the gap";
+}
+
+/// What it lacks to be named, in words that follow its reduction.
+std::string needed_words(const Explanation& explanation) {
+    const auto needed = percent(explanation.needed);
+    return needed == percent(explanation.reduction) ? "a little less than is needed to name it"
+                                                    : "and " + needed + " would be needed to name it";
+}
+
 std::string unknown_line(const Diagnosis& diagnosis) {
     auto text = "none of " + library_words(diagnosis) + " explains it";
-    if (const auto* best = leader_of(diagnosis))
-        text += fmt::format("; the best of them, {}, takes away {} of it", cause_words(*best),
-                            percent(best->explained));
+    if (const auto* best = leader_of(diagnosis); best && diagnosis.explanation)
+        text += fmt::format("; the best of them, {}{}, takes away {}, {}", cause_words(*best),
+                            together_with(diagnosis), reduction_words(diagnosis),
+                            needed_words(*diagnosis.explanation));
     return text + ".";
 }
 
@@ -119,10 +170,9 @@ std::string which_line(const Diagnosis& diagnosis) {
             return calibration_line(diagnosis);
         case Verdict::effect:
             if (!leader) break;
-            return fmt::format(
-                "consistent with {}{}, {} of the probability among {}; it takes away {} of the gap.",
-                cause_words(*leader), together_with(diagnosis), percent(leader->confidence),
-                library_words(diagnosis), percent(leader->explained));
+            return fmt::format("consistent with {}{}, {} of the probability among {}.", cause_words(*leader),
+                               together_with(diagnosis), percent(leader->confidence),
+                               library_words(diagnosis));
         case Verdict::group:
             if (!leader) break;
             return fmt::format("consistent with any of {}{}; these data cannot tell them apart.",
@@ -131,30 +181,38 @@ std::string which_line(const Diagnosis& diagnosis) {
     return "no effect is named.";
 }
 
-std::string placebo_words(const Shrink& shrink) {
-    return shrink.fraction > shrink.placebo
-               ? fmt::format("a placebo takes away {}", percent(shrink.placebo))
-               : fmt::format("no more than a placebo does ({})", percent(shrink.placebo));
-}
-
 std::string what_is_added(const Diagnosis& diagnosis) {
     const auto* leader = leader_of(diagnosis);
     if (diagnosis.verdict == Verdict::calibration_suspect) return "correcting it";
     return leader ? "adding " + words_of(leader->effect) : "adding it";
 }
 
+std::string data_words(const Diagnosis& diagnosis) {
+    if (!diagnosis.explanation->held_out) return " (the data held out show none by themselves)";
+    const auto held_out =
+        diagnosis.shrink ? shortened(one_line(diagnosis.shrink->held_out), longest_remark) : "";
+    return " on data held out" + (held_out.empty() ? "" : " (" + held_out + ")");
+}
+
+std::string remainder_words(const Explanation& explanation) {
+    if (!explanation.leaves_more_than_noise) return "what remains is noise as far as these data tell";
+    const double left = std::max(0.0, explanation.remainder());
+    return fmt::format("{} remain{} that no effect of the library explains ({})", percent(left),
+                       left < 0.015 ? "s" : "", p_words(explanation.remainder_p));
+}
+
 std::string how_far_line(const Diagnosis& diagnosis) {
-    if (!diagnosis.shrink)
-        return diagnosis.verdict == Verdict::no_gap ? "there is nothing to shrink."
-                                                    : "not known: nothing was tried on data held out.";
-    const auto& shrink = *diagnosis.shrink;
-    if (!(shrink.before > 0)) return "not known: the data held out show no gap by themselves.";
-    auto text =
-        fmt::format("{} takes away {} of the gap (90 % interval: {:.0f} to {}) on data held out ({}); {}",
-                    what_is_added(diagnosis), percent(shrink.fraction), shrink.interval[0] * 100,
-                    percent(shrink.interval[1]), shortened(one_line(shrink.held_out), longest_remark),
-                    placebo_words(shrink));
-    if (shrink.confirmed) text += fmt::format("; simulated in full it is {}", percent(*shrink.confirmed));
+    if (!diagnosis.explanation)
+        return diagnosis.verdict == Verdict::no_gap ? "there is nothing to explain."
+                                                    : "not known: nothing was tried.";
+    const auto& explanation = *diagnosis.explanation;
+    auto text = fmt::format("{} takes away {}{}, {}; a placebo takes away {}; {}", what_is_added(diagnosis),
+                            reduction_words(diagnosis), data_words(diagnosis),
+                            explanation.simulated ? "simulated in full" : "by the signatures",
+                            percent(explanation.placebo), remainder_words(explanation));
+    if (const auto& shrink = diagnosis.shrink; shrink && shrink->before > 0 && explanation.held_out)
+        text += fmt::format("; predicted was {} (90 % interval: {:.0f} to {})", percent(shrink->fraction),
+                            shrink->interval[0] * 100, percent(shrink->interval[1]));
     return text + ".";
 }
 
@@ -208,7 +266,30 @@ std::string limits_line(const Diagnosis& diagnosis) {
     return text + ".";
 }
 
+/// In words that follow what is named.
+std::string taken_away(const Diagnosis& diagnosis) {
+    return diagnosis.explanation ? ", and " + reduction_words(diagnosis) + " goes away with it" : "";
+}
+
 }  // namespace
+
+std::string verdict_headline(const Diagnosis& diagnosis) {
+    const bool pair = !together_with(diagnosis).empty();
+    switch (diagnosis.verdict) {
+        case Verdict::no_gap:
+            return "No detectable gap";
+        case Verdict::effect:
+            return fmt::format("A gap; {} takes away {}", pair ? "two effects together" : "one effect",
+                               reduction_words(diagnosis));
+        case Verdict::group:
+            return fmt::format("A gap; any of a group of effects takes away {}", reduction_words(diagnosis));
+        case Verdict::unknown_effect:
+            return "A gap that no known effect explains";
+        case Verdict::calibration_suspect:
+            break;
+    }
+    return "A stated parameter is suspect";
+}
 
 std::string verdict_sentence(const Diagnosis& diagnosis) {
     const auto* leader = leader_of(diagnosis);
@@ -217,13 +298,14 @@ std::string verdict_sentence(const Diagnosis& diagnosis) {
             return fmt::format("No gap is detectable ({}).", p_words(diagnosis.p_value));
         case Verdict::effect:
             return "The gap is consistent with " + (leader ? cause_words(*leader) : "one effect") +
-                   together_with(diagnosis) + ".";
+                   together_with(diagnosis) + taken_away(diagnosis) + ".";
         case Verdict::group:
             return "The gap is consistent with any of " +
                    (leader ? listed(words_of_all(leader->group)) : "several effects") +
-                   ", which these data cannot tell apart.";
+                   ", which these data cannot tell apart" + taken_away(diagnosis) + ".";
         case Verdict::unknown_effect:
-            return "There is a gap that none of " + library_words(diagnosis) + " explains.";
+            return "There is a gap that none of " + library_words(diagnosis) + " explains" +
+                   (diagnosis.explanation ? ": the best takes away " + reduction_words(diagnosis) : "") + ".";
         case Verdict::calibration_suspect:
             break;
     }

@@ -7,6 +7,9 @@
 
 namespace mcdem {
 
+/// The verdict as a title.
+std::string verdict_headline(const Diagnosis& diagnosis);
+
 /// One sentence.
 std::string verdict_sentence(const Diagnosis& diagnosis);
 

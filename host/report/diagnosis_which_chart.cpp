@@ -21,7 +21,7 @@ std::string colour_of(const Diagnosis& diagnosis, const Cause& cause) {
 std::string hover_words(const Cause& cause) {
     return plot_text(words_of(cause.effect)) + "<br>" +
            plot_text(amount(cause.amplitude, cause.amplitude_error, cause.unit)) +
-           fmt::format("<br>gain {:.2f}, probability {}, {} of the gap", cause.score,
+           fmt::format("<br>gain {:.2f}, probability {}, {} of chi-square", cause.score,
                        percent(cause.confidence), percent(cause.explained));
 }
 

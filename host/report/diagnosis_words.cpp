@@ -84,7 +84,7 @@ std::string amount(double value, const std::string& unit) {
 }
 
 std::string amount(double value, double error, const std::string& unit, Sign sign) {
-    if (!std::isfinite(value)) return dash;
+    if (!std::isfinite(value) || std::isinf(error)) return dash;
     const auto& [_, factor, shown] = shown_unit(unit);
     const auto plus = sign == Sign::always && value > 0 ? "+" : "";
     if (!(error > 0) || !std::isfinite(error)) return fmt::format("{}{}", plus, amount(value, unit));

@@ -17,6 +17,7 @@ std::string listed(const std::vector<std::string>& parts, std::size_t most = 100
 std::string amount(double value, const std::string& unit);
 
 /// "0.42 ± 0.05 mJ/m²": as many decimals as the first two digits of the error; `sign`: with a plus too.
+/// "–" where the error is infinite.
 enum class Sign { minus_only, always };
 std::string amount(double value, double error, const std::string& unit, Sign sign = Sign::minus_only);
 

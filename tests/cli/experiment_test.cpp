@@ -2,6 +2,7 @@
 #include "experiment/experiment.h"
 
 #include <fstream>
+#include <regex>
 
 #include "cli/cli_test.h"
 #include "io/folder_lock.h"
@@ -159,6 +160,30 @@ TEST_F(ExperimentCommandTest, SpoiledTablesAreToldWithTheirLines) {
     const auto checked = mcdem({"experiment", "check", "e"});
     expect_bad_input(checked, "mcdem: e/plate.csv:4: phase must be one of load, unload, got \"lode\"");
     EXPECT_THAT(checked.err, HasSubstr("grain must be a grain of grains.csv, 0 to 29, got 77"));
+}
+
+// What is missing is said by both in the same words, and before anything is simulated.
+TEST_F(ExperimentCommandTest, WhatADiagnosisNeedsIsToldByCheckAndDiagnoseAlike) {
+    run("a");
+    expect_done(from_run("e", {"--replica", "0"}));
+    EXPECT_THAT(mcdem({"experiment", "check", "e"}).out,
+                HasSubstr("`mcdem diagnose` needs beside it: nothing\n"));
+    std::string toml = bytes_of_file(path("e/experiment.toml"));
+    toml.erase(toml.find("[measurement]"));
+    std::ofstream(path("e/experiment.toml")) << toml;
+    const std::vector<std::string> diagnose{"diagnose", "small.toml", "--experiment", "e", "--out", "out"};
+    const auto told = [&](const std::string& words) {
+        const auto checked = mcdem({"experiment", "check", "e"});
+        expect_done(checked);
+        const std::string needs = checked.out.substr(checked.out.find("needs beside it"));
+        EXPECT_THAT(std::regex_replace(needs, std::regex("\\s+"), " "), HasSubstr(words));
+        expect_bad_input(mcdem(diagnose), words);
+        EXPECT_FALSE(fs::exists(path("out/simulations")));
+    };
+    told("a line such as `position_error = 1e-4 # [m]`");
+    fs::remove(path("e/contacts.csv"));
+    fs::remove(path("e/grains.csv"));
+    told("grains.csv must have the positions of frame 0");
 }
 
 TEST_F(ExperimentCommandTest, IsDiagnosedByOneProgramAFolder) {

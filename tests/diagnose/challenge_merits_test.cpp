@@ -89,15 +89,19 @@ TEST(Merits, OfTheUnknown) {
 }
 
 /// A diagnosis of two candidates.
-Findings findings(double p, double gain, double other_gain, double misfit) {
-    return {p, {"adhesion", "friction"}, 2, {gain, other_gain}, {{{0}, {1}, {0.1}, gain, misfit, {}, {}}}};
+Findings findings(double p, double gain, double other_gain, double reduction) {
+    return {p,
+            {"adhesion", "friction"},
+            2,
+            {gain, other_gain},
+            {{{0}, {1}, {0.1}, gain, 0.5, {}, {}, reduction}}};
 }
 
 TEST(ChooseLimits, MakesUnknownEffectsAbstainWithoutLosingTheKnown) {
-    // With the default, misfit below 0.01 is unknown. Here known effects fit to 0.05, unknown ones to 0.02.
+    // Here known effects take away 0.9 of their gap, and those of the library 0.65 of an unknown one's.
     const ChallengeCase known = truth(CaseKind::effect, {"adhesion"}),
                         unknown = truth(CaseKind::unknown, {"soft_walls"});
-    const Findings fits = findings(1e-6, 50, 0, 0.05), does_not = findings(1e-6, 50, 0, 0.02);
+    const Findings fits = findings(1e-6, 50, 0, 0.9), does_not = findings(1e-6, 50, 0, 0.65);
     const std::vector<LimitCase> cases{{&known, &fits, 3}, {&unknown, &does_not, 0}};
     ASSERT_EQ(merits_with(cases, {}).named_unknown.hits, 1);
     const Limits limits = choose_limits(cases);
@@ -108,7 +112,7 @@ TEST(ChooseLimits, MakesUnknownEffectsAbstainWithoutLosingTheKnown) {
 
 TEST(ChooseLimits, KeepsFalseAlarmsDown) {
     const ChallengeCase none = truth(CaseKind::none);
-    const Findings chance = findings(0.03, 5, 0, 0.5);
+    const Findings chance = findings(0.03, 5, 0, 0.9);
     const std::vector<LimitCase> cases{{&none, &chance, 0}};
     EXPECT_EQ(merits_with(cases, choose_limits(cases)).false_alarms.hits, 0);
 }

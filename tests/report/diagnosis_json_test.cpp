@@ -35,9 +35,10 @@ void each(const Json& json, const std::function<void(const Json&)>& check) {
 
 TEST(DiagnosisJson, has_the_documented_keys_in_their_order) {
     const auto json = parsed(samples::diagnosis(Verdict::effect));
-    EXPECT_THAT(keys_of(json), ElementsAre("verdict", "gap", "where", "causes", "shrink", "detection_limits",
-                                           "not_measured", "seconds", "sentence", "where_threshold", "cells",
-                                           "ranking", "nuisances", "not_testable", "provenance"));
+    EXPECT_THAT(keys_of(json),
+                ElementsAre("verdict", "gap", "where", "causes", "explanation", "shrink", "detection_limits",
+                            "not_measured", "seconds", "sentence", "where_threshold", "cells", "ranking",
+                            "nuisances", "not_testable", "provenance"));
     EXPECT_THAT(keys_of(json["gap"]), ElementsAre("detected", "p_value", "p_omnibus", "p_directed"));
     EXPECT_THAT(keys_of(json["where"][0]), ElementsAre("observable", "phase", "displacement_mm", "region",
                                                        "z_score", "z_score_refitted", "force_class"));
@@ -45,6 +46,9 @@ TEST(DiagnosisJson, has_the_documented_keys_in_their_order) {
                                    "explained", "score", "confirmed_score");
     EXPECT_THAT(keys_of(json["causes"][0]), cause);
     EXPECT_THAT(keys_of(json["ranking"][17]), cause);
+    EXPECT_THAT(keys_of(json["explanation"]),
+                ElementsAre("reduction", "simulated", "held_out", "placebo", "needed", "remainder",
+                            "remainder_p", "leaves_more_than_noise"));
     EXPECT_THAT(keys_of(json["shrink"]),
                 ElementsAre("held_out", "before", "after", "fraction", "interval", "placebo", "metrics",
                             "confirmed", "fitted_displacement_mm", "top_force"));

@@ -75,11 +75,15 @@ TEST(DiagnosisText, effect) {
     EXPECT_THAT(line(d, "Gap"), AllOf(StartsWith("yes"), HasSubstr("p = 0.004")));
     EXPECT_THAT(line(d, "Where"),
                 AllOf(StartsWith("grain scatter while unloading"), HasSubstr("-7.8 sigma")));
-    EXPECT_THAT(line(d, "Which"), AllOf(HasSubstr("adhesion (0.264 ± 0.024 mJ/m²), 87 %"),
-                                        HasSubstr("18 known"), HasSubstr("78 % of the gap")));
+    EXPECT_THAT(line(d, "Which"),
+                AllOf(HasSubstr("adhesion (0.264 ± 0.024 mJ/m²), 87 %"), HasSubstr("18 known")));
     EXPECT_THAT(line(d, "How far"),
-                AllOf(HasSubstr("81 % of the gap (90 % interval: 66 to 93 %)"),
-                      HasSubstr("placebo takes away 12 %"), HasSubstr("simulated in full it is 79 %")));
+                AllOf(StartsWith("adding adhesion takes away 79 % of the gap on data held out (unloading"),
+                      HasSubstr("simulated in full"), HasSubstr("placebo takes away 12 %"),
+                      HasSubstr("21 % remain that no effect of the library explains (p < 0.0001)"),
+                      HasSubstr("predicted was 81 % (90 % interval: 66 to 93 %)")));
+    EXPECT_EQ(verdict_headline(d), "A gap; one effect takes away 79 % of the gap");
+    EXPECT_THAT(verdict_sentence(d), HasSubstr(", and 79 % of the gap goes away with it."));
     EXPECT_THAT(line(d, "Limits"), HasSubstr("not measured: forces on the side walls"));
 }
 
@@ -104,8 +108,10 @@ TEST(DiagnosisText, a_group_names_all_with_their_amplitudes) {
 TEST(DiagnosisText, unknown_effect_tells_how_little_the_best_explains) {
     const auto d = samples::diagnosis(Verdict::unknown_effect);
     EXPECT_THAT(line(d, "Which"), AllOf(StartsWith("none of the 18 known effects"), HasSubstr("adhesion"),
-                                        HasSubstr("21 % of it")));
-    EXPECT_THAT(line(d, "How far"), HasSubstr("no more than a placebo does (12 %)"));
+                                        HasSubstr("takes away 7 % of the gap, and 60 % would be needed")));
+    EXPECT_THAT(line(d, "How far"),
+                AllOf(HasSubstr("takes away 7 % of the gap"), HasSubstr("placebo takes away 12 %")));
+    EXPECT_THAT(verdict_sentence(d), HasSubstr("the best takes away 7 % of the gap"));
 }
 
 TEST(DiagnosisText, calibration_suspect_names_the_parameter) {
@@ -121,9 +127,36 @@ TEST(DiagnosisText, calibration_suspect_names_the_parameter) {
 TEST(DiagnosisText, a_gap_that_the_held_out_data_do_not_show) {
     auto d = samples::diagnosis(Verdict::effect);
     d.shrink->before = -0.3;
-    EXPECT_THAT(line(d, "How far"), HasSubstr("show no gap by themselves"));
-    d.shrink.reset();
+    d.explanation->held_out = false;
+    EXPECT_THAT(line(d, "How far"), AllOf(HasSubstr("the data held out show none by themselves"),
+                                          Not(HasSubstr("predicted was"))));
+    d.explanation.reset();
     EXPECT_THAT(line(d, "How far"), HasSubstr("nothing was tried"));
+}
+
+TEST(DiagnosisText, what_remains_is_noise) {
+    auto d = samples::diagnosis(Verdict::effect);
+    d.explanation->leaves_more_than_noise = false;
+    EXPECT_THAT(line(d, "How far"),
+                AllOf(HasSubstr("what remains is noise"), Not(HasSubstr("no effect of the library"))));
+}
+
+// Cells that the picture frames are told of, also where no entry stands for them.
+TEST(DiagnosisText, framed_cells_are_told_of) {
+    auto d = samples::diagnosis(Verdict::unknown_effect);
+    d.where.clear();
+    d.cells = {{"top_force", "load", 0.01, 15.2, 1}, {"mean_force", "load", 0.01, 4, -2}};
+    EXPECT_EQ(line(d, "Where"),
+              "2 of 2 parts of the data are beyond 3.9 sigma as stated (the strongest: top force, 15.2 "
+              "sigma), and none "
+              "after recalibration.");
+    d.cells[1].z_score_refitted = -5;
+    EXPECT_THAT(line(d, "Where"),
+                StartsWith("1 of 2 parts of the data is beyond 3.9 sigma after recalibration (the "
+                           "strongest: mean force, -5.0 sigma)"));
+    d.cells.resize(1);
+    d.cells[0].z_score = 1;
+    EXPECT_EQ(line(d, "Where"), "no single part of the data stands out of the noise.");
 }
 
 }  // namespace

@@ -1,0 +1,89 @@
+// A simulation that fails costs what it was made for, and nothing else.
+#include <gmock/gmock.h>
+
+#include "core/errors.h"
+#include "diagnose/diagnose.h"
+#include "diagnose/synthetic_evidence.h"
+
+namespace mcdem {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::ThrowsMessage;
+
+struct World {
+    World() {
+        synthetic.add_effect(evidence, "adhesion", synthetic.pattern(1));
+        synthetic.add_effect(evidence, "friction", synthetic.pattern(1));
+        synthetic.add_nuisance(evidence, "modulus", synthetic.pattern(0.5), 1);
+        evidence.observed += 4 * evidence.library.effects[0].linear;
+    }
+    SyntheticWorld synthetic{6, 3};
+    Evidence evidence = synthetic.evidence(1, 16);
+};
+
+TEST(Failures, NothingIsLeftOutOfWhatIsWhole) {
+    World w;
+    EXPECT_THAT(leave_out_failures(w.evidence), IsEmpty());
+    EXPECT_EQ(w.evidence.candidates.size(), 2u);
+    EXPECT_EQ(w.evidence.library.baseline.rows(), 16);
+}
+
+TEST(Failures, ACandidateThatRunsAwayCostsItselfAlone) {
+    World w;
+    w.evidence.library.effects[1].linear.setConstant(not_available);
+    EXPECT_THAT([&] { Draft(w.evidence, {}); },
+                ThrowsMessage<InputError>(HasSubstr("0 observations in common")));
+    EXPECT_THAT(leave_out_failures(w.evidence), ElementsAre(HasSubstr("friction: its runs failed")));
+    const Diagnosis d = Draft(w.evidence, {}).diagnosis();
+    EXPECT_EQ(d.verdict, Verdict::effect);
+    EXPECT_EQ(d.causes.at(0).effect, "adhesion");
+}
+
+TEST(Failures, ANuisanceToo) {
+    World w;
+    w.evidence.library.nuisances[0].curvature.setConstant(not_available);
+    EXPECT_THAT(leave_out_failures(w.evidence), ElementsAre(HasSubstr("modulus: its runs failed")));
+    EXPECT_THAT(w.evidence.nuisances, IsEmpty());
+    EXPECT_NO_THROW(Draft(w.evidence, {}));
+}
+
+TEST(Failures, AFewCellsThatACandidateLacksAreNotCompared) {
+    World w;
+    w.evidence.library.effects[1].linear[5] = not_available;
+    EXPECT_THAT(leave_out_failures(w.evidence), IsEmpty());
+    EXPECT_EQ(gap_data(w.evidence).cells.size(), static_cast<std::size_t>(w.synthetic.known()) - 1);
+}
+
+TEST(Failures, ReplicatesWithoutNumbersAreLeftOut) {
+    World w;
+    for (const Eigen::Index r : {2, 7}) {
+        w.evidence.library.baseline.row(r).setConstant(not_available);
+        w.evidence.baseline.row(r).setConstant(not_available);
+    }
+    EXPECT_THAT(leave_out_failures(w.evidence),
+                ElementsAre(HasSubstr("2 of 16 runs of the scene as it stands failed")));
+    EXPECT_EQ(w.evidence.library.baseline.rows(), 14);
+    EXPECT_EQ(w.evidence.library.packing.size(), 14u);
+    EXPECT_EQ(w.evidence.baseline.rows(), 14);
+    EXPECT_EQ(Draft(w.evidence, {}).diagnosis().verdict, Verdict::effect);
+    w.evidence.library.baseline.topRows(7).setConstant(not_available);
+    EXPECT_THAT([&] { leave_out_failures(w.evidence); },
+                ThrowsMessage<InputError>(HasSubstr("runs of the scene")));
+}
+
+// Two experiments drawn from the same noise, an effect of which no observable knows: it has no amplitude.
+TEST(Failures, WhatTheDataDoNotShowHasNoAmplitude) {
+    World w;
+    w.synthetic.add_effect(w.evidence, "force_bias", Eigen::VectorXd::Zero(w.evidence.observed.size()));
+    const Diagnosis d = Draft(w.evidence, {}).diagnosis();
+    const auto of = std::ranges::find(d.ranking, "force_bias", &Cause::effect);
+    ASSERT_NE(of, d.ranking.end());
+    EXPECT_EQ(of->amplitude, 0);
+    EXPECT_EQ(of->amplitude_error, INFINITY);
+}
+
+}  // namespace
+}  // namespace mcdem
