@@ -1,11 +1,12 @@
 #include "cl/device.h"
 
+#include <fmt/format.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <cstdlib>
 
-#include <fmt/format.h>
-
-#include "core/errors.h"
+#include "cl/kernel_cache.h"
 
 namespace mcdem {
 namespace {
@@ -32,10 +33,24 @@ DeviceInfo describe(const cl::Platform& platform, const cl::Device& device) {
         device.getInfo<CL_DEVICE_EXTENSIONS>().find("cl_khr_fp64") != std::string::npos;
     info.compute_units = static_cast<int>(device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>());
     info.memory = device.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>();
+    info.largest_allocation = device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>();
+    info.largest_work_group = static_cast<int>(device.getInfo<CL_DEVICE_MAX_WORK_GROUP_SIZE>());
     return info;
 }
 
+/// Drivers have threads, which a forked child has not: it would wait for them for ever.
+void expect_not_forked() {
+    static const pid_t first = getpid();
+    if (getpid() != first)
+        throw RunError(
+            "OpenCL was used before this process was forked, and does not work in the child: begin the child "
+            "afresh "
+            "(in Python, multiprocessing.get_context(\"spawn\"))");
+}
+
 std::vector<Found> find_devices() {
+    expect_not_forked();
+    prepare_kernel_cache();
     std::vector<Found> found;
     std::vector<cl::Platform> platforms;
     try {
@@ -52,6 +67,7 @@ std::vector<Found> find_devices() {
         }
         for (const auto& device : devices) found.push_back({describe(platform, device), device});
     }
+    opencl_started();
     std::stable_sort(found.begin(), found.end(),
                      [](const Found& a, const Found& b) { return a.info.gpu > b.info.gpu; });
     for (std::size_t i = 0; i < found.size(); ++i) found[i].info.index = static_cast<int>(i);
@@ -60,9 +76,7 @@ std::vector<Found> find_devices() {
 
 Found choose(const std::string& choice) {
     const auto found = find_devices();
-    if (found.empty())
-        throw RunError(
-            "no OpenCL device found: install a driver (the package pocl-opencl-icd runs on any CPU)");
+    if (found.empty()) throw no_device();
     std::string wanted = choice;
     if (wanted.empty())
         if (const char* variable = std::getenv("MCDEM_DEVICE")) wanted = variable;
@@ -80,6 +94,13 @@ Found choose(const std::string& choice) {
 }
 
 }  // namespace
+
+RunError no_device() {
+    return RunError(fmt::format(
+        "no OpenCL device found: install a driver (the package pocl-opencl-icd runs on any CPU); if it "
+        "is there, see that it can write in {}, or set POCL_CACHE_DIR to a folder where it can",
+        kernel_cache_folder().string()));
+}
 
 std::vector<DeviceInfo> list_devices() {
     std::vector<DeviceInfo> infos;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "cl/opencl.h"
+#include "core/errors.h"
 
 namespace mcdem {
 
@@ -16,7 +17,12 @@ struct DeviceInfo {
     bool double_precision = false;
     int compute_units = 0;
     std::size_t memory = 0;  ///< [bytes]
+    std::size_t largest_allocation = 0;  ///< of memory in one piece [bytes]
+    int largest_work_group = 0;          ///< work-items
 };
+
+/// What to say where there is none.
+RunError no_device();
 
 /// Every OpenCL device, GPUs first (the order of `--device`).
 std::vector<DeviceInfo> list_devices();

@@ -1,6 +1,8 @@
 #include "cli/cli.h"
 
+#include "cl/kernel_cache.h"
 #include "cli/commands.h"
+#include "cli/crash_hint.h"
 #include "cli/messages.h"
 #include "core/version.h"
 
@@ -47,6 +49,8 @@ int report_usage(const CLI::App& app, const CLI::ParseError& error) {
 
 int run_cli(int argc, const char* const* argv) {
     set_up_messages();
+    hint_at_crashes();
+    opencl_started = hint_at_crashes;
     CLI::App app(about, "mcdem");
     app.footer(first_steps);
     app.require_subcommand(1);

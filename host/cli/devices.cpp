@@ -5,7 +5,6 @@
 
 #include "cl/device.h"
 #include "cli/commands.h"
-#include "core/errors.h"
 #include "report/text_table.h"
 
 namespace mcdem {
@@ -13,9 +12,7 @@ namespace {
 
 void print_devices() {
     const auto devices = list_devices();
-    if (devices.empty())
-        throw RunError(
-            "no OpenCL device found: install a driver (the package pocl-opencl-icd runs on any CPU)");
+    if (devices.empty()) throw no_device();
     TextTable table;
     table.columns = {{"", Align::right}, {"device", Align::left}, {"kind", Align::left},    {"units"},
                      {"memory"},         {"double", Align::left}, {"platform", Align::left}};

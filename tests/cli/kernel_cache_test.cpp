@@ -1,0 +1,92 @@
+// The folder of compiled kernels: not writable, of somebody else, or with files cut short.
+#include <sys/stat.h>
+
+#include "cli/cli_test.h"
+
+namespace mcdem {
+namespace {
+
+namespace fs = std::filesystem;
+
+class KernelCache : public CliTest {
+protected:
+    std::vector<std::string> nowhere_to_write() const {
+        return {"HOME=/proc", "XDG_CACHE_HOME=", "POCL_CACHE_DIR=/proc/none",
+                "TMPDIR=" + path("tmp").string()};
+    }
+    fs::path private_folder() const { return path("tmp") / ("mcdem-kernels-" + std::to_string(geteuid())); }
+    static mode_t mode_of(const fs::path& folder) {
+        struct stat what {};
+        lstat(folder.c_str(), &what);
+        return what.st_mode & 07777;
+    }
+};
+
+TEST_F(KernelCache, ThatCannotBeWrittenIsReplacedByAPrivateOne) {
+    fs::create_directory(path("tmp"));
+    expect_done(mcdem({"devices"}, nowhere_to_write()));
+    EXPECT_EQ(mode_of(private_folder()), 0700u);
+    expect_done(mcdem({"devices"}, nowhere_to_write()));
+    EXPECT_EQ(std::distance(fs::directory_iterator(path("tmp")), {}), 1) << "the same again";
+}
+
+TEST_F(KernelCache, OfSomebodyElseIsNotTaken) {
+    fs::create_directory(path("tmp"));
+    fs::create_directory(path("theirs"));
+    fs::create_directory_symlink(path("theirs"), private_folder());
+    expect_done(mcdem({"devices"}, nowhere_to_write()));
+    EXPECT_TRUE(fs::is_empty(path("theirs")));
+    fs::remove(private_folder());
+    fs::create_directory(private_folder());
+    fs::permissions(private_folder(), fs::perms::all);
+    expect_done(mcdem({"devices"}, nowhere_to_write()));
+    EXPECT_TRUE(fs::is_empty(private_folder()));
+}
+
+TEST_F(KernelCache, CannotBeWrittenAnywhere) {
+    auto environment = nowhere_to_write();
+    environment.back() = "TMPDIR=/proc";
+    const auto devices = mcdem({"devices"}, environment);
+    EXPECT_EQ(devices.exit_code, 1);
+    EXPECT_THAT(devices.err, testing::HasSubstr("set POCL_CACHE_DIR to a folder"));
+}
+
+TEST_F(KernelCache, FilesCutShortAreMadeAnew) {
+    const std::string cache = "POCL_CACHE_DIR=" + path("cache").string();
+    expect_done(mcdem(run_words("first"), {cache}));
+    const std::string run = bytes_of_file(path("first/run.h5"));
+    std::vector<fs::path> files;
+    for (const auto& entry : fs::recursive_directory_iterator(path("cache")))
+        if (entry.is_regular_file() && entry.file_size() > 0) files.push_back(entry.path());
+    ASSERT_GE(files.size(), 8u) << "one a kernel, and the program";
+    const auto is_kept = [](const fs::path& file) {
+        return file.extension() == ".so" || file.extension() == ".bc";
+    };
+    int round = 0;
+    for (const double part : {0.001, 0.999}) {
+        for (const fs::path& file : files)
+            if (is_kept(file))
+                fs::resize_file(file,
+                                static_cast<std::uintmax_t>(part * static_cast<double>(fs::file_size(file))));
+        const std::string out = "out" + std::to_string(++round);
+        const auto again = mcdem(run_words(out), {cache});
+        ASSERT_EQ(again.exit_code, 0) << part << ": " << again.err;
+        EXPECT_TRUE(bytes_of_file(path(out) / "run.h5") == run) << part;
+    }
+    for (const fs::path& file : files)  // of the right size, the content lost
+        if (is_kept(file)) std::ofstream(file, std::ios::binary) << std::string(fs::file_size(file), '\0');
+    expect_done(mcdem(run_words("zeros"), {cache}));
+}
+
+TEST_F(KernelCache, ACrashSaysWhatToDo) {
+    Child child(folder_.path, run_words("out", {"--set", "protocol.relax_time=100", "--set",
+                                                "protocol.settle_kinetic_over_elastic=1e-300"}));
+    while (child.is_running() && !fs::exists(path("out"))) usleep(1000);
+    child.send(SIGABRT);
+    const auto finished = child.wait();
+    EXPECT_EQ(finished.signal, SIGABRT);
+    EXPECT_THAT(finished.err, testing::HasSubstr("remove the compiled kernels"));
+}
+
+}  // namespace
+}  // namespace mcdem
