@@ -37,56 +37,71 @@ std::string key_text(py::handle key) {
     return plain ? text : in_quotes(text);
 }
 
-bool is_bool(py::handle value) {
-    return PyBool_Check(value.ptr()) ||
-           py::str(py::type::handle_of(value).attr("__name__")).equal(py::str("bool_"));
+/// A scalar of NumPy as Python's own.
+py::object plain(py::handle value) {
+    const bool scalar =
+        py::hasattr(value, "ndim") && py::hasattr(value, "item") && py::cast<int>(value.attr("ndim")) == 0;
+    return scalar ? py::object(value.attr("item")()) : py::reinterpret_borrow<py::object>(value);
+}
+
+/// Tables and lists in one another. A dictionary that holds itself would have no end.
+constexpr int deepest = 32;
+
+void expect_shallow(int depth, const std::string& where) {
+    if (depth <= deepest) return;
+    throw InputError(
+        fmt::format("{} must hold tables and lists at most {} deep, got deeper ones: does it hold itself?",
+                    where.substr(0, where.find('.')), deepest));
 }
 
 bool is_list(py::handle value) {
     return PySequence_Check(value.ptr()) && py::hasattr(value, "__len__") && !py::isinstance<py::dict>(value);
 }
 
-std::string value_text(py::handle value, const std::string& where);
+std::string value_text(py::handle value, const std::string& where, int depth);
 
-std::string list_text(py::handle value, const std::string& where) {
+std::string list_text(py::handle value, const std::string& where, int depth) {
     std::vector<std::string> items;
-    for (const py::handle item : value) items.push_back(value_text(item, where));
+    for (const py::handle item : value) items.push_back(value_text(item, where, depth + 1));
     return fmt::format("[{}]", fmt::join(items, ", "));
 }
 
-std::string table_text(const py::dict& table, const std::string& where) {
+std::string table_text(const py::dict& table, const std::string& where, int depth) {
     std::vector<std::string> items;
     for (const auto& [key, value] : table)
         items.push_back(
-            fmt::format("{} = {}", key_text(key), value_text(value, where + "." + key_text(key))));
+            fmt::format("{} = {}", key_text(key), value_text(value, where + "." + key_text(key), depth + 1)));
     return fmt::format("{{{}}}", fmt::join(items, ", "));
 }
 
 /// On one line.
-std::string value_text(py::handle value, const std::string& where) {
-    if (is_bool(value))
-        return py::cast<bool>(py::bool_(py::reinterpret_borrow<py::object>(value))) ? "true" : "false";
+std::string value_text(py::handle given, const std::string& where, int depth) {
+    expect_shallow(depth, where);
+    const py::object value = plain(given);
+    if (PyBool_Check(value.ptr())) return value.is(py::bool_(true)) ? "true" : "false";
     if (py::isinstance<py::str>(value)) return in_quotes(py::cast<std::string>(value));
     if (py::hasattr(value, "__fspath__")) return in_quotes(py::cast<std::string>(value.attr("__fspath__")()));
-    if (py::isinstance<py::dict>(value)) return table_text(py::reinterpret_borrow<py::dict>(value), where);
-    if (is_list(value)) return list_text(value, where);
-    if (PyIndex_Check(value.ptr())) return py::str(py::int_(py::reinterpret_borrow<py::object>(value)));
+    if (py::isinstance<py::dict>(value)) return table_text(value, where, depth);
+    if (is_list(value)) return list_text(value, where, depth);
+    if (PyIndex_Check(value.ptr())) return py::str(py::int_(value));
     if (py::hasattr(value, "__float__"))
-        return py::repr(py::float_(py::reinterpret_borrow<py::object>(value)));  // reads back to the last bit
+        return py::repr(py::float_(py::cast<double>(value)));  // reads back to the last bit
     throw InputError(fmt::format("{} must be a number, true or false, text, a list or a table, got {}", where,
                                  std::string(py::repr(value))));
 }
 
 /// Values first: in TOML what follows a table's heading belongs to it.
-void append_table(std::string& text, const std::string& name, const py::dict& table) {
+void append_table(std::string& text, const std::string& name, const py::dict& table, int depth) {
+    expect_shallow(depth, name);
     const std::string inside = name.empty() ? "" : name + ".";
     for (const auto& [key, value] : table)
         if (!py::isinstance<py::dict>(value))
-            text += fmt::format("{} = {}\n", key_text(key), value_text(value, inside + key_text(key)));
+            text +=
+                fmt::format("{} = {}\n", key_text(key), value_text(value, inside + key_text(key), depth + 1));
     for (const auto& [key, value] : table)
         if (py::isinstance<py::dict>(value)) {
             text += fmt::format("[{}{}]\n", inside, key_text(key));
-            append_table(text, inside + key_text(key), py::reinterpret_borrow<py::dict>(value));
+            append_table(text, inside + key_text(key), py::reinterpret_borrow<py::dict>(value), depth + 1);
         }
 }
 
@@ -94,7 +109,7 @@ void append_table(std::string& text, const std::string& name, const py::dict& ta
 
 std::string toml_text(const py::dict& tables) {
     std::string text;
-    append_table(text, "", tables);
+    append_table(text, "", tables, 0);
     return text;
 }
 
@@ -102,7 +117,7 @@ std::vector<std::string> overrides_of(const py::dict& values) {
     std::vector<std::string> overrides;
     for (const auto& [key, value] : values) {
         const std::string name = key_text(key);
-        overrides.push_back(name + "=" + value_text(value, name));
+        overrides.push_back(name + "=" + value_text(value, name, 0));
     }
     return overrides;
 }

@@ -45,6 +45,36 @@ class Scenes(Folder):
         self.assertEqual(len(scene), 3)
         self.assertEqual(len(scene.labels), 3)
 
+    def test_numbers_of_other_types_are_those_of_python(self):
+        class Loud(float):  # as NumPy 2 shows its numbers
+            def __repr__(self):
+                return f"np.float64({float(self)})"
+
+        scene = mcdem.Scene.parse("", set={"contact.gamma": Loud(1.25), "protocol.scan_at_start": np.True_,
+                                           "packing.count": np.array(400), "grains.friction": np.float64(0.5)})
+        parameters = scene.parameters[0]
+        self.assertEqual([parameters[key] for key in ("contact.gamma", "protocol.scan_at_start", "packing.count", "grains.friction")],
+                         ["1.25", "true", "400", "0.5"])
+        varied = mcdem.Scene(batch={"vary": {"contact.gamma": np.linspace(1, 1.5, 3), "protocol.scan_at_start": [np.False_, np.True_]}})
+        self.assertEqual({one["contact.gamma"] for one in varied.parameters}, {"1", "1.25", "1.5"})
+        self.assertEqual({one["protocol.scan_at_start"] for one in varied.parameters}, {"false", "true"})
+
+    def test_what_holds_itself_or_is_nested_without_end_is_refused(self):
+        holds_itself = {}
+        holds_itself["grains"] = holds_itself
+        listed = []
+        listed.append(listed)
+        deep = {}
+        for _ in range(100_000):
+            deep = {"grains": deep}
+        for bad in (holds_itself, {"grains": {"friction": listed}}, deep, {"batch.vary": {"a": [holds_itself]}}):
+            with self.assertRaisesRegex(ValueError, "at most 32 deep"):
+                mcdem.Scene(bad)
+        with self.assertRaisesRegex(ValueError, "at most 32 deep"):
+            mcdem.Scene.parse("", set={"grains.friction": listed})
+        while deep:  # or Python itself would go too deep in freeing it
+            deep = deep.popitem()[1]
+
     def test_files_are_read_and_overridden(self):
         file = self.folder / "soft.toml"
         file.write_text("[grains]\nfriction = 0.1\n")
@@ -186,6 +216,20 @@ class Runs(Folder):
             mcdem.simulate(mcdem.Scene(SMALL), progress=refuse)
         with self.assertRaisesRegex(LookupError, "at "):
             mcdem.run(mcdem.Scene(SMALL), self.folder / "out", progress=refuse)
+
+    def test_a_forked_child_is_told_that_opencl_does_not_work_there(self):
+        mcdem.simulate(mcdem.Scene(SMALL))
+        for call in (lambda: mcdem.simulate(mcdem.Scene(SMALL)), lambda: mcdem.run(mcdem.Scene(SMALL), self.folder / "out"),
+                     mcdem.devices):
+            child = os.fork()
+            if child == 0:
+                signal.alarm(60)
+                try:
+                    call()
+                except RuntimeError as error:
+                    os._exit(0 if "spawn" in str(error) else 2)
+                os._exit(3)
+            self.assertEqual(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), 0)
 
     def test_other_threads_go_on_while_it_simulates(self):
         counts, done = [0], threading.Event()
