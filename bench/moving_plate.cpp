@@ -97,7 +97,7 @@ double MovingPlate::coordination_number() const {
 }
 
 double MovingPlate::bytes_per_grain() const {
-    return static_cast<double>(engine_.bytes()) / (static_cast<double>(case_.grains) * case_.replicas);
+    return static_cast<double>(engine_.memory().all) / (static_cast<double>(case_.grains) * case_.replicas);
 }
 
 void check_before_timing(Device& device, MovingPlate& subject, const std::filesystem::path& cache) {

@@ -1,8 +1,13 @@
 /* Which grains are in which cell: a linked list a cell. The order in a list is left to chance; the
-   neighbour list sorts what it finds. */
+   neighbour list sorts what it finds. Cells far apart may share a list: the 27 around a grain never do. */
 
-INLINE int cell_along(real coordinate, real cell_size, int cells) {
-    return clamp((int)floor(coordinate / cell_size), 0, cells - 1);
+INLINE int cell_along(real coordinate, real cell_size, int span) {
+    return (int)fmin(fmax(floor(coordinate / cell_size), R(0)), (real)(span - 1));
+}
+
+INLINE int cell_index(global const Replica* restrict replica, int x, int y, int z) {
+    return replica->first_cell +
+           (z % replica->cells_z * replica->cells_y + y % replica->cells_y) * replica->cells_x + x % replica->cells_x;
 }
 
 kernel void empty_cells(global const Replica* restrict replicas, global const int* restrict chosen,
@@ -20,9 +25,8 @@ kernel void fill_cells(global const Replica* restrict replicas, global const int
     global const Replica* restrict replica = replicas + replica_of_block[block];
     const real4 own = position[grain];
     if (!(own.w > R(0))) return;
-    const int x = cell_along(own.x, replica->cell_size, replica->cells_x);
-    const int y = cell_along(own.y, replica->cell_size, replica->cells_y);
-    const int z = cell_along(own.z, replica->cell_size, replica->cells_z);
-    const int cell = replica->first_cell + (z * replica->cells_y + y) * replica->cells_x + x;
+    const int cell = cell_index(replica, cell_along(own.x, replica->cell_size, replica->span_x),
+                                cell_along(own.y, replica->cell_size, replica->span_y),
+                                cell_along(own.z, replica->cell_size, replica->span_z));
     cell_next[grain] = atomic_xchg(cell_head + cell, grain);
 }

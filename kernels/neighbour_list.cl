@@ -15,15 +15,14 @@ INLINE int near_grains(global const Replica* restrict replica, int grain, global
                               global const int* restrict cell_head, global const int* restrict cell_next, int* row) {
     const real4 own = position[grain];
     const real reach = replica->probe_gap + replica->skin;
-    const int x = cell_along(own.x, replica->cell_size, replica->cells_x);
-    const int y = cell_along(own.y, replica->cell_size, replica->cells_y);
-    const int z = cell_along(own.z, replica->cell_size, replica->cells_z);
+    const int x = cell_along(own.x, replica->cell_size, replica->span_x);
+    const int y = cell_along(own.y, replica->cell_size, replica->span_y);
+    const int z = cell_along(own.z, replica->cell_size, replica->span_z);
     int count = 0;
-    for (int k = max(z - 1, 0); k <= min(z + 1, replica->cells_z - 1); ++k)
-        for (int j = max(y - 1, 0); j <= min(y + 1, replica->cells_y - 1); ++j)
-            for (int i = max(x - 1, 0); i <= min(x + 1, replica->cells_x - 1); ++i) {
-                const int cell = replica->first_cell + (k * replica->cells_y + j) * replica->cells_x + i;
-                for (int other = cell_head[cell]; other >= 0; other = cell_next[other]) {
+    for (int k = max(z - 1, 0); k <= min(z + 1, replica->span_z - 1); ++k)
+        for (int j = max(y - 1, 0); j <= min(y + 1, replica->span_y - 1); ++j)
+            for (int i = max(x - 1, 0); i <= min(x + 1, replica->span_x - 1); ++i) {
+                for (int other = cell_head[cell_index(replica, i, j, k)]; other >= 0; other = cell_next[other]) {
                     if (other == grain) continue;
                     const real4 there = position[other];
                     const real3 apart = there.xyz - own.xyz;

@@ -46,9 +46,12 @@ typedef struct {
     int first_grain;          /* of the padded arrays */
     int grain_count;
     int first_cell;
-    int cells_x;
+    int cells_x; /* of the grid in memory */
     int cells_y;
     int cells_z;
+    int span_x; /* along the box; where more than cells_x, the grid repeats */
+    int span_y;
+    int span_z;
     int steps_before;         /* this stretch, modulo 4: turns the ring of surface displacements */
     int surface;              /* SURFACE_* below */
     int finite_contacts;      /* 1: the sphere's size and self terms are not zero */

@@ -8,6 +8,7 @@
 #include "ensemble/run_state.h"
 #include "io/csv.h"
 #include "io/results.h"
+#include "sim/batch_limits.h"
 #include "sim/simulation.h"
 
 namespace mcdem {
@@ -150,6 +151,7 @@ ResultFolder open_folder(const RunOptions& options) {
 }  // namespace
 
 RunSummary run_scene(Device& device, const Scene& scene, const RunOptions& options) {
+    if (!std::filesystem::exists(run_file(options.folder))) expect_runnable(device, scene);
     ResultFolder folder = open_folder(options);
     expect_no_challenge(folder.path());
     if (folder.is_finished()) {

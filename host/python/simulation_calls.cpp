@@ -13,6 +13,7 @@
 #include "io/results.h"
 #include "python/bindings.h"
 #include "python/watch.h"
+#include "sim/batch_limits.h"
 
 namespace mcdem {
 namespace {
@@ -54,6 +55,7 @@ SharedRun simulate_scene(const Scene& scene, const std::string& choice, py::obje
     try {
         const py::gil_scoped_release others_go_on;
         Device device(choice);
+        expect_runnable(device, scene);
         *run = {
             scene.name, scene.text, version_text, device.description(), std::string(name(scene.precision)),
             {}};

@@ -15,12 +15,12 @@ public:
     /// `edge`: the longest distance asked for; cells are larger where they would far outnumber the grains.
     CellList(const std::vector<Vec3>& position, const std::array<double, 3>& size, double edge) {
         const double volume = size[0] * size[1] * size[2];
-        const double fewest = std::cbrt(volume / (8.0 * static_cast<double>(position.size()) + 64.0));
-        edge = std::max(edge, fewest);
-        for (int axis = 0; axis < 3; ++axis) {
-            cells_[axis] = std::max(1, static_cast<int>(size[axis] / edge));
-            edge_[axis] = size[axis] / cells_[axis];
-        }
+        const double enough = 8.0 * static_cast<double>(position.size()) + 64.0;
+        edge = std::max(edge, std::cbrt(volume / enough));
+        for (int axis = 0; axis < 3; ++axis) cells_[axis] = static_cast<int>(std::clamp(size[axis] / edge, 1.0, 1e9));
+        // In a box flatter or thinner than `edge` the volume alone does not keep them few.
+        while (static_cast<double>(cells_[0]) * cells_[1] * cells_[2] > 16 * enough) *std::ranges::max_element(cells_) /= 2;
+        for (int axis = 0; axis < 3; ++axis) edge_[axis] = size[axis] / cells_[axis];
         sort(position);
     }
 

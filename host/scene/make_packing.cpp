@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 
 #include "core/errors.h"
 #include "scene/generate_packing.h"
@@ -56,6 +57,26 @@ std::vector<std::string> packing_problems(const Packing& packing, const Box& box
         problems.push_back(
             fmt::format("{}: .. and {} more grains out of the box", source, outside - most_problems));
     return problems;
+}
+
+PackingSize size_of(const Packing& packing) {
+    return {packing.size(), packing.size() == 0 ? 0 : *std::ranges::min_element(packing.diameter)};
+}
+
+std::vector<PackingSize> packing_sizes(const std::vector<Replica>& replicas) {
+    std::vector<PackingSize> sizes;
+    std::map<std::pair<std::string, std::optional<long>>, PackingSize> files;
+    for (const Replica& replica : replicas) {
+        if (const auto* drawn = std::get_if<GeneratedPacking>(&replica.packing.source)) {
+            sizes.push_back({static_cast<std::size_t>(drawn->count), drawn->diameter_min});
+            continue;
+        }
+        const auto& file = std::get<PackingFile>(replica.packing.source);
+        const auto [known, is_new] = files.try_emplace({file.path, file.step});
+        if (is_new) known->second = size_of(read_packing(file.path, file.step));
+        sizes.push_back(known->second);
+    }
+    return sizes;
 }
 
 Packing make_packing(const Replica& replica) {

@@ -9,6 +9,15 @@
 
 namespace mcdem {
 
+/// What is known of a packing before it is made.
+struct PackingSize {
+    std::size_t grains = 0;
+    double smallest = 0;  ///< diameter, or a limit below it [m]
+};
+PackingSize size_of(const Packing& packing);
+/// Of each replica. Reads packing files, each once.
+std::vector<PackingSize> packing_sizes(const std::vector<Replica>& replicas);
+
 /// Read or generated, then jittered. Throws InputError where the file is bad or a grain is out of the box.
 Packing make_packing(const Replica& replica);
 

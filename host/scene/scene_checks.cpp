@@ -23,8 +23,26 @@ struct Check {
     Found (*find)(const Settings&);
 };
 
+/// Positions must be known well enough for overlaps of a thousandth of a radius.
+Found coarse_positions(const Settings& settings, double smallest_diameter) {
+    if (settings.run.precision == Precision::double_precision) return {};
+    const auto& replica = settings.replica;
+    const float farthest =
+        static_cast<float>(std::max({replica.box.size_x, replica.box.size_y, replica.plate.start}));
+    const double apart = farthest - std::nextafter(farthest, 0.0f);
+    return unless(
+        apart <= 1e-4 * smallest_diameter / 2,
+        fmt::format(
+            "must be double, or the box smaller, got float: {:.3g} m from its corner, float tells "
+            "positions apart that differ by {:.1g} m, which is too coarse for a smallest radius of {:.3g} m",
+            farthest, apart, smallest_diameter / 2));
+}
+
 // clang-format off
 const std::vector<Check> checks{
+    {{"numerics.precision", "packing.diameter_min", "box.size_x", "box.size_y", "plate.start"}, Check::Packing::generated, [](const Settings& s) {
+        return coarse_positions(s, s.generated.diameter_min);
+    }},
     {{"plate.end", "plate.start"}, Check::Packing::any, [](const Settings& s) {
         const auto& plate = s.replica.plate;
         return unless(plate.end < plate.start, fmt::format("must be below plate.start = {}, got {}", plate.start, plate.end));
@@ -136,6 +154,8 @@ std::vector<std::string> packing_file_problems(const Settings& settings, Checked
     if (!(settings.replica.effects.diameter_error > -file.smallest))
         problems.push_back(fmt::format("{}: effects.diameter_error must be above minus the smallest diameter {}, got {}",
                                        settings.packing_file, file.smallest, settings.replica.effects.diameter_error));
+    if (const auto coarse = coarse_positions(settings, file.smallest))
+        problems.push_back(fmt::format("{}: numerics.precision {}", settings.packing_file, *coarse));
     return problems;
 }
 

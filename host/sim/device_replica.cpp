@@ -1,7 +1,9 @@
 #include "sim/device_replica.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <numeric>
 
@@ -98,6 +100,33 @@ void set_surface(DeviceReplica& d, const Replica& replica) {
     d.finite_contacts = surface.self[0] != 0;
 }
 
+/// A grid that covers `span` cells by repeating itself where they are too many. Three cells a side are enough
+/// for the 27 around a grain to be different ones.
+std::array<int, 3> repeated_grid(std::array<int, 3> span, std::size_t grains) {
+    const auto most = static_cast<double>(max_cells(grains));
+    while (double(span[0]) * span[1] * span[2] > most) {
+        int& longest = *std::ranges::max_element(span);
+        longest = std::max(3, longest / 2);
+    }
+    return span;
+}
+
+/// `reach`: the farthest that a neighbour's centre may be [m].
+template <class DeviceReplica>
+void set_cells(DeviceReplica& d, const std::array<double, 3>& size, double reach, std::size_t grains) {
+    // No neighbour is lost to rounding: the margin is 0.001 of a cell, the places of two grains along the box
+    // are known to a ten-thousandth of a cell each.
+    using Real = decltype(d.cell_size);
+    const double most_along = std::min(0.0002 / std::numeric_limits<Real>::epsilon(), 1e9);
+    const double cell = std::max(1.001 * reach, *std::ranges::max_element(size) / most_along);
+    std::array<int, 3> span;
+    for (int axis = 0; axis < 3; ++axis) span[axis] = std::max(1, static_cast<int>(size[axis] / cell));
+    d.cell_size = cell;
+    const auto grid = repeated_grid(span, grains);
+    d.span_x = span[0], d.span_y = span[1], d.span_z = span[2];
+    d.cells_x = grid[0], d.cells_y = grid[1], d.cells_z = grid[2];
+}
+
 template <class DeviceReplica>
 void set_space(DeviceReplica& d, const Replica& replica, const Packing& packing) {
     const double mean_radius =
@@ -111,11 +140,8 @@ void set_space(DeviceReplica& d, const Replica& replica, const Packing& packing)
     d.wall_position[1] = replica.box.size_x;
     d.wall_position[3] = replica.box.size_y;
     d.wall_position[5] = replica.plate.start;
-    const double cell = (largest + probe_gap + skin) * 1.001;  // no neighbour is lost to rounding
-    d.cell_size = cell;
-    d.cells_x = std::max(1, static_cast<int>(replica.box.size_x / cell));
-    d.cells_y = std::max(1, static_cast<int>(replica.box.size_y / cell));
-    d.cells_z = std::max(1, static_cast<int>(replica.plate.start / cell));
+    set_cells(d, {replica.box.size_x, replica.box.size_y, replica.plate.start}, largest + probe_gap + skin,
+              packing.size());
 }
 
 }  // namespace
@@ -134,7 +160,11 @@ double time_step(const Replica& replica, const Packing& packing) {
     double smallest = 0.5 * packing.diameter[0] * std::sqrt(1 + softer[0]);  // grain of mean stiffness as slow as this one
     for (std::size_t i = 1; i < packing.size(); ++i)
         smallest = std::min(smallest, 0.5 * packing.diameter[i] * std::sqrt(1 + softer[i]));
-    return replica.numerics.time_step * pi * smallest / rayleigh_speed(replica.grains);
+    return time_step(replica, smallest);
+}
+
+double time_step(const Replica& replica, double radius) {
+    return replica.numerics.time_step * pi * radius / rayleigh_speed(replica.grains);
 }
 
 template <class DeviceReplica>

@@ -1,5 +1,6 @@
 // A replica's parameters in the form the kernels read: every constant of the contact law worked out once.
 #pragma once
+#include <cstdint>
 #include <vector>
 
 #include "scene/scene.h"
@@ -12,6 +13,9 @@ double rayleigh_speed(const GrainMaterial& grains);
 
 /// Fraction of the shortest Rayleigh time of a grain, pi R / rayleigh_speed [s].
 double time_step(const Replica& replica, const Packing& packing);
+
+/// The same of a grain of the smallest `radius` and mean stiffness [s].
+double time_step(const Replica& replica, double radius);
 
 /// How much of the friction force is that of a Mindlin spring, the rest being saturated.
 double mindlin_share(const Replica& replica);
@@ -26,6 +30,9 @@ struct Place {
 /// DeviceReplica: f32::Replica or f64::Replica. The plate stands still at its start.
 template <class DeviceReplica>
 DeviceReplica device_replica(const Replica& replica, const Packing& packing, const Place& place);
+
+/// Cells of a replica's grid at most: a grid that would have more repeats itself.
+constexpr std::uint64_t max_cells(std::uint64_t grains) { return 8 * grains + 64; }
 
 /// Cells of one replica's grid.
 template <class DeviceReplica>

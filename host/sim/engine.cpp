@@ -1,12 +1,13 @@
 #include "sim/engine.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
-#include <fmt/format.h>
-
 #include "core/errors.h"
 #include "scene/true_grains.h"
+#include "sim/batch_limits.h"
 #include "sim/device_replica.h"
 
 namespace mcdem {
@@ -36,15 +37,10 @@ int total_cells(const auto& device_replicas) {
     return device_replicas.back().first_cell + cell_count(device_replicas.back());
 }
 
-FieldNeeds needs_of(const std::vector<Replica>& replicas) {
-    FieldNeeds needs;
-    for (const auto& replica : replicas) {
-        needs.bulges |= replica.contact.model != ContactModel::independent;
-        needs.springs |= mindlin_share(replica) > 0;
-        needs.deepest |= replica.effects.plasticity > 0;
-        needs.relaxed |= replica.effects.viscoelasticity > 0;
-    }
-    return needs;
+std::vector<PackingSize> sizes_of(const std::vector<Packing>& packings) {
+    std::vector<PackingSize> sizes;
+    for (const Packing& packing : packings) sizes.push_back(size_of(packing));
+    return sizes;
 }
 
 std::variant<std::vector<f32::Replica>, std::vector<f64::Replica>> any_device_replicas(
@@ -61,17 +57,17 @@ Engine::Engine(Device& device, const KernelBuild& build, std::vector<Replica> re
                std::vector<Packing> packings)
     : build_(build),
       replicas_(std::move(replicas)),
-      layout_(make_layout(packings, build.block)),
+      layout_((expect_within_limits(device.info(), build, replicas_, sizes_of(packings)),
+               make_layout(packings, build.block))),
       relist_(replicas_.size(), 1),
       plate_moved_(replicas_.size(), 0),
       plate_z_(replicas_.size(), 0),
       steps_made_(replicas_.size(), 0),
       device_replicas_(any_device_replicas(build, replicas_, packings, layout_)),
-      fields_(device, build, layout_,
-              std::visit([](const auto& all) { return sizeof(all[0]); }, device_replicas_),
-              build.precision == Precision::double_precision ? sizeof(f64::Report) : sizeof(f32::Report),
-              std::visit([](const auto& all) { return total_cells(all); }, device_replicas_),
-              needs_of(replicas_)),
+      fields_(device,
+              field_extents(build, replicas_, sizes_of(packings),
+                            std::visit([](const auto& all) { return total_cells(all); }, device_replicas_)),
+              layout_),
       kernels_(device, build) {
     for (int r = 0; r < layout_.replicas(); ++r) {
         time_step_.push_back(mcdem::time_step(replicas_[r], packings[r]));

@@ -52,7 +52,7 @@ public:
     /// How far the plate may move in one stretch of more than one step [m].
     double farthest_plate_move(int replica) const;
     /// Device memory in use [bytes].
-    std::size_t bytes() const { return fields_.bytes(); }
+    FieldMemory memory() const { return fields_.memory(); }
 
     /// One stretch of every replica; returns when done.
     std::vector<StretchResult> advance(const std::vector<Stretch>& stretches);

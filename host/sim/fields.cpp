@@ -1,57 +1,74 @@
 #include "sim/fields.h"
 
+#include <algorithm>
+
+#include "sim/device_types.h"
+
 namespace mcdem {
 
-Fields::Fields(Device& device, const KernelBuild& build, const Layout& layout, std::size_t replica_bytes,
-               std::size_t report_bytes, int cells, FieldNeeds needs) {
-    const std::size_t real = build.real_size();
-    const std::size_t grains = layout.grains();
-    const std::size_t slots = grains * build.slots;
-    const std::size_t replica_count = layout.replicas();
-    const std::size_t block_count = layout.replica_of_block.size();
-    const auto make = [&](auto& field, std::size_t count, std::size_t size) {
-        field = std::remove_reference_t<decltype(field)>(device, count, size);
-        bytes_ += field.bytes();
-    };
-    const auto make_pair = [&](auto& pair, std::size_t count, std::size_t size) {
+template <class Make>
+void Fields::visit_extents(const FieldExtents& extents, Make make) {
+    const bool is_double = extents.precision == Precision::double_precision;
+    const std::size_t real = is_double ? sizeof(double) : sizeof(float);
+    const std::uint64_t slots = extents.grains * extents.slots;
+    const auto make_pair = [&](auto& pair, std::uint64_t count, std::size_t size) {
         for (auto& copy : pair.copies) make(copy, count, size);
     };
-    make(replicas, replica_count, replica_bytes);
-    make(stop_at, replica_count, sizeof(int));
-    make(reports, replica_count, report_bytes);
-    make(chosen, replica_count, sizeof(int));
-    make(relisted, replica_count, sizeof(int));
-    make(blocks, block_count, sizeof(int));
-    make(relisted_blocks, block_count, sizeof(int));
-    make(replica_of_block, block_count, sizeof(int));
-    replica_of_block.write(layout.replica_of_block.data());
-    make_pair(position, grains, 4 * real);
-    make_pair(velocity, grains, 4 * real);
-    make_pair(angular_velocity, grains, 4 * real);
-    make(listed_position, grains, 4 * real);
-    make(status, grains, sizeof(int));
-    make(energy, grains, 4 * real);
+    make(replicas, extents.replicas, is_double ? sizeof(f64::Replica) : sizeof(f32::Replica));
+    make(stop_at, extents.replicas, sizeof(int));
+    make(reports, extents.replicas, is_double ? sizeof(f64::Report) : sizeof(f32::Report));
+    make(chosen, extents.replicas, sizeof(int));
+    make(relisted, extents.replicas, sizeof(int));
+    make(blocks, extents.blocks, sizeof(int));
+    make(relisted_blocks, extents.blocks, sizeof(int));
+    make(replica_of_block, extents.blocks, sizeof(int));
+    make_pair(position, extents.grains, 4 * real);
+    make_pair(velocity, extents.grains, 4 * real);
+    make_pair(angular_velocity, extents.grains, 4 * real);
+    make(listed_position, extents.grains, 4 * real);
+    make(status, extents.grains, sizeof(int));
+    make(energy, extents.grains, 4 * real);
     make(partner, slots, sizeof(int));
-    const std::size_t bulge_slots = needs.bulges ? slots : 1;
+    const std::uint64_t bulge_slots = extents.needs.bulges ? slots : 1;
     make(mirror, bulge_slots, sizeof(int));
-    slot_count = static_cast<int>(bulge_slots);
     make_pair(bulge, bulge_slots + 1, real);
     make(bulge_history, 4 * bulge_slots, real);
-    const std::size_t spring_slots = needs.springs ? slots : 1;
+    const std::uint64_t spring_slots = extents.needs.springs ? slots : 1;
     make(spring_x, spring_slots, real);
     make(spring_y, spring_slots, real);
     make(spring_z, spring_slots, real);
-    make(deepest, needs.deepest ? slots : 1, real);
-    make(relaxed, needs.relaxed ? slots : 1, real);
+    make(deepest, extents.needs.deepest ? slots : 1, real);
+    make(relaxed, extents.needs.relaxed ? slots : 1, real);
     make(force_x, slots, real);
     make(force_y, slots, real);
     make(force_z, slots, real);
     make(overlap, slots, real);
     make(arm, slots, real);
-    make(cell_head, cells, sizeof(int));
-    make(cell_next, grains, sizeof(int));
+    make(cell_head, extents.cells, sizeof(int));
+    make(cell_next, extents.grains, sizeof(int));
+}
+
+FieldMemory Fields::memory_of(const FieldExtents& extents) {
+    FieldMemory memory;
+    Fields().visit_extents(extents, [&](auto&, std::uint64_t count, std::size_t size) {
+        const std::uint64_t bytes = std::max<std::uint64_t>(count, 1) * size;
+        memory.all += bytes;
+        memory.largest_field = std::max(memory.largest_field, bytes);
+    });
+    return memory;
+}
+
+Fields::Fields(Device& device, const FieldExtents& extents, const Layout& layout) {
+    visit_extents(extents, [&](auto& field, std::uint64_t count, std::size_t size) {
+        field = std::remove_reference_t<decltype(field)>(device, count, size);
+        memory_.all += field.bytes();
+        memory_.largest_field = std::max<std::uint64_t>(memory_.largest_field, field.bytes());
+    });
+    const auto slots = static_cast<std::size_t>(extents.grains * extents.slots);
+    slot_count = extents.needs.bulges ? static_cast<int>(slots) : 1;
+    replica_of_block.write(layout.replica_of_block.data());
     partner.write(std::vector<int>(slots, -1).data());
-    mirror.write(std::vector<int>(bulge_slots, slot_count).data());
+    mirror.write(std::vector<int>(static_cast<std::size_t>(slot_count), slot_count).data());
 }
 
 Kernels::Kernels(Device& device, const KernelBuild& build) : Kernels(device, build_program(device, build)) {}

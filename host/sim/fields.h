@@ -1,6 +1,7 @@
 // The device memory of a batch, one field a quantity, and the kernels that work on it.
 #pragma once
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <string>
 
@@ -56,10 +57,25 @@ struct FieldNeeds {
     bool relaxed = false;  ///< some replica has viscoelasticity
 };
 
+/// How many there are of what fields have one value of, in a batch.
+struct FieldExtents {
+    std::uint64_t replicas = 0, blocks = 0, grains = 0, cells = 0;  ///< grains: padded
+    std::uint64_t slots = 0;                                        ///< of one grain
+    Precision precision = Precision::single_precision;
+    FieldNeeds needs;
+};
+
+/// Device memory of a batch [bytes].
+struct FieldMemory {
+    std::uint64_t all = 0, largest_field = 0;
+};
+
 /// Fields of a grain (padded, all replicas) unless another extent is named.
 struct Fields {
-    Fields(Device& device, const KernelBuild& build, const Layout& layout, std::size_t replica_bytes,
-           std::size_t report_bytes, int cells, FieldNeeds needs);
+    Fields(Device& device, const FieldExtents& extents, const Layout& layout);
+
+    /// What fields of these extents will take, without a device.
+    static FieldMemory memory_of(const FieldExtents& extents);
 
     Field<Constants> replicas;               ///< a replica
     Field<StopAt> stop_at;                  ///< a replica: steps it makes in this stretch
@@ -108,13 +124,18 @@ struct Fields {
         visit("deepest", deepest);
         visit("relaxed", relaxed);
     }
-    std::size_t bytes() const { return bytes_; }
+    FieldMemory memory() const { return memory_; }
     /// Some replica's surfaces move; else no mirror is ever looked up.
     bool has_bulges() const { return slot_count > 1; }
     int slot_count = 0;  ///< of all grains that have surface displacements; 1 if none
 
 private:
-    std::size_t bytes_ = 0;
+    Fields() = default;
+    /// Calls make(field, count, bytes of an element) for every field.
+    template <class Make>
+    void visit_extents(const FieldExtents& extents, Make make);
+
+    FieldMemory memory_;
 };
 
 /// The kernels, with the quantities that each works on, in the kernels' order.

@@ -1,12 +1,13 @@
 #include "sim/simulation.h"
 
-#include <cstring>
-
 #include <fmt/format.h>
+
+#include <cstring>
 
 #include "core/errors.h"
 #include "scene/true_grains.h"
 #include "sim/averages.h"
+#include "sim/batch_limits.h"
 
 namespace mcdem {
 namespace {
@@ -50,6 +51,7 @@ Simulation::Simulation(Device& device, const Scene& scene, std::vector<Packing> 
       engine_(device, kernel_build(device, scene.precision, scene.slots), scene.replicas,
               true_packings(scene.replicas, std::move(packings))) {
     for (int r = 0; r < engine_.replicas(); ++r) {
+        expect_countable_steps(scene_.replicas[r], engine_.time_step(r));
         runners_.emplace_back(scene_.replicas[r], engine_.time_step(r));
         plates_.emplace_back(scene_.replicas[r]);
     }

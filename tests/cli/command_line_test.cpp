@@ -76,6 +76,28 @@ TEST_F(CliTest, ValidateSaysWhatWouldRun) {
     EXPECT_THAT(validated.out, HasSubstr("and 28 more"));
 }
 
+TEST_F(CliTest, WhatTheDeviceCannotHoldIsRefusedBeforeAnythingIsMade) {
+    expect_done(mcdem({"validate", "small.toml"}));
+    EXPECT_THAT(mcdem({"validate", "small.toml"}).out, HasSubstr(" MB of memory on the device"));
+    const std::vector<std::vector<std::string>> too_much{
+        {"--set", "packing.count=1000000", "--set", "numerics.slots=64", "--set",
+         "packing.diameter_min=1.9e-4", "--set", "packing.diameter_mean=2e-4", "--set",
+         "packing.diameter_sd=1e-5", "--set", "packing.diameter_max=2.1e-4"},
+        {"--set", "plate.speed=1e-12"},
+        {"--set", "plate.start=50"}};
+    const char* reasons[] = {"memory", "steps", "numerics.precision must be double"};
+    for (std::size_t i = 0; i < too_much.size(); ++i) {
+        std::vector<std::string> validate{"validate", "small.toml"};
+        validate.insert(validate.end(), too_much[i].begin(), too_much[i].end());
+        const auto validated = mcdem(validate, {"POCL_MEMORY_LIMIT=4"});
+        expect_bad_input(validated, reasons[i]);
+        const auto run = mcdem(run_words("a", too_much[i]), {"POCL_MEMORY_LIMIT=4"});
+        EXPECT_EQ(run.exit_code, 2);
+        EXPECT_THAT(run.err, HasSubstr(validated.err));
+        EXPECT_FALSE(std::filesystem::exists(path("a")));
+    }
+}
+
 TEST_F(CliTest, DevicesAreListedAndUnknownOnesRefused) {
     const auto devices = mcdem({"devices"});
     expect_done(devices);

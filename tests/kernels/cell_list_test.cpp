@@ -32,8 +32,13 @@ struct CellScene {
     }
 
     void fill(const std::vector<int>& chosen) {
-        mcdem::Fields fields(device(), kernels, layout, sizeof(mcdem::f32::Replica),
-                             sizeof(mcdem::f32::Report), int(cell_head.size()), {});
+        mcdem::FieldExtents extents;
+        extents.replicas = replicas.size();
+        extents.blocks = layout.replica_of_block.size();
+        extents.grains = layout.grains();
+        extents.cells = cell_head.size();
+        extents.slots = kernels.slots;
+        mcdem::Fields fields(device(), extents, layout);
         mcdem::Kernels program(device(), kernels);
         fields.replicas.write(replicas.data());
         fields.position.copies[0].write(position.data());
@@ -78,10 +83,11 @@ void expect_cells(const CellScene& scene, int r) {
             ASSERT_LT(grain, scene.layout.grains());
             ASSERT_EQ(seen[grain]++, 0) << "grain " << grain << " is in a cell twice";
             const float* x = &scene.position[4 * grain];
-            const int expected = (cell_along(x[2], replica.cell_size, replica.cells_z) * replica.cells_y +
-                                  cell_along(x[1], replica.cell_size, replica.cells_y)) *
-                                     replica.cells_x +
-                                 cell_along(x[0], replica.cell_size, replica.cells_x);
+            const int expected =
+                (cell_along(x[2], replica.cell_size, replica.span_z) % replica.cells_z * replica.cells_y +
+                 cell_along(x[1], replica.cell_size, replica.span_y) % replica.cells_y) *
+                    replica.cells_x +
+                cell_along(x[0], replica.cell_size, replica.span_x) % replica.cells_x;
             EXPECT_EQ(cell, expected) << "grain " << grain;
         }
     for (int k = 0; k < replica.grain_count; ++k)

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "kernels/saved_rows.h"
+#include "sim/device_replica.h"
 
 namespace reference {
 namespace {
@@ -123,6 +124,35 @@ Start gas(const Replica& replica) {
 
 TEST(NeighbourList, HoldsEveryPairOfVeryDifferentGrains) {
     expect_lists(build(Precision::single_precision, 64), {gas(test_replica())});
+}
+
+/// Two lattices of 64 grains in a box far too large for a cell of its own everywhere; `apart`: of the two
+/// [m].
+Start two_lattices_in_a_large_box(double size, const Vec3& apart) {
+    Start start = jittered_lattice(test_replica(), 64, 8);
+    start.replica.box = {size, size};
+    start.replica.plate.start = size;
+    start.replica.plate.end = 0.9 * size;
+    for (int i = 0; i < 64; ++i) {
+        start.packing.position.push_back(start.packing.position[i] + apart);
+        start.packing.diameter.push_back(start.packing.diameter[i]);
+    }
+    return start;
+}
+
+// The grid in memory repeats along the box, so that far lattices lie in the same cells.
+TEST(NeighbourList, HoldsEveryPairInABoxMuchLargerThanItsGrains) {
+    const Start probe = two_lattices_in_a_large_box(6, Vec3::Zero());
+    const auto cells = mcdem::device_replica<mcdem::f32::Replica>(probe.replica, probe.packing, {});
+    ASSERT_GT(cells.span_x, 10 * cells.cells_x);
+    ASSERT_LE(mcdem::cell_count(cells), mcdem::max_cells(128));
+    const double period = cells.cells_x * cells.cell_size;
+    expect_lists(build(Precision::single_precision),
+                 {two_lattices_in_a_large_box(6, {3, 2, 1}), two_lattices_in_a_large_box(6, {period, 0, 0}),
+                  two_lattices_in_a_large_box(6, {period / 3, period / 3, period / 3})});
+    if (has_double())
+        expect_lists(build(Precision::double_precision), {two_lattices_in_a_large_box(900, {800, 0, 300}),
+                                                          two_lattices_in_a_large_box(900, {0.07, 0, 0})});
 }
 
 TEST(NeighbourList, HoldsThePlateWhereItLeans) {

@@ -4,7 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <set>
+#include <utility>
 
+#include "scene/cell_pairs.h"
 #include "scene/make_packing.h"
 #include "scene/overlap_relaxation.h"
 #include "scene/random.h"
@@ -37,6 +40,15 @@ double volume(const Packing& packing) {
 
 double height(const Packing& packing, const Box& box, double packing_fraction) {
     return volume(packing) / (packing_fraction * box.size_x * box.size_y);
+}
+
+TEST(CellPairs, AreFoundInABoxFlatterThanAnyCell) {
+    const std::vector<Vec3> position{{500, 500, 5e-13}, {500.0001, 500, 5e-13}, {0, 1000, 0}};
+    const CellList cells(position, {1000, 1000, 1e-12}, 1e-3);
+    std::set<std::pair<int, int>> pairs;
+    cells.for_each_pair([&](int i, int j) { pairs.insert(std::minmax(i, j)); });
+    EXPECT_TRUE(pairs.contains({0, 1}));
+    EXPECT_FALSE(pairs.contains({0, 2}));
 }
 
 TEST(TruncatedNormal, QuantilesAreThoseOfTheTables) {

@@ -16,6 +16,23 @@ std::vector<std::string> problems_in(const std::string& text,
     return problems_of([&] { parse_scene(text, "bad.toml", overrides); });
 }
 
+TEST(SceneErrors, ABoxTooLargeForSinglePrecisionIsRefused) {
+    const TestFolder folder;
+    const auto two =
+        folder.write("two.csv", "x_m,y_m,z_m,diameter_m\n0.5,0.5,0.0002,0.000415\n0.5,0.5,0.0006,0.000415\n");
+    const std::string box = "[box]\nsize_x = 1.0\nsize_y = 1.0\n[plate]\nstart = 1.0\nend = 0.999\n";
+    const std::string file = box + "[packing]\nfile = \"" + two.string() + "\"\n";
+    EXPECT_THAT(problems_in(file),
+                ElementsAre(AllOf(HasSubstr("numerics.precision must be double"), HasSubstr("0.000208 m"))));
+    EXPECT_NO_THROW(parse_scene(file, "good.toml", {"numerics.precision=double"}));
+    const std::string drawn = box +
+                              "[packing]\ncount = 9000000\ndiameter_min = 0.0004\ndiameter_mean = 0.002\n"
+                              "diameter_sd = 0.0001\ndiameter_max = 0.003\n";
+    EXPECT_THAT(problems_in(drawn), ElementsAre(HasSubstr("numerics.precision must be double")));
+    EXPECT_NO_THROW(parse_scene(drawn, "good.toml", {"numerics.precision=double"}));
+    EXPECT_NO_THROW(parse_scene(drawn, "good.toml", {"packing.diameter_min=0.0013"}));
+}
+
 TEST(SceneErrors, OfEveryKindAreReportedTogether) {
     const auto problems = problems_in(R"(speed = 3
 [grains]
@@ -138,7 +155,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(SceneErrors, TooManyGrainsInAll) {
     EXPECT_THAT(problems_in("[packing]\ncount = 5000000\npacking_fraction = 0.6\n[box]\nsize_x = 30\nsize_y "
-                            "= 30\n[batch]\nreplicas = 3\n"),
+                            "= 30\n[batch]\nreplicas = 3\n[numerics]\nprecision = \"double\"\n"),
                 ElementsAre("bad.toml:8: batch.replicas must leave at most 10000000 grains in all, got 3 "
                             "replicas of up to 5000000"));
 }

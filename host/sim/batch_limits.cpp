@@ -1,0 +1,121 @@
+#include "sim/batch_limits.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "core/errors.h"
+#include "sim/device_replica.h"
+
+namespace mcdem {
+namespace {
+
+constexpr std::uint64_t max_int = std::numeric_limits<int>::max();
+constexpr double max_steps = 1e11;       // times 1e7 grains, a long holds them
+constexpr double min_time_step = 1e-30;  // [s] single precision holds it
+
+/// What makes a batch of that many replicas fit, where `part` of it does.
+std::string remedy(std::size_t replicas, double part) {
+    const auto fitting = static_cast<std::size_t>(part * static_cast<double>(replicas));
+    if (replicas > 1 && fitting > 0)
+        return fmt::format(
+            "take at most {} replicas in one go (`mcdem run .. --device all --part-replicas {}`)", fitting,
+            fitting);
+    return "take fewer grains, fewer numerics.slots, numerics.precision = \"float\", or a device with more "
+           "memory";
+}
+
+void expect_room(const DeviceInfo& device, const FieldMemory& memory, std::size_t replicas) {
+    const auto expect = [&](const char* what, std::uint64_t needed, std::uint64_t there) {
+        if (needed <= there) return;
+        const double part = static_cast<double>(there) / static_cast<double>(needed);
+        throw InputError(
+            fmt::format("batch.replicas: {} on {} must be at most {}, got {} for {} replica{}: {}", what,
+                        device.name, memory_text(there), memory_text(needed), replicas,
+                        replicas == 1 ? "" : "s", remedy(replicas, part)));
+    };
+    expect("memory", memory.all, device.memory);
+    expect("the largest piece of memory", memory.largest_field, device.largest_allocation);
+}
+
+}  // namespace
+
+std::string memory_text(std::uint64_t bytes) {
+    const auto size = static_cast<double>(bytes);
+    return size < 1e9 ? fmt::format("{:.3g} MB", size / 1e6) : fmt::format("{:.3g} GB", size / 1e9);
+}
+
+FieldExtents field_extents(const KernelBuild& build, const std::vector<Replica>& replicas,
+                           const std::vector<PackingSize>& sizes, std::uint64_t cells) {
+    FieldExtents extents;
+    extents.replicas = replicas.size();
+    for (const PackingSize& size : sizes) extents.blocks += (size.grains + build.block - 1) / build.block;
+    extents.grains = extents.blocks * build.block;
+    extents.cells = cells;
+    extents.slots = build.slots;
+    extents.precision = build.precision;
+    for (const Replica& replica : replicas) {
+        extents.needs.bulges |= replica.contact.model != ContactModel::independent;
+        extents.needs.springs |= mindlin_share(replica) > 0;
+        extents.needs.deepest |= replica.effects.plasticity > 0;
+        extents.needs.relaxed |= replica.effects.viscoelasticity > 0;
+    }
+    return extents;
+}
+
+FieldMemory memory_needed(Precision precision, int slots, const std::vector<Replica>& replicas,
+                          const std::vector<PackingSize>& sizes) {
+    const KernelBuild build{.precision = precision, .slots = slots};
+    std::uint64_t cells = 0;
+    for (const PackingSize& size : sizes) cells += max_cells(size.grains);
+    return Fields::memory_of(field_extents(build, replicas, sizes, cells));
+}
+
+void expect_within_limits(const DeviceInfo& device, const KernelBuild& build,
+                          const std::vector<Replica>& replicas, const std::vector<PackingSize>& sizes) {
+    if (build.work_items() > device.largest_work_group)
+        throw InputError(fmt::format("numerics.slots must be at most {} on {}, got {}",
+                                     device.largest_work_group / build.block, device.name, build.slots));
+    std::uint64_t cells = 0;
+    for (const PackingSize& size : sizes) cells += max_cells(size.grains);
+    const FieldExtents extents = field_extents(build, replicas, sizes, cells);
+    if (extents.grains * extents.slots >= max_int || cells > max_int)
+        throw InputError(fmt::format(
+            "packing.count and batch.replicas must leave at most {} slots and {} cells in one go, got {} and "
+            "{}: {}",
+            max_int - 1, max_int, extents.grains * extents.slots, cells, remedy(replicas.size(), 0.5)));
+    expect_room(device, Fields::memory_of(extents), replicas.size());
+}
+
+void expect_countable_steps(const Replica& replica, double time_step) {
+    const Protocol& protocol = replica.protocol;
+    const double scans = 2.0 * protocol.cycles * protocol.scans_per_stroke;
+    const double strokes =
+        2.0 * protocol.cycles * std::abs(replica.plate.start - replica.plate.end) / replica.plate.speed;
+    const double seconds =
+        protocol.relax_time + strokes + (protocol.stop_at_scans ? scans * protocol.settle_time : 0);
+    if (!(time_step >= min_time_step))
+        throw InputError(
+            fmt::format("numerics.time_step must leave steps of at least {} s, got {} s: take larger, "
+                        "heavier or softer grains",
+                        min_time_step, time_step));
+    const double steps = seconds / time_step + 2 * scans;
+    if (!(steps <= max_steps))
+        throw InputError(
+            fmt::format("plate.speed and the times of [protocol] must leave at most {} steps, got {:.3g} for "
+                        "{:.3g} s in steps of {:.3g} s: a faster plate, a shorter stroke, or shorter times",
+                        max_steps, steps, seconds, time_step));
+}
+
+void expect_runnable(const Device& device, const Scene& scene) {
+    const auto sizes = packing_sizes(scene.replicas);
+    expect_within_limits(device.info(), kernel_build(device, scene.precision, scene.slots), scene.replicas,
+                         sizes);
+    for (std::size_t r = 0; r < sizes.size(); ++r)
+        expect_countable_steps(scene.replicas[r], time_step(scene.replicas[r], sizes[r].smallest / 2));
+}
+
+}  // namespace mcdem
