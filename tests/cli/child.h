@@ -23,6 +23,7 @@ public:
     Child(const Child&) = delete;
     Child& operator=(const Child&) = delete;
 
+    pid_t process() const { return pid_; }
     bool is_running();
     void send(int signal);
     Finished wait();

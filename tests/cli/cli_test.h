@@ -2,6 +2,10 @@
 #pragma once
 #include <gmock/gmock.h>
 
+#include <chrono>
+#include <stdexcept>
+#include <thread>
+
 #include "cli/child.h"
 #include "ensemble/small_scene.h"
 
@@ -21,6 +25,25 @@ protected:
         std::vector<std::string> words{"run", "small.toml", "--out", out, "--no-figures"};
         words.insert(words.end(), more.begin(), more.end());
         return words;
+    }
+    /// The environment in which a run waits after so many launches of a kernel, until it is let go on; it
+    /// launches one a step.
+    std::vector<std::string> held_after(long launches) const {
+        std::filesystem::create_directories(path("held"));
+        return {"OPENCL_LAYERS=" MCDEM_DEVICE_LAYER, "MCDEM_TEST_KERNELS=" + std::to_string(launches),
+                "MCDEM_TEST_HOLD=" + path("held").string()};
+    }
+    /// Waits until the child is held; fails where it has ended.
+    void wait_until_held(Child& child) const {
+        while (!std::filesystem::exists(held_file(child))) {
+            if (!child.is_running())
+                throw std::runtime_error("ended before it was held: " + child.wait().err);
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+    }
+    void let_go_on(const Child& child) const { std::filesystem::remove(held_file(child)); }
+    std::filesystem::path held_file(const Child& child) const {
+        return path("held") / std::to_string(child.process());
     }
     void expect_done(const Finished& finished) const { EXPECT_EQ(finished.exit_code, 0) << finished.err; }
 

@@ -3,8 +3,8 @@
 
 #include <chrono>
 #include <csignal>
+#include <memory>
 #include <random>
-#include <thread>
 
 #include "cli/cli_test.h"
 
@@ -18,6 +18,9 @@ using namespace std::chrono_literals;
 /// Checkpoints as often as the disk allows.
 const std::vector<std::string> often{"--set", "output.checkpoint_minutes=1e-6"};
 
+/// Of some 4,500 that the run of the small scene makes.
+constexpr int some_launches = 1500;
+
 class InterruptionTest : public CliTest {
 protected:
     static std::vector<std::string> words(const std::string& out, bool resume) {
@@ -25,16 +28,11 @@ protected:
         if (resume) all.push_back("--resume");
         return all;
     }
-    /// What tells one checkpoint from the next.
-    std::string newest_checkpoint(const std::string& out) const {
-        std::error_code error;
-        const auto time = fs::last_write_time(path(out) / "checkpoint.h5", error);
-        return error ? "" : std::to_string(time.time_since_epoch().count());
-    }
-    /// Waits until `child` has written a checkpoint or has ended.
-    void wait_for_checkpoint(Child& child, const std::string& out) const {
-        const auto before = newest_checkpoint(out);
-        while (child.is_running() && newest_checkpoint(out) == before) std::this_thread::sleep_for(1ms);
+    /// The run, held when it has written checkpoints and has others to write.
+    std::unique_ptr<Child> held(const std::string& out) const {
+        auto child = std::make_unique<Child>(folder_.path, words(out, false), held_after(some_launches));
+        wait_until_held(*child);
+        return child;
     }
     std::string result(const std::string& out) const { return bytes_of_file(path(out) / "run.h5"); }
 
@@ -44,25 +42,31 @@ protected:
         EXPECT_TRUE(result(out) == result("whole"));
     }
 
-    /// Starts a run and stops it by `signal` after its first checkpoint.
+    /// Starts a run and stops it by `signal` in the middle.
     Finished interrupt(const std::string& out, int signal) const {
-        Child child(folder_.path, words(out, false));
-        wait_for_checkpoint(child, out);
-        child.send(signal);
-        return child.wait();
+        const auto child = held(out);
+        child->send(signal);
+        let_go_on(*child);
+        return child->wait();
     }
 };
 
 TEST_F(InterruptionTest, KilledAtAnyMomentAndResumedGivesTheSameBits) {
     expect_done(mcdem(words("whole", false)));
     std::mt19937 random(1);
-    std::uniform_int_distribution<int> checkpoints(1, 25), microseconds(0, 5000);
-    const int most_kills = 100;
+    std::uniform_int_distribution<int> launches(1, some_launches), microseconds(0, 5000);
+    const int most_kills = 100,
+              kills_while_held = 3;  // within half of the launches, so that there are as many at any speed
     int kills = 0;
     for (bool resume = false;; resume = true) {
-        Child child(folder_.path, words("killed", resume));
-        for (int n = checkpoints(random); n > 0; --n) wait_for_checkpoint(child, "killed");
-        std::this_thread::sleep_for(std::chrono::microseconds(microseconds(random)));
+        const bool stays_held = kills < kills_while_held;
+        Child child(folder_.path, words("killed", resume),
+                    held_after(launches(random) / (stays_held ? 2 : 1)));
+        while (child.is_running() && !fs::exists(held_file(child))) std::this_thread::sleep_for(100us);
+        if (!stays_held) {
+            let_go_on(child);
+            std::this_thread::sleep_for(std::chrono::microseconds(microseconds(random)));
+        }
         if (kills < most_kills) child.send(SIGKILL);
         const auto finished = child.wait();
         if (finished.signal != SIGKILL) {
@@ -80,8 +84,8 @@ TEST_F(InterruptionTest, KilledAtAnyMomentAndResumedGivesTheSameBits) {
 
 TEST_F(InterruptionTest, KilledBeforeItsFirstCheckpointStartsAnew) {
     expect_done(mcdem(words("whole", false)));
-    Child child(folder_.path, words("killed", false));
-    while (child.is_running() && !fs::exists(path("killed"))) std::this_thread::sleep_for(100us);
+    Child child(folder_.path, words("killed", false), held_after(0));
+    wait_until_held(child);
     child.send(SIGKILL);
     ASSERT_EQ(child.wait().signal, SIGKILL);
     expect_goes_on("killed");
@@ -143,9 +147,7 @@ TEST_F(InterruptionTest, FoldersThatDoNotSuitAreRefused) {
 }
 
 TEST_F(InterruptionTest, TwoProgramsDoNotWriteToOneFolder) {
-    Child child(folder_.path, words("a", false));
-    wait_for_checkpoint(child, "a");
-    ASSERT_TRUE(child.is_running());
+    const auto child = held("a");
     const fs::path elsewhere = path("elsewhere");
     fs::create_directory(elsewhere);
     auto second = words(path("a").string(), true);
@@ -153,7 +155,8 @@ TEST_F(InterruptionTest, TwoProgramsDoNotWriteToOneFolder) {
     const auto refused = run_program(elsewhere, second);
     EXPECT_EQ(refused.exit_code, 2);
     EXPECT_THAT(refused.err, HasSubstr("another program is writing"));
-    expect_done(child.wait());
+    let_go_on(*child);
+    expect_done(child->wait());
 }
 
 /// A disk of 32 MB, for those who may mount one.
@@ -204,10 +207,10 @@ TEST_F(InterruptionTest, DiskThatFillsUpOnTheWayCostsNoScan) {
     const SmallDisk disk(path("disk"));
     if (!disk.is_there()) GTEST_SKIP() << "needs the right to mount a small disk";
     expect_done(mcdem(words("whole", false)));
-    Child child(folder_.path, words("disk/a", false));
-    wait_for_checkpoint(child, "disk/a");
+    const auto child = held("disk/a");
     disk.fill();
-    const auto full = child.wait();
+    let_go_on(*child);
+    const auto full = child->wait();
     EXPECT_EQ(full.exit_code, 1) << full.err;
     EXPECT_THAT(full.err, HasSubstr("No space left"));
     const auto table = mcdem({"table", "disk/a"});
@@ -227,7 +230,8 @@ TEST_F(InterruptionTest, FolderThatCannotBeWrittenToIsRefusedAtOnce) {
         const auto refused = mcdem(arguments);
         EXPECT_EQ(refused.exit_code, 1) << refused.err;
         EXPECT_THAT(refused.err, HasSubstr("mcdem: " + arguments[3]));
-        EXPECT_THAT(refused.err, HasSubstr(problem));  // what a check says before the work, and no write after it
+        EXPECT_THAT(refused.err,
+                    HasSubstr(problem));  // what a check says before the work, and no write after it
     };
     expect_refused(words("disk/empty", false), "cannot be written to: Read-only file system");
     expect_refused(words("disk/begun", true), "cannot be written to: Read-only file system");
@@ -238,10 +242,10 @@ TEST_F(InterruptionTest, FolderThatTurnsReadOnlyEndsTheRunWhichGoesOnLater) {
     const SmallDisk disk(path("disk"));
     if (!disk.is_there()) GTEST_SKIP() << "needs the right to mount a small disk";
     expect_done(mcdem(words("whole", false)));
-    Child child(folder_.path, words("disk/a", false));
-    wait_for_checkpoint(child, "disk/a");
-    while (child.is_running() && !disk.make_read_only()) std::this_thread::sleep_for(100us);  // busy while a file is open
-    const auto stopped = child.wait();
+    const auto child = held("disk/a");
+    ASSERT_TRUE(disk.make_read_only());
+    let_go_on(*child);
+    const auto stopped = child->wait();
     EXPECT_EQ(stopped.exit_code, 1) << stopped.err;
     EXPECT_THAT(stopped.err, HasSubstr("disk/a"));
     expect_done(mcdem({"table", "disk/a"}));

@@ -1,9 +1,7 @@
 // Work spread over devices, ranks and jobs: what is said of it, and that no name reaches a shell as a
 // command.
-#include <csignal>
 #include <cstdlib>
 #include <memory>
-#include <thread>
 
 #include "cli/cli_test.h"
 #include "cli/shell_word.h"
@@ -39,12 +37,10 @@ TEST(Subprocess, ThatIsNotThereIsToldFromOneThatFails) {
 
 class SharingTest : public CliTest {
 protected:
-    /// The run of a worker, stopped in the middle: it holds its folder until it is let go on.
-    std::unique_ptr<Child> stopped_worker(const std::string& out) const {
-        auto worker = std::make_unique<Child>(folder_.path, run_words(out, {"--worker"}));
-        while (worker->is_running() && !fs::exists(path(out) / "parts/agreement.json"))
-            std::this_thread::sleep_for(std::chrono::milliseconds(1));
-        worker->send(SIGSTOP);
+    /// The run of a worker, held in the middle: it has its folder until it is let go on.
+    std::unique_ptr<Child> held_worker(const std::string& out) const {
+        auto worker = std::make_unique<Child>(folder_.path, run_words(out, {"--worker"}), held_after(100));
+        wait_until_held(*worker);
         return worker;
     }
 };
@@ -91,10 +87,10 @@ TEST_F(SharingTest, AnotherProgramsRunIsRefused) {
 
 TEST_F(SharingTest, WhereAWorkerIsAtWorkNoneWritesAlone) {
     expect_done(mcdem(run_words("alone")));
-    const auto worker = stopped_worker("shared");
+    const auto worker = held_worker("shared");
     expect_bad_input(mcdem(run_words("shared", {"--set", "grains.friction=0.3"})),
                      "other programs share work there: wait for them, join them with --worker");
-    worker->send(SIGCONT);
+    let_go_on(*worker);
     expect_done(worker->wait());
     EXPECT_TRUE(bytes_of_file(path("shared/run.h5")) == bytes_of_file(path("alone/run.h5")));
 }

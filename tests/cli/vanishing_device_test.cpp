@@ -31,8 +31,8 @@ protected:
         return all;
     }
     Finished run_until_it_vanishes(const std::string& out, long kernels, bool resume) const {
-        return mcdem(words(out, resume), {"OPENCL_LAYERS=" MCDEM_VANISHING_DEVICE,
-                                          "MCDEM_TEST_KERNELS=" + std::to_string(kernels)});
+        return mcdem(words(out, resume),
+                     {"OPENCL_LAYERS=" MCDEM_DEVICE_LAYER, "MCDEM_TEST_KERNELS=" + std::to_string(kernels)});
     }
 };
 
@@ -67,7 +67,7 @@ TEST_F(VanishingDeviceTest, CompletedScansCanBeRead) {
 TEST_F(VanishingDeviceTest, ScansSinceTheLastCheckpointCanBeReadToo) {
     const auto run = run_words("a", {"--set", "output.checkpoint_minutes=60"});
     expect_done(mcdem(run_words("whole", {"--set", "output.checkpoint_minutes=60"})));
-    const auto finished = mcdem(run, {"OPENCL_LAYERS=" MCDEM_VANISHING_DEVICE, "MCDEM_TEST_KERNELS=3000"});
+    const auto finished = mcdem(run, {"OPENCL_LAYERS=" MCDEM_DEVICE_LAYER, "MCDEM_TEST_KERNELS=3000"});
     ASSERT_EQ(finished.exit_code, 1) << finished.err;
     const auto table = mcdem({"table", "a"});
     expect_done(table);

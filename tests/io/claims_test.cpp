@@ -117,7 +117,9 @@ TEST(claims, of_another_machine_are_kept_as_long_as_they_show_life) {
         EXPECT_FALSE(claims.take_one_of(one)) << beat;
         last_change = std::chrono::steady_clock::now();
         std::this_thread::sleep_for(300ms);
-        EXPECT_FALSE(claims.take_one_of(one)) << beat << ", a little later";
+        const bool is_taken = claims.take_one_of(one) != nullptr;
+        ASSERT_TRUE(!is_taken || std::chrono::steady_clock::now() - last_change > lease) << beat << ", a little later";
+        if (is_taken) GTEST_SKIP() << "this machine stood still for longer than the lease";
     }
     EXPECT_EQ(claims.under_way().at("a"), 0.25);
     while (!claims.take_one_of(one)) std::this_thread::sleep_for(50ms);
@@ -138,9 +140,7 @@ TEST(claims, show_life_and_how_far_they_are) {
     Claims claims(place.path(), {}, Seconds(0.2));
     const auto claim = claims.take_one_of(one);
     claim->show(0.75);
-    for (int tries = 0; tries < 100 && claims.under_way().at("a") != 0.75; ++tries)
-        std::this_thread::sleep_for(10ms);
-    EXPECT_EQ(claims.under_way().at("a"), 0.75);
+    while (claims.under_way().at("a") != 0.75) std::this_thread::sleep_for(10ms);
 }
 
 TEST(process_identity, tells_the_living_from_the_dead) {

@@ -1,12 +1,12 @@
 """Several devices of one machine: `--device all` uses them all, and the result is that of one.
 
-devices_test.py MCDEM VANISHING_DEVICE; the layer of tests/layers makes devices vanish; PoCL stands for a machine with two devices (POCL_DEVICES).
+devices_test.py MCDEM DEVICE_LAYER; the layer of tests/layers makes devices vanish and holds workers; PoCL stands for a machine with two devices (POCL_DEVICES).
 """
 import pathlib
 import sys
 
 import shared_runs
-from shared_runs import PARTS, SWEEP, TWO_DEVICES, command_of, finish, kill_a_worker, skip
+from shared_runs import PARTS, SWEEP, TWO_DEVICES, Hold, command_of, finish, skip
 
 
 def all_devices(place, out, more=(), environment=None):
@@ -15,18 +15,21 @@ def all_devices(place, out, more=(), environment=None):
 
 
 def vanishing():
-    """An environment in which a device stops answering in the middle of a part: it takes more than twice the launches."""
-    return {"OPENCL_LAYERS": str(pathlib.Path(sys.argv[2]).resolve()), "MCDEM_TEST_KERNELS": "6000"}
+    """An environment in which a device stops answering in the middle of a part."""
+    return {"OPENCL_LAYERS": str(pathlib.Path(sys.argv[2]).resolve()), "MCDEM_TEST_KERNELS": str(shared_runs.LAUNCHES // 2)}
 
 
 def uses_all_of_them(place):
     """Two devices, a worker on each, the bytes of one process."""
     place.run_alone()
-    process = all_devices(place, "both")
-    devices = shared_runs.devices_of_parts(place.path / "both/parts", process)
+    hold = Hold(place)
+    process = all_devices(place, "both", environment=hold.environment)
+    hold.wait_for(2)
+    devices = shared_runs.devices_at_work(place.path / "both/parts")
+    hold.end()
     said = finish(process)
     assert "2 devices, a worker on each" in said and "8 of 8 replicas done" in said, said
-    assert {number for number, _ in devices} == {0, 1}, f"parts were computed on {devices}"
+    assert devices == {0, 1}, f"parts were computed on {devices}"
     place.expect_like_alone("both")
     assert "8 of 8 replicas done" in finish(all_devices(place, "both")), "a run that is done is told of again"
 
@@ -43,8 +46,9 @@ def refuses_another_run(place):
 def outlives_a_killed_worker(place):
     """One of two workers is killed: the other does its part."""
     place.run_alone()
-    process = all_devices(place, "both")
-    kill_a_worker(place.path / "both/parts")
+    hold = Hold(place, only_one=True)
+    process = all_devices(place, "both", environment=hold.environment)
+    hold.kill_one()
     said = finish(process)
     assert "was ended by signal 9" in said, said
     place.expect_like_alone("both")
@@ -61,7 +65,7 @@ def outlives_a_vanished_device(place):
 
 def goes_on_when_all_devices_vanished(place):
     """Again and again both stop answering: the same command goes on with what was done."""
-    (place.path / "sweep.toml").write_text(SWEEP.replace("checkpoint_minutes = 0.002", "checkpoint_minutes = 1e-6"))
+    (place.path / "sweep.toml").write_text(SWEEP.replace("checkpoint_minutes = 1e-4", "checkpoint_minutes = 1e-6"))
     place.run_alone()
     for vanished in range(30):
         process = all_devices(place, "both", environment=vanishing())
@@ -76,9 +80,12 @@ def goes_on_when_all_devices_vanished(place):
 def goes_on_as_one(place):
     """All are interrupted; one process alone goes on."""
     place.run_alone()
-    process = all_devices(place, "both")
-    shared_runs.wait_until(lambda: shared_runs.holders_at_work(place.path / "both/parts"), "work")
+    hold = Hold(place, only_one=True)
+    process = all_devices(place, "both", environment=hold.environment)
+    held = hold.wait_for(1)[0]
     process.terminate()
+    shared_runs.wait_until(lambda: shared_runs.is_told_to_end(held), "the signal to be passed on")
+    hold.end()
     said = finish(process, exit_codes=(130,))
     assert "interrupted" in said, said
     assert not (place.path / "both/run.h5").exists()

@@ -1,16 +1,13 @@
 """Runs and challenges over MPI: `mpirun -n 3`, a rank killed in the middle, the bytes of one process.
 
-mpi_test.py MCDEM; skipped (77) where MPI is missing.
+mpi_test.py MCDEM DEVICE_LAYER; skipped (77) where MPI is missing.
 """
-import os
-import signal
 import sys
 import threading
 
 import shared_challenge
 import shared_runs
-from shared_runs import (PARTS, TWO_DEVICES, PartsSeen, command_of, files_in, finish, kill_a_worker, program, skip,
-                         stop_a_worker, wait_until)
+from shared_runs import ALONE, LAUNCHES, PARTS, TWO_DEVICES, Hold, PartsSeen, command_of, finish, program, skip
 
 SURVIVE = ["--enable-recovery"]
 
@@ -27,8 +24,9 @@ def run_words(out, parts=PARTS):
 def survivors_do_the_work_of_a_killed_rank(place):
     """With --enable-recovery mpirun lets the others go on."""
     place.run_alone()
-    process = mpirun(place, run_words("ranks"), SURVIVE)
-    kill_a_worker(place.path / "ranks/parts")
+    hold = Hold(place, only_one=True)
+    process = mpirun(place, run_words("ranks"), SURVIVE, hold.environment)
+    hold.kill_one()
     said = finish(process)
     assert said.count("8 of 8 replicas done") <= 1, f"more than one rank tells of it:\n{said}"
     place.expect_like_alone("ranks")
@@ -37,17 +35,16 @@ def survivors_do_the_work_of_a_killed_rank(place):
 def the_same_command_goes_on(place):
     """Without it mpirun ends all ranks; what was done is not done again."""
     place.run_alone()
-    process = mpirun(place, run_words("ranks"))
+    hold = Hold(place, launches=LAUNCHES * 3 // 2)  # every rank in its second part
+    process = mpirun(place, run_words("ranks", ALONE), environment=hold.environment)
+    hold.wait_for(3)
     parts = PartsSeen(place.path / "ranks/parts")
-    victim = stop_a_worker(parts.folder)
-    stop_a_worker(parts.folder, besides=[victim])  # The third may do the victim's part before it is ended too.
-    wait_until(lambda: files_in(parts.folder, "*.h5"), "a part")
     parts.look()
-    os.kill(victim, signal.SIGKILL)
+    hold.kill_one()
     finish(process, exit_codes=range(1, 256))
     parts.look()
-    assert not (place.path / "ranks/run.h5").exists(), "all was done before a rank was killed"
-    process = mpirun(place, run_words("ranks"))
+    hold.end()
+    process = mpirun(place, run_words("ranks", ALONE))
     watcher = threading.Thread(target=parts.watch, args=[process])
     watcher.start()
     said = finish(process)
@@ -63,18 +60,22 @@ def ranks_take_the_devices_in_turn(place):
         print("left out: this OpenCL has no two devices alike")
         return
     place.run_alone()
-    process = mpirun(place, run_words("ranks", ["--part-replicas", "1"]), environment=TWO_DEVICES)
-    devices = shared_runs.devices_of_parts(place.path / "ranks/parts", process)
+    hold = Hold(place)
+    process = mpirun(place, run_words("ranks", ALONE), environment={**TWO_DEVICES, **hold.environment})
+    hold.wait_for(3)
+    devices = shared_runs.devices_at_work(place.path / "ranks/parts")
+    hold.end()
     finish(process)
-    assert {number for number, _ in devices} == {0, 1}, f"parts were computed on {devices}"
+    assert devices == {0, 1}, f"parts were computed on {devices}"
     place.expect_like_alone("ranks")
 
 
 def a_challenge_is_shared(place):
     """A rank is killed while the cases are diagnosed; the answers are those of one process."""
     shared_challenge.run_alone(place)
-    process = mpirun(place, shared_challenge.command_of("ranks"), SURVIVE)
-    shared_challenge.kill_a_worker(place, "ranks")
+    hold = shared_challenge.hold(place, "ranks")
+    process = mpirun(place, shared_challenge.command_of("ranks"), SURVIVE, hold.environment)
+    hold.kill_one()
     finish(process)
     shared_challenge.expect_like_alone(place, "ranks")
 

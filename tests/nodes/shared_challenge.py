@@ -1,11 +1,9 @@
 """What the tests of a challenge that many work at share: a small one, its answers by one process, and a worker killed."""
 import json
-import os
 import pathlib
 import shutil
-import signal
 
-from shared_runs import claim_of, files_in, wait_until
+from shared_runs import Hold, wait_until
 
 SCENE = pathlib.Path(__file__).resolve().parents[1] / "ensemble" / "tiny_challenge.toml"
 
@@ -25,13 +23,9 @@ def run_alone(place):
     place.run([place.mcdem, *command_of("alone")])
 
 
-def kill_a_worker(place, out):
-    """kill -9 of one that diagnoses a case."""
-    def victim():
-        claims = map(claim_of, files_in(place.path / out / "claims", "case*.claim-*"))
-        return next((claim["process"] for claim in claims if claim.get("state") == "held"), None)
-
-    os.kill(wait_until(victim, "a case that is diagnosed"), signal.SIGKILL)
+def hold(place, out):
+    """Holds one that diagnoses a case."""
+    return Hold(place, launches=0, only_one=True, after=place.path / out / "claims/case_0001.claim-000001")
 
 
 def answers(folder):

@@ -3,6 +3,7 @@ import json
 import os
 import pathlib
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -12,7 +13,7 @@ import time
 SKIPPED = 77
 TIME_LIMIT = 300  # seconds for one command
 
-# 8 replicas in parts of 2; checkpoints so often that a killed worker leaves one.
+# 8 replicas in parts of 2; checkpoints so often that a worker that is killed in the middle leaves one.
 SWEEP = """name = "sweep"
 [box]
 size_x = 0.08
@@ -27,7 +28,7 @@ speed = 0.05
 [protocol]
 scans_per_stroke = 6
 [output]
-checkpoint_minutes = 0.002
+checkpoint_minutes = 1e-4
 [batch]
 replicas = 2
 [batch.vary]
@@ -35,6 +36,8 @@ replicas = 2
 "grains.friction" = [0.01, 0.1]
 """
 PARTS = ["--part-replicas", "2"]
+ALONE = ["--part-replicas", "1"]
+LAUNCHES = 11_000  # of kernels that a part takes, about
 TWO_DEVICES = {"POCL_DEVICES": "pthread pthread", "MCDEM_DEVICE": ""}  # PoCL stands for a machine with two
 
 
@@ -142,43 +145,46 @@ def claim_of(file):
         return {}
 
 
-def holders_at_work(folder):
-    """Numbers of the processes that hold a part in the folder and have left a checkpoint of it."""
-    holders = set()
-    for checkpoint in files_in(folder, "*.work-*/checkpoint.h5"):
-        file = folder / checkpoint.parent.name.replace(".work-", ".claim-")
-        claim = claim_of(file)
-        if claim.get("state") == "held" and not (folder / f"{file.stem}.h5").exists():
-            holders.add(claim["process"])
-    return holders
+class Hold:
+    """Holds workers in the middle of their work (tests/layers/device_layer.cpp), so that it cannot be done before a test has
+    done its part, at any speed of the machine: all of them, or the first only, each after so many launches of kernels."""
+
+    def __init__(self, place, launches=LAUNCHES // 2, only_one=False, after=None):
+        self._folder = place.path / "held"
+        self._folder.mkdir()
+        self.environment = {"OPENCL_LAYERS": str(pathlib.Path(sys.argv[2]).resolve()), "MCDEM_TEST_KERNELS": str(launches),
+                            "MCDEM_TEST_HOLD": str(self._folder)}
+        if only_one:
+            self.environment["MCDEM_TEST_VICTIM"] = str(place.path / "victim")
+        if after:
+            self.environment["MCDEM_TEST_AFTER"] = str(after)
+
+    def wait_for(self, workers):
+        """Until so many are held; their numbers."""
+        files = wait_until(lambda: len(found := files_in(self._folder, "*")) >= workers and found, f"{workers} held")
+        return sorted(int(file.name) for file in files)
+
+    def kill_one(self):
+        """kill -9 of a worker that is held."""
+        victim = self.wait_for(1)[0]
+        os.kill(victim, signal.SIGKILL)
+        return victim
+
+    def end(self):
+        """They go on, and none is held any more."""
+        while self._folder.exists():  # one that is just to be held makes a file in it
+            shutil.rmtree(self._folder, ignore_errors=True)
 
 
-def devices_of_parts(folder, process):
-    """Numbers and names of the devices on which parts in the folder are computed until the process has ended."""
-    devices = set()
-    while process.poll() is None:
-        for claim in map(claim_of, files_in(folder, "0*.claim-*")):
-            if claim:
-                devices.add((claim["device"]["number"], claim["device"]["name"]))
-        time.sleep(0.002)
-    return devices
+def devices_at_work(folder):
+    """Numbers of the devices on which parts in the folder are computed."""
+    return {claim["device"]["number"] for claim in map(claim_of, files_in(folder, "0*.claim-*")) if claim.get("state") == "held"}
 
 
-def signal_a_worker(folder, number, besides=()):
-    """To one that is in the middle of a part; its number."""
-    victim = min(wait_until(lambda: holders_at_work(folder) - set(besides), "a worker with a checkpoint"))
-    os.kill(victim, number)
-    return victim
-
-
-def kill_a_worker(folder):
-    """kill -9 of one that is in the middle of a part."""
-    return signal_a_worker(folder, signal.SIGKILL)
-
-
-def stop_a_worker(folder, besides=()):
-    """Holds one up that is in the middle of a part, so that this is not done before the worker is lost."""
-    return signal_a_worker(folder, signal.SIGSTOP, besides)
+def is_told_to_end(process):
+    """Whether it has taken SIGTERM, by a handler that takes it once."""
+    caught = re.search(r"SigCgt:\s*([0-9a-f]+)", pathlib.Path(f"/proc/{process}/status").read_text())[1]
+    return not int(caught, 16) >> (signal.SIGTERM - 1) & 1
 
 
 def has_two_devices(place):

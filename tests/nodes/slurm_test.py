@@ -1,30 +1,32 @@
 """Runs and challenges as Slurm job arrays, on a real Slurm of two nodes that this test starts: a worker killed in the
 middle, nodes lost, names that a shell would stumble over, the bytes of one process.
 
-slurm_test.py MCDEM; skipped (77) where a program is missing or this is not root.
+slurm_test.py MCDEM DEVICE_LAYER; skipped (77) where a program is missing or this is not root.
 """
 import re
 
 import own_slurm
 import shared_challenge
 import shared_runs
-from shared_runs import PARTS, PartsSeen, command_of, files_in, finish, kill_a_worker, stop_a_worker, wait_until
+from shared_runs import ALONE, LAUNCHES, PARTS, Hold, PartsSeen, command_of, finish
 
 cluster = own_slurm.Cluster()
 ODD = "out $(touch hacked) `touch hacked` 'it''s' %j; touch hacked"
 SUBMIT = ["--slurm", "--slurm-tasks", "3", "--slurm-partition", "short", "--slurm-time", "10"]
 
 
-def run_words(place, out, more=()):
-    return place.start([place.mcdem, *command_of("sweep.toml", out), *SUBMIT, *PARTS, *more], cluster.environment)
+def run_words(place, out, more=(), parts=PARTS, hold=None):
+    return place.start([place.mcdem, *command_of("sweep.toml", out), *SUBMIT, *parts, *more],
+                       {**cluster.environment, **(hold.environment if hold else {})})
 
 
 def outlives_a_killed_worker(place):
     """The others do its part; parts are done once; nothing of a name is taken for a command."""
     place.run_alone()
     (place.path / "lines").write_text("#SBATCH --comment=mine\nexport MCDEM_TOLD=yes")
-    process = run_words(place, ODD, ["--slurm-lines", "lines"])
-    kill_a_worker(place.path / ODD / "parts")
+    hold = Hold(place, only_one=True)
+    process = run_words(place, ODD, ["--slurm-lines", "lines"], hold=hold)
+    hold.kill_one()
     said = finish(process)
     assert "8 of 8 replicas done" in said and "3 workers" in said, said
     place.expect_like_alone(ODD)
@@ -38,17 +40,18 @@ def outlives_a_killed_worker(place):
 def goes_on_after_a_cancelled_job(place):
     """All workers are cancelled: the command says so, and given again does only what is missing."""
     place.run_alone()
-    process = run_words(place, "jobs")
+    hold = Hold(place, launches=LAUNCHES * 3 // 2)  # every worker in its second part
+    process = run_words(place, "jobs", parts=ALONE, hold=hold)
+    hold.wait_for(3)
     parts = PartsSeen(place.path / "jobs/parts")
-    stop_a_worker(parts.folder)
-    wait_until(lambda: files_in(parts.folder, "*.h5"), "a part")
     parts.look()
     number = (place.path / "jobs/slurm/job").read_text().strip()
     place.run(["scancel", "--signal=KILL", "--full", number], cluster.environment)
     place.run(["scancel", number], cluster.environment)
     said = finish(process, exit_codes=(1,))
     assert f"job {number} has ended before the work was done" in said, said
-    process = run_words(place, "jobs")
+    hold.end()
+    process = run_words(place, "jobs", parts=ALONE)
     parts.watch(process)
     finish(process)
     parts.expect_each_once()
@@ -68,8 +71,9 @@ def is_not_submitted_twice(place):
 def outlives_a_lost_node(place):
     """The power fails on the node of a worker: those on the other do its part."""
     place.run_alone()
-    process = run_words(place, "jobs")
-    node = cluster.node_of(stop_a_worker(place.path / "jobs/parts"))
+    hold = Hold(place, only_one=True)
+    process = run_words(place, "jobs", hold=hold)
+    node = cluster.node_of(hold.wait_for(1)[0])
     cluster.lose(node)
     said = finish(process)
     assert "8 of 8 replicas done" in said, said
@@ -80,10 +84,12 @@ def outlives_a_lost_node(place):
 def outlives_the_loss_of_all_nodes(place):
     """Slurm queues their tasks again, and the command that waits goes on waiting."""
     place.run_alone()
-    process = run_words(place, "jobs")
-    stop_a_worker(place.path / "jobs/parts")
+    hold = Hold(place)
+    process = run_words(place, "jobs", hold=hold)
+    hold.wait_for(3)
     cluster.lose(*own_slurm.NODES)
     assert not (place.path / "jobs/run.h5").exists()
+    hold.end()
     cluster.bring_back(*own_slurm.NODES)
     said = finish(process)
     assert "8 of 8 replicas done" in said, said
@@ -100,8 +106,10 @@ def says_what_slurm_refuses(place):
 def a_challenge_is_shared(place):
     """A task is killed while the cases are diagnosed; the answers are those of one process."""
     shared_challenge.run_alone(place)
-    process = place.start([place.mcdem, *shared_challenge.command_of("jobs"), *SUBMIT], cluster.environment)
-    shared_challenge.kill_a_worker(place, "jobs")
+    hold = shared_challenge.hold(place, "jobs")
+    process = place.start([place.mcdem, *shared_challenge.command_of("jobs"), *SUBMIT],
+                          {**cluster.environment, **hold.environment})
+    hold.kill_one()
     said = finish(process)
     assert "3 workers" in said and "all cases are diagnosed" in said, said
     shared_challenge.expect_like_alone(place, "jobs")
