@@ -9,13 +9,14 @@
 
 #include "core/atomic_file.h"
 #include "core/errors.h"
+#include "core/sha256.h"
 #include "diagnose/json_numbers.h"
 
 namespace mcdem {
 namespace {
 
 using nlohmann::json;
-constexpr int library_format = 1;
+constexpr int library_format = 2;
 
 json signature_json(const Signature& s) {
     return {{"name", s.name},
@@ -42,6 +43,12 @@ Signature signature_of(const json& j, Eigen::Index cells) {
     return s;
 }
 
+std::string digest_of(const std::map<std::string, std::string>& origin) {
+    Sha256 digest;
+    for (const auto& [name, value] : origin) digest.add(name).add("=").add(value).add("\n");
+    return digest.hex();
+}
+
 Library library_of(const json& j) {
     if (j.at("format") != library_format)
         throw json::other_error::create(501, "it is of another version", &j);
@@ -61,6 +68,9 @@ Library library_of(const json& j) {
     for (const json& s : j.at("effects")) library.effects.push_back(signature_of(s, cells));
     for (const json& s : j.at("nuisances")) library.nuisances.push_back(signature_of(s, cells));
     library.provenance = j.at("provenance").get<std::map<std::string, std::string>>();
+    library.origin = j.at("origin").get<std::map<std::string, std::string>>();
+    if (j.at("origin_sha256") != digest_of(library.origin))
+        throw json::other_error::create(501, "what it says of its origin was changed", &j);
     return library;
 }
 
@@ -89,22 +99,30 @@ Eigen::MatrixXd scatter(const Library& library) {
     return apart_from_mean(library.baseline, mean_groups(library));
 }
 
-void write_library(const std::filesystem::path& file, const Library& library) {
+std::string library_text(const Library& library) {
     json rows = json::array(), effects = json::array(), nuisances = json::array();
     for (Eigen::Index r = 0; r < library.baseline.rows(); ++r)
         rows.push_back(numbers_json(library.baseline.row(r)));
     for (const Signature& s : library.effects) effects.push_back(signature_json(s));
     for (const Signature& s : library.nuisances) nuisances.push_back(signature_json(s));
-    replace_file(file, json{{"format", library_format},
-                            {"provenance", library.provenance},
-                            {"displacement", library.grid.displacement},
-                            {"width", library.grid.width},
-                            {"stroke", library.grid.stroke},
-                            {"packing", library.packing},
-                            {"effects", effects},
-                            {"nuisances", nuisances},
-                            {"baseline", rows}}
-                           .dump());
+    return json{{"format", library_format},
+                {"provenance", library.provenance},
+                {"origin", library.origin},
+                {"origin_sha256", digest_of(library.origin)},
+                {"displacement", library.grid.displacement},
+                {"width", library.grid.width},
+                {"stroke", library.grid.stroke},
+                {"packing", library.packing},
+                {"effects", effects},
+                {"nuisances", nuisances},
+                {"baseline", rows}}
+        .dump();
+}
+
+void write_library(const std::filesystem::path& file, const Library& library) {
+    if (!create_file(file, library_text(library)))
+        throw InputError(
+            fmt::format("{}: is there already, and is not replaced: give another file", file.string()));
 }
 
 Library read_library(const std::filesystem::path& file) {
@@ -113,8 +131,9 @@ Library read_library(const std::filesystem::path& file) {
     try {
         return library_of(json::parse(in));
     } catch (const json::exception& error) {
-        throw InputError(fmt::format("{}: not a signature library ({}); remove it, and it is made anew",
-                                     file.string(), error.what()));
+        throw InputError(fmt::format(
+            "{}: not a signature library ({}): give another file, which is made where it is missing",
+            file.string(), error.what()));
     }
 }
 

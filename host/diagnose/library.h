@@ -18,6 +18,8 @@ struct Library {
     std::vector<Signature> effects;
     std::vector<Signature> nuisances;
     std::map<std::string, std::string> provenance;  ///< scene, program, device
+    std::map<std::string, std::string>
+        origin;  ///< all that it depends on, by name (ensemble/library_origin.h)
 };
 
 /// Which replicates have a mean in common: those of a packing; all of them where a packing has but one.
@@ -30,7 +32,9 @@ Eigen::MatrixXd apart_from_mean(Eigen::MatrixXd rows, const std::vector<int>& gr
 /// with one replicate a packing, less the mean over packings.
 Eigen::MatrixXd scatter(const Library& library);
 
-/// JSON; written whole or not at all.
+/// JSON, to the last bit the same of the same library.
+std::string library_text(const Library& library);
+/// Written whole or not at all. Throws InputError where the file is there already.
 void write_library(const std::filesystem::path& file, const Library& library);
 /// Throws InputError where the file is not a library.
 Library read_library(const std::filesystem::path& file);

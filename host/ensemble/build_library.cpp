@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "core/errors.h"
+#include "ensemble/library_origin.h"
 
 namespace mcdem {
 namespace {
@@ -79,6 +80,7 @@ Library build_library(Device& device, const Question& question, const Model& mod
         list.push_back(learn_signature(probe.name, probe.amplitudes[0], probe.amplitudes[1], differences[0],
                                        differences[1]));
     }
+    library.origin = library_origin(question, model, plan.packings.front().size());
     library.provenance = {{"program", question.program}, {"device", device.description()}};
     return library;
 }

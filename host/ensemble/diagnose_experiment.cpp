@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "core/errors.h"
+#include "ensemble/library_origin.h"
 #include "ensemble/paper_metrics.h"
 #include "experiment/check_experiment.h"
 
@@ -26,10 +27,10 @@ void expect_library_of(const Library& library, const Grid& grid, const LibraryPl
     std::vector<std::string> problems;
     const auto expect = [&](const std::vector<Signature>& list, const std::string& name) {
         if (std::ranges::find(list, name, &Signature::name) == list.end())
-            problems.push_back(
-                fmt::format("{}: has no signature of {}; remove the file to make it anew, or leave {} out of "
-                            "--candidates",
-                            file.string(), name, name));
+            problems.push_back(fmt::format(
+                "{}: has no signature of {}: give another file, which is made where it is missing, or leave "
+                "{} out of --candidates",
+                file.string(), name, name));
     };
     for (const std::string& name : plan.candidates) expect(library.effects, name);
     for (const Nuisance& nuisance : plan.nuisances) expect(library.nuisances, nuisance.name);
@@ -86,12 +87,16 @@ private:
     Evidence gather() {
         Evidence evidence;
         evidence.seed = options_.seed;
+        const bool ready = options_.library && std::filesystem::exists(*options_.library);
+        if (ready) {  // before any work
+            evidence.library = read_library(*options_.library);
+            expect_origin(evidence.library, library_origin(question_, model_, plan_.packings.front().size()),
+                          *options_.library);
+            expect_library_of(evidence.library, question_.grid, plan_, *options_.library);
+        }
         if (options_.paper_metrics)
             recorded(baseline_trials(model_, plan_));  // first: what is kept whole is not simulated again
-        const bool ready = options_.library && std::filesystem::exists(*options_.library);
         if (ready) {
-            evidence.library = read_library(*options_.library);
-            expect_library_of(evidence.library, question_.grid, plan_, *options_.library);
             question_.grid = evidence.library.grid;
             evidence.baseline = observe_trials(device_, question_, baseline_trials(model_, plan_), store_,
                                                stage(options_, "baseline"));

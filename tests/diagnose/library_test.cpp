@@ -30,6 +30,7 @@ protected:
         library.effects[0].curvature = world.pattern(1e-17);
         library.effects[0].variance = world.noise();  // not-a-number beyond the first cells
         library.provenance = {{"program", "0.1"}, {"device", "\"any\""}};
+        library.origin = {{"grains.friction", "0.03"}};
         write_library(file(), library);
     }
     ~LibraryFile() override { std::filesystem::remove_all(folder_); }
@@ -78,6 +79,7 @@ TEST_F(LibraryFile, RoundTrip) {
     EXPECT_EQ(back.grid.stroke, library.grid.stroke);
     EXPECT_EQ(back.packing, library.packing);
     EXPECT_EQ(back.provenance, library.provenance);
+    EXPECT_EQ(back.origin, library.origin);
     expect_same(back.baseline, library.baseline);
     expect_same(back.effects, library.effects);
     expect_same(back.nuisances, library.nuisances);
@@ -109,6 +111,20 @@ TEST_F(LibraryFile, OfAnotherVersion) {
     expect_refused("of another version");
 }
 
+TEST_F(LibraryFile, WhoseOriginWasChanged) {
+    auto json = content();
+    json["origin"]["grains.friction"] = "0.9";
+    replace(json.dump());
+    expect_refused("what it says of its origin was changed");
+}
+
+TEST_F(LibraryFile, IsNotWrittenTwice) {
+    const auto before = content();
+    EXPECT_THAT([&] { write_library(file(), library); },
+                ThrowsMessage<InputError>(HasSubstr("is not replaced")));
+    EXPECT_EQ(content(), before);
+}
+
 TEST_F(LibraryFile, OfOtherObservables) {
     auto json = content();
     json["baseline"][2].erase(0);
@@ -118,7 +134,7 @@ TEST_F(LibraryFile, OfOtherObservables) {
 
 TEST_F(LibraryFile, WithASignatureOfAnotherLength) {
     for (const char* part : {"linear", "curvature", "variance", "spread"}) {
-        write_library(file(), library);
+        replace(library_text(library));
         auto json = content();
         json["effects"][0][part].erase(0);
         replace(json.dump());

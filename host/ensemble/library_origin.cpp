@@ -1,0 +1,107 @@
+#include "ensemble/library_origin.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "cl/program.h"
+#include "core/errors.h"
+#include "core/sha256.h"
+#include "scene/keys.h"
+#include "scene/packing_fields.h"
+
+namespace mcdem {
+namespace {
+
+/// What may differ between a library and a diagnosis, relative to the library's.
+struct MayDiffer {
+    std::string_view begins;
+    double part;
+};
+constexpr double by_any_part = std::numeric_limits<double>::infinity(), a_little = 0.1;
+constexpr std::array may_differ{
+    MayDiffer{"packing.", by_any_part},  // an experiment brings its own
+    MayDiffer{"plate.start",
+              by_any_part},               // the experiment's zero of strain; the stroke is compared with the
+    MayDiffer{"plate.end", by_any_part},  // library's levels
+    MayDiffer{"protocol.scans_per_stroke", by_any_part},  // observations are made at the library's levels
+    MayDiffer{"box.size_", a_little},                     // measured anew by every experiment
+    MayDiffer{"mean diameter", a_little},
+    MayDiffer{"grains", a_little},
+};
+
+double allowed_part(std::string_view name) {
+    const auto* found = std::ranges::find_if(may_differ, [&](const MayDiffer& one) {
+        return one.begins == "grains" ? name == one.begins : name.starts_with(one.begins);
+    });
+    return found == may_differ.end() ? 0 : found->part;
+}
+
+bool alike(std::string_view name, const std::string& made, const std::string& needed) {
+    if (made == needed) return true;
+    const double part = allowed_part(name);
+    if (part == 0) return false;
+    if (part == by_any_part) return true;
+    const auto a = to_number(made), b = to_number(needed);
+    return a && b && std::abs(*a - *b) <= part * std::abs(*a);
+}
+
+std::string observables_digest() {
+    Sha256 digest;
+    for (const Observable& observable : observables()) digest.add(observable.name).add(";");
+    return digest.hex();
+}
+
+}  // namespace
+
+std::map<std::string, std::string> library_origin(const Question& question, const Model& model,
+                                                  std::size_t grains) {
+    std::map<std::string, std::string> origin;
+    Settings settings;
+    settings.run = question.scene;
+    settings.replica = model.replica;
+    for (const Key& key : keys())
+        if ((key.scope == Scope::replica && !key.name.starts_with("packing.")) ||
+            key.name == "numerics.precision")
+            origin[std::string(key.name)] = value_text(key, settings);
+    const Measurement& stated = model.instrument.stated;
+    origin["measurement.position_error"] = fmt::format("{}", stated.position_error);
+    origin["measurement.diameter_error"] = fmt::format("{}", stated.diameter_error);
+    origin["measurement.force_error"] = fmt::format("{}", stated.force_error);
+    origin["measurement.force_threshold"] = fmt::format("{}", stated.force_threshold);
+    origin["mean diameter"] = fmt::format("{}", model.mean_diameter);
+    origin["grains"] = fmt::format("{}", grains);
+    origin["kernels"] = Sha256().add(program_text()).hex();
+    origin["observables"] = observables_digest();
+    origin["program"] =
+        question.program.substr(0, question.program.find(' '));  // the version; a commit may change nothing
+    return origin;
+}
+
+void expect_origin(const Library& library, const std::map<std::string, std::string>& needed,
+                   const std::filesystem::path& file) {
+    std::vector<std::string> problems;
+    const auto value_in = [](const std::map<std::string, std::string>& origin, const std::string& name) {
+        const auto found = origin.find(name);
+        return found == origin.end() ? std::string("nothing") : found->second;
+    };
+    std::map<std::string, std::string> all = library.origin;
+    all.insert(needed.begin(), needed.end());
+    for (const auto& [name, any] : all) {
+        const std::string made = value_in(library.origin, name), now = value_in(needed, name);
+        if (!alike(name, made, now))
+            problems.push_back(
+                fmt::format("{}: was made with {} = {}, needed is {}", file.string(), name, made, now));
+    }
+    if (problems.empty()) return;
+    problems.push_back(
+        "what it was made for may decide the verdict: give another file for --library, which is made where "
+        "it is "
+        "missing, or the scene and experiment that this one was made with");
+    throw InputError(problems);
+}
+
+}  // namespace mcdem
