@@ -29,12 +29,22 @@ std::string digest_of_packing_files(const Scene& scene) {
     return digest.hex();
 }
 
-json read_agreement(const std::filesystem::path& file) {
+bool is_agreement(const json& read) {
+    return read.is_object() && read.contains("common") && read.contains("chosen");
+}
+
+json parsed(const std::filesystem::path& file) {
     std::ifstream in(file);
-    json read = json::parse(in, nullptr, false);
-    if (!read.is_object() || !read.contains("common") || !read.contains("chosen"))
-        throw InputError(file.string() +
-                         ": is missing or damaged; remove its folder, and all is computed again");
+    return json::parse(in, nullptr, false);
+}
+
+json read_agreement(const std::filesystem::path& file) {
+    json read = parsed(file);
+    if (!is_agreement(read))
+        throw InputError(
+            fmt::format("{}: is missing or damaged: restore it from a copy, or give another folder; what is "
+                        "finished in {} can still be read",
+                        file.string(), file.parent_path().string()));
     return read;
 }
 
@@ -64,6 +74,10 @@ Common agree(const std::filesystem::path& file, const Common& common, const Comm
     }
     if (!problems.empty()) throw InputError(problems);
     return first.at("chosen");
+}
+
+bool is_damaged_agreement(const std::filesystem::path& file) {
+    return std::filesystem::exists(file) && !is_agreement(parsed(file));
 }
 
 Common read_chosen(const std::filesystem::path& file) { return read_agreement(file).at("chosen"); }

@@ -20,6 +20,9 @@ Common common_of(const Device& device, const Scene& scene, const std::string& pr
 /// wrote it. Throws InputError where that program had another value of anything in `common`, saying which.
 Common agree(const std::filesystem::path& file, const Common& common, const Common& chosen);
 
+/// Whether there is a file that says nothing: what a power cut may leave of one.
+bool is_damaged_agreement(const std::filesystem::path& file);
+
 /// `chosen` as it stands in the file. Throws InputError where the file is missing or damaged.
 Common read_chosen(const std::filesystem::path& file);
 

@@ -6,6 +6,8 @@
 
 #include "cl/program.h"
 #include "core/errors.h"
+#include "core/output_file.h"
+#include "ensemble/challenge_run.h"
 #include "io/result_file.h"
 
 namespace mcdem {
@@ -77,6 +79,12 @@ RunIdentity identity_of(const Device& device, const Scene& scene, const std::str
     const auto build = kernel_build(device, scene.precision, scene.slots);
     return {scene.text, fmt::format("{}, {} lanes", device.description(), build.lanes), program,
             digest_of(packings)};
+}
+
+void expect_room_for_run(const std::filesystem::path& folder) {
+    expect_no_experiment(folder);
+    expect_no_challenge(folder);
+    expect_replaceable(folder / "plate.csv", FileKind::run_table);
 }
 
 void expect_scene_of(const std::filesystem::path& folder, const Scene& scene) {

@@ -23,6 +23,10 @@ RunIdentity identity_of(const Device& device, const Scene& scene, const std::str
 Checkpoint make_checkpoint(const RunIdentity& identity, int segments,
                            std::map<std::string, std::vector<std::byte>> fields);
 
+/// Throws InputError where a run cannot have the folder: an experiment or a challenge's answers lie there, or
+/// a plate.csv that is no run's.
+void expect_room_for_run(const std::filesystem::path& folder);
+
 /// Throws InputError when the finished run in `folder` is of another scene.
 void expect_scene_of(const std::filesystem::path& folder, const Scene& scene);
 

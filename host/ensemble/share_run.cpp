@@ -9,7 +9,6 @@
 #include "core/errors.h"
 #include "core/make_folder.h"
 #include "ensemble/agreement.h"
-#include "ensemble/challenge_run.h"
 #include "ensemble/run_state.h"
 #include "io/checkpoint.h"
 #include "io/claims.h"
@@ -75,6 +74,38 @@ std::size_t fitting_part(const Scene& scene, const ShareOptions& options) {
     return std::clamp<std::size_t>((scene.replicas.size() + shares - 1) / shares, 1, filling);
 }
 
+/// Whether the finished parts are those of this run in parts of so many replicas.
+bool are_parts_of(const std::map<std::size_t, Run>& parts, const Scene& scene, const Run& run,
+                  std::size_t of_part) {
+    for (const auto& [number, part] : parts) {
+        const std::size_t first = number * of_part;
+        if (part.scene != run.scene || part.program != run.program || part.device != run.device ||
+            first >= scene.replicas.size() ||
+            part.recordings.size() != std::min(of_part, scene.replicas.size() - first))
+            return false;
+        for (std::size_t r = 0; r < part.recordings.size(); ++r)
+            if (part.recordings[r].label != scene.replicas[first + r].label) return false;
+    }
+    return true;
+}
+
+/// Where the agreement is damaged, the finished parts tell how large parts are: a size for that. Throws
+/// InputError where they are another run's.
+std::size_t size_of_parts(const fs::path& folder, const Scene& scene, const Run& run, std::size_t fitting) {
+    std::map<std::size_t, Run> parts;
+    const std::vector<bool> there = parts_there(folder, scene.replicas.size());
+    for (std::size_t part = 0; part < there.size(); ++part)
+        if (there[part]) parts.emplace(part, read_run_header({part_file(folder, part)}));
+    if (are_parts_of(parts, scene, run, fitting)) return fitting;
+    for (std::size_t size = 1; size <= scene.replicas.size(); ++size)
+        if (are_parts_of(parts, scene, run, size)) return size;
+    throw InputError(
+        fmt::format("{}: is damaged, and the finished parts beside it are of another scene, program or "
+                    "device: give that one, or another "
+                    "folder",
+                    agreement_file(folder).string()));
+}
+
 /// A worker on a run: what it shares with the others is the folder.
 class Worker {
 public:
@@ -83,9 +114,18 @@ public:
           scene_(scene),
           options_(options),
           claims_(parts_folder(options.folder), {device.info().index, device.info().name}) {
+        std::size_t size = fitting_part(scene, options);
+        if (const fs::path file = agreement_file(options.folder); is_damaged_agreement(file)) {
+            size =
+                size_of_parts(options.folder, scene,
+                              {scene.name, scene.text, options.program, device.description(), {}, {}}, size);
+            options.on_warning(
+                fmt::format("{}: is damaged, and made anew from what is there", file.string()));
+            fs::remove(file);
+        }
         const auto chosen = agree(agreement_file(options.folder), common_of(device, scene, options.program),
                                   {{"replicas", std::to_string(scene.replicas.size())},
-                                   {"replicas of a part", std::to_string(fitting_part(scene, options))}});
+                                   {"replicas of a part", std::to_string(size)}});
         part_replicas_ = std::stoul(chosen.at("replicas of a part"));
         parts_ = (scene.replicas.size() + part_replicas_ - 1) / part_replicas_;
     }
@@ -229,7 +269,7 @@ void expect_no_run_of_one(const fs::path& folder) {
 /// Keeps those away that write alone. What lies in the folder is looked at once they cannot come any more.
 FolderLock lock_for_sharing(const fs::path& folder, const Scene& scene) {
     FolderLock lock(folder, FolderLock::Use::shared);
-    expect_no_challenge(folder);
+    expect_room_for_run(folder);
     expect_no_run_of_one(folder);
     if (is_merged(folder)) expect_scene_of(folder, scene);
     return lock;

@@ -122,6 +122,20 @@ TEST_F(ShareRunTest, ADamagedPartIsComputedAgain) {
     expect_like_whole("damaged");
 }
 
+TEST_F(ShareRunTest, AnEmptyAgreementIsMadeAnewFromTheFinishedParts) {
+    share_until("cut", "00001.h5");
+    const auto agreement = parts_folder(folder("cut")) / "agreement.json";
+    std::ofstream(agreement).close();
+    Scene other = small_scene({"batch.replicas=3", "protocol.scans_per_stroke=3"});
+    std::swap(scene_, other);
+    EXPECT_THAT(problem("cut"), testing::HasSubstr("are of another scene, program or device"));
+    std::swap(scene_, other);
+    EXPECT_EQ(share("cut", -1, 4), RunEnd::done);  // in the parts that were begun, of one replica
+    EXPECT_THAT(warnings_,
+                testing::Contains(testing::HasSubstr("is damaged, and made anew from what is there")));
+    expect_like_whole("cut");
+}
+
 TEST_F(ShareRunTest, WhatALostWorkerLeftOfAPartIsTakenOver) {
     share("lost", 3);
     const auto parts = parts_folder(folder("lost"));

@@ -1,0 +1,108 @@
+#include "core/output_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <iterator>
+
+#include "core/atomic_file.h"
+#include "core/errors.h"
+#include "core/sha256.h"
+
+namespace mcdem {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// How a file of a kind begins, and a word of its first bytes.
+struct Mark {
+    FileKind kind;
+    std::string_view what, begins, holds;
+};
+constexpr std::array marks{
+    Mark{FileKind::run_table, "the table of a run", "replica,label,frame,cycle,phase,time_s,", ""},
+    Mark{FileKind::page, "a page of mcdem", "<!doctype html>", "<meta name=\"generator\" content=\"mcdem\">"},
+    Mark{FileKind::diagnosis, "a diagnosis", "{\n", "\"p_omnibus\""},
+    Mark{FileKind::calibration, "a calibration", "{\n", "\"gamma_standard_error\""},
+    Mark{FileKind::score, "the score of a challenge", "{\n \"cases\"", "\"not_diagnosed\""},
+    Mark{FileKind::score_page, "the score of a challenge", "# Score of the challenge\n", ""},
+    Mark{FileKind::script, "the unedited script of a picture", "", ""},
+    Mark{FileKind::guide, "the guide to an export", "", ""},
+    Mark{FileKind::vtk, "an export", "\x89HDF\r\n", "VTKHDF"},
+    Mark{FileKind::xyz, "an export", "",
+         " Properties=species:S:1:pos:R:3:id:I:1:radius:R:1:coordination_number:I:1:"},
+    Mark{FileKind::dump, "an export", "ITEM: TIMESTEP\n", "ITEM: ENTRIES grain partner force_magnitude "},
+    Mark{FileKind::manual, "a manual page of mcdem", ".TH MCDEM", ""},
+};
+constexpr std::array<std::string_view, 2> guides{"Grains and contacts for ParaView\n====",
+                                                 "replica_*.xyz            grains, one frame a scan"};
+constexpr std::string_view seal_line = "# SHA-256 of the lines above: ";
+constexpr int head_size = 1 << 16, largest_script = 1 << 24;
+
+const Mark& mark_of(FileKind kind) {
+    for (const Mark& mark : marks)
+        if (mark.kind == kind) return mark;
+    throw RunError("no mark of an output");  // a test writes every kind
+}
+
+bool is_sealed(std::string_view text) {
+    const auto line = text.rfind(seal_line);
+    return line != text.npos && text == sealed_script(text.substr(0, line));
+}
+
+bool is_of_kind(std::string_view head, FileKind kind) {
+    if (kind == FileKind::script) return is_sealed(head);
+    if (kind == FileKind::guide)
+        return std::ranges::any_of(guides, [&](std::string_view guide) { return head.starts_with(guide); });
+    const Mark& mark = mark_of(kind);
+    return head.starts_with(mark.begins) && head.find(mark.holds) != head.npos;
+}
+
+[[noreturn]] void refuse(const fs::path& file, const std::string& problem) {
+    throw InputError(
+        fmt::format("{}: {}, and is not replaced: give another place (--out), or remove it first",
+                    file.string(), problem));
+}
+
+}  // namespace
+
+std::string sealed_script(std::string_view text) {
+    return fmt::format("{}{}{}\n", text, seal_line, Sha256().add(text).hex());
+}
+
+void expect_replaceable(const fs::path& file, FileKind kind) {
+    std::error_code error;
+    const auto status = fs::symlink_status(file, error);
+    if (status.type() == fs::file_type::not_found) return;
+    if (!fs::is_regular_file(file, error)) refuse(file, "is there, but is no file");
+    std::ifstream in(file, std::ios::binary);
+    std::string head(static_cast<std::size_t>(kind == FileKind::script ? largest_script : head_size), '\0');
+    in.read(head.data(), static_cast<std::streamsize>(head.size()));
+    if (!in.is_open() || in.bad()) refuse(file, "is there and cannot be read");
+    head.resize(static_cast<std::size_t>(in.gcount()));
+    if (!head.empty() && !is_of_kind(head, kind)) refuse(file, fmt::format("is not {}", mark_of(kind).what));
+}
+
+void replace_own(const fs::path& file, FileKind kind, std::string_view text) {
+    expect_replaceable(file, kind);
+    replace_file(file, text);
+}
+
+void replace_own(const fs::path& file, FileKind kind,
+                 const std::function<void(const fs::path& temporary)>& write) {
+    expect_replaceable(file, kind);
+    replace_file(file, write);
+}
+
+void expect_no_experiment(const fs::path& folder) {
+    std::error_code ignored;
+    if (fs::exists(folder / "experiment.toml", ignored))
+        throw InputError(fmt::format(
+            "{}: is the folder of an experiment, into which nothing else is written: give another "
+            "folder (--out)",
+            folder.string()));
+}
+
+}  // namespace mcdem

@@ -1,0 +1,43 @@
+// What mcdem may replace: a file that it wrote itself as what it writes now, told by what the file holds. A
+// laboratory's table, a scene, a run.h5, or a picture's script that was edited are none of these, whatever
+// their names and however the path is spelled. No command reads what it writes, so that its inputs are safe
+// too.
+#pragma once
+#include <filesystem>
+#include <functional>
+#include <string_view>
+
+namespace mcdem {
+
+/// Files that are written anew by a command that is given again.
+enum class FileKind {
+    run_table,
+    page,
+    diagnosis,
+    calibration,
+    score,
+    score_page,
+    script,
+    guide,
+    vtk,
+    xyz,
+    dump,
+    manual
+};
+
+/// Throws InputError unless nothing, an empty file, or a file of this kind lies there. Asked before long
+/// work, and again by those below.
+void expect_replaceable(const std::filesystem::path& file, FileKind kind);
+
+/// replace_file, after expect_replaceable.
+void replace_own(const std::filesystem::path& file, FileKind kind, std::string_view text);
+void replace_own(const std::filesystem::path& file, FileKind kind,
+                 const std::function<void(const std::filesystem::path& temporary)>& write);
+
+/// Throws InputError for the folder of an experiment: nothing else is written there.
+void expect_no_experiment(const std::filesystem::path& folder);
+
+/// What makes a script one of ours until it is edited: the text, and a last line with its digest.
+std::string sealed_script(std::string_view text);
+
+}  // namespace mcdem
