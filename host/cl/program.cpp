@@ -1,6 +1,7 @@
 #include "cl/program.h"
 
 #include <fmt/format.h>
+#include <sys/resource.h>
 
 #include <cstdlib>
 #include <filesystem>
@@ -44,6 +45,17 @@ void append_source(const std::string& name, std::set<std::string>& seen, std::st
     }
 }
 
+/// Drivers write the kernels they compile; past a limit PoCL's compiler ends the program.
+void expect_room_for_kernels() {
+    constexpr rlim_t largest_file = 8 << 20;
+    rlimit limit{};
+    if (::getrlimit(RLIMIT_FSIZE, &limit) == 0 && limit.rlim_cur < largest_file)
+        throw RunError(fmt::format(
+            "the limit of the file size is {} bytes, too small for the files of the OpenCL driver: "
+            "raise it (`ulimit -f`) to {} or more",
+            limit.rlim_cur, largest_file));
+}
+
 }  // namespace
 
 KernelBuild kernel_build(const Device& device, Precision precision, int slots) {
@@ -70,6 +82,7 @@ std::string program_text() {
 }
 
 cl::Program build_program(const Device& device, const KernelBuild& build) {
+    expect_room_for_kernels();
     // -w: what the compiler finds odd about a device's own headers and vector widths is no user's concern.
     const auto options = fmt::format("-w -cl-std=CL1.2 -DMCDEM_DOUBLE={} -DLANES={} -DSLOTS={} -DBLOCK={}",
                                      build.precision == Precision::double_precision ? 1 : 0, build.lanes,

@@ -8,10 +8,11 @@
 #include "cli/progress.h"
 #include "cli/results.h"
 #include "cli/scene_options.h"
-#include "core/atomic_file.h"
-#include "core/make_folder.h"
+#include "cli/standard_streams.h"
+#include "core/output_file.h"
 #include "core/version.h"
 #include "ensemble/calibrate_scene.h"
+#include "io/output_folder.h"
 #include "report/tables.h"
 
 namespace mcdem {
@@ -67,10 +68,10 @@ void print_calibration(const SceneCalibration& result) {
                                       ? fmt::format("{:.3f}", round.top_force[i])
                                       : "runs away"});
     }
-    fmt::print("{}\n", to_text(table, TableFormat::terminal));
-    fmt::print("target: {} N at {:.2f} mm; {} replica{} for each gamma\n", with_error(result.target, 3),
-               result.displacement * 1e3, result.replicas, result.replicas == 1 ? "" : "s");
-    fmt::print(
+    print_out("{}\n", to_text(table, TableFormat::terminal));
+    print_out("target: {} N at {:.2f} mm; {} replica{} for each gamma\n", with_error(result.target, 3),
+              result.displacement * 1e3, result.replicas, result.replicas == 1 ? "" : "s");
+    print_out(
         "gamma = {}{}\n", with_error({result.found.gamma, result.found.standard_error, result.replicas}, 4),
         result.found.converged ? ""
                                : " (not yet as sure as asked for: raise --rounds, or use more replicas)");
@@ -79,7 +80,12 @@ void print_calibration(const SceneCalibration& result) {
 void calibrate(CalibrateCommand& command) {
     const auto reference = load_reference(command.reference, ReadWhat::observables);
     const Scene scene = command.scene.read();
-    if (!command.out.empty()) make_folder(command.out);
+    const auto file = std::filesystem::path(command.out) / "calibration.json";
+    std::optional<FolderLock> lock;
+    if (!command.out.empty()) {
+        lock.emplace(open_output_folder(command.out));
+        expect_replaceable(file, FileKind::calibration);
+    }
     Device device(command.device);
     SceneCalibration result;
     {
@@ -92,9 +98,8 @@ void calibrate(CalibrateCommand& command) {
     }
     print_calibration(result);
     if (command.out.empty()) return;
-    const auto file = std::filesystem::path(command.out) / "calibration.json";
-    replace_file(file, json_of(result, scene, reference).dump(2) + "\n");
-    fmt::print("wrote {}\n", file.string());
+    replace_own(file, FileKind::calibration, json_of(result, scene, reference).dump(2) + "\n");
+    print_out("wrote {}\n", file.string());
 }
 
 void add_search_options(CLI::App& sub, CalibrateOptions& options) {

@@ -1,14 +1,13 @@
 // mcdem challenge make
 #include "ensemble/challenge_make.h"
 
-#include <fmt/format.h>
-
 #include "cli/challenge.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
 #include "cli/messages.h"
 #include "cli/progress.h"
 #include "cli/scene_options.h"
+#include "cli/standard_streams.h"
 #include "ensemble/observe_trials.h"
 
 namespace mcdem {
@@ -34,8 +33,8 @@ void make(MakeCommand& command, int& exit_code) {
     try {
         const std::string seal = make_challenge(device, scene, options);
         progress.clear();
-        fmt::print("{}: the challenge is made\ntruth: {}\nits SHA-256: {}\n", command.out,
-                   options.truth.string(), seal);
+        print_out("{}: the challenge is made\ntruth: {}\nits SHA-256: {}\n", command.out,
+                  options.truth.string(), seal);
     } catch (const Interrupted& interrupted) {
         progress.clear();
         spdlog::warn("{}", interrupted.what());

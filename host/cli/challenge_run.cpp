@@ -10,6 +10,7 @@
 #include "cli/messages.h"
 #include "cli/progress.h"
 #include "cli/sharing.h"
+#include "cli/standard_streams.h"
 #include "core/atomic_file.h"
 #include "core/version.h"
 #include "report/diagnosis_json.h"
@@ -60,7 +61,7 @@ void fill_in(RunChallengeCommand& command) {
 }
 
 int report(const RunChallengeCommand& command) {
-    fmt::print("{}: all cases are diagnosed\n", command.out);
+    print_out("{}: all cases are diagnosed\n", command.out);
     return exit_done;
 }
 

@@ -1,15 +1,15 @@
 // mcdem challenge score
 #include "diagnose/challenge_score.h"
 
-#include <fmt/format.h>
-
 #include "cli/challenge.h"
 #include "cli/challenge_tables.h"
 #include "cli/messages.h"
 #include "cli/progress.h"
-#include "core/atomic_file.h"
+#include "cli/standard_streams.h"
 #include "core/errors.h"
+#include "core/output_file.h"
 #include "diagnose/challenge_truth.h"
+#include "io/output_folder.h"
 
 namespace mcdem {
 namespace {
@@ -20,16 +20,21 @@ struct ScoreCommand {
 };
 
 void print(const ChallengeScore& score) {
-    fmt::print("{}\n{}\n", to_text(table_of_merits(score), TableFormat::terminal),
-               to_text(table_of_arms(score), TableFormat::terminal));
+    print_out("{}\n{}\n", to_text(table_of_merits(score), TableFormat::terminal),
+              to_text(table_of_arms(score), TableFormat::terminal));
 }
 
 void draw(const ChallengeScore& score, const std::filesystem::path& folder) {
     try {
-        for (const auto& picture : draw_score(score, folder)) fmt::print("wrote {}\n", picture.string());
+        for (const auto& picture : draw_score(score, folder)) print_out("wrote {}\n", picture.string());
     } catch (const RunError& error) {
         spdlog::warn("no pictures: {}", error.what());
     }
+}
+
+void expect_folder(const std::filesystem::path& answers) {
+    if (!std::filesystem::is_directory(answers))
+        throw InputError(answers.string() + ": must be the folder of the diagnoses, got none");
 }
 
 void score(const ScoreCommand& command) {
@@ -37,6 +42,10 @@ void score(const ScoreCommand& command) {
     const OpenChallenge open = read_open_challenge(folder);
     const Challenge truth = open_truth(
         command.truth.empty() ? folder / "truth.json" : std::filesystem::path(command.truth), open.sealed);
+    expect_folder(out);
+    const FolderLock lock = open_output_folder(out);
+    expect_replaceable(out / "score.json", FileKind::score);
+    expect_replaceable(out / "score.md", FileKind::score_page);
     ChallengeScore score;
     {
         Progress progress(stderr, progress_style(stderr));
@@ -44,9 +53,9 @@ void score(const ScoreCommand& command) {
     }
     for (const std::string& problem : score.not_diagnosed) spdlog::warn("not diagnosed: {}", problem);
     print(score);
-    replace_file(out / "score.json", score_json(score));
-    replace_file(out / "score.md", score_markdown(score));
-    fmt::print("wrote {}\nwrote {}\n", (out / "score.json").string(), (out / "score.md").string());
+    replace_own(out / "score.json", FileKind::score, score_json(score));
+    replace_own(out / "score.md", FileKind::score_page, score_markdown(score));
+    print_out("wrote {}\nwrote {}\n", (out / "score.json").string(), (out / "score.md").string());
     if (!command.no_figures) draw(score, out);
 }
 

@@ -4,6 +4,7 @@
 #include "cli/commands.h"
 #include "cli/crash_hint.h"
 #include "cli/messages.h"
+#include "cli/standard_streams.h"
 #include "core/version.h"
 
 namespace mcdem {
@@ -22,7 +23,8 @@ const char* const first_steps =
     "  mcdem report out/small --out out/small.html        a page to look at, and to send\n"
     "  mcdem COMMAND --help                               more on a command, with examples\n"
     "\n"
-    "Exit codes: 0 done, 1 failed, 2 bad input, 130 interrupted (go on with --resume).\n"
+    "Exit codes: 0 done, 1 failed (also where the output cannot be written), 2 bad input, 130 interrupted (go on\n"
+    "with --resume).\n"
     "Environment: MCDEM_DEVICE chooses the device where --device does not.";
 
 /// What is wrong with the command line, and where to read how it should be.
@@ -45,12 +47,7 @@ int report_usage(const CLI::App& app, const CLI::ParseError& error) {
     return exit_bad_input;
 }
 
-}  // namespace
-
-int run_cli(int argc, const char* const* argv) {
-    set_up_messages();
-    hint_at_crashes();
-    opencl_started = hint_at_crashes;
+int command_line(int argc, const char* const* argv) {
     CLI::App app(about, "mcdem");
     app.footer(first_steps);
     app.require_subcommand(1);
@@ -68,6 +65,16 @@ int run_cli(int argc, const char* const* argv) {
     } catch (const std::exception& error) {
         return report_error(error);
     }
+}
+
+}  // namespace
+
+int run_cli(int argc, const char* const* argv) {
+    set_up_streams();
+    set_up_messages();
+    hint_at_crashes();
+    opencl_started = hint_at_crashes;
+    return exit_code_of_output(command_line(argc, argv));
 }
 
 }  // namespace mcdem

@@ -1,10 +1,10 @@
 // mcdem compare and mcdem figures: runs against a reference, in numbers and in pictures.
-#include <fmt/format.h>
-
 #include "cli/commands.h"
 #include "cli/pictures.h"
 #include "cli/results.h"
+#include "cli/standard_streams.h"
 #include "core/errors.h"
+#include "io/output_folder.h"
 #include "report/tables.h"
 
 namespace mcdem {
@@ -20,21 +20,23 @@ struct CompareCommand {
 };
 
 void print_pictures(const std::vector<std::filesystem::path>& pictures) {
-    for (const auto& picture : pictures) fmt::print("{}\n", picture.string());
+    for (const auto& picture : pictures) print_out("{}\n", picture.string());
 }
 
 void print_comparison(const CompareCommand& command) {
     const auto reference = load_reference(command.reference, ReadWhat::contacts);
     const auto loaded = load_runs(command.runs, ReadWhat::contacts);
+    std::optional<FolderLock> lock;
+    if (!command.out.empty()) lock.emplace(open_output_folder(command.out));
     FigureOptions options = command.figures;
     options.compare.touch_force = command.touch_force;
     for (const auto& setting : loaded.settings)
         options.comparisons.push_back(compare(setting, reference.setting.replicas, options.compare));
-    fmt::print("against {}\n\n{}", reference.setting.label,
-               to_text(table_of_comparisons(options.comparisons),
-                       command.markdown ? TableFormat::markdown : TableFormat::terminal));
+    print_out("against {}\n\n{}", reference.setting.label,
+              to_text(table_of_comparisons(options.comparisons),
+                      command.markdown ? TableFormat::markdown : TableFormat::terminal));
     if (command.out.empty()) return;
-    fmt::print("\n");
+    print_out("\n");
     print_pictures(draw_into(command.out, loaded.settings, reference.setting, options));
 }
 
@@ -46,6 +48,7 @@ void print_figures(const CompareCommand& command) {
         reference = load_reference(command.reference, ReadWhat::contacts);
         setting = reference->setting;
     }
+    const FolderLock lock = open_output_folder(command.out);
     print_pictures(draw_into(command.out, loaded.settings, setting, command.figures));
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "cli/commands.h"
+#include "cli/standard_streams.h"
 #include "scene/keys.h"
 
 namespace mcdem {
@@ -273,7 +274,7 @@ void add_completion(CLI::App& app, int&) {
     sub->callback([&app, shell] {
         std::vector<std::string> names;
         for (const Key& key : keys()) names.emplace_back(key.name);
-        fmt::print("{}", completion_script(command_tree(app), *shell, names));
+        print_out("{}", completion_script(command_tree(app), *shell, names));
     });
 }
 

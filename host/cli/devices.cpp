@@ -5,6 +5,7 @@
 
 #include "cl/device.h"
 #include "cli/commands.h"
+#include "cli/standard_streams.h"
 #include "report/text_table.h"
 
 namespace mcdem {
@@ -22,7 +23,7 @@ void print_devices() {
                               fmt::format("{:.1f} GB", static_cast<double>(device.memory) / 1e9),
                               device.double_precision ? "yes" : "no",
                               device.platform + ", " + device.version});
-    fmt::print("{}", to_text(table, TableFormat::terminal));
+    print_out("{}", to_text(table, TableFormat::terminal));
 }
 
 }  // namespace

@@ -1,19 +1,19 @@
 // mcdem diagnose
-#include <fmt/format.h>
-
 #include "cli/commands.h"
 #include "cli/interrupt.h"
 #include "cli/messages.h"
 #include "cli/progress.h"
 #include "cli/scene_options.h"
-#include "core/atomic_file.h"
+#include "cli/standard_streams.h"
+#include "core/make_folder.h"
+#include "core/output_file.h"
 #include "core/version.h"
 #include "ensemble/diagnose_experiment.h"
-#include "io/folder_lock.h"
-#include "io/result_folder.h"
+#include "io/output_folder.h"
 #include "report/diagnosis_json.h"
 #include "report/diagnosis_page.h"
 #include "report/diagnosis_text.h"
+#include "report/draw_figure.h"
 
 namespace mcdem {
 namespace {
@@ -77,14 +77,17 @@ int run(const DiagnoseCommand& command) {
         const Scene scene = command.scene.read();
         const Experiment experiment = read_experiment(command.experiment);
         const std::filesystem::path folder = command.out;
-        make_result_folder(folder);
-        const FolderLock lock(folder, FolderLock::Use::alone);
+        const FolderLock lock = open_output_folder(folder);
+        if (!command.library.empty()) make_folder_of(command.library);
+        expect_replaceable(folder / "diagnosis.json", FileKind::diagnosis);
+        expect_replaceable(folder / "diagnosis.html", FileKind::page);
+        for (const char* figure : {"where", "which", "how_far"}) expect_replaceable_figure(folder, figure);
         const Diagnosis diagnosis = diagnose(command, scene, experiment);
-        replace_file(folder / "diagnosis.json", diagnosis_json(diagnosis));
-        fmt::print("{}\nwrote\n  {}\n", diagnosis_text(diagnosis), (folder / "diagnosis.json").string());
+        replace_own(folder / "diagnosis.json", FileKind::diagnosis, diagnosis_json(diagnosis));
+        print_out("{}\nwrote\n  {}\n", diagnosis_text(diagnosis), (folder / "diagnosis.json").string());
         write_diagnosis_page(diagnosis, folder / "diagnosis.html");
-        fmt::print("  {}\n", (folder / "diagnosis.html").string());
-        for (const auto& file : draw_diagnosis(diagnosis, folder)) fmt::print("  {}\n", file.string());
+        print_out("  {}\n", (folder / "diagnosis.html").string());
+        for (const auto& file : draw_diagnosis(diagnosis, folder)) print_out("  {}\n", file.string());
         return exit_done;
     } catch (const Interrupted& interrupted) {
         spdlog::warn("{}", interrupted.what());

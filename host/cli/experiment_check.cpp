@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "cli/experiment.h"
+#include "cli/standard_streams.h"
 #include "experiment/check_experiment.h"
 
 namespace mcdem {
@@ -22,16 +23,16 @@ std::string_view title(Severity severity) {
 void print_check(const std::string& folder) {
     const Experiment experiment = read_experiment(folder);
     const ExperimentCheck check = check_experiment(experiment);
-    fmt::print("{}\n", experiment.name);
+    print_out("{}\n", experiment.name);
     for (const Severity severity : {Severity::note, Severity::missing, Severity::odd}) {
         if (check.of(severity).empty()) {
-            if (severity != Severity::note) fmt::print("\n{}: nothing\n", title(severity));
+            if (severity != Severity::note) print_out("\n{}: nothing\n", title(severity));
             continue;
         }
-        fmt::print("\n{}\n", title(severity));
+        print_out("\n{}\n", title(severity));
         for (const Finding& finding : check.findings)
             if (finding.severity == severity)
-                fmt::print("{}", wrapped(fmt::format("  {:<16}", finding.about), finding.text));
+                print_out("{}", wrapped(fmt::format("  {:<16}", finding.about), finding.text));
     }
     const auto needed = needed_to_diagnose(experiment);
     fmt::print("\nwhat `mcdem diagnose` needs beside it{}\n", needed.empty() ? ": nothing" : "");

@@ -5,8 +5,10 @@
 
 #include "cli/experiment.h"
 #include "cli/messages.h"
+#include "cli/standard_streams.h"
 #include "core/errors.h"
 #include "experiment/from_recording.h"
+#include "io/output_folder.h"
 #include "io/results.h"
 #include "scene/packing_fields.h"
 
@@ -47,6 +49,7 @@ Recording read_replica(const FromRunCommand& command) {
     for (std::size_t s = 0; s < recording.scans.size(); ++s)
         recording.scans[s] = reader.read_scan(replica, s);
     recording.label = fmt::format("{}, {}", reader.run().name, recording.label);
+    if (recording.diameter.empty()) throw InputError(command.run + ": holds no grains of this replica");
     if (recording.scans.empty()) throw InputError(command.run + ": holds no scan of this replica");
     if (recording.failure) spdlog::warn("{} stopped early: {}", recording.label, recording.failure->cause);
     return recording;
@@ -105,12 +108,14 @@ void make_experiment(const FromRunCommand& command) {
     Experiment experiment = experiment_from(truth, command.instrument, command.seed);
     experiment.uncertainty = uncertainty;
     if (!command.name.empty()) experiment.name = command.name;
+    const FolderLock lock = open_output_folder(command.out);
+    expect_free(command.out);  // still
     write_experiment(command.out, experiment, command.gzip ? Packed::gzip : Packed::plain);
     std::size_t real = 0, seen = 0;
     for (const Scan& scan : truth.scans) real += scan.contacts.size();
     for (const Scan& scan : experiment.recording.scans) seen += scan.contacts.size();
-    fmt::print("{}: {} frames, {} grains, {} of {} contacts seen\n", command.out,
-               experiment.recording.scans.size(), experiment.recording.diameter.size(), seen, real);
+    print_out("{}: {} frames, {} grains, {} of {} contacts seen\n", command.out,
+              experiment.recording.scans.size(), experiment.recording.diameter.size(), seen, real);
 }
 
 void add_instrument_options(CLI::App& sub, Instrument& instrument) {

@@ -10,11 +10,13 @@
 
 #include "cli/experiment.h"
 #include "cli/messages.h"
+#include "cli/standard_streams.h"
 #include "core/atomic_file.h"
 #include "core/errors.h"
 #include "core/make_folder.h"
 #include "experiment/import_experiment.h"
 #include "experiment/settings.h"
+#include "io/output_folder.h"
 
 namespace mcdem {
 namespace {
@@ -58,9 +60,9 @@ Experiment known_of(const ImportCommand& command, ExperimentProblems& problems) 
 }
 
 void print_entry(const std::string& key, const Guess& guess) {
-    fmt::print("{}", wrapped(fmt::format("  {:<13} {:<18} {:<8}", key,
-                                         fmt::format("{}", fmt::join(guess.words, " + ")), name(guess.sure)),
-                             guess.why));
+    print_out("{}", wrapped(fmt::format("  {:<13} {:<18} {:<8}", key,
+                                        fmt::format("{}", fmt::join(guess.words, " + ")), name(guess.sure)),
+                            guess.why));
 }
 
 /// What each table is taken for, column by column.
@@ -68,22 +70,36 @@ void print_mapping(const Mapping& mapping) {
     for (const MappedTable& table : mapping.tables) {
         const auto more =
             table.files.size() > 1 ? fmt::format(" and {} more", table.files.size() - 1) : std::string();
-        fmt::print("{}{}: {} ({}{}{})\n", table.files.front(), more, name(table.role), name(table.role_sure),
-                   table.role_why.empty() ? "" : ": ", table.role_why);
+        print_out("{}{}: {} ({}{}{})\n", table.files.front(), more, name(table.role), name(table.role_sure),
+                  table.role_why.empty() ? "" : ": ", table.role_why);
         for (const MappingKey& key : mapping_keys(table.role))
             if (const Guess* guess = table.find(key.name)) print_entry(std::string(key.name), *guess);
         for (const auto& [word, guess] : table.walls) print_entry("wall " + word, guess);
         if (!table.aside.empty())
-            fmt::print("{}", wrapped("  left aside   ", fmt::format("{}", fmt::join(table.aside, ", "))));
+            print_out("{}", wrapped("  left aside   ", fmt::format("{}", fmt::join(table.aside, ", "))));
     }
+}
+
+fs::path kept_mapping(const ImportCommand& command) { return fs::path(command.out) / "mapping.toml"; }
+
+/// Whether the mapping lies in its place already, in the user's own words. Throws InputError where another
+/// one does.
+bool keeps_mapping(const ImportCommand& command, const std::string& mapping) {
+    const fs::path kept = kept_mapping(command);
+    if (!fs::exists(kept)) return false;
+    if (text_of_file(kept.string()) == mapping || mapping_text(read_mapping(kept)) == mapping) return true;
+    throw InputError(
+        fmt::format("{}: is another mapping, and is not replaced: give another folder (--out), or remove it",
+                    kept.string()));
 }
 
 /// The mapping for the user to correct, and every problem.
 [[noreturn]] void refuse(const ImportCommand& command, const std::string& mapping,
                          std::vector<std::string> problems, bool wrong_rows) {
-    const std::string file = (fs::path(command.out) / "mapping.toml").string();
+    const std::string file = kept_mapping(command).string();
     make_folder(command.out);
-    replace_file(file, mapping);
+    if (!create_file(file, mapping))
+        throw InputError(fmt::format("{}: another program has just written it", file));
     problems.push_back(
         wrong_rows
             ? fmt::format("nothing is imported: repair the tables, remove {0}, and import again; or put what "
@@ -138,7 +154,8 @@ void write_whole(const ImportCommand& command, const Experiment& experiment) {
     const FolderBeside beside(out);
     write_experiment(beside.path(), experiment, command.gzip ? Packed::gzip : Packed::plain);
     expect_readable(beside.path(), fs::path(command.out).lexically_normal().string());
-    make_folder(out);
+    const FolderLock lock = open_output_folder(out);
+    expect_free(out);  // still
     for (const char* table : {"contacts.csv", "grains.csv", "plate.csv", "experiment.toml"})
         for (const std::string end : {"", ".gz"})
             if (fs::exists(beside.path() / (table + end)))
@@ -148,7 +165,7 @@ void write_whole(const ImportCommand& command, const Experiment& experiment) {
 /// The tables by their mapping, or by a guess that is safe; its text is what `out` keeps.
 std::vector<ImportTable> tables_of(const ImportCommand& command, const Experiment& known,
                                    const ExperimentProblems& settings, std::string& mapping_toml) {
-    const fs::path kept = fs::path(command.out) / "mapping.toml";
+    const fs::path kept = kept_mapping(command);
     if (!command.mapping.empty()) {
         auto tables = read_import_tables(read_mapping(command.mapping), command.tables);
         const Mapping mapping = mapping_of(tables);
@@ -181,6 +198,7 @@ void run_import(const ImportCommand& command) {
     const Experiment known = known_of(command, settings);
     std::string mapping;
     const auto tables = tables_of(command, known, settings, mapping);
+    keeps_mapping(command, mapping);
     const Imported imported = [&] {
         try {
             Imported all = import_tables(tables, known);
@@ -191,14 +209,14 @@ void run_import(const ImportCommand& command) {
             throw;
         }
     }();
-    replace_file(fs::path(command.out) / "mapping.toml", mapping);
+    if (!keeps_mapping(command, mapping)) replace_file(kept_mapping(command), mapping);
     for (const std::string& note : imported.notes) spdlog::warn("{}", note);
     const Recording& recording = imported.experiment.recording;
     std::size_t contacts = 0, measured = 0;
     for (const Scan& scan : recording.scans)
         contacts += scan.contacts.size(), measured += scan.position.empty() ? 0 : 1;
-    fmt::print("{}: {} frames, {} grains in {} of them, {} contacts\n", command.out, recording.scans.size(),
-               recording.diameter.size(), measured, contacts);
+    print_out("{}: {} frames, {} grains in {} of them, {} contacts\n", command.out, recording.scans.size(),
+              recording.diameter.size(), measured, contacts);
 }
 
 }  // namespace

@@ -3,7 +3,10 @@
 #include <fmt/ranges.h>
 
 #include "cli/commands.h"
+#include "cli/standard_streams.h"
 #include "core/errors.h"
+#include "io/output_folder.h"
+#include "io/result_folder.h"
 #include "io/vtk.h"
 #include "io/xyz.h"
 
@@ -20,6 +23,8 @@ void export_run(const ExportCommand& command) {
         throw InputError("export: must be told what to write, with --vtk, --xyz or both");
     if (!std::filesystem::exists(command.run))
         throw InputError(command.run + ": must be a result folder or file, got nothing there");
+    result_files(command.run);  // said before a folder is made where there are none
+    const FolderLock lock = open_output_folder(command.out);
     int files = 0;
     if (command.vtk) files += export_vtk(command.run, command.out);
     if (command.xyz) files += export_xyz(command.run, command.out);
@@ -28,7 +33,7 @@ void export_run(const ExportCommand& command) {
     std::vector<std::string> guides;
     if (command.vtk) guides.push_back(command.out + "/README.txt");
     if (command.xyz) guides.push_back(command.out + "/OVITO.txt");
-    fmt::print("{} files in {}; {} says how to look at them\n", files, command.out, fmt::join(guides, ", "));
+    print_out("{} files in {}; {} says how to look at them\n", files, command.out, fmt::join(guides, ", "));
 }
 
 }  // namespace

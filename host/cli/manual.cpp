@@ -6,9 +6,9 @@
 #include <sstream>
 
 #include "cli/commands.h"
-#include "core/atomic_file.h"
-#include "core/make_folder.h"
+#include "core/output_file.h"
 #include "core/version.h"
+#include "io/output_folder.h"
 
 namespace mcdem {
 namespace {
@@ -107,10 +107,10 @@ void add_manual(CLI::App& app, int&) {
         "  mcdem manual --out out/manual\n"
         "  man -l out/manual/mcdem-run.1");
     sub->callback([&app, folder] {
-        make_folder(*folder);
+        const FolderLock lock = open_output_folder(*folder);
         const std::string version = std::string(version_text).substr(0, std::string(version_text).find(' '));
         for (const auto& [name, text] : manual_pages(command_tree(app), version))
-            replace_file(std::filesystem::path(*folder) / name, text);
+            replace_own(std::filesystem::path(*folder) / name, FileKind::manual, text);
     });
 }
 

@@ -35,6 +35,7 @@ void set_up_messages() {
     auto logger =
         std::make_shared<spdlog::logger>("mcdem", std::make_shared<spdlog::sinks::stderr_sink_mt>());
     logger->set_pattern("mcdem: %v");
+    logger->set_error_handler([](const std::string&) {});  // a message that cannot be written ends nothing
     spdlog::set_default_logger(logger);
 }
 

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "cli/standard_streams.h"
+
 namespace mcdem {
 namespace {
 
@@ -72,19 +74,20 @@ void Progress::draw_bar(double fraction) {
     const int width = std::clamp(columns(out_) - static_cast<int>(text.size()) - 3, 0, 50);
     const int full = static_cast<int>(fraction * width);
     // \033[K: to the end of the line nothing else
-    fmt::print(out_, "\r[{:#<{}}{:-<{}}]{}\033[K", "", full, "", width - full, text);
+    write_text(out_, fmt::format("\r[{:#<{}}{:-<{}}]{}\033[K", "", full, "", width - full, text));
     std::fflush(out_);
     bar_is_there_ = true;
 }
 
 void Progress::print_line(double fraction) {
-    fmt::print(out_, "mcdem: {:.0f} % done{}\n", std::floor(100 * fraction), time_left(fraction));
+    write_text(out_,
+               fmt::format("mcdem: {:.0f} % done{}\n", std::floor(100 * fraction), time_left(fraction)));
     std::fflush(out_);
 }
 
 void Progress::clear() {
     if (!bar_is_there_) return;
-    fmt::print(out_, "\r\033[K");
+    write_text(out_, "\r\033[K");
     std::fflush(out_);
     bar_is_there_ = false;
 }

@@ -9,7 +9,10 @@
 #include "cli/pictures.h"
 #include "cli/report_sources.h"
 #include "cli/results.h"
+#include "cli/standard_streams.h"
 #include "core/errors.h"
+#include "core/make_folder.h"
+#include "core/output_file.h"
 #include "report/diagnosis_json.h"
 #include "report/diagnosis_page.h"
 #include "report/plotting_library.h"
@@ -58,6 +61,8 @@ void add_all_runs(Page& page, const std::vector<std::string>& paths, const Repor
 }
 
 int write_report(const ReportCommand& command) {
+    expect_replaceable(command.out, FileKind::page);
+    make_folder_of(command.out);
     packed_plotting_library();  // said before minutes of reading where it is missing
     std::vector<std::string> runs;
     std::vector<std::pair<std::string, Diagnosis>> diagnoses;
@@ -73,7 +78,7 @@ int write_report(const ReportCommand& command) {
     if (!runs.empty()) add_all_runs(page, runs, command);
     for (const auto& [path, diagnosis] : diagnoses) add_diagnosis(page, diagnosis, path);
     write_page(page, command.out);
-    fmt::print("{}\n", command.out);
+    print_out("{}\n", command.out);
     return exit_done;
 }
 

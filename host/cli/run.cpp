@@ -9,6 +9,7 @@
 #include "cli/scene_options.h"
 #include "cli/sharing.h"
 #include "cli/shell_word.h"
+#include "cli/standard_streams.h"
 #include "core/errors.h"
 #include "core/version.h"
 #include "ensemble/share_run.h"
@@ -77,22 +78,21 @@ bool models_vary(const ModelTable& table) {
 
 void print_summary(const Run& run, const RunSummary& summary, std::size_t failed) {
     const std::size_t replicas = run.recordings.size();
-    fmt::print("{}: {} of {} replica{} done", run.name, replicas - failed, replicas,
-               replicas == 1 ? "" : "s");
-    if (failed > 0) fmt::print(", {} stopped early", failed);
+    print_out("{}: {} of {} replica{} done", run.name, replicas - failed, replicas, replicas == 1 ? "" : "s");
+    if (failed > 0) print_out(", {} stopped early", failed);
     if (summary.grain_steps > 0)
-        fmt::print("; {:.1f} million grain-steps in {} ({:.1f} million/s)", summary.grain_steps * 1e-6,
-                   duration_text(summary.seconds), summary.grain_steps * 1e-6 / summary.seconds);
-    fmt::print("\n");
+        print_out("; {:.1f} million grain-steps in {} ({:.1f} million/s)", summary.grain_steps * 1e-6,
+                  duration_text(summary.seconds), summary.grain_steps * 1e-6 / summary.seconds);
+    print_out("\n");
     const auto models = model_table(group_by_setting(run));
-    if (models_vary(models)) fmt::print("\n{}", to_text(table_of_models(models), TableFormat::terminal));
+    if (models_vary(models)) print_out("\n{}", to_text(table_of_models(models), TableFormat::terminal));
 }
 
 void print_paths(const RunCommand& command, const std::vector<std::filesystem::path>& pictures) {
     const std::filesystem::path folder = command.out;
-    fmt::print("\nwrote\n");
-    for (const auto& file : {run_file(folder), folder / "plate.csv"}) fmt::print("  {}\n", file.string());
-    for (const auto& file : pictures) fmt::print("  {}\n", file.string());
+    print_out("\nwrote\n");
+    for (const auto& file : {run_file(folder), folder / "plate.csv"}) print_out("  {}\n", file.string());
+    for (const auto& file : pictures) print_out("  {}\n", file.string());
 }
 
 /// The exit code of a run whose results lie in the folder.

@@ -1,7 +1,5 @@
 #include "cli/sharing.h"
 
-#include <fmt/format.h>
-
 #include <csignal>
 #include <list>
 #include <thread>
@@ -13,6 +11,7 @@
 #include "cli/ranks.h"
 #include "cli/shell_word.h"
 #include "cli/slurm.h"
+#include "cli/standard_streams.h"
 #include "cli/subprocess.h"
 #include "core/errors.h"
 
@@ -146,8 +145,8 @@ int work_by_slurm(const SharedWork& work, const SharingOptions& options, const s
     if (!work.done()) {
         const std::string number = submit(job);
         if (options.no_wait) {
-            fmt::print("{}: job {}; the same command without --no-wait waits for it\n", work.out.string(),
-                       number);
+            print_out("{}: job {}; the same command without --no-wait waits for it\n", work.out.string(),
+                      number);
             return exit_done;
         }
         const Interrupt interrupt;

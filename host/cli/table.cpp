@@ -1,8 +1,7 @@
 // mcdem table
-#include <fmt/format.h>
-
 #include "cli/commands.h"
 #include "cli/results.h"
+#include "cli/standard_streams.h"
 #include "report/tables.h"
 
 namespace mcdem {
@@ -18,8 +17,8 @@ void print_tables(const TableCommand& command) {
     const auto loaded = load_runs(command.runs, ReadWhat::observables);
     const auto format = command.markdown ? TableFormat::markdown : TableFormat::terminal;
     const auto over = command.over.empty() ? std::nullopt : std::optional(command.over);
-    fmt::print("{}\n", to_text(table_of_models(model_table(loaded.settings, {}, over)), format));
-    fmt::print("{}", to_text(table_of_scaling(loaded.settings), format));
+    print_out("{}\n", to_text(table_of_models(model_table(loaded.settings, {}, over)), format));
+    print_out("{}", to_text(table_of_scaling(loaded.settings), format));
 }
 
 }  // namespace

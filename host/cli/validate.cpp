@@ -5,6 +5,7 @@
 
 #include "cli/commands.h"
 #include "cli/scene_options.h"
+#include "cli/standard_streams.h"
 #include "core/errors.h"
 #include "sim/batch_limits.h"
 
@@ -26,9 +27,9 @@ std::optional<Device> chosen_device(const std::string& choice) {
 void print_memory(const Scene& scene, const std::optional<Device>& device) {
     const FieldMemory memory =
         memory_needed(scene.precision, scene.slots, scene.replicas, packing_sizes(scene.replicas));
-    fmt::print("needs at most {} of memory on the device", memory_text(memory.all));
-    if (device) fmt::print(", {} has {}", device->info().name, memory_text(device->info().memory));
-    fmt::print("\n");
+    print_out("needs at most {} of memory on the device", memory_text(memory.all));
+    if (device) print_out(", {} has {}", device->info().name, memory_text(device->info().memory));
+    print_out("\n");
 }
 
 void print_scene(const SceneOptions& options, const std::string& choice) {
@@ -36,18 +37,18 @@ void print_scene(const SceneOptions& options, const std::string& choice) {
     const auto device = chosen_device(choice);
     if (device) expect_runnable(*device, scene);
     const Protocol& protocol = scene.replicas.front().protocol;
-    fmt::print("{}: good\n", options.file);
-    fmt::print("{}, {} precision; {} cycle{} with {} scans a stroke\n", size_text(scene),
+    print_out("{}: good\n", options.file);
+    print_out("{}, {} precision; {} cycle{} with {} scans a stroke\n", size_text(scene),
                name(scene.precision), protocol.cycles, protocol.cycles == 1 ? "" : "s",
                protocol.scans_per_stroke);
     print_memory(scene, device);
     std::size_t shown = 0;
     for (const auto& replica : scene.replicas) {
         if (++shown > most_labels) {
-            fmt::print("  .. and {} more\n", scene.replicas.size() - most_labels);
+            print_out("  .. and {} more\n", scene.replicas.size() - most_labels);
             break;
         }
-        fmt::print("  {}\n", replica.label);
+        print_out("  {}\n", replica.label);
     }
 }
 

@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "core/errors.h"
 
@@ -12,6 +15,26 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 constexpr int challenge_format = 1;
+
+/// The name of a case names files of its results too: nothing but a name, and none that these have besides.
+bool is_name_of_a_case(const std::string& name) {
+    return name.starts_with("case_") && name.size() <= 100 &&
+           std::ranges::all_of(name, [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-'; });
+}
+
+void expect_names(const OpenChallenge& challenge, const std::filesystem::path& file) {
+    std::set<std::string> seen;
+    std::vector<std::string> problems;
+    for (const OpenCase& c : challenge.cases) {
+        if (!is_name_of_a_case(c.folder))
+            problems.push_back(
+                fmt::format("{}: folder must be a name such as case_0001, without a path, got \"{}\"",
+                            file.string(), c.folder));
+        if (!seen.insert(c.folder).second)
+            problems.push_back(fmt::format("{}: folder {} is there twice", file.string(), c.folder));
+    }
+    if (!problems.empty()) throw InputError(problems);
+}
 
 }  // namespace
 
@@ -43,6 +66,7 @@ OpenChallenge read_open_challenge(const std::filesystem::path& folder) {
             if (!c.at("candidates").is_null())
                 challenge.cases.back().candidates = c.at("candidates").get<std::vector<std::string>>();
         }
+        expect_names(challenge, file);
         return challenge;
     } catch (const nlohmann::json::exception& error) {
         throw InputError(fmt::format("{}: not a challenge ({})", file.string(), error.what()));

@@ -14,6 +14,7 @@
 #include "diagnose/challenge_truth.h"
 #include "ensemble/challenge_realities.h"
 #include "ensemble/observe_trials.h"
+#include "io/output_folder.h"
 
 namespace mcdem {
 namespace {
@@ -150,11 +151,20 @@ private:
         const fs::path open_file = options_.folder / "challenge.json";
         const std::string open = open_text(seal);
         if (fs::exists(open_file) && text_of(open_file) != open) throw of_another_challenge(open_file);
-        make_folder(options_.folder);
-        if (options_.truth.has_parent_path()) make_folder(options_.truth.parent_path());
-        if (!is_sealed_) replace_file(options_.truth, truth);
+        if (!fs::exists(open_file)) expect_no_cases();
+        if (!is_sealed_ && !create_file(options_.truth, truth)) throw of_another_challenge(options_.truth);
         if (!fs::exists(open_file)) replace_file(open_file, open);
         return seal;
+    }
+
+    /// Folders that lie there before the challenge are others'.
+    void expect_no_cases() const {
+        for (const ChallengeCase& c : challenge_.cases)
+            if (fs::exists(options_.folder / c.folder))
+                throw InputError(fmt::format(
+                    "{}: is there without a challenge.json beside it, and is not replaced: give another "
+                    "folder (--out)",
+                    (options_.folder / c.folder).string()));
     }
 
     std::string open_text(const std::string& seal) const {
@@ -186,6 +196,11 @@ private:
 }  // namespace
 
 std::string make_challenge(Device& device, const Scene& scene, const ChallengeOptions& options) {
+    if (fs::weakly_canonical(options.truth) == fs::weakly_canonical(options.folder / "challenge.json"))
+        throw InputError(options.truth.string() +
+                         ": is what may be known of the challenge: give another file for the truth");
+    const FolderLock lock = open_output_folder(options.folder);
+    make_folder_of(options.truth);
     return Making(device, scene, options).all();
 }
 

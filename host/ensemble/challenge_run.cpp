@@ -12,10 +12,12 @@
 #include "core/atomic_file.h"
 #include "core/errors.h"
 #include "core/make_folder.h"
+#include "core/output_file.h"
 #include "core/sha256.h"
 #include "diagnose/challenge_evidence.h"
 #include "diagnose/challenge_files.h"
 #include "ensemble/agreement.h"
+#include "ensemble/library_origin.h"
 #include "ensemble/make_packings.h"
 #include "io/folder_lock.h"
 #include "io/result_folder.h"
@@ -38,6 +40,13 @@ const char* const findings_folder = "findings";
 fs::path claims_folder(const fs::path& out) { return out / "claims"; }
 fs::path case_file(const fs::path& folder, const OpenCase& c) { return folder / (c.folder + ".json"); }
 
+std::string text_of(const fs::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+std::size_t grains_of(const Experiment& experiment) { return experiment.recording.diameter.size(); }
+
 class Running {
 public:
     Running(Device& device, const Scene& scene, const ChallengeRunOptions& options)
@@ -48,6 +57,11 @@ public:
         if (Sha256().add(scene.text).hex() != challenge_.scene)
             throw InputError(fmt::format("{}: is not the scene that {} was made with", scene.name,
                                          (options.challenge / "challenge.json").string()));
+        for (const OpenCase& c : challenge_.cases)
+            if (!fs::exists(options.challenge / c.folder / "experiment.toml"))
+                throw InputError(fmt::format("{}: {} is not made yet: go on with `mcdem challenge make`",
+                                             options.challenge.string(), c.folder));
+        make_folder_of(options.library.file);  // now, not after the library is made
     }
 
     void all() {
@@ -99,8 +113,7 @@ private:
     }
     Common common() const {
         Common all = common_of(device_, scene_, options_.program);
-        std::ifstream open_part(options_.challenge / "challenge.json", std::ios::binary);
-        all["challenge"] = Sha256().add(std::string(std::istreambuf_iterator<char>(open_part), {})).hex();
+        all["challenge"] = Sha256().add(text_of(options_.challenge / "challenge.json")).hex();
         const ChallengeLibrary& library = options_.library;
         all["options"] = fmt::format(
             "replicates {}, confirmations {}, library {} packings, {} replicates, {} pairs, of {}, seed {}",
@@ -139,11 +152,16 @@ private:
         return grid;
     }
 
+    Question question_of(const Experiment& experiment) const {
+        const Model model = model_of(scene_, experiment);
+        return {scene_, grid_of_scene(experiment), reference_material(model), model.replica.protocol.discard,
+                options_.program};
+    }
+
     Library new_library(const Experiment& experiment) {
         Model model = model_of(scene_, experiment);
         model.replica.plate = scene_.replicas.front().plate;
-        const Question question{scene_, grid_of_scene(experiment), reference_material(model),
-                                model.replica.protocol.discard, options_.program};
+        const Question question = question_of(experiment);
         LibraryPlan plan;
         plan.packings = other_packings(model.replica);
         plan.replicates = options_.library.replicates;
@@ -162,14 +180,25 @@ private:
                              trials);
     }
 
-    /// Reads the library, or makes it as the first case is measured; a copy goes to the results.
+    /// Reads the library, or makes it as the first case is measured; a copy goes to the results. Throws
+    /// InputError where it was made from something else, or the results are of another one.
     void make_library(const OpenCase& first) {
         const fs::path& file = options_.library.file;
+        const Experiment experiment = read_experiment(options_.challenge / first.folder);
         if (!fs::exists(file)) {
-            write_library(file, new_library(read_experiment(options_.challenge / first.folder)));
+            create_file(file, library_text(new_library(experiment)));  // or another program was quicker
         }
         library_ = read_library(file);
-        write_library(library_file(), library_);
+        expect_origin(
+            library_,
+            library_origin(question_of(experiment), model_of(scene_, experiment), grains_of(experiment)),
+            file);
+        const std::string text = library_text(library_);
+        if (!create_file(library_file(), text) && text_of(library_file()) != text)
+            throw InputError(fmt::format(
+                "{}: is another library than {}, and cases there were diagnosed with it: give that "
+                "library, or another folder (--out)",
+                library_file().string(), file.string()));
     }
 
     std::vector<std::string> candidates_of(const OpenCase& c) const {
@@ -231,6 +260,7 @@ private:
 
 /// What lies in the folder is looked at once those cannot come any more whom the lock keeps away.
 FolderLock lock_folder(const fs::path& out, FolderLock::Use use) {
+    expect_no_experiment(out);
     FolderLock lock(out, use);
     if (const fs::path file = file_of_a_run(out); !file.empty())
         throw InputError(
@@ -254,6 +284,7 @@ void expect_no_challenge(const fs::path& folder) {
 
 void run_challenge(Device& device, const Scene& scene, const ChallengeRunOptions& options) {
     Running running(device, scene, options);
+    expect_no_experiment(options.out);
     make_result_folder(options.out);
     const FolderLock lock =
         lock_folder(options.out, options.share ? FolderLock::Use::shared : FolderLock::Use::alone);

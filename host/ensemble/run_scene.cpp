@@ -3,7 +3,7 @@
 #include <chrono>
 
 #include "core/errors.h"
-#include "ensemble/challenge_run.h"
+#include "core/output_file.h"
 #include "ensemble/make_packings.h"
 #include "ensemble/run_state.h"
 #include "io/csv.h"
@@ -151,9 +151,10 @@ ResultFolder open_folder(const RunOptions& options) {
 }  // namespace
 
 RunSummary run_scene(Device& device, const Scene& scene, const RunOptions& options) {
+    expect_no_experiment(options.folder);
     if (!std::filesystem::exists(run_file(options.folder))) expect_runnable(device, scene);
     ResultFolder folder = open_folder(options);
-    expect_no_challenge(folder.path());
+    expect_room_for_run(folder.path());
     if (folder.is_finished()) {
         expect_scene_of(folder.path(), scene);
         close_folder(folder.path());

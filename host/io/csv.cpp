@@ -4,7 +4,7 @@
 
 #include <iterator>
 
-#include "core/atomic_file.h"
+#include "core/output_file.h"
 
 namespace mcdem {
 namespace {
@@ -63,7 +63,7 @@ void write_csv(const Run& run, const std::filesystem::path& folder) {
                            scan.elastic_energy, scan.settled);
         }
     }
-    replace_file(folder / "plate.csv", std::string_view(text.data(), text.size()));
+    replace_own(folder / "plate.csv", FileKind::run_table, std::string_view(text.data(), text.size()));
 }
 
 }  // namespace mcdem

@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "core/atomic_file.h"
 #include "core/make_folder.h"
+#include "core/output_file.h"
 #include "io/grain_loads.h"
 #include "io/hdf5.h"
 #include "io/results.h"
@@ -109,7 +109,7 @@ int export_scan(const Recording& recording, std::size_t replica, const Scan& sca
 
 void start_folder(const std::filesystem::path& folder) {
     make_folder(folder);
-    replace_file(folder / "README.txt", readme);
+    replace_own(folder / "README.txt", FileKind::guide, readme);
 }
 
 }  // namespace
@@ -125,7 +125,7 @@ void write_vtk_grains(const std::filesystem::path& file, const Recording& record
         contacts[i] = loads[i].contacts;
         force[i] = loads[i].force_magnitude;
     }
-    replace_file(file, [&](const std::filesystem::path& temporary) {
+    replace_own(file, FileKind::vtk, [&](const std::filesystem::path& temporary) {
         Grid grid(temporary, vtk_vertex, 1, points);
         grid.point_data("grain", number);
         grid.point_data("diameter", recording.diameter);
@@ -151,7 +151,7 @@ void write_vtk_contacts(const std::filesystem::path& file, const Recording& reco
         grain.push_back(contact.grain);
         partner.push_back(contact.partner);
     }
-    replace_file(file, [&](const std::filesystem::path& temporary) {
+    replace_own(file, FileKind::vtk, [&](const std::filesystem::path& temporary) {
         Grid grid(temporary, vtk_line, 2, points);
         grid.point_data("force_magnitude",
                         end_magnitude);  // at the ends too: tubes take their radius from points

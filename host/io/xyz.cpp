@@ -6,9 +6,9 @@
 #include <fstream>
 #include <functional>
 
-#include "core/atomic_file.h"
 #include "core/errors.h"
 #include "core/make_folder.h"
+#include "core/output_file.h"
 #include "io/grain_loads.h"
 #include "io/results.h"
 
@@ -96,18 +96,20 @@ int export_replica(const Recording& recording, std::size_t number, const std::fi
     const auto grains = folder / fmt::format("replica_{:05}.xyz", number);
     const auto contacts = folder / fmt::format("replica_{:05}.contacts.dump", number);
     bool any = false;
-    replace_file(grains, [&](const auto& temporary) { any = write_frames(temporary, append_grains); });
+    replace_own(grains, FileKind::xyz,
+                [&](const auto& temporary) { any = write_frames(temporary, append_grains); });
     if (!any) {
         std::filesystem::remove(grains);
         return 0;
     }
-    replace_file(contacts, [&](const auto& temporary) { write_frames(temporary, append_contacts); });
+    replace_own(contacts, FileKind::dump,
+                [&](const auto& temporary) { write_frames(temporary, append_contacts); });
     return 2;
 }
 
 void start_folder(const std::filesystem::path& folder) {
     make_folder(folder);
-    replace_file(folder / "OVITO.txt", how_to_look);
+    replace_own(folder / "OVITO.txt", FileKind::guide, how_to_look);
 }
 
 }  // namespace

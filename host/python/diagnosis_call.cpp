@@ -5,10 +5,11 @@
 
 #include <algorithm>
 
-#include "core/atomic_file.h"
 #include "core/errors.h"
+#include "core/output_file.h"
 #include "core/version.h"
 #include "ensemble/diagnose_experiment.h"
+#include "io/output_folder.h"
 #include "python/bindings.h"
 #include "python/watch.h"
 #include "report/diagnosis_json.h"
@@ -40,11 +41,12 @@ std::string diagnose_into(const Scene& scene, const std::filesystem::path& folde
                           const DiagnoseOptions& options, const std::filesystem::path& experiment,
                           const std::string& choice, bool page) {
     const Experiment measured = read_experiment(experiment);
+    const FolderLock lock = open_output_folder(folder);
     Device device(choice);
     const Diagnosis diagnosis = diagnose_experiment(device, scene, measured, options);
     const std::string text = diagnosis_json(diagnosis);
-    replace_file(folder / "diagnosis.json", text);
-    if (page) write_diagnosis_page(diagnosis, folder);
+    replace_own(folder / "diagnosis.json", FileKind::diagnosis, text);
+    if (page) write_diagnosis_page(diagnosis, folder / "diagnosis.html");
     return text;
 }
 

@@ -5,6 +5,7 @@
 
 #include "core/atomic_file.h"
 #include "core/errors.h"
+#include "core/output_file.h"
 #include "report/gnuplot.h"
 
 namespace mcdem {
@@ -34,14 +35,26 @@ private:
 
 }  // namespace
 
+void expect_replaceable_figure(const std::filesystem::path& folder, const std::string& name) {
+    const auto script = folder / (name + ".gp");
+    expect_replaceable(script, FileKind::script);
+    if (std::filesystem::exists(script)) return;
+    for (const char* ending : {".csv", ".png", ".svg"})
+        if (const auto file = folder / (name + ending); std::filesystem::exists(file))
+            throw InputError(
+                file.string() + ": was not drawn by mcdem (" + script.filename().string() +
+                " is not beside it), and is not replaced: give another place (--out), or remove it first");
+}
+
 std::vector<std::filesystem::path> draw_figure(const Figure& figure, const std::filesystem::path& folder) {
+    expect_replaceable_figure(folder, figure.name);
     const DrawingFolder drawing(folder);
     const auto write = [&](const std::string& ending, const std::string& text) {
         std::ofstream(drawing.path() / (figure.name + ending)) << text;
         replace_file(folder / (figure.name + ending), text);
     };
+    write(".gp", sealed_script(figure.script));  // first: by it the others are known
     write(".csv", figure.data);
-    write(".gp", figure.script);
     gnuplot::run(drawing.path(), figure.name + ".gp");
     std::vector<std::filesystem::path> pictures;
     for (const char* ending : {".png", ".svg"}) {

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "core/atomic_file.h"
+#include "core/output_file.h"
 #include "core/sha256.h"
 #include "report/html.h"
 #include "report/labels.h"
@@ -67,6 +67,7 @@ std::string page_script() {
 
 std::string head(const std::string& title, const std::string& script) {
     return "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+           "<meta name=\"generator\" content=\"mcdem\">\n"
            "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
            "<meta http-equiv=\"Content-Security-Policy\" content=\"" +
            policy(script) + "\">\n<title>" + html_text(title) + "</title>\n<style>\n" +
@@ -172,7 +173,7 @@ std::string Page::html(const std::string& packed_library) const {
 }
 
 void write_page(const Page& page, const std::filesystem::path& file) {
-    replace_file(file, page.html(packed_plotting_library()));
+    replace_own(file, FileKind::page, page.html(packed_plotting_library()));
 }
 
 }  // namespace mcdem

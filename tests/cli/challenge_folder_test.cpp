@@ -1,9 +1,9 @@
 // One folder, one work: who comes where a challenge is answered, or to answer one where a run is, is refused.
-#include <csignal>
 #include <memory>
-#include <thread>
+#include <nlohmann/json.hpp>
 
 #include "cli/tiny_challenge.h"
+#include "core/sha256.h"
 #include "io/parts.h"
 #include "io/result_folder.h"
 
@@ -31,12 +31,10 @@ protected:
         words.insert(words.end(), more.begin(), more.end());
         return words;
     }
-    /// A challenge stopped in the middle: it holds its folder until it is let go on.
-    std::unique_ptr<Child> stopped_challenge(const Words& more = {}) const {
-        auto child = std::make_unique<Child>(folder_.path, challenge_words(more));
-        while (child->is_running() && !fs::exists(path("out/findings")))
-            std::this_thread::sleep_for(std::chrono::milliseconds(1));
-        child->send(SIGSTOP);
+    /// A challenge held in the middle: it has its folder until it is let go on.
+    std::unique_ptr<Child> held_challenge(const Words& more = {}) const {
+        auto child = std::make_unique<Child>(folder_.path, challenge_words(more), held_after(100));
+        wait_until_held(*child);
         return child;
     }
     void expect_refused(const Words& words, const std::string& problem) const {
@@ -45,26 +43,93 @@ protected:
 };
 
 TEST_F(ChallengeFolderTest, WhereOneProgramAnswersAChallenge) {
-    const auto one = stopped_challenge();
+    const auto one = held_challenge();
     expect_refused(challenge_words(), alone);
     expect_refused(run_words("out"), alone);
     for (const char* how : {"--worker", "--device=all"}) {
         expect_refused(challenge_words({how}), not_shared);
         expect_refused(run_words("out", {how}), not_shared);
     }
-    one->send(SIGCONT);
+    let_go_on(*one);
     expect_done(one->wait());
     for (const Words& more : {Words{}, {"--resume"}, {"--worker"}, {"--device=all"}})
         expect_refused(run_words("out", more), "holds the answers to a challenge");
     EXPECT_TRUE(file_of_a_run(path("out")).empty());
 }
 
+TEST_F(ChallengeFolderTest, OneProgramMakesAChallenge) {
+    const Words words{"challenge", "make",      "tiny.toml", "--out",        "other", "--none",
+                      "1",         "--pairs",   "0",         "--per-effect", "0",     "--unknown",
+                      "0",         "--outside", "0",         "--packings",   "2"};
+    Child one(folder_.path, words, held_after(100));
+    wait_until_held(one);
+    expect_refused(words, alone);
+    expect_refused(run_words("other"), alone);
+    let_go_on(one);
+    expect_done(one.wait());
+}
+
+TEST_F(ChallengeFolderTest, NothingIsWrittenOutsideTheFolder) {
+    const std::string challenge = bytes_of_file(path("challenge/challenge.json"));
+    for (const std::string& name :
+         {path("config").string(), std::string("../config"), std::string("case_1/../../config"),
+          std::string("sub/case_0001"), std::string("library"), std::string(".."), std::string()}) {
+        std::string other = challenge;
+        other.replace(other.find("case_0001"), 9, name);
+        std::ofstream(path("challenge/challenge.json")) << other;
+        expect_refused(challenge_words(), "challenge.json: folder must be a name such as case_0001");
+        EXPECT_FALSE(fs::exists(path("out")));
+    }
+}
+
+TEST_F(ChallengeFolderTest, IsNotAnsweredBeforeItIsMade) {
+    fs::remove(path("challenge/case_0001/experiment.toml"));
+    expect_refused(challenge_words(), "challenge: case_0001 is not made yet");
+}
+
+TEST_F(ChallengeFolderTest, WhatLiesThereIsNoCaseOfIt) {
+    fs::create_directories(path("other/case_0001"));
+    std::ofstream(path("other/case_0001/contacts.csv")) << "measured";
+    Words words{"challenge", "make",      "tiny.toml", "--out",        "other", "--none",
+                "1",         "--pairs",   "0",         "--per-effect", "0",     "--unknown",
+                "0",         "--outside", "0",         "--packings",   "2"};
+    expect_refused(words, "case_0001: is there without a challenge.json beside it, and is not replaced");
+    EXPECT_EQ(bytes_of_file(path("other/case_0001/contacts.csv")), "measured");
+    words.insert(words.end(), {"--truth", "other/../other/challenge.json"});
+    expect_refused(words, "give another file for the truth");
+    words.back() = "small.toml";
+    expect_refused(words, "not the truth of a challenge");
+    EXPECT_EQ(bytes_of_file(path("small.toml")), small_scene_text);
+}
+
+TEST_F(ChallengeFolderTest, ALibraryOfAnotherSceneIsRefusedBeforeAnyWork) {
+    Words words = challenge_words();
+    expect_done(mcdem(words));
+    auto library = nlohmann::json::parse(bytes_of_file(path("library.json")));
+    for (const auto& [option, value] : {std::pair{"--out", "second"}, {"--library", "changed.json"}})
+        *(std::ranges::find(words, option) + 1) = value;
+    library["origin"]["grains.friction"] = "0.9";
+    std::string origin;
+    for (const auto& [name, value] : library["origin"].items())
+        origin += name + "=" + value.get<std::string>() + "\n";
+    library["origin_sha256"] = Sha256().add(origin).hex();
+    std::ofstream(path("changed.json")) << library;
+    expect_refused(words, "changed.json: was made with grains.friction = 0.9, needed is ");
+    *(std::ranges::find(words, "--out") + 1) = "out";
+    fs::remove(path("out/case_0001.json"));
+    library["provenance"]["device"] = "another";
+    library["origin"] = nlohmann::json::parse(bytes_of_file(path("library.json")))["origin"];
+    library["origin_sha256"] = nlohmann::json::parse(bytes_of_file(path("library.json")))["origin_sha256"];
+    std::ofstream(path("changed.json")) << library;
+    expect_refused(words, "out/library.json: is another library than changed.json");
+}
+
 TEST_F(ChallengeFolderTest, WhereProgramsShareAChallenge) {
-    const auto one = stopped_challenge({"--worker"});
+    const auto one = held_challenge({"--worker"});
     expect_refused(challenge_words(), shared);
     expect_refused(run_words("out"), shared);
     expect_refused(run_words("out", {"--worker"}), "holds the answers to a challenge");
-    one->send(SIGCONT);
+    let_go_on(*one);
     expect_done(one->wait());
     EXPECT_TRUE(fs::exists(path("out/case_0001.json")));
     EXPECT_TRUE(file_of_a_run(path("out")).empty());

@@ -199,5 +199,42 @@ TEST_F(ExperimentCommandTest, IsDiagnosedByOneProgramAFolder) {
     expect_bad_input(mcdem(words), "other programs share work there");
 }
 
+TEST_F(ExperimentCommandTest, ARunWithoutGrainsIsNone) {
+    run("a");
+    mcdem::Run bare = read_run(path("a"));
+    bare.recordings.resize(1);
+    bare.recordings[0].diameter.clear();
+    for (Scan& scan : bare.recordings[0].scans) {
+        scan.position.clear();
+        scan.contacts.clear();
+    }
+    write_run(path("bare.h5"), bare);
+    expect_done(mcdem({"table", "bare.h5"}));
+    expect_bad_input(mcdem({"experiment", "from-run", "bare.h5", "--out", "e"}),
+                     "bare.h5: holds no grains of this replica");
+    EXPECT_FALSE(fs::exists(path("e")));
+}
+
+TEST_F(ExperimentCommandTest, ALibraryOfAnotherSceneIsRefused) {
+    run("a");
+    expect_done(from_run("e", {"--replica", "elastic_sphere"}));
+    const auto diagnose = [&](const std::string& friction) {
+        return mcdem({"diagnose",        "small.toml",
+                      "--experiment",    "e",
+                      "--out",           "d",
+                      "--library",       "new/l.json",
+                      "--replicates",    "8",
+                      "--pairs",         "2",
+                      "--confirmations", "0",
+                      "--candidates",    "adhesion",
+                      "--set",           "contact.model=elastic_sphere",
+                      "--set",           "grains.friction=" + friction});
+    };
+    expect_done(diagnose("0.03"));
+    expect_done(diagnose("0.03"));
+    expect_bad_input(diagnose("0.9"), "new/l.json: was made with grains.friction = 0.03, needed is 0.9");
+    EXPECT_THAT(diagnose("0.9").err, HasSubstr("give another file for --library"));
+}
+
 }  // namespace
 }  // namespace mcdem

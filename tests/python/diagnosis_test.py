@@ -34,8 +34,9 @@ class Diagnoses(unittest.TestCase):
 
     def test_equals_the_file_and_the_program(self):
         told = []
-        said = mcdem.diagnose(self.scene, self.folder / "measured", self.folder / "out", **FEW,
+        said = mcdem.diagnose(self.scene, self.folder / "measured", self.folder / "out", **{**FEW, "page": True},
                               progress=lambda stage, fraction: told.append((stage, fraction)))
+        self.assertIn("diagnosis", (self.folder / "out/diagnosis.html").read_text().lower())
         self.assertEqual(said, json.loads((self.folder / "out/diagnosis.json").read_text()))
         self.assertIn(said["verdict"], ("no_gap", "effect", "group", "unknown_effect", "calibration_suspect"))
         self.assertEqual({one["effect"] for one in said["ranking"]},

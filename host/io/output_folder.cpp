@@ -1,0 +1,16 @@
+#include "io/output_folder.h"
+
+#include "core/output_file.h"
+#include "io/result_folder.h"
+
+namespace mcdem {
+
+FolderLock open_output_folder(const std::filesystem::path& folder) {
+    expect_no_experiment(folder);
+    make_result_folder(folder);
+    FolderLock lock(folder, FolderLock::Use::alone);
+    expect_no_experiment(folder);  // made by another program meanwhile
+    return lock;
+}
+
+}  // namespace mcdem

@@ -1,0 +1,155 @@
+// Standard output and error that cannot be written.
+#include <fcntl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+
+#include "cli/cli_test.h"
+#include "cli/progress.h"
+#include "cli/subprocess.h"
+
+namespace mcdem {
+namespace {
+
+using testing::HasSubstr;
+namespace fs = std::filesystem;
+
+class StreamsTest : public CliTest {
+protected:
+    /// Of bash, in the folder; the program is $M.
+    ProgramEnd shell(const std::string& script) const {
+        return *output_of({"bash", "-c", "cd " + folder_.path.string() + "; M=" MCDEM_BINARY "; " + script});
+    }
+    std::string result(const std::string& out) const { return bytes_of_file(path(out) / "run.h5"); }
+};
+
+const std::string run_into = "$M run small.toml --no-figures --out ";
+
+TEST_F(StreamsTest, AFullOrClosedStandardErrorEndsNoRun) {
+    expect_done(mcdem(run_words("whole")));
+    EXPECT_EQ(shell(run_into + "full 2>/dev/full").exit_code, 0);
+    EXPECT_EQ(shell(run_into + "closed 2>&- <&-").exit_code, 0);
+    for (const char* out : {"full", "closed"}) EXPECT_TRUE(result(out) == result("whole")) << out;
+}
+
+TEST_F(StreamsTest, ResultsThatCannotBePrintedAreAFailureAndTheRunIsKept) {
+    expect_done(mcdem(run_words("whole")));
+    for (const std::string command :
+         {"table whole", "--help", "run --help", "completion bash", "--version", "devices"}) {
+        const auto end = shell("$M " + command + " 2>&1 >/dev/full");
+        EXPECT_EQ(end.exit_code, 1) << command;
+        EXPECT_THAT(end.out, HasSubstr("mcdem: standard output cannot be written")) << command;
+    }
+    EXPECT_THAT(shell("$M table whole 2>&1 >/dev/full").out, HasSubstr("No space left on device"));
+    EXPECT_EQ(shell("$M table whole >&-").exit_code, 1);
+    for (const std::string to : {"/dev/full", "&-"}) {
+        EXPECT_EQ(shell("rm -rf out; " + run_into + "out >" + to).exit_code, 1) << to;
+        EXPECT_TRUE(result("out") == result("whole")) << to;
+    }
+}
+
+TEST_F(StreamsTest, APipeWithoutAReaderIsAFailureAndNoSignal) {
+    const auto end = shell("exec 3> >(:); wait $!; $M --help 2>&1 >&3");
+    EXPECT_EQ(end.signal, 0);
+    EXPECT_EQ(end.exit_code, 1);
+    EXPECT_THAT(end.out, HasSubstr("standard output cannot be written: Broken pipe"));
+    expect_done(mcdem(run_words("whole")));
+    EXPECT_EQ(shell("exec 3> >(:); wait $!; " + run_into + "out 2>&3").exit_code, 0);
+    EXPECT_TRUE(result("out") == result("whole"));
+}
+
+TEST_F(StreamsTest, ALimitOfTheFileSizeIsAnErrorAndNoSignal) {
+    expect_done(mcdem(run_words("whole")));
+    const auto exported = shell("ulimit -c 0; ulimit -f 8; $M export whole --vtk --out view 2>&1");
+    EXPECT_EQ(exported.signal, 0);
+    EXPECT_EQ(exported.exit_code, 1) << exported.out;
+    EXPECT_THAT(exported.out, HasSubstr("File too large"));
+    const auto end = shell("ulimit -c 0; ulimit -f 8; " + run_into + "out 2>&1");
+    EXPECT_EQ(end.signal, 0);
+    EXPECT_EQ(end.exit_code, 1) << end.out;
+    EXPECT_THAT(end.out, HasSubstr("raise it (`ulimit -f`)"));
+    EXPECT_FALSE(fs::exists(path("out/run.h5")));
+    expect_done(mcdem(run_words("out", {"--resume"})));
+    EXPECT_TRUE(result("out") == result("whole"));
+}
+
+/// The program on a terminal of its own, with SIGHUP ignored.
+class OnATerminal {
+public:
+    OnATerminal(const fs::path& folder, std::vector<std::string> words) {
+        terminal_ = ::posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);
+        EXPECT_TRUE(::grantpt(terminal_) == 0 && ::unlockpt(terminal_) == 0);
+        const std::string name = ::ptsname(terminal_);
+        words.insert(words.begin(), MCDEM_BINARY);
+        std::vector<char*> arguments;
+        for (auto& word : words) arguments.push_back(word.data());
+        arguments.push_back(nullptr);
+        process_ = ::fork();
+        if (process_ != 0) return;
+        ::setsid();
+        ::signal(SIGHUP, SIG_IGN);
+        const int end = ::open(name.c_str(), O_RDWR);  // its controlling terminal
+        for (int stream = 0; stream < 3; ++stream) ::dup2(end, stream);
+        if (end > 2) ::close(end);
+        if (::chdir(folder.c_str()) == 0) ::execv(MCDEM_BINARY, arguments.data());
+        ::_exit(127);
+    }
+    ~OnATerminal() {
+        if (process_ > 0) ::kill(process_, SIGKILL), ::waitpid(process_, nullptr, 0);
+        if (terminal_ >= 0) ::close(terminal_);
+    }
+    /// Waits for its first words, and holds it there; false where it was at its end already.
+    bool hold_after_first_words() {
+        char some;
+        if (::read(terminal_, &some, 1) != 1) return false;
+        ::kill(process_, SIGSTOP);
+        int status = 0;
+        if (::waitpid(process_, &status, WUNTRACED) == process_ && WIFSTOPPED(status)) return true;
+        process_ = -1;
+        return false;
+    }
+    void take_away() { ::close(std::exchange(terminal_, -1)); }
+    int go_on() {
+        int status = 0;
+        ::kill(process_, SIGCONT);
+        ::waitpid(std::exchange(process_, -1), &status, 0);
+        return status;
+    }
+
+private:
+    int terminal_ = -1;
+    pid_t process_ = -1;
+};
+
+TEST_F(StreamsTest, ATerminalThatIsGoneEndsNoRun) {
+    expect_done(mcdem(run_words("whole")));
+    for (int attempt = 0;; ++attempt) {
+        const auto out = "out" + std::to_string(attempt);
+        OnATerminal run(folder_.path, run_words(out));
+        if (!run.hold_after_first_words()) continue;  // quicker than this test: once more
+        run.take_away();
+        const int status = run.go_on();
+        EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
+        EXPECT_TRUE(result(out) == result("whole"));
+        break;
+    }
+}
+
+TEST(ProgressStream, ThatIsFullIsNoError) {
+    for (const auto style : {ProgressStyle::bar, ProgressStyle::lines}) {
+        std::FILE* full = std::fopen("/dev/full", "w");
+        ASSERT_TRUE(full);
+        Progress::Clock::time_point now{};
+        {
+            Progress progress(full, style, [&] { return now; });
+            for (int k = 0; k < 10; ++k, now += std::chrono::seconds(20))
+                EXPECT_NO_THROW(progress.show(0.1 * k));
+            EXPECT_TRUE(std::ferror(full));
+        }
+        std::fclose(full);
+    }
+}
+
+}  // namespace
+}  // namespace mcdem
