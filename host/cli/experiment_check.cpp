@@ -35,8 +35,8 @@ void print_check(const std::string& folder) {
                 print_out("{}", wrapped(fmt::format("  {:<16}", finding.about), finding.text));
     }
     const auto needed = needed_to_diagnose(experiment);
-    fmt::print("\nwhat `mcdem diagnose` needs beside it{}\n", needed.empty() ? ": nothing" : "");
-    for (const std::string& text : needed) fmt::print("{}", wrapped("  ", text));
+    print_out("\nwhat `mcdem diagnose` needs beside it{}\n", needed.empty() ? ": nothing" : "");
+    for (const std::string& text : needed) print_out("{}", wrapped("  ", text));
 }
 
 }  // namespace
