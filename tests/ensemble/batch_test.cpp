@@ -1,40 +1,13 @@
 // A replica's result is the same bit for bit alone, in a batch of any size, and in any place in it.
 #include <gmock/gmock.h>
 
-#include <cstring>
-
 #include "ensemble/make_packings.h"
+#include "ensemble/recording_bits.h"
 #include "ensemble/simulate.h"
 #include "ensemble/small_scene.h"
 
 namespace mcdem {
 namespace {
-
-/// Every bit that a recording's scans hold.
-std::string bits_of(const Recording& recording) {
-    std::string bits;
-    const auto add = [&](const auto& value) {
-        bits.append(reinterpret_cast<const char*>(&value), sizeof value);
-    };
-    for (const Scan& scan : recording.scans) {
-        add(scan.time);
-        add(scan.kinetic_energy);
-        add(scan.elastic_energy);
-        add(scan.packing_fraction);
-        for (const Vec3& force : scan.wall_force)
-            for (int axis = 0; axis < 3; ++axis) add(force[axis]);
-        for (const Vec3& position : scan.position)
-            for (int axis = 0; axis < 3; ++axis) add(position[axis]);
-        for (const Contact& contact : scan.contacts) {
-            add(contact.grain);
-            add(contact.partner);
-            for (int axis = 0; axis < 3; ++axis) add(contact.force[axis]);
-            for (int axis = 0; axis < 3; ++axis) add(contact.point[axis]);
-            add(contact.overlap);
-        }
-    }
-    return bits;
-}
 
 /// The replicas of `scene` with these numbers, in this order.
 std::vector<std::string> bits_of_batch(Device& device, const Scene& scene, const std::vector<int>& numbers) {
