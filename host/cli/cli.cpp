@@ -47,6 +47,16 @@ int report_usage(const CLI::App& app, const CLI::ParseError& error) {
     return exit_bad_input;
 }
 
+/// An empty place would be taken for the folder that one is in, or fail only once the work is done.
+void expect_places(CLI::App& app) {
+    for (const char* name : {"--out", "--library", "--truth"})
+        if (auto* option = app.get_option_no_throw(name))
+            option->check([](const std::string& place) {
+                return place.empty() ? std::string("must name a place, got nothing") : std::string();
+            });
+    for (CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) expect_places(*command);
+}
+
 int command_line(int argc, const char* const* argv) {
     CLI::App app(about, "mcdem");
     app.footer(first_steps);
@@ -57,6 +67,7 @@ int command_line(int argc, const char* const* argv) {
          {add_devices, add_validate, add_run, add_table, add_compare, add_figures, add_report, add_calibrate,
           add_export, add_experiment, add_diagnose, add_challenge, add_completion, add_manual})
         add(app, exit_code);
+    expect_places(app);
     try {
         app.parse(argc, argv);
         return exit_code;

@@ -128,6 +128,8 @@ void write_library(const std::filesystem::path& file, const Library& library) {
 Library read_library(const std::filesystem::path& file) {
     std::ifstream in(file);
     if (!in) throw InputError(fmt::format("{}: there is no signature library", file.string()));
+    if (!std::filesystem::is_regular_file(file))
+        throw InputError(fmt::format("{}: must be a file, the signature library", file.string()));
     try {
         return library_of(json::parse(in));
     } catch (const json::exception& error) {
