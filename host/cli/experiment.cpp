@@ -16,9 +16,7 @@ void expect_free(const std::filesystem::path& out) {
     for (const char* taken : {"experiment.toml", "run.h5", "checkpoint.h5"})
         if (std::filesystem::exists(out / taken, ignored))
             throw InputError(
-                fmt::format("--out: {} holds another experiment or run: name another folder, or remove "
-                            "it first",
-                            out.string()));
+                fmt::format("--out: {} holds another experiment or run: name another folder", out.string()));
     for (const char* table : {"contacts.csv", "grains.csv", "plate.csv"})
         for (const char* end : {"", ".gz"})
             if (std::filesystem::exists(out / (std::string(table) + end), ignored))

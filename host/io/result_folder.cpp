@@ -129,8 +129,7 @@ ResultFolder ResultFolder::create(const fs::path& folder) {
     ResultFolder made(folder, FolderLock(folder, FolderLock::Use::alone));
     if (const fs::path file = file_of_a_run(folder); !file.empty())
         throw InputError(
-            fmt::format("{}: holds another run ({}): give another folder, remove it, or go on with "
-                        "--resume",
+            fmt::format("{}: holds another run ({}): give another folder, or go on with --resume",
                         folder.string(), file.filename().string()));
     return made;
 }
