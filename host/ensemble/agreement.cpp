@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -30,7 +31,11 @@ std::string digest_of_packing_files(const Scene& scene) {
 }
 
 bool is_agreement(const json& read) {
-    return read.is_object() && read.contains("common") && read.contains("chosen");
+    const auto are_texts = [&](const char* name) {
+        return read.contains(name) && read.at(name).is_object() &&
+               std::ranges::all_of(read.at(name), [](const json& value) { return value.is_string(); });
+    };
+    return read.is_object() && are_texts("common") && are_texts("chosen");
 }
 
 json parsed(const std::filesystem::path& file) {

@@ -106,6 +106,17 @@ std::size_t size_of_parts(const fs::path& folder, const Scene& scene, const Run&
                     agreement_file(folder).string()));
 }
 
+/// A number of replicas that was agreed on.
+std::size_t number_in(const Common& chosen, const std::string& name, const fs::path& folder) {
+    const auto found = chosen.find(name);
+    const std::string text = found == chosen.end() ? "" : found->second;
+    const bool digits = !text.empty() && text.size() < 10 && text.find_first_not_of("0123456789") == text.npos;
+    if (const std::size_t number = digits ? std::stoul(text) : 0; number > 0) return number;
+    throw InputError(fmt::format("{}: '{}' must be a number of replicas above 0, got '{}': restore it from a copy, or give "
+                                 "another folder",
+                                 agreement_file(folder).string(), name, text));
+}
+
 /// A worker on a run: what it shares with the others is the folder.
 class Worker {
 public:
@@ -126,7 +137,7 @@ public:
         const auto chosen = agree(agreement_file(options.folder), common_of(device, scene, options.program),
                                   {{"replicas", std::to_string(scene.replicas.size())},
                                    {"replicas of a part", std::to_string(size)}});
-        part_replicas_ = std::stoul(chosen.at("replicas of a part"));
+        part_replicas_ = number_in(chosen, "replicas of a part", options.folder);
         parts_ = (scene.replicas.size() + part_replicas_ - 1) / part_replicas_;
     }
 
@@ -309,9 +320,10 @@ SharedState shared_state(const fs::path& folder) {
     if (state.done || !fs::exists(agreement_file(folder))) return state;
     try {
         const Common chosen = read_chosen(agreement_file(folder));
-        const double replicas = std::stod(chosen.at("replicas"));
-        const std::size_t of_part = std::stoul(chosen.at("replicas of a part"));
-        state.parts = (std::stoul(chosen.at("replicas")) + of_part - 1) / of_part;
+        const std::size_t all = number_in(chosen, "replicas", folder);
+        const std::size_t of_part = number_in(chosen, "replicas of a part", folder);
+        const auto replicas = static_cast<double>(all);
+        state.parts = (all + of_part - 1) / of_part;
         const auto under_way = Claims(parts_folder(folder)).under_way();
         const std::vector<bool> there = parts_there(folder, state.parts);
         for (std::size_t part = 0; part < state.parts; ++part) {

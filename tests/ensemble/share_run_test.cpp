@@ -1,6 +1,7 @@
 // A shared run: the bytes of one program's, whoever computed its parts, and whatever happened to them.
 #include "ensemble/share_run.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
@@ -120,6 +121,25 @@ TEST_F(ShareRunTest, ADamagedPartIsComputedAgain) {
     EXPECT_EQ(share("damaged"), RunEnd::done);
     EXPECT_THAT(warnings_, testing::ElementsAre(HasSubstr("part 00000 is computed again")));
     expect_like_whole("damaged");
+}
+
+TEST_F(ShareRunTest, AnAgreementOnNoSizeIsRefused) {
+    share_until("none", "00001.h5");
+    const auto agreement = parts_folder(folder("none")) / "agreement.json";
+    const std::string whole = bytes_of_file(agreement), size = "\"replicas of a part\": \"1\"";
+    ASSERT_THAT(whole, testing::HasSubstr(size));
+    for (const char* other : {"0", "-1", "", "1e3", "99999999999999999999"}) {
+        std::string changed = whole;
+        changed.replace(whole.find(size), size.size(), fmt::format("\"replicas of a part\": \"{}\"", other));
+        std::ofstream(agreement) << changed;
+        EXPECT_THAT(problem("none"), testing::HasSubstr("must be a number of replicas above 0")) << other;
+        EXPECT_EQ(shared_state(folder("none")).parts, 0u);
+    }
+    std::string changed = whole;
+    changed.replace(whole.find(size), size.size(), "\"replicas of a part\": [1]");
+    std::ofstream(agreement) << changed;
+    EXPECT_EQ(share("none"), RunEnd::done);
+    expect_like_whole("none");
 }
 
 TEST_F(ShareRunTest, AnEmptyAgreementIsMadeAnewFromTheFinishedParts) {

@@ -1,0 +1,12 @@
+// Changes a valid HDF5 file at the level of its structure: objects, shapes, types, values, attributes, links.
+#pragma once
+#include <filesystem>
+
+#include "fuzz/byte_source.h"
+
+namespace mcdem::fuzz {
+
+/// A few changes, as many as `source` has bytes for.
+void mutate_hdf5(const std::filesystem::path& file, ByteSource& source);
+
+}  // namespace mcdem::fuzz
