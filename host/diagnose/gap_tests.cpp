@@ -84,6 +84,21 @@ Predicted predicted(const std::vector<GapStatistics>& draws, double GapStatistic
     return {mean, std::sqrt(variance * (1 + 1 / n)), boost::math::students_t_distribution<>(n - 1)};
 }
 
+/// Statistics are larger where fewer replicates make the covariance: those of the draws by as much as the
+/// observed gap's are with a fold left out.
+void take_to_scale(std::vector<GapStatistics>& draws, const std::vector<GapStatistics>& left_out,
+                   const GapStatistics& whole) {
+    for (double GapStatistics::*statistic :
+         {&GapStatistics::omnibus, &GapStatistics::directed, &GapStatistics::remainder,
+          &GapStatistics::highest_refitted, &GapStatistics::pattern_left}) {
+        double mean = 0;
+        for (const GapStatistics& one : left_out)
+            mean += one.*statistic / static_cast<double>(left_out.size());
+        if (!(mean > 0) || !(whole.*statistic > 0)) continue;
+        for (GapStatistics& draw : draws) draw.*statistic *= whole.*statistic / mean;
+    }
+}
+
 /// When the plate passes a cell, by its place among those of its observable: loading, then unloading back.
 double passage(Eigen::Index place, Eigen::Index places) {
     return static_cast<double>(2 * place < places ? place : places - 1 - (place - places / 2));
@@ -143,9 +158,11 @@ NullDistribution::NullDistribution(const GapData& data, int mean_of, std::uint64
     Random random(seed, Stream::null_draws);
     const double both = std::sqrt(1 + (mean_of > 0 ? 1.0 / mean_of : 0));
     const std::set<int> folds(data.fold.begin(), data.fold.end());
+    std::vector<GapStatistics> observed;
     for (const int fold : folds) {
         const LeftOut left_out(data, fold);
         const GapSpace space(left_out.noise(), mean_of, data.cells, data.free);
+        observed.push_back(gap_statistics(space, data, data.gap));
         for (const Eigen::Index r : left_out.rows())
             for (int draw = 0; draw < draws_a_replicate; ++draw) {
                 Eigen::VectorXd gap = both * left_out.row(r);
@@ -154,6 +171,8 @@ NullDistribution::NullDistribution(const GapData& data, int mean_of, std::uint64
                 draws_.push_back(gap_statistics(space, data, gap));
             }
     }
+    const GapSpace whole(data.noise, mean_of, data.cells, data.free);
+    take_to_scale(draws_, observed, gap_statistics(whole, data, data.gap));
 }
 
 double NullDistribution::p_value(double GapStatistics::*statistic, double value) const {
