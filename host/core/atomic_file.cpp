@@ -4,102 +4,137 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
-#include <cstdint>
-#include <fstream>
 #include <random>
 #include <system_error>
+#include <utility>
 
 #include "core/errors.h"
 
 namespace mcdem {
 namespace {
 
-[[noreturn]] void fail(const std::filesystem::path& file, int error) {
+namespace fs = std::filesystem;
+
+constexpr std::string_view ending = ".tmp";
+constexpr std::size_t digits = 16;  ///< of the random part of a temporary name
+
+[[noreturn]] void fail(const fs::path& file, int error) {
     throw RunError(file.string() + ": cannot be written: " + std::generic_category().message(error));
 }
 
-void force_to_disk(const std::filesystem::path& file, int flags) {
-    const int descriptor = ::open(file.c_str(), flags | O_CLOEXEC);
-    if (descriptor < 0) fail(file, errno);
-    const int result = ::fsync(descriptor);
-    const int error = errno;
-    ::close(descriptor);
-    // Some file systems cannot sync (EINVAL, EROFS on folders): nothing more can be done there.
-    if (result != 0 && error != EINVAL && error != EROFS) fail(file, error);
-}
-
-/// Beside the file, and no other program's.
-std::filesystem::path own_temporary(const std::filesystem::path& file) {
-    thread_local std::mt19937_64 random{(std::uint64_t{std::random_device{}()} << 32) ^
-                                        std::random_device{}()};
-    std::filesystem::path temporary = file;
-    temporary += fmt::format(".{:016x}.tmp", random());
+/// `<file>.<16 hexadecimal digits>.tmp`
+fs::path temporary_of(const fs::path& file) {
+    std::random_device random;
+    fs::path temporary = file;
+    temporary += fmt::format(".{:08x}{:08x}{}", random(), random(), ending);
     return temporary;
 }
 
-void write_text(const std::filesystem::path& file, std::string_view text) {
-    std::ofstream out(file, std::ios::binary);
-    out.write(text.data(), static_cast<std::streamsize>(text.size()));
-    out.close();
-    if (!out) {
-        const int error = errno;
-        std::error_code ignored;
-        std::filesystem::remove(file, ignored);
-        fail(file, error);
-    }
+bool is_temporary(const fs::path& file) {
+    const std::string name = file.filename().string();
+    if (name.size() <= digits + 1 + ending.size() || !name.ends_with(ending)) return false;
+    const std::string_view random =
+        std::string_view(name).substr(name.size() - ending.size() - digits, digits);
+    return name[name.size() - ending.size() - digits - 1] == '.' &&
+           random.find_first_not_of("0123456789abcdef") == random.npos;
 }
 
-void replace_by(const std::filesystem::path& file, const std::filesystem::path& temporary,
-                const std::function<void(const std::filesystem::path& temporary)>& write) {
+void force_to_disk(int descriptor, const fs::path& file) {
+    // Some file systems cannot sync (EINVAL, EROFS on folders): nothing more can be done there.
+    int result = 0;
+    do result = ::fsync(descriptor);
+    while (result != 0 && errno == EINTR);
+    if (result != 0 && errno != EINVAL && errno != EROFS) fail(file, errno);
+}
+
+void force_folder_of(const fs::path& file) {
+    const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
+    const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (descriptor < 0) fail(folder, errno);
     try {
-        write(temporary);
-        force_to_disk(temporary, O_RDONLY);
-        move_file(temporary, file);
+        force_to_disk(descriptor, folder);
     } catch (...) {
-        std::error_code ignored;
-        std::filesystem::remove(temporary, ignored);
+        ::close(descriptor);
         throw;
     }
+    ::close(descriptor);
 }
 
 }  // namespace
 
-void move_file(const std::filesystem::path& from, const std::filesystem::path& to) {
-    std::error_code error;
-    std::filesystem::rename(from, to, error);
-    if (error) fail(to, error.value());
-    const auto folder = to.parent_path();
-    force_to_disk(folder.empty() ? "." : folder, O_RDONLY | O_DIRECTORY);
+NewFile::NewFile(fs::path place) : place_(std::move(place)) {
+    do {
+        temporary_ = temporary_of(place_);
+        descriptor_ = ::open(temporary_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+    } while (descriptor_ < 0 && (errno == EEXIST || errno == EINTR));
+    if (descriptor_ < 0) fail(place_, errno);
 }
 
-void replace_file(const std::filesystem::path& file,
-                  const std::function<void(const std::filesystem::path& temporary)>& write) {
-    std::filesystem::path temporary = file;
-    temporary += ".tmp";
-    replace_by(file, temporary, write);
+NewFile::~NewFile() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+    if (!temporary_.empty()) ::unlink(temporary_.c_str());
 }
 
-void replace_file(const std::filesystem::path& file, std::string_view text) {
-    replace_by(file, own_temporary(file),
-               [&](const std::filesystem::path& temporary) { write_text(temporary, text); });
+void NewFile::write(std::string_view bytes) {
+    while (!bytes.empty()) {
+        const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
+        if (written < 0 && errno != EINTR) fail(place_, errno);
+        if (written > 0) bytes.remove_prefix(static_cast<std::size_t>(written));
+    }
 }
 
-bool create_file(const std::filesystem::path& file, std::string_view text) {
-    const std::filesystem::path temporary = own_temporary(file);
-    write_text(temporary, text);
-    int error = ::link(temporary.c_str(), file.c_str()) == 0 ? 0 : errno;
+void NewFile::close() {
+    if (descriptor_ < 0) return;
+    force_to_disk(descriptor_, place_);
+    // Closed even where it is interrupted; network disks report here what they could not write.
+    if (::close(std::exchange(descriptor_, -1)) != 0 && errno != EINTR) fail(place_, errno);
+}
+
+void NewFile::put_in_place() {
+    close();
+    move_file(temporary_, place_);
+    temporary_.clear();
+}
+
+void replace_file(const fs::path& file, const std::function<void(NewFile& out)>& write) {
+    NewFile out(file);
+    write(out);
+    out.put_in_place();
+}
+
+void replace_file(const fs::path& file, std::string_view text) {
+    replace_file(file, [&](NewFile& out) { out.write(text); });
+}
+
+bool create_file(const fs::path& file, std::string_view text) {
+    NewFile out(file);
+    out.write(text);
+    out.close();
+    int error = ::link(out.temporary().c_str(), file.c_str()) == 0 ? 0 : errno;
     // A network file system may have made the link and lost the answer.
-    if (error == EEXIST && std::filesystem::hard_link_count(temporary) == 2) error = 0;
+    if (error == EEXIST && fs::hard_link_count(out.temporary()) == 2) error = 0;
     if (error == EPERM || error == ENOSYS || error == EOPNOTSUPP) {
         // A file system without links: all that is lost is the order of two programs within a moment.
-        error = std::filesystem::exists(file) ? EEXIST : 0;
-        if (error == 0) move_file(temporary, file);
+        error = fs::exists(file) ? EEXIST : 0;
+        if (error == 0) out.put_in_place();
     }
-    std::error_code ignored;
-    std::filesystem::remove(temporary, ignored);
     if (error != 0 && error != EEXIST) fail(file, error);
+    if (error == 0) force_folder_of(file);
     return error == 0;
+}
+
+void move_file(const fs::path& from, const fs::path& to) {
+    std::error_code error;
+    fs::rename(from, to, error);
+    if (error) fail(to, error.value());
+    force_folder_of(to);
+}
+
+void remove_temporaries(const fs::path& folder) {
+    for (const auto& entry : fs::directory_iterator(folder))
+        if (is_temporary(entry.path())) fs::remove(entry.path());
 }
 
 }  // namespace mcdem

@@ -6,10 +6,34 @@
 
 namespace mcdem {
 
-/// Lets `write` fill `<file>.tmp`, forces it to the disk and moves it to `file`. A reader sees the old
-/// file or the new one, even after a crash or power cut. When `write` throws, the old file stays.
-void replace_file(const std::filesystem::path& file,
-                  const std::function<void(const std::filesystem::path& temporary)>& write);
+/// A file on its way: written under a random name beside its place, which nobody can foresee and no link is
+/// followed from. Goes with its owner unless it was put into place. Every failing operation throws RunError.
+class NewFile {
+public:
+    explicit NewFile(std::filesystem::path place);
+    ~NewFile();
+    NewFile(const NewFile&) = delete;
+    NewFile& operator=(const NewFile&) = delete;
+
+    const std::filesystem::path& place() const { return place_; }
+    /// Where it lies until then.
+    const std::filesystem::path& temporary() const { return temporary_; }
+    /// Open for reading and writing until it is closed.
+    int descriptor() const { return descriptor_; }
+    void write(std::string_view bytes);
+    /// Forces it to the disk.
+    void close();
+    /// Closes it and moves it to its place.
+    void put_in_place();
+
+private:
+    std::filesystem::path place_, temporary_;
+    int descriptor_ = -1;
+};
+
+/// Lets `write` fill a new file and puts it in place of `file`. A reader sees the old file or the new one,
+/// even after a crash or power cut. When `write` throws, the old file stays.
+void replace_file(const std::filesystem::path& file, const std::function<void(NewFile& out)>& write);
 
 /// The same for a text that is at hand. Several programs may write one file at a time: the last one stays.
 void replace_file(const std::filesystem::path& file, std::string_view text);
@@ -20,5 +44,9 @@ bool create_file(const std::filesystem::path& file, std::string_view text);
 
 /// Moves `from` to `to` (same folder) in one step and forces the folder to the disk.
 void move_file(const std::filesystem::path& from, const std::filesystem::path& to);
+
+/// Removes what programs that were killed have left of new files in the folder. Only for its owner: other
+/// programs' files on their way go too.
+void remove_temporaries(const std::filesystem::path& folder);
 
 }  // namespace mcdem

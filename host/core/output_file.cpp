@@ -90,8 +90,7 @@ void replace_own(const fs::path& file, FileKind kind, std::string_view text) {
     replace_file(file, text);
 }
 
-void replace_own(const fs::path& file, FileKind kind,
-                 const std::function<void(const fs::path& temporary)>& write) {
+void replace_own(const fs::path& file, FileKind kind, const std::function<void(NewFile& out)>& write) {
     expect_replaceable(file, kind);
     replace_file(file, write);
 }

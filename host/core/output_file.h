@@ -9,6 +9,8 @@
 
 namespace mcdem {
 
+class NewFile;
+
 /// Files that are written anew by a command that is given again.
 enum class FileKind {
     run_table,
@@ -32,7 +34,7 @@ void expect_replaceable(const std::filesystem::path& file, FileKind kind);
 /// replace_file, after expect_replaceable.
 void replace_own(const std::filesystem::path& file, FileKind kind, std::string_view text);
 void replace_own(const std::filesystem::path& file, FileKind kind,
-                 const std::function<void(const std::filesystem::path& temporary)>& write);
+                 const std::function<void(NewFile& out)>& write);
 
 /// Throws InputError for the folder of an experiment: nothing else is written there.
 void expect_no_experiment(const std::filesystem::path& folder);

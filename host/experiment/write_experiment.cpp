@@ -1,8 +1,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <unistd.h>
 #include <zlib.h>
 
+#include <cerrno>
 #include <iterator>
+#include <system_error>
 
 #include "core/atomic_file.h"
 #include "core/errors.h"
@@ -48,6 +51,17 @@ std::string contact_rows(const Recording& recording) {
     return fmt::to_string(text);
 }
 
+/// zlib keeps no time of day in the file.
+void write_packed(NewFile& out, const std::string& text) {
+    const int descriptor = ::dup(out.descriptor());
+    const gzFile packed = descriptor < 0 ? nullptr : gzdopen(descriptor, "wb6");
+    if (!packed && descriptor >= 0) ::close(descriptor);
+    const bool is_whole = packed && gzfwrite(text.data(), 1, text.size(), packed) == text.size();
+    if ((packed && gzclose(packed) != Z_OK) || !is_whole)
+        throw RunError(fmt::format("{}: cannot be written: {}", out.place().string(),
+                                   std::generic_category().message(errno)));
+}
+
 /// Writes the table and removes one of the same name that is packed the other way. No rows: no table.
 void write_table(const std::filesystem::path& folder, const std::string& name,
                  const std::vector<std::string>& columns, const std::string& rows, Packed packed) {
@@ -59,13 +73,13 @@ void write_table(const std::filesystem::path& folder, const std::string& name,
         std::filesystem::remove(file);
         return;
     }
-    replace_file(file, [&](const std::filesystem::path& temporary) {
-        // "T": as it is. zlib keeps no time of day in the file.
-        const gzFile out = gzopen(temporary.c_str(), packed == Packed::gzip ? "wb6" : "wbT");
-        bool is_whole = out != nullptr;
-        for (const std::string& part : {header, rows})
-            is_whole = is_whole && gzfwrite(part.data(), 1, part.size(), out) == part.size();
-        if ((out && gzclose(out) != Z_OK) || !is_whole) throw RunError(file.string() + ": cannot be written");
+    replace_file(file, [&](NewFile& out) {
+        if (packed == Packed::gzip) {
+            write_packed(out, header + rows);
+        } else {
+            out.write(header);
+            out.write(rows);
+        }
     });
 }
 

@@ -42,8 +42,8 @@ long checksum(const Checkpoint& checkpoint) {
     return sum.value();
 }
 
-void write_file(const fs::path& path, const Checkpoint& checkpoint) {
-    h5::File file = h5::File::create(path);
+void write_file(NewFile& out, const Checkpoint& checkpoint) {
+    h5::File file = h5::File::create(out);
     file.make_group("/checkpoint/fields");
     file.set_attribute("/checkpoint", "format", std::vector<long>{checkpoint_format});
     file.set_attribute("/checkpoint", "device", checkpoint.device);
@@ -53,10 +53,12 @@ void write_file(const fs::path& path, const Checkpoint& checkpoint) {
     const h5::Handle byte = h5::number_type<unsigned char>();
     for (const auto& [name, bytes] : checkpoint.fields) {
         if (name.empty() || name.find('/') != std::string::npos)
-            throw RunError(path.string() + ": checkpoint field '" + name + "' cannot be a name");
+            throw RunError(out.place().string() + ": checkpoint field '" + name + "' cannot be a name");
         // Plain: state of floating-point bits hardly packs, and a checkpoint must not hold up the run.
-        file.create_rows("/checkpoint/fields/" + name, byte, {}, h5::Storage::plain, bytes.size())
-            .append(byte, bytes.data(), bytes.size());
+        h5::Dataset table =
+            file.create_rows("/checkpoint/fields/" + name, byte, {}, h5::Storage::plain, bytes.size());
+        table.append(byte, bytes.data(), bytes.size());
+        table.close();
     }
     file.close();
 }
@@ -87,8 +89,9 @@ Checkpoint read_file(const fs::path& path) {
 }  // namespace
 
 void write_checkpoint(const fs::path& folder, const Checkpoint& checkpoint) {
-    replace_file(newest(folder), [&](const fs::path& temporary) {
-        write_file(temporary, checkpoint);
+    replace_file(newest(folder), [&](NewFile& out) {
+        write_file(out, checkpoint);
+        out.close();
         // A crash between this move and the next leaves the previous one alone, which is read then.
         if (fs::exists(newest(folder))) move_file(newest(folder), previous(folder));
     });

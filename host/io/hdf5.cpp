@@ -1,10 +1,10 @@
 #include "io/hdf5.h"
 
 #include <algorithm>
-#include <cstring>
-#include <new>
+#include <system_error>
 
 #include "core/errors.h"
+#include "core/input_file.h"
 
 namespace mcdem::h5 {
 namespace {
@@ -15,13 +15,20 @@ constexpr unsigned deflate_level = 1;  // a higher one costs five times the time
 // worth the memory.
 constexpr double most_bytes_per_byte = 1100;
 constexpr double small_table = 1 << 20;
+constexpr const char* elsewhere =
+    ": lies outside this file, and is not followed: no file of this program is like that; take one that "
+    "holds all its data itself";
 
 /// Told before anything else: no cleaning up at exit. Every file is closed by its owner; one whose disk was
 /// full stays half closed, and the library crashes when it tries again.
 [[maybe_unused]] const herr_t no_cleaning_up = H5dont_atexit();
 
-/// The library prints its own error stacks unless told not to; ours carry the reason.
-void silence_library() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+/// The library prints its own error stacks unless told not to; ours carry the reason. It also loads programs that
+/// a file names as filters.
+void set_up_library() {
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+    H5PLset_loading_state(0);
+}
 
 std::string library_reason() {
     std::string reason;
@@ -39,19 +46,48 @@ std::string library_reason() {
     return reason.substr(begin, reason.find('\'', begin) - begin);
 }
 
-Handle checked(hid_t id, Handle::Close close, Access access, const std::string& where, const char* what) {
-    if (id < 0) fail(access, where, what);
+/// Memory that the library did not get.
+bool library_lacks_memory() {
+    bool lacks = false;
+    const auto look = [](unsigned, const H5E_error2_t* error, void* lacks) -> herr_t {
+        if (error->maj_num == H5E_RESOURCE) *static_cast<bool*>(lacks) = true;
+        return 0;
+    };
+    H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, look, &lacks);
+    return lacks;
+}
+
+/// Data of a table that lies in other files, or is put together from other tables.
+bool lies_elsewhere(hid_t dataset) {
+    const Handle layout(H5Dget_create_plist(dataset), H5Pclose);
+    return layout < 0 || H5Pget_external_count(layout) != 0 || H5Pget_layout(layout) == H5D_VIRTUAL;
+}
+
+Handle checked(hid_t id, Handle::Close close, const FileBelow& file, const std::string& where,
+               const char* what) {
+    if (id < 0) fail(file, where, what);
     return {id, close};
 }
 
-Handle file_access() {
-    Handle properties(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-    // The 1.10 format: its metadata carry checksums, so that damage is noticed.
-    H5Pset_libver_bounds(properties, H5F_LIBVER_V110, H5F_LIBVER_V110);
-    H5Pset_fclose_degree(properties, H5F_CLOSE_STRONG);
-    // Files are put into place whole, so nobody reads a file being written; network disks often lack locks.
-    H5Pset_file_locking(properties, false, true);
+/// Properties of a new object that keeps no time of day: the same run gives the same bytes.
+Handle without_times(hid_t object_class) {
+    Handle properties(H5Pcreate(object_class), H5Pclose);
+    H5Pset_obj_track_times(properties, false);
     return properties;
+}
+
+/// `mode`: H5F_ACC_TRUNC makes a new HDF5 file.
+Handle open_file(FileBelow& below, unsigned mode, const std::string& where) {
+    const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+    // The 1.10 format: its metadata carry checksums, so that damage is noticed.
+    H5Pset_libver_bounds(access, H5F_LIBVER_V110, H5F_LIBVER_V110);
+    H5Pset_fclose_degree(access, H5F_CLOSE_STRONG);
+    use_file(access, below);
+    if (mode != H5F_ACC_TRUNC)
+        return checked(H5Fopen(where.c_str(), mode, access), H5Fclose, below, where,
+                       "cannot be opened as HDF5");
+    return checked(H5Fcreate(where.c_str(), mode, without_times(H5P_FILE_CREATE), access), H5Fclose, below,
+                   where, "cannot be created");
 }
 
 /// The library clears its conversion buffer, 1 MiB unless told otherwise, on every call: for a few rows
@@ -61,13 +97,6 @@ Handle transfer(const Extent& size, hid_t memory_type) {
     for (hsize_t n : size) bytes *= n;
     Handle properties(H5Pcreate(H5P_DATASET_XFER), H5Pclose);
     H5Pset_buffer(properties, std::clamp<hsize_t>(bytes, 1024, 1024 * 1024), nullptr, nullptr);
-    return properties;
-}
-
-/// Properties of a new object that keeps no time of day: the same run gives the same bytes.
-Handle without_times(hid_t object_class) {
-    Handle properties(H5Pcreate(object_class), H5Pclose);
-    H5Pset_obj_track_times(properties, false);
     return properties;
 }
 
@@ -102,34 +131,39 @@ Handle text_type(std::size_t length) {
     return type;
 }
 
-void fail(Access access, const std::string& where, const std::string& what) {
-    const std::string reason = library_reason();
-    std::string message = where + ": " + what + (reason.empty() ? "" : " (" + reason + ")");
-    if (access == Access::write) throw RunError(message);
-    throw InputError(message +
+void fail(const FileBelow& file, const std::string& where, const std::string& what) {
+    const std::string message = where + ": " + what, reason = library_reason();
+    const bool is_written = file.access() == Access::write, lacks_memory = library_lacks_memory();
+    H5Eclear2(H5E_DEFAULT);
+    if (file.error() != 0 && !is_written) fail_reading(message, file.error());
+    if (file.error() != 0) throw RunError(message + ": " + std::generic_category().message(file.error()));
+    const std::string because = reason.empty() ? "" : " (" + reason + ")";
+    if (is_written) throw RunError(message + because);
+    if (lacks_memory) fail_reading(message, ENOMEM);
+    throw InputError(message + because +
                      "; the file is damaged or was not written by this program: restore it from a "
                      "copy or run again");
 }
 
 Extent Dataset::extent() const {
-    const Handle space = checked(H5Dget_space(id_), H5Sclose, access_, where_, "has no extent");
+    const Handle space = checked(H5Dget_space(id_), H5Sclose, *file_, where_, "has no extent");
     const int rank = H5Sget_simple_extent_ndims(space);
-    if (rank < 1) fail(access_, where_, "must be a table of rows");
+    if (rank < 1) fail("must be a table of rows");
     Extent extent(static_cast<std::size_t>(rank));
     H5Sget_simple_extent_dims(space, extent.data(), nullptr);
     return extent;
 }
 
-Handle Dataset::type() const { return checked(H5Dget_type(id_), H5Tclose, access_, where_, "has no type"); }
+Handle Dataset::type() const { return checked(H5Dget_type(id_), H5Tclose, *file_, where_, "has no type"); }
 
 Handle Dataset::select(hsize_t first, hsize_t rows) const {
     Extent start = extent(), count = start;
     std::fill(start.begin(), start.end(), 0);
     start.front() = first;
     count.front() = rows;
-    Handle space = checked(H5Dget_space(id_), H5Sclose, access_, where_, "has no extent");
+    Handle space = checked(H5Dget_space(id_), H5Sclose, *file_, where_, "has no extent");
     if (H5Sselect_hyperslab(space, H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr) < 0)
-        fail(access_, where_, "has no such rows");
+        fail("has no such rows");
     return space;
 }
 
@@ -138,54 +172,65 @@ void Dataset::append(hid_t memory_type, const void* data, hsize_t rows) {
     Extent size = extent();
     const hsize_t first = size.front();
     size.front() += rows;
-    if (H5Dset_extent(id_, size.data()) < 0) fail(access_, where_, "cannot grow");
+    if (H5Dset_extent(id_, size.data()) < 0) fail("cannot grow");
     size.front() = rows;
     const Handle memory(H5Screate_simple(static_cast<int>(size.size()), size.data(), nullptr), H5Sclose);
     const Handle file = select(first, rows);
-    if (H5Dwrite(id_, memory_type, memory, file, transfer(size, memory_type), data) < 0)
-        fail(access_, where_, "cannot be written");
+    if (H5Dwrite(id_, memory_type, memory, file, transfer(size, memory_type), data) < 0 ||
+        file_->error() != 0)
+        fail("cannot be written");
 }
 
 void Dataset::read(hid_t memory_type, void* data, hsize_t first, hsize_t rows) const {
     if (rows == 0) return;
     Extent size = extent();
-    if (first + rows > size.front()) fail(access_, where_, "ends early");
+    if (first + rows > size.front()) fail("ends early");
     size.front() = rows;
     const Handle memory(H5Screate_simple(static_cast<int>(size.size()), size.data(), nullptr), H5Sclose);
     const Handle file = select(first, rows);
     if (H5Dread(id_, memory_type, memory, file, transfer(size, memory_type), data) < 0)
-        fail(access_, where_, "cannot be read");
+        fail("cannot be read");
 }
 
 void Dataset::expect_row(const Extent& row) const {
     const Extent found = extent();
     if (!std::equal(found.begin() + 1, found.end(), row.begin(), row.end())) {
         H5Eclear2(H5E_DEFAULT);
-        fail(access_, where_, "has rows of another size than expected");
+        fail("has rows of another size than expected");
     }
 }
 
-File File::create(const std::filesystem::path& file) {
-    silence_library();
-    const Handle properties = file_access();
-    return {checked(H5Fcreate(file.c_str(), H5F_ACC_TRUNC, without_times(H5P_FILE_CREATE), properties),
-                    H5Fclose, Access::write, file.string(), "cannot be created"),
-            Access::write, file};
+void Dataset::close() {
+    if (id_.close() < 0 || file_->error() != 0) fail("cannot be written");
 }
 
-File File::open(const std::filesystem::path& file) {
-    silence_library();
-    if (!std::filesystem::is_regular_file(file)) throw InputError(file.string() + ": no such file");
-    const Handle properties = file_access();
-    return {checked(H5Fopen(file.c_str(), H5F_ACC_RDONLY, properties), H5Fclose, Access::read, file.string(),
-                    "cannot be opened as HDF5"),
-            Access::read, file};
+File File::create(NewFile& out) {
+    set_up_library();
+    File file(std::make_unique<FileBelow>(out.descriptor(), Access::write), out.place());
+    file.id_ = open_file(*file.below_, H5F_ACC_TRUNC, file.path_.string());
+    return file;
+}
+
+File File::open(const std::filesystem::path& path) {
+    set_up_library();
+    File file(std::make_unique<FileBelow>(open_input(path), Access::read), path);
+    file.id_ = open_file(*file.below_, H5F_ACC_RDONLY, path.string());
+    return file;
+}
+
+File::~File() {
+    // The library keeps what it cannot close: it must find nothing there any more.
+    if (below_ && id_.close() < 0) below_.release()->forget_file();
 }
 
 void File::close() {
-    if (access_ == Access::write && H5Fflush(id_, H5F_SCOPE_LOCAL) < 0)
-        fail(access_, path_.string(), "cannot be written");
-    if (H5Fclose(id_.release()) < 0) fail(access_, path_.string(), "cannot be closed");
+    if (H5Fflush(id_, H5F_SCOPE_LOCAL) < 0 || below_->error() != 0) fail(path_.string(), "cannot be written");
+    if (id_.close() < 0) {
+        FileBelow& kept = *below_.release();
+        kept.forget_file();
+        h5::fail(kept, path_.string(), "cannot be closed");
+    }
+    if (below_->error() != 0) fail(path_.string(), "cannot be written");
 }
 
 void File::make_group(const std::string& object) {
@@ -194,9 +239,14 @@ void File::make_group(const std::string& object) {
         end = object.find('/', end + 1);
         const std::string group = object.substr(0, end);
         if (!exists(group))
-            checked(H5Gcreate2(id_, group.c_str(), H5P_DEFAULT, layout, H5P_DEFAULT), H5Gclose, access_,
-                    where(group), "cannot be created");
+            close_written(checked(H5Gcreate2(id_, group.c_str(), H5P_DEFAULT, layout, H5P_DEFAULT), H5Gclose,
+                                  *below_, where(group), "cannot be created"),
+                          group);
     }
+}
+
+void File::close_written(Handle handle, const std::string& object) {
+    if (handle.close() < 0 || below_->error() != 0) fail(where(object), "cannot be written");
 }
 
 bool File::exists(const std::string& object) const {
@@ -214,7 +264,7 @@ std::vector<std::string> File::members(const std::string& group) const {
     };
     const Handle handle = object(group);
     if (H5Literate(handle, H5_INDEX_NAME, H5_ITER_INC, nullptr, keep_name, &names) < 0)
-        fail(access_, where(group), "cannot be listed");
+        fail(where(group), "cannot be listed");
     return names;
 }
 
@@ -241,18 +291,30 @@ Dataset File::create_rows(const std::string& object, hid_t file_type, const Exte
     }
     H5Pset_fletcher32(layout);
     return {checked(H5Dcreate2(id_, object.c_str(), file_type, space, H5P_DEFAULT, layout, H5P_DEFAULT),
-                    H5Dclose, access_, where(object), "cannot be created"),
-            access_, where(object)};
+                    H5Dclose, *below_, where(object), "cannot be created"),
+            *below_, where(object)};
+}
+
+void File::expect_inside(const std::string& object) const {
+    for (std::size_t end = 0; end != std::string::npos;) {
+        end = object.find('/', end + 1);
+        const std::string link = object.substr(0, end);
+        H5L_info_t info;
+        if (link.size() < 2 || H5Lget_info(id_, link.c_str(), &info, H5P_DEFAULT) < 0) return;  // not there
+        if (info.type != H5L_TYPE_HARD) throw InputError(where(link) + elsewhere);
+    }
 }
 
 Dataset File::dataset(const std::string& object) const {
-    Dataset found(checked(H5Dopen2(id_, object.c_str(), H5P_DEFAULT), H5Dclose, access_, where(object),
-                          "cannot be found"),
-                  access_, where(object));
+    expect_inside(object);
+    Handle id = checked(H5Dopen2(id_, object.c_str(), H5P_DEFAULT), H5Dclose, *below_, where(object),
+                        "cannot be found");
+    if (lies_elsewhere(id)) throw InputError(where(object) + elsewhere);
+    Dataset found(std::move(id), *below_, where(object));
     double bytes = static_cast<double>(H5Tget_size(found.type()));
     for (hsize_t n : found.extent()) bytes *= static_cast<double>(n);
-    if (bytes > small_table + most_bytes_per_byte * static_cast<double>(std::filesystem::file_size(path_)))
-        fail(access_, where(object), "claims to hold more than the file can");
+    if (bytes > small_table + most_bytes_per_byte * static_cast<double>(below_->size()))
+        fail(where(object), "claims to hold more than the file can");
     return found;
 }
 

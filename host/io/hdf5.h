@@ -1,15 +1,20 @@
 // HDF5 files as this program uses them: rows appended to checksummed tables, small attributes. Every
-// failing call becomes an error that names file and object: RunError in a file being written, InputError in
-// one being read (a damaged or foreign file is something the user handed in).
+// failing call becomes an error that names file and object: RunError in a file being written and where the
+// system fails, InputError where the content of one being read is wrong (a damaged or foreign file is
+// something the user handed in).
 #pragma once
 #include <hdf5.h>
 
 #include <array>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
+
+#include "core/atomic_file.h"
+#include "io/hdf5_driver.h"
 
 namespace mcdem::h5 {
 
@@ -25,18 +30,19 @@ public:
         std::swap(close_, other.close_);
         return *this;
     }
-    ~Handle() {
-        if (id_ >= 0 && close_) close_(id_);
-    }
+    ~Handle() { close(); }
     operator hid_t() const { return id_; }
-    hid_t release() { return std::exchange(id_, -1); }
+    /// What the library says of it: cached data may be written only now.
+    herr_t close() {
+        const hid_t id = std::exchange(id_, -1);
+        return id >= 0 && close_ ? close_(id) : 0;
+    }
 
 private:
     hid_t id_ = -1;
     Close close_ = nullptr;
 };
 
-enum class Access { read, write };
 enum class Storage { plain, compressed };
 using Extent = std::vector<hsize_t>;
 
@@ -57,14 +63,14 @@ Handle number_type<unsigned char>();
 /// part of the file that has no checksum.
 Handle text_type(std::size_t length);
 
-/// Throws the error described above, with the library's own innermost reason.
-[[noreturn]] void fail(Access access, const std::string& where, const std::string& what);
+/// Throws the error described above, with the reason: the system's, else the library's own innermost one.
+[[noreturn]] void fail(const FileBelow& file, const std::string& where, const std::string& what);
 
-/// A table of rows; the first dimension grows.
+/// A table of rows; the first dimension grows. Must not outlive its file.
 class Dataset {
 public:
-    Dataset(Handle id, Access access, std::string where)
-        : id_(std::move(id)), access_(access), where_(std::move(where)) {}
+    Dataset(Handle id, const FileBelow& file, std::string where)
+        : id_(std::move(id)), file_(&file), where_(std::move(where)) {}
     Extent extent() const;
     hsize_t rows() const { return extent().front(); }
     Handle type() const;
@@ -78,18 +84,25 @@ public:
     std::vector<Number> read_all() const;
     /// Throws unless the dataset has `rank` dimensions, of which those after the first are `row`.
     void expect_row(const Extent& row) const;
+    /// Of a table that was written: all of it is in the file then, or this throws.
+    void close();
+    /// Throws as `h5::fail`.
+    [[noreturn]] void fail(const std::string& what) const { h5::fail(*file_, where_, what); }
 
 private:
     Handle select(hsize_t first, hsize_t rows) const;
     Handle id_;
-    Access access_;
+    const FileBelow* file_;
     std::string where_;
 };
 
 class File {
 public:
-    static File create(const std::filesystem::path& file);
+    /// Fills the new file, whose owner closes it after this.
+    static File create(NewFile& out);
     static File open(const std::filesystem::path& file);
+    File(File&&) = default;
+    ~File();
     /// Writes everything out; errors such as a full disk show here at the latest.
     void close();
 
@@ -121,15 +134,20 @@ public:
     std::string where(const std::string& object) const { return path_.string() + ": " + object; }
 
 private:
-    File(Handle id, Access access, std::filesystem::path file)
-        : id_(std::move(id)), access_(access), path_(std::move(file)) {}
+    File(std::unique_ptr<FileBelow> below, std::filesystem::path path)
+        : below_(std::move(below)), path_(std::move(path)) {}
+    [[noreturn]] void fail(const std::string& where, const std::string& what) const {
+        h5::fail(*below_, where, what);
+    }
     Handle object(const std::string& object) const;
+    /// The library may write an object only when it is closed.
+    void close_written(Handle handle, const std::string& object);
     Handle attribute(const std::string& object, const std::string& name) const;
     void write_attribute(const std::string& object, const std::string& name, hid_t type, hid_t space,
                          const void* data);
-    Handle id_;
-    Access access_;
+    std::unique_ptr<FileBelow> below_;  ///< used by id_ to its end
     std::filesystem::path path_;
+    Handle id_;
 };
 
 template <class Number>
@@ -146,7 +164,9 @@ void File::write(const std::string& object, const std::vector<Number>& values, c
     const Handle type = number_type<Number>();
     hsize_t width = 1;
     for (hsize_t n : row) width *= n;
-    create_rows(object, type, row).append(type, values.data(), values.size() / width);
+    Dataset table = create_rows(object, type, row);
+    table.append(type, values.data(), values.size() / width);
+    table.close();
 }
 
 }  // namespace mcdem::h5

@@ -28,24 +28,28 @@ Handle memory_text(hid_t file_type) {
 }  // namespace
 
 Handle File::object(const std::string& object) const {
+    expect_inside(object);
     const hid_t id = H5Oopen(id_, object.c_str(), H5P_DEFAULT);
-    if (id < 0) fail(access_, where(object), "cannot be found");
+    if (id < 0) fail(where(object), "cannot be found");
     return {id, H5Oclose};
 }
 
 Handle File::attribute(const std::string& object, const std::string& name) const {
+    expect_inside(object);
     const hid_t id = H5Aopen_by_name(id_, object.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT);
-    if (id < 0) fail(access_, where(object), "attribute '" + name + "' cannot be found");
+    if (id < 0) fail(where(object), "attribute '" + name + "' cannot be found");
     return {id, H5Aclose};
 }
 
 void File::write_attribute(const std::string& object, const std::string& name, hid_t type, hid_t space,
                            const void* data) {
-    const Handle owner = this->object(object);
+    Handle owner = this->object(object);
     if (H5Aexists(owner, name.c_str()) > 0) H5Adelete(owner, name.c_str());
-    const Handle attribute(H5Acreate2(owner, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+    Handle attribute(H5Acreate2(owner, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
     if (attribute < 0 || H5Awrite(attribute, type, data) < 0)
-        fail(access_, where(object), "attribute '" + name + "' cannot be written");
+        fail(where(object), "attribute '" + name + "' cannot be written");
+    close_written(std::move(attribute), object);
+    close_written(std::move(owner), object);
 }
 
 void File::set_attribute(const std::string& object, const std::string& name, std::string_view text) {
@@ -72,6 +76,7 @@ void File::set_attribute(const std::string& object, const std::string& name,
 }
 
 bool File::has_attribute(const std::string& object, const std::string& name) const {
+    expect_inside(object);
     return H5Aexists_by_name(id_, object.c_str(), name.c_str(), H5P_DEFAULT) > 0;
 }
 
@@ -80,10 +85,10 @@ std::string File::text_attribute(const std::string& object, const std::string& n
     const Handle type(H5Aget_type(found), H5Tclose), space(H5Aget_space(found), H5Sclose);
     const std::size_t size = H5Tget_size(type);
     if (!is_fixed_text(type) || H5Sget_simple_extent_npoints(space) != 1 || size > most_text)
-        fail(access_, where(object), "attribute '" + name + "' must be a text");
+        fail(where(object), "attribute '" + name + "' must be a text");
     std::string text(size, '\0');
     if (H5Aread(found, memory_text(type), text.data()) < 0)
-        fail(access_, where(object), "attribute '" + name + "' cannot be read");
+        fail(where(object), "attribute '" + name + "' cannot be read");
     return without_padding(text.data(), text.size());
 }
 
@@ -91,11 +96,10 @@ std::vector<double> File::numbers_attribute(const std::string& object, const std
     const Handle found = attribute(object, name);
     const Handle space(H5Aget_space(found), H5Sclose);
     const hssize_t count = H5Sget_simple_extent_npoints(space);
-    if (count < 0 || count > most_numbers)
-        fail(access_, where(object), "attribute '" + name + "' is too long");
+    if (count < 0 || count > most_numbers) fail(where(object), "attribute '" + name + "' is too long");
     std::vector<double> values(static_cast<std::size_t>(count));
     if (count > 0 && H5Aread(found, number_type<double>(), values.data()) < 0)
-        fail(access_, where(object), "attribute '" + name + "' must hold numbers");
+        fail(where(object), "attribute '" + name + "' must hold numbers");
     return values;
 }
 
@@ -105,7 +109,7 @@ long File::integer_attribute(const std::string& object, const std::string& name)
     long value = 0;
     if (H5Tget_class(type) != H5T_INTEGER || H5Sget_simple_extent_npoints(space) != 1 ||
         H5Aread(found, number_type<long>(), &value) < 0)
-        fail(access_, where(object), "attribute '" + name + "' must be an integer");
+        fail(where(object), "attribute '" + name + "' must be an integer");
     return value;
 }
 
@@ -118,13 +122,15 @@ void File::write_texts(const std::string& object, const std::vector<std::string>
     hsize_t width = 1;
     for (hsize_t n : row) width *= n;
     const Handle type = text_type(length);
-    create_rows(object, type, row).append(type, padded.data(), texts.size() / width);
+    Dataset table = create_rows(object, type, row);
+    table.append(type, padded.data(), texts.size() / width);
+    table.close();
 }
 
 std::vector<std::string> File::read_texts(const std::string& object) const {
     const Dataset table = dataset(object);
     const Handle type = table.type();
-    if (!is_fixed_text(type)) fail(access_, where(object), "must hold texts of fixed length");
+    if (!is_fixed_text(type)) fail(where(object), "must hold texts of fixed length");
     hsize_t count = 1;
     for (hsize_t n : table.extent()) count *= n;
     const std::size_t length = H5Tget_size(type);

@@ -34,8 +34,8 @@ void merge_parts(const std::vector<fs::path>& parts, const fs::path& merged) {
             std::ranges::move(part.recordings, std::back_inserter(all.recordings));
         first.push_back(all.recordings.size());
     }
-    replace_file(merged, [&](const fs::path& temporary) {
-        ResultWriter writer(temporary, all);
+    replace_file(merged, [&](NewFile& out) {
+        ResultWriter writer(out, all);
         for (std::size_t p = 0; p < parts.size(); ++p) {
             const ResultFile file = from_part(p, [&] { return ResultFile(parts[p]); });
             for (std::size_t r = first[p]; r < first[p + 1]; ++r) {

@@ -24,7 +24,7 @@ inline constexpr long result_format = 1;
 class ResultWriter {
 public:
     /// Starts a file with the provenance and the recordings of `run`, as yet without scans.
-    ResultWriter(const std::filesystem::path& file, const Run& run);
+    ResultWriter(NewFile& out, const Run& run);
     void append(std::size_t replica, Scan scan);
     /// The last scan of this replica was appended; why it stopped early, if it did.
     void end(std::size_t replica, const std::optional<Failure>& failure);

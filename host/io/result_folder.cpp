@@ -35,13 +35,6 @@ bool belongs_to_a_run(const fs::path& file) {
            file == parts_folder(file.parent_path());
 }
 
-/// What a write that was cut short has left.
-void remove_temporaries(const fs::path& folder) {
-    for (const auto& entry : fs::directory_iterator(folder))
-        if (entry.path().extension() == ".tmp" && belongs_to_a_run(entry.path().stem()))
-            fs::remove(entry.path());
-}
-
 /// The segments of a run, kept open as long as they are not too many.
 class Segments {
 public:
@@ -61,7 +54,7 @@ private:
 };
 
 /// Replica by replica, so that memory holds one replica of one segment.
-void merge(const std::vector<fs::path>& files, const fs::path& merged) {
+void merge(const std::vector<fs::path>& files, NewFile& merged) {
     const Run run = read_run_header(files);
     Segments segments(files);
     ResultWriter writer(merged, run);
@@ -127,6 +120,7 @@ void make_result_folder(const fs::path& folder) {
 ResultFolder ResultFolder::create(const fs::path& folder) {
     make_result_folder(folder);
     ResultFolder made(folder, FolderLock(folder, FolderLock::Use::alone));
+    remove_temporaries(folder);
     if (const fs::path file = file_of_a_run(folder); !file.empty())
         throw InputError(
             fmt::format("{}: holds another run ({}): give another folder, or go on with --resume",
@@ -198,7 +192,7 @@ void ResultFolder::finish() {
     if (segments.size() == 1)
         move_file(segments.front(), run_file(folder_));
     else
-        replace_file(run_file(folder_), [&](const fs::path& temporary) { merge(segments, temporary); });
+        replace_file(run_file(folder_), [&](NewFile& merged) { merge(segments, merged); });
     remove_segments();
 }
 

@@ -141,14 +141,12 @@ h5::Handle packed(const h5::Handle& row_type) {
 
 void expect_fields(const h5::Dataset& table, const h5::Handle& row_type) {
     const h5::Handle found = table.type();
-    if (H5Tget_class(found) != H5T_COMPOUND)
-        h5::fail(h5::Access::read, table.where(), "must be a table of named fields");
+    if (H5Tget_class(found) != H5T_COMPOUND) table.fail("must be a table of named fields");
     for (int i = 0; i < H5Tget_nmembers(row_type); ++i) {
         char* field = H5Tget_member_name(row_type, static_cast<unsigned>(i));
         const std::string name = field ? field : "";
         H5free_memory(field);
-        if (H5Tget_member_index(found, name.c_str()) < 0)
-            h5::fail(h5::Access::read, table.where(), "must have a field '" + name + "'");
+        if (H5Tget_member_index(found, name.c_str()) < 0) table.fail("must have a field '" + name + "'");
     }
 }
 

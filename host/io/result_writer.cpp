@@ -20,8 +20,8 @@ std::string particles_path(std::size_t replica) { return fmt::format("/particles
 std::string contacts_path(std::size_t replica) { return fmt::format("/contacts/replica_{:05}", replica); }
 std::string parameters_path(std::size_t replica) { return fmt::format("/parameters/replica_{:05}", replica); }
 
-ResultWriter::ResultWriter(const std::filesystem::path& file, const Run& run)
-    : file_(h5::File::create(file)),
+ResultWriter::ResultWriter(NewFile& out, const Run& run)
+    : file_(h5::File::create(out)),
       scan_row_(scan_row_type()),
       is_double_(run.precision == name(Precision::double_precision)) {
     contact_row_ = is_double_ ? contact_row_type<double>() : contact_row_type<float>();
@@ -161,13 +161,16 @@ void ResultWriter::flush_contacts(Tables& tables) {
 }
 
 void ResultWriter::close() {
-    tables_.clear();
+    for (Tables& tables : tables_) {
+        for (h5::Dataset* table : {&tables.scans, &tables.contacts, &tables.contact_offset}) table->close();
+        for (h5::Dataset& table : tables.position) table.close();
+    }
     file_.close();
 }
 
 void write_run(const std::filesystem::path& file, const Run& run) {
-    replace_file(file, [&](const std::filesystem::path& temporary) {
-        ResultWriter writer(temporary, run);
+    replace_file(file, [&](NewFile& out) {
+        ResultWriter writer(out, run);
         for (std::size_t r = 0; r < run.recordings.size(); ++r) {
             for (const Scan& scan : run.recordings[r].scans) writer.append(r, scan);
             writer.end(r, run.recordings[r].failure);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "core/atomic_file.h"
 #include "core/make_folder.h"
 #include "core/output_file.h"
 #include "io/grain_loads.h"
@@ -34,9 +35,8 @@ Walls are partners -1 to -6: x_min, x_max, y_min, y_max, floor, plate.
 /// The parts of a VTKHDF unstructured grid, version 1.0, in one piece.
 class Grid {
 public:
-    Grid(const std::filesystem::path& path, unsigned char cell_type, long points_per_cell,
-         const std::vector<double>& points)
-        : file_(h5::File::create(path)) {
+    Grid(NewFile& out, unsigned char cell_type, long points_per_cell, const std::vector<double>& points)
+        : file_(h5::File::create(out)) {
         const long count = static_cast<long>(points.size() / 3), cells = count / points_per_cell;
         file_.make_group("/VTKHDF");
         file_.set_attribute("/VTKHDF", "Version", std::vector<long>{1, 0});
@@ -125,8 +125,8 @@ void write_vtk_grains(const std::filesystem::path& file, const Recording& record
         contacts[i] = loads[i].contacts;
         force[i] = loads[i].force_magnitude;
     }
-    replace_own(file, FileKind::vtk, [&](const std::filesystem::path& temporary) {
-        Grid grid(temporary, vtk_vertex, 1, points);
+    replace_own(file, FileKind::vtk, [&](NewFile& out) {
+        Grid grid(out, vtk_vertex, 1, points);
         grid.point_data("grain", number);
         grid.point_data("diameter", recording.diameter);
         grid.point_data("coordination_number", contacts);
@@ -151,8 +151,8 @@ void write_vtk_contacts(const std::filesystem::path& file, const Recording& reco
         grain.push_back(contact.grain);
         partner.push_back(contact.partner);
     }
-    replace_own(file, FileKind::vtk, [&](const std::filesystem::path& temporary) {
-        Grid grid(temporary, vtk_line, 2, points);
+    replace_own(file, FileKind::vtk, [&](NewFile& out) {
+        Grid grid(out, vtk_line, 2, points);
         grid.point_data("force_magnitude",
                         end_magnitude);  // at the ends too: tubes take their radius from points
         grid.cell_data("grain", grain);

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 #include <functional>
 
+#include "core/atomic_file.h"
 #include "core/errors.h"
 #include "core/make_folder.h"
 #include "core/output_file.h"
@@ -78,32 +78,27 @@ void append_contacts(fmt::memory_buffer& text, const Recording& recording, const
 /// Both files of one replica, its scans read one after the other.
 int export_replica(const Recording& recording, std::size_t number, const std::filesystem::path& folder,
                    const std::function<Scan(std::size_t)>& read_scan) {
-    const auto write_frames = [&](const std::filesystem::path& file, auto append) {
+    const auto write_frames = [&](NewFile& out, auto append) {
         bool any = false;
-        std::ofstream out(file, std::ios::binary);
         for (std::size_t s = 0; s < recording.scans.size(); ++s) {
             const Scan scan = read_scan(s);
             if (scan.position.empty()) continue;
             fmt::memory_buffer text;
             append(text, recording, scan);
-            out.write(text.data(), static_cast<std::streamsize>(text.size()));
+            out.write({text.data(), text.size()});
             any = true;
         }
-        out.close();
-        if (!out) throw RunError(file.string() + ": cannot be written");
         return any;
     };
     const auto grains = folder / fmt::format("replica_{:05}.xyz", number);
     const auto contacts = folder / fmt::format("replica_{:05}.contacts.dump", number);
     bool any = false;
-    replace_own(grains, FileKind::xyz,
-                [&](const auto& temporary) { any = write_frames(temporary, append_grains); });
+    replace_own(grains, FileKind::xyz, [&](NewFile& out) { any = write_frames(out, append_grains); });
     if (!any) {
         std::filesystem::remove(grains);
         return 0;
     }
-    replace_own(contacts, FileKind::dump,
-                [&](const auto& temporary) { write_frames(temporary, append_contacts); });
+    replace_own(contacts, FileKind::dump, [&](NewFile& out) { write_frames(out, append_contacts); });
     return 2;
 }
 

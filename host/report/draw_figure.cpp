@@ -5,6 +5,7 @@
 
 #include "core/atomic_file.h"
 #include "core/errors.h"
+#include "core/input_file.h"
 #include "core/output_file.h"
 #include "report/gnuplot.h"
 
@@ -59,9 +60,7 @@ std::vector<std::filesystem::path> draw_figure(const Figure& figure, const std::
     std::vector<std::filesystem::path> pictures;
     for (const char* ending : {".png", ".svg"}) {
         pictures.push_back(folder / (figure.name + ending));
-        replace_file(pictures.back(), [&](const std::filesystem::path& temporary) {
-            std::filesystem::rename(drawing.path() / pictures.back().filename(), temporary);
-        });
+        replace_file(pictures.back(), read_file(drawing.path() / pictures.back().filename()));
     }
     return pictures;
 }

@@ -91,9 +91,11 @@ TEST(damaged_files, foreign_files_are_named_as_such) {
     TemporaryFolder folder;
     write_bytes(folder / "text.h5", "frame,cycle\n0,0\n");
     EXPECT_THAT(read_error(folder / "text.h5"), HasSubstr("cannot be opened as HDF5"));
-    auto other = h5::File::create(folder / "other.h5");
-    other.write("/measurement/height", std::vector<double>{1, 2});
-    other.close();
+    replace_file(folder / "other.h5", [](NewFile& out) {
+        auto other = h5::File::create(out);
+        other.write("/measurement/height", std::vector<double>{1, 2});
+        other.close();
+    });
     EXPECT_THAT(read_error(folder / "other.h5"), HasSubstr("not a result of this program"));
 }
 
@@ -157,6 +159,10 @@ TEST(damaged_files, a_contact_of_a_grain_that_is_not_there_is_refused) {
     EXPECT_THAT(read_error(folder / "run.h5"), HasSubstr("contact of grain 0 with partner 27"));
 }
 
+long files_in(const std::filesystem::path& folder) {
+    return std::distance(std::filesystem::directory_iterator(folder), {});
+}
+
 TEST(damaged_files, killed_while_writing_leaves_the_old_file) {
     TemporaryFolder folder;
     const auto file = folder / "run.h5";
@@ -165,8 +171,8 @@ TEST(damaged_files, killed_while_writing_leaves_the_old_file) {
     const pid_t child = fork();
     ASSERT_GE(child, 0);
     if (child == 0) {
-        replace_file(file, [](const std::filesystem::path& temporary) {
-            ResultWriter writer(temporary, synthetic_run({.replicas = 9}));
+        replace_file(file, [](NewFile& out) {
+            ResultWriter writer(out, synthetic_run({.replicas = 9}));
             raise(SIGKILL);
         });
         _exit(0);
@@ -174,8 +180,10 @@ TEST(damaged_files, killed_while_writing_leaves_the_old_file) {
     int status = 0;
     waitpid(child, &status, 0);
     ASSERT_TRUE(WIFSIGNALED(status));
-    EXPECT_TRUE(std::filesystem::exists(folder / "run.h5.tmp"));
+    EXPECT_EQ(files_in(folder.path()), 2);
     EXPECT_EQ(read_bytes(file), before);
+    remove_temporaries(folder.path());
+    EXPECT_EQ(files_in(folder.path()), 1);
     write_run(file, synthetic_run({.replicas = 1}));  // the left-over does not stand in the way
     EXPECT_EQ(read_run(file).recordings.size(), 1u);
 }
@@ -203,7 +211,7 @@ TEST(damaged_files, full_disk_is_an_error_and_leaves_the_old_file) {
     ASSERT_TRUE(WIFEXITED(status));
     EXPECT_EQ(WEXITSTATUS(status), 7);
     EXPECT_EQ(read_bytes(file), before);
-    EXPECT_FALSE(std::filesystem::exists(folder / "run.h5.tmp"));
+    EXPECT_EQ(files_in(folder.path()), 1);
 }
 
 TEST(damaged_files, unwritable_folder_is_named) {

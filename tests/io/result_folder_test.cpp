@@ -81,9 +81,7 @@ TEST(result_folder, resuming_drops_segments_newer_than_the_checkpoint) {
         auto folder = ResultFolder::create(place / "out");
         append_in_parts(folder, run, {1, 2, 4});
     }
-    write_bytes(place / "out/segment-000003.h5.tmp", "cut short");
     auto folder = ResultFolder::open_for_resume(place / "out");
-    EXPECT_FALSE(std::filesystem::exists(place / "out/segment-000003.h5.tmp"));
     EXPECT_EQ(folder.segments(), 3);
     folder.drop_segments_from(1);
     EXPECT_EQ(folder.append_segment(part_of(run, 1, 6)), 1);

@@ -1,0 +1,83 @@
+// Files put into place whole, and what is refused as a file.
+#include "core/atomic_file.h"
+
+#include <gmock/gmock.h>
+#include <sys/stat.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <set>
+
+#include "core/errors.h"
+#include "core/input_file.h"
+
+namespace mcdem {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+class AtomicFileTest : public testing::Test {
+protected:
+    AtomicFileTest() {
+        auto pattern = (fs::temp_directory_path() / "mcdem-test-XXXXXX").string();
+        folder_ = ::mkdtemp(pattern.data());
+    }
+    ~AtomicFileTest() override { fs::remove_all(folder_); }
+    fs::path folder_;
+};
+
+TEST_F(AtomicFileTest, TemporaryNamesCannotBeForeseen) {
+    std::set<fs::path> names;
+    for (int k = 0; k < 20; ++k) {
+        const NewFile out(folder_ / "run.h5");
+        names.insert(out.temporary());
+        EXPECT_TRUE(fs::exists(out.temporary()));
+    }
+    EXPECT_EQ(names.size(), 20u);
+    EXPECT_TRUE(fs::is_empty(folder_));
+}
+
+TEST_F(AtomicFileTest, ALinkInItsPlaceIsReplacedAndNotFollowed) {
+    std::ofstream(folder_ / "thesis") << "mine";
+    fs::create_symlink(folder_ / "thesis", folder_ / "run.h5");
+    replace_file(folder_ / "run.h5", "results");
+    EXPECT_EQ(read_file(folder_ / "thesis"), "mine");
+    EXPECT_EQ(read_file(folder_ / "run.h5"), "results");
+}
+
+TEST_F(AtomicFileTest, OnlyItsOwnTemporariesAreRemoved) {
+    for (const char* name :
+         {"run.h5.0123456789abcdef.tmp", "mine.tmp", "run.h5.tmp", "a.0123456789ABCDEF.tmp"})
+        std::ofstream(folder_ / name) << "text";
+    remove_temporaries(folder_);
+    EXPECT_FALSE(fs::exists(folder_ / "run.h5.0123456789abcdef.tmp"));
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 3);
+}
+
+std::string error_of_reading(const fs::path& file) {
+    try {
+        read_file(file);
+    } catch (const std::exception& error) {
+        return error.what();
+    }
+    return "none";
+}
+
+TEST_F(AtomicFileTest, WhatIsNoFileIsRefusedAtOnce) {
+    ASSERT_EQ(::mkfifo((folder_ / "pipe").c_str(), 0600), 0);
+    EXPECT_THAT(error_of_reading(folder_ / "pipe"), HasSubstr("is a pipe or device"));
+    EXPECT_THAT(error_of_reading("/dev/zero"), HasSubstr("is a pipe or device"));
+    EXPECT_THAT(error_of_reading(folder_), HasSubstr("is a folder"));
+    EXPECT_THAT(error_of_reading(folder_ / "none"), HasSubstr("no such file"));
+    EXPECT_THROW(read_file(folder_ / "none"), InputError);
+}
+
+TEST_F(AtomicFileTest, WhatTheSystemRefusesSaysNothingOfTheFile) {
+    fs::create_symlink(folder_ / "loop", folder_ / "loop");
+    EXPECT_THROW(read_file(folder_ / "loop"), RunError);
+    EXPECT_THAT(error_of_reading(folder_ / "loop"), HasSubstr("try again when the cause is gone"));
+}
+
+}  // namespace
+}  // namespace mcdem

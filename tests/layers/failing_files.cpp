@@ -1,0 +1,453 @@
+// A layer over the C library's file operations (LD_PRELOAD) that lets one of them fail, or the power go out
+// before it. Operations on files below MCDEM_TEST_FILES are counted from 1:
+//   MCDEM_TEST_FAULT_LOG    file to which each is appended, as "number kind path"
+//   MCDEM_TEST_FAULT_AT     number of the one that fails
+//   MCDEM_TEST_FAULT_KINDS  kinds that count, as "open,write"; all where it is not set
+//   MCDEM_TEST_FAULT_NAME   only paths that contain this count
+//   MCDEM_TEST_FAULT        EIO, ENOSPC, EMFILE, ESTALE, EACCES, EINTR; SHORT (half a write, or half a read);
+//                           INT (goes on, with a SIGINT pending); KILL; CUT (power cut: data and folder
+//                           entries that were not synced are lost); CUT_DATA (power cut: folder entries are
+//                           there, data that was not synced is lost)
+//   MCDEM_TEST_FAULT_STAYS  set: every later one fails as well
+//   MCDEM_TEST_FAULT_KEPT   folder on the same disk, for what a power cut brings back
+#include <dirent.h>
+#include <dlfcn.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/stat.h>
+#include <sys/uio.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <climits>
+#include <cstdarg>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <map>
+#include <mutex>
+#include <string>
+#include <vector>
+
+namespace {
+
+std::recursive_mutex mutex;
+
+template <class Function>
+Function real(const char* name) {
+    return reinterpret_cast<Function>(dlsym(RTLD_NEXT, name));
+}
+#define REAL(name) static const auto real_##name = real<decltype(&::name)>(#name)
+
+std::string setting(const char* name) {
+    const char* value = std::getenv(name);
+    return value ? value : "";
+}
+
+struct Settings {
+    std::string below = setting("MCDEM_TEST_FILES"), log = setting("MCDEM_TEST_FAULT_LOG"),
+                fault = setting("MCDEM_TEST_FAULT"), kept = setting("MCDEM_TEST_FAULT_KEPT"),
+                name = setting("MCDEM_TEST_FAULT_NAME"), kinds = setting("MCDEM_TEST_FAULT_KINDS");
+    long at = std::atol(setting("MCDEM_TEST_FAULT_AT").c_str());
+    bool stays = !setting("MCDEM_TEST_FAULT_STAYS").empty();
+    bool is_cut() const { return fault.starts_with("CUT"); }
+};
+const Settings& settings() {
+    static const Settings made;
+    return made;
+}
+
+std::string path_of(int descriptor) {
+    char path[PATH_MAX];
+    const std::string link = "/proc/self/fd/" + std::to_string(descriptor);
+    const ssize_t size = readlink(link.c_str(), path, sizeof path);
+    std::string text(path, size > 0 ? static_cast<std::size_t>(size) : 0);
+    const std::string deleted = " (deleted)";
+    return text.ends_with(deleted) ? text.substr(0, text.size() - deleted.size()) : text;
+}
+
+std::string path_of(int folder, const char* path) {
+    if (path[0] == '/') return path;
+    char here[PATH_MAX];
+    const std::string base = folder == AT_FDCWD ? (getcwd(here, sizeof here) ? here : "") : path_of(folder);
+    return base + "/" + path;
+}
+
+std::string folder_of(const std::string& path) { return path.substr(0, path.rfind('/')); }
+
+bool counts(const std::string& path) {
+    const std::string& below = settings().below;
+    return !below.empty() && path.starts_with(below) &&
+           (path.size() == below.size() || path[below.size()] == '/');
+}
+
+// ---- what a power cut takes away
+
+using Inode = std::pair<dev_t, ino_t>;
+std::map<Inode, off_t> unsynced;  ///< files written to, and the size at their last sync
+
+struct Entry {
+    enum Kind { made, renamed, removed, made_folder, removed_folder } kind;
+    std::string path, before;            ///< renamed: from `before`
+    std::string kept_path, kept_before;  ///< what was there
+};
+std::vector<Entry> entries;  ///< since the last sync of their folder
+
+std::string keep(const std::string& path) {
+    REAL(link);
+    static int number = 0;
+    const std::string kept = settings().kept + "/" + std::to_string(number++);
+    return real_link(path.c_str(), kept.c_str()) == 0 ? kept : "";
+}
+
+void note_write(int descriptor) {
+    struct stat status {};
+    if (settings().is_cut() && fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode))
+        unsynced.try_emplace({status.st_dev, status.st_ino}, 0);
+}
+
+void note_sync(int descriptor, const std::string& path) {
+    struct stat status {};
+    if (!settings().is_cut() || fstat(descriptor, &status) != 0) return;
+    if (S_ISDIR(status.st_mode))
+        std::erase_if(entries, [&](const Entry& entry) { return folder_of(entry.path) == path; });
+    else
+        unsynced.erase({status.st_dev, status.st_ino});
+}
+
+void lose_data(const std::string& folder) {
+    DIR* open = fdopendir(::open(folder.c_str(), O_RDONLY | O_DIRECTORY));
+    if (!open) return;
+    while (const dirent* entry = ::readdir(open)) {
+        const std::string name = entry->d_name, path = folder + "/" + name;
+        struct stat status {};
+        if (name == "." || name == ".." || lstat(path.c_str(), &status) != 0) continue;
+        if (S_ISDIR(status.st_mode)) lose_data(path);
+        const auto found = unsynced.find({status.st_dev, status.st_ino});
+        if (found != unsynced.end()) (void)!::truncate(path.c_str(), std::min(found->second, status.st_size));
+    }
+    closedir(open);
+}
+
+void undo(const Entry& entry) {
+    REAL(link);
+    REAL(unlink);
+    REAL(mkdir);
+    REAL(rmdir);
+    const auto bring_back = [&](const std::string& kept, const std::string& path) {
+        if (!kept.empty()) real_link(kept.c_str(), path.c_str());
+    };
+    if (entry.kind == Entry::made_folder) real_rmdir(entry.path.c_str());
+    if (entry.kind == Entry::removed_folder) real_mkdir(entry.path.c_str(), 0777);
+    if (entry.kind == Entry::made || entry.kind == Entry::renamed) real_unlink(entry.path.c_str());
+    bring_back(entry.kept_path, entry.path);
+    bring_back(entry.kept_before, entry.before);
+}
+
+[[noreturn]] void cut_power() {
+    const std::string fault = settings().fault, below = settings().below;
+    REAL(rename);
+    if (fault == "CUT")
+        for (auto entry = entries.rbegin(); entry != entries.rend(); ++entry) {
+            // A folder comes back with all that is in it.
+            struct stat status {};
+            if (entry->kind == Entry::renamed && stat(entry->path.c_str(), &status) == 0 &&
+                S_ISDIR(status.st_mode))
+                real_rename(entry->path.c_str(), entry->before.c_str());
+            else
+                undo(*entry);
+        }
+    lose_data(below);
+    kill(getpid(), SIGKILL);
+    for (;;) pause();
+}
+
+// ---- faults
+
+int number_of(const std::string& fault) {
+    const std::map<std::string, int> numbers{{"EIO", EIO},       {"ENOSPC", ENOSPC}, {"EMFILE", EMFILE},
+                                             {"ESTALE", ESTALE}, {"EINTR", EINTR},   {"EACCES", EACCES}};
+    const auto found = numbers.find(fault);
+    return found == numbers.end() ? 0 : found->second;
+}
+
+void log(long number, const std::string& kind, const std::string& path) {
+    REAL(open);
+    REAL(write);
+    REAL(close);
+    const std::string line = std::to_string(number) + " " + kind + " " + path + "\n";
+    const int file = real_open(settings().log.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
+    (void)!real_write(file, line.data(), line.size());
+    real_close(file);
+}
+
+enum class Turn { as_usual, fails, halved };
+
+/// What is to become of this operation; errno is set where it fails.
+Turn turn_of(const char* kind, const std::string& path) {
+    static long count = 0;
+    const Settings& now = settings();
+    if (!counts(path) || (!now.name.empty() && path.find(now.name) == path.npos)) return Turn::as_usual;
+    if (!now.kinds.empty() &&
+        ("," + now.kinds + ",").find("," + std::string(kind) + ",") == std::string::npos)
+        return Turn::as_usual;
+    ++count;
+    if (!now.log.empty()) log(count, kind, path);
+    if (now.at == 0 || count < now.at || (count > now.at && !now.stays)) return Turn::as_usual;
+    if (now.is_cut()) cut_power();
+    if (now.fault == "KILL") kill(getpid(), SIGKILL);
+    if (now.fault == "INT") raise(SIGINT);
+    if (now.fault == "INT") return Turn::as_usual;
+    if (now.fault == "SHORT") return Turn::halved;
+    errno = number_of(now.fault);
+    return Turn::fails;
+}
+
+bool fails(const char* kind, const std::string& path) { return turn_of(kind, path) == Turn::fails; }
+
+bool exists(const std::string& path) {
+    struct stat status {};
+    return lstat(path.c_str(), &status) == 0;
+}
+
+template <class Open>
+int opened(const std::string& path, int flags, Open open) {
+    const std::lock_guard lock(mutex);
+    const bool makes = (flags & O_CREAT) != 0 && counts(path) && !exists(path);
+    if (fails((flags & O_CREAT) != 0 ? "create" : "open", path)) return -1;
+    const int descriptor = open();
+    if (descriptor >= 0 && makes && settings().is_cut()) entries.push_back({Entry::made, path, {}, {}, {}});
+    if (descriptor >= 0 && makes) note_write(descriptor);
+    return descriptor;
+}
+
+/// `move(size)` moves that many bytes.
+template <class Move>
+ssize_t moved(const char* kind, int descriptor, std::size_t size, Move move) {
+    const std::lock_guard lock(mutex);
+    const std::string path = path_of(descriptor);
+    if (!counts(path)) return move(size);
+    const Turn turn = turn_of(kind, path);
+    if (turn == Turn::fails) return -1;
+    if (std::strcmp(kind, "write") == 0) note_write(descriptor);
+    return move(turn == Turn::halved && size > 1 ? size / 2 : size);
+}
+
+template <class Change>
+int changed(const char* kind, const std::string& path, Change change) {
+    const std::lock_guard lock(mutex);
+    if (!counts(path)) return change();
+    return fails(kind, path) ? -1 : change();
+}
+
+int removed(const std::string& path, bool is_folder, int (*remove)(const std::string&)) {
+    const std::lock_guard lock(mutex);
+    if (!counts(path)) return remove(path);
+    if (fails(is_folder ? "rmdir" : "unlink", path)) return -1;
+    const std::string kept = settings().is_cut() && !is_folder ? keep(path) : "";
+    const int result = remove(path);
+    if (result == 0 && settings().is_cut())
+        entries.push_back({is_folder ? Entry::removed_folder : Entry::removed, path, {}, kept, {}});
+    return result;
+}
+
+int renamed(const std::string& from, const std::string& to,
+            int (*rename)(const std::string&, const std::string&)) {
+    const std::lock_guard lock(mutex);
+    if (!counts(to)) return rename(from, to);
+    if (fails("rename", to)) return -1;
+    Entry entry{Entry::renamed, to, from, {}, {}};
+    if (settings().is_cut()) {
+        entry.kept_path = keep(to);
+        entry.kept_before = keep(from);
+    }
+    const int result = rename(from, to);
+    if (result == 0 && settings().is_cut()) entries.push_back(entry);
+    return result;
+}
+
+}  // namespace
+
+#define WITH_MODE(flags, mode)       \
+    mode_t mode = 0;                 \
+    if ((flags)&O_CREAT) {           \
+        va_list more;                \
+        va_start(more, flags);       \
+        mode = va_arg(more, mode_t); \
+        va_end(more);                \
+    }
+
+extern "C" {
+
+int open(const char* path, int flags, ...) {
+    WITH_MODE(flags, mode)
+    REAL(open);
+    return opened(path_of(AT_FDCWD, path), flags, [&] { return real_open(path, flags, mode); });
+}
+int open64(const char* path, int flags, ...) {
+    WITH_MODE(flags, mode)
+    REAL(open64);
+    return opened(path_of(AT_FDCWD, path), flags, [&] { return real_open64(path, flags, mode); });
+}
+int openat(int folder, const char* path, int flags, ...) {
+    WITH_MODE(flags, mode)
+    REAL(openat);
+    return opened(path_of(folder, path), flags, [&] { return real_openat(folder, path, flags, mode); });
+}
+int openat64(int folder, const char* path, int flags, ...) {
+    WITH_MODE(flags, mode)
+    REAL(openat64);
+    return opened(path_of(folder, path), flags, [&] { return real_openat64(folder, path, flags, mode); });
+}
+
+static FILE* opened_file(const char* path, const char* how, FILE* (*open)(const char*, const char*)) {
+    FILE* file = nullptr;
+    const int flags = std::strpbrk(how, "wa") ? O_CREAT : 0;
+    opened(path_of(AT_FDCWD, path), flags, [&] {
+        file = open(path, how);
+        return file ? fileno(file) : -1;
+    });
+    return file;
+}
+FILE* fopen(const char* path, const char* how) {
+    REAL(fopen);
+    return opened_file(path, how, real_fopen);
+}
+FILE* fopen64(const char* path, const char* how) {
+    REAL(fopen64);
+    return opened_file(path, how, real_fopen64);
+}
+DIR* opendir(const char* path) {
+    REAL(opendir);
+    const std::lock_guard lock(mutex);
+    return fails("opendir", path_of(AT_FDCWD, path)) ? nullptr : real_opendir(path);
+}
+
+int close(int descriptor) {
+    REAL(close);
+    const int result = changed("close", path_of(descriptor), [] { return 0; });
+    const int error = errno;
+    const int closed = real_close(descriptor);  // Linux closes it whatever it says
+    if (result == 0) return closed;
+    errno = error;
+    return result;
+}
+int fclose(FILE* file) {
+    REAL(fclose);
+    const int result = changed("close", path_of(fileno(file)), [] { return 0; });
+    const int error = errno;
+    const int closed = real_fclose(file);
+    if (result == 0) return closed;
+    errno = error;
+    return EOF;
+}
+
+ssize_t write(int descriptor, const void* from, size_t size) {
+    REAL(write);
+    return moved("write", descriptor, size, [&](size_t n) { return real_write(descriptor, from, n); });
+}
+ssize_t pwrite(int descriptor, const void* from, size_t size, off_t first) {
+    REAL(pwrite);
+    return moved("write", descriptor, size,
+                 [&](size_t n) { return real_pwrite(descriptor, from, n, first); });
+}
+ssize_t pwrite64(int descriptor, const void* from, size_t size, off64_t first) {
+    REAL(pwrite64);
+    return moved("write", descriptor, size,
+                 [&](size_t n) { return real_pwrite64(descriptor, from, n, first); });
+}
+ssize_t writev(int descriptor, const iovec* from, int count) {
+    REAL(write);
+    // The first of them alone: fewer bytes than asked for is what callers have to bear.
+    while (count > 1 && from->iov_len == 0) ++from, --count;
+    return moved("write", descriptor, from->iov_len,
+                 [&](size_t n) { return real_write(descriptor, from->iov_base, n); });
+}
+ssize_t read(int descriptor, void* to, size_t size) {
+    REAL(read);
+    return moved("read", descriptor, size, [&](size_t n) { return real_read(descriptor, to, n); });
+}
+ssize_t pread(int descriptor, void* to, size_t size, off_t first) {
+    REAL(pread);
+    return moved("read", descriptor, size, [&](size_t n) { return real_pread(descriptor, to, n, first); });
+}
+ssize_t pread64(int descriptor, void* to, size_t size, off64_t first) {
+    REAL(pread64);
+    return moved("read", descriptor, size, [&](size_t n) { return real_pread64(descriptor, to, n, first); });
+}
+
+int fsync(int descriptor) {
+    REAL(fsync);
+    const std::string path = path_of(descriptor);
+    return changed("fsync", path, [&] {
+        if (counts(path)) note_sync(descriptor, path);
+        return counts(path) ? 0 : real_fsync(descriptor);  // no power is cut here, and disks are slow
+    });
+}
+int ftruncate(int descriptor, off_t size) {
+    REAL(ftruncate);
+    return changed("ftruncate", path_of(descriptor), [&] {
+        note_write(descriptor);
+        return real_ftruncate(descriptor, size);
+    });
+}
+int ftruncate64(int descriptor, off64_t size) {
+    REAL(ftruncate64);
+    return changed("ftruncate", path_of(descriptor), [&] {
+        note_write(descriptor);
+        return real_ftruncate64(descriptor, size);
+    });
+}
+
+int rename(const char* from, const char* to) {
+    return renamed(path_of(AT_FDCWD, from), path_of(AT_FDCWD, to),
+                   [](const std::string& from, const std::string& to) {
+                       REAL(rename);
+                       return real_rename(from.c_str(), to.c_str());
+                   });
+}
+int link(const char* from, const char* to) {
+    REAL(link);
+    const std::string path = path_of(AT_FDCWD, to);
+    return changed("link", path, [&] {
+        const int result = real_link(from, to);
+        if (result == 0 && settings().is_cut() && counts(path))
+            entries.push_back({Entry::made, path, {}, {}, {}});
+        return result;
+    });
+}
+int mkdir(const char* name, mode_t mode) {
+    REAL(mkdir);
+    const std::string path = path_of(AT_FDCWD, name);
+    return changed("mkdir", path, [&] {
+        const int result = real_mkdir(name, mode);
+        if (result == 0 && settings().is_cut() && counts(path))
+            entries.push_back({Entry::made_folder, path, {}, {}, {}});
+        return result;
+    });
+}
+
+static int really_unlink(const std::string& path) {
+    REAL(unlink);
+    return real_unlink(path.c_str());
+}
+static int really_rmdir(const std::string& path) {
+    REAL(rmdir);
+    return real_rmdir(path.c_str());
+}
+static bool is_folder(const std::string& path) {
+    struct stat status {};
+    return lstat(path.c_str(), &status) == 0 && S_ISDIR(status.st_mode);
+}
+int unlink(const char* path) { return removed(path_of(AT_FDCWD, path), false, really_unlink); }
+int rmdir(const char* path) { return removed(path_of(AT_FDCWD, path), true, really_rmdir); }
+int remove(const char* name) {
+    const std::string path = path_of(AT_FDCWD, name);
+    return is_folder(path) ? removed(path, true, really_rmdir) : removed(path, false, really_unlink);
+}
+int unlinkat(int folder, const char* name, int flags) {
+    const std::string path = path_of(folder, name);
+    return (flags & AT_REMOVEDIR) ? removed(path, true, really_rmdir) : removed(path, false, really_unlink);
+}
+}
