@@ -2,11 +2,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "cli/experiment.h"
 #include "cli/messages.h"
 #include "cli/standard_streams.h"
+#include "core/atomic_file.h"
 #include "core/errors.h"
+#include "core/input_file.h"
+#include "experiment/experiment_files.h"
 #include "experiment/from_recording.h"
 #include "io/output_folder.h"
 #include "io/results.h"
@@ -24,6 +28,13 @@ struct FromRunCommand {
     std::uint64_t seed = 1;
     bool gzip = false;
 };
+
+const char* const experiment_toml = "experiment.toml";
+
+/// Another time this command was killed, or a disk was full: it writes experiment.toml last.
+bool is_cut_short(const fs::path& out) {
+    return fs::exists(out / sums_file) && !fs::exists(out / experiment_toml);
+}
 
 std::size_t chosen_replica(const Run& run, const FromRunCommand& command) {
     const auto& all = run.recordings;
@@ -51,6 +62,12 @@ Recording read_replica(const FromRunCommand& command) {
     recording.label = fmt::format("{}, {}", reader.run().name, recording.label);
     if (recording.diameter.empty()) throw InputError(command.run + ": holds no grains of this replica");
     if (recording.scans.empty()) throw InputError(command.run + ": holds no scan of this replica");
+    for (const Scan& scan : recording.scans)
+        if (!std::isfinite(scan.top_force()) || !std::isfinite(scan.plate_z))
+            throw InputError(
+                fmt::format("{}: frame {} of this replica has a top force or plate position that is no "
+                            "number",
+                            command.run, scan.frame));
     if (recording.failure) spdlog::warn("{} stopped early: {}", recording.label, recording.failure->cause);
     return recording;
 }
@@ -99,8 +116,30 @@ void warn_of_start(const Recording& truth) {
             1e3 * truth.displacement(first));
 }
 
+/// The digests come first, so that the same command finishes what was cut short. A folder that has all of its
+/// files is not touched any more.
+void write_files(const FromRunCommand& command, const Experiment& experiment) {
+    const fs::path out = command.out;
+    const auto files = experiment_files(experiment, command.gzip ? Packed::gzip : Packed::plain);
+    const std::string sums = sums_text(files);
+    if (!is_cut_short(out)) expect_free(out);
+    if (fs::exists(out / sums_file) && read_file(out / sums_file) != sums)
+        throw InputError(fmt::format(
+            "--out: {} holds another experiment, or a part of one: name another folder, or remove it "
+            "first",
+            command.out));
+    const FolderLock lock = open_output_folder(out);
+    replace_file(out / sums_file, sums);
+    for (const auto& [name, bytes] : files)
+        if (name != experiment_toml) replace_file(out / name, bytes);
+    replace_file(out / experiment_toml, files.at(experiment_toml));
+    for (const auto& [name, bytes] : files)
+        if (read_file(out / name) != bytes)
+            throw RunError((out / name).string() + ": what was written is not what is read back");
+}
+
 void make_experiment(const FromRunCommand& command) {
-    expect_free(command.out);
+    if (!is_cut_short(command.out)) expect_free(command.out);
     const auto uncertainty = read_uncertainty(command.uncertainty);
     const Recording truth = read_replica(command);
     expect_small_errors(command.instrument.stated, truth);
@@ -108,9 +147,7 @@ void make_experiment(const FromRunCommand& command) {
     Experiment experiment = experiment_from(truth, command.instrument, command.seed);
     experiment.uncertainty = uncertainty;
     if (!command.name.empty()) experiment.name = command.name;
-    const FolderLock lock = open_output_folder(command.out);
-    expect_free(command.out);  // still
-    write_experiment(command.out, experiment, command.gzip ? Packed::gzip : Packed::plain);
+    write_files(command, experiment);
     std::size_t real = 0, seen = 0;
     for (const Scan& scan : truth.scans) real += scan.contacts.size();
     for (const Scan& scan : experiment.recording.scans) seen += scan.contacts.size();

@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
 
 #include "cl/program.h"
 #include "core/atomic_file.h"
 #include "core/errors.h"
+#include "core/input_file.h"
 #include "core/sha256.h"
 
 namespace mcdem {
@@ -24,8 +24,7 @@ std::string digest_of_packing_files(const Scene& scene) {
         if (const auto* file = std::get_if<PackingFile>(&replica.packing.source)) files.insert(file->path);
     Sha256 digest;
     for (const auto& file : files) {
-        std::ifstream in(file, std::ios::binary);
-        digest.add(std::string(std::istreambuf_iterator<char>(in), {})).add("\n");
+        digest.add(read_file(file)).add("\n");
     }
     return digest.hex();
 }
@@ -38,10 +37,7 @@ bool is_agreement(const json& read) {
     return read.is_object() && are_texts("common") && are_texts("chosen");
 }
 
-json parsed(const std::filesystem::path& file) {
-    std::ifstream in(file);
-    return json::parse(in, nullptr, false);
-}
+json parsed(const std::filesystem::path& file) { return json::parse(read_file(file), nullptr, false); }
 
 json read_agreement(const std::filesystem::path& file) {
     json read = parsed(file);

@@ -1,9 +1,11 @@
 #include "ensemble/observation_store.h"
 
 #include <cstdint>
-#include <fstream>
+#include <cstring>
 
 #include "core/atomic_file.h"
+#include "core/errors.h"
+#include "core/input_file.h"
 #include "core/make_folder.h"
 #include "core/sha256.h"
 #include "io/results.h"
@@ -27,16 +29,15 @@ std::filesystem::path ObservationStore::file_of(const std::string& name) const {
 }
 
 std::optional<Eigen::VectorXd> ObservationStore::find(const std::string& name) const {
-    std::ifstream in(file_of(name), std::ios::binary | std::ios::ate);
-    constexpr std::streamoff digest_length = 64;
-    const std::streamoff size = in ? static_cast<std::streamoff>(in.tellg()) - digest_length : -1;
-    if (size < 0 || size % static_cast<std::streamoff>(sizeof(double))) return std::nullopt;
-    std::string digest(digest_length, ' ');
-    Eigen::VectorXd values(size / static_cast<std::streamoff>(sizeof(double)));
-    in.seekg(0);
-    in.read(digest.data(), digest_length);
-    in.read(reinterpret_cast<char*>(values.data()), size);
-    return in && digest == digest_of(values) ? std::optional(values) : std::nullopt;
+    constexpr std::size_t digest_length = 64;
+    if (!std::filesystem::exists(file_of(name))) return std::nullopt;
+    const std::string bytes = read_file(file_of(name));
+    if (bytes.size() < digest_length || (bytes.size() - digest_length) % sizeof(double) != 0)
+        return std::nullopt;
+    Eigen::VectorXd values(static_cast<Eigen::Index>((bytes.size() - digest_length) / sizeof(double)));
+    std::memcpy(values.data(), bytes.data() + digest_length, bytes.size() - digest_length);
+    if (bytes.substr(0, digest_length) != digest_of(values)) return std::nullopt;
+    return values;
 }
 
 void ObservationStore::keep(const std::string& name, const Eigen::VectorXd& observation) const {
@@ -51,11 +52,18 @@ std::filesystem::path ObservationStore::recording_file(const std::string& name) 
 }
 
 bool ObservationStore::has_recording(const std::string& name) const {
-    return std::filesystem::exists(recording_file(name));
+    if (!std::filesystem::exists(recording_file(name))) return false;
+    try {
+        return recording(name).diameter.size() > 0;
+    } catch (const InputError&) {
+        return false;
+    }
 }
 
 Recording ObservationStore::recording(const std::string& name) const {
-    return read_run(recording_file(name)).recordings.at(0);
+    Run run = read_run(recording_file(name));
+    if (run.recordings.empty()) throw InputError(recording_file(name).string() + ": holds no recording");
+    return std::move(run.recordings.front());
 }
 
 void ObservationStore::keep(const std::string& name, const Recording& recording) const {

@@ -18,6 +18,7 @@ public:
     std::optional<Eigen::VectorXd> find(const std::string& name) const;
     void keep(const std::string& name, const Eigen::VectorXd& observation) const;
 
+    /// One that is whole.
     bool has_recording(const std::string& name) const;
     /// Throws InputError where it is missing or damaged.
     Recording recording(const std::string& name) const;

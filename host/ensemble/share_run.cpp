@@ -237,6 +237,16 @@ private:
                 "(run.h5 and plate.csv; parts/) elsewhere");
     }
 
+    /// Parts may have been cut in another way before agreement.json was lost.
+    void expect_own_replicas(std::size_t part, const fs::path& file) const try {
+        const Run found = read_run_header({file});
+        const Scene wanted = scene_of(part);
+        if (!std::ranges::equal(found.recordings, wanted.replicas, {}, &Recording::label, &Replica::label))
+            throw DamagedPart(part, file.string() + ": holds other replicas than part " + part_name(part));
+    } catch (const InputError& error) {
+        throw DamagedPart(part, error.what());
+    }
+
     /// Safe to do twice, and after it was cut short anywhere.
     void merge() {
         if (fs::exists(run_file(options_.folder))) {
@@ -246,6 +256,7 @@ private:
             for (std::size_t part = 0; part < parts_; ++part)
                 files.push_back(part_file(options_.folder, part));
             try {
+                for (std::size_t part = 0; part < parts_; ++part) expect_own_replicas(part, files[part]);
                 merge_parts(files, run_file(options_.folder));
             } catch (const DamagedPart& damaged) {
                 options_.on_warning(
@@ -258,6 +269,8 @@ private:
         fs::remove_all(old_parts(options_.folder));
         fs::rename(parts_folder(options_.folder), old_parts(options_.folder));
         fs::remove_all(old_parts(options_.folder));
+        // Another that takes itself for the merger may still write: what it would write is there.
+        remove_temporaries(options_.folder);
     }
 
     Device& device_;
@@ -300,6 +313,7 @@ RunEnd share_run(Device& device, const Scene& scene, const ShareOptions& options
     const FolderLock lock = lock_for_sharing(options.folder, scene);
     if (is_merged(options.folder)) {
         fs::remove_all(old_parts(options.folder));
+        remove_temporaries(options.folder);
         return RunEnd::was_done;
     }
     try {

@@ -1,16 +1,15 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <unistd.h>
 #include <zlib.h>
 
-#include <cerrno>
 #include <iterator>
-#include <system_error>
 
 #include "core/atomic_file.h"
 #include "core/errors.h"
 #include "core/make_folder.h"
+#include "core/sha256.h"
 #include "experiment/experiment.h"
+#include "experiment/experiment_files.h"
 #include "experiment/measurements.h"
 #include "experiment/settings.h"
 
@@ -51,47 +50,63 @@ std::string contact_rows(const Recording& recording) {
     return fmt::to_string(text);
 }
 
-/// zlib keeps no time of day in the file.
-void write_packed(NewFile& out, const std::string& text) {
-    const int descriptor = ::dup(out.descriptor());
-    const gzFile packed = descriptor < 0 ? nullptr : gzdopen(descriptor, "wb6");
-    if (!packed && descriptor >= 0) ::close(descriptor);
-    const bool is_whole = packed && gzfwrite(text.data(), 1, text.size(), packed) == text.size();
-    if ((packed && gzclose(packed) != Z_OK) || !is_whole)
-        throw RunError(fmt::format("{}: cannot be written: {}", out.place().string(),
-                                   std::generic_category().message(errno)));
+/// As gzip packs it, without a time of day.
+std::string packed_by_gzip(const std::string& text) {
+    constexpr int level = 6, window_of_gzip = 15 + 16, memory = 8;
+    z_stream stream{};
+    if (deflateInit2(&stream, level, Z_DEFLATED, window_of_gzip, memory, Z_DEFAULT_STRATEGY) != Z_OK)
+        throw RunError("zlib: a table cannot be packed");
+    std::string packed(deflateBound(&stream, text.size()), '\0');
+    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(text.data()));
+    stream.avail_in = static_cast<uInt>(text.size());
+    stream.next_out = reinterpret_cast<Bytef*>(packed.data());
+    stream.avail_out = static_cast<uInt>(packed.size());
+    const int result = deflate(&stream, Z_FINISH);
+    packed.resize(stream.total_out);
+    deflateEnd(&stream);
+    if (result != Z_STREAM_END) throw RunError("zlib: a table cannot be packed");
+    return packed;
 }
 
-/// Writes the table and removes one of the same name that is packed the other way. No rows: no table.
-void write_table(const std::filesystem::path& folder, const std::string& name,
-                 const std::vector<std::string>& columns, const std::string& rows, Packed packed) {
-    const auto plain = folder / name, gz = folder / (name + ".gz");
-    const auto& file = packed == Packed::gzip ? gz : plain;
-    const std::string header = fmt::format("{}\n", fmt::join(columns, ","));
-    std::filesystem::remove(packed == Packed::gzip ? plain : gz);
-    if (rows.empty()) {
-        std::filesystem::remove(file);
-        return;
-    }
-    replace_file(file, [&](NewFile& out) {
-        if (packed == Packed::gzip) {
-            write_packed(out, header + rows);
-        } else {
-            out.write(header);
-            out.write(rows);
-        }
-    });
+/// No rows: no table.
+void add_table(std::map<std::string, std::string>& files, const std::string& name,
+               const std::vector<std::string>& columns, const std::string& rows, Packed packed) {
+    if (rows.empty()) return;
+    const std::string text = fmt::format("{}\n", fmt::join(columns, ",")) + rows;
+    if (packed == Packed::gzip)
+        files[name + ".gz"] = packed_by_gzip(text);
+    else
+        files[name] = text;
 }
 
 }  // namespace
 
+std::map<std::string, std::string> experiment_files(const Experiment& experiment, Packed packed) {
+    const Recording& recording = experiment.recording;
+    std::map<std::string, std::string> files;
+    add_table(files, "contacts.csv", contact_columns(), contact_rows(recording), packed);
+    add_table(files, "grains.csv", grain_columns(), grain_rows(recording), packed);
+    add_table(files, "plate.csv", plate_columns(), plate_rows(recording), packed);
+    files["experiment.toml"] = settings_text(experiment);
+    return files;
+}
+
+std::string sums_text(const std::map<std::string, std::string>& files) {
+    std::string text;
+    for (const auto& [name, bytes] : files) text += fmt::format("{}  {}\n", Sha256().add(bytes).hex(), name);
+    return text;
+}
+
 void write_experiment(const std::filesystem::path& folder, const Experiment& experiment, Packed packed) {
     make_folder(folder);
-    const Recording& recording = experiment.recording;
-    write_table(folder, "contacts.csv", contact_columns(), contact_rows(recording), packed);
-    write_table(folder, "grains.csv", grain_columns(), grain_rows(recording), packed);
-    write_table(folder, "plate.csv", plate_columns(), plate_rows(recording), packed);
-    replace_file(folder / "experiment.toml", settings_text(experiment));
+    const auto files = experiment_files(experiment, packed);
+    for (const std::string name : {"contacts.csv", "grains.csv", "plate.csv"})
+        for (const std::string end : {"", ".gz"})
+            if (!files.contains(name + end)) std::filesystem::remove(folder / (name + end));
+    // experiment.toml comes last: with it the folder is an experiment.
+    for (const auto& [name, bytes] : files)
+        if (name != "experiment.toml") replace_file(folder / name, bytes);
+    replace_file(folder / "experiment.toml", files.at("experiment.toml"));
 }
 
 }  // namespace mcdem

@@ -8,15 +8,17 @@
 #include <system_error>
 #include <utility>
 
+#include "core/atomic_file.h"
 #include "core/errors.h"
 
 namespace mcdem {
 namespace {
 
-/// False where others hold it; true also where the file system has no locks (ENOLCK, EBADF on some network
-/// disks).
-bool lock(int descriptor, int operation) {
-    return ::flock(descriptor, operation | LOCK_NB) == 0 || errno != EWOULDBLOCK;
+enum class Answer { locked, held_by_others, no_locks };  // some network disks have none: ENOLCK, EBADF
+
+Answer lock(int descriptor, int operation) {
+    if (::flock(descriptor, operation | LOCK_NB) == 0) return Answer::locked;
+    return errno == EWOULDBLOCK ? Answer::held_by_others : Answer::no_locks;
 }
 
 /// What is in the way of one that did not get the lock, and what to do.
@@ -24,7 +26,7 @@ const char* obstacle(int descriptor, FolderLock::Use use) {
     if (use == FolderLock::Use::shared)
         return ": another program is writing there alone, which cannot be shared: wait for it, or give "
                "another folder";
-    const bool is_shared = lock(descriptor, LOCK_SH);
+    const bool is_shared = lock(descriptor, LOCK_SH) != Answer::held_by_others;
     return is_shared ? ": other programs share work there: wait for them, join them with --worker, or give "
                        "another folder"
                      : ": another program is writing there: wait for it, or give another folder";
@@ -36,7 +38,9 @@ FolderLock::FolderLock(const std::filesystem::path& folder, Use use)
     : descriptor_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
     if (descriptor_ < 0)
         throw RunError(folder.string() + ": cannot be opened: " + std::generic_category().message(errno));
-    if (lock(descriptor_, use == Use::alone ? LOCK_EX : LOCK_SH)) return;
+    const Answer answer = lock(descriptor_, use == Use::alone ? LOCK_EX : LOCK_SH);
+    if (answer == Answer::locked && use == Use::alone) remove_temporaries(folder);
+    if (answer != Answer::held_by_others) return;
     const std::string problem = folder.string() + obstacle(descriptor_, use);
     ::close(descriptor_);
     throw InputError(problem);

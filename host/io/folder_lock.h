@@ -10,8 +10,9 @@ public:
     enum class Use { alone, shared };
 
     /// Does not wait: throws InputError where programs at work in the folder do not go with this use,
-    /// RunError where it cannot be opened. Network disks may have no locks, or only among the programs of one
-    /// machine: goes on without.
+    /// RunError where it cannot be opened. One that is alone removes what killed programs left of new files
+    /// there (of the folder itself, not those below it). Network disks may have no locks, or only among the
+    /// programs of one machine: goes on without.
     FolderLock(const std::filesystem::path& folder, Use use);
     FolderLock(FolderLock&& other) noexcept;
     ~FolderLock();

@@ -15,6 +15,8 @@ constexpr unsigned deflate_level = 1;  // a higher one costs five times the time
 // worth the memory.
 constexpr double most_bytes_per_byte = 1100;
 constexpr double small_table = 1 << 20;
+constexpr std::size_t block_bytes = 1 << 20;  ///< looked at for a digest at once
+constexpr const char* digests_object = "/digests";
 constexpr const char* elsewhere =
     ": lies outside this file, and is not followed: no file of this program is like that; take one that "
     "holds all its data itself";
@@ -23,8 +25,8 @@ constexpr const char* elsewhere =
 /// full stays half closed, and the library crashes when it tries again.
 [[maybe_unused]] const herr_t no_cleaning_up = H5dont_atexit();
 
-/// The library prints its own error stacks unless told not to; ours carry the reason. It also loads programs that
-/// a file names as filters.
+/// The library prints its own error stacks unless told not to; ours carry the reason. It also loads programs
+/// that a file names as filters.
 void set_up_library() {
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
     H5PLset_loading_state(0);
@@ -167,8 +169,25 @@ Handle Dataset::select(hsize_t first, hsize_t rows) const {
     return space;
 }
 
+std::size_t Dataset::values_in(hsize_t rows) const {
+    const Extent size = extent();
+    for (std::size_t k = 1; k < size.size(); ++k) rows *= size[k];
+    return static_cast<std::size_t>(rows);
+}
+
 void Dataset::append(hid_t memory_type, const void* data, hsize_t rows) {
     if (rows == 0) return;
+    if (!digest_) return write_rows(memory_type, data, rows);
+    const Handle stored = type();
+    const auto* begin = static_cast<const std::byte*>(data);
+    const std::size_t count = values_in(rows);
+    std::vector<std::byte> values(begin, begin + count * H5Tget_size(memory_type));
+    convert(values, count, memory_type, stored);
+    digest_->add(values, rows);
+    write_rows(stored, values.data(), rows);
+}
+
+void Dataset::write_rows(hid_t memory_type, const void* data, hsize_t rows) {
     Extent size = extent();
     const hsize_t first = size.front();
     size.front() += rows;
@@ -182,15 +201,55 @@ void Dataset::append(hid_t memory_type, const void* data, hsize_t rows) {
 }
 
 void Dataset::read(hid_t memory_type, void* data, hsize_t first, hsize_t rows) const {
+    if (first + rows > this->rows()) fail("ends early");
+    if (digest_ && first != digest_->rows()) digest_.reset();
+    digest_ ? read_checked(memory_type, static_cast<std::byte*>(data), rows)
+            : read_rows(memory_type, data, first, rows);
+}
+
+void Dataset::read_rows(hid_t memory_type, void* data, hsize_t first, hsize_t rows) const {
     if (rows == 0) return;
     Extent size = extent();
-    if (first + rows > size.front()) fail("ends early");
     size.front() = rows;
     const Handle memory(H5Screate_simple(static_cast<int>(size.size()), size.data(), nullptr), H5Sclose);
     const Handle file = select(first, rows);
     if (H5Dread(id_, memory_type, memory, file, transfer(size, memory_type), data) < 0)
         fail("cannot be read");
 }
+
+/// Block by block, so that memory holds little twice. `data`: where the rows go to, or nowhere.
+void Dataset::read_checked(hid_t memory_type, std::byte* data, hsize_t rows) const {
+    const Handle stored = type();
+    const std::size_t in_row = values_in(1), row_bytes = in_row * H5Tget_size(stored);
+    const hsize_t in_block = std::max<hsize_t>(1, block_bytes / std::max<std::size_t>(1, row_bytes));
+    for (hsize_t done = 0; done < rows;) {
+        const hsize_t some = std::min(in_block, rows - done);
+        std::vector<std::byte> values(some * row_bytes);
+        read_rows(stored, values.data(), digest_->rows(), some);
+        digest_->add(values, some);
+        done += some;
+        if (!data) continue;
+        convert(values, some * in_row, stored, memory_type);
+        std::ranges::copy(values, data);
+        data += values.size();
+    }
+    if (digest_->rows() == this->rows()) check_digest();
+}
+
+void Dataset::check_digest() const {
+    const std::unique_ptr<TableDigest> digest = std::move(digest_);
+    if (digest->hex(type(), extent()) != digest->expected())
+        throw InputError(
+            where_ +
+            ": does not have the digest that it was written with; the file is damaged: restore it "
+            "from a copy or run again");
+}
+
+void Dataset::expect_digest(const std::string& digest) { digest_ = std::make_unique<TableDigest>(digest); }
+
+std::string Dataset::digest() const { return digest_->hex(type(), extent()); }
+
+void Dataset::expect_whole() const { read(type(), nullptr, 0, rows()); }
 
 void Dataset::expect_row(const Extent& row) const {
     const Extent found = extent();
@@ -290,9 +349,11 @@ Dataset File::create_rows(const std::string& object, hid_t file_type, const Exte
         H5Pset_deflate(layout, deflate_level);
     }
     H5Pset_fletcher32(layout);
-    return {checked(H5Dcreate2(id_, object.c_str(), file_type, space, H5P_DEFAULT, layout, H5P_DEFAULT),
-                    H5Dclose, *below_, where(object), "cannot be created"),
-            *below_, where(object)};
+    Dataset table(checked(H5Dcreate2(id_, object.c_str(), file_type, space, H5P_DEFAULT, layout, H5P_DEFAULT),
+                          H5Dclose, *below_, where(object), "cannot be created"),
+                  *below_, where(object));
+    if (keeps_digests_) table.keep_digest();
+    return table;
 }
 
 void File::expect_inside(const std::string& object) const {
@@ -315,7 +376,40 @@ Dataset File::dataset(const std::string& object) const {
     for (hsize_t n : found.extent()) bytes *= static_cast<double>(n);
     if (bytes > small_table + most_bytes_per_byte * static_cast<double>(below_->size()))
         fail(where(object), "claims to hold more than the file can");
+    if (object != digests_object)
+        if (const auto digest = digests().find(object); digest != digests().end())
+            found.expect_digest(digest->second);
     return found;
+}
+
+void File::finish(Dataset& table) {
+    if (keeps_digests_) {
+        if (!digests_) digests_.emplace();
+        (*digests_)[table.where().substr(where("").size())] = table.digest();
+    }
+    table.close();
+}
+
+void File::write_digests() {
+    keeps_digests_ = false;  // of all others
+    std::vector<std::string> rows;
+    for (const auto& [object, digest] : *digests_) rows.insert(rows.end(), {object, digest});
+    write_texts(digests_object, rows, {2});
+}
+
+const std::map<std::string, std::string>& File::digests() const {
+    if (digests_) return *digests_;
+    digests_.emplace();
+    if (!exists(digests_object)) return *digests_;
+    const auto rows = read_texts(digests_object);
+    if (rows.size() % 2 != 0) throw InputError(where(digests_object) + ": must be pairs");
+    for (std::size_t k = 0; k < rows.size(); k += 2) (*digests_)[rows[k]] = rows[k + 1];
+    return *digests_;
+}
+
+void File::expect_whole(const std::string& beginning) const {
+    for (const auto& [object, digest] : digests())
+        if (object.starts_with(beginning)) dataset(object).expect_whole();
 }
 
 }  // namespace mcdem::h5

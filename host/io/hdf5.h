@@ -7,7 +7,9 @@
 
 #include <array>
 #include <filesystem>
+#include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -15,6 +17,7 @@
 
 #include "core/atomic_file.h"
 #include "io/hdf5_driver.h"
+#include "io/table_digest.h"
 
 namespace mcdem::h5 {
 
@@ -84,6 +87,14 @@ public:
     std::vector<Number> read_all() const;
     /// Throws unless the dataset has `rank` dimensions, of which those after the first are `row`.
     void expect_row(const Extent& row) const;
+    /// Of a table that is written: from the first row on.
+    void keep_digest() { digest_ = std::make_unique<TableDigest>(); }
+    /// Of the rows appended; nothing may be appended after.
+    std::string digest() const;
+    /// What its rows must have: looked at when they are read in order, from the first to the last.
+    void expect_digest(const std::string& digest);
+    /// Reads all rows. Throws InputError where they do not have the digest.
+    void expect_whole() const;
     /// Of a table that was written: all of it is in the file then, or this throws.
     void close();
     /// Throws as `h5::fail`.
@@ -91,9 +102,16 @@ public:
 
 private:
     Handle select(hsize_t first, hsize_t rows) const;
+    /// Values in `rows` rows.
+    std::size_t values_in(hsize_t rows) const;
+    void write_rows(hid_t memory_type, const void* data, hsize_t rows);
+    void read_rows(hid_t memory_type, void* data, hsize_t first, hsize_t rows) const;
+    void read_checked(hid_t memory_type, std::byte* data, hsize_t rows) const;
+    void check_digest() const;
     Handle id_;
     const FileBelow* file_;
     std::string where_;
+    mutable std::unique_ptr<TableDigest> digest_;  ///< of what was appended, or read so far
 };
 
 class File {
@@ -116,6 +134,16 @@ public:
     Dataset create_rows(const std::string& object, hid_t file_type, const Extent& row,
                         Storage storage = Storage::compressed, hsize_t rows_expected = 0);
     Dataset dataset(const std::string& object) const;
+    /// From now on every new table has a digest; `write_digests` puts those of the finished ones into the
+    /// file.
+    void keep_digests() { keeps_digests_ = true; }
+    void finish(Dataset& table);
+    void write_digests();
+    /// By the table's name. Empty in files of programs that kept none.
+    const std::map<std::string, std::string>& digests() const;
+    /// Reads all tables that have a digest and whose name begins so. Throws InputError where one is not there
+    /// or does not have its digest.
+    void expect_whole(const std::string& beginning = "/") const;
     template <class Number>
     void write(const std::string& object, const std::vector<Number>& values, const Extent& row = {});
     void write_texts(const std::string& object, const std::vector<std::string>& texts,
@@ -139,6 +167,8 @@ private:
     [[noreturn]] void fail(const std::string& where, const std::string& what) const {
         h5::fail(*below_, where, what);
     }
+    /// Refuses links to other places, inside the file or out of it.
+    void expect_inside(const std::string& object) const;
     Handle object(const std::string& object) const;
     /// The library may write an object only when it is closed.
     void close_written(Handle handle, const std::string& object);
@@ -148,6 +178,8 @@ private:
     std::unique_ptr<FileBelow> below_;  ///< used by id_ to its end
     std::filesystem::path path_;
     Handle id_;
+    bool keeps_digests_ = false;
+    mutable std::optional<std::map<std::string, std::string>> digests_;
 };
 
 template <class Number>
@@ -166,7 +198,7 @@ void File::write(const std::string& object, const std::vector<Number>& values, c
     for (hsize_t n : row) width *= n;
     Dataset table = create_rows(object, type, row);
     table.append(type, values.data(), values.size() / width);
-    table.close();
+    finish(table);
 }
 
 }  // namespace mcdem::h5

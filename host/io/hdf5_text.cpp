@@ -124,7 +124,7 @@ void File::write_texts(const std::string& object, const std::vector<std::string>
     const Handle type = text_type(length);
     Dataset table = create_rows(object, type, row);
     table.append(type, padded.data(), texts.size() / width);
-    table.close();
+    finish(table);
 }
 
 std::vector<std::string> File::read_texts(const std::string& object) const {

@@ -1,6 +1,5 @@
 #include "io/parts.h"
 
-#include "core/atomic_file.h"
 #include "core/errors.h"
 #include "io/result_file.h"
 
@@ -34,8 +33,7 @@ void merge_parts(const std::vector<fs::path>& parts, const fs::path& merged) {
             std::ranges::move(part.recordings, std::back_inserter(all.recordings));
         first.push_back(all.recordings.size());
     }
-    replace_file(merged, [&](NewFile& out) {
-        ResultWriter writer(out, all);
+    write_result_file(merged, all, [&](ResultWriter& writer) {
         for (std::size_t p = 0; p < parts.size(); ++p) {
             const ResultFile file = from_part(p, [&] { return ResultFile(parts[p]); });
             for (std::size_t r = first[p]; r < first[p + 1]; ++r) {
@@ -45,7 +43,6 @@ void merge_parts(const std::vector<fs::path>& parts, const fs::path& merged) {
                 writer.end(r, all.recordings[r].failure);
             }
         }
-        writer.close();
     });
 }
 

@@ -79,9 +79,13 @@ std::vector<Scan> ResultFile::scans(const Recording& recording, std::size_t repl
 
 namespace {
 
-std::vector<Vec3> positions(const double* value, std::size_t grains) {
+std::vector<Vec3> positions(const double* value, std::size_t grains, const std::string& where) {
     std::vector<Vec3> position(grains);
-    for (std::size_t i = 0; i < grains; ++i) position[i] = Eigen::Map<const Vec3>(value + 3 * i);
+    for (std::size_t i = 0; i < grains; ++i) {
+        position[i] = Eigen::Map<const Vec3>(value + 3 * i);
+        if (!position[i].allFinite())
+            throw InputError(fmt::format("{}: grain {} has a position that is no number", where, i));
+    }
     return position;
 }
 
@@ -111,7 +115,7 @@ void ResultFile::read_positions(std::vector<Scan>& scans, std::size_t grains, st
             throw InputError(fmt::format("{}: step {} must be the row of a scan, 0 to {}", table.where(),
                                          step[k], static_cast<long>(scans.size()) - 1));
         table.read(h5::number_type<double>(), value.data(), k, 1);
-        scans[static_cast<std::size_t>(step[k])].position = positions(value.data(), grains);
+        scans[static_cast<std::size_t>(step[k])].position = positions(value.data(), grains, table.where());
     }
 }
 
@@ -157,7 +161,14 @@ void ResultFile::fill(Scan& scan, std::size_t grains, std::size_t replica, std::
     table.expect_row({grains, 3});
     std::vector<double> value(3 * grains);
     table.read(h5::number_type<double>(), value.data(), static_cast<hsize_t>(found - step.begin()), 1);
-    scan.position = positions(value.data(), grains);
+    scan.position = positions(value.data(), grains, table.where());
+}
+
+void ResultFile::expect_whole() const { file_.expect_whole(); }
+
+void ResultFile::expect_whole(std::size_t replica) const {
+    file_.expect_whole(particles_path(replica) + "/position/");
+    file_.expect_whole(contacts_path(replica) + "/");
 }
 
 }  // namespace mcdem

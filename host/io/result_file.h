@@ -1,6 +1,7 @@
 // One result file: written scan by scan, read whole or scan by scan. The layout lives here and in
 // result_rows.h; README.md describes it.
 #pragma once
+#include <functional>
 #include <optional>
 
 #include "core/recording.h"
@@ -54,6 +55,10 @@ private:
     bool is_double_;  ///< positions and contacts are kept as double, else as float
 };
 
+/// Writes a result file with what `write` appends, reads all of it back, and puts it into place.
+void write_result_file(const std::filesystem::path& file, const Run& run,
+                       const std::function<void(ResultWriter&)>& write);
+
 class ResultFile {
 public:
     explicit ResultFile(const std::filesystem::path& file);
@@ -62,6 +67,12 @@ public:
     std::vector<Scan> scans(const Recording& recording, std::size_t replica, ReadWhat what) const;
     /// Fills in positions and contacts of the scan in row `row`.
     void fill(Scan& scan, std::size_t grains, std::size_t replica, std::size_t row) const;
+    /// False in files of programs that kept none.
+    bool has_digests() const { return !file_.digests().empty(); }
+    /// Reads all tables. Throws InputError that names the first one whose digest does not match.
+    void expect_whole() const;
+    /// Positions and contacts of one replica alone.
+    void expect_whole(std::size_t replica) const;
 
 private:
     Recording recording_header(std::size_t replica) const;

@@ -54,19 +54,19 @@ private:
 };
 
 /// Replica by replica, so that memory holds one replica of one segment.
-void merge(const std::vector<fs::path>& files, NewFile& merged) {
+void merge(const std::vector<fs::path>& files, const fs::path& merged) {
     const Run run = read_run_header(files);
     Segments segments(files);
-    ResultWriter writer(merged, run);
-    for (std::size_t r = 0; r < run.recordings.size(); ++r) {
-        for (std::size_t k = 0; k < segments.size(); ++k)
-            segments.with(k, [&](const ResultFile& file) {
-                for (Scan& scan : file.scans(run.recordings[r], r, ReadWhat::everything))
-                    writer.append(r, std::move(scan));
-            });
-        writer.end(r, run.recordings[r].failure);
-    }
-    writer.close();
+    write_result_file(merged, run, [&](ResultWriter& writer) {
+        for (std::size_t r = 0; r < run.recordings.size(); ++r) {
+            for (std::size_t k = 0; k < segments.size(); ++k)
+                segments.with(k, [&](const ResultFile& file) {
+                    for (Scan& scan : file.scans(run.recordings[r], r, ReadWhat::everything))
+                        writer.append(r, std::move(scan));
+                });
+            writer.end(r, run.recordings[r].failure);
+        }
+    });
 }
 
 }  // namespace
@@ -120,7 +120,6 @@ void make_result_folder(const fs::path& folder) {
 ResultFolder ResultFolder::create(const fs::path& folder) {
     make_result_folder(folder);
     ResultFolder made(folder, FolderLock(folder, FolderLock::Use::alone));
-    remove_temporaries(folder);
     if (const fs::path file = file_of_a_run(folder); !file.empty())
         throw InputError(
             fmt::format("{}: holds another run ({}): give another folder, or go on with --resume",
@@ -137,7 +136,6 @@ ResultFolder ResultFolder::open_for_resume(const fs::path& folder) {
         throw InputError(folder.string() +
                          ": holds parts of a run that programs share: join it with --worker, "
                          "or give another folder");
-    remove_temporaries(folder);
     if (found.is_finished()) {
         found.remove_segments();  // a finish() cut short after its last write
     } else {
@@ -192,7 +190,7 @@ void ResultFolder::finish() {
     if (segments.size() == 1)
         move_file(segments.front(), run_file(folder_));
     else
-        replace_file(run_file(folder_), [&](NewFile& merged) { merge(segments, merged); });
+        merge(segments, run_file(folder_));
     remove_segments();
 }
 

@@ -94,7 +94,11 @@ Contact contact_of(const ContactRow<Real>& row, std::size_t grains, const std::s
         throw InputError(where + ": there is a contact of grain " + std::to_string(row.grain) +
                          " with partner " + std::to_string(row.partner) + ", but the grains are 0 to " +
                          std::to_string(count - 1) + " and the walls -1 to " + std::to_string(-wall_count));
-    return {row.grain, row.partner, vec3(row.point), vec3(row.force), row.overlap};
+    const Contact contact{row.grain, row.partner, vec3(row.point), vec3(row.force), row.overlap};
+    if (!contact.point.allFinite() || !contact.force.allFinite())
+        throw InputError(where + ": there is a contact of grain " + std::to_string(row.grain) +
+                         " whose point or force is no number");
+    return contact;
 }
 template Contact contact_of(const ContactRow<float>&, std::size_t, const std::string&);
 template Contact contact_of(const ContactRow<double>&, std::size_t, const std::string&);

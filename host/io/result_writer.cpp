@@ -25,6 +25,7 @@ ResultWriter::ResultWriter(NewFile& out, const Run& run)
       scan_row_(scan_row_type()),
       is_double_(run.precision == name(Precision::double_precision)) {
     contact_row_ = is_double_ ? contact_row_type<double>() : contact_row_type<float>();
+    file_.keep_digests();
     write_provenance(run);
     for (std::size_t r = 0; r < run.recordings.size(); ++r)
         tables_.push_back(make_tables(r, run.recordings[r]));
@@ -162,20 +163,36 @@ void ResultWriter::flush_contacts(Tables& tables) {
 
 void ResultWriter::close() {
     for (Tables& tables : tables_) {
-        for (h5::Dataset* table : {&tables.scans, &tables.contacts, &tables.contact_offset}) table->close();
-        for (h5::Dataset& table : tables.position) table.close();
+        for (h5::Dataset* table : {&tables.scans, &tables.contacts, &tables.contact_offset})
+            file_.finish(*table);
+        for (h5::Dataset& table : tables.position) file_.finish(table);
     }
+    file_.write_digests();
     file_.close();
 }
 
-void write_run(const std::filesystem::path& file, const Run& run) {
+void write_result_file(const std::filesystem::path& file, const Run& run,
+                       const std::function<void(ResultWriter&)>& write) {
     replace_file(file, [&](NewFile& out) {
         ResultWriter writer(out, run);
+        write(writer);
+        writer.close();
+        out.close();
+        try {
+            ResultFile(out.temporary()).expect_whole();
+        } catch (const InputError& error) {
+            throw RunError(fmt::format("{}: what was written is not what is read back: {}", file.string(),
+                                       error.what()));
+        }
+    });
+}
+
+void write_run(const std::filesystem::path& file, const Run& run) {
+    write_result_file(file, run, [&](ResultWriter& writer) {
         for (std::size_t r = 0; r < run.recordings.size(); ++r) {
             for (const Scan& scan : run.recordings[r].scans) writer.append(r, scan);
             writer.end(r, run.recordings[r].failure);
         }
-        writer.close();
     });
 }
 

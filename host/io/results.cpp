@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <optional>
+#include <set>
+
 #include "core/errors.h"
 #include "io/result_file.h"
 #include "io/result_folder.h"
@@ -40,14 +43,37 @@ void add_header(Run& run, const ResultFile& file, const std::filesystem::path& p
         if (next.recordings[r].failure) run.recordings[r].failure = next.recordings[r].failure;
 }
 
-void add_file(Run& run, const std::filesystem::path& path, ReadWhat what, bool is_first) {
-    const ResultFile file(path);
+void add_file(Run& run, const ResultFile& file, const std::filesystem::path& path, ReadWhat what,
+              bool is_first) {
     add_header(run, file, path, is_first);
     for (std::size_t r = 0; r < run.recordings.size(); ++r) {
         auto scans = file.scans(run.recordings[r], r, what);
         auto& all = run.recordings[r].scans;
         all.insert(all.end(), std::make_move_iterator(scans.begin()), std::make_move_iterator(scans.end()));
     }
+}
+
+bool has_moved(const std::filesystem::path& file_or_folder, const std::vector<std::filesystem::path>& files) {
+    try {
+        return result_files(file_or_folder) != files;
+    } catch (const InputError&) {
+        return false;
+    }
+}
+
+/// Files as `result_files` gives them, read. A run that goes on or ends meanwhile moves its scans from file
+/// to file: what is not found then is looked for again.
+template <class Read>
+auto read_settled(const std::filesystem::path& file_or_folder, Read read) {
+    constexpr int most_tries = 20;
+    std::vector<std::filesystem::path> files;
+    for (int tries = 1;; ++tries) try {
+            files.clear();
+            files = result_files(file_or_folder);
+            return read(files);
+        } catch (const InputError&) {
+            if (tries == most_tries || !has_moved(file_or_folder, files)) throw;
+        }
 }
 
 }  // namespace
@@ -59,27 +85,55 @@ Run read_run_header(const std::vector<std::filesystem::path>& files) {
 }
 
 Run read_run(const std::filesystem::path& file_or_folder, ReadWhat what) {
-    Run run;
-    const auto files = result_files(file_or_folder);
-    for (const auto& file : files) guarded(file, [&] { add_file(run, file, what, &file == &files.front()); });
-    return run;
+    return read_settled(file_or_folder, [&](const std::vector<std::filesystem::path>& files) {
+        Run run;
+        for (const auto& file : files)
+            guarded(file, [&] { add_file(run, ResultFile(file), file, what, &file == &files.front()); });
+        return run;
+    });
 }
 
-class RunReader::ResultFileOwner {
+/// Files stay open where they are not too many: a run that ends meanwhile removes them.
+class RunReader::Files {
 public:
-    ResultFileOwner(const std::filesystem::path& path, std::size_t index) : file(path), index(index) {}
-    ResultFile file;
-    std::size_t index;
+    explicit Files(std::vector<std::filesystem::path> paths)
+        : paths_(std::move(paths)), open_(paths_.size()), looked_at_(paths_.size()) {}
+    const std::vector<std::filesystem::path>& paths() const { return paths_; }
+
+    const ResultFile& open(std::size_t index) {
+        if (open_[index]) return *open_[index];
+        if (paths_.size() > most_open)
+            for (auto& file : open_) file.reset();
+        return open_[index].emplace(paths_[index]);
+    }
+    /// The file, once the digests of this replica's positions and contacts in it match.
+    const ResultFile& checked(std::size_t index, std::size_t replica) {
+        const ResultFile& file = open(index);
+        if (looked_at_[index].insert(replica).second) file.expect_whole(replica);
+        return file;
+    }
+
+private:
+    static constexpr std::size_t most_open = 100;
+    std::vector<std::filesystem::path> paths_;
+    std::vector<std::optional<ResultFile>> open_;
+    std::vector<std::set<std::size_t>> looked_at_;  ///< by file: replicas
 };
 
-RunReader::RunReader(const std::filesystem::path& file_or_folder) : files_(result_files(file_or_folder)) {
-    for (std::size_t f = 0; f < files_.size(); ++f) {
-        std::vector<std::size_t> first;
-        for (const auto& recording : run_.recordings) first.push_back(recording.scans.size());
-        guarded(files_[f], [&] { add_file(run_, files_[f], ReadWhat::observables, f == 0); });
-        first.resize(run_.recordings.size(), 0);
-        first_scan_.push_back(std::move(first));
-    }
+RunReader::RunReader(const std::filesystem::path& file_or_folder) {
+    read_settled(file_or_folder, [&](const std::vector<std::filesystem::path>& paths) {
+        files_ = std::make_unique<Files>(paths);
+        run_ = {};
+        first_scan_.clear();
+        for (std::size_t f = 0; f < paths.size(); ++f) {
+            std::vector<std::size_t> first;
+            for (const auto& recording : run_.recordings) first.push_back(recording.scans.size());
+            guarded(paths[f],
+                    [&] { add_file(run_, files_->open(f), paths[f], ReadWhat::observables, f == 0); });
+            first.resize(run_.recordings.size(), 0);
+            first_scan_.push_back(std::move(first));
+        }
+    });
 }
 
 RunReader::~RunReader() = default;
@@ -87,11 +141,11 @@ RunReader::~RunReader() = default;
 Scan RunReader::read_scan(std::size_t replica, std::size_t scan) {
     const Recording& recording = run_.recordings.at(replica);
     Scan filled = recording.scans.at(scan);
-    std::size_t f = files_.size() - 1;
+    std::size_t f = first_scan_.size() - 1;
     while (first_scan_[f][replica] > scan) --f;
-    if (!open_ || open_->index != f) open_ = std::make_unique<ResultFileOwner>(files_[f], f);
-    guarded(files_[f], [&] {
-        open_->file.fill(filled, recording.diameter.size(), replica, scan - first_scan_[f][replica]);
+    guarded(files_->paths()[f], [&] {
+        files_->checked(f, replica)
+            .fill(filled, recording.diameter.size(), replica, scan - first_scan_[f][replica]);
     });
     return filled;
 }

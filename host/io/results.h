@@ -27,11 +27,10 @@ public:
     Scan read_scan(std::size_t replica, std::size_t scan);
 
 private:
-    class ResultFileOwner;
+    class Files;
     Run run_;
-    std::vector<std::filesystem::path> files_;
+    std::unique_ptr<Files> files_;
     std::vector<std::vector<std::size_t>> first_scan_;  ///< by file and replica
-    std::unique_ptr<ResultFileOwner> open_;             ///< the file read last
 };
 
 }  // namespace mcdem

@@ -26,7 +26,8 @@ std::string text_of(hid_t type) {
         case H5T_ARRAY: {
             Extent extent(static_cast<std::size_t>(std::max(H5Tget_array_ndims(type), 0)));
             H5Tget_array_dims2(type, extent.data());
-            return fmt::format("({}){}", fmt::join(extent, ","), text_of(Handle(H5Tget_super(type), H5Tclose)));
+            return fmt::format("({}){}", fmt::join(extent, ","),
+                               text_of(Handle(H5Tget_super(type), H5Tclose)));
         }
         case H5T_COMPOUND: {
             std::string text;
@@ -36,7 +37,7 @@ std::string text_of(hid_t type) {
                                     text_of(Handle(H5Tget_member_type(type, i), H5Tclose)));
                 H5free_memory(field);
             }
-            return "{" + text + "}";
+            return fmt::format("{{{}}}", text);
         }
         default:
             return fmt::format("?{}", size);

@@ -5,6 +5,7 @@
 #include "core/atomic_file.h"
 #include "core/make_folder.h"
 #include "core/output_file.h"
+#include "io/folder_lock.h"
 #include "io/grain_loads.h"
 #include "io/hdf5.h"
 #include "io/results.h"
@@ -102,6 +103,7 @@ int export_scan(const Recording& recording, std::size_t replica, const Scan& sca
     if (scan.position.empty()) return 0;
     const auto sub = folder / fmt::format("replica_{:05}", replica);
     make_folder(sub);
+    const FolderLock lock(sub, FolderLock::Use::alone);  // for what a killed export has left there
     write_vtk_grains(sub / fmt::format("grains_{:06}.hdf", scan.frame), recording, scan);
     write_vtk_contacts(sub / fmt::format("contacts_{:06}.hdf", scan.frame), recording, scan);
     return 2;

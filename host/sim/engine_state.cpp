@@ -18,6 +18,38 @@ std::vector<Vec3> by_grain(const std::vector<double>& values, const std::vector<
     return vectors;
 }
 
+int number_at(const std::byte* bytes, std::size_t index) {
+    int number = 0;
+    std::memcpy(&number, bytes + index * sizeof number, sizeof number);
+    return number;
+}
+
+[[noreturn]] void refuse(const char* name, std::size_t slot, int number) {
+    throw InputError(
+        fmt::format("the checkpoint is damaged: slot {} of '{}' holds {}, which there is not: start the run anew in "
+                    "another folder",
+                    slot, name, number));
+}
+
+/// Kernels look up what partners and mirrors point to, and do not check.
+void expect_partners(const Layout& layout, int slots, const std::byte* partner) {
+    for (int r = 0; r < layout.replicas(); ++r) {
+        const int first = layout.first_grain[r], last = first + layout.grain_count[r];
+        const auto from = std::size_t(first) * slots, to = std::size_t(layout.first_grain[r + 1]) * slots;
+        for (std::size_t slot = from; slot < to; ++slot) {
+            const int other = number_at(partner, slot);
+            if (other < -1 - wall_count || (other >= 0 && (other < first || other >= last)))
+                refuse("partner", slot, other);
+        }
+    }
+}
+
+void expect_mirrors(int slot_count, const std::byte* mirror, std::size_t bytes) {
+    for (std::size_t slot = 0; slot < bytes / sizeof(int); ++slot)
+        if (const int place = number_at(mirror, slot); place < 0 || place > slot_count)
+            refuse("mirror", slot, place);
+}
+
 }  // namespace
 
 template <class Quantity>
@@ -136,6 +168,9 @@ void Engine::restore(const std::map<std::string, std::vector<std::byte>>& saved)
                                        name, size, found == saved.end() ? 0 : found->second.size()));
         return found->second.data();
     };
+    expect_partners(layout_, build_.slots, bytes_of("partner", fields_.partner.bytes()));
+    if (fields_.has_bulges())
+        expect_mirrors(fields_.slot_count, bytes_of("mirror", fields_.mirror.bytes()), fields_.mirror.bytes());
     fields_.visit_state([&](const char* name, auto& field) { field.write(bytes_of(name, field.bytes())); });
     const auto bring_back = [&](const char* name, auto& values) {
         const std::size_t size = values.size() * sizeof(values[0]);

@@ -151,6 +151,104 @@ TEST(damaged_files, wrong_types_and_sizes_are_named) {
                 HasSubstr("one row for each of step"));
 }
 
+/// Lets `change` do something to a result file with the library alone, and returns the error of reading it.
+std::string error_after(const std::function<void(hid_t file, const std::filesystem::path& folder)>& change) {
+    TemporaryFolder folder;
+    write_run(folder / "run.h5", synthetic_run({.replicas = 1, .scans = 2}));
+    {
+        const h5::Handle file(H5Fopen((folder / "run.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose);
+        change(file, folder.path());
+    }
+    return read_error(folder / "run.h5");
+}
+
+h5::Handle one_row() {
+    const hsize_t one = 1;
+    return {H5Screate_simple(1, &one, nullptr), H5Sclose};
+}
+
+TEST(damaged_files, nothing_outside_the_file_is_read) {
+    const std::string scene = "/parameters/scene", refused = scene + ": lies outside this file";
+    const h5::Handle text = h5::text_type(20);
+    EXPECT_THAT(
+        error_after([&](hid_t file, const std::filesystem::path& folder) {
+            write_bytes(folder / "secret", "a text of twenty byte");
+            H5Ldelete(file, scene.c_str(), H5P_DEFAULT);
+            const h5::Handle layout(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+            H5Pset_external(layout, (folder / "secret").c_str(), 0, H5F_UNLIMITED);
+            H5Dclose(H5Dcreate2(file, scene.c_str(), text, one_row(), H5P_DEFAULT, layout, H5P_DEFAULT));
+        }),
+        HasSubstr(refused));
+    EXPECT_THAT(error_after([&](hid_t file, const std::filesystem::path&) {
+                    H5Ldelete(file, scene.c_str(), H5P_DEFAULT);
+                    H5Lcreate_external("other.h5", "/scene", file, scene.c_str(), H5P_DEFAULT, H5P_DEFAULT);
+                }),
+                HasSubstr(refused));
+    EXPECT_THAT(error_after([&](hid_t file, const std::filesystem::path&) {
+                    H5Lmove(file, "/parameters", file, "/elsewhere", H5P_DEFAULT, H5P_DEFAULT);
+                    H5Lcreate_soft("/elsewhere", file, "/parameters", H5P_DEFAULT, H5P_DEFAULT);
+                }),
+                HasSubstr("/parameters: lies outside this file"));
+    EXPECT_THAT(
+        error_after([&](hid_t file, const std::filesystem::path&) {
+            H5Ldelete(file, scene.c_str(), H5P_DEFAULT);
+            const h5::Handle layout(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+            H5Pset_virtual(layout, one_row(), "other.h5", "/scene", one_row());
+            H5Dclose(H5Dcreate2(file, scene.c_str(), text, one_row(), H5P_DEFAULT, layout, H5P_DEFAULT));
+        }),
+        HasSubstr(refused));
+}
+
+/// One value of the table becomes another, as if it had been written so.
+void change_first_byte(hid_t file, const std::string& object) {
+    const h5::Handle table(H5Dopen2(file, object.c_str(), H5P_DEFAULT), H5Dclose);
+    const h5::Handle type(H5Dget_type(table), H5Tclose), space(H5Dget_space(table), H5Sclose);
+    std::vector<char> bytes(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space)) *
+                            H5Tget_size(type));
+    H5Dread(table, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, bytes.data());
+    bytes.front() ^= 1;
+    H5Dwrite(table, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, bytes.data());
+}
+
+TEST(damaged_files, values_other_than_those_written_are_noticed_in_every_table) {
+    for (const std::string object :
+         {"/observables/replica_00000", "/contacts/replica_00000/contact",
+          "/particles/replica_00000/diameter", "/particles/replica_00000/position/value",
+          "/particles/replica_00000/position/time", "/parameters/replica_00000", "/parameters/scene"}) {
+        const std::string error =
+            error_after([&](hid_t file, const std::filesystem::path&) { change_first_byte(file, object); });
+        if (object.ends_with("/time"))
+            EXPECT_EQ(error, "no error");  // not read: the scans say when they were
+        else
+            EXPECT_THAT(error, HasSubstr(object + ": does not have the digest"));
+    }
+}
+
+TEST(damaged_files, a_run_read_scan_by_scan_is_looked_at_before) {
+    TemporaryFolder folder;
+    write_run(folder / "run.h5", synthetic_run({.replicas = 2, .scans = 2}));
+    {
+        const h5::Handle file(H5Fopen((folder / "run.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose);
+        change_first_byte(file, "/particles/replica_00001/position/value");
+    }
+    RunReader reader(folder / "run.h5");
+    EXPECT_NO_THROW(reader.read_scan(0, 1));
+    EXPECT_THROW(reader.read_scan(1, 1), InputError);
+}
+
+TEST(damaged_files, files_without_digests_are_read) {
+    TemporaryFolder folder;
+    const auto run = synthetic_run();
+    write_run(folder / "run.h5", run);
+    EXPECT_TRUE(ResultFile(folder / "run.h5").has_digests());
+    {
+        const h5::Handle file(H5Fopen((folder / "run.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose);
+        H5Ldelete(file, "/digests", H5P_DEFAULT);
+    }
+    expect_same(run, read_run(folder / "run.h5"));
+    EXPECT_FALSE(ResultFile(folder / "run.h5").has_digests());
+}
+
 TEST(damaged_files, a_contact_of_a_grain_that_is_not_there_is_refused) {
     TemporaryFolder folder;
     auto run = synthetic_run();
