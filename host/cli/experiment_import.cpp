@@ -5,14 +5,13 @@
 
 #include <cerrno>
 #include <cstring>
-#include <fstream>
-#include <sstream>
 
 #include "cli/experiment.h"
 #include "cli/messages.h"
 #include "cli/standard_streams.h"
 #include "core/atomic_file.h"
 #include "core/errors.h"
+#include "core/input_file.h"
 #include "core/make_folder.h"
 #include "experiment/import_experiment.h"
 #include "experiment/settings.h"
@@ -34,9 +33,7 @@ std::string text_of_file(const std::string& file) {
     if (!fs::is_regular_file(file, error) || fs::file_size(file, error) > 1'000'000 || error)
         throw InputError(fmt::format("{}: must be a text of at most 1 MB, got {}", file,
                                      fs::exists(file, error) ? "something else" : "no such file"));
-    std::ostringstream text;
-    text << std::ifstream(file, std::ios::binary).rdbuf();
-    return text.str();
+    return read_file(file);
 }
 
 /// The folder's path in full, without a slash at its end.

@@ -1,7 +1,6 @@
 // mcdem report
 #include <fmt/format.h>
 
-#include <fstream>
 #include <iterator>
 
 #include "cli/commands.h"
@@ -11,6 +10,7 @@
 #include "cli/results.h"
 #include "cli/standard_streams.h"
 #include "core/errors.h"
+#include "core/input_file.h"
 #include "core/make_folder.h"
 #include "core/output_file.h"
 #include "report/diagnosis_json.h"
@@ -38,11 +38,7 @@ std::optional<fs::path> diagnosis_file(const fs::path& path) {
     return std::nullopt;
 }
 
-Diagnosis read_diagnosis(const fs::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    if (!in) throw InputError(file.string() + ": must be a diagnosis.json, got nothing that can be read");
-    return diagnosis_of_json({std::istreambuf_iterator<char>(in), {}}, file.string());
-}
+Diagnosis read_diagnosis(const fs::path& file) { return diagnosis_of_json(read_file(file), file.string()); }
 
 void add_all_runs(Page& page, const std::vector<std::string>& paths, const ReportCommand& command) {
     const auto loaded = load_runs(paths, ReadWhat::contacts);

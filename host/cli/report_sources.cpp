@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <fstream>
 #include <memory>
 
+#include "core/input_file.h"
 #include "core/sha256.h"
 #include "io/result_folder.h"
 #include "report/labels.h"
@@ -19,6 +21,7 @@ std::string digest_of(const std::filesystem::path& file) {
     Sha256 digest;
     while (in.read(part.data(), static_cast<std::streamsize>(part.size())) || in.gcount() > 0)
         digest.add({part.data(), static_cast<std::size_t>(in.gcount())});
+    if (!in.is_open() || in.bad()) fail_reading(file.string() + ": cannot be read", errno);
     return digest.hex();
 }
 

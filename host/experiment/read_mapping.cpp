@@ -4,10 +4,9 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
-#include <fstream>
-#include <sstream>
 
 #include "core/errors.h"
+#include "core/input_file.h"
 #include "experiment/import_mapping.h"
 
 namespace mcdem {
@@ -200,9 +199,7 @@ Mapping read_mapping(const fs::path& file) {
     if (!fs::is_regular_file(file, error) || fs::file_size(file, error) > largest_mapping || error)
         throw InputError(fmt::format("{}: must be a mapping of at most 1 MB, got {}", file.string(),
                                      fs::exists(file, error) ? "something else" : "no such file"));
-    std::ostringstream text;
-    text << std::ifstream(file, std::ios::binary).rdbuf();
-    return parse_mapping(text.str(), file.string());
+    return parse_mapping(read_file(file), file.string());
 }
 
 }  // namespace mcdem

@@ -4,11 +4,11 @@
 #include <toml++/toml.h>
 
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <span>
 #include <sstream>
 
+#include "core/input_file.h"
 #include "scene/packing_fields.h"
 
 namespace mcdem {
@@ -198,10 +198,8 @@ void parse_settings(std::string_view text, const std::string& file, const std::v
 }
 
 void read_settings(const std::filesystem::path& file, Experiment& experiment, ExperimentProblems& problems) {
-    std::stringstream text;
-    text << std::ifstream(file, std::ios::binary).rdbuf();
     experiment.name = file.parent_path().stem().string();
-    parse_settings(text.str(), file.string(), {}, experiment, problems);
+    parse_settings(read_file(file), file.string(), {}, experiment, problems);
 }
 
 std::string settings_text(const Experiment& experiment) {

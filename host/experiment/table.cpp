@@ -11,8 +11,11 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstring>
+#include <new>
 
+#include "core/input_file.h"
 #include "scene/packing_fields.h"
 
 namespace mcdem {
@@ -28,8 +31,8 @@ constexpr auto too_large =
 class Bytes : public io::ByteSourceBase {
 public:
     Bytes(const fs::path& file, std::uintmax_t largest, std::string& failure)
-        : file_(gzopen(file.c_str(), "rb")), left_(largest), failure_(failure) {
-        if (!file_) failure_ = "cannot be opened";
+        : path_(file), file_(gzdopen(open_input(file), "rb")), left_(largest), failure_(failure) {
+        if (!file_) throw std::bad_alloc();
     }
     ~Bytes() override {
         if (file_) gzclose(file_);
@@ -39,6 +42,7 @@ public:
         int count = file_ ? gzread(file_, buffer, static_cast<unsigned>(size)) : 0;
         int error = Z_OK;
         const char* reason = file_ ? gzerror(file_, &error) : "";
+        if (error == Z_ERRNO) fail_reading(path_.string() + ": cannot be read", errno);
         if (count < 0 || error != Z_OK)
             failure_ = std::string("cannot be unpacked (") + reason + "): pack it again with gzip";
         count = std::max(count, 0);
@@ -55,6 +59,7 @@ public:
     }
 
 private:
+    fs::path path_;
     gzFile file_;
     std::uintmax_t left_;  ///< bytes that may still come
     std::string& failure_;

@@ -108,14 +108,14 @@ std::optional<Checkpoint> read_checkpoint(const fs::path& folder) {
             return checkpoint;
         } catch (const InputError& error) {
             problems.push_back(error.what());
-        } catch (const std::bad_alloc&) {
-            problems.push_back(path.string() + ": needs more memory than there is");
         }
     }
     if (problems.empty()) return std::nullopt;
     problems.push_back(folder.string() + ": no checkpoint can be read: start the run anew in another folder");
     throw InputError(problems);
 }
+
+void expect_whole_checkpoint(const fs::path& file) { read_file(file); }
 
 bool has_checkpoint(const fs::path& folder) {
     return fs::exists(newest(folder)) || fs::exists(previous(folder));

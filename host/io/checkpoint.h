@@ -24,6 +24,9 @@ void write_checkpoint(const std::filesystem::path& folder, const Checkpoint& che
 /// and all are damaged.
 std::optional<Checkpoint> read_checkpoint(const std::filesystem::path& folder);
 
+/// Throws InputError where the file is no checkpoint or does not have its checksum.
+void expect_whole_checkpoint(const std::filesystem::path& file);
+
 bool has_checkpoint(const std::filesystem::path& folder);
 
 /// Removes what write_checkpoint wrote: a finished run needs none.

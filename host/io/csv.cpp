@@ -45,7 +45,7 @@ double pressing(const Scan& scan, Wall wall) {
 
 }  // namespace
 
-void write_csv(const Run& run, const std::filesystem::path& folder) {
+std::string csv_text(const Run& run) {
     fmt::memory_buffer text;
     auto out = std::back_inserter(text);
     fmt::format_to(out, header);
@@ -63,7 +63,11 @@ void write_csv(const Run& run, const std::filesystem::path& folder) {
                            scan.elastic_energy, scan.settled);
         }
     }
-    replace_own(folder / "plate.csv", FileKind::run_table, std::string_view(text.data(), text.size()));
+    return fmt::to_string(text);
+}
+
+void write_csv(const Run& run, const std::filesystem::path& folder) {
+    replace_own(folder / "plate.csv", FileKind::run_table, csv_text(run));
 }
 
 }  // namespace mcdem

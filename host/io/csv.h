@@ -1,13 +1,17 @@
 // Summaries as CSV, for spreadsheets and gnuplot.
 #pragma once
 #include <filesystem>
+#include <string>
 
 #include "core/recording.h"
 
 namespace mcdem {
 
-/// Writes `<folder>/plate.csv`: one row per replica and scan, without positions and contacts.
+/// The text of `plate.csv`: one row per replica and scan, without positions and contacts.
 /// Wall forces are the components that press the wall outwards; what is not known is `nan`.
+std::string csv_text(const Run& run);
+
+/// Writes it to `<folder>/plate.csv`.
 void write_csv(const Run& run, const std::filesystem::path& folder);
 
 }  // namespace mcdem

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "core/errors.h"
+#include "core/input_file.h"
 #include "scene/read_packing.h"
 #include "scene/text_lines.h"
 
@@ -23,9 +24,8 @@ std::string bytes_of(const fs::path& file) {
         throw InputError(
             fmt::format("{}: must be a table, got {}", file.string(),
                         fs::exists(file, error) ? "something that is not a file" : "no such file"));
-    const gzFile in = gzopen(file.c_str(), "rb");
-    if (!in)
-        throw InputError(fmt::format("{}: must be a table, got a file that cannot be opened", file.string()));
+    const gzFile in = gzdopen(open_input(file), "rb");
+    if (!in) throw std::bad_alloc();
     std::string bytes, problem;
     int count = 0;
     for (char buffer[1 << 16]; problem.empty() && (count = gzread(in, buffer, sizeof buffer)) > 0;) {
@@ -35,6 +35,11 @@ std::string bytes_of(const fs::path& file) {
     }
     int code = Z_OK;
     const std::string reason = gzerror(in, &code);
+    const int system = errno;
+    if (code == Z_ERRNO) {
+        gzclose(in);
+        fail_reading(file.string() + ": cannot be read", system);
+    }
     if (problem.empty() && (count < 0 || code != Z_OK))
         problem = fmt::format("must be whole, got one that cannot be unpacked ({}): pack it again with gzip",
                               reason);

@@ -2,9 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
+#include <sstream>
 
 #include "core/errors.h"
+#include "core/input_file.h"
 #include "scene/foreign_table.h"
 
 namespace mcdem {
@@ -19,18 +20,11 @@ Packing read_packing(const std::filesystem::path& file, std::optional<long> step
     constexpr std::uintmax_t largest_file = std::uintmax_t{2} << 30;
     if (std::filesystem::file_size(file, error) > largest_file)
         throw InputError(fmt::format("{}: must be a packing of at most 2 GiB, got more", file.string()));
-    std::ifstream input(file, std::ios::binary);
-    if (!input)
-        throw InputError(
-            fmt::format("{}: must be a packing, got a file that cannot be opened", file.string()));
+    std::istringstream input(read_file(file));
     if (file.extension() != ".csv") {
-        std::string beginning(1 << 16, '\0');
-        input.read(beginning.data(), static_cast<std::streamsize>(beginning.size()));
-        beginning.resize(static_cast<std::size_t>(input.gcount()));
+        const std::string beginning(input.view().substr(0, 1 << 16));
         if (looks_like_dump(beginning) || looks_like_yade(beginning))
             return packing_of(read_foreign_table(file), step);
-        input.clear();
-        input.seekg(0);
     }
     if (step)
         throw InputError(fmt::format(

@@ -2,10 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
-#include <sstream>
-
 #include "core/errors.h"
+#include "core/input_file.h"
 #include "scene/assign.h"
 #include "scene/replicas.h"
 #include "scene/scene_checks.h"
@@ -181,16 +179,11 @@ Scene read_scene(const std::filesystem::path& file, const std::vector<std::strin
         throw InputError(fmt::format(
             "{}: must be a scene, got {}", file.string(),
             std::filesystem::exists(file, error) ? "something that is not a file" : "no such file"));
-    std::ifstream input(file, std::ios::binary);
-    if (!input)
-        throw InputError(fmt::format("{}: must be a scene, got a file that cannot be opened", file.string()));
     constexpr std::uintmax_t largest_file = 1 << 20;
     if (std::filesystem::file_size(file, error) > largest_file)
         throw InputError(
             fmt::format("{}: a scene must be at most {} bytes long", file.string(), largest_file));
-    std::ostringstream text;
-    text << input.rdbuf();
-    return parse_scene(text.str(), file.string(), overrides);
+    return parse_scene(read_file(file), file.string(), overrides);
 }
 
 }  // namespace mcdem

@@ -179,6 +179,9 @@ void Engine::restore(const std::map<std::string, std::vector<std::byte>>& saved)
     bring_back("relist", relist_);
     bring_back("plate_moved", plate_moved_);
     bring_back("steps_made", steps_made_);
+    if (!std::ranges::all_of(steps_made_, [](auto steps) { return steps >= 0; }))
+        throw InputError("the checkpoint is damaged: it holds a negative number of steps: start the run anew in another "
+                         "folder");
 }
 
 }  // namespace mcdem

@@ -78,6 +78,7 @@ TEST(ObservationStore, KeepsRecordings) {
     EXPECT_EQ(back.scans[1].plate_z, 0.25);
     std::ofstream(s.file("name.h5"), std::ios::binary) << "no longer";
     EXPECT_THROW(s.store.recording("name"), InputError);
+    EXPECT_FALSE(s.store.has_recording("name"));  // and is made anew
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 // The same bits: a replica alone, in batches and anywhere in them; again in a fresh run; and after a restart.
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 
 #include "core/errors.h"
 #include "core/names.h"
@@ -75,6 +77,20 @@ TEST(Bits, ACheckpointOfAnotherSceneIsRefused) {
     auto damaged = one.save();
     damaged.erase("partner");
     EXPECT_THROW(one.restore(damaged), mcdem::RunError);
+}
+
+TEST(Bits, ACheckpointThatPointsOutsideItsArraysIsRefused) {
+    WholeRun run(Precision::single_precision, starts({0, 1}));
+    const auto whole = run.save();
+    for (const char* field : {"partner", "mirror", "steps_made", "protocol"})
+        for (const std::int64_t number : {std::int64_t{-9} << 32 | 0xfffffff7, std::int64_t{1} << 30}) {
+            const bool is_count = std::string(field) == "steps_made" || std::string(field) == "protocol";
+            if (is_count && number > 0) continue;
+            auto damaged = whole;
+            std::memcpy(damaged.at(field).data(), &number, sizeof number);
+            EXPECT_THROW(run.restore(damaged), mcdem::InputError) << field << " " << number;
+        }
+    EXPECT_NO_THROW(run.restore(whole));
 }
 
 }  // namespace

@@ -1,0 +1,160 @@
+#include "ensemble/verify.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <functional>
+
+#include "core/errors.h"
+#include "core/input_file.h"
+#include "core/sha256.h"
+#include "diagnose/library.h"
+#include "ensemble/agreement.h"
+#include "ensemble/observation_store.h"
+#include "experiment/experiment_files.h"
+#include "io/checkpoint.h"
+#include "io/csv.h"
+#include "io/parts.h"
+#include "io/result_file.h"
+#include "io/result_folder.h"
+#include "io/results.h"
+
+namespace mcdem {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// `check` returns what could not be checked, and throws InputError where the file is not good.
+Verified looked_at(const fs::path& file, const std::function<std::string()>& check) {
+    try {
+        return {file, true, check()};
+    } catch (const InputError& error) {
+        return {file, false, error.what()};
+    }
+}
+
+std::string check_result_file(const fs::path& file) {
+    read_run(file);
+    const ResultFile result(file);
+    if (!result.has_digests())
+        return "it carries no digests: the program that wrote it kept none; all of it can be read";
+    result.expect_whole();
+    return "";
+}
+
+std::string check_plate_table(const fs::path& folder) {
+    if (read_file(folder / "plate.csv") != csv_text(read_run(folder, ReadWhat::observables)))
+        throw InputError("it is not what run.h5 gives: `mcdem run .. --resume` writes it again");
+    return "";
+}
+
+/// Lines as `sha256sum` writes them.
+void check_sums(const fs::path& folder, std::vector<Verified>& all) {
+    const std::string sums = read_file(folder / sums_file);
+    constexpr std::size_t digits = 64;
+    for (std::size_t first = 0; first < sums.size();) {
+        const std::size_t end = std::min(sums.find('\n', first), sums.size());
+        const std::string line = sums.substr(first, end - first);
+        first = end + 1;
+        const fs::path file =
+            line.size() > digits + 2 ? folder / line.substr(digits + 2) : folder / sums_file;
+        all.push_back(looked_at(file, [&]() -> std::string {
+            if (line.size() <= digits + 2 || fs::path(line.substr(digits + 2)).has_parent_path())
+                throw InputError("its lines must be a SHA-256 and the name of a file beside it");
+            if (Sha256().add(read_file(file)).hex() != line.substr(0, digits))
+                throw InputError(std::string("it has another SHA-256 than ") + sums_file +
+                                 " says: it was changed");
+            return "";
+        }));
+    }
+}
+
+void check_run(const fs::path& folder, std::vector<Verified>& all) {
+    const auto result = [&](const fs::path& file) {
+        all.push_back(looked_at(file, [&] { return check_result_file(file); }));
+    };
+    if (fs::exists(run_file(folder))) {
+        result(run_file(folder));
+        if (fs::exists(folder / "plate.csv"))
+            all.push_back(looked_at(folder / "plate.csv", [&] { return check_plate_table(folder); }));
+    }
+    for (const char* name : {"checkpoint.h5", "checkpoint.previous.h5"})
+        if (fs::exists(folder / name))
+            all.push_back(looked_at(folder / name, [&] {
+                expect_whole_checkpoint(folder / name);
+                return std::string();
+            }));
+    try {
+        for (const fs::path& segment : segment_files(folder)) result(segment);
+    } catch (const InputError& error) {
+        all.push_back({folder, false, error.what()});
+    }
+    const fs::path parts = parts_folder(folder);
+    if (!fs::is_directory(parts)) return;
+    if (fs::exists(parts / "agreement.json"))
+        all.push_back(looked_at(parts / "agreement.json", [&] {
+            read_chosen(parts / "agreement.json");
+            return std::string();
+        }));
+    std::vector<fs::path> files;
+    for (const auto& entry : fs::directory_iterator(parts)) {
+        if (entry.path().extension() == ".h5") files.push_back(entry.path());
+        if (entry.is_directory()) check_run(entry.path(), all);
+    }
+    std::ranges::sort(files);
+    for (const fs::path& file : files) result(file);
+}
+
+/// A diagnosis or a library: library.json, and every simulation that was kept.
+void check_library(const fs::path& folder, std::vector<Verified>& all) {
+    if (fs::exists(folder / "library.json"))
+        all.push_back(looked_at(folder / "library.json", [&] {
+            read_library(folder / "library.json");
+            return std::string();
+        }));
+    const fs::path simulations = folder / "simulations";
+    if (!fs::is_directory(simulations)) return;
+    const ObservationStore store(simulations);
+    std::vector<fs::path> files;
+    for (const auto& entry : fs::directory_iterator(simulations)) files.push_back(entry.path());
+    std::ranges::sort(files);
+    for (const fs::path& file : files) {
+        if (file.extension() == ".h5")
+            all.push_back(looked_at(file, [&] { return check_result_file(file); }));
+        if (file.extension() == ".obs")
+            all.push_back(looked_at(file, [&]() -> std::string {
+                if (!store.find(file.stem().string()))
+                    throw InputError("its digest does not match: it is simulated again when it is needed");
+                return "";
+            }));
+    }
+}
+
+}  // namespace
+
+std::vector<Verified> verify(const fs::path& path) {
+    std::vector<Verified> all;
+    if (!fs::is_directory(path)) {
+        all.push_back(looked_at(path, [&]() -> std::string {
+            if (path.extension() != ".json") return check_result_file(path);
+            read_library(path);
+            return "";
+        }));
+        return all;
+    }
+    check_run(path, all);
+    check_library(path, all);
+    if (fs::exists(path / sums_file))
+        check_sums(path, all);
+    else if (fs::exists(path / "experiment.toml"))
+        all.push_back(looked_at(path / "experiment.toml", [&]() -> std::string {
+            read_experiment(path);
+            return fmt::format("the experiment has no {}; all of it can be read", sums_file);
+        }));
+    if (all.empty())
+        throw InputError(path.string() +
+                         ": holds no run, experiment, diagnosis or library that could be verified");
+    return all;
+}
+
+}  // namespace mcdem

@@ -1,0 +1,269 @@
+"""What lies on the disk is told from what the system does at the moment, and proves itself.
+
+storage_test.py MCDEM LAYER    (LAYER: the library of failing_files.cpp)
+"""
+import hashlib
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+try:
+    import h5py
+except ImportError:
+    print("skipped: h5py is not there (Debian package python3-h5py)")
+    sys.exit(77)
+
+MCDEM, LAYER = (pathlib.Path(word).resolve() for word in sys.argv[1:3])
+TIME_LIMIT = 120  # seconds for one command
+SCENE = """name = "tiny"
+[box]
+size_x = 0.05
+size_y = 0.05
+[packing]
+count = 12
+packing_fraction = 0.5
+[plate]
+start = 0.06
+end = 0.05
+speed = 0.2
+[protocol]
+scans_per_stroke = 2
+scan_at_start = true
+relax_time = 0.05
+settle_time = 0.03
+[batch.vary]
+"contact.model" = ["independent", "mc_dem"]
+"""
+RUN = ["run", "tiny.toml", "--out", "out", "--no-figures"]
+SHARED = RUN + ["--worker", "--part-replicas", "1"]
+
+
+def mcdem(place, *words, **layer):
+    """The command in the folder; `layer` sets MCDEM_TEST_.. variables of the layer."""
+    environment = dict(os.environ)
+    if layer:
+        environment.update({f"MCDEM_TEST_{name.upper()}": str(value) for name, value in layer.items()},
+                           LD_PRELOAD=str(LAYER), MCDEM_TEST_FILES=str(place))
+    return subprocess.run([MCDEM, *words], cwd=place, env=environment, capture_output=True, text=True,
+                          timeout=TIME_LIMIT)
+
+
+def expect(done, code, part="", stream="stderr"):
+    text = getattr(done, stream)
+    assert done.returncode == code and part in text, (done.returncode, done.stdout, done.stderr, part)
+
+
+def whole_run(place):
+    expect(mcdem(place, *RUN), 0)
+    return (place / "out/run.h5").read_bytes()
+
+
+def stopped_before_merge(place):
+    """All parts are there, and the worker was killed when it took the merge."""
+    done = mcdem(place, *SHARED, fault="KILL", fault_at=1, fault_kinds="link", fault_name="merge.claim")
+    assert done.returncode == -9, done
+    parts = sorted((place / "out/parts").glob("*.h5"))
+    assert len(parts) == 2
+    return parts
+
+
+def a_passing_error_at_the_merge_deletes_no_part(place):
+    stopped_before_merge(place)
+    for fault in ["ESTALE", "EMFILE", "EACCES", "EIO"]:
+        for kind in ["open", "read"]:
+            if (fault, kind) in (("EMFILE", "read"), ("EACCES", "read")):
+                continue
+            identities = [part.stat().st_ino for part in (place / "out/parts").glob("*.h5")]
+            done = mcdem(place, *SHARED, fault=fault, fault_at=1, fault_kinds=kind, fault_name="parts/00000.h5")
+            expect(done, 1, "parts/00000.h5")
+            assert "damaged" not in done.stderr and "computed again" not in done.stderr, done.stderr
+            assert identities == [part.stat().st_ino for part in (place / "out/parts").glob("*.h5")]
+    expect(mcdem(place, *SHARED), 0)
+
+
+def a_passing_error_is_not_called_damage(place):
+    whole_run(place)
+    for fault in ["ESTALE", "EMFILE", "EACCES"]:
+        done = mcdem(place, "table", "out", fault=fault, fault_at=1, fault_kinds="open", fault_name="run.h5")
+        expect(done, 1, "run.h5: cannot be opened: ")
+        assert "damaged" not in done.stderr, done.stderr
+    done = mcdem(place, "table", "out", fault="EIO", fault_at=3, fault_kinds="read", fault_name="run.h5")
+    expect(done, 1, "Input/output error")
+    assert "damaged" not in done.stderr, done.stderr
+
+
+def an_agreement_that_is_not_whole_costs_no_part(place):
+    result = whole_run(place)
+    for length in [0, 40]:
+        shutil.rmtree(place / "out")
+        stopped_before_merge(place)
+        agreement = place / "out/parts/agreement.json"
+        agreement.write_text(agreement.read_text()[:length])
+        done = mcdem(place, *SHARED)
+        if done.returncode != 0:
+            expect(done, 2, "agreement.json: is not whole, as after a power cut: remove this one file")
+            agreement.unlink()
+            done = mcdem(place, *SHARED, fault_log=place.parent / "log")
+        expect(done, 0)
+        assert "computed" not in done.stderr, done.stderr
+        assert (place / "out/run.h5").read_bytes() == result
+    assert "work-" not in (place.parent / "log").read_text()  # where parts are computed
+
+
+def an_agreement_is_on_the_disk_before_it_has_its_name(place):
+    log = place.parent / "log"
+    expect(mcdem(place, *SHARED, fault_log=log, fault_name="agreement.json"), 0)
+    kinds = [line.split()[1] for line in log.read_text().splitlines()]
+    assert kinds.index("fsync") < kinds.index("link"), kinds
+    log.unlink()
+    expect(mcdem(place, "run", "tiny.toml", "--out", "again", "--no-figures", "--worker", fault_log=log), 0)
+    lines = [line.split(" ", 2)[1:] for line in log.read_text().splitlines()]
+    linked = next(n for n, (kind, path) in enumerate(lines) if kind == "link" and path.endswith("agreement.json"))
+    assert ["fsync", str(place / "again/parts")] in lines[linked:linked + 5], lines[linked:linked + 5]
+
+
+def parts_of_no_replicas_are_refused(place):
+    stopped_before_merge(place)
+    agreement = place / "out/parts/agreement.json"
+    agreement.write_text(re.sub(r'("replicas of a part": )"\d+"', r'\1"0"', agreement.read_text()))
+    expect(mcdem(place, *SHARED), 2, "replicas of a part must be a number from 1")
+
+
+def parts_cut_in_another_way_are_computed_again(place):
+    result = whole_run(place)
+    shutil.rmtree(place / "out")
+    parts = stopped_before_merge(place)
+    shutil.copy(parts[0], parts[1])
+    done = mcdem(place, *SHARED)
+    expect(done, 0, "part 00001 is computed again")
+    assert (place / "out/run.h5").read_bytes() == result
+
+
+def pipes_are_refused_at_once(place):
+    whole_run(place)
+    os.mkfifo(place / "pipe.toml")
+    os.mkfifo(place / "pipe.h5")
+    expect(mcdem(place, "run", "pipe.toml", "--out", "new"), 2, "pipe.toml")
+    expect(mcdem(place, "table", "pipe.h5"), 2, "pipe.h5: is a pipe or device")
+    for name in ["experiment.toml", "plate.csv"]:
+        shutil.rmtree(place / "lab", ignore_errors=True)
+        expect(mcdem(place, "experiment", "from-run", "out", "--replica", "0", "--out", "lab"), 0)
+        (place / "lab" / name).unlink()
+        os.mkfifo(place / "lab" / name)
+        expect(mcdem(place, "experiment", "check", "lab"), 2, name)
+
+
+def numpy_text(kind):
+    if kind.subdtype:
+        return f"({','.join(map(str, kind.shape))}){numpy_text(kind.base)}"
+    if kind.names:
+        return "{" + ",".join(f"{name}:{numpy_text(kind[name])}" for name in kind.names) + "}"
+    return ("i" if kind.kind == "b" else kind.kind) + str(kind.itemsize)
+
+
+def digests_are_what_the_document_says(place):
+    whole_run(place)
+    with h5py.File(place / "out/run.h5") as run:
+        digests = {name.decode(): digest.decode() for name, digest in run["digests"][:]}
+        found = set()
+        run.visititems(lambda name, table: found.add("/" + name) if isinstance(table, h5py.Dataset) else None)
+        assert found - {"/digests"} == set(digests)
+        for name, digest in digests.items():
+            table = run[name]
+            text = f"{numpy_text(table.dtype)} {'x'.join(map(str, table.shape))}"
+            assert hashlib.sha256(table[()].tobytes() + text.encode()).hexdigest() == digest, name
+
+
+def a_changed_value_is_found(place):
+    whole_run(place)
+    expect(mcdem(place, "verify", "out"), 0, "out/run.h5: good\nout/plate.csv: good\n", "stdout")
+    for table in ["particles/replica_00001/position/value", "observables/replica_00000"]:
+        shutil.copytree(place / "out", place / "changed")
+        with h5py.File(place / "changed/run.h5", "r+") as run:
+            rows = run[table][:]
+            if rows.dtype.names:
+                rows["plate_z"][0] = 0
+            else:
+                rows[0] = 0
+            run[table][:] = rows
+        done = mcdem(place, "verify", "changed")
+        expect(done, 1, "changed/run.h5: NOT GOOD", "stdout")
+        assert f"/{table}: does not have the digest" in done.stdout, done.stdout
+        expect(mcdem(place, "report", "changed", "--out", "page.html"), 2, "does not have the digest")
+        if "position" in table:
+            expect(mcdem(place, "experiment", "from-run", "changed", "--replica", "1", "--out", "lab"), 2, "digest")
+            expect(mcdem(place, "export", "changed", "--vtk", "--out", "vtk"), 2, "digest")
+        else:
+            expect(mcdem(place, "table", "changed"), 2, "digest")
+        shutil.rmtree(place / "changed")
+    text = (place / "out/plate.csv").read_text()
+    (place / "out/plate.csv").write_text(text.replace("1", "2", 1))
+    expect(mcdem(place, "verify", "out"), 1, "out/plate.csv: NOT GOOD", "stdout")
+    with h5py.File(place / "out/run.h5", "r+") as run:
+        del run["digests"]
+    expect(mcdem(place, "verify", "out/run.h5"), 0, "good: it carries no digests", "stdout")
+
+
+def an_unfinished_run_is_verified(place):
+    done = mcdem(place, *RUN, fault="INT", fault_at=3, fault_kinds="open")
+    expect(done, 130)
+    done = mcdem(place, "verify", "out")
+    expect(done, 0, "out/checkpoint.h5: good\nout/segment-000000.h5: good\n", "stdout")
+    os.truncate(place / "out/checkpoint.h5", 3000)
+    expect(mcdem(place, "verify", "out"), 1, "out/checkpoint.h5: NOT GOOD", "stdout")
+    (place / "empty").mkdir()
+    expect(mcdem(place, "verify", "empty"), 2, "holds no run")
+    expect(mcdem(place, "verify"), 2)
+
+
+def an_experiment_carries_sums(place):
+    whole_run(place)
+    for packed in [[], ["--gzip"]]:
+        words = ["experiment", "from-run", "out", "--replica", "mc_dem", "--out", "lab", *packed]
+        expect(mcdem(place, *words), 0)
+        subprocess.run(["sha256sum", "--check", "--strict", "--quiet", "SHA256SUMS"], cwd=place / "lab", check=True)
+        expect(mcdem(place, "verify", "lab"), 0, "good", "stdout")
+        expect(mcdem(place, *words), 2, "holds another experiment")
+        table = next((place / "lab").glob("plate.csv*"))
+        table.write_bytes(table.read_bytes()[:-2])
+        expect(mcdem(place, "verify", "lab"), 1, "NOT GOOD", "stdout")
+        shutil.rmtree(place / "lab")
+
+
+def numbers_that_are_none_make_no_experiment(place):
+    whole_run(place)
+    with h5py.File(place / "out/run.h5", "r+") as run:
+        del run["digests"]
+        run["particles/replica_00001/position/value"][0, 3] = float("nan")
+    expect(mcdem(place, "experiment", "from-run", "out", "--replica", "1", "--out", "lab"), 2,
+           "grain 3 has a position that is no number")
+
+
+def main():
+    tests = [test for name, test in globals().items()
+             if callable(test) and getattr(test, "__code__", None) and test.__code__.co_varnames[:1] == ("place",)
+             and test not in (mcdem, whole_run, stopped_before_merge)]
+    wanted = sys.argv[3] if len(sys.argv) > 3 else ""
+    failed = 0
+    for test in tests:
+        if wanted not in test.__name__:
+            continue
+        with tempfile.TemporaryDirectory(prefix="mcdem-storage-") as name:
+            place = pathlib.Path(name) / "place"
+            place.mkdir()
+            (place / "tiny.toml").write_text(SCENE)
+            try:
+                test(place)
+                print("passed:", test.__name__.replace("_", " "), flush=True)
+            except (AssertionError, subprocess.SubprocessError, OSError, KeyError) as error:
+                failed += 1
+                print("FAILED:", test.__name__.replace("_", " "), error, flush=True)
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
