@@ -1,9 +1,8 @@
 // mcdem verify
 #include "ensemble/verify.h"
 
-#include <fmt/format.h>
-
 #include "cli/commands.h"
+#include "cli/standard_streams.h"
 
 namespace mcdem {
 namespace {
@@ -12,8 +11,8 @@ int print_verified(const std::vector<std::string>& paths) {
     bool all_good = true;
     for (const std::string& path : paths)
         for (const Verified& file : verify(path)) {
-            fmt::print("{}: {}{}{}\n", file.file.string(), file.is_good ? "good" : "NOT GOOD",
-                       file.note.empty() ? "" : ": ", file.note);
+            print_out("{}: {}{}{}\n", file.file.string(), file.is_good ? "good" : "NOT GOOD",
+                      file.note.empty() ? "" : ": ", file.note);
             all_good = all_good && file.is_good;
         }
     return all_good ? exit_done : exit_failed;

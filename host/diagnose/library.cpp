@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "core/atomic_file.h"
 #include "core/errors.h"
+#include "core/input_file.h"
 #include "core/sha256.h"
 #include "diagnose/json_numbers.h"
 
@@ -49,6 +49,12 @@ std::string digest_of(const std::map<std::string, std::string>& origin) {
     return digest.hex();
 }
 
+/// Of all but the digest itself.
+std::string digest_of_content(json j) {
+    j.erase("sha256");
+    return Sha256().add(j.dump()).hex();
+}
+
 Library library_of(const json& j) {
     if (j.at("format") != library_format)
         throw json::other_error::create(501, "it is of another version", &j);
@@ -71,6 +77,8 @@ Library library_of(const json& j) {
     library.origin = j.at("origin").get<std::map<std::string, std::string>>();
     if (j.at("origin_sha256") != digest_of(library.origin))
         throw json::other_error::create(501, "what it says of its origin was changed", &j);
+    if (j.contains("sha256") && j.at("sha256") != digest_of_content(j))
+        throw json::other_error::create(501, "it was changed since it was written", &j);
     return library;
 }
 
@@ -105,18 +113,19 @@ std::string library_text(const Library& library) {
         rows.push_back(numbers_json(library.baseline.row(r)));
     for (const Signature& s : library.effects) effects.push_back(signature_json(s));
     for (const Signature& s : library.nuisances) nuisances.push_back(signature_json(s));
-    return json{{"format", library_format},
-                {"provenance", library.provenance},
-                {"origin", library.origin},
-                {"origin_sha256", digest_of(library.origin)},
-                {"displacement", library.grid.displacement},
-                {"width", library.grid.width},
-                {"stroke", library.grid.stroke},
-                {"packing", library.packing},
-                {"effects", effects},
-                {"nuisances", nuisances},
-                {"baseline", rows}}
-        .dump();
+    json text{{"format", library_format},
+              {"provenance", library.provenance},
+              {"origin", library.origin},
+              {"origin_sha256", digest_of(library.origin)},
+              {"displacement", library.grid.displacement},
+              {"width", library.grid.width},
+              {"stroke", library.grid.stroke},
+              {"packing", library.packing},
+              {"effects", effects},
+              {"nuisances", nuisances},
+              {"baseline", rows}};
+    text["sha256"] = digest_of_content(text);
+    return text.dump();
 }
 
 void write_library(const std::filesystem::path& file, const Library& library) {
@@ -126,12 +135,13 @@ void write_library(const std::filesystem::path& file, const Library& library) {
 }
 
 Library read_library(const std::filesystem::path& file) {
-    std::ifstream in(file);
-    if (!in) throw InputError(fmt::format("{}: there is no signature library", file.string()));
+    if (!std::filesystem::exists(file))
+        throw InputError(fmt::format("{}: there is no signature library", file.string()));
     if (!std::filesystem::is_regular_file(file))
         throw InputError(fmt::format("{}: must be a file, the signature library", file.string()));
+    const std::string text = read_file(file);
     try {
-        return library_of(json::parse(in));
+        return library_of(json::parse(text));
     } catch (const json::exception& error) {
         throw InputError(fmt::format(
             "{}: not a signature library ({}): give another file, which is made where it is missing",

@@ -118,6 +118,13 @@ TEST_F(LibraryFile, WhoseOriginWasChanged) {
     expect_refused("what it says of its origin was changed");
 }
 
+TEST_F(LibraryFile, WhoseNumbersWereChanged) {
+    auto json = content();
+    json["baseline"][0][0] = 7.5;
+    replace(json.dump());
+    expect_refused("it was changed since it was written");
+}
+
 TEST_F(LibraryFile, IsNotWrittenTwice) {
     const auto before = content();
     EXPECT_THAT([&] { write_library(file(), library); },

@@ -123,6 +123,7 @@ std::string error_with(const std::string& path, const std::vector<Number>& value
     write_run(folder / "run.h5", synthetic_run({.replicas = 1, .scans = 2}));
     {
         const h5::Handle file(H5Fopen((folder / "run.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose);
+        H5Ldelete(file, "/digests", H5P_DEFAULT);  // what remains must be noticed without them
         H5Ldelete(file, path.c_str(), H5P_DEFAULT);
         const hsize_t size = values.size();
         const h5::Handle space(H5Screate_simple(1, &size, nullptr), H5Sclose);

@@ -5,7 +5,7 @@
 //   MCDEM_TEST_FAULT_KINDS  kinds that count, as "open,write"; all where it is not set
 //   MCDEM_TEST_FAULT_NAME   only paths that contain this count
 //   MCDEM_TEST_FAULT        EIO, ENOSPC, EMFILE, ESTALE, EACCES, EINTR; SHORT (half a write, or half a read);
-//                           INT (goes on, with a SIGINT pending); KILL; CUT (power cut: data and folder
+//                           KILL; CUT (power cut: data and folder
 //                           entries that were not synced are lost); CUT_DATA (power cut: folder entries are
 //                           there, data that was not synced is lost)
 //   MCDEM_TEST_FAULT_STAYS  set: every later one fails as well
@@ -56,8 +56,6 @@ Turn turn_of(const char* kind, const std::string& path) {
     if (now.at == 0 || count < now.at || (count > now.at && !now.stays)) return Turn::as_usual;
     if (now.is_cut()) cut_power();
     if (now.fault == "KILL") kill(getpid(), SIGKILL);
-    if (now.fault == "INT") raise(SIGINT);
-    if (now.fault == "INT") return Turn::as_usual;
     if (now.fault == "SHORT") return Turn::halved;
     errno = number_of(now.fault);
     return Turn::fails;

@@ -209,8 +209,8 @@ def a_changed_value_is_found(place):
 
 
 def an_unfinished_run_is_verified(place):
-    done = mcdem(place, *RUN, fault="INT", fault_at=3, fault_kinds="open")
-    expect(done, 130)
+    done = mcdem(place, *RUN, fault="KILL", fault_at=1, fault_kinds="rename", fault_name="run.h5")
+    assert done.returncode == -9, done
     done = mcdem(place, "verify", "out")
     expect(done, 0, "out/checkpoint.h5: good\nout/segment-000000.h5: good\n", "stdout")
     os.truncate(place / "out/checkpoint.h5", 3000)
