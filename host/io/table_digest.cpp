@@ -11,6 +11,8 @@
 namespace mcdem::h5 {
 namespace {
 
+constexpr std::size_t block_bytes = 1 << 20;  ///< looked at for a digest at once
+
 /// As numpy names it: "f8", "S13", "(6,3)f8", "{frame:i4,time:f8}".
 std::string text_of(hid_t type) {
     const std::size_t size = H5Tget_size(type);
@@ -63,6 +65,42 @@ void convert(std::vector<std::byte>& values, std::size_t count, hid_t from, hid_
     if (H5Tconvert(from, to, count, values.data(), background.data(), H5P_DEFAULT) < 0)
         throw RunError("HDF5: values cannot be converted");
     values.resize(count * to_size);
+}
+
+/// Block by block, so that memory holds little twice. `data`: where the rows go to, or nowhere.
+void Dataset::read_checked(hid_t memory_type, std::byte* data, hsize_t rows) const {
+    const Handle stored = type();
+    const std::size_t in_row = values_in(1), row_bytes = in_row * H5Tget_size(stored);
+    const hsize_t in_block = std::max<hsize_t>(1, block_bytes / std::max<std::size_t>(1, row_bytes));
+    for (hsize_t done = 0; done < rows;) {
+        const hsize_t some = std::min(in_block, rows - done);
+        std::vector<std::byte> values(some * row_bytes);
+        read_rows(stored, values.data(), digest_->rows(), some);
+        digest_->add(values, some);
+        done += some;
+        if (!data) continue;
+        convert(values, some * in_row, stored, memory_type);
+        std::ranges::copy(values, data);
+        data += values.size();
+    }
+    if (digest_->rows() == this->rows()) check_digest();
+}
+
+void Dataset::check_digest() const {
+    const std::unique_ptr<TableDigest> digest = std::move(digest_);
+    if (digest->hex(type(), extent()) != digest->expected())
+        throw InputError(
+            where_ +
+            ": does not have the digest that it was written with; the file is damaged: restore it "
+            "from a copy or run again");
+}
+
+void Dataset::expect_digest(const std::string& digest) { digest_ = std::make_unique<TableDigest>(digest); }
+
+std::string Dataset::digest() const { return digest_->hex(type(), extent()); }
+
+void Dataset::expect_whole() const {
+    if (digest_) read(type(), nullptr, 0, rows());
 }
 
 }  // namespace mcdem::h5

@@ -124,7 +124,7 @@ def parts_of_no_replicas_are_refused(place):
     stopped_before_merge(place)
     agreement = place / "out/parts/agreement.json"
     agreement.write_text(re.sub(r'("replicas of a part": )"\d+"', r'\1"0"', agreement.read_text()))
-    expect(mcdem(place, *SHARED), 2, "replicas of a part must be a number from 1")
+    expect(mcdem(place, *SHARED), 2, "must be a number of replicas above 0")
 
 
 def parts_cut_in_another_way_are_computed_again(place):
