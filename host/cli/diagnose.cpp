@@ -5,6 +5,7 @@
 #include "cli/progress.h"
 #include "cli/scene_options.h"
 #include "cli/standard_streams.h"
+#include "core/atomic_file.h"
 #include "core/make_folder.h"
 #include "core/output_file.h"
 #include "core/version.h"
@@ -78,6 +79,8 @@ int run(const DiagnoseCommand& command) {
         const Experiment experiment = read_experiment(command.experiment);
         const std::filesystem::path folder = command.out;
         const FolderLock lock = open_output_folder(folder);
+        const std::filesystem::path simulations = folder / "simulations";
+        if (std::filesystem::is_directory(simulations)) remove_temporaries(simulations);
         if (!command.library.empty()) make_folder_of(command.library);
         expect_replaceable(folder / "diagnosis.json", FileKind::diagnosis);
         expect_replaceable(folder / "diagnosis.html", FileKind::page);
