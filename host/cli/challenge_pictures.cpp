@@ -43,7 +43,8 @@ std::vector<std::string> in_order(std::set<std::string> names) {
     take(verdict_name(Verdict::no_gap));
     std::vector<std::string> last;
     for (const std::string& name :
-         {two_effects, verdict_name(Verdict::unknown_effect), verdict_name(Verdict::calibration_suspect)})
+         {two_effects, verdict_name(Verdict::unknown_effect), verdict_name(Verdict::not_converged),
+          verdict_name(Verdict::calibration_suspect)})
         if (names.erase(name)) last.push_back(name);
     list.insert(list.end(), names.begin(), names.end());
     list.insert(list.end(), last.begin(), last.end());

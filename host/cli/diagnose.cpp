@@ -24,6 +24,7 @@ struct DiagnoseCommand {
     std::string experiment, out, device, library;
     std::vector<std::string> candidates;
     int replicates = 32, pairs = 8, confirmations = 8;
+    double refine = 4;
     std::uint64_t seed = 1;
 };
 
@@ -34,6 +35,7 @@ DiagnoseOptions options_of(const DiagnoseCommand& command) {
     options.replicates = command.replicates;
     options.pairs = std::min(command.pairs, command.replicates);
     options.confirmations = command.confirmations;
+    options.refine = command.refine;
     options.seed = command.seed;
     if (!command.library.empty()) options.library = command.library;
     options.program = version_text;
@@ -122,6 +124,13 @@ void add_diagnose(CLI::App& app, int& exit_code) {
     sub->add_option("--confirmations", command->confirmations, "Real runs of each proposed cause; 0: none")
         ->check(CLI::Range(0, 10000))
         ->capture_default_str();
+    sub->add_option(
+           "--refine", command->refine,
+           "Where the gap is the simulation's own (not_converged), by how many times plate.speed, "
+           "grains.density or numerics.time_step is lowered at most before it is diagnosed again, runs "
+           "getting as much longer; 1: never")
+        ->check(CLI::Range(1.0, 64.0))
+        ->capture_default_str();
     sub->add_option("--seed", command->seed, "Of everything drawn at random")->capture_default_str();
     sub->add_option("--library", command->library,
                     "File of signatures: read where it is there, else made and written")
@@ -130,13 +139,14 @@ void add_diagnose(CLI::App& app, int& exit_code) {
     sub->footer(
         "The scene is the simulation as it stands; box, plate and scans are the experiment's. Prints the "
         "verdict in\n"
-        "five lines and writes diagnosis.json and diagnosis.html, with its pictures, into DIR. Simulations "
+        "six lines and writes diagnosis.json and diagnosis.html, with its pictures, into DIR. Simulations "
         "are kept\n"
         "in DIR/simulations: nothing is computed twice, and an interrupted diagnosis goes on with the same "
         "command.\n"
         "Verdicts: no_gap, effect, group (effects that these data cannot tell apart), unknown_effect (none "
         "of the\n"
-        "library), calibration_suspect. `mcdem experiment check DIR` tells beforehand what the data can "
+        "library), not_converged (the simulation's own numerics), calibration_suspect. `mcdem experiment "
+        "check DIR` tells beforehand what the data can "
         "carry.\n"
         "Example:\n"
         "  mcdem diagnose scenes/small.toml --experiment out/reality --out out/diagnosis");

@@ -53,8 +53,8 @@ std::optional<double> optional_of(const json& value) {
 }
 
 Findings findings_of(const json& j) {
-    Findings findings{j.at("p_value"),  j.at("names"),  j.at("effects"), j.at("gain"), {},
-                      j.at("held_out"), j.at("placebo")};
+    Findings findings{j.at("p_value"),  j.at("names"),   j.at("effects"), j.at("gain"), {},
+                      j.at("held_out"), j.at("placebo"), j.at("numerics")};
     expect(findings.names.size() == findings.gain.size(), "it has not one gain a candidate", j);
     for (const json& p : j.at("proposals")) {
         Proposal proposal{p.at("candidates"),
@@ -115,9 +115,10 @@ std::string findings_text(const Findings& findings) {
                              {"confirmed_misfit_p", optional_json(p.confirmed_misfit_p)},
                              {"reduction", p.reduction},
                              {"confirmed_reduction", optional_json(p.confirmed_reduction)}});
-    return json{{"p_value", findings.p_value}, {"names", findings.names}, {"effects", findings.effects},
-                {"gain", findings.gain},       {"proposals", proposals},  {"held_out", findings.held_out},
-                {"placebo", findings.placebo}}
+    return json{{"p_value", findings.p_value}, {"names", findings.names},
+                {"effects", findings.effects}, {"gain", findings.gain},
+                {"proposals", proposals},      {"held_out", findings.held_out},
+                {"placebo", findings.placebo}, {"numerics", findings.numerics}}
         .dump();
 }
 

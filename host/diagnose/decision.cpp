@@ -101,13 +101,29 @@ void keep_those_that_do(std::vector<std::size_t>& group, const Findings& finding
     group.erase(std::remove_if(group.begin() + 1, group.end(), fails), group.end());
 }
 
-/// A stated parameter that may be wrong comes before any effect that it cannot be told from.
-void suspect_calibration(Decision& decision, const Findings& findings) {
-    const auto nuisance = [&](std::size_t c) { return findings.is_nuisance(c); };
-    std::stable_partition(decision.group.begin(), decision.group.end(), nuisance);
-    if (const int proposal = proposal_of(decision.group[0], findings); proposal >= 0)
+/// Suspects come before any effect that they cannot be told from: first the simulation's own numerics, then
+/// stated parameters that may be wrong.
+template <class IsSuspect>
+bool suspected(Decision& decision, const Findings& findings, Verdict verdict, IsSuspect is_suspect) {
+    if (std::ranges::none_of(decision.group, is_suspect)) return false;
+    std::stable_partition(decision.group.begin(), decision.group.end(), is_suspect);
+    decision.verdict = verdict;
+    const auto& decided = findings.proposals[static_cast<std::size_t>(decision.proposal)];
+    if (const int proposal = proposal_of(decision.group[0], findings);
+        proposal >= 0 && decided.candidates.size() == 1)
         decision.proposal = proposal;
-    decision.verdict = Verdict::calibration_suspect;
+    return true;
+}
+
+void name_it(Decision& decision, const Findings& findings) {
+    const bool pair = findings.proposals[static_cast<std::size_t>(decision.proposal)].candidates.size() == 2;
+    if (suspected(decision, findings, Verdict::not_converged,
+                  [&](std::size_t c) { return findings.is_numerical(c); }))
+        return;
+    if (!pair && suspected(decision, findings, Verdict::calibration_suspect,
+                           [&](std::size_t c) { return findings.is_nuisance(c); }))
+        return;
+    decision.verdict = !pair && decision.group.size() > 1 ? Verdict::group : Verdict::effect;
 }
 
 /// Verdict, proposal and group.
@@ -123,7 +139,7 @@ Decision chosen(const Findings& findings, int single, std::vector<std::size_t> g
         if (takes_the_gap_away(two, findings, limits) && is_better(two, leader, limits)) {
             decision.proposal = pair;
             decision.group = two.candidates;
-            decision.verdict = Verdict::effect;
+            name_it(decision, findings);
             return decision;
         }
     }
@@ -132,10 +148,7 @@ Decision chosen(const Findings& findings, int single, std::vector<std::size_t> g
         return decision;
     }
     keep_those_that_do(decision.group, findings, limits);
-    if (findings.is_nuisance(std::ranges::max(decision.group)))
-        suspect_calibration(decision, findings);
-    else
-        decision.verdict = decision.group.size() > 1 ? Verdict::group : Verdict::effect;
+    name_it(decision, findings);
     return decision;
 }
 

@@ -57,7 +57,9 @@ struct Findings {
     bool held_out =
         true;            ///< reductions are of the gap on data held out; where those show none, of the whole
     double placebo = 0;  ///< reduction by the best of random signatures
+    std::vector<std::size_t> numerics;  ///< effects that are the simulation\'s own numerics
     bool is_nuisance(std::size_t candidate) const { return static_cast<int>(candidate) >= effects; }
+    bool is_numerical(std::size_t candidate) const { return std::ranges::count(numerics, candidate) > 0; }
 };
 
 struct Decision {

@@ -8,7 +8,9 @@
 
 #include "core/errors.h"
 #include "diagnose/detection_limits.h"
+#include "diagnose/effects.h"
 #include "diagnose/location.h"
+#include "diagnose/next_steps.h"
 #include "diagnose/not_measured.h"
 
 namespace mcdem {
@@ -135,6 +137,7 @@ Draft::Draft(const Evidence& evidence, const Limits& limits)
     for (std::size_t c = 0; c < data_.candidates.size(); ++c) {
         findings_.names.push_back(data_.name(c));
         findings_.gain.push_back(statistics_.fits[c].score);
+        if (!findings_.is_nuisance(c) && is_numerical(data_.name(c))) findings_.numerics.push_back(c);
     }
     findings_.proposals = propose(space_, data_, null_, statistics_, mean_of_);
     for (const Proposal& p : findings_.proposals)
@@ -236,6 +239,22 @@ void Draft::confirm_held_out(std::size_t proposal, const Eigen::MatrixXd& runs) 
     decision_ = decide(findings_, limits_);
 }
 
+double Draft::refining_factor(std::size_t candidate, double most) const {
+    constexpr double unnoticed = 4;  // log likelihood that what is left gains; chance alone gains as much
+    const Candidate& numerics = data_.candidates[candidate];
+    double reality = statistics_.fits[candidate].amplitude + statistics_.fits[candidate].error;
+    for (const Proposal& p : findings_.proposals)
+        for (std::size_t k = 0; k < p.candidates.size(); ++k)
+            if (p.candidates[k] == candidate && p.confirmed_gain) reality = p.amplitudes[k] + p.errors[k];
+    reality = std::min(reality, numerics.high);
+    for (double factor = 2; factor < most; factor *= 2) {
+        const Eigen::VectorXd left =
+            numerics.signature->at(reality) - numerics.signature->at(std::min(1 - 1 / factor, reality));
+        if (0.5 * space_.whiten(left).squaredNorm() < unnoticed) return factor;
+    }
+    return most;
+}
+
 Diagnosis Draft::diagnosis() const {
     Diagnosis d;
     d.verdict = decision_.verdict;
@@ -252,6 +271,7 @@ Diagnosis Draft::diagnosis() const {
     d.nuisances = nuisance_fits(evidence_, space_, data_.gap);
     d.detection_limits = detection_limits(space_, data_, null_, evidence_, limits_);
     d.not_measured = not_measured(evidence_.observed, evidence_.library.grid);
+    d.next = next_measurements(evidence_, data_, findings_, decision_, limits_);
     if (!has_decided()) return d;
     d.causes = causes.leading();
     d.explanation = explanation_of(findings_, decision_, limits_);

@@ -43,6 +43,10 @@ public:
     bool has_decided() const { return decision_.verdict != Verdict::no_gap && decision_.proposal >= 0; }
     std::size_t decided() const { return static_cast<std::size_t>(decision_.proposal); }
 
+    /// By how many times a setting of the numerics is to be refined, `most` times at most (else a power of two),
+    /// until what its signature still changes up to the fitted reality would not be noticed.
+    double refining_factor(std::size_t candidate, double most) const;
+
     Diagnosis diagnosis() const;
 
 private:

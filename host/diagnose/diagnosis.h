@@ -14,6 +14,7 @@ enum class Verdict {
     effect,               ///< one effect explains it
     group,                ///< one of several that these data cannot tell apart
     unknown_effect,       ///< a gap of which no effect of the library takes away enough
+    not_converged,        ///< the simulation's own numerics explain it: a setting is to be refined
     calibration_suspect,  ///< a stated parameter lies far outside its uncertainty
 };
 
@@ -83,6 +84,19 @@ struct Explanation {
     double remainder() const { return 1 - reduction; }
 };
 
+/// A setting of the simulation's numerics that the gap is consistent with.
+struct Refinement {
+    std::string effect, key, unit;
+    double from = 0, to = 0;
+    bool done = false;  ///< the diagnosis refined the scene itself and went on; else it is to be set
+};
+
+/// What to do next, in the user's terms.
+struct NextStep {
+    std::string what;
+    std::optional<double> power;  ///< probability that it decides, predicted from the signatures
+};
+
 struct DetectionLimit {
     std::string effect, unit;
     double minimum_amplitude =
@@ -104,6 +118,8 @@ struct Diagnosis {
     std::optional<Explanation> explanation;  ///< nothing where there is no gap
     std::optional<Shrink> shrink;
     std::vector<DetectionLimit> detection_limits;
+    std::vector<Refinement> refinements;
+    std::vector<NextStep> next;             ///< the most useful first
     std::vector<std::string> not_measured;  ///< what is missing and what could have been told with it
     std::vector<std::string>
         not_testable;  ///< candidates that this scene or these data cannot show, with why

@@ -30,6 +30,18 @@ double threshold_scale(const Model& m) { return m.instrument.stated.force_thresh
 /// A part `a` of what `share` leaves of the whole.
 void add_share(double& share, double a) { share += a * (1 - share); }
 
+/// Of numerics: the part that is taken off a setting. Runs get no longer than this many times.
+constexpr double longest_run = 8;
+void take_off(double& setting, double part) { setting *= std::max(1 - part, 1 / longest_run); }
+double& plate_speed(Model& m) { return m.replica.plate.speed; }
+double& density(Model& m) { return m.replica.grains.density; }
+double& time_step(Model& m) { return m.replica.numerics.time_step; }
+
+std::string_view no_slower_plate(const Model& m) {
+    return m.experiment_speed && *m.experiment_speed >= m.replica.plate.speed
+               ? "the experiment's plate is stated to move as fast as the scene's"
+               : "";
+}
 std::string_view nothing(const Model&) { return ""; }
 std::string_view interacting_already(const Model& m) {
     return interacting(m)
@@ -90,6 +102,12 @@ const Effect table[] = {
      -1, 8, -0.5, 1.5, threshold_scale, [](Model& m, double a) { m.instrument.threshold_shift += a; }, no_threshold},
     {"position_bias", "relative", "lengths read too large by this part", "measurement",
      -0.02, 0.02, -0.003, 0.003, one, [](Model& m, double a) { m.instrument.position_bias += a; }, nothing},
+    {"plate_speed", "", "part by which the real plate is slower than the scene's", "numerics",
+     0, 1, 0.5, 0.75, one, [](Model& m, double a) { take_off(plate_speed(m), a); }, no_slower_plate, "plate.speed", plate_speed},
+    {"inertia", "", "part by which real inertia is smaller than the scene's, weight alike", "numerics",
+     0, 1, 0.5, 0.75, one, [](Model& m, double a) { take_off(density(m), a); }, nothing, "grains.density", density},
+    {"time_step", "", "part by which the time step is too long", "numerics",
+     0, 1, 0.3, 0.6, one, [](Model& m, double a) { take_off(time_step(m), a); }, nothing, "numerics.time_step", time_step},
 };
 // clang-format on
 
@@ -105,6 +123,11 @@ std::span<const Effect> effects() { return table; }
 const Effect* find_effect(std::string_view name) {
     const auto found = std::ranges::find(table, name, &Effect::name);
     return found == std::end(table) ? nullptr : found;
+}
+
+bool is_numerical(std::string_view name) {
+    const Effect* effect = find_effect(name);
+    return effect && !effect->key.empty();
 }
 
 std::vector<Nuisance> nuisances(const Model& model, const Experiment& experiment) {

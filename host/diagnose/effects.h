@@ -15,7 +15,8 @@ namespace mcdem {
 struct Model {
     Replica replica;
     Instrument instrument;
-    double mean_diameter = 0;  ///< of the experiment's grains [m]
+    double mean_diameter = 0;                ///< of the experiment's grains [m]
+    std::optional<double> experiment_speed;  ///< of the experiment's plate [m/s]; nothing: slow
 };
 
 /// One way in which reality may differ from the model, with an amplitude that is zero for the model as it is.
@@ -30,11 +31,17 @@ struct Effect {
     void (*apply)(Model&, double amplitude);
     /// Why this model cannot have it; empty where it can.
     std::string_view (*hindrance)(const Model&);
+    /// Of the simulation's own numerics: the scene's key, and its value. Nothing for what the world or the
+    /// instrument does.
+    std::string_view key = {};
+    double& (*setting)(Model&) = nullptr;
 };
 
 /// All candidates, in the order of the documentation.
 std::span<const Effect> effects();
 const Effect* find_effect(std::string_view name);
+/// Whether it is the simulation's own numerics: not the world that it leaves out, but how it computes.
+bool is_numerical(std::string_view name);
 
 /// A parameter of the model that is known only roughly: refitted in every comparison.
 struct Nuisance {

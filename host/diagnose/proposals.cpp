@@ -4,11 +4,14 @@
 #include <cmath>
 #include <numeric>
 
+#include "diagnose/effects.h"
+
 namespace mcdem {
 namespace {
 
 /// .. and the best nuisance however far behind, so that no effect is named for what a wrong parameter does:
-/// signatures are least right for parameters far off.
+/// signatures are least right for parameters far off. Of the simulation's own numerics the best, where it is
+/// near.
 constexpr std::size_t most_singles = 3;
 /// Effects this much behind the leader, in log likelihood or as a part of its gain, are not tried.
 constexpr double far_behind = 8, far_behind_share = 0.25;
@@ -97,14 +100,18 @@ std::vector<Proposal> propose(const GapSpace& space, const GapData& data, const 
         order, [&](auto a, auto b) { return statistics.fits[a].score > statistics.fits[b].score; });
     const double best = statistics.directed;
     std::vector<Proposal> proposals;
-    bool nuisance_tried = false;
+    bool nuisance_tried = false, numerics_tried = false;
     for (const std::size_t c : order) {
         const EffectFit& fit = statistics.fits[c];
         if (!(fit.score > 0)) break;
         const bool nuisance = static_cast<int>(c) >= data.effects;
+        const bool numerics = !nuisance && is_numerical(data.name(c));
         const bool near = best - fit.score <= std::max(far_behind, far_behind_share * best);
-        if (!(near && proposals.size() < most_singles) && !(nuisance && !nuisance_tried)) continue;
+        if (!(near && proposals.size() < most_singles) && !(nuisance && !nuisance_tried) &&
+            !(numerics && near && !numerics_tried))
+            continue;
         nuisance_tried = nuisance_tried || nuisance;
+        numerics_tried = numerics_tried || numerics;
         Proposal& proposal = proposals.emplace_back();
         proposal.candidates = {c};
         proposal.amplitudes = {fit.amplitude};

@@ -83,6 +83,21 @@ Signature parabola_signature(const std::string& name, double first, double secon
 
 }  // namespace
 
+Signature continued_from(const Signature& signature, double done) {
+    const double left = 1 - done;
+    Signature s = signature;
+    s.linear = left * signature.slope(done);
+    s.variance *= left * left;
+    s.spread *= left * left;
+    if (done < signature.reach) {
+        s.curvature *= left * left;
+        s.reach = (signature.reach - done) / left;
+    } else {
+        s.curvature.setZero();
+    }
+    return s;
+}
+
 Signature learn_signature(const std::string& name, double first, double second,
                           const Eigen::MatrixXd& at_first, const Eigen::MatrixXd& at_second) {
     const auto needed = std::min<std::size_t>(2, static_cast<std::size_t>(at_first.rows()));

@@ -21,6 +21,10 @@ struct Signature {
     Eigen::VectorXd slope(double amplitude) const;  ///< d mu / d a
 };
 
+/// The signature of a part `b` of what is left of a setting once a part `done` was taken off it: of the
+/// amplitude done + b (1 - done), less what is done.
+Signature continued_from(const Signature& signature, double done);
+
 /// From differences of paired runs (row: pair, column: cell) at two amplitudes. What does not stand out of
 /// the scatter over pairs is shrunk towards zero (positive-part James & Stein 1961, cell by cell), the
 /// curvature first. Pairs of which a run failed (not-a-number throughout) are left out. Where fewer than two

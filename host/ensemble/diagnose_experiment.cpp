@@ -1,15 +1,19 @@
 #include "ensemble/diagnose_experiment.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <chrono>
+#include <cstdlib>
+#include <memory>
 #include <numeric>
 
 #include "core/errors.h"
 #include "ensemble/library_origin.h"
 #include "ensemble/paper_metrics.h"
 #include "experiment/check_experiment.h"
+#include "scene/keys.h"
 
 namespace mcdem {
 namespace {
@@ -41,11 +45,30 @@ void expect_library_of(const Library& library, const Grid& grid, const LibraryPl
     if (!problems.empty()) throw InputError(problems);
 }
 
+/// "contact.gamma = 1.16" of every key in which the second differs.
+std::vector<std::string> differing_keys(const Replica& before, const Replica& after) {
+    Settings a, b;
+    a.replica = before;
+    b.replica = after;
+    std::vector<std::string> list;
+    for (const Key& key : keys()) {
+        if (key.scope != Scope::replica || value_text(key, a) == value_text(key, b)) continue;
+        const std::string text = value_text(key, b);
+        char* end = nullptr;
+        const double value = std::strtod(text.c_str(), &end);
+        list.push_back(fmt::format("{} = {}", key.name, *end ? text : fmt::format("{:.3g}", value)));
+    }
+    return list;
+}
+
 /// Whole recordings that the paper's metrics are taken from, on either side.
 constexpr std::size_t recordings_kept = 4;
 
 /// Real runs of a proposal, and again with what they taught.
 constexpr int most_rounds = 3;
+
+/// By how many times a setting of the numerics is advised to be refined at most.
+constexpr double most_refinement = 64;
 
 /// The work of one diagnosis, in the order of its steps.
 class Diagnosing {
@@ -72,14 +95,24 @@ public:
 
     Diagnosis all() {
         Evidence evidence = gather();
+        auto draft = std::make_unique<Draft>(confirmed(evidence));
+        if (draft->decision().verdict == Verdict::not_converged && options_.refine > 1) {
+            const Refinement refinement = refinement_of(*draft, options_.refine);
+            draft.reset();
+            refine(evidence, refinement);
+            draft = std::make_unique<Draft>(confirmed(evidence));
+        }
+        if (draft->decision().verdict == Verdict::not_converged)
+            refinements_.push_back(refinement_of(*draft, most_refinement));
         options_.on_evidence(evidence);
-        Draft draft(evidence, options_.limits);
-        if (options_.confirmations > 0 && draft.decision().verdict != Verdict::no_gap) confirm(draft);
-        options_.on_findings(draft.findings());
-        Diagnosis diagnosis = draft.diagnosis();
+        options_.on_findings(draft->findings());
+        Diagnosis diagnosis = draft->diagnosis();
         diagnosis.not_testable = choice_.hindered;
+        diagnosis.refinements = refinements_;
+        if (auto first = change_of_the_scene(diagnosis))
+            diagnosis.next.insert(diagnosis.next.begin(), *first);
         if (diagnosis.shrink && options_.paper_metrics && options_.confirmations > 0)
-            add_paper_metrics(*diagnosis.shrink, experiment_.recording, before_after(draft));
+            add_paper_metrics(*diagnosis.shrink, experiment_.recording, before_after(*draft));
         return diagnosis;
     }
 
@@ -104,6 +137,7 @@ private:
             evidence.library =
                 build_library(device_, question_, model_, plan_, store_, stage(options_, "library"));
             evidence.baseline = evidence.library.baseline;
+            library_is_own_ = true;
             if (options_.library) write_library(*options_.library, evidence.library);
         }
         evidence.observed =
@@ -113,14 +147,98 @@ private:
             const double scale = effect.scale(model_);
             evidence.candidates.push_back(
                 {name, std::string(effect.unit), effect.low * scale, effect.high * scale});
+            if (name == "plate_speed" && model_.experiment_speed)
+                evidence.candidates.back().high = 1 - *model_.experiment_speed / model_.replica.plate.speed;
         }
         for (const Nuisance& nuisance : plan_.nuisances)
             evidence.nuisances.push_back({nuisance.name, nuisance.unit, nuisance.sigma});
+        note_failures(evidence);
+        return evidence;
+    }
+
+    Draft confirmed(const Evidence& evidence) {
+        Draft draft(evidence, options_.limits);
+        if (options_.confirmations > 0 && draft.decision().verdict != Verdict::no_gap) confirm(draft);
+        return draft;
+    }
+
+    Refinement refinement_of(const Draft& draft, double most) {
+        const std::size_t candidate = draft.decision().group.front();
+        const Effect& effect = *find_effect(draft.findings().names[candidate]);
+        Model model = model_;
+        const double from = effect.setting(model);
+        return {std::string(effect.name),
+                std::string(effect.key),
+                std::string(find_key(effect.key)->unit),
+                from,
+                from / draft.refining_factor(candidate, most),
+                false};
+    }
+
+    /// The scene with the setting refined. Signatures are differences between paired runs, and stay; the
+    /// baseline is simulated again.
+    void refine(Evidence& evidence, Refinement refinement) {
+        const Effect& effect = *find_effect(refinement.effect);
+        effect.setting(model_) = refinement.to;
+        refinement.done = true;
+        refinements_.push_back(refinement);
+        options_.on_note(
+            fmt::format("{} is {} instead of {} from here on: the gap is consistent with a simulation "
+                        "that is not converged",
+                        refinement.key, refinement.to, refinement.from));
+        evidence.baseline = observe_trials(device_, question_, baseline_trials(model_, plan_), store_,
+                                           stage(options_, "refined baseline"));
+        if (library_is_own_) {
+            evidence.library.baseline = evidence.baseline;
+            evidence.library.packing.assign(static_cast<std::size_t>(evidence.baseline.rows()), 0);
+        }
+        for (Signature& signature : evidence.library.effects)
+            if (signature.name == refinement.effect)
+                signature = continued_from(signature, 1 - refinement.to / refinement.from);
+        note_failures(evidence);
+    }
+
+    /// What to set in the scene for what is named; nothing where nothing is.
+    std::optional<NextStep> change_of_the_scene(const Diagnosis& diagnosis) const {
+        if (!diagnosis.refinements.empty() && !diagnosis.refinements.back().done) {
+            const Refinement& r = diagnosis.refinements.back();
+            return NextStep{
+                fmt::format("set {} = {:.3g} in the scene (now {:.3g} {}), or let the diagnosis refine it "
+                            "with --refine {:.0f}, and diagnose again",
+                            r.key, r.to, r.from, r.unit, r.from / r.to),
+                {}};
+        }
+        if (diagnosis.verdict == Verdict::unknown_effect || diagnosis.causes.empty()) return std::nullopt;
+        Model changed = model_;
+        std::vector<std::string> names;
+        for (const Cause& cause : diagnosis.causes) {
+            const bool together = diagnosis.causes.front().group.size() == 1;
+            if (!names.empty() && !together) break;  // of a group the leader
+            apply_cause(changed, cause);
+            names.push_back(cause.effect);
+        }
+        std::vector<std::string> settings = differing_keys(model_.replica, changed.replica);
+        if (settings.empty())
+            return NextStep{fmt::format("check the instrument for {}: no key of the scene changes it",
+                                        fmt::join(names, " and ")),
+                            {}};
+        return NextStep{
+            fmt::format("set {} in the scene, and see whether the gap goes away on another packing",
+                        fmt::join(settings, ", ")),
+            {}};
+    }
+
+    void apply_cause(Model& model, const Cause& cause) const {
+        if (const Effect* effect = find_effect(cause.effect)) return effect->apply(model, cause.amplitude);
+        const auto nuisance = std::ranges::find(plan_.nuisances, cause.effect, &Nuisance::name);
+        if (nuisance != plan_.nuisances.end()) nuisance->apply(model, cause.amplitude);
+    }
+
+    void note_failures(Evidence& evidence) {
         for (const std::string& note : leave_out_failures(evidence)) {
             options_.on_note(note);
             choice_.hindered.push_back(note);
         }
-        return evidence;
     }
 
     /// Real runs of every proposal, again where they miss; then of the one decided on with what the fitted
@@ -206,6 +324,8 @@ private:
     CandidateChoice choice_;
     Question question_;
     LibraryPlan plan_;
+    bool library_is_own_ = false;  ///< made on the experiment's own packing
+    std::vector<Refinement> refinements_;
 };
 
 }  // namespace
@@ -225,6 +345,7 @@ Model model_of(const Scene& scene, const Experiment& experiment) {
     model.replica = scene.replicas.front();
     model.replica.box = recording.box;
     model.instrument.stated = experiment.measurement;
+    model.experiment_speed = experiment.plate_speed;
     model.mean_diameter = std::reduce(recording.diameter.begin(), recording.diameter.end()) /
                           static_cast<double>(std::max<std::size_t>(1, recording.diameter.size()));
     double lowest = recording.plate_start;

@@ -14,7 +14,10 @@ struct DiagnoseOptions {
     int replicates = 32;                  ///< of the baseline, on the experiment's packing
     int pairs = 8;                        ///< of every effect
     int confirmations = 8;                ///< real runs of the cause
-    bool paper_metrics = true;            ///< Rtop, errf, errZ, bhat before and after
+    /// Where the simulation's own numerics explain the gap, it is refined once, by so many times at most, and
+    /// diagnosed again; 1: never.
+    double refine = 4;
+    bool paper_metrics = true;  ///< Rtop, errf, errZ, bhat before and after
     std::uint64_t seed = 1;
     std::optional<std::filesystem::path> library;  ///< read where it is there, else made and written
     std::string program;

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 
 #include "core/recording.h"
@@ -26,13 +27,14 @@ struct Experiment {
     std::map<std::string, double> materials;    ///< scene keys that were measured: "grains.youngs_modulus"
     std::map<std::string, double> uncertainty;  ///< one sigma of some of them, by the same key
     Measurement measurement;
+    std::optional<double> plate_speed;  ///< [m/s]; nothing: slow
 };
 
 /// The scene keys that `materials` and `uncertainty` may hold.
 const std::vector<std::string>& material_keys();
 
-/// Bytes of one table, unpacked, that are read [1 GiB: some 12 million contacts]. Memory needed is about the tables'
-/// size.
+/// Bytes of one table, unpacked, that are read [1 GiB: some 12 million contacts]. Memory needed is about the
+/// tables' size.
 inline constexpr std::uintmax_t largest_table = std::uintmax_t{1} << 30;
 
 /// Throws InputError with every problem found (the first 20), each as file:line and what to do.
@@ -40,8 +42,8 @@ Experiment read_experiment(const std::filesystem::path& folder, std::uintmax_t l
 
 enum class Packed { plain, gzip };
 
-/// Writes the folder, so that read_experiment gives back what it holds, numbers to the last digit. Averages are
-/// left to the reader, and what an instrument would not have seen to `measured` (instrument.h).
+/// Writes the folder, so that read_experiment gives back what it holds, numbers to the last digit. Averages
+/// are left to the reader, and what an instrument would not have seen to `measured` (instrument.h).
 void write_experiment(const std::filesystem::path& folder, const Experiment& experiment,
                       Packed packed = Packed::plain);
 

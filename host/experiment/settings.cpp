@@ -40,6 +40,7 @@ constexpr Setting measurements[] = {
     {"measurement.force_threshold", 0, infinity, false, "N"},
 };
 constexpr Setting plate_start{"plate.start", 0, 100, true, "m"};
+constexpr Setting plate_speed{"plate.speed", 0, 1000, true, "m/s"};
 constexpr double largest_box = 20;  // [m]; a larger one was given in millimetres
 
 std::string range_text(const Setting& setting) {
@@ -58,6 +59,7 @@ public:
         if (name) experiment.name = name->value_or(std::string());
         read_box(root, experiment.recording.box);
         experiment.recording.plate_start = number(root, plate_start).value_or(std::nan(""));
+        experiment.plate_speed = number(root, plate_speed);
         for (const Setting& setting : materials)
             if (const auto value = number(root, setting))
                 experiment.materials[std::string(setting.key)] = *value;
@@ -215,9 +217,11 @@ std::string settings_text(const Experiment& experiment) {
     };
     insert(grains, walls, experiment.materials);
     insert(sigma_grains, sigma_walls, experiment.uncertainty);
+    toml::table plate{{"start", recording.plate_start}};
+    if (experiment.plate_speed) plate.insert("speed", *experiment.plate_speed);
     toml::table root{{"name", experiment.name},
                      {"box", toml::table{{"size", toml::array{recording.box.size_x, recording.box.size_y}}}},
-                     {"plate", toml::table{{"start", recording.plate_start}}},
+                     {"plate", plate},
                      {"grains", grains},
                      {"walls", walls},
                      {"uncertainty", toml::table{{"grains", sigma_grains}, {"walls", sigma_walls}}},

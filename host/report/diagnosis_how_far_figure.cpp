@@ -104,6 +104,7 @@ std::vector<std::array<double, 4>> known_forces(const Shrink& shrink) {
 
 std::string words_after(const Diagnosis& diagnosis) {
     if (diagnosis.verdict == Verdict::calibration_suspect) return "simulated, recalibrated";
+    if (diagnosis.verdict == Verdict::not_converged) return "simulated, refined";
     const auto added = diagnosis.causes.empty() ? "the effect" : words_of(diagnosis.causes.front().effect);
     return shortened("simulated with " + added, 40);
 }

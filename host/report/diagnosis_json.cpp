@@ -99,6 +99,13 @@ Json explanation_json(const std::optional<Explanation>& explanation) {
             {"leaves_more_than_noise", explanation->leaves_more_than_noise}};
 }
 
+Json refinement_json(const Refinement& refinement) {
+    return {{"effect", refinement.effect}, {"key", refinement.key},   {"was", refinement.from},
+            {"to", refinement.to},         {"unit", refinement.unit}, {"done", refinement.done}};
+}
+
+Json step_json(const NextStep& step) { return {{"what", step.what}, {"power", or_null(step.power)}}; }
+
 Json limit_json(const DetectionLimit& limit) {
     return {{"effect", limit.effect},
             {"minimum_amplitude", limit.minimum_amplitude},
@@ -124,6 +131,8 @@ std::string verdict_name(Verdict verdict) {
             return "group";
         case Verdict::unknown_effect:
             return "unknown_effect";
+        case Verdict::not_converged:
+            return "not_converged";
         case Verdict::calibration_suspect:
             break;
     }
@@ -150,6 +159,8 @@ std::string diagnosis_json(const Diagnosis& diagnosis) {
                     {"ranking", list(diagnosis.ranking, cause_json)},
                     {"nuisances", list(diagnosis.nuisances, nuisance_json)},
                     {"not_testable", diagnosis.not_testable},
+                    {"refinements", list(diagnosis.refinements, refinement_json)},
+                    {"next", list(diagnosis.next, step_json)},
                     {"provenance", diagnosis.provenance}};
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -90,6 +90,9 @@ void add_diagnosis(Page& page, const Diagnosis& diagnosis, const std::string& na
                table_of_causes(diagnosis));
     page.table("What these data can show", table_of_detection_limits(diagnosis));
     add_how_far(page, diagnosis);
+    std::vector<std::string> steps;
+    for (const auto& step : diagnosis.next) steps.push_back(next_words(step));
+    add_list(page, "What to do next", steps);
     add_table(page, "Parameters known only roughly", table_of_nuisances(diagnosis));
     add_list(page, "What was not measured", diagnosis.not_measured);
     add_list(page, "What cannot be tested", diagnosis.not_testable);

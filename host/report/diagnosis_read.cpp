@@ -86,6 +86,13 @@ Explanation explanation_of(const Json& json) {
             .leaves_more_than_noise = json.at("leaves_more_than_noise")};
 }
 
+Refinement refinement_of(const Json& json) {
+    return {json.at("effect"),      json.at("key"),        json.at("unit"),
+            number(json.at("was")), number(json.at("to")), json.at("done")};
+}
+
+NextStep step_of(const Json& json) { return {json.at("what"), optional_of<double>(json.at("power"))}; }
+
 Shrink shrink_of(const Json& json) {
     Shrink shrink{.held_out = json.at("held_out"),
                   .before = number(json.at("before")),
@@ -106,7 +113,7 @@ Shrink shrink_of(const Json& json) {
 
 Verdict verdict_of(const std::string& word) {
     for (const auto verdict : {Verdict::no_gap, Verdict::effect, Verdict::group, Verdict::unknown_effect,
-                               Verdict::calibration_suspect})
+                               Verdict::not_converged, Verdict::calibration_suspect})
         if (verdict_name(verdict) == word) return verdict;
     throw std::invalid_argument("verdict is none that is known: " + word);
 }
@@ -130,6 +137,8 @@ Diagnosis read(const Json& json) {
     d.detection_limits = list_of(json.at("detection_limits"), limit_of);
     d.not_measured = json.at("not_measured");
     d.not_testable = json.at("not_testable");
+    if (json.contains("refinements")) d.refinements = list_of(json.at("refinements"), refinement_of);
+    if (json.contains("next")) d.next = list_of(json.at("next"), step_of);
     d.seconds = number(json.at("seconds"));
     d.provenance = json.at("provenance");
     d.where_threshold = number(json.at("where_threshold"), 0);

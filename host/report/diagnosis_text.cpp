@@ -61,13 +61,28 @@ std::string not_told_from(const Cause& leader) {
     return parts.empty() ? "" : ", which these data cannot tell from " + listed(parts);
 }
 
+/// What the diagnosis refined by itself, in words that follow a statement; empty where nothing was.
+std::string refined(const Diagnosis& diagnosis) {
+    std::string text;
+    for (const auto& refinement : diagnosis.refinements)
+        if (refinement.done) text += ", with " + refinement_words(refinement);
+    return text;
+}
+
+/// What is still to be refined; empty where nothing is known of it.
+std::string to_refine(const Diagnosis& diagnosis) {
+    for (const auto& refinement : diagnosis.refinements)
+        if (!refinement.done) return ": set " + refinement_words(refinement);
+    return "";
+}
+
 std::string gap_line(const Diagnosis& diagnosis) {
     if (!diagnosis.detected)
-        return fmt::format("none that these data show: noise alone gives differences like these ({}).",
-                           p_words(diagnosis.p_value));
+        return fmt::format("none that these data show{}: noise alone gives differences like these ({}).",
+                           refined(diagnosis), p_words(diagnosis.p_value));
     return fmt::format(
-        "yes: simulation and experiment differ by more than noise and calibration account for ({}).",
-        p_words(diagnosis.p_value));
+        "yes: simulation and experiment differ by more than noise and calibration account for{} ({}).",
+        refined(diagnosis), p_words(diagnosis.p_value));
 }
 
 /// The strongest of the cells that are framed in the picture, and how many there are.
@@ -166,6 +181,10 @@ std::string which_line(const Diagnosis& diagnosis) {
             return "no effect is called for.";
         case Verdict::unknown_effect:
             return unknown_line(diagnosis);
+        case Verdict::not_converged:
+            return fmt::format("consistent with the simulation's own numerics, before any effect: {}{}{}.",
+                               leader ? words_of(leader->effect) : "a setting", together_with(diagnosis),
+                               to_refine(diagnosis));
         case Verdict::calibration_suspect:
             return calibration_line(diagnosis);
         case Verdict::effect:
@@ -184,6 +203,7 @@ std::string which_line(const Diagnosis& diagnosis) {
 std::string what_is_added(const Diagnosis& diagnosis) {
     const auto* leader = leader_of(diagnosis);
     if (diagnosis.verdict == Verdict::calibration_suspect) return "correcting it";
+    if (diagnosis.verdict == Verdict::not_converged) return "refining it";
     return leader ? "adding " + words_of(leader->effect) : "adding it";
 }
 
@@ -253,6 +273,10 @@ std::string limits_line(const Diagnosis& diagnosis) {
         text = no_gap_limits(diagnosis);
     else if (diagnosis.verdict == Verdict::unknown_effect)
         text = "an effect that nobody thought of, or several at once, may be behind it";
+    else if (diagnosis.verdict == Verdict::not_converged)
+        text =
+            "an effect that looks like this setting would give the same data, and is to be told from it "
+            "first";
     else if (diagnosis.verdict == Verdict::calibration_suspect)
         text = "an effect that looks like this parameter would give the same data";
     else
@@ -262,6 +286,14 @@ std::string limits_line(const Diagnosis& diagnosis) {
     if (!never.empty()) text += "; these data can never show " + listed(never, most_limits);
     if (!diagnosis.not_measured.empty())
         text += "; not measured: " + shortened(one_line(diagnosis.not_measured.front()), longest_remark);
+    while (text.ends_with('.')) text.pop_back();
+    return text + ".";
+}
+
+std::string next_line(const Diagnosis& diagnosis) {
+    if (diagnosis.next.empty()) return "nothing that the signatures tell would help.";
+    std::string text;
+    for (const auto& step : diagnosis.next) text += (text.empty() ? "" : "; ") + one_line(next_words(step));
     while (text.ends_with('.')) text.pop_back();
     return text + ".";
 }
@@ -285,6 +317,8 @@ std::string verdict_headline(const Diagnosis& diagnosis) {
             return fmt::format("A gap; any of a group of effects takes away {}", reduction_words(diagnosis));
         case Verdict::unknown_effect:
             return "A gap that no known effect explains";
+        case Verdict::not_converged:
+            return "The simulation is not converged";
         case Verdict::calibration_suspect:
             break;
     }
@@ -295,7 +329,8 @@ std::string verdict_sentence(const Diagnosis& diagnosis) {
     const auto* leader = leader_of(diagnosis);
     switch (diagnosis.verdict) {
         case Verdict::no_gap:
-            return fmt::format("No gap is detectable ({}).", p_words(diagnosis.p_value));
+            return fmt::format("No gap is detectable{} ({}).", refined(diagnosis),
+                               p_words(diagnosis.p_value));
         case Verdict::effect:
             return "The gap is consistent with " + (leader ? cause_words(*leader) : "one effect") +
                    together_with(diagnosis) + taken_away(diagnosis) + ".";
@@ -306,6 +341,9 @@ std::string verdict_sentence(const Diagnosis& diagnosis) {
         case Verdict::unknown_effect:
             return "There is a gap that none of " + library_words(diagnosis) + " explains" +
                    (diagnosis.explanation ? ": the best takes away " + reduction_words(diagnosis) : "") + ".";
+        case Verdict::not_converged:
+            return "The gap is consistent with a simulation that is not converged" + to_refine(diagnosis) +
+                   ".";
         case Verdict::calibration_suspect:
             break;
     }
@@ -315,12 +353,13 @@ std::string verdict_sentence(const Diagnosis& diagnosis) {
                          : "The gap is consistent with calibration alone: " + listed(parts) + ".";
 }
 
-std::array<VerdictLine, 5> verdict_lines(const Diagnosis& diagnosis) {
+std::array<VerdictLine, 6> verdict_lines(const Diagnosis& diagnosis) {
     return {{{"Gap", gap_line(diagnosis)},
              {"Where", where_line(diagnosis)},
              {"Which", which_line(diagnosis)},
              {"How far", how_far_line(diagnosis)},
-             {"Limits", limits_line(diagnosis)}}};
+             {"Limits", limits_line(diagnosis)},
+             {"Next", next_line(diagnosis)}}};
 }
 
 std::string diagnosis_text(const Diagnosis& diagnosis) {

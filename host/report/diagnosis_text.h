@@ -15,15 +15,15 @@ std::string verdict_sentence(const Diagnosis& diagnosis);
 
 /// What a line is about, and what it says.
 struct VerdictLine {
-    std::string about;  ///< Gap, Where, Which, How far, Limits
+    std::string about;  ///< Gap, Where, Which, How far, Limits, Next
     std::string says;
 };
 
-/// Is there a gap, where, which effects is it consistent with, how far does it shrink, and what cannot be
-/// told.
-std::array<VerdictLine, 5> verdict_lines(const Diagnosis& diagnosis);
+/// Is there a gap, where, which effects is it consistent with, how far does it shrink, what cannot be
+/// told, and what to do next.
+std::array<VerdictLine, 6> verdict_lines(const Diagnosis& diagnosis);
 
-/// The five lines, aligned, each ended by a line feed.
+/// The six lines, aligned, each ended by a line feed.
 std::string diagnosis_text(const Diagnosis& diagnosis);
 
 }  // namespace mcdem

@@ -14,16 +14,27 @@ const std::string dash = "–";
 
 const std::map<std::string, std::string>& special_words() {
     static const std::map<std::string, std::string> words{
-        {"cross_contact", "cross-contact deformation"},  {"bulge_contacts", "contacts made by bulges"},
-        {"friction", "friction between grains"},         {"wall_friction", "friction at the walls"},
-        {"friction_history", "friction with memory"},    {"stiffening", "stiffening at large strain"},
-        {"buoyancy", "weight under buoyancy"},           {"diameter_error", "error of all diameters"},
-        {"polydispersity", "scatter of diameters"},      {"modulus_scatter", "scatter of moduli"},
-        {"plate_tilt", "tilt of the plate along x"},     {"plate_tilt_y", "tilt of the plate along y"},
-        {"plate_compliance", "compliance of the plate"}, {"force_bias", "bias of contact forces"},
-        {"gauge_drift", "drift of the plate's gauge"},   {"force_threshold", "shifted force threshold"},
-        {"position_bias", "bias of positions"},          {"strain_offset", "zero of the displacement"},
+        {"cross_contact", "cross-contact deformation"},
+        {"bulge_contacts", "contacts made by bulges"},
+        {"friction", "friction between grains"},
+        {"wall_friction", "friction at the walls"},
+        {"friction_history", "friction with memory"},
+        {"stiffening", "stiffening at large strain"},
+        {"buoyancy", "weight under buoyancy"},
+        {"diameter_error", "error of all diameters"},
+        {"polydispersity", "scatter of diameters"},
+        {"modulus_scatter", "scatter of moduli"},
+        {"plate_tilt", "tilt of the plate along x"},
+        {"plate_tilt_y", "tilt of the plate along y"},
+        {"plate_compliance", "compliance of the plate"},
+        {"force_bias", "bias of contact forces"},
+        {"gauge_drift", "drift of the plate's gauge"},
+        {"force_threshold", "shifted force threshold"},
+        {"position_bias", "bias of positions"},
+        {"strain_offset", "zero of the displacement"},
         {"non_affine", "non-affine displacement"},
+        {"plate_speed", "speed of the plate"},
+        {"inertia", "inertia of the grains"},
     };
     return words;
 }
@@ -145,6 +156,17 @@ std::vector<std::pair<std::string, std::array<double, 2>>> metrics_in_order(cons
 std::string library_words(const Diagnosis& diagnosis) {
     const auto count = diagnosis.detection_limits.size();
     return count > 0 ? fmt::format("the {} known effects", count) : "the known effects";
+}
+
+std::string refinement_words(const Refinement& refinement) {
+    return fmt::format("{} = {:.3g}{} instead of {:.3g}", refinement.key, refinement.to,
+                       refinement.unit.empty() ? "" : " " + refinement.unit, refinement.from);
+}
+
+std::string next_words(const NextStep& step) {
+    return step.power
+               ? step.what + fmt::format(" (predicted in {} of such experiments)", percent(*step.power))
+               : step.what;
 }
 
 std::vector<NuisanceFit> suspects_of(const Diagnosis& diagnosis) {

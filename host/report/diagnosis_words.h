@@ -45,6 +45,12 @@ std::vector<std::pair<std::string, std::array<double, 2>>> metrics_in_order(cons
 /// The effects that were tried: "the 18 known effects".
 std::string library_words(const Diagnosis& diagnosis);
 
+/// "plate.speed = 0.025 m/s instead of 0.1".
+std::string refinement_words(const Refinement& refinement);
+
+/// The step, and how often it is predicted to decide.
+std::string next_words(const NextStep& step);
+
 /// The leading cause, where that is a parameter and no effect; else the parameters at their bounds, the one
 /// pulled furthest first.
 std::vector<NuisanceFit> suspects_of(const Diagnosis& diagnosis);

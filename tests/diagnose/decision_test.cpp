@@ -141,6 +141,36 @@ TEST(Decision, CalibrationIsSuspectWhereANuisanceDoesNearlyAsWell) {
     EXPECT_EQ(d.proposal, 0);
 }
 
+// The simulation itself is the first suspect: before effects, and before stated parameters.
+TEST(Decision, NotConvergedWhereNumericsDoNearlyAsWell) {
+    Findings f = clear_case();
+    f.gain = {49, 50, 48.5, 0, 49};
+    f.proposals = {proposal({1}, 50, 0.5), proposal({2}, 48.5, 0.5), proposal({4}, 49, 0.5)};
+    EXPECT_EQ(decide(f, {}).verdict, Verdict::calibration_suspect);
+    f.numerics = {2};
+    Decision d = decide(f, {});
+    EXPECT_EQ(d.verdict, Verdict::not_converged);
+    EXPECT_EQ(d.group.front(), 2u);
+    EXPECT_EQ(d.proposal, 1);
+    f.proposals[1].confirmed_reduction = 0.2;
+    EXPECT_EQ(decide(f, {}).verdict, Verdict::calibration_suspect) << "real runs of it take little away";
+    f = clear_case();
+    f.numerics = {2};
+    EXPECT_EQ(decide(f, {}).verdict, Verdict::effect) << "far behind";
+}
+
+TEST(Decision, NotConvergedWhereNumericsAreOneOfTwo) {
+    Findings f = clear_case();
+    f.proposals[0].misfit_p = 1e-6;
+    f.proposals[0].reduction = 0.7;
+    f.proposals.push_back(proposal({1, 3}, 80, 0.5));
+    f.numerics = {3};
+    const Decision d = decide(f, {});
+    EXPECT_EQ(d.verdict, Verdict::not_converged);
+    EXPECT_EQ(d.proposal, 2);
+    EXPECT_THAT(d.group, ElementsAre(3, 1));
+}
+
 TEST(Decision, UnknownWhereRealRunsLeaveNoGain) {
     Findings f = clear_case();
     for (Proposal& p : f.proposals) p.confirmed_gain = -1;

@@ -36,6 +36,7 @@ std::map<std::string, double> numbers_of(const Model& m) {
             {"plate.start", r.plate.start},
             {"plate.end", r.plate.end},
             {"plate.speed", r.plate.speed},
+            {"numerics.time_step", r.numerics.time_step},
             {"adhesion", e.adhesion},
             {"viscoelasticity", e.viscoelasticity},
             {"relaxation_time", e.relaxation_time},
@@ -89,7 +90,10 @@ const std::map<std::string, std::set<std::string>> moves{
     {"force_bias", {"force_bias"}},
     {"gauge_drift", {"gauge_drift"}},
     {"force_threshold", {"threshold_shift"}},
-    {"position_bias", {"position_bias"}}};
+    {"position_bias", {"position_bias"}},
+    {"plate_speed", {"plate.speed"}},
+    {"inertia", {"grains.density"}},
+    {"time_step", {"numerics.time_step"}}};
 
 Model plain_model() {
     Model model;
@@ -201,8 +205,8 @@ TEST(Effects, AddToWhatTheModelHas) {
         ASSERT_EQ(moved(start, model), moves.at(std::string(e.name))) << e.name;
         const std::string field = *moves.at(std::string(e.name)).begin();
         const double before = numbers_of(start).at(field), after = numbers_of(model).at(field);
-        // The amplitudes of the paired runs are positive at last; only the bulges' part falls.
-        if (field == "bulge_contacts")
+        // The amplitudes of the paired runs are positive at last; the bulges' part and numerics fall.
+        if (field == "bulge_contacts" || is_numerical(e.name))
             EXPECT_LT(after, before);
         else
             EXPECT_GT(after, before) << e.name;
@@ -217,6 +221,21 @@ TEST(Effects, SharesStayShares) {
         EXPECT_GE(after, 0) << name;
         EXPECT_LE(after, 1) << name;
     }
+}
+
+TEST(Effects, OfNumericsNameTheirKey) {
+    for (const Effect& e : effects()) {
+        EXPECT_EQ(is_numerical(e.name), e.setting != nullptr) << e.name;
+        if (!e.setting) continue;
+        Model model = plain_model();
+        const double before = numbers_of(model).at(std::string(e.key));
+        EXPECT_EQ(e.setting(model), before) << e.name;
+        e.apply(model, 0.5);
+        EXPECT_NEAR(e.setting(model), 0.5 * before, 1e-12 * before) << e.name;
+        e.apply(model, 1);
+        EXPECT_GT(e.setting(model), 0) << "a run that ends";
+    }
+    EXPECT_FALSE(is_numerical("modulus"));
 }
 
 TEST(Effects, FrictionIsNeverNegative) {
@@ -244,6 +263,11 @@ TEST(Effects, HindrancesSayWhy) {
     EXPECT_THAT(hindered(interacting), ElementsAre("cross_contact"));
     EXPECT_THAT(hindered(smooth), ElementsAre("bulge_contacts", "friction_history"));
     EXPECT_THAT(hindered(unlimited), ElementsAre("bulge_contacts", "force_threshold"));
+    Model stated = independent;
+    stated.experiment_speed = 0.9 * stated.replica.plate.speed;
+    EXPECT_THAT(hindered(stated), ElementsAre("bulge_contacts"));
+    stated.experiment_speed = stated.replica.plate.speed;
+    EXPECT_THAT(hindered(stated), ElementsAre("bulge_contacts", "plate_speed"));
 }
 
 TEST(Nuisances, MoveTheirParameter) {

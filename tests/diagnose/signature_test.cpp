@@ -79,5 +79,33 @@ TEST(Signature, SpreadIsThatOfPairsOverTheAmplitude) {
     EXPECT_NEAR(s.spread[0], 7.0 / 4, 1e-12);
 }
 
+// Of a setting a half is off already; of what is left another part b: in all 1/2 + b/2.
+TEST(Signature, GoesOnFromWhatIsDone) {
+    const Signature s = learn_signature("plate_speed", 0.5, 0.75, differences(0.5, linear, curvature, 4),
+                                        differences(0.75, linear, curvature, 4));
+    for (const double done : {0.5, 0.75, 0.875})
+        for (const double part : {0.0, 0.3, 0.5, 1.0}) {
+            const Eigen::VectorXd expected = s.at(done + part * (1 - done)) - s.at(done);
+            EXPECT_LT((continued_from(s, done).at(part) - expected).norm(), 1e-11) << done << " " << part;
+        }
+}
+
+// A pair of which one run failed says nothing; where the larger amplitude runs away, the smaller one tells.
+TEST(Signature, FailedRunsAreLeftOut) {
+    Eigen::MatrixXd first = differences(0.5, linear, curvature, 4),
+                    second = differences(1, linear, curvature, 4);
+    second.row(2).setConstant(NAN);
+    const Signature three = learn_signature("adhesion", 0.5, 1, first, second);
+    EXPECT_EQ(three.pairs, 3);
+    EXPECT_LT((three.linear - linear).norm(), 1e-12);
+    second.topRows(3).setConstant(NAN);
+    const Signature straight = learn_signature("adhesion", 0.5, 1, first, second);
+    EXPECT_EQ(straight.reach, 0.5);
+    EXPECT_EQ(straight.curvature.norm(), 0);
+    EXPECT_LT((straight.at(0.5) - (0.5 * linear + 0.25 * curvature)).norm(), 1e-12);
+    first.topRows(3).setConstant(NAN);
+    EXPECT_FALSE(learn_signature("adhesion", 0.5, 1, first, second).linear.array().isFinite().any());
+}
+
 }  // namespace
 }  // namespace mcdem

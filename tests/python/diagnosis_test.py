@@ -40,7 +40,8 @@ class Diagnoses(unittest.TestCase):
                               progress=lambda stage, fraction: told.append((stage, fraction)))
         self.assertIn("diagnosis", (self.folder / "out/diagnosis.html").read_text().lower())
         self.assertEqual(said, json.loads((self.folder / "out/diagnosis.json").read_text()))
-        self.assertIn(said["verdict"], ("no_gap", "effect", "group", "unknown_effect", "calibration_suspect"))
+        self.assertIn(said["verdict"], ("no_gap", "effect", "group", "unknown_effect", "not_converged",
+                                        "calibration_suspect"))
         self.assertEqual({one["effect"] for one in said["ranking"]},
                          {"adhesion", "friction", "modulus", "strain_offset"})  # both candidates, and what may be wrong
         self.assertIn("library", {stage for stage, _ in told})

@@ -17,8 +17,9 @@ namespace mcdem {
 namespace {
 
 constexpr int findings_tried = 3000;
-const std::vector<std::string> names{"adhesion", "friction", "plasticity", "plate_tilt", "modulus"};
+const std::vector<std::string> names{"adhesion", "friction", "plate_speed", "plate_tilt", "modulus"};
 constexpr int effects = 4;
+constexpr std::size_t numerics = 2;
 
 class RandomDiagnosis {
 public:
@@ -26,6 +27,7 @@ public:
         findings_.p_value = coin() ? uniform(0, 0.02) : 1e-8;
         findings_.names = names;
         findings_.effects = effects;
+        findings_.numerics = {numerics};
         for (std::size_t c = 0; c < names.size(); ++c) findings_.gain.push_back(uniform(-1, 60));
         findings_.placebo = uniform(0, 0.8);
         findings_.held_out = coin();
@@ -138,6 +140,10 @@ TEST(DiagnosisAgreement, OfTitleFiguresPictureAndFile) {
         if (d.explanation) {
             const Explanation& e = *d.explanation;
             EXPECT_EQ(names_a_cause(d.verdict), e.reduction >= e.needed);
+            EXPECT_EQ(says(title, "not converged"), d.verdict == Verdict::not_converged);
+            const auto is_numerical = [](const Cause& cause) { return cause.effect == names[numerics]; };
+            EXPECT_EQ(d.verdict == Verdict::not_converged,
+                      names_a_cause(d.verdict) && std::ranges::any_of(d.causes, is_numerical));
             if (names_a_cause(d.verdict)) {
                 EXPECT_GT(e.reduction, e.placebo);
                 EXPECT_GT(d.causes.front().confidence, 0);
@@ -159,7 +165,7 @@ TEST(DiagnosisAgreement, OfTitleFiguresPictureAndFile) {
             EXPECT_EQ(json["explanation"]["reduction"], d.explanation->reduction);
         }
     }
-    EXPECT_EQ(seen.size(), 5u) << "every verdict came about";
+    EXPECT_EQ(seen.size(), 6u) << "every verdict came about";
 }
 
 }  // namespace

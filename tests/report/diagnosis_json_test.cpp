@@ -46,6 +46,9 @@ TEST(DiagnosisJson, has_the_documented_keys_in_their_order) {
                                    "explained", "score", "confirmed_score");
     EXPECT_THAT(keys_of(json["causes"][0]), cause);
     EXPECT_THAT(keys_of(json["ranking"][17]), cause);
+    EXPECT_THAT(keys_of(json["next"][0]), ElementsAre("what", "power"));
+    EXPECT_THAT(keys_of(parsed(samples::diagnosis(Verdict::not_converged))["refinements"][0]),
+                ElementsAre("effect", "key", "was", "to", "unit", "done"));
     EXPECT_THAT(keys_of(json["explanation"]),
                 ElementsAre("reduction", "simulated", "held_out", "placebo", "needed", "remainder",
                             "remainder_p", "leaves_more_than_noise"));
@@ -137,8 +140,8 @@ TEST(DiagnosisJson, any_text_is_carried_and_bytes_that_are_none_are_replaced) {
 TEST(DiagnosisJson, verdicts_have_names_of_their_own) {
     std::set<std::string> names;
     for (const auto verdict : samples::all_verdicts) names.insert(verdict_name(verdict));
-    EXPECT_EQ(names,
-              (std::set<std::string>{"no_gap", "effect", "group", "unknown_effect", "calibration_suspect"}));
+    EXPECT_EQ(names, (std::set<std::string>{"no_gap", "effect", "group", "unknown_effect", "not_converged",
+                                            "calibration_suspect"}));
 }
 
 TEST(DiagnosisJson, is_read_again_as_it_was_written) {

@@ -149,6 +149,8 @@ Diagnosis common() {
         {"seed", "17"},
         {"experiment_sha256", "5f70bf18a086007016e948b04aed3b82103a36bea41755b6cddfaf10ace3c6ef"}};
     add_calibration(d);
+    d.next = {{"measure 3 more packings and diagnose each: tells adhesion from friction", 0.83},
+              {"press a second cycle", {}}};
     return d;
 }
 
@@ -186,6 +188,16 @@ Diagnosis diagnosis(Verdict verdict) {
             add_ranking(d, 12.4, 0.35, 0.21);
             explain(d, 0.07);
             break;
+        case Verdict::not_converged:
+            add_cells(d, 0.9, 0.7);
+            add_ranking(d, 30, 0.8, 0.5);
+            d.ranking.front().effect = "plate_speed";
+            d.ranking.front().unit = "";
+            d.ranking.front().group = {"plate_speed"};
+            d.refinements = {{"plate_speed", "plate.speed", "m/s", 0.1, 0.025, true},
+                             {"plate_speed", "plate.speed", "m/s", 0.025, 0.0125, false}};
+            explain(d, 0.85);
+            break;
         case Verdict::calibration_suspect:
             add_cells(d, 0.9, 0.05);
             add_ranking(d, 2.1, 0.3, 0.04);
@@ -205,6 +217,8 @@ Diagnosis with_texts(Diagnosis d, const std::string& text) {
         for (auto& cause : *causes) cause.effect = cause.unit = text, cause.group = {text, text};
     for (auto& fit : d.nuisances) fit.name = fit.unit = text;
     for (auto& limit : d.detection_limits) limit.effect = limit.unit = text, limit.group = {text, text};
+    for (auto& step : d.next) step.what = text;
+    for (auto& refinement : d.refinements) refinement.effect = refinement.key = refinement.unit = text;
     for (auto* list : {&d.not_measured, &d.not_testable}) *list = {text};
     if (d.shrink) d.shrink->held_out = text, d.shrink->metrics[text] = {1, 2};
     d.provenance[text] = text;

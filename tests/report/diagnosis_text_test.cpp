@@ -24,11 +24,11 @@ std::string line(const Diagnosis& diagnosis, const std::string& about) {
 class EveryVerdict : public testing::TestWithParam<Verdict> {};
 INSTANTIATE_TEST_SUITE_P(DiagnosisText, EveryVerdict, testing::ValuesIn(samples::all_verdicts));
 
-TEST_P(EveryVerdict, has_five_lines_that_end_in_a_full_stop) {
+TEST_P(EveryVerdict, has_six_lines_that_end_in_a_full_stop) {
     for (const auto& d :
          {samples::diagnosis(GetParam()), samples::with_texts(samples::diagnosis(GetParam()), "a\nb\r")}) {
         const auto text = diagnosis_text(d);
-        EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 5) << text;
+        EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 6) << text;
         for (const auto& [about, says] : verdict_lines(d)) {
             EXPECT_TRUE(says.ends_with('.') && !says.ends_with("..")) << says;
             EXPECT_EQ(says.find_first_of("\n\r"), std::string::npos) << says;
@@ -52,7 +52,7 @@ TEST_P(EveryVerdict, claims_no_proof) {
 TEST_P(EveryVerdict, is_told_without_any_of_the_optional_parts) {
     Diagnosis d;
     d.verdict = GetParam();
-    EXPECT_EQ(std::ranges::count(diagnosis_text(d), '\n'), 5);
+    EXPECT_EQ(std::ranges::count(diagnosis_text(d), '\n'), 6);
     EXPECT_FALSE(verdict_sentence(d).empty());
 }
 
@@ -122,6 +122,27 @@ TEST(DiagnosisText, calibration_suspect_names_the_parameter) {
     d.causes[0].effect = "modulus";
     d.causes[0].group = {"modulus", "stiffening"};
     EXPECT_THAT(line(d, "Which"), HasSubstr("cannot tell from stiffening at large strain"));
+}
+
+TEST(DiagnosisText, not_converged_names_the_key_and_its_value) {
+    const auto d = samples::diagnosis(Verdict::not_converged);
+    EXPECT_EQ(verdict_headline(d), "The simulation is not converged");
+    EXPECT_THAT(verdict_sentence(d), HasSubstr(": set plate.speed = 0.0125 m/s instead of 0.025."));
+    EXPECT_THAT(line(d, "Gap"), HasSubstr(", with plate.speed = 0.025 m/s instead of 0.1 (p"));
+    EXPECT_THAT(line(d, "Which"), AllOf(HasSubstr("own numerics"), HasSubstr("speed of the plate")));
+    auto none = samples::diagnosis(Verdict::no_gap);
+    none.refinements = {d.refinements[0]};
+    EXPECT_EQ(verdict_sentence(none),
+              "No gap is detectable, with plate.speed = 0.025 m/s instead of 0.1 (p = 0.44).");
+}
+
+TEST(DiagnosisText, ends_with_what_to_do_next) {
+    auto d = samples::diagnosis(Verdict::group);
+    EXPECT_EQ(line(d, "Next"),
+              "measure 3 more packings and diagnose each: tells adhesion from friction (predicted in "
+              "83 % of such experiments); press a second cycle.");
+    d.next.clear();
+    EXPECT_THAT(line(d, "Next"), StartsWith("nothing"));
 }
 
 TEST(DiagnosisText, a_gap_that_the_held_out_data_do_not_show) {

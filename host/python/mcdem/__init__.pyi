@@ -84,13 +84,36 @@ class DetectionLimit(TypedDict):
     unit: str
     group: list[str]
 
+class Explanation(TypedDict):
+    reduction: float | None
+    simulated: bool
+    held_out: bool
+    placebo: float | None
+    needed: float | None
+    remainder: float | None
+    remainder_p: float | None
+    leaves_more_than_noise: bool
+
+class Refinement(TypedDict):
+    effect: str
+    key: str
+    was: float
+    to: float
+    unit: str
+    done: bool
+
+class NextStep(TypedDict):
+    what: str
+    power: float | None
+
 class Diagnosis(TypedDict):
     """diagnosis.json; host/report/DIAGNOSIS_OUTPUT.md explains the keys."""
 
-    verdict: Literal["no_gap", "effect", "group", "unknown_effect", "calibration_suspect"]
+    verdict: Literal["no_gap", "effect", "group", "unknown_effect", "not_converged", "calibration_suspect"]
     gap: Gap
     where: list[Where]
     causes: list[Cause]
+    explanation: Explanation | None
     shrink: Shrink | None
     detection_limits: list[DetectionLimit]
     not_measured: list[str]
@@ -101,6 +124,8 @@ class Diagnosis(TypedDict):
     ranking: list[Cause]
     nuisances: list[Nuisance]
     not_testable: list[str]
+    refinements: list[Refinement]
+    next: list[NextStep]
     provenance: dict[str, str]
 
 class Scene:

@@ -1,0 +1,72 @@
+// Diagnoses of realities made by the program itself, in a scene of 64 grains.
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "cli/tiny_challenge.h"
+
+namespace mcdem {
+namespace {
+
+using testing::HasSubstr;
+
+class DiagnoseTest : public CliTest {
+protected:
+    DiagnoseTest() { write_tiny_scene(folder_.path); }
+
+    /// An experiment of another packing, the scene but for `changes`.
+    void experiment(const Words& changes) {
+        Words run{
+            "run",   "tiny.toml",     "--out", "run", "--no-figures", "--set", "protocol.scan_at_start=true",
+            "--set", "packing.seed=5"};
+        for (const std::string& change : changes) run.insert(run.end(), {"--set", change});
+        expect_done(mcdem(run));
+        expect_done(mcdem({"experiment", "from-run", "run", "--out", "e"}));
+    }
+
+    nlohmann::json diagnosis(const Words& more) {
+        Words words{"diagnose", "tiny.toml", "--experiment", "e", "--out", "d"};
+        words.insert(words.end(), more.begin(), more.end());
+        expect_done(mcdem(words));
+        return nlohmann::json::parse(std::ifstream(path("d/diagnosis.json")));
+    }
+};
+
+const Words few{
+    "--replicates",    "16", "--pairs",      "4",
+    "--confirmations", "4",  "--candidates", "friction,wall_friction,rolling_resistance,plate_speed"};
+
+// A plate ten times slower than the scene's is no effect: it is the scene that is too fast.
+TEST_F(DiagnoseTest, ASlowRealityWithoutEffectIsGivenNone) {
+    experiment({"plate.speed=0.02"});
+    Words never = few, refined = few;
+    never.insert(never.end(), {"--refine", "1"});
+    refined.insert(refined.end(), {"--refine", "8"});
+    const auto fast = diagnosis(never);
+    EXPECT_EQ(fast["verdict"], "not_converged") << fast["sentence"];
+    ASSERT_EQ(fast["refinements"].size(), 1u);
+    EXPECT_EQ(fast["refinements"][0]["key"], "plate.speed");
+    EXPECT_EQ(fast["refinements"][0]["done"], false);
+    EXPECT_LE(fast["refinements"][0]["to"], 0.1);
+    EXPECT_THAT(std::string(fast["next"][0]["what"]), HasSubstr("set plate.speed = "));
+    const auto slow = diagnosis(refined);
+    EXPECT_EQ(slow["verdict"], "no_gap") << slow["sentence"];
+    ASSERT_EQ(slow["refinements"].size(), 1u);
+    EXPECT_EQ(slow["refinements"][0]["done"], true);
+    EXPECT_THAT(std::string(slow["sentence"]), HasSubstr("with plate.speed = "));
+}
+
+// With all bulges gone free surfaces move out too far, and the runs stop. The least numbers that are accepted
+// are enough, and make no gap where there is none.
+TEST_F(DiagnoseTest, ACandidateWhoseRunsFailCostsItselfAtMost) {
+    const Words scene{"contact.model=mc_dem", "contact.gamma=1.08"};
+    experiment(scene);
+    Words words{"--replicates",    "8", "--pairs",      "2",
+                "--confirmations", "0", "--candidates", "friction,bulge_contacts"};
+    for (const std::string& change : scene) words.insert(words.end(), {"--set", change});
+    const auto told = diagnosis(words);
+    EXPECT_EQ(told["verdict"], "no_gap") << told["sentence"];
+    EXPECT_GT(told["cells"].size(), 100u);
+}
+
+}  // namespace
+}  // namespace mcdem

@@ -1,0 +1,100 @@
+// What would help most, predicted from the signatures.
+#include "diagnose/next_steps.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "diagnose/diagnose.h"
+#include "diagnose/synthetic_evidence.h"
+
+namespace mcdem {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::Contains;
+using ::testing::Each;
+using ::testing::Field;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+/// Two effects that act alike but for `apart`, the first of them planted.
+Evidence two_alike(SyntheticWorld& world, double apart, double amplitude) {
+    Evidence evidence = world.evidence(1, 32);
+    const Eigen::VectorXd shape = world.pattern(1);
+    world.add_effect(evidence, "viscoelasticity", shape);
+    world.add_effect(evidence, "plasticity", shape + apart * world.pattern(1));
+    world.add_nuisance(evidence, "modulus", world.pattern(0.5), 1);
+    evidence.observed += amplitude * shape;
+    return evidence;
+}
+
+TEST(NextSteps, OfAGroupTellItsMembersApart) {
+    SyntheticWorld world(6, 3);
+    const Evidence evidence = two_alike(world, 0.05, 4);
+    const Draft draft(evidence, {});
+    ASSERT_EQ(draft.decision().verdict, Verdict::group);
+    const auto steps = draft.diagnosis().next;
+    EXPECT_THAT(steps,
+                Contains(Field(&NextStep::what, AllOf(HasSubstr("3 more packings"),
+                                                      HasSubstr("tells viscoelasticity from plasticity")))));
+    EXPECT_THAT(steps, Contains(Field(&NextStep::what, HasSubstr("press a second cycle"))));
+    EXPECT_THAT(steps, Contains(Field(&NextStep::what, HasSubstr("hold the plate"))));
+    for (std::size_t k = 1; k < steps.size(); ++k)
+        EXPECT_LE(steps[k].power.value_or(0), steps[k - 1].power.value_or(0)) << "the most useful first";
+    // Twice as far apart, more of such experiments would tell.
+    SyntheticWorld again(6, 3);
+    const Evidence farther = two_alike(again, 0.1, 4);
+    const Draft other(farther, {});
+    if (other.decision().verdict == Verdict::group) {
+        EXPECT_GT(other.diagnosis().next[0].power.value(), steps[0].power.value());
+    }
+}
+
+// The power that is predicted is the part of experiments in which the likelihoods part by the margin.
+TEST(NextSteps, PredictedPowerIsMet) {
+    constexpr int drawn = 60;
+    double predicted = 0;
+    int told = 0, groups = 0;
+    for (int k = 0; k < drawn; ++k) {
+        SyntheticWorld world(6, 900 + static_cast<std::uint64_t>(k));
+        Evidence evidence = two_alike(world, 0.12, 4);
+        const Draft draft(evidence, {});
+        if (draft.decision().verdict != Verdict::group) continue;
+        for (const NextStep& step : draft.diagnosis().next)
+            if (step.what.find("3 more packings") != std::string::npos) {
+                predicted += *step.power;
+                ++groups;
+                // The mean of four experiments, seen with half the scatter.
+                Evidence four = evidence;
+                four.observed = evidence.baseline.colwise().mean().transpose() +
+                                4 * evidence.library.effects[0].linear + 0.5 * world.noise();
+                four.library.baseline *= 0.5;
+                four.baseline = four.library.baseline;
+                four.observed += four.baseline.colwise().mean().transpose() -
+                                 evidence.baseline.colwise().mean().transpose();
+                const std::vector<double> gain = Draft(four, {}).findings().gain;
+                told += gain[0] - gain[1] > std::max(Limits{}.group, Limits{}.group_share * gain[0]);
+            }
+    }
+    ASSERT_GT(groups, 10);
+    EXPECT_NEAR(static_cast<double>(told) / groups, predicted / groups, 0.2);
+}
+
+TEST(NextSteps, WithoutAGapTheLimitsFall) {
+    SyntheticWorld world(6, 5);
+    Evidence evidence = world.evidence(1, 32);
+    const Eigen::VectorXd modulus = world.pattern(2);
+    world.add_effect(evidence, "diameter_error", modulus + world.pattern(0.1));
+    world.add_nuisance(evidence, "modulus", modulus, 1);
+    const Draft draft(evidence, {});
+    ASSERT_EQ(draft.decision().verdict, Verdict::no_gap);
+    const auto steps = draft.diagnosis().next;
+    ASSERT_FALSE(steps.empty());
+    EXPECT_THAT(steps[0].what,
+                AllOf(HasSubstr("grains.youngs_modulus 5 times better"), HasSubstr("% of now")));
+    EXPECT_THAT(steps, Each(Field(&NextStep::what, Not(HasSubstr("hold the plate")))));
+}
+
+}  // namespace
+}  // namespace mcdem
