@@ -1,5 +1,5 @@
 /* Velocity Verlet in its leapfrog form: velocities stand half a step before the positions that carry the
-   forces. Weight less buoyancy, background drag, inertia of a sphere. */
+   forces. Weight less buoyancy, drag, inertia of a sphere. */
 
 typedef struct { real4 position, velocity, angular_velocity; } Motion;
 
@@ -9,7 +9,7 @@ INLINE Motion integrate(global const Replica* restrict replica, real4 position, 
     const real mass = sphere_mass(replica, position.w);
     real3 acceleration = force / mass - replica->drag * velocity.xyz;
     acceleration.z -= replica->weight_density / replica->density;
-    const real3 turning = torque / (R(0.4) * mass * position.w * position.w);
+    const real3 turning = torque / (R(0.4) * mass * position.w * position.w) - replica->spin_drag * angular_velocity.xyz;
     const real3 v = velocity.xyz + acceleration * dt;
     const real3 w = angular_velocity.xyz + turning * dt;
     const Motion after = {(real4)(position.xyz + v * dt, position.w), (real4)(v, velocity.w), (real4)(w, R(0))};

@@ -8,7 +8,8 @@ typedef struct {
     real time_step;           /* dt [s] */
     real density;             /* inertial [kg/m3] */
     real weight_density;      /* (density - fluid density) g [N/m3] */
-    real drag;                /* [1/s] */
+    real drag;                /* of velocities [1/s] */
+    real spin_drag;           /* of angular velocities, while the packing settles [1/s] */
     real modulus_grain;       /* E*, grain on grain [Pa] */
     real modulus_wall;        /* E*, grain on wall [Pa] */
     real shear_grain;         /* G*, grain on grain [Pa] */

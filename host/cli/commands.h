@@ -19,6 +19,7 @@ void add_compare(CLI::App& app, int& exit_code);
 void add_figures(CLI::App& app, int& exit_code);
 void add_report(CLI::App& app, int& exit_code);
 void add_calibrate(CLI::App& app, int& exit_code);
+void add_converge(CLI::App& app, int& exit_code);
 void add_export(CLI::App& app, int& exit_code);
 void add_diagnose(CLI::App& app, int& exit_code);
 void add_challenge(CLI::App& app, int& exit_code);

@@ -2,6 +2,7 @@
 // metrics and pictures. Measured and simulated data have the same form.
 #pragma once
 #include <array>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -43,6 +44,7 @@ struct Scan {
     double kinetic_energy = 0;                  ///< [J]
     double elastic_energy = 0;                  ///< [J]
     bool settled = false;                       ///< the settling criterion was met
+    double rate_error = std::numeric_limits<double>::quiet_NaN();  ///< of forces, by the plate's speed, estimated; relative
     double coordination_number = 0;             ///< Z: contacts per grain, walls counted, above the scene's threshold
     double mean_force = 0;        ///< <f>: mean |force| of those contacts [N]
     double packing_fraction = 0;  ///< phi, more than a mean diameter from every wall

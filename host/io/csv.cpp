@@ -12,7 +12,7 @@ namespace {
 constexpr const char* header =
     "replica,label,frame,cycle,phase,time_s,plate_z_m,displacement_m,top_force_N,floor_force_N,"
     "x_min_force_N,x_max_force_N,y_min_force_N,y_max_force_N,coordination_number,mean_force_N,"
-    "packing_fraction,branch_length_m,kinetic_energy_J,elastic_energy_J,settled\n";
+    "packing_fraction,branch_length_m,kinetic_energy_J,elastic_energy_J,settled,rate_error\n";
 
 std::string quoted(const std::string& text) {
     std::string result = "\"";
@@ -58,9 +58,9 @@ std::string csv_text(const Run& run) {
                            name(scan.phase), scan.time, scan.plate_z, recording.displacement(scan));
             for (Wall wall : {Wall::plate, Wall::floor, Wall::x_min, Wall::x_max, Wall::y_min, Wall::y_max})
                 fmt::format_to(out, "{},", pressing(scan, wall));
-            fmt::format_to(out, "{},{},{},{},{},{},{:d}\n", scan.coordination_number, scan.mean_force,
+            fmt::format_to(out, "{},{},{},{},{},{},{:d},{}\n", scan.coordination_number, scan.mean_force,
                            scan.packing_fraction, scan.branch_length, scan.kinetic_energy,
-                           scan.elastic_energy, scan.settled);
+                           scan.elastic_energy, scan.settled, scan.rate_error);
         }
     }
     return fmt::to_string(text);

@@ -1,5 +1,6 @@
 #include "io/result_file.h"
 
+#include <limits>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -65,8 +66,10 @@ std::vector<Scan> ResultFile::scans(const Recording& recording, std::size_t repl
     const h5::Dataset table = file_.dataset(observables_path(replica));
     const h5::Handle type = scan_row_type();
     table.expect_row({});
-    expect_fields(table, type);
-    std::vector<ScanRow> rows(table.rows());
+    expect_fields(table, type, "rate_error");  // files of version 0.1 have none
+    ScanRow empty{};
+    empty.rate_error = std::numeric_limits<double>::quiet_NaN();
+    std::vector<ScanRow> rows(table.rows(), empty);
     table.read(type, rows.data(), 0, rows.size());
     std::vector<Scan> scans;
     scans.reserve(rows.size());

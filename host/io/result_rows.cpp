@@ -47,6 +47,7 @@ ScanRow scan_row(const Scan& scan) {
     for (int wall = 0; wall < wall_count; ++wall) copy(scan.wall_force[wall], row.wall_force[wall]);
     row.kinetic_energy = scan.kinetic_energy;
     row.elastic_energy = scan.elastic_energy;
+    row.rate_error = scan.rate_error;
     row.coordination_number = scan.coordination_number;
     row.mean_force = scan.mean_force;
     row.packing_fraction = scan.packing_fraction;
@@ -67,6 +68,7 @@ Scan scan_of(const ScanRow& row, const std::string& where) {
     for (int wall = 0; wall < wall_count; ++wall) scan.wall_force[wall] = vec3(row.wall_force[wall]);
     scan.kinetic_energy = row.kinetic_energy;
     scan.elastic_energy = row.elastic_energy;
+    scan.rate_error = row.rate_error;
     scan.coordination_number = row.coordination_number;
     scan.mean_force = row.mean_force;
     scan.packing_fraction = row.packing_fraction;
@@ -115,6 +117,7 @@ h5::Handle scan_row_type() {
               array_type(H5T_NATIVE_DOUBLE, {wall_count, 3}));
     H5Tinsert(type, "kinetic_energy", HOFFSET(ScanRow, kinetic_energy), H5T_NATIVE_DOUBLE);
     H5Tinsert(type, "elastic_energy", HOFFSET(ScanRow, elastic_energy), H5T_NATIVE_DOUBLE);
+    H5Tinsert(type, "rate_error", HOFFSET(ScanRow, rate_error), H5T_NATIVE_DOUBLE);
     H5Tinsert(type, "coordination_number", HOFFSET(ScanRow, coordination_number), H5T_NATIVE_DOUBLE);
     H5Tinsert(type, "mean_force", HOFFSET(ScanRow, mean_force), H5T_NATIVE_DOUBLE);
     H5Tinsert(type, "packing_fraction", HOFFSET(ScanRow, packing_fraction), H5T_NATIVE_DOUBLE);
@@ -143,21 +146,22 @@ h5::Handle packed(const h5::Handle& row_type) {
     return type;
 }
 
-void expect_fields(const h5::Dataset& table, const h5::Handle& row_type) {
+void expect_fields(const h5::Dataset& table, const h5::Handle& row_type, std::string_view optional) {
     const h5::Handle found = table.type();
     if (H5Tget_class(found) != H5T_COMPOUND) table.fail("must be a table of named fields");
     for (int i = 0; i < H5Tget_nmembers(row_type); ++i) {
         char* field = H5Tget_member_name(row_type, static_cast<unsigned>(i));
         const std::string name = field ? field : "";
         H5free_memory(field);
-        if (H5Tget_member_index(found, name.c_str()) < 0) table.fail("must have a field '" + name + "'");
+        if (name != optional && H5Tget_member_index(found, name.c_str()) < 0)
+            table.fail("must have a field '" + name + "'");
     }
 }
 
 std::vector<std::pair<std::string, std::string>> scan_row_units() {
     return {{"time", "s"},           {"plate_z", "m"},          {"wall_force", "N"},
-            {"kinetic_energy", "J"}, {"elastic_energy", "J"},   {"coordination_number", "1"},
-            {"mean_force", "N"},     {"packing_fraction", "1"}, {"branch_length", "m"}};
+            {"kinetic_energy", "J"}, {"elastic_energy", "J"},   {"rate_error", "1"},
+            {"coordination_number", "1"}, {"mean_force", "N"}, {"packing_fraction", "1"}, {"branch_length", "m"}};
 }
 
 std::vector<std::pair<std::string, std::string>> contact_row_units() {

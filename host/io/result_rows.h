@@ -11,7 +11,7 @@ struct ScanRow {
     signed char phase, settled;
     double time, plate_z;
     double wall_force[wall_count][3];
-    double kinetic_energy, elastic_energy;
+    double kinetic_energy, elastic_energy, rate_error;
     double coordination_number, mean_force, packing_fraction, branch_length;
 };
 
@@ -36,8 +36,8 @@ template <class Real>
 h5::Handle contact_row_type();
 /// The same fields as a file keeps them: without gaps.
 h5::Handle packed(const h5::Handle& row_type);
-/// Throws unless the table has every field of `row_type`: a missing one would be left uninitialised.
-void expect_fields(const h5::Dataset& table, const h5::Handle& row_type);
+/// Throws unless the table has every field of `row_type` but the optional one: what is missing is left as it was.
+void expect_fields(const h5::Dataset& table, const h5::Handle& row_type, std::string_view optional = {});
 
 /// Field names and their units, for the attributes of the tables.
 std::vector<std::pair<std::string, std::string>> scan_row_units();

@@ -47,6 +47,7 @@ py::dtype scan_type() {
         .add("wall_force", &Scan::wall_force, "(6,3)f8")
         .add("kinetic_energy", &Scan::kinetic_energy, "f8")
         .add("elastic_energy", &Scan::elastic_energy, "f8")
+        .add("rate_error", &Scan::rate_error, "f8")
         .add("coordination_number", &Scan::coordination_number, "f8")
         .add("mean_force", &Scan::mean_force, "f8")
         .add("packing_fraction", &Scan::packing_fraction, "f8")

@@ -81,7 +81,7 @@ void bind_recording(py::module_& module) {
             "scans", array_property(scans_array),
             "[S] rows with the fields of /observables in run.h5: frame, cycle, phase (0 load, 1 "
             "unload), settled, time [s], plate_z [m], wall_force [6][3] [N], kinetic_energy [J], "
-            "elastic_energy [J], coordination_number, mean_force [N], packing_fraction, "
+            "elastic_energy [J], rate_error, coordination_number, mean_force [N], packing_fraction, "
             "branch_length [m].")
         .def_property_readonly("top_force", array_property(top_force_array),
                                "[S] upward force on the plate [N].")

@@ -61,7 +61,7 @@ struct PackingSource {
 struct Plate {
     double start = 0.167643;  ///< highest position of its lower face [m]
     double end = 0.137517;    ///< lowest position [m]
-    double speed = 0.1;       ///< [m/s]
+    double speed = 0.1;       ///< at most [m/s]
 };
 
 struct Protocol {
@@ -69,9 +69,10 @@ struct Protocol {
     int discard = 0;             ///< first cycles left out of metrics
     int scans_per_stroke = 30;   ///< equally spaced; the last of each stroke at its end
     bool stop_at_scans = true;   ///< false: one continuous stroke, recorded in passing
-    double settle_kinetic_over_elastic = 1e-4;  ///< a scan is taken when the ratio falls below this
-    double settle_time = 0.5;                   ///< .. or, marked unsettled, after this long [s]
-    double settle_drag = 100;    ///< background drag while the plate stands still, on top of grains.drag [1/s]
+    double rate_tolerance = 0;   ///< largest estimated error of forces by the plate's speed; 0: always plate.speed
+    double settle_unbalanced_force = 1e-3;  ///< a scan is taken when the net forces on grains fall below this
+    double settle_time = 0.5;               ///< .. or, marked unsettled, after this long [s]
+    double settle_drag = 1e6;  ///< of velocities and spins while the plate stands still, at most half of both a step [1/s]
     double relax_time = 1.0;                    ///< longest relaxation before the first stroke [s]
     bool scan_at_start = false;                 ///< a scan, frame 0, of the relaxed packing before the first stroke
     double force_threshold = 0;                 ///< contacts below it do not count in Z and <f> [N]

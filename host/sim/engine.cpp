@@ -138,7 +138,8 @@ void Engine::upload_stretches(const std::vector<Stretch>& stretches) {
                 all[r].wall_position[5] = stretches[r].plate_z;
                 all[r].plate_velocity = stretches[r].plate_velocity;
                 all[r].steps_before = static_cast<int>(steps_made_[r] % 4);
-                all[r].drag = replicas_[r].grains.drag + stretches[r].extra_drag;
+                all[r].drag = replicas_[r].grains.drag + stretches[r].settle_drag;
+                all[r].spin_drag = stretches[r].settle_drag;
             }
             fields_.replicas.write(all.data());
         },

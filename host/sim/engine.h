@@ -19,7 +19,7 @@ struct Stretch {
     int steps = 0;              ///< 0: nothing, the replica is left as it is
     double plate_z = 0;         ///< when the stretch begins [m]
     double plate_velocity = 0;  ///< [m/s]
-    double extra_drag = 0;      ///< on top of the scene's [1/s]
+    double settle_drag = 0;     ///< of velocities, on top of the scene's, and of spins [1/s]
 };
 
 /// What became of it.

@@ -11,52 +11,70 @@ using Stage = ProtocolState::Stage;
 /// Stretches in a row below the limit: a packing that passes through rest at the turning point of an
 /// oscillation is not taken for one at rest.
 constexpr int settled_stretches = 2;
+/// Part of a stretch's pressure that is taken over, so that waves in the packing do not shake the plate.
+constexpr double pressure_share = 0.2;
+/// The integrator takes away drag * time step of a velocity in a step.
+constexpr double most_drag = 0.5;
+/// Closer than this to a level, over the plate's start, the plate has arrived.
+constexpr double rounding = 1e-12;
+
+double force_along_z(const StretchResult& result, Wall wall) {
+    return result.wall_force[static_cast<std::size_t>(wall)].z();
+}
 
 }  // namespace
 
-ProtocolRunner::ProtocolRunner(const Replica& replica, double time_step)
-    : plate_(replica.plate), protocol_(replica.protocol), time_step_(time_step) {}
+ProtocolRunner::ProtocolRunner(const Replica& replica, double time_step, const PackingScale& scale)
+    : plate_(replica.plate),
+      protocol_(replica.protocol),
+      time_step_(time_step),
+      settle_drag_(std::min(replica.protocol.settle_drag, most_drag / time_step)),
+      quasi_static_(replica, scale) {
+    state_.plate_z = plate_.start;
+    state_.pressure = quasi_static_.pressure(0, 0);
+}
 
-double ProtocolRunner::stroke_begin() const { return state_.phase == Phase::load ? plate_.start : plate_.end; }
+double ProtocolRunner::stroke_begin() const {
+    return state_.phase == Phase::load ? plate_.start : plate_.end;
+}
 double ProtocolRunner::stroke_end() const { return state_.phase == Phase::load ? plate_.end : plate_.start; }
 
 double ProtocolRunner::level_z(int level) const {
     return stroke_begin() + (stroke_end() - stroke_begin()) * level / protocol_.scans_per_stroke;
 }
 
-/// Steps from one scan position to the next: the plate's speed is the scene's or a little less.
-long ProtocolRunner::move_steps() const {
-    const double distance = std::abs(plate_.start - plate_.end) / protocol_.scans_per_stroke;
-    return std::max(1L, static_cast<long>(std::ceil(distance / (plate_.speed * time_step_) - 1e-9)));
+double ProtocolRunner::distance_left() const { return level_z(state_.level + 1) - state_.plate_z; }
+
+long ProtocolRunner::longest_wait() const {
+    const double time = state_.stage == Stage::relax ? protocol_.relax_time : protocol_.settle_time;
+    return std::lround(time / time_step_);
 }
 
-double ProtocolRunner::plate_velocity() const {
-    if (state_.stage != Stage::move) return 0;
-    return (level_z(state_.level + 1) - level_z(state_.level)) / (move_steps() * time_step_);
-}
-
-double ProtocolRunner::plate_z() const {
-    switch (state_.stage) {
-        case Stage::relax: return plate_.start;
-        case Stage::move: {
-            const double part = static_cast<double>(state_.stage_step) / move_steps();
-            return level_z(state_.level) + (level_z(state_.level + 1) - level_z(state_.level)) * part;
-        }
-        case Stage::settle: return level_z(state_.level + 1);
-        case Stage::finished: break;
+/// The next stretch as far as the protocol is concerned. The plate ends a move at the scan position: its last
+/// speed is a little lower.
+Stretch ProtocolRunner::planned() const {
+    constexpr double most_steps = 1e6;
+    if (state_.stage != Stage::move) {
+        const long left = std::max(1L, longest_wait() - state_.stage_step);
+        return {static_cast<int>(std::min<double>(left, most_steps)), state_.plate_z, 0, settle_drag_};
     }
-    return plate_.start;
+    const double left = distance_left();
+    const double step = quasi_static_.speed(state_.plate_z, state_.pressure) * time_step_;
+    const double steps = std::max(1.0, std::ceil(std::abs(left) / step - 1e-9));
+    return {static_cast<int>(std::min(steps, most_steps)), state_.plate_z, left / (steps * time_step_), 0};
 }
 
-long ProtocolRunner::steps_left() const {
-    if (state_.stage == Stage::move) return move_steps() - state_.stage_step;
-    const double most = state_.stage == Stage::relax ? protocol_.relax_time : protocol_.settle_time;
-    return std::max(1L, std::lround(most / time_step_) - state_.stage_step);
+void ProtocolRunner::take_pressure(const StretchResult& result) {
+    const double now =
+        quasi_static_.pressure(force_along_z(result, Wall::plate), force_along_z(result, Wall::floor));
+    state_.pressure += pressure_share * (now - state_.pressure);
 }
 
+/// At rest: net forces are small. The drag is so strong that velocities follow from the net forces alone.
 bool ProtocolRunner::settled(const StretchResult& result, bool plate_arrived) {
-    const bool still =
-        plate_arrived && result.kinetic_energy <= protocol_.settle_kinetic_over_elastic * std::abs(result.elastic_energy);
+    const double unbalanced =
+        quasi_static_.unbalanced_force(result.kinetic_energy, settle_drag_, state_.pressure);
+    const bool still = plate_arrived && unbalanced <= protocol_.settle_unbalanced_force;
     state_.settle_stretches = still ? state_.settle_stretches + 1 : 0;
     return state_.settle_stretches >= settled_stretches;
 }
@@ -67,46 +85,61 @@ void ProtocolRunner::begin(Stage stage) {
     state_.settle_stretches = 0;
 }
 
-std::optional<ProtocolRunner::ScanTag> ProtocolRunner::made(const StretchResult& result,
-                                                             bool plate_arrived) {
+std::optional<ProtocolRunner::ScanTag> ProtocolRunner::made(const StretchResult& result, bool plate_arrived) {
     if (finished()) return std::nullopt;
+    if (state_.stage == Stage::move) {
+        auto scan = moved(result.steps);
+        take_pressure(result);
+        return scan;
+    }
     state_.step += result.steps;
     state_.stage_step += result.steps;
-    if (state_.stage == Stage::move) {
-        if (state_.stage_step < move_steps()) return std::nullopt;
-        if (!protocol_.stop_at_scans) return arrive(false);
-        begin(Stage::settle);
-        return std::nullopt;
-    }
-    const double most = state_.stage == Stage::relax ? protocol_.relax_time : protocol_.settle_time;
+    take_pressure(result);
     const bool still = settled(result, plate_arrived);
-    if (!still && state_.stage_step < std::lround(most / time_step_)) return std::nullopt;
+    if (!still && state_.stage_step < longest_wait()) return std::nullopt;
     if (state_.stage == Stage::settle) return arrive(still);
     begin(Stage::move);
     if (!protocol_.scan_at_start) return std::nullopt;
-    return ScanTag{state_.frame++, 0, Phase::load, plate_.start, state_.step * time_step_, still};
+    return tag(0, still);
+}
+
+std::optional<ProtocolRunner::ScanTag> ProtocolRunner::moved(int steps) {
+    const double speed = planned().plate_velocity;
+    state_.step += steps;
+    state_.stage_step += steps;
+    state_.rate_error = quasi_static_.rate_error(std::abs(speed), state_.plate_z, state_.pressure);
+    state_.plate_z += speed * time_step_ * steps;
+    if (std::abs(distance_left()) > rounding * plate_.start) return std::nullopt;
+    state_.plate_z = level_z(state_.level + 1);
+    if (!protocol_.stop_at_scans) return arrive(false);
+    begin(Stage::settle);
+    return std::nullopt;
+}
+
+ProtocolRunner::ScanTag ProtocolRunner::tag(int cycle, bool settled) {
+    return {state_.frame++,    cycle,  state_.phase, state_.plate_z, state_.step * time_step_,
+            state_.rate_error, settled};
 }
 
 /// The plate is at a scan position: a scan is due, and the next move begins.
 std::optional<ProtocolRunner::ScanTag> ProtocolRunner::arrive(bool settled) {
-    const ScanTag tag{state_.frame++, state_.cycle, state_.phase, level_z(state_.level + 1),
-                      state_.step * time_step_, settled};
+    const ScanTag scan = tag(state_.cycle, settled);
     begin(Stage::move);
     if (++state_.level == protocol_.scans_per_stroke) {
         state_.level = 0;
         if (state_.phase == Phase::unload && ++state_.cycle == protocol_.cycles) stop();
         state_.phase = state_.phase == Phase::load ? Phase::unload : Phase::load;
     }
-    return tag;
+    return scan;
 }
 
 double ProtocolRunner::progress() const {
     if (finished()) return 1;
     const double all = 2.0 * protocol_.cycles * protocol_.scans_per_stroke + protocol_.scan_at_start;
     double moved = 0;
-    if (state_.stage == Stage::move) moved = static_cast<double>(state_.stage_step) / move_steps();
+    if (state_.stage == Stage::move) moved = 1 - std::abs(distance_left() / (level_z(1) - level_z(0)));
     if (state_.stage == Stage::settle) moved = 1;
-    return (state_.frame + 0.9 * moved) / all;
+    return (state_.frame + 0.9 * std::max(0.0, moved)) / all;
 }
 
 }  // namespace mcdem

@@ -7,43 +7,47 @@
 
 #include "scene/scene.h"
 #include "sim/engine.h"
+#include "sim/quasi_static.h"
 
 namespace mcdem {
 
 /// The plate's program and how far it has come: plain values, so that a checkpoint can hold them.
 struct ProtocolState {
+    long step = 0;        ///< since the start
+    long stage_step = 0;  ///< since this stage began
     enum class Stage : int { relax, move, settle, finished };
-    long step = 0;               ///< since the start
-    long stage_step = 0;         ///< since this stage began
     Stage stage = Stage::relax;
     int cycle = 0;
     Phase phase = Phase::load;
-    int level = 0;               ///< scans of this stroke taken or under way
-    int frame = 0;               ///< scans taken
-    int settle_stretches = 0;    ///< in a row that met the settling criterion
+    int level = 0;             ///< scans of this stroke taken or under way
+    int frame = 0;             ///< scans taken
+    int settle_stretches = 0;  ///< in a row that met the settling criterion
+    double plate_z = 0;        ///< [m]
+    double pressure = 0;       ///< smoothed over some stretches [Pa]
+    double rate_error = 0;     ///< estimated, of the last move
 };
-static_assert(std::has_unique_object_representations_v<ProtocolState>, "equal states have equal bytes in checkpoints");
+static_assert(std::is_trivially_copyable_v<ProtocolState> && sizeof(ProtocolState) == 8 * (2 + 3 + 3),
+              "no padding: equal states have equal bytes in checkpoints");
 
 class ProtocolRunner {
 public:
     /// `time_step` [s]
-    ProtocolRunner(const Replica& replica, double time_step);
+    ProtocolRunner(const Replica& replica, double time_step, const PackingScale& scale);
 
     /// What to do next, at most `longest(plate_velocity)` steps; no steps when finished or stopped.
     template <class Longest>
     Stretch next(Longest longest) const {
         if (state_.stage == ProtocolState::Stage::finished) return {};
-        const double velocity = plate_velocity();
-        const long steps = std::min<long>(steps_left(), longest(velocity));
-        const double extra_drag = state_.stage == ProtocolState::Stage::move ? 0 : protocol_.settle_drag;
-        return {static_cast<int>(steps), plate_z(), velocity, extra_drag};
+        Stretch stretch = planned();
+        stretch.steps = std::min(stretch.steps, longest(stretch.plate_velocity));
+        return stretch;
     }
 
     /// A scan to be taken of the state that a stretch has led to.
     struct ScanTag {
         int frame, cycle;
         Phase phase;
-        double plate_z, time;
+        double plate_z, time, rate_error;
         bool settled;
     };
     /// Takes note of a stretch. Nothing counts as settled while the plate is still on its way.
@@ -51,8 +55,8 @@ public:
 
     void stop() { state_.stage = ProtocolState::Stage::finished; }
     bool finished() const { return state_.stage == ProtocolState::Stage::finished; }
-    double plate_z() const;   ///< now [m]
-    double progress() const;  ///< part of the protocol that is done, 0 to 1
+    double plate_z() const { return state_.plate_z; }  ///< now [m]
+    double progress() const;                           ///< part of the protocol that is done, 0 to 1
     const ProtocolState& state() const { return state_; }
     void set_state(const ProtocolState& state) { state_ = state; }
 
@@ -60,16 +64,21 @@ private:
     double stroke_begin() const;
     double stroke_end() const;
     double level_z(int level) const;
-    long move_steps() const;
-    double plate_velocity() const;
-    long steps_left() const;
+    double distance_left() const;
+    long longest_wait() const;
+    Stretch planned() const;
+    void take_pressure(const StretchResult& result);
     bool settled(const StretchResult& result, bool plate_arrived);
+    std::optional<ScanTag> moved(int steps);
     std::optional<ScanTag> arrive(bool settled);
+    ScanTag tag(int cycle, bool settled);
     void begin(ProtocolState::Stage stage);
 
     Plate plate_;
     Protocol protocol_;
     double time_step_;
+    double settle_drag_;  ///< [1/s]
+    QuasiStatic quasi_static_;
     ProtocolState state_;
 };
 

@@ -62,11 +62,16 @@ Simulation::Simulation(Device& device, const Scene& scene, std::vector<Packing> 
           for (const auto& packing : packings) all.push_back(packing.diameter);
           return all;
       }()),
+      scale_([&] {
+          std::vector<PackingScale> all;
+          for (std::size_t r = 0; r < packings.size(); ++r) all.push_back(scale_of(scene.replicas[r], packings[r]));
+          return all;
+      }()),
       engine_(device, kernel_build(device, scene.precision, scene.slots), scene.replicas,
               true_packings(scene.replicas, std::move(packings))) {
     for (int r = 0; r < engine_.replicas(); ++r) {
         expect_countable_steps(scene_.replicas[r], engine_.time_step(r));
-        runners_.emplace_back(scene_.replicas[r], engine_.time_step(r));
+        runners_.emplace_back(scene_.replicas[r], engine_.time_step(r), scale_[static_cast<std::size_t>(r)]);
         plates_.emplace_back(scene_.replicas[r]);
     }
 }
@@ -105,6 +110,7 @@ Scan Simulation::scan(int replica, const ProtocolRunner::ScanTag& tag, const Str
     scan.time = tag.time;
     scan.plate_z = tag.plate_z;
     scan.settled = tag.settled;
+    scan.rate_error = tag.rate_error;
     scan.wall_force = result.wall_force;
     scan.kinetic_energy = result.kinetic_energy;
     scan.elastic_energy = result.elastic_energy;

@@ -36,6 +36,7 @@ private:
 
     Scene scene_;
     std::vector<std::vector<double>> diameter_;  ///< as stated [m]
+    std::vector<PackingScale> scale_;
     Engine engine_;
     std::vector<ProtocolRunner> runners_;
     std::vector<CompliantPlate> plates_;

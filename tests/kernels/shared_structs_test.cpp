@@ -22,7 +22,7 @@ kernel void write_offsets(global int* offsets) {
 #define MEMBERS_OF_REPLICA(MEMBER)                                                                           \
     MEMBER(time_step)                                                                                        \
     MEMBER(density)                                                                                          \
-    MEMBER(weight_density) MEMBER(drag) MEMBER(modulus_grain) MEMBER(modulus_wall) MEMBER(shear_grain)       \
+    MEMBER(weight_density) MEMBER(drag) MEMBER(spin_drag) MEMBER(modulus_grain) MEMBER(modulus_wall) MEMBER(shear_grain)       \
         MEMBER(shear_wall) MEMBER(damping_grain) MEMBER(damping_wall) MEMBER(friction_grain)                 \
             MEMBER(friction_wall) MEMBER(sliding_velocity) MEMBER(half_space_scale)                          \
                 MEMBER(half_space_normal) MEMBER(half_space_shear) MEMBER(sphere_scale) MEMBER(sphere_point) \

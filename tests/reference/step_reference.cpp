@@ -52,10 +52,11 @@ double StepReference::mass(int grain) const {
     return scene_.grains.density * 4 / 3 * pi * std::pow(radius_[grain], 3);
 }
 
-void StepReference::begin(double plate_z, double plate_velocity, double extra_drag) {
+void StepReference::begin(double plate_z, double plate_velocity, double settle_drag) {
     plate_z_ = plate_z;
     plate_velocity_ = plate_velocity;
-    drag_ = scene_.grains.drag + extra_drag;
+    drag_ = scene_.grains.drag + settle_drag;
+    spin_drag_ = settle_drag;
 }
 
 StepReference::Body StepReference::body(int grain) const {
@@ -310,7 +311,7 @@ void StepReference::step() {
             torque += (c.arm * c.direction).cross(c.tangential) + c.couple;
         }
         velocity[i] += force / m * dt;
-        angular_velocity[i] += torque / inertia * dt;
+        angular_velocity[i] += (torque / inertia - spin_drag_ * angular_velocity[i]) * dt;
     }
     for (std::size_t i = 0; i < position.size(); ++i) position[i] += velocity[i] * dt;
     plate_z_ += plate_velocity_ * dt;

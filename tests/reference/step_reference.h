@@ -56,7 +56,7 @@ public:
     double mass(int grain) const;
 
     /// For the steps that follow: where the plate is now, how fast it moves, drag on top of the scene's.
-    void begin(double plate_z, double plate_velocity = 0, double extra_drag = 0);
+    void begin(double plate_z, double plate_velocity = 0, double settle_drag = 0);
     /// Every pair within reach; what was remembered stays with a neighbour that is still there.
     void list_neighbours();
     void step();
@@ -99,7 +99,7 @@ private:
     mcdem::SurfaceLaw law_;
     std::vector<double> radius_, youngs_modulus_;
     double time_step_ = 0, reach_ = 0, probe_gap_ = 0;
-    double plate_z_ = 0, plate_velocity_ = 0, drag_ = 0;
+    double plate_z_ = 0, plate_velocity_ = 0, drag_ = 0, spin_drag_ = 0;
 };
 
 }  // namespace reference

@@ -1,0 +1,159 @@
+#include "ensemble/converge_scene.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+
+#include "core/errors.h"
+#include "ensemble/observe_trials.h"
+#include "scene/make_packing.h"
+
+namespace mcdem {
+namespace {
+
+constexpr double jitter_of_diameter = 0.005;
+
+/// One step of a refinement.
+struct Step {
+    double remaining;  ///< part of the error that it leaves
+    std::function<void(Scene& scene, Replica& replica)> refine;
+};
+
+struct Plan {
+    std::string cause, remedy;
+    std::vector<Step> steps;
+};
+
+Step slower(double factor) {
+    return {factor, [factor](Scene&, Replica& replica) {
+                replica.plate.speed *= factor;
+                replica.protocol.rate_tolerance *= factor;
+            }};
+}
+
+std::string speed_remedy(const Replica& replica) {
+    if (replica.protocol.rate_tolerance > 0)
+        return fmt::format("protocol.rate_tolerance = {:.2g} / {{0:.2g}}", replica.protocol.rate_tolerance);
+    return fmt::format(
+        "plate.speed = {:.2g} / {{0:.2g}}, or protocol.rate_tolerance, which is slow only where it must be",
+        replica.plate.speed);
+}
+
+/// Forces feel inertia through the square root of the density, and Verlet steps through the square of the
+/// time step; damping makes that of first order, which is assumed.
+std::vector<Plan> plans_of(const Scene& scene, const Replica& replica) {
+    std::vector<Plan> plans;
+    plans.push_back({"plate speed", speed_remedy(replica), {slower(0.5), slower(0.25), slower(0.125)}});
+    plans.push_back({"inertia",
+                     fmt::format("grains.density = {:.3g} / {{1:.2g}}", replica.grains.density),
+                     {{0.5, [](Scene&, Replica& r) { r.grains.density /= 4; }}}});
+    plans.push_back({"time step",
+                     fmt::format("numerics.time_step = {:.2g} / {{0:.2g}}", replica.numerics.time_step),
+                     {{0.5, [](Scene&, Replica& r) { r.numerics.time_step /= 2; }}}});
+    if (replica.protocol.stop_at_scans)
+        plans.push_back({"settling",
+                         "protocol.stop_at_scans = false, with a slow plate",
+                         {{0,
+                           [](Scene&, Replica& r) {
+                               r.protocol.settle_unbalanced_force /= 10;
+                               r.protocol.settle_time *= 4;
+                           }}}}),
+            plans.push_back({"stops at scans",
+                             "protocol.stop_at_scans = false, with a slow plate",
+                             {{0, [](Scene&, Replica& r) { r.protocol.stop_at_scans = false; }}}});
+    if (scene.precision == Precision::single_precision)
+        plans.push_back({"precision",
+                         "numerics.precision = double",
+                         {{0, [](Scene& s, Replica&) { s.precision = Precision::double_precision; }}}});
+    plans.push_back({"list margin", "", {{0, [](Scene&, Replica& r) { r.numerics.skin *= 1.25; }}}});
+    return plans;
+}
+
+class Converging {
+public:
+    Converging(Device& device, const Scene& scene, const ConvergeOptions& options)
+        : device_(device), scene_(scene), options_(options), store_(options.folder / "simulations") {
+        const Replica& replica = scene.replicas.front();
+        packing_ = make_packing(replica);
+        for (const double diameter : packing_.diameter)
+            mean_diameter_ += diameter / static_cast<double>(packing_.size());
+        grid_ = grid_of_stroke(replica);
+    }
+
+    Convergence all() {
+        const auto start = std::chrono::steady_clock::now();
+        const Eigen::MatrixXd base = observe("the scene as it stands", scene_, scene_.replicas.front());
+        expect_enough(base);
+        std::vector<Refinement> refinements;
+        for (const Plan& plan : plans_of(scene_, scene_.replicas.front())) {
+            Refinement refinement{plan.cause, plan.remedy, {}, {}};
+            for (const Step& step : plan.steps) {
+                Scene scene = scene_;
+                Replica replica = scene_.replicas.front();
+                step.refine(scene, replica);
+                refinement.remaining.push_back(step.remaining);
+                refinement.observed.push_back(observe(plan.cause, scene, replica));
+            }
+            refinements.push_back(std::move(refinement));
+        }
+        Convergence result = convergence_of(grid_, base, refinements, options_.limits);
+        result.scene = scene_.name;
+        result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        return result;
+    }
+
+private:
+    /// Where diagnosis looks, for an experiment with this scene's stroke.
+    static Grid grid_of_stroke(const Replica& replica) {
+        Recording levels;
+        levels.plate_start = replica.plate.start;
+        const int scans = replica.protocol.scans_per_stroke;
+        for (int k = 1; k <= scans; ++k) {
+            Scan scan;
+            scan.plate_z = replica.plate.start + (replica.plate.end - replica.plate.start) * k / scans;
+            levels.scans.push_back(scan);
+        }
+        return grid_of(levels);
+    }
+
+    Eigen::MatrixXd observe(const std::string& cause, const Scene& scene, const Replica& replica) {
+        Model model{replica, {}, mean_diameter_};
+        model.instrument.stated.force_threshold = replica.protocol.force_threshold;
+        const double jitter = options_.jitter > 0 ? options_.jitter : jitter_of_diameter * mean_diameter_;
+        std::vector<Trial> trials;
+        for (int r = 0; r < options_.replicas; ++r)
+            trials.push_back({model, packing_, jitter, 0, options_.seed + static_cast<std::uint64_t>(r)});
+        TrialOptions trial_options;
+        trial_options.on_progress = [&](double fraction) { options_.on_progress(cause, fraction); };
+        trial_options.stop_wanted = options_.stop_wanted;
+        const Question question{scene, grid_, reference_material(model), replica.protocol.discard,
+                                options_.program};
+        return observe_trials(device_, question, trials, store_, trial_options);
+    }
+
+    void expect_enough(const Eigen::MatrixXd& base) const {
+        const auto runs = (base.col(0).array() == base.col(0).array()).count();
+        if (runs >= 4) return;
+        throw InputError(
+            fmt::format("{}: {} of {} replicas reach the first compared displacement with a force on the "
+                        "plate, and 4 are needed: `mcdem run` with the same settings says why",
+                        scene_.name, runs, options_.replicas));
+    }
+
+    Device& device_;
+    const Scene& scene_;
+    const ConvergeOptions& options_;
+    ObservationStore store_;
+    Packing packing_;
+    double mean_diameter_ = 0;
+    Grid grid_;
+};
+
+}  // namespace
+
+Convergence converge_scene(Device& device, const Scene& scene, const ConvergeOptions& options) {
+    return Converging(device, scene, options).all();
+}
+
+}  // namespace mcdem

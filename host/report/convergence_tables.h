@@ -1,0 +1,26 @@
+// A convergence as a table, a verdict in words, JSON and a picture.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "diagnose/convergence.h"
+#include "report/plot_script.h"
+#include "report/text_table.h"
+
+namespace mcdem {
+
+/// Row: observable; column: cause. Each the largest error over phases and displacements with its standard
+/// error, in per cent for forces and in standard deviations of one packing's replicates for all else; a star
+/// where it is beyond its limit.
+TextTable table_of_convergence(const Convergence& convergence);
+
+/// One line a cause: "top force 1.3 +- 0.2 % high .. by the plate speed: set ..", or that all is within the
+/// limits.
+std::vector<std::string> words_of_convergence(const Convergence& convergence);
+
+std::string convergence_json(const Convergence& convergence);
+
+/// Errors of every observable by the causes, with two standard errors, and the limits.
+Figure convergence_figure(const Convergence& convergence);
+
+}  // namespace mcdem

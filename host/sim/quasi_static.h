@@ -1,0 +1,45 @@
+// How slow a compression has to be. Rate enters through the inertial number
+//     I = (v / H) d sqrt(rho / P),
+// the strain rate over the rate at which the pressure P moves a grain of diameter d by its own size (MiDi
+// 2004).
+#pragma once
+#include "core/packing.h"
+#include "scene/scene.h"
+
+namespace mcdem {
+
+/// What the rate of a compression is measured against.
+struct PackingScale {
+    double diameter = 0;  ///< mean [m]
+    double weight = 0;    ///< of all grains in the fluid, at least 0 [N]
+    std::size_t count = 1;
+};
+PackingScale scale_of(const Replica& replica, const Packing& packing);
+
+/// Relative error of forces over the inertial number: an upper estimate. Measured with `mcdem converge` on
+/// packings of 216 and 514 grains, the mean error of the top force is four to seven times I
+/// (scenes/README.md).
+inline constexpr double error_per_inertial_number = 10;
+
+class QuasiStatic {
+public:
+    QuasiStatic(const Replica& replica, const PackingScale& scale);
+
+    /// Between floor and plate, at least what the packing's weight and a hundred-thousandth of its modulus
+    /// make [Pa].
+    double pressure(double plate_force, double floor_force) const;
+    /// Estimated relative error of forces at this speed [m/s].
+    double rate_error(double speed, double plate_z, double pressure) const;
+    /// The plate's speed: plate.speed, or less where protocol.rate_tolerance asks for it [m/s].
+    double speed(double plate_z, double pressure) const;
+    /// Root mean square of the net forces on grains whose motion a drag [1/s] alone resists, over the
+    /// pressure on a grain's cross-section: their velocities are then net force / (mass drag).
+    double unbalanced_force(double kinetic_energy, double drag, double pressure) const;
+
+private:
+    double plate_speed_, tolerance_, area_, density_;
+    PackingScale scale_;
+    double least_pressure_;
+};
+
+}  // namespace mcdem
