@@ -69,14 +69,14 @@ void MovingPlate::round() {
 }
 
 /// Replicas whose lists grow stale make fewer steps than asked for, so each counts its own.
-void MovingPlate::make_steps(int steps, double plate_velocity, double extra_drag) {
+void MovingPlate::make_steps(int steps, double plate_velocity, double settle_drag) {
     const int replicas = engine_.replicas();
     std::vector<int> left(replicas, steps);
     while (std::ranges::any_of(left, [](int n) { return n > 0; })) {
         std::vector<Stretch> stretches(replicas);
         for (int r = 0; r < replicas; ++r)
             stretches[r] = {std::min(left[r], engine_.longest_stretch(r, plate_velocity)), plate_z_[r],
-                            plate_velocity, extra_drag};
+                            plate_velocity, settle_drag};
         const auto results = engine_.advance(stretches);
         for (int r = 0; r < replicas; ++r) {
             if (stretches[r].steps == 0) continue;

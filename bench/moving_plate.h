@@ -36,7 +36,7 @@ public:
 
 private:
     MovingPlate(Device& device, const StepCase& wanted, const DensePacking& dense);
-    void make_steps(int steps, double plate_velocity, double extra_drag);
+    void make_steps(int steps, double plate_velocity, double settle_drag);
 
     StepCase case_;
     std::vector<double> plate_z_;  ///< of each replica [m]

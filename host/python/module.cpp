@@ -32,4 +32,5 @@ PYBIND11_MODULE(_engine, module) {
     mcdem::bind_results(module);
     mcdem::bind_simulation(module);
     mcdem::bind_diagnosis(module);
+    mcdem::bind_convergence(module);
 }

@@ -67,7 +67,7 @@ std::string words_of(const Convergence& convergence, const CauseErrors& cause) {
                        remedy_of(convergence, cause, cell));
 }
 
-nlohmann::json json_of(const Convergence& convergence, const CauseErrors& cause, std::size_t cell) {
+nlohmann::ordered_json json_of(const Convergence& convergence, const CauseErrors& cause, std::size_t cell) {
     const CellError& error = cause.cells[cell];
     const auto c = static_cast<Eigen::Index>(cell);
     return {{"observable", name_of(convergence, cell)},
@@ -123,9 +123,9 @@ std::string convergence_json(const Convergence& convergence) {
     json["replicas"] = convergence.replicas;
     json["words"] = words_of_convergence(convergence);
     json["limits"] = {{"force", convergence.limits.force}, {"deviations", convergence.limits.deviations}};
-    json["causes"] = nlohmann::json::array();
+    json["causes"] = nlohmann::ordered_json::array();
     for (const CauseErrors& cause : convergence.causes) {
-        nlohmann::ordered_json entry{{"cause", cause.cause}, {"errors", nlohmann::json::array()}};
+        nlohmann::ordered_json entry{{"cause", cause.cause}, {"errors", nlohmann::ordered_json::array()}};
         for (std::size_t c = 0; c < convergence.cells.size(); ++c)
             if (std::isfinite(cause.cells[c].value))
                 entry["errors"].push_back(json_of(convergence, cause, c));

@@ -13,8 +13,9 @@ using Stage = ProtocolState::Stage;
 constexpr int settled_stretches = 2;
 /// Part of a stretch's pressure that is taken over, so that waves in the packing do not shake the plate.
 constexpr double pressure_share = 0.2;
-/// The integrator takes away drag * time step of a velocity in a step.
-constexpr double most_drag = 0.5;
+/// The integrator takes away drag * time step of a velocity in a step. Where the plate halts, motion ends at once; before
+/// the first stroke grains still have some way to fall.
+constexpr double most_drag = 0.5, most_relax_drag = 0.02;
 /// Closer than this to a level, over the plate's start, the plate has arrived.
 constexpr double rounding = 1e-12;
 
@@ -28,7 +29,6 @@ ProtocolRunner::ProtocolRunner(const Replica& replica, double time_step, const P
     : plate_(replica.plate),
       protocol_(replica.protocol),
       time_step_(time_step),
-      settle_drag_(std::min(replica.protocol.settle_drag, most_drag / time_step)),
       quasi_static_(replica, scale) {
     state_.plate_z = plate_.start;
     state_.pressure = quasi_static_.pressure(0, 0);
@@ -56,12 +56,16 @@ Stretch ProtocolRunner::planned() const {
     constexpr double most_steps = 1e6;
     if (state_.stage != Stage::move) {
         const long left = std::max(1L, longest_wait() - state_.stage_step);
-        return {static_cast<int>(std::min<double>(left, most_steps)), state_.plate_z, 0, settle_drag_};
+        return {static_cast<int>(std::min<double>(left, most_steps)), state_.plate_z, 0, drag()};
     }
     const double left = distance_left();
     const double step = quasi_static_.speed(state_.plate_z, state_.pressure) * time_step_;
     const double steps = std::max(1.0, std::ceil(std::abs(left) / step - 1e-9));
     return {static_cast<int>(std::min(steps, most_steps)), state_.plate_z, left / (steps * time_step_), 0};
+}
+
+double ProtocolRunner::drag() const {
+    return std::min(protocol_.settle_drag, (state_.stage == Stage::relax ? most_relax_drag : most_drag) / time_step_);
 }
 
 void ProtocolRunner::take_pressure(const StretchResult& result) {
@@ -73,7 +77,7 @@ void ProtocolRunner::take_pressure(const StretchResult& result) {
 /// At rest: net forces are small. The drag is so strong that velocities follow from the net forces alone.
 bool ProtocolRunner::settled(const StretchResult& result, bool plate_arrived) {
     const double unbalanced =
-        quasi_static_.unbalanced_force(result.kinetic_energy, settle_drag_, state_.pressure);
+        quasi_static_.unbalanced_force(result.kinetic_energy, drag(), state_.pressure);
     const bool still = plate_arrived && unbalanced <= protocol_.settle_unbalanced_force;
     state_.settle_stretches = still ? state_.settle_stretches + 1 : 0;
     return state_.settle_stretches >= settled_stretches;

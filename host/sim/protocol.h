@@ -67,6 +67,7 @@ private:
     double distance_left() const;
     long longest_wait() const;
     Stretch planned() const;
+    double drag() const;  ///< while the plate stands still [1/s]
     void take_pressure(const StretchResult& result);
     bool settled(const StretchResult& result, bool plate_arrived);
     std::optional<ScanTag> moved(int steps);
@@ -77,7 +78,6 @@ private:
     Plate plate_;
     Protocol protocol_;
     double time_step_;
-    double settle_drag_;  ///< [1/s]
     QuasiStatic quasi_static_;
     ProtocolState state_;
 };

@@ -80,7 +80,7 @@ TEST_F(KernelCache, FilesCutShortAreMadeAnew) {
 
 TEST_F(KernelCache, ACrashSaysWhatToDo) {
     Child child(folder_.path, run_words("out", {"--set", "protocol.relax_time=100", "--set",
-                                                "protocol.settle_kinetic_over_elastic=1e-300"}));
+                                                "protocol.settle_unbalanced_force=1e-300"}));
     while (child.is_running() && !fs::exists(path("out"))) usleep(1000);
     child.send(SIGABRT);
     const auto finished = child.wait();

@@ -85,7 +85,7 @@ std::vector<mcdem::Scan> scans(const Replica& replica, int count = 1) {
     scene.precision = finest();
     scene.replicas = {replica};
     scene.replicas[0].protocol.scans_per_stroke = count;
-    scene.replicas[0].protocol.settle_kinetic_over_elastic = 1e-12;
+    scene.replicas[0].protocol.settle_unbalanced_force = 1e-6;
     scene.replicas[0].box = {2.2 * radius, 2.2 * radius};
     const Packing packing{{{1.1 * radius, 1.1 * radius, replica.plate.start / 2}}, {2 * radius}};
     mcdem::Simulation simulation(device(), scene, {packing});
@@ -193,7 +193,7 @@ TEST(PlateCompliance, ArrivesWhenItGivesAsMuchAsItShould) {
 }
 
 TEST(PlateCompliance, NothingIsSettledBeforeThePlateArrives) {
-    mcdem::ProtocolRunner runner(single_grain(), 1e-4);
+    mcdem::ProtocolRunner runner(single_grain(), 1e-4, {2 * radius, 0, 1});
     mcdem::StretchResult still;
     still.steps = 60;
     still.elastic_energy = 1;

@@ -91,7 +91,7 @@ TEST(TrueDiameter, SqueezesMoreThanTheStatedOne) {
     replica.box = {6 * radius, 6 * radius};
     replica.plate = {2 * radius, 2 * (radius - overlap), 0.05};
     replica.protocol.scans_per_stroke = 1;
-    replica.protocol.settle_kinetic_over_elastic = 1e-10;
+    replica.protocol.settle_unbalanced_force = 1e-6;
     mcdem::Scene scene;
     scene.precision = finest();
     scene.replicas = {replica};

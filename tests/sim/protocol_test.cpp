@@ -11,6 +11,7 @@ namespace mcdem {
 namespace {
 
 constexpr double time_step = 1e-3;
+const PackingScale scale{0.02, 0, 100};
 
 Replica replica_of(int cycles, int scans, bool stop_at_scans) {
     Replica replica;
@@ -42,7 +43,7 @@ struct Course {
 
 private:
     void run(const Replica& replica, double kinetic, int longest) {
-        ProtocolRunner runner(replica, time_step);
+        ProtocolRunner runner(replica, time_step, scale);
         while (!runner.finished()) {
             stretches.push_back(runner.next([&](double) { return longest; }));
             ASSERT_GT(stretches.back().steps, 0);
@@ -108,10 +109,66 @@ TEST(Protocol, MovesAtTheSpeedAskedForWithoutAJump) {
         plate += stretch.plate_velocity * stretch.steps * time_step;
         moving += stretch.plate_velocity != 0 ? stretch.steps : 0;
         EXPECT_NEAR(std::abs(stretch.plate_velocity), stretch.plate_velocity != 0 ? 0.5 : 0, 1e-9);
-        EXPECT_EQ(stretch.extra_drag > 0, stretch.plate_velocity == 0) << "drag while the plate stands still";
+        EXPECT_EQ(stretch.settle_drag > 0, stretch.plate_velocity == 0) << "drag while the plate stands still";
     }
     EXPECT_EQ(moving, 2 * 4 * 50);
     EXPECT_NEAR(plate, 0.2, 1e-12);
+}
+
+/// A plate whose force grows as it comes down.
+struct Pressed {
+    explicit Pressed(double tolerance) {
+        replica.protocol.rate_tolerance = tolerance;
+        replica.plate.speed = 100;
+        ProtocolRunner runner(replica, time_step, scale);
+        while (runner.state().phase == Phase::load) {
+            const Stretch stretch = runner.next([](double) { return 5; });
+            StretchResult result = answer(stretch.steps, 0);
+            const double force = 2e4 * std::max(0.0, 0.19 - stretch.plate_z);
+            result.wall_force[static_cast<int>(Wall::plate)] = {0, 0, force};
+            result.wall_force[static_cast<int>(Wall::floor)] = {0, 0, -force};
+            const double last = runner.state().pressure;
+            if (const auto scan = runner.made(result)) scans.push_back(*scan);
+            pressure.push_back(last);
+            stretches.push_back(stretch);
+        }
+    }
+    Replica replica = replica_of(1, 4, false);
+    std::vector<Stretch> stretches;
+    std::vector<double> pressure;  ///< that each stretch was planned with
+    std::vector<ProtocolRunner::ScanTag> scans;
+};
+
+// Ten times the inertial number (v / H) d sqrt(rho / P) is the estimate that the tolerance bounds.
+TEST(Protocol, KeepsTheInertialNumberThatTheToleranceAllows) {
+    const Pressed pressed(0.02);
+    double slowest = 1e9, fastest = 0;
+    for (std::size_t k = 0; k < pressed.stretches.size(); ++k) {
+        const Stretch& stretch = pressed.stretches[k];
+        if (stretch.plate_velocity == 0) continue;
+        const double speed = std::abs(stretch.plate_velocity);
+        const double inertial_number = speed / stretch.plate_z * 0.02 *
+                                       std::sqrt(pressed.replica.grains.density / pressed.pressure[k]);
+        EXPECT_LE(10 * inertial_number, 0.02 * (1 + 1e-9)) << k;
+        EXPECT_GE(10 * inertial_number, 0.02 * 0.5) << k << ": no slower than it must be, but at a scan's approach";
+        slowest = std::min(slowest, speed);
+        fastest = std::max(fastest, speed);
+    }
+    EXPECT_GT(fastest, 3 * slowest) << "slow where the load is small";
+    ASSERT_EQ(pressed.scans.size(), 4u);
+    for (const auto& scan : pressed.scans) EXPECT_LE(scan.rate_error, 0.02 * (1 + 1e-9));
+}
+
+TEST(Protocol, WithoutAToleranceTheSpeedIsTheScenes) {
+    Replica replica = replica_of(1, 4, false);
+    ProtocolRunner runner(replica, time_step, scale);
+    while (runner.state().stage == ProtocolState::Stage::relax) runner.made(answer(10, 0));
+    EXPECT_NEAR(runner.next([](double) { return 5; }).plate_velocity, -0.5, 1e-9);
+    const double strain_rate = 0.5 / replica.plate.start, least_pressure = 1e-5 * replica.grains.youngs_modulus;
+    ASSERT_FALSE(runner.made(answer(5, 0)));
+    EXPECT_NEAR(runner.state().rate_error,
+                10 * strain_rate * 0.02 * std::sqrt(replica.grains.density / least_pressure), 1e-6 * 10)
+        << "the estimate is there all the same";
 }
 
 // A speed that does not divide the way is lowered a little, never raised.
@@ -125,7 +182,7 @@ TEST(Protocol, NeverMovesFasterThanAskedFor) {
 }
 
 TEST(Protocol, WaitsUntilThePackingIsAtRestOrTimeIsUp) {
-    const Course calm(replica_of(1, 2, true), 1e-5, 10), restless(replica_of(1, 2, true), 1e-3);
+    const Course calm(replica_of(1, 2, true), 1e-16, 10), restless(replica_of(1, 2, true), 1e-3);
     for (const auto& scan : calm.scans) EXPECT_TRUE(scan.settled);
     for (const auto& scan : restless.scans) EXPECT_FALSE(scan.settled);
     EXPECT_EQ(restless.scans.size(), 4u);
@@ -146,9 +203,9 @@ TEST(Protocol, ProgressGrowsFromZeroToOne) {
 
 TEST(Protocol, GoesOnFromItsStateAlone) {
     const Replica replica = replica_of(2, 3, true);
-    ProtocolRunner runner(replica, time_step);
+    ProtocolRunner runner(replica, time_step, scale);
     for (int round = 0; !runner.finished(); ++round) {
-        ProtocolRunner other(replica, time_step);
+        ProtocolRunner other(replica, time_step, scale);
         other.set_state(runner.state());
         const auto longest = [](double) { return 17; };
         const Stretch one = runner.next(longest), two = other.next(longest);

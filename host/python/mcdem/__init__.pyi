@@ -204,6 +204,18 @@ def run(
 def read(
     path: Path, *, what: Literal["everything", "observables", "positions", "contacts"] = "everything"
 ) -> Run: ...
+def converge(
+    scene: Scene,
+    folder: Path,
+    *,
+    replicas: int = 32,
+    force_limit: float = 0.005,
+    sd_limit: float = 0.5,
+    jitter: float = 0.0,
+    seed: int = 1,
+    device: str = "",
+    progress: Callable[[str, float], object] | None = None,
+) -> dict[str, Any]: ...
 def diagnose(
     scene: Scene,
     experiment: Path,

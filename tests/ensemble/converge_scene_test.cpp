@@ -1,0 +1,82 @@
+// Converging a small scene: a slow plate is found to be converged, a fast one is not, and the plate's speed
+// is named.
+#include "ensemble/converge_scene.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "core/errors.h"
+#include "ensemble/small_scene.h"
+
+namespace mcdem {
+namespace {
+
+using testing::HasSubstr;
+
+Scene pressed(const std::vector<std::string>& more) {
+    std::vector<std::string> settings{"packing.count=18",
+                                      "packing.packing_fraction=0.52",
+                                      "plate.start=0.06",
+                                      "plate.end=0.05",
+                                      "protocol.relax_time=0.2",
+                                      "protocol.scans_per_stroke=4",
+                                      "protocol.stop_at_scans=false"};
+    settings.insert(settings.end(), more.begin(), more.end());
+    return small_scene(settings);
+}
+
+struct ConvergeScene : testing::Test {
+    Convergence converge(const Scene& scene, const std::string& name = "out") {
+        ConvergeOptions options;
+        options.folder = folder.path / name;
+        options.replicas = 8;
+        options.on_progress = [&](const std::string& cause, double) { causes.insert(cause); };
+        Device device;
+        return converge_scene(device, scene, options);
+    }
+    const CauseErrors& of(const Convergence& convergence, const std::string& cause) {
+        return *std::ranges::find(convergence.causes, cause, &CauseErrors::cause);
+    }
+    TestFolder folder;
+    std::set<std::string> causes;
+};
+
+// At 2 m/s, an inertial number of 0.3, the plate throws the grains about.
+TEST_F(ConvergeScene, BlamesAFastPlate) {
+    const Convergence fast = converge(pressed({"plate.speed=2"}));
+    EXPECT_GE(fast.worst_beyond(of(fast, "plate speed")), 0);
+    EXPECT_GE(fast.worst_beyond(of(fast, "inertia")), 0);
+    EXPECT_LT(fast.worst_beyond(of(fast, "precision")), 0);
+    EXPECT_THAT(causes,
+                testing::IsSupersetOf({"plate speed", "inertia", "time step", "precision", "list margin"}));
+    EXPECT_THAT(of(fast, "plate speed").remedy, HasSubstr("plate.speed = 2"));
+}
+
+// A simulation that is kept is not made again, and gives the same.
+TEST_F(ConvergeScene, GoesOnWithWhatIsKept) {
+    const Scene scene = pressed({"plate.speed=0.5"});
+    const Convergence first = converge(scene);
+    const auto files = std::distance(std::filesystem::recursive_directory_iterator(folder.path), {});
+    const Convergence second = converge(scene);
+    EXPECT_EQ(std::distance(std::filesystem::recursive_directory_iterator(folder.path), {}), files);
+    for (std::size_t k = 0; k < first.causes.size(); ++k)
+        for (std::size_t c = 0; c < first.cells.size(); ++c)
+            if (!std::isnan(first.causes[k].cells[c].value)) {
+                EXPECT_EQ(first.causes[k].cells[c].value, second.causes[k].cells[c].value);
+            }
+}
+
+TEST_F(ConvergeScene, APlateThatNeverTouchesIsToldAtOnce) {
+    try {
+        converge(pressed({"plate.start=0.2", "plate.end=0.19"}));
+        FAIL();
+    } catch (const InputError& error) {
+        EXPECT_THAT(error.what(), HasSubstr("replicas reach the first compared displacement"));
+    }
+    EXPECT_THAT(causes, testing::ElementsAre("the scene as it stands"));
+}
+
+}  // namespace
+}  // namespace mcdem

@@ -1,0 +1,73 @@
+// What is said of a convergence: table, words and JSON agree with the numbers, and the picture is drawn.
+#include "report/convergence_tables.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+namespace mcdem {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+/// Two causes; the first makes the top force 2 % too high while loading at 10 mm, all else is well.
+Convergence example() {
+    const Grid grid{{0.01, 0.02}, 0.002, 0.02};
+    Convergence c;
+    c.scene = "example";
+    c.cells = cells_of(grid);
+    c.replicas = 32;
+    const auto count = static_cast<Eigen::Index>(c.cells.size());
+    c.mean = Eigen::VectorXd::Constant(count, 1);
+    c.deviation = Eigen::VectorXd::Constant(count, 0.1);
+    c.causes = {{"plate speed", "plate.speed = 0.1 / {0:.2g}",
+                 std::vector<CellError>(c.cells.size(), {0.001, 0.0005})},
+                {"list margin", "", std::vector<CellError>(c.cells.size(), {-0.0005, 0.0005})}};
+    c.causes[0].cells[0] = {0.02, 0.002};
+    return c;
+}
+
+TEST(ConvergenceTables, WordsNameCauseSizeDirectionPlaceAndRemedy) {
+    const auto words = words_of_convergence(example());
+    ASSERT_EQ(words.size(), 3u);
+    EXPECT_EQ(words[0], "Not converged.");
+    EXPECT_EQ(words[1],
+              "plate speed: top_force is 2 +- 0.2 % too high at 10.0 mm of loading; within the limit with "
+              "plate.speed = 0.1 / 4");
+    EXPECT_EQ(words[2], "list margin: nothing beyond the limits");
+}
+
+TEST(ConvergenceTables, ConvergedIsSaidWhereNothingIsBeyond) {
+    Convergence c = example();
+    c.causes[0].cells[0] = {0.004, 0.0001};
+    EXPECT_THAT(words_of_convergence(c)[0], HasSubstr("Converged"));
+    EXPECT_THAT(to_text(table_of_convergence(c), TableFormat::terminal), Not(HasSubstr(" % *")));
+}
+
+TEST(ConvergenceTables, TheTableMarksWhatIsBeyond) {
+    const std::string text = to_text(table_of_convergence(example()), TableFormat::terminal);
+    EXPECT_THAT(text, HasSubstr("+2.00 +- 0.20 % *"));
+    EXPECT_THAT(text, HasSubstr("+0.01 +- 0.01 sd"));
+}
+
+TEST(ConvergenceTables, JsonHoldsEveryError) {
+    const auto json = nlohmann::json::parse(convergence_json(example()));
+    EXPECT_EQ(json["causes"].size(), 2u);
+    EXPECT_EQ(json["causes"][0]["errors"].size(), example().cells.size());
+    EXPECT_EQ(json["causes"][0]["errors"][0]["error"], 0.02);
+    EXPECT_EQ(json["causes"][0]["errors"][0]["beyond"], true);
+    EXPECT_EQ(json["causes"][1]["errors"][0]["beyond"], false);
+}
+
+TEST(ConvergenceTables, ThePictureHasARowAnObservableAndASeriesACause) {
+    const Figure figure = convergence_figure(example());
+    for (const Observable& observable : observables())
+        EXPECT_THAT(figure.script, HasSubstr(std::string(observable.name)));
+    EXPECT_THAT(figure.script, HasSubstr("plate speed"));
+    EXPECT_THAT(figure.data, HasSubstr("4,3.2,4.8,"));  // 2 % +- 0.4 % over 0.5 %
+}
+
+}  // namespace
+}  // namespace mcdem
