@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/errors.h"
 #include "metrics/top_force.h"
@@ -19,6 +20,19 @@ const Setting& reference_of(const std::vector<Setting>& settings, const std::opt
     std::string known;
     for (const auto& setting : settings) known += (known.empty() ? "" : ", ") + setting.label;
     throw InputError(fmt::format("reference setting: must be one of {}; got {}", known, *label));
+}
+
+/// Largest estimate where the plate is pressed with a tenth of its top force; not-a-number where there is
+/// none.
+double largest_rate_error(const Replicas& replicas) {
+    double largest = not_available;
+    for (const Recording* recording : replicas) {
+        double top = 0;
+        for (const Scan& scan : recording->scans) top = std::max(top, scan.top_force());
+        for (const Scan& scan : recording->scans)
+            if (scan.top_force() >= 0.1 * top) largest = std::fmax(largest, scan.rate_error);
+    }
+    return largest;
 }
 
 }  // namespace
@@ -38,6 +52,7 @@ ModelTable model_table(const std::vector<Setting>& settings, const LevelOptions&
         ModelRow row{setting.label, model_of(setting.replicas), mean_over_replicas(above.value),
                      ratio_of_means(above, below), static_cast<int>(setting.replicas.size())};
         for (const auto* recording : setting.replicas) row.failed += recording->failure.has_value();
+        table.rate_error = std::fmax(table.rate_error, largest_rate_error(setting.replicas));
         table.rows.push_back(row);
     }
     return table;

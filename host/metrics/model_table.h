@@ -18,6 +18,7 @@ struct ModelTable {
     std::vector<ModelRow> rows;           ///< in the order of the settings
     std::string reference;                ///< label of the setting that ratios are taken over
     double displacement = not_available;  ///< full stroke of the reference setting [m]
+    double rate_error = not_available;    ///< largest that the engine estimated where a tenth of the top force is reached
 };
 
 /// The reference is the setting of that label; none: the first of model mc_dem, else the first.

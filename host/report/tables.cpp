@@ -41,6 +41,13 @@ std::string with_error(const Estimate& estimate, int decimals, double unit) {
     return value + " ± " + number(estimate.standard_error / unit, decimals);
 }
 
+std::string rate_note(double rate_error) {
+    constexpr double too_much = 0.02;
+    return fmt::format(
+        "plate's speed: error of forces at most {:.2g} %, estimated{}", 100 * rate_error,
+        rate_error > too_much ? "; set protocol.rate_tolerance for less, `mcdem converge` measures it" : "");
+}
+
 TextTable table_of_models(const ModelTable& models) {
     TextTable table;
     const auto full_stroke = fmt::format("top force at {} mm [N]", number(models.displacement * 1e3, 2));
@@ -54,6 +61,7 @@ TextTable table_of_models(const ModelTable& models) {
                               std::to_string(row.replicas)});
         if (some_failed) table.rows.back().push_back(std::to_string(row.failed));
     }
+    if (std::isfinite(models.rate_error)) table.notes.push_back(rate_note(models.rate_error));
     return table;
 }
 
