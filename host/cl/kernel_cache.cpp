@@ -77,12 +77,15 @@ bool is_whole_bitcode(const fs::path& path, std::uint64_t size) {
     return at == size;
 }
 
+/// What PoCL writes before it moves it to its name: another process may be at it.
+bool is_temporary(const fs::path& path) { return path.filename().string().starts_with("tempfile"); }
+
 void remove_what_is_cut_short(const fs::path& folder) {
     std::error_code error;
     for (auto entry = fs::recursive_directory_iterator(folder, error);
          !error && entry != fs::recursive_directory_iterator(); entry.increment(error)) {
         std::error_code gone;  // another process may be at work here
-        if (!entry->is_regular_file(gone)) continue;
+        if (!entry->is_regular_file(gone) || is_temporary(entry->path())) continue;
         const fs::path& path = entry->path();
         const std::uint64_t size = entry->file_size(gone);
         if (gone) continue;

@@ -28,7 +28,7 @@ struct StretchResult {
     double kinetic_energy = 0;    ///< [J]
     double elastic_energy = 0;    ///< [J]
     double deepest_overlap = 0;   ///< corrected overlap over the sum of radii
-    std::array<Vec3, wall_count> wall_force{};  ///< on the walls [N]
+    std::array<Vec3, wall_count> wall_force = no_wall_forces();  ///< on the walls [N]
     int status = 0;               ///< STATUS_* bits
     int failed_grain = -1;        ///< the user's grain number
 };
