@@ -23,7 +23,8 @@ const char* const first_steps =
     "  mcdem report out/small --out out/small.html        a page to look at, and to send\n"
     "  mcdem COMMAND --help                               more on a command, with examples\n"
     "\n"
-    "Exit codes: 0 done, 1 failed (also where the output cannot be written), 2 bad input, 130 interrupted (go on\n"
+    "Exit codes: 0 done, 1 failed (also where the output cannot be written), 2 bad input, 130 interrupted "
+    "(go on\n"
     "with --resume).\n"
     "Environment: MCDEM_DEVICE chooses the device where --device does not.";
 
@@ -54,7 +55,8 @@ void expect_places(CLI::App& app) {
             option->check([](const std::string& place) {
                 return place.empty() ? std::string("must name a place, got nothing") : std::string();
             });
-    for (CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) expect_places(*command);
+    for (CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+        expect_places(*command);
 }
 
 int command_line(int argc, const char* const* argv) {
@@ -63,9 +65,9 @@ int command_line(int argc, const char* const* argv) {
     app.require_subcommand(1);
     app.set_version_flag("--version", std::string("mcdem ") + version_text);
     int exit_code = exit_done;
-    for (const auto add :
-         {add_devices, add_validate, add_run, add_verify, add_table, add_compare, add_figures, add_report, add_calibrate, add_converge,
-          add_export, add_experiment, add_diagnose, add_challenge, add_completion, add_manual})
+    for (const auto add : {add_devices, add_validate, add_run, add_verify, add_table, add_compare,
+                           add_figures, add_report, add_calibrate, add_converge, add_export, add_experiment,
+                           add_diagnose, add_challenge, add_completion, add_manual})
         add(app, exit_code);
     expect_places(app);
     try {
