@@ -159,8 +159,8 @@ std::string library_words(const Diagnosis& diagnosis) {
 }
 
 std::string refinement_words(const Refinement& refinement) {
-    return fmt::format("{} = {:.3g}{} instead of {:.3g}", refinement.key, refinement.to,
-                       refinement.unit.empty() ? "" : " " + refinement.unit, refinement.from);
+    return one_line(fmt::format("{} = {:.3g}{} instead of {:.3g}", refinement.key, refinement.to,
+                                refinement.unit.empty() ? "" : " " + refinement.unit, refinement.from));
 }
 
 std::string next_words(const NextStep& step) {
