@@ -17,7 +17,7 @@ Estimate mean_of(const Eigen::ArrayXd& values) {
 
 /// An error e leaves e remaining_k after step k: the scene differs from step k by e (1 - remaining_k). Least
 /// squares replica by replica, so that the standard error knows how the steps hang together.
-CellError error_of(const Refinement& refinement, const Eigen::VectorXd& base, Eigen::Index cell) {
+CellError error_of(const RefinedRuns& refinement, const Eigen::VectorXd& base, Eigen::Index cell) {
     const std::size_t steps = refinement.remaining.size();
     Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(base.size());
     double weight = 0;
@@ -80,7 +80,7 @@ int Convergence::worst_beyond(const CauseErrors& cause) const {
 }
 
 Convergence convergence_of(const Grid& grid, const Eigen::MatrixXd& base,
-                           const std::vector<Refinement>& refinements, const ConvergenceLimits& limits) {
+                           const std::vector<RefinedRuns>& refinements, const ConvergenceLimits& limits) {
     Convergence result;
     result.cells = cells_of(grid);
     result.limits = limits;
@@ -92,7 +92,7 @@ Convergence convergence_of(const Grid& grid, const Eigen::MatrixXd& base,
         result.mean[c] = mean.value;
         result.deviation[c] = mean.standard_error * std::sqrt(static_cast<double>(mean.count));
     }
-    for (const Refinement& refinement : refinements) {
+    for (const RefinedRuns& refinement : refinements) {
         CauseErrors errors{refinement.cause, refinement.remedy, {}};
         for (Eigen::Index c = 0; c < base.cols(); ++c)
             errors.cells.push_back(error_of(refinement, base.col(c), c));

@@ -9,7 +9,7 @@
 namespace mcdem {
 
 /// Runs of the scene with one kind of numerics refined step by step.
-struct Refinement {
+struct RefinedRuns {
     std::string cause;   ///< "plate speed"
     std::string remedy;  ///< what brings the error down by a factor, with {} for it; empty: nothing to set
     std::vector<double>
@@ -60,6 +60,6 @@ struct Convergence {
 /// `base`: the scene's own observations. Rows are paired: a replica starts from the same packing in every
 /// step. Cells in which a replica has no value leave that replica out.
 Convergence convergence_of(const Grid& grid, const Eigen::MatrixXd& base,
-                           const std::vector<Refinement>& refinements, const ConvergenceLimits& limits);
+                           const std::vector<RefinedRuns>& refinements, const ConvergenceLimits& limits);
 
 }  // namespace mcdem

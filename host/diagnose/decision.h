@@ -38,7 +38,7 @@ struct Proposal {
     double misfit_p = 1;  ///< of what it leaves, by the signatures
     std::optional<double> confirmed_gain, confirmed_misfit_p;  ///< .. by real runs
     double reduction = 0;  ///< part of the gap that it takes away (Findings::held_out), by the signatures
-    std::optional<double> confirmed_reduction;  ///< .. by real runs
+    std::optional<double> confirmed_reduction = {};  ///< .. by real runs
     double best_gain() const { return confirmed_gain.value_or(gain); }
     double best_misfit() const { return confirmed_misfit_p.value_or(misfit_p); }
     /// Nothing where no likelihood is gained: less left in some data is then bought by more in others.
@@ -57,7 +57,7 @@ struct Findings {
     bool held_out =
         true;            ///< reductions are of the gap on data held out; where those show none, of the whole
     double placebo = 0;  ///< reduction by the best of random signatures
-    std::vector<std::size_t> numerics;  ///< effects that are the simulation\'s own numerics
+    std::vector<std::size_t> numerics = {};  ///< effects that are the simulation's own numerics
     bool is_nuisance(std::size_t candidate) const { return static_cast<int>(candidate) >= effects; }
     bool is_numerical(std::size_t candidate) const { return std::ranges::count(numerics, candidate) > 0; }
 };

@@ -38,6 +38,8 @@ double& density(Model& m) { return m.replica.grains.density; }
 double& time_step(Model& m) { return m.replica.numerics.time_step; }
 
 std::string_view no_slower_plate(const Model& m) {
+    if (m.replica.protocol.rate_tolerance > 0)
+        return "protocol.rate_tolerance bounds what the plate's speed does; `mcdem converge` measures it";
     return m.experiment_speed && *m.experiment_speed >= m.replica.plate.speed
                ? "the experiment's plate is stated to move as fast as the scene's"
                : "";

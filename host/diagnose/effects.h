@@ -16,7 +16,7 @@ struct Model {
     Replica replica;
     Instrument instrument;
     double mean_diameter = 0;                ///< of the experiment's grains [m]
-    std::optional<double> experiment_speed;  ///< of the experiment's plate [m/s]; nothing: slow
+    std::optional<double> experiment_speed = {};  ///< of the experiment's plate [m/s]; nothing: slow
 };
 
 /// One way in which reality may differ from the model, with an amplitude that is zero for the model as it is.

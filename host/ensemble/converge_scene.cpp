@@ -85,9 +85,9 @@ public:
         const auto start = std::chrono::steady_clock::now();
         const Eigen::MatrixXd base = observe("the scene as it stands", scene_, scene_.replicas.front());
         expect_enough(base);
-        std::vector<Refinement> refinements;
+        std::vector<RefinedRuns> refinements;
         for (const Plan& plan : plans_of(scene_, scene_.replicas.front())) {
-            Refinement refinement{plan.cause, plan.remedy, {}, {}};
+            RefinedRuns refinement{plan.cause, plan.remedy, {}, {}};
             for (const Step& step : plan.steps) {
                 Scene scene = scene_;
                 Replica replica = scene_.replicas.front();

@@ -27,7 +27,7 @@ struct Experiment {
     std::map<std::string, double> materials;    ///< scene keys that were measured: "grains.youngs_modulus"
     std::map<std::string, double> uncertainty;  ///< one sigma of some of them, by the same key
     Measurement measurement;
-    std::optional<double> plate_speed;  ///< [m/s]; nothing: slow
+    std::optional<double> plate_speed = {};  ///< [m/s]; nothing: slow
 };
 
 /// The scene keys that `materials` and `uncertainty` may hold.

@@ -23,8 +23,9 @@ public:
         path_ = pattern;
     }
     ~DrawingFolder() {
-        std::error_code ignored;
-        std::filesystem::remove_all(path_, ignored);
+        std::error_code error;
+        std::filesystem::remove_all(path_, error);
+        if (error) std::filesystem::remove_all(path_, error);  // a signal came in between
     }
     DrawingFolder(const DrawingFolder&) = delete;
     DrawingFolder& operator=(const DrawingFolder&) = delete;

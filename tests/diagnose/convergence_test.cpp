@@ -17,7 +17,7 @@ Eigen::Index cell_count_of(const Grid& grid) { return static_cast<Eigen::Index>(
 /// Replicas with a scatter of their own, and of each step as much as `chaos`.
 struct Made {
     Eigen::MatrixXd base;
-    Refinement refinement{"plate speed", "plate.speed = 0.1 / {0:.2g}", {}, {}};
+    RefinedRuns refinement{"plate speed", "plate.speed = 0.1 / {0:.2g}", {}, {}};
 
     /// What a step leaves of the error is `left(remaining)`.
     template <class Left>

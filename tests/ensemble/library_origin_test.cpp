@@ -46,9 +46,10 @@ TEST_F(LibraryOrigin, KeysOfTheSceneAreNamedWithBothValues) {
 
 TEST_F(LibraryOrigin, EveryKeyOfAReplicaIsInItButThoseOfThePacking) {
     for (const Key& key : keys())
-        if (key.scope == Scope::replica)
+        if (key.scope == Scope::replica) {
             EXPECT_EQ(origin().contains(std::string(key.name)), !key.name.starts_with("packing."))
                 << key.name;
+        }
 }
 
 TEST_F(LibraryOrigin, InstrumentPrecisionVersionAndKernelsMustBeTheSame) {
