@@ -43,7 +43,7 @@ std::vector<int> folds_of(const std::vector<int>& packing) {
 
 /// Part of the known cells that a signature must have. Fewer: its runs failed, and it would take the cells
 /// with it.
-constexpr double most_cells = 0.9;
+constexpr double enough_cells = 0.5;
 constexpr std::size_t fewest_replicates = 8;
 
 std::vector<Eigen::Index> rows_with_numbers(const Eigen::MatrixXd& rows) {
@@ -83,7 +83,7 @@ void leave_out_signatures(const Evidence& evidence, const std::vector<Signature>
     std::erase_if(wanted, [&](const Wanted& w) {
         const Signature& s = find(signatures, w.name);
         const auto has = (known && s.linear.array().isFinite() && s.curvature.array().isFinite()).count();
-        if (static_cast<double>(has) >= most_cells * static_cast<double>(known.count())) return false;
+        if (static_cast<double>(has) >= enough_cells * static_cast<double>(known.count())) return false;
         notes.push_back(w.name +
                         ": its runs failed (the packing runs away with it), so nothing is said of it");
         return true;

@@ -24,8 +24,9 @@ public:
     }
     ~DrawingFolder() {
         std::error_code error;
-        std::filesystem::remove_all(path_, error);
-        if (error) std::filesystem::remove_all(path_, error);  // a signal came in between
+        // A signal may come in between, and then not all is removed, with an error or without.
+        for (int tries = 0; tries < 3 && std::filesystem::exists(path_, error); ++tries)
+            std::filesystem::remove_all(path_, error);
     }
     DrawingFolder(const DrawingFolder&) = delete;
     DrawingFolder& operator=(const DrawingFolder&) = delete;
