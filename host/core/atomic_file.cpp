@@ -41,6 +41,15 @@ bool is_temporary(const fs::path& file) {
            random.find_first_not_of("0123456789abcdef") == random.npos;
 }
 
+/// Where pictures are drawn (report/draw_figure.cpp): `.drawing-XXXXXX`.
+bool is_drawing_folder(const fs::directory_entry& entry) {
+    constexpr std::string_view begins = ".drawing-";
+    constexpr std::size_t random = 6;
+    const std::string name = entry.path().filename().string();
+    return name.starts_with(begins) && name.size() == begins.size() + random && !entry.is_symlink() &&
+           entry.is_directory();
+}
+
 void force_to_disk(int descriptor, const fs::path& file) {
     // Some file systems cannot sync (EINVAL, EROFS on folders): nothing more can be done there.
     int result = 0;
@@ -133,8 +142,10 @@ void move_file(const fs::path& from, const fs::path& to) {
 }
 
 void remove_temporaries(const fs::path& folder) {
-    for (const auto& entry : fs::directory_iterator(folder))
+    for (const auto& entry : fs::directory_iterator(folder)) {
         if (is_temporary(entry.path())) fs::remove(entry.path());
+        if (is_drawing_folder(entry)) fs::remove_all(entry.path());
+    }
 }
 
 }  // namespace mcdem
