@@ -46,8 +46,13 @@ bool Convergence::is_relative(std::size_t cell) const {
     return name == "top_force" || name == "mean_force";
 }
 
+double Convergence::scale(std::size_t cell) const {
+    const double resolution = observables()[static_cast<std::size_t>(cells[cell].observable)].resolution;
+    return std::fmax(deviation[static_cast<Eigen::Index>(cell)], resolution / limits.deviations);
+}
+
 double Convergence::limit(std::size_t cell) const {
-    return is_relative(cell) ? limits.force : limits.deviations * deviation[static_cast<Eigen::Index>(cell)];
+    return is_relative(cell) ? limits.force : limits.deviations * scale(cell);
 }
 
 bool Convergence::is_beyond(const CauseErrors& cause, std::size_t cell) const {

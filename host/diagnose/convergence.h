@@ -45,6 +45,9 @@ struct Convergence {
     double rate_error = 0;  ///< largest that the engine estimated by itself in the scene's runs
     double seconds = 0;
 
+    /// Standard deviation of the cell over replicas, at least what makes its resolution count as the largest
+    /// error that is allowed: copies that do not rearrange hardly differ.
+    double scale(std::size_t cell) const;
     /// Largest error of the cell that is within the limits, in the observable's units.
     double limit(std::size_t cell) const;
     /// Errors of forces are relative: their observables are logarithms.

@@ -10,8 +10,7 @@ namespace {
 
 /// In per cent for forces, in standard deviations of one packing's replicates for all else.
 double shown(const Convergence& convergence, std::size_t cell, double value) {
-    return convergence.is_relative(cell) ? 100 * value
-                                         : value / convergence.deviation[static_cast<Eigen::Index>(cell)];
+    return convergence.is_relative(cell) ? 100 * value : value / convergence.scale(cell);
 }
 
 std::string unit(const Convergence& convergence, std::size_t cell) {
@@ -97,7 +96,7 @@ TextTable table_of_convergence(const Convergence& convergence) {
     }
     table.notes = {
         fmt::format("largest error over phases and displacements, {} replicas of one packing; sd: standard "
-                    "deviation of these",
+                    "deviation of these, or twice what the observable resolves",
                     convergence.replicas),
         fmt::format("*: beyond {:.2g} % (forces) or {:.2g} sd (all else), and by four standard errors",
                     100 * convergence.limits.force, convergence.limits.deviations)};

@@ -85,6 +85,20 @@ TEST(Convergence, ForcesHaveARelativeLimitAllElseOneInStandardDeviations) {
     }
 }
 
+// Copies that do not rearrange hardly differ: what an observable resolves is allowed all the same.
+TEST(Convergence, ADifferenceBelowTheResolutionIsWithinTheLimit) {
+    Made made({0.5}, 1e-4, 0, linear);
+    made.base.setConstant(1 + 1e-4);
+    made.refinement.observed[0].setConstant(1 + 0.5e-4);
+    const Convergence c = made.result();
+    for (std::size_t cell = 0; cell < c.cells.size(); ++cell) {
+        if (c.is_relative(cell)) continue;
+        EXPECT_EQ(c.limit(cell),
+                  observables()[static_cast<std::size_t>(c.cells[cell].observable)].resolution);
+        EXPECT_FALSE(c.is_beyond(c.causes[0], cell));
+    }
+}
+
 // A replica that failed in one step is left out of that cell, in every step alike.
 TEST(Convergence, AFailedReplicaCostsItselfOnly) {
     Made made({0.5, 0.25}, 0.03, 0.001, linear);
