@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -149,9 +150,8 @@ Figure convergence_figure(const Convergence& convergence) {
     script.title("Error by the numerics over its limit");
     script.set("xlabel 'largest error over phases and displacements / limit, with two standard errors'");
     script.set(fmt::format("yrange [{}:0.5]", 0.5 - rows - 0.5));
-    script.set("xrange [-4:4]");
+    script.set("xrange [-4:4]");  // what lies farther out stands at the edge
     script.set("lmargin 24");
-    script.set("key below");
     script.set(
         "object 1 rectangle from -1, graph 0 to 1, graph 1 back fillcolor rgb '#e8e8e8' fillstyle solid "
         "noborder");
@@ -174,8 +174,8 @@ Figure convergence_figure(const Convergence& convergence) {
             const double bar = 2 * cause.cells[c].standard_error / convergence.limit(c);
             const double y =
                 -row + 0.3 - 0.6 * static_cast<double>(k) / static_cast<double>(convergence.causes.size());
-            points.push_back({fmt::format("{:.6g}", value), fmt::format("{:.6g}", value - bar),
-                              fmt::format("{:.6g}", value + bar), fmt::format("{:.6g}", y),
+            const auto place = [](double x) { return fmt::format("{:.6g}", std::clamp(x, -3.9, 3.9)); };
+            points.push_back({place(value), place(value - bar), place(value + bar), fmt::format("{:.6g}", y),
                               std::string(observables()[static_cast<std::size_t>(q)].name)});
         }
         const std::string look = fmt::format("linecolor rgb '{}' pointtype {} pointsize 0.6",

@@ -66,7 +66,7 @@ TEST(ConvergenceTables, ThePictureHasARowAnObservableAndASeriesACause) {
     for (const Observable& observable : observables())
         EXPECT_THAT(figure.script, HasSubstr(std::string(observable.name)));
     EXPECT_THAT(figure.script, HasSubstr("plate speed"));
-    EXPECT_THAT(figure.data, HasSubstr("4,3.2,4.8,"));  // 2 % +- 0.4 % over 0.5 %
+    EXPECT_THAT(figure.data, HasSubstr("3.9,3.2,3.9,"));  // 2 % +- 0.4 % over 0.5 %, at the edge
 }
 
 }  // namespace
