@@ -42,7 +42,6 @@ struct Convergence {
     Eigen::VectorXd mean, deviation;  ///< of the scene's replicas, by cell
     std::vector<CauseErrors> causes;
     ConvergenceLimits limits;
-    double rate_error = 0;  ///< largest that the engine estimated by itself in the scene's runs
     double seconds = 0;
 
     /// Standard deviation of the cell over replicas, at least what makes its resolution count as the largest

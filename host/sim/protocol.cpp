@@ -15,7 +15,7 @@ constexpr int settled_stretches = 2;
 constexpr double pressure_share = 0.2;
 /// The integrator takes away drag * time step of a velocity in a step. Where the plate halts, motion ends at once; before
 /// the first stroke grains still have some way to fall.
-constexpr double most_drag = 0.5, most_relax_drag = 0.02;
+constexpr double max_drag = 0.5, max_relax_drag = 0.02;
 /// Closer than this to a level, over the plate's start, the plate has arrived.
 constexpr double rounding = 1e-12;
 
@@ -53,19 +53,19 @@ long ProtocolRunner::longest_wait() const {
 /// The next stretch as far as the protocol is concerned. The plate ends a move at the scan position: its last
 /// speed is a little lower.
 Stretch ProtocolRunner::planned() const {
-    constexpr double most_steps = 1e6;
+    constexpr double max_steps = 1e6;
     if (state_.stage != Stage::move) {
         const long left = std::max(1L, longest_wait() - state_.stage_step);
-        return {static_cast<int>(std::min<double>(left, most_steps)), state_.plate_z, 0, drag()};
+        return {static_cast<int>(std::min<double>(left, max_steps)), state_.plate_z, 0, drag()};
     }
     const double left = distance_left();
     const double step = quasi_static_.speed(state_.plate_z, state_.pressure) * time_step_;
     const double steps = std::max(1.0, std::ceil(std::abs(left) / step - 1e-9));
-    return {static_cast<int>(std::min(steps, most_steps)), state_.plate_z, left / (steps * time_step_), 0};
+    return {static_cast<int>(std::min(steps, max_steps)), state_.plate_z, left / (steps * time_step_), 0};
 }
 
 double ProtocolRunner::drag() const {
-    return std::min(protocol_.settle_drag, (state_.stage == Stage::relax ? most_relax_drag : most_drag) / time_step_);
+    return std::min(protocol_.settle_drag, (state_.stage == Stage::relax ? max_relax_drag : max_drag) / time_step_);
 }
 
 void ProtocolRunner::take_pressure(const StretchResult& result) {
