@@ -105,8 +105,6 @@ class Cluster:
             self._folder = pathlib.Path(name)
             self._start()
             yield
-            # Jobs whose Slurm is gone would wait for it for good.
-            wait_until(lambda: not self._ask("squeue", "--noheader"), "the last job to end")
 
     def _start(self):
         folder = self._folder
@@ -157,6 +155,10 @@ class Cluster:
                     kill(process)
         for node in nodes:
             self._ask("scontrol", "update", f"nodename={node}", "state=down", "reason=lost")
+
+    def wait_for_jobs(self):
+        """Until none runs or waits: one whose folder or Slurm is gone would stay for good."""
+        wait_until(lambda: not self._ask("squeue", "--noheader"), "the last job to end")
 
     def bring_back(self, *nodes):
         for node in nodes:

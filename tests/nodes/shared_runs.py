@@ -63,15 +63,14 @@ class Place:
 
     def __init__(self, mcdem):
         self.mcdem = str(pathlib.Path(mcdem).resolve())
-        self._temporary = tempfile.TemporaryDirectory(prefix="mcdem-nodes-")
-        self.path = pathlib.Path(self._temporary.name)
+        self.path = pathlib.Path(tempfile.mkdtemp(prefix="mcdem-nodes-"))
         (self.path / "sweep.toml").write_text(SWEEP)
 
     def __enter__(self):
         return self
 
     def __exit__(self, *_):
-        self._temporary.cleanup()
+        remove_until_gone(self.path)
 
     def start(self, words, environment=None):
         return subprocess.Popen(words, cwd=self.path, env={**os.environ, **(environment or {})}, text=True,
@@ -129,6 +128,15 @@ def wait_until(condition, what):
     raise AssertionError(f"waited in vain for {what}")
 
 
+def remove_until_gone(folder):
+    """Removes a folder into which others may still write."""
+    def is_gone():
+        shutil.rmtree(folder, ignore_errors=True)
+        return not folder.exists()
+
+    wait_until(is_gone, f"an end of {folder}")
+
+
 def files_in(folder, pattern):
     """What lies in a folder that others write to, and remove, at the same time."""
     try:
@@ -172,8 +180,7 @@ class Hold:
 
     def end(self):
         """They go on, and none is held any more."""
-        while self._folder.exists():  # one that is just to be held makes a file in it
-            shutil.rmtree(self._folder, ignore_errors=True)
+        remove_until_gone(self._folder)
 
 
 def devices_at_work(folder):
@@ -214,9 +221,10 @@ class PartsSeen:
         assert self.inodes and all(len(inodes) == 1 for inodes in self.inodes.values()), self.inodes
 
 
-def run_tests(tests):
-    """Runs each of them on a place of its own."""
+def run_tests(tests, settle=lambda: None):
+    """Runs each of them on a place of its own; `settle` returns when nothing of a test runs any more."""
     for test in tests:
         print(f"{test.__name__}: {test.__doc__}", flush=True)
         with Place(sys.argv[1]) as place:
             test(place)
+            settle()

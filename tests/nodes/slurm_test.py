@@ -119,7 +119,7 @@ def main():
     with cluster.running():
         shared_runs.run_tests([outlives_a_killed_worker, goes_on_after_a_cancelled_job, is_not_submitted_twice,
                                outlives_a_lost_node, outlives_the_loss_of_all_nodes, says_what_slurm_refuses,
-                               a_challenge_is_shared])
+                               a_challenge_is_shared], cluster.wait_for_jobs)
 
 
 main()
