@@ -21,6 +21,8 @@ set(share ${CMAKE_INSTALL_DATAROOTDIR})
 install(FILES ${described}/mcdem.bash DESTINATION ${share}/bash-completion/completions RENAME mcdem COMPONENT program)
 install(FILES ${described}/mcdem.zsh DESTINATION ${share}/zsh/vendor-completions RENAME _mcdem COMPONENT program)
 install(FILES ${described}/mcdem.fish DESTINATION ${share}/fish/vendor_completions.d COMPONENT program)
+install(DIRECTORY host/python/mcdem DESTINATION ${share}/mcdem/python COMPONENT program  # what commands run
+  FILES_MATCHING PATTERN "*.py" PATTERN __pycache__ EXCLUDE)
 install(DIRECTORY scenes DESTINATION ${share}/mcdem COMPONENT program)
 
 # The engine: every floor below the command line and the Python module.
@@ -52,7 +54,7 @@ if(MCDEM_PYTHON)
 + site.getsitepackages()[0].rsplit('/', 1)[1])" OUTPUT_VARIABLE site OUTPUT_STRIP_TRAILING_WHITESPACE)
   set(MCDEM_PYTHON_DIR ${site} CACHE STRING "Folder of the Python module, below the prefix")
   install(TARGETS mcdem_python LIBRARY DESTINATION ${MCDEM_PYTHON_DIR}/mcdem COMPONENT python)
-  install(FILES host/python/mcdem/__init__.py host/python/mcdem/__init__.pyi host/python/mcdem/py.typed
-    DESTINATION ${MCDEM_PYTHON_DIR}/mcdem COMPONENT python)
+  install(DIRECTORY host/python/mcdem DESTINATION ${MCDEM_PYTHON_DIR} COMPONENT python
+    PATTERN __pycache__ EXCLUDE)
 endif()
 include(cmake/debian.cmake)

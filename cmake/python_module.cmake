@@ -26,6 +26,8 @@ target_link_libraries(mcdem_python PRIVATE mcdem_version mcdem_ensemble mcdem_re
   pybind11::headers)
 set_target_properties(mcdem_python PROPERTIES OUTPUT_NAME _engine CXX_VISIBILITY_PRESET hidden
   LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/python/mcdem)
-foreach(file __init__.py __init__.pyi py.typed)
-  configure_file(host/python/mcdem/${file} ${CMAKE_BINARY_DIR}/python/mcdem/${file} COPYONLY)
+file(GLOB_RECURSE files CONFIGURE_DEPENDS RELATIVE ${CMAKE_SOURCE_DIR}/host/python
+  host/python/mcdem/*.py host/python/mcdem/*.pyi host/python/mcdem/py.typed)
+foreach(file ${files})
+  configure_file(host/python/${file} ${CMAKE_BINARY_DIR}/python/${file} COPYONLY)
 endforeach()

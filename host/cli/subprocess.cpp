@@ -5,9 +5,11 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -25,16 +27,32 @@ std::vector<char*> pointers(std::vector<std::string>& words) {
     return all;
 }
 
+/// This program's environment, with these settings in place of those of the same name.
+std::vector<std::string> environment_with(const std::vector<std::string>& settings) {
+    std::vector<std::string> all = settings;
+    for (char** own = environ; *own; ++own) {
+        const std::string_view setting = *own;
+        const auto name = setting.substr(0, setting.find('=') + 1);
+        if (std::ranges::none_of(settings, [&](const auto& other) { return other.starts_with(name); }))
+            all.emplace_back(setting);
+    }
+    return all;
+}
+
 /// `out`: what becomes its standard output, or -1.
-pid_t start(std::vector<std::string>& words, int out) {
+pid_t start(std::vector<std::string>& words, int out, const std::vector<std::string>& settings = {}) {
     const auto arguments = pointers(words);
+    auto environment = environment_with(settings);
+    const auto variables = pointers(environment);
     const pid_t parent = ::getpid();
     const pid_t process = ::fork();
     if (process < 0) throw RunError(words.front() + ": cannot be started: " + std::strerror(errno));
     if (process == 0) {  // only what may be called between fork and exec
         ::prctl(PR_SET_PDEATHSIG, SIGTERM);
         if (::getppid() != parent) ::_exit(not_found);
-        if (out < 0 || ::dup2(out, STDOUT_FILENO) >= 0) ::execvp(arguments[0], arguments.data());
+        if (out < 0 || ::dup2(out, STDOUT_FILENO) >= 0) {
+            ::execvpe(arguments[0], arguments.data(), variables.data());
+        }
         ::_exit(not_found);
     }
     return process;
@@ -49,7 +67,8 @@ ProgramEnd end_of(int status) {
 
 }  // namespace
 
-Subprocess::Subprocess(std::vector<std::string> words) : process_(start(words, -1)) {}
+Subprocess::Subprocess(std::vector<std::string> words, const std::vector<std::string>& environment)
+    : process_(start(words, -1, environment)) {}
 
 Subprocess::Subprocess(Subprocess&& other) noexcept
     : process_(std::exchange(other.process_, -1)), end_(std::move(other.end_)) {}

@@ -19,8 +19,9 @@ struct ProgramEnd {
 /// A program that runs beside this one; told to end (SIGTERM) when this one dies.
 class Subprocess {
 public:
-    /// Its output goes where this program's goes. Throws RunError where it cannot be started.
-    explicit Subprocess(std::vector<std::string> words);
+    /// Its output goes where this program's goes; `environment` is added to this program's: "NAME=value".
+    /// Exit code 127 where there is no such program. Throws RunError where it cannot be started.
+    explicit Subprocess(std::vector<std::string> words, const std::vector<std::string>& environment = {});
     ~Subprocess();
     Subprocess(Subprocess&& other) noexcept;
     Subprocess(const Subprocess&) = delete;

@@ -1,0 +1,85 @@
+"""Runs a module as a command of the program: python3 -m mcdem.program MODULE ARGUMENT... (host/cli/python_program.h).
+
+Messages begin with `mcdem: `. Exit codes: 0 done, 1 failed, 2 bad input, 130 interrupted.
+"""
+import os
+import runpy
+import signal
+import sys
+
+from .errors import InputError, RunError
+
+# Module -> Debian package, where python3-MODULE is not its name.
+PACKAGES = {"PIL": "python3-pil", "skimage": "python3-skimage", "mpi4py": "python3-mpi4py"}
+
+
+def say(text):
+    for line in str(text).splitlines():
+        print(f"mcdem: {line}", file=sys.stderr)
+
+
+def interrupt(number, frame):
+    """The first signal ends the command in good order. A Ctrl-C comes twice, from the terminal and from the program."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)
+    raise KeyboardInterrupt
+
+
+def exit_code_of(error):
+    """Says what went wrong."""
+    if isinstance(error, InputError):
+        for problem in error.problems:
+            say(problem)
+        return 2
+    if isinstance(error, KeyboardInterrupt):
+        return 130
+    if isinstance(error, ModuleNotFoundError) and error.name and not error.name.startswith("mcdem"):
+        name = error.name.split(".")[0]
+        say(f"the Python package {name} is not there for {sys.executable}: install {PACKAGES.get(name, f'python3-{name}')}, "
+            "or name a Python 3 that has it by MCDEM_PYTHON")
+    elif isinstance(error, RunError):
+        say(error)
+    elif isinstance(error, MemoryError):
+        say("needs more memory than there is")
+    elif isinstance(error, OSError) and error.strerror:
+        say(f"{error.filename}: {error.strerror}" if error.filename else error.strerror)
+    else:
+        raise error
+    return 1
+
+
+def run(module, arguments):
+    sys.argv = [module, *arguments]
+    try:
+        runpy.run_module(module, run_name="__main__")
+    except SystemExit as end:
+        return end.code if isinstance(end.code, int) else 0 if end.code is None else 1
+    except BaseException as error:
+        return exit_code_of(error)
+    return 0
+
+
+def flush(exit_code):
+    """The exit code, once all is printed."""
+    was_terminal = sys.stdout.isatty()
+    try:
+        sys.stdout.flush()
+        return exit_code
+    except OSError as error:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # or Python would try again and complain
+        if was_terminal:
+            return exit_code
+        say(f"standard output cannot be written: {error.strerror}")
+        return max(exit_code, 1)
+
+
+def main():
+    signal.signal(signal.SIGINT, interrupt)
+    signal.signal(signal.SIGTERM, interrupt)
+    sys.stdout.reconfigure(encoding="utf-8", errors="surrogateescape")
+    sys.stderr.reconfigure(encoding="utf-8", errors="surrogateescape")
+    return flush(run(sys.argv[1], sys.argv[2:]))
+
+
+if __name__ == "__main__":
+    sys.exit(main())
