@@ -7,6 +7,7 @@
 #include <cstdlib>
 
 #include "cl/kernel_cache.h"
+#include "cl/process_limits.h"
 
 namespace mcdem {
 namespace {
@@ -50,6 +51,7 @@ void expect_not_forked() {
 
 std::vector<Found> find_devices() {
     expect_not_forked();
+    expect_enough_open_files();
     prepare_kernel_cache();
     std::vector<Found> found;
     std::vector<cl::Platform> platforms;

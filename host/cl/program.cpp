@@ -1,7 +1,6 @@
 #include "cl/program.h"
 
 #include <fmt/format.h>
-#include <sys/resource.h>
 
 #include <cstdlib>
 #include <filesystem>
@@ -10,6 +9,7 @@
 #include <sstream>
 
 #include "cl/kernel_sources.h"
+#include "cl/process_limits.h"
 #include "core/errors.h"
 
 namespace mcdem {
@@ -43,17 +43,6 @@ void append_source(const std::string& name, std::set<std::string>& seen, std::st
         append_source(line.substr(directive.size(), line.rfind('"') - directive.size()), seen, text);
         text += fmt::format("#line {} \"{}\"\n", number + 1, name);
     }
-}
-
-/// Drivers write the kernels they compile; past a limit PoCL's compiler ends the program.
-void expect_room_for_kernels() {
-    constexpr rlim_t largest_file = 8 << 20;
-    rlimit limit{};
-    if (::getrlimit(RLIMIT_FSIZE, &limit) == 0 && limit.rlim_cur < largest_file)
-        throw RunError(fmt::format(
-            "the limit of the file size is {} bytes, too small for the files of the OpenCL driver: "
-            "raise it (`ulimit -f`) to {} or more",
-            limit.rlim_cur, largest_file));
 }
 
 }  // namespace

@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <fstream>
 #include <memory>
 
 #include "core/input_file.h"
@@ -16,12 +14,8 @@ namespace mcdem {
 namespace {
 
 std::string digest_of(const std::filesystem::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    std::vector<char> part(1 << 20);
     Sha256 digest;
-    while (in.read(part.data(), static_cast<std::streamsize>(part.size())) || in.gcount() > 0)
-        digest.add({part.data(), static_cast<std::size_t>(in.gcount())});
-    if (!in.is_open() || in.bad()) fail_reading(file.string() + ": cannot be read", errno);
+    read_blocks(file, [&](std::string_view block) { digest.add(block); });
     return digest.hex();
 }
 

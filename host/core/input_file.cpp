@@ -52,17 +52,29 @@ int open_input(const std::filesystem::path& file) {
     return descriptor;
 }
 
-std::string read_file(const std::filesystem::path& file) {
+void read_blocks(const std::filesystem::path& file, const std::function<void(std::string_view block)>& take) {
     const Descriptor in{open_input(file)};
-    std::string bytes;
     char block[65536];
     while (true) {
         const ssize_t some = ::read(in.number, block, sizeof block);
         if (some < 0 && errno == EINTR) continue;
         if (some < 0) fail_reading(file.string() + ": cannot be read", errno);
-        if (some == 0) return bytes;
-        bytes.append(block, static_cast<std::size_t>(some));
+        if (some == 0) return;
+        take({block, static_cast<std::size_t>(some)});
     }
+}
+
+std::string read_file(const std::filesystem::path& file) {
+    std::string bytes;
+    read_blocks(file, [&](std::string_view block) { bytes += block; });
+    return bytes;
+}
+
+std::string read_file(const std::filesystem::path& file, std::string_view if_missing) {
+    std::error_code unknown;
+    if (!std::filesystem::exists(file, unknown) && !unknown)
+        throw InputError(file.string() + ": " + std::string(if_missing));
+    return read_file(file);
 }
 
 void expect_input(const std::filesystem::path& file) { const Descriptor in{open_input(file)}; }

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 
 #include "core/errors.h"
+#include "core/input_file.h"
 #include "diagnose/json_numbers.h"
 
 namespace mcdem {
@@ -74,9 +74,7 @@ Findings findings_of(const json& j) {
 }
 
 json parsed(const std::filesystem::path& file) {
-    std::ifstream in(file);
-    if (!in) throw InputError(fmt::format("{}: is missing; `mcdem challenge run` writes it", file.string()));
-    return json::parse(in);
+    return json::parse(read_file(file, "is missing; `mcdem challenge run` writes it"));
 }
 
 }  // namespace

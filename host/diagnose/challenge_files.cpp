@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cctype>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
 
 #include "core/errors.h"
+#include "core/input_file.h"
 
 namespace mcdem {
 namespace {
@@ -52,12 +52,9 @@ std::string open_challenge_text(const OpenChallenge& challenge) {
 
 OpenChallenge read_open_challenge(const std::filesystem::path& folder) {
     const auto file = folder / "challenge.json";
-    std::ifstream in(file);
-    if (!in)
-        throw InputError(
-            fmt::format("{}: there is no challenge; `mcdem challenge make` makes one", file.string()));
+    const std::string text = read_file(file, "there is no challenge; `mcdem challenge make` makes one");
     try {
-        const auto json = nlohmann::json::parse(in);
+        const auto json = nlohmann::json::parse(text);
         if (json.at("format") != challenge_format)
             throw InputError(file.string() + ": made by another version; make it anew");
         OpenChallenge challenge{json.at("scene_sha256"), json.at("sealed_sha256"), {}};

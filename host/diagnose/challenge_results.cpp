@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "core/errors.h"
+#include "core/input_file.h"
 #include "diagnose/challenge_evidence.h"
 
 namespace mcdem {
@@ -27,12 +27,10 @@ void read_diagnosis(const json& diagnosis, CaseResult& result) {
 
 CaseResult read_case(const fs::path& folder, const OpenCase& open_case) {
     const fs::path file = folder / (open_case.folder + ".json");
-    std::ifstream in(file);
-    if (!in)
-        throw InputError(fmt::format("{}: is missing; `mcdem challenge run` must have ended", file.string()));
+    const std::string text = read_file(file, "is missing; `mcdem challenge run` must have ended");
     CaseResult result;
     try {
-        const json diagnosis = json::parse(in);
+        const json diagnosis = json::parse(text);
         if (diagnosis.contains("problem")) {
             result.problem = diagnosis.at("problem");
             return result;

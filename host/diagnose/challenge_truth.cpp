@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "core/errors.h"
+#include "core/input_file.h"
 #include "core/sha256.h"
 
 namespace mcdem {
@@ -83,10 +83,7 @@ Challenge parse_truth(const std::string& text, const std::string& file_name) {
 std::string seal_of(const std::string& text) { return Sha256().add(text).hex(); }
 
 Challenge open_truth(const std::filesystem::path& file, const std::string& seal) {
-    std::ifstream in(file, std::ios::binary);
-    if (!in)
-        throw InputError(fmt::format("{}: cannot be read; --truth says where the truth is", file.string()));
-    const std::string text{std::istreambuf_iterator<char>(in), {}};
+    const std::string text = read_file(file, "is missing; --truth says where the truth is");
     if (const std::string found = seal_of(text); found != seal)
         throw InputError(
             fmt::format("{}: is not the truth that was sealed: its SHA-256 is {}, challenge.json says {}",

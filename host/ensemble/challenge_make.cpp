@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 #include <iterator>
 #include <random>
 
 #include "core/atomic_file.h"
 #include "core/errors.h"
+#include "core/input_file.h"
 #include "core/make_folder.h"
 #include "diagnose/challenge_files.h"
 #include "diagnose/challenge_truth.h"
@@ -35,11 +35,6 @@ std::vector<std::string> effects_to_try(const ChallengeOptions& options, const M
     return names;
 }
 
-std::string text_of(const fs::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-}
-
 InputError of_another_challenge(const fs::path& file) {
     return InputError(
         fmt::format("{}: is of another challenge; choose another folder, or the same scene, seed and numbers",
@@ -62,7 +57,7 @@ public:
     Making(Device& device, const Scene& scene, const ChallengeOptions& options)
         : options_(options), realities_(device, scene, options.measurement) {
         std::optional<Challenge> sealed;
-        if (fs::exists(options.truth)) sealed = parse_truth(text_of(options.truth), options.truth.string());
+        if (fs::exists(options.truth)) sealed = parse_truth(read_file(options.truth), options.truth.string());
         challenge_ =
             draw_challenge(options.size, effects_to_try(options, realities_.stated()), realities_.stated(),
                            realities_.nuisances(), seal_of(scene.text), seed_of(sealed));
@@ -150,7 +145,7 @@ private:
         const std::string truth = truth_text(challenge_), seal = seal_of(truth);
         const fs::path open_file = options_.folder / "challenge.json";
         const std::string open = open_text(seal);
-        if (fs::exists(open_file) && text_of(open_file) != open) throw of_another_challenge(open_file);
+        if (fs::exists(open_file) && read_file(open_file) != open) throw of_another_challenge(open_file);
         if (!fs::exists(open_file)) expect_no_cases();
         if (!is_sealed_ && !create_file(options_.truth, truth)) throw of_another_challenge(options_.truth);
         if (!fs::exists(open_file)) replace_file(open_file, open);

@@ -181,7 +181,7 @@ void Dataset::append(hid_t memory_type, const void* data, hsize_t rows) {
     const auto* begin = static_cast<const std::byte*>(data);
     const std::size_t count = values_in(rows);
     std::vector<std::byte> values(begin, begin + count * H5Tget_size(memory_type));
-    convert(values, count, memory_type, stored);
+    if (!convert(values, count, memory_type, stored)) fail("has values of a type that cannot be converted");
     digest_->add(values, rows);
     write_rows(stored, values.data(), rows);
 }
@@ -274,10 +274,18 @@ void File::close_written(Handle handle, const std::string& object) {
 }
 
 bool File::exists(const std::string& object) const {
+    const auto has_link = [&](const std::string& link) {
+        return answered(H5Lexists(id_, link.c_str(), H5P_DEFAULT), link) > 0;
+    };
     // H5Lexists wants every group on the way to exist.
     for (std::size_t end = object.find('/', 1); end != std::string::npos; end = object.find('/', end + 1))
-        if (H5Lexists(id_, object.substr(0, end).c_str(), H5P_DEFAULT) <= 0) return false;
-    return H5Lexists(id_, object.c_str(), H5P_DEFAULT) > 0;
+        if (!has_link(object.substr(0, end))) return false;
+    return has_link(object);
+}
+
+int File::answered(int answer, const std::string& object) const {
+    if (answer < 0 && below_->error() != 0) fail(where(object), "cannot be looked for");
+    return answer;
 }
 
 std::vector<std::string> File::members(const std::string& group) const {
@@ -326,7 +334,8 @@ void File::expect_inside(const std::string& object) const {
         end = object.find('/', end + 1);
         const std::string link = object.substr(0, end);
         H5L_info_t info;
-        if (link.size() < 2 || H5Lget_info(id_, link.c_str(), &info, H5P_DEFAULT) < 0) return;  // not there
+        if (link.size() < 2) return;
+        if (answered(H5Lget_info(id_, link.c_str(), &info, H5P_DEFAULT), link) < 0) return;  // not there
         if (info.type != H5L_TYPE_HARD) throw InputError(where(link) + elsewhere);
     }
 }

@@ -77,7 +77,7 @@ void File::set_attribute(const std::string& object, const std::string& name,
 
 bool File::has_attribute(const std::string& object, const std::string& name) const {
     expect_inside(object);
-    return H5Aexists_by_name(id_, object.c_str(), name.c_str(), H5P_DEFAULT) > 0;
+    return answered(H5Aexists_by_name(id_, object.c_str(), name.c_str(), H5P_DEFAULT), object) > 0;
 }
 
 std::string File::text_attribute(const std::string& object, const std::string& name) const {

@@ -57,14 +57,14 @@ std::string TableDigest::hex(hid_t type, const std::vector<hsize_t>& extent) {
     return sum_.add(fmt::format("{} {}", text_of(type), fmt::join(extent, "x"))).hex();
 }
 
-void convert(std::vector<std::byte>& values, std::size_t count, hid_t from, hid_t to) {
-    if (count == 0 || H5Tequal(from, to) > 0) return;
+bool convert(std::vector<std::byte>& values, std::size_t count, hid_t from, hid_t to) {
+    if (count == 0 || H5Tequal(from, to) > 0) return true;
     const std::size_t from_size = H5Tget_size(from), to_size = H5Tget_size(to);
     values.resize(count * std::max(from_size, to_size));
     std::vector<std::byte> background(count * to_size);
-    if (H5Tconvert(from, to, count, values.data(), background.data(), H5P_DEFAULT) < 0)
-        throw RunError("HDF5: values cannot be converted");
+    if (H5Tconvert(from, to, count, values.data(), background.data(), H5P_DEFAULT) < 0) return false;
     values.resize(count * to_size);
+    return true;
 }
 
 /// Block by block, so that memory holds little twice. `data`: where the rows go to, or nowhere.
@@ -79,7 +79,8 @@ void Dataset::read_checked(hid_t memory_type, std::byte* data, hsize_t rows) con
         digest_->add(values, some);
         done += some;
         if (!data) continue;
-        convert(values, some * in_row, stored, memory_type);
+        if (!convert(values, some * in_row, stored, memory_type))
+            fail("has values of another type than expected");
         std::ranges::copy(values, data);
         data += values.size();
     }

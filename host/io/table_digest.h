@@ -29,6 +29,6 @@ private:
 };
 
 /// `values`, `count` of them, from one type to another.
-void convert(std::vector<std::byte>& values, std::size_t count, hid_t from, hid_t to);
+bool convert(std::vector<std::byte>& values, std::size_t count, hid_t from, hid_t to);
 
 }  // namespace mcdem::h5

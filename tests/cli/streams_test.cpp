@@ -74,6 +74,14 @@ TEST_F(StreamsTest, ALimitOfTheFileSizeIsAnErrorAndNoSignal) {
     EXPECT_TRUE(result("out") == result("whole"));
 }
 
+TEST_F(StreamsTest, TooFewOpenFilesAreAnErrorAndAFewMoreAreRaised) {
+    const auto end = shell("ulimit -c 0; ulimit -n 10; " + run_into + "out 2>&1");
+    EXPECT_EQ(end.signal, 0);
+    EXPECT_EQ(end.exit_code, 1) << end.out;
+    EXPECT_THAT(end.out, HasSubstr("raise it (`ulimit -n`) to 64"));
+    EXPECT_EQ(shell("ulimit -S -n 10; " + run_into + "out 2>&1").exit_code, 0);
+}
+
 /// The program on a terminal of its own, with SIGHUP ignored.
 class OnATerminal {
 public:
