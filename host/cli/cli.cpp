@@ -75,8 +75,6 @@ int command_line(int argc, const char* const* argv) {
         return exit_code;
     } catch (const CLI::ParseError& error) {
         return error.get_exit_code() == 0 ? app.exit(error) : report_usage(app, error);
-    } catch (const std::exception& error) {
-        return report_error(error);
     }
 }
 
@@ -87,7 +85,11 @@ int run_cli(int argc, const char* const* argv) {
     set_up_messages();
     hint_at_crashes();
     opencl_started = hint_at_crashes;
-    return exit_code_of_output(command_line(argc, argv));
+    try {
+        return exit_code_of_output(command_line(argc, argv));
+    } catch (const std::exception& error) {
+        return report_error(error);
+    }
 }
 
 }  // namespace mcdem

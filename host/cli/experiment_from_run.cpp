@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "cli/experiment.h"
 #include "cli/messages.h"
@@ -30,11 +31,6 @@ struct FromRunCommand {
 };
 
 const char* const experiment_toml = "experiment.toml";
-
-/// Another time this command was killed, or a disk was full: it writes experiment.toml last.
-bool is_cut_short(const fs::path& out) {
-    return fs::exists(out / sums_file) && !fs::exists(out / experiment_toml);
-}
 
 std::size_t chosen_replica(const Run& run, const FromRunCommand& command) {
     const auto& all = run.recordings;
@@ -116,30 +112,41 @@ void warn_of_start(const Recording& truth) {
             1e3 * truth.displacement(first));
 }
 
-/// The digests come first, so that the same command finishes what was cut short. A folder that has all of its
-/// files is not touched any more.
+/// Another time this command was here: it writes the digests first.
+bool is_begun(const fs::path& out) { return fs::exists(out / sums_file); }
+
+/// Files that an earlier try has written stay; others of their names are not replaced.
+void expect_these_or_none(const fs::path& out, const std::map<std::string, std::string>& files) {
+    for (const auto& [name, bytes] : files)
+        if (fs::exists(out / name) && read_file(out / name) != bytes)
+            throw InputError(fmt::format(
+                "--out: {} holds another experiment, or one that was changed: name another folder, or remove it "
+                "first",
+                out.string()));
+}
+
+/// The digests come first and experiment.toml last, so that the same command finishes what was cut short at whatever moment.
 void write_files(const FromRunCommand& command, const Experiment& experiment) {
     const fs::path out = command.out;
-    const auto files = experiment_files(experiment, command.gzip ? Packed::gzip : Packed::plain);
+    auto files = experiment_files(experiment, command.gzip ? Packed::gzip : Packed::plain);
     const std::string sums = sums_text(files);
-    if (!is_cut_short(out)) expect_free(out);
-    if (fs::exists(out / sums_file) && read_file(out / sums_file) != sums)
-        throw InputError(fmt::format(
-            "--out: {} holds another experiment, or a part of one: name another folder, or remove it "
-            "first",
-            command.out));
-    const FolderLock lock = open_output_folder(out);
-    replace_file(out / sums_file, sums);
-    for (const auto& [name, bytes] : files)
-        if (name != experiment_toml) replace_file(out / name, bytes);
-    replace_file(out / experiment_toml, files.at(experiment_toml));
+    files[sums_file] = sums;
+    expect_these_or_none(out, files);
+    std::optional<FolderLock> lock;
+    if (!fs::exists(out / experiment_toml)) lock.emplace(open_output_folder(out));
+    replace_file(out / sums_file, sums);  // even where it is there: this forces the folder to the disk
+    std::vector<std::string> names;
+    for (const auto& [name, bytes] : files) names.push_back(name);
+    std::ranges::partition(names, [](const std::string& name) { return name != experiment_toml; });
+    for (const std::string& name : names)
+        if (!fs::exists(out / name)) replace_file(out / name, files.at(name));
     for (const auto& [name, bytes] : files)
         if (read_file(out / name) != bytes)
             throw RunError((out / name).string() + ": what was written is not what is read back");
 }
 
 void make_experiment(const FromRunCommand& command) {
-    if (!is_cut_short(command.out)) expect_free(command.out);
+    if (!is_begun(command.out)) expect_free(command.out);
     const auto uncertainty = read_uncertainty(command.uncertainty);
     const Recording truth = read_replica(command);
     expect_small_errors(command.instrument.stated, truth);

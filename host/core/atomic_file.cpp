@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -39,6 +40,12 @@ bool is_temporary(const fs::path& file) {
         std::string_view(name).substr(name.size() - ending.size() - digits, digits);
     return name[name.size() - ending.size() - digits - 1] == '.' &&
            random.find_first_not_of("0123456789abcdef") == random.npos;
+}
+
+/// The name of the file that a temporary was to become.
+std::string temporary_place(const fs::path& temporary) {
+    const std::string name = temporary.filename().string();
+    return name.substr(0, name.size() - ending.size() - digits - 1);
 }
 
 /// Where pictures are drawn (report/draw_figure.cpp): `.drawing-XXXXXX`.
@@ -79,6 +86,7 @@ NewFile::NewFile(fs::path place) : place_(std::move(place)) {
         descriptor_ = ::open(temporary_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
     } while (descriptor_ < 0 && (errno == EEXIST || errno == EINTR));
     if (descriptor_ < 0) fail(place_, errno);
+    ::flock(descriptor_, LOCK_EX | LOCK_NB);  // see remove_temporaries_of
 }
 
 NewFile::~NewFile() {
@@ -139,6 +147,18 @@ void move_file(const fs::path& from, const fs::path& to) {
     fs::rename(from, to, error);
     if (error) fail(to, error.value());
     force_folder_of(to);
+}
+
+void remove_temporaries_of(const fs::path& file) {
+    std::error_code unknown;
+    const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
+    for (const auto& entry : fs::directory_iterator(folder, unknown)) {
+        if (!is_temporary(entry.path()) || temporary_place(entry.path()) != file.filename()) continue;
+        const int descriptor = ::open(entry.path().c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+        if (descriptor < 0) continue;
+        if (::flock(descriptor, LOCK_EX | LOCK_NB) == 0) ::unlink(entry.path().c_str());
+        ::close(descriptor);
+    }
 }
 
 void remove_temporaries(const fs::path& folder) {

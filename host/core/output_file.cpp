@@ -87,11 +87,13 @@ void expect_replaceable(const fs::path& file, FileKind kind) {
 
 void replace_own(const fs::path& file, FileKind kind, std::string_view text) {
     expect_replaceable(file, kind);
+    remove_temporaries_of(file);
     replace_file(file, text);
 }
 
 void replace_own(const fs::path& file, FileKind kind, const std::function<void(NewFile& out)>& write) {
     expect_replaceable(file, kind);
+    remove_temporaries_of(file);
     replace_file(file, write);
 }
 

@@ -140,7 +140,7 @@ TEST_F(ExperimentCommandTest, MeasuredDataAreNotOverwritten) {
     run("a");
     expect_done(from_run("e", {"--replica", "0"}));
     const auto before = bytes_of_file(path("e/grains.csv"));
-    expect_bad_input(from_run("e", {"--replica", "1"}), "--out: e holds another experiment or run");
+    expect_bad_input(from_run("e", {"--replica", "1"}), "--out: e holds another experiment");
     expect_bad_input(from_run("a", {"--replica", "1"}), "--out: a holds another experiment or run");
     expect_bad_input(from_run("small.toml", {"--replica", "1"}),
                      "--out: small.toml must be a folder, got a file");

@@ -96,6 +96,19 @@ def a_passing_error_is_not_called_damage(place):
     assert "damaged" not in done.stderr, done.stderr
 
 
+def a_refused_read_is_not_a_missing_object(place):
+    whole_run(place)
+    log = place.parent / "log"
+    expect(mcdem(place, "verify", "out", fault_log=log, fault_kinds="read"), 0)
+    reads = len(log.read_text().splitlines())
+    assert reads > 20, reads
+    for read in range(1, reads + 1):
+        done = mcdem(place, "verify", "out", fault="EIO", fault_at=read, fault_kinds="read")
+        assert "NOT GOOD" not in done.stdout, (read, done.stdout)
+        if done.returncode != 0:
+            expect(done, 1, "Input/output error")
+
+
 def an_agreement_that_is_not_whole_costs_no_part(place):
     result = whole_run(place)
     for length in [0, 40]:
@@ -149,6 +162,10 @@ def pipes_are_refused_at_once(place):
         (place / "lab" / name).unlink()
         os.mkfifo(place / "lab" / name)
         expect(mcdem(place, "experiment", "check", "lab"), 2, name)
+    (place / "challenge").mkdir()
+    os.mkfifo(place / "challenge/challenge.json")
+    expect(mcdem(place, "challenge", "run", "challenge", "--scene", "tiny.toml", "--out", "answers", "--library", "l.json"), 2,
+           "challenge.json: is a pipe or device")
 
 
 def numpy_text(kind):
@@ -221,9 +238,11 @@ def an_experiment_carries_sums(place):
         expect(mcdem(place, *words), 0)
         subprocess.run(["sha256sum", "--check", "--strict", "--quiet", "SHA256SUMS"], cwd=place / "lab", check=True)
         expect(mcdem(place, "verify", "lab"), 0, "good", "stdout")
-        expect(mcdem(place, *words), 2, "holds another experiment")
+        expect(mcdem(place, *words), 0)  # finishes what was cut short at the very end
         table = next((place / "lab").glob("plate.csv*"))
         table.write_bytes(table.read_bytes()[:-2])
+        expect(mcdem(place, *words), 2, "holds another experiment, or one that was changed")
+        expect(mcdem(place, *words, "--seed", "2"), 2, "holds another experiment")
         expect(mcdem(place, "verify", "lab"), 1, "NOT GOOD", "stdout")
         shutil.rmtree(place / "lab")
 
