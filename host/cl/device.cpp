@@ -30,8 +30,7 @@ DeviceInfo describe(const cl::Platform& platform, const cl::Device& device) {
     info.version = trimmed(device.getInfo<CL_DEVICE_VERSION>()) + ", driver " +
                    trimmed(device.getInfo<CL_DRIVER_VERSION>());
     info.gpu = device.getInfo<CL_DEVICE_TYPE>() & CL_DEVICE_TYPE_GPU;
-    info.double_precision =
-        device.getInfo<CL_DEVICE_EXTENSIONS>().find("cl_khr_fp64") != std::string::npos;
+    info.double_precision = device.getInfo<CL_DEVICE_EXTENSIONS>().find("cl_khr_fp64") != std::string::npos;
     info.compute_units = static_cast<int>(device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>());
     info.memory = device.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>();
     info.largest_allocation = device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>();

@@ -15,9 +15,10 @@ void expect_enough_open_files() {
     raised.rlim_cur = limit.rlim_max < plenty ? limit.rlim_max : plenty;
     if (::setrlimit(RLIMIT_NOFILE, &raised) == 0) limit = raised;
     if (limit.rlim_cur < enough)
-        throw RunError(fmt::format(
-            "the limit of open files is {}, too few for the OpenCL driver: raise it (`ulimit -n`) to {} or more",
-            limit.rlim_cur, enough));
+        throw RunError(
+            fmt::format("the limit of open files is {}, too few for the OpenCL driver: raise it (`ulimit "
+                        "-n`) to {} or more",
+                        limit.rlim_cur, enough));
 }
 
 void expect_room_for_kernels() {

@@ -50,11 +50,14 @@ int report_usage(const CLI::App& app, const CLI::ParseError& error) {
 
 /// An empty place would be taken for the folder that one is in, or fail only once the work is done.
 void expect_places(CLI::App& app) {
-    for (const char* name : {"--out", "--library", "--truth"})
-        if (auto* option = app.get_option_no_throw(name))
-            option->check([](const std::string& place) {
-                return place.empty() ? std::string("must name a place, got nothing") : std::string();
-            });
+    const auto is_place = [](const CLI::Option* option) {
+        const std::string name = option->get_single_name();
+        return name == "out" || name == "library" || name == "truth";
+    };
+    for (CLI::Option* option : app.get_options(is_place))
+        option->check([](const std::string& place) {
+            return place.empty() ? std::string("must name a place, got nothing") : std::string();
+        });
     for (CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
         expect_places(*command);
 }
@@ -81,11 +84,11 @@ int command_line(int argc, const char* const* argv) {
 }  // namespace
 
 int run_cli(int argc, const char* const* argv) {
-    set_up_streams();
-    set_up_messages();
-    hint_at_crashes();
-    opencl_started = hint_at_crashes;
     try {
+        set_up_streams();
+        set_up_messages();
+        hint_at_crashes();
+        opencl_started = hint_at_crashes;
         return exit_code_of_output(command_line(argc, argv));
     } catch (const std::exception& error) {
         return report_error(error);

@@ -119,13 +119,15 @@ bool is_begun(const fs::path& out) { return fs::exists(out / sums_file); }
 void expect_these_or_none(const fs::path& out, const std::map<std::string, std::string>& files) {
     for (const auto& [name, bytes] : files)
         if (fs::exists(out / name) && read_file(out / name) != bytes)
-            throw InputError(fmt::format(
-                "--out: {} holds another experiment, or one that was changed: name another folder, or remove it "
-                "first",
-                out.string()));
+            throw InputError(
+                fmt::format("--out: {} holds another experiment, or one that was changed: name another "
+                            "folder, or remove it "
+                            "first",
+                            out.string()));
 }
 
-/// The digests come first and experiment.toml last, so that the same command finishes what was cut short at whatever moment.
+/// The digests come first and experiment.toml last, so that the same command finishes what was cut short at
+/// whatever moment.
 void write_files(const FromRunCommand& command, const Experiment& experiment) {
     const fs::path out = command.out;
     auto files = experiment_files(experiment, command.gzip ? Packed::gzip : Packed::plain);

@@ -45,8 +45,8 @@ bool create_file(const std::filesystem::path& file, std::string_view text);
 /// Moves `from` to `to` (same folder) in one step and forces the folder to the disk.
 void move_file(const std::filesystem::path& from, const std::filesystem::path& to);
 
-/// Removes what programs that were killed have left of a new file on its way to this place. Files that another program
-/// is still writing are locked (flock) and stay.
+/// Removes what programs that were killed have left of a new file on its way to this place. Files that
+/// another program is still writing are locked (flock) and stay.
 void remove_temporaries_of(const std::filesystem::path& file);
 
 /// Removes what programs that were killed have left of new files in the folder. Only for its owner: other

@@ -3,22 +3,33 @@
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
+#include <exception>
 #include <thread>
 #include <vector>
 
 namespace mcdem {
 
-/// Calls work(i) for i below `count` on as many threads as there are cores. The work must not throw.
+/// Calls work(i) for i below `count` on as many threads as there are cores. Where one throws, no further ones
+/// begin, and the first exception is thrown again once all threads have ended.
 template <class Work>
 void in_parallel(std::size_t count, Work work) {
     std::atomic<std::size_t> next{0};
-    const auto take_turns = [&] {
-        for (std::size_t i = next++; i < count; i = next++) work(i);
+    std::atomic<bool> has_failed{false};
+    std::exception_ptr failure;
+    const auto take_turns = [&]() noexcept {
+        try {
+            for (std::size_t i = next++; i < count && !has_failed; i = next++) work(i);
+        } catch (...) {
+            if (!has_failed.exchange(true)) failure = std::current_exception();
+        }
     };
-    const std::size_t cores = std::max(1u, std::thread::hardware_concurrency());
-    std::vector<std::jthread> threads;
-    for (std::size_t t = 1; t < std::min(count, cores); ++t) threads.emplace_back(take_turns);
-    take_turns();
+    {
+        const std::size_t cores = std::max(1u, std::thread::hardware_concurrency());
+        std::vector<std::jthread> threads;
+        for (std::size_t t = 1; t < std::min(count, cores); ++t) threads.emplace_back(take_turns);
+        take_turns();
+    }
+    if (failure) std::rethrow_exception(failure);
 }
 
 }  // namespace mcdem

@@ -167,8 +167,8 @@ private:
     [[noreturn]] void fail(const std::string& where, const std::string& what) const {
         h5::fail(*below_, where, what);
     }
-    /// The library's answer to a question of what is there. Throws RunError where it is none because the system
-    /// refused to read.
+    /// The library's answer to a question of what is there. Throws RunError where it is none because the
+    /// system refused to read.
     int answered(int answer, const std::string& object) const;
     /// Refuses links to other places, inside the file or out of it.
     void expect_inside(const std::string& object) const;

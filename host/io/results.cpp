@@ -12,15 +12,13 @@
 namespace mcdem {
 namespace {
 
-/// Memory that a damaged file asks for and cannot be had is the file's fault.
 template <class Read>
 auto guarded(const std::filesystem::path& file, Read read) {
     try {
         return read();
     } catch (const std::bad_alloc&) {
-        throw InputError(file.string() +
-                         ": needs more memory than there is; read it scan by scan, or on a larger "
-                         "machine");
+        throw RunError(file.string() +
+                       ": needs more memory than there is; read it scan by scan, or on a larger machine");
     } catch (const std::length_error&) {
         throw InputError(file.string() + ": claims an impossible size; the file is damaged");
     }

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <stdexcept>
+
 namespace mcdem {
 namespace {
 
@@ -11,6 +14,16 @@ TEST(InParallel, DoesEveryPieceOnce) {
         in_parallel(count, [&](std::size_t i) { ++times[i]; });
         EXPECT_EQ(times, std::vector<int>(count, 1));
     }
+}
+
+TEST(InParallel, ThrowsWhatAPieceThrows) {
+    std::atomic<int> begun{0};
+    const auto work = [&](std::size_t i) {
+        ++begun;
+        if (i == 3) throw std::runtime_error("piece 3");
+    };
+    EXPECT_THROW(in_parallel(100000, work), std::runtime_error);
+    EXPECT_GE(begun, 4);
 }
 
 }  // namespace

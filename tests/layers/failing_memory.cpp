@@ -1,8 +1,9 @@
-// A layer over operator new (LD_PRELOAD) that lets allocations of the program itself fail; those of libraries, which end the
-// program or report errors of their own, go on. Calls from the program are counted from 1, since the beginning of main:
+// A layer over operator new (LD_PRELOAD) that lets allocations of the program itself fail; those of
+// libraries, which end the program or report errors of their own, go on. Calls from the program are counted
+// from 1, since the beginning of main:
 //   MCDEM_TEST_MEMORY_LOG    file that is told, at the end, how many there were
 //   MCDEM_TEST_MEMORY_AT     number of the first that fails with std::bad_alloc
-//   MCDEM_TEST_MEMORY_STAYS  how many fail one after the other; 1 where it is not set
+//   MCDEM_TEST_MEMORY_COUNT  how many fail one after the other; 1 where it is not set
 #include <dlfcn.h>
 #include <link.h>
 
@@ -50,7 +51,7 @@ std::atomic<bool> in_main = false;
 void* allocate(std::size_t size, std::size_t alignment, const void* caller, bool throws) {
     static const Range program = program_code();
     static const long at = number_in("MCDEM_TEST_MEMORY_AT", 0),
-                      last = at + number_in("MCDEM_TEST_MEMORY_STAYS", 1) - 1;
+                      last = at + number_in("MCDEM_TEST_MEMORY_COUNT", 1) - 1;
     void* memory = nullptr;
     bool fails = false;
     if (in_main && program.contains(caller)) {
@@ -59,8 +60,9 @@ void* allocate(std::size_t size, std::size_t alignment, const void* caller, bool
     }
     if (!fails) {
         size = size == 0 ? 1 : size;
-        memory = alignment == 0 ? std::malloc(size)
-                                : std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
+        memory = alignment == 0
+                     ? std::malloc(size)
+                     : std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
     }
     if (!memory && throws) throw std::bad_alloc();
     return memory;
@@ -86,21 +88,29 @@ int counted_main(int count, char** words, char** environment) {
 
 }  // namespace
 
-extern "C" int __libc_start_main(Main program, int count, char** words, void (*first)(), void (*last)(), void (*end)(),
-                                 void* stack_end) {
+extern "C" int __libc_start_main(Main program, int count, char** words, void (*first)(), void (*last)(),
+                                 void (*end)(), void* stack_end) {
     using Start = int (*)(Main, int, char**, void (*)(), void (*)(), void (*)(), void*);
     real_main = program;
-    return reinterpret_cast<Start>(dlsym(RTLD_NEXT, "__libc_start_main"))(counted_main, count, words, first, last, end,
-                                                                          stack_end);
+    return reinterpret_cast<Start>(dlsym(RTLD_NEXT, "__libc_start_main"))(counted_main, count, words, first,
+                                                                          last, end, stack_end);
 }
 
 #define CALLER __builtin_return_address(0)
 void* operator new(std::size_t size) { return allocate(size, 0, CALLER, true); }
 void* operator new[](std::size_t size) { return allocate(size, 0, CALLER, true); }
-void* operator new(std::size_t size, const std::nothrow_t&) noexcept { return allocate(size, 0, CALLER, false); }
-void* operator new[](std::size_t size, const std::nothrow_t&) noexcept { return allocate(size, 0, CALLER, false); }
-void* operator new(std::size_t size, std::align_val_t a) { return allocate(size, std::size_t(a), CALLER, true); }
-void* operator new[](std::size_t size, std::align_val_t a) { return allocate(size, std::size_t(a), CALLER, true); }
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
+    return allocate(size, 0, CALLER, false);
+}
+void* operator new[](std::size_t size, const std::nothrow_t&) noexcept {
+    return allocate(size, 0, CALLER, false);
+}
+void* operator new(std::size_t size, std::align_val_t a) {
+    return allocate(size, std::size_t(a), CALLER, true);
+}
+void* operator new[](std::size_t size, std::align_val_t a) {
+    return allocate(size, std::size_t(a), CALLER, true);
+}
 void operator delete(void* memory) noexcept { std::free(memory); }
 void operator delete[](void* memory) noexcept { std::free(memory); }
 void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
