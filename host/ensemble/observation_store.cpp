@@ -1,7 +1,7 @@
 #include "ensemble/observation_store.h"
 
+#include <algorithm>
 #include <cstdint>
-#include <cstring>
 
 #include "core/atomic_file.h"
 #include "core/errors.h"
@@ -35,7 +35,7 @@ std::optional<Eigen::VectorXd> ObservationStore::find(const std::string& name) c
     if (bytes.size() < digest_length || (bytes.size() - digest_length) % sizeof(double) != 0)
         return std::nullopt;
     Eigen::VectorXd values(static_cast<Eigen::Index>((bytes.size() - digest_length) / sizeof(double)));
-    std::memcpy(values.data(), bytes.data() + digest_length, bytes.size() - digest_length);
+    std::copy(bytes.begin() + digest_length, bytes.end(), reinterpret_cast<char*>(values.data()));
     if (bytes.substr(0, digest_length) != digest_of(values)) return std::nullopt;
     return values;
 }
