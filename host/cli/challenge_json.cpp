@@ -1,7 +1,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/challenge_tables.h"
-#include "report/challenge_figures.h"
+#include "report/challenge_values.h"
 
 namespace mcdem {
 namespace {

@@ -3,6 +3,7 @@
 
 #include "cli/challenge.h"
 #include "cli/challenge_tables.h"
+#include "cli/figures.h"
 #include "cli/messages.h"
 #include "cli/progress.h"
 #include "cli/standard_streams.h"
@@ -22,14 +23,6 @@ struct ScoreCommand {
 void print(const ChallengeScore& score) {
     print_out("{}\n{}\n", to_text(table_of_merits(score), TableFormat::terminal),
               to_text(table_of_arms(score), TableFormat::terminal));
-}
-
-void draw(const ChallengeScore& score, const std::filesystem::path& folder) {
-    try {
-        for (const auto& picture : draw_score(score, folder)) print_out("wrote {}\n", picture.string());
-    } catch (const RunError& error) {
-        spdlog::warn("no pictures: {}", error.what());
-    }
 }
 
 void expect_folder(const std::filesystem::path& answers) {
@@ -56,7 +49,9 @@ void score(const ScoreCommand& command) {
     replace_own(out / "score.json", FileKind::score, score_json(score));
     replace_own(out / "score.md", FileKind::score_page, score_markdown(score));
     print_out("wrote {}\nwrote {}\n", (out / "score.json").string(), (out / "score.md").string());
-    if (!command.no_figures) draw(score, out);
+    if (command.no_figures) return;
+    for (const auto& figure : draw_if_possible([&] { return draw_figures(out, score_figure_values(score)); }))
+        print_out("wrote {}\n", figure.string());
 }
 
 }  // namespace
@@ -69,7 +64,7 @@ void add_challenge_score(CLI::App& challenge, int&) {
         ->required();
     sub->add_option("--truth", command->truth, "File with the truth; CHALLENGE/truth.json where left out")
         ->type_name("FILE");
-    sub->add_flag("--no-figures", command->no_figures, "Do not draw pictures");
+    sub->add_flag("--no-figures", command->no_figures, "Draw no figures");
     sub->footer(
         "Truth of another SHA-256 than challenge.json says is refused.\n"
         "Example:\n"

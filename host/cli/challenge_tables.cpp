@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "diagnose/challenge_truth.h"
-#include "report/challenge_figures.h"
+#include "report/challenge_values.h"
 
 namespace mcdem {
 namespace {

@@ -1,6 +1,6 @@
-// The score of a challenge as tables, JSON and pictures.
+// The score of a challenge as tables, JSON and figures.
 #pragma once
-#include <filesystem>
+#include <nlohmann/json.hpp>
 #include <vector>
 
 #include "diagnose/challenge_score.h"
@@ -24,8 +24,7 @@ std::string score_markdown(const ChallengeScore& score);
 /// All of it for programs.
 std::string score_json(const ChallengeScore& score);
 
-/// Draws what there is to draw; returns the files.
-std::vector<std::filesystem::path> draw_score(const ChallengeScore& score,
-                                              const std::filesystem::path& folder);
+/// What its figures show (report/figure_values.h), those that there are.
+nlohmann::ordered_json score_figure_values(const ChallengeScore& score);
 
 }  // namespace mcdem

@@ -1,10 +1,11 @@
-// mcdem compare and mcdem figures: runs against a reference, in numbers and in pictures.
+// mcdem compare and mcdem figures: runs against a reference, in numbers and in figures.
 #include "cli/commands.h"
-#include "cli/pictures.h"
-#include "cli/results.h"
+#include "cli/figures.h"
+#include "cli/report_sources.h"
 #include "cli/standard_streams.h"
 #include "core/errors.h"
 #include "io/output_folder.h"
+#include "report/diagnosis_values.h"
 #include "report/tables.h"
 
 namespace mcdem {
@@ -19,8 +20,9 @@ struct CompareCommand {
     bool markdown = false;
 };
 
-void print_pictures(const std::vector<std::filesystem::path>& pictures) {
-    for (const auto& picture : pictures) print_out("{}\n", picture.string());
+void print_paths(const std::vector<std::filesystem::path>& figures, const std::string& folder) {
+    if (figures.empty()) throw RunError(folder + ": no figures were drawn");
+    for (const auto& figure : figures) print_out("{}\n", figure.string());
 }
 
 void print_comparison(const CompareCommand& command) {
@@ -37,10 +39,20 @@ void print_comparison(const CompareCommand& command) {
                       command.markdown ? TableFormat::markdown : TableFormat::terminal));
     if (command.out.empty()) return;
     print_out("\n");
-    print_pictures(draw_into(command.out, loaded.settings, reference.setting, options));
+    print_paths(draw_runs(command.out, loaded.settings, reference.setting, options), command.out);
+}
+
+void print_figures_of_diagnosis(const CompareCommand& command, const std::filesystem::path& file) {
+    if (command.runs.size() > 1)
+        throw InputError(file.string() + ": must stand alone, got more runs or diagnoses beside this one");
+    const Diagnosis diagnosis = read_diagnosis(file);
+    const FolderLock lock = open_output_folder(command.out);
+    print_paths(draw_figures(command.out, diagnosis_figure_values(diagnosis)), command.out);
 }
 
 void print_figures(const CompareCommand& command) {
+    for (const auto& source : command.runs)
+        if (const auto file = diagnosis_file(source)) return print_figures_of_diagnosis(command, *file);
     const auto loaded = load_runs(command.runs, ReadWhat::contacts);
     std::optional<LoadedReference> reference;
     std::optional<Setting> setting;
@@ -49,7 +61,7 @@ void print_figures(const CompareCommand& command) {
         setting = reference->setting;
     }
     const FolderLock lock = open_output_folder(command.out);
-    print_pictures(draw_into(command.out, loaded.settings, setting, command.figures));
+    print_paths(draw_runs(command.out, loaded.settings, setting, command.figures), command.out);
 }
 
 }  // namespace
@@ -79,19 +91,24 @@ void add_compare(CLI::App& app, int&) {
 }
 
 void add_figures(CLI::App& app, int&) {
-    auto* sub = app.add_subcommand("figures", "Draw the paper's four figures of runs");
+    auto* sub =
+        app.add_subcommand("figures", "Draw the paper's four figures of runs, or the three of a diagnosis");
     auto command = std::make_shared<CompareCommand>();
-    add_runs_option(*sub, command->runs);
+    sub->add_option("RUN|DIAGNOSIS", command->runs,
+                    "Result folders or files, or the folder of a diagnosis or its diagnosis.json")
+        ->required();
     sub->add_option("--out", command->out, "Folder for the figures")->required()->type_name("DIR");
     add_reference_options(*sub, command->reference, "--against",
                           "Experiment folder or run, drawn as points; several are taken together");
     add_figure_options(*sub, command->figures);
     sub->footer(
-        "PNG and SVG of the top force, the force distribution at one level, Z after thresholding and the\n"
-        "scaling law; beside each its data (CSV) and the gnuplot script, to draw it in another style.\n"
+        "PDF, PNG and SVG of the top force, the force distribution at one level, Z after thresholding and\n"
+        "the scaling law; of a diagnosis where, which and how far. 86 or 178 mm wide, without titles. Their\n"
+        "values are in figures.json, of which the Python package mcdem.figures draws each with one "
+        "function.\n"
         "Examples:\n"
-        "  mcdem figures out/small --out out/pictures\n"
-        "  mcdem figures out/small --out out/pictures --against out/small --setting mc_dem");
+        "  mcdem figures out/small --out out/figures\n"
+        "  mcdem figures out/small --out out/figures --against out/small --setting mc_dem");
     sub->callback([command] { print_figures(*command); });
 }
 

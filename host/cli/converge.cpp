@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "cli/commands.h"
+#include "cli/figures.h"
 #include "cli/interrupt.h"
 #include "cli/messages.h"
 #include "cli/progress.h"
@@ -13,7 +14,6 @@
 #include "io/folder_lock.h"
 #include "io/result_folder.h"
 #include "report/convergence_tables.h"
-#include "report/draw_figure.h"
 
 namespace mcdem {
 namespace {
@@ -59,7 +59,9 @@ int run(ConvergeCommand& command) {
         fmt::print("{}\n", to_text(table_of_convergence(convergence), TableFormat::terminal));
         for (const std::string& line : words_of_convergence(convergence)) fmt::print("{}\n", line);
         fmt::print("wrote\n  {}\n", (folder / "convergence.json").string());
-        for (const auto& file : draw_figure(convergence_figure(convergence), folder))
+        for (const auto& file : draw_if_possible([&] {
+                 return draw_figures(folder, {{"convergence", convergence_figure_values(convergence)}});
+             }))
             fmt::print("  {}\n", file.string());
         return exit_done;
     } catch (const Interrupted& interrupted) {
@@ -76,7 +78,7 @@ void add_converge(CLI::App& app, int& exit_code) {
     auto command = std::make_shared<ConvergeCommand>();
     add_scene_options(*sub, command->scene);
     sub->add_option("--out", command->out,
-                    "Folder for the table, the picture, and every simulation made for them")
+                    "Folder for the table, the figure, and every simulation made for them")
         ->required()
         ->type_name("DIR");
     sub->add_option("--replicas", command->options.replicas, "Jittered copies of the packing, paired")

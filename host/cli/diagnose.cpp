@@ -1,5 +1,6 @@
 // mcdem diagnose
 #include "cli/commands.h"
+#include "cli/figures.h"
 #include "cli/interrupt.h"
 #include "cli/messages.h"
 #include "cli/progress.h"
@@ -14,7 +15,7 @@
 #include "report/diagnosis_json.h"
 #include "report/diagnosis_page.h"
 #include "report/diagnosis_text.h"
-#include "report/draw_figure.h"
+#include "report/diagnosis_values.h"
 
 namespace mcdem {
 namespace {
@@ -86,13 +87,15 @@ int run(const DiagnoseCommand& command) {
         if (!command.library.empty()) make_folder_of(command.library);
         expect_replaceable(folder / "diagnosis.json", FileKind::diagnosis);
         expect_replaceable(folder / "diagnosis.html", FileKind::page);
-        for (const char* figure : {"where", "which", "how_far"}) expect_replaceable_figure(folder, figure);
+        expect_replaceable_figures(folder, {"where", "which", "how_far"});
         const Diagnosis diagnosis = diagnose(command, scene, experiment);
         replace_own(folder / "diagnosis.json", FileKind::diagnosis, diagnosis_json(diagnosis));
         print_out("{}\nwrote\n  {}\n", diagnosis_text(diagnosis), (folder / "diagnosis.json").string());
         write_diagnosis_page(diagnosis, folder / "diagnosis.html");
         print_out("  {}\n", (folder / "diagnosis.html").string());
-        for (const auto& file : draw_diagnosis(diagnosis, folder)) print_out("  {}\n", file.string());
+        for (const auto& file :
+             draw_if_possible([&] { return draw_figures(folder, diagnosis_figure_values(diagnosis)); }))
+            print_out("  {}\n", file.string());
         return exit_done;
     } catch (const Interrupted& interrupted) {
         spdlog::warn("{}", interrupted.what());
@@ -139,7 +142,7 @@ void add_diagnose(CLI::App& app, int& exit_code) {
     sub->footer(
         "The scene is the simulation as it stands; box, plate and scans are the experiment's. Prints the "
         "verdict in\n"
-        "six lines and writes diagnosis.json and diagnosis.html, with its pictures, into DIR. Simulations "
+        "six lines and writes diagnosis.json and diagnosis.html, with its figures, into DIR. Simulations "
         "are kept\n"
         "in DIR/simulations: nothing is computed twice, and an interrupted diagnosis goes on with the same "
         "command.\n"

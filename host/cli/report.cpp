@@ -4,24 +4,20 @@
 #include <iterator>
 
 #include "cli/commands.h"
+#include "cli/figures.h"
 #include "cli/messages.h"
-#include "cli/pictures.h"
 #include "cli/report_sources.h"
 #include "cli/results.h"
 #include "cli/standard_streams.h"
 #include "core/errors.h"
-#include "core/input_file.h"
 #include "core/make_folder.h"
 #include "core/output_file.h"
-#include "report/diagnosis_json.h"
 #include "report/diagnosis_page.h"
 #include "report/plotting_library.h"
 #include "report/run_page.h"
 
 namespace mcdem {
 namespace {
-
-namespace fs = std::filesystem;
 
 struct ReportCommand {
     std::vector<std::string> sources;
@@ -30,15 +26,6 @@ struct ReportCommand {
     FigureOptions figures;
     PackingLimits limits;
 };
-
-/// diagnosis.json of a diagnosis' folder, or the file itself; nothing where the path is none of these.
-std::optional<fs::path> diagnosis_file(const fs::path& path) {
-    if (path.extension() == ".json") return path;
-    if (fs::exists(path / "diagnosis.json")) return path / "diagnosis.json";
-    return std::nullopt;
-}
-
-Diagnosis read_diagnosis(const fs::path& file) { return diagnosis_of_json(read_file(file), file.string()); }
 
 void add_all_runs(Page& page, const std::vector<std::string>& paths, const ReportCommand& command) {
     const auto loaded = load_runs(paths, ReadWhat::contacts);

@@ -8,6 +8,7 @@
 #include "core/input_file.h"
 #include "core/sha256.h"
 #include "io/result_folder.h"
+#include "report/diagnosis_json.h"
 #include "report/labels.h"
 
 namespace mcdem {
@@ -74,6 +75,16 @@ std::vector<std::string> notes_of(const std::vector<std::pair<std::string, std::
 }
 
 }  // namespace
+
+std::optional<std::filesystem::path> diagnosis_file(const std::filesystem::path& path) {
+    if (path.extension() == ".json") return path;
+    if (std::filesystem::exists(path / "diagnosis.json")) return path / "diagnosis.json";
+    return std::nullopt;
+}
+
+Diagnosis read_diagnosis(const std::filesystem::path& file) {
+    return diagnosis_of_json(read_file(file), file.string());
+}
 
 std::vector<RunOrigin> origins_of(const std::vector<std::string>& paths, const LoadedRuns& loaded) {
     std::vector<RunOrigin> origins;

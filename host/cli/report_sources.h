@@ -1,12 +1,19 @@
 // What a report needs of runs beyond their scans: where they come from, and packings to be seen in space.
 #pragma once
+#include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "cli/results.h"
+#include "diagnose/diagnosis.h"
 #include "report/run_page.h"
 
 namespace mcdem {
+
+/// diagnosis.json of a diagnosis' folder, or the file itself; nothing where the path is none of these.
+std::optional<std::filesystem::path> diagnosis_file(const std::filesystem::path& path);
+Diagnosis read_diagnosis(const std::filesystem::path& file);
 
 /// Of the runs in their order, with the SHA-256 of every result file.
 std::vector<RunOrigin> origins_of(const std::vector<std::string>& paths, const LoadedRuns& loaded);

@@ -2,9 +2,9 @@
 #include <fmt/format.h>
 
 #include "cli/commands.h"
+#include "cli/figures.h"
 #include "cli/interrupt.h"
 #include "cli/messages.h"
-#include "cli/pictures.h"
 #include "cli/progress.h"
 #include "cli/scene_options.h"
 #include "cli/sharing.h"
@@ -88,11 +88,11 @@ void print_summary(const Run& run, const RunSummary& summary, std::size_t failed
     if (models_vary(models)) print_out("\n{}", to_text(table_of_models(models), TableFormat::terminal));
 }
 
-void print_paths(const RunCommand& command, const std::vector<std::filesystem::path>& pictures) {
+void print_paths(const RunCommand& command, const std::vector<std::filesystem::path>& figures) {
     const std::filesystem::path folder = command.out;
     print_out("\nwrote\n");
     for (const auto& file : {run_file(folder), folder / "plate.csv"}) print_out("  {}\n", file.string());
-    for (const auto& file : pictures) print_out("  {}\n", file.string());
+    for (const auto& file : figures) print_out("  {}\n", file.string());
 }
 
 /// The exit code of a run whose results lie in the folder.
@@ -101,9 +101,9 @@ int report_run(const RunCommand& command, const RunSummary& summary) {
     std::size_t failed = 0;
     for (const auto& recording : run.recordings) failed += recording.failure.has_value();
     print_summary(run, summary, failed);
-    std::vector<std::filesystem::path> pictures;
-    if (!command.no_figures) pictures = draw_run(command.out);
-    print_paths(command, pictures);
+    std::vector<std::filesystem::path> figures;
+    if (!command.no_figures) figures = draw_run(command.out);
+    print_paths(command, figures);
     if (failed < run.recordings.size()) return exit_done;
     spdlog::error("no replica came to its end");
     return exit_failed;
@@ -179,7 +179,7 @@ void add_run(CLI::App& app, int& exit_code) {
         ->required()
         ->type_name("DIR");
     sub->add_flag("--resume", command->resume, "Go on with the interrupted run in DIR");
-    sub->add_flag("--no-figures", command->no_figures, "Draw no pictures at the end");
+    sub->add_flag("--no-figures", command->no_figures, "Draw no figures at the end");
     add_sharing_options(*sub, command->sharing, command->device);
     sub->add_option("--part-replicas", command->part_replicas,
                     "Replicas that a worker takes at a time; without it enough to fill a device")
@@ -187,7 +187,7 @@ void add_run(CLI::App& app, int& exit_code) {
         ->type_name("N")
         ->group("Many devices and nodes");
     sub->footer(
-        "Writes run.h5 (everything, HDF5), plate.csv (forces and averages) and pictures into DIR. A replica "
+        "Writes run.h5 (everything, HDF5), plate.csv (forces and averages) and figures into DIR. A replica "
         "that\n"
         "cannot go on is named and recorded; the others go on. The exit code is 1 only where all failed.\n"
         "Interrupted by Ctrl-C, a crash or a power cut, a run loses no more than the time since its last\n"

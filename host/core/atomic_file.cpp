@@ -48,15 +48,6 @@ std::string temporary_place(const fs::path& temporary) {
     return name.substr(0, name.size() - ending.size() - digits - 1);
 }
 
-/// Where pictures are drawn (report/draw_figure.cpp): `.drawing-XXXXXX`.
-bool is_drawing_folder(const fs::directory_entry& entry) {
-    constexpr std::string_view begins = ".drawing-";
-    constexpr std::size_t random = 6;
-    const std::string name = entry.path().filename().string();
-    return name.starts_with(begins) && name.size() == begins.size() + random && !entry.is_symlink() &&
-           entry.is_directory();
-}
-
 void force_to_disk(int descriptor, const fs::path& file) {
     // Some file systems cannot sync (EINVAL, EROFS on folders): nothing more can be done there.
     int result = 0;
@@ -162,10 +153,8 @@ void remove_temporaries_of(const fs::path& file) {
 }
 
 void remove_temporaries(const fs::path& folder) {
-    for (const auto& entry : fs::directory_iterator(folder)) {
+    for (const auto& entry : fs::directory_iterator(folder))
         if (is_temporary(entry.path())) fs::remove(entry.path());
-        if (is_drawing_folder(entry)) fs::remove_all(entry.path());
-    }
 }
 
 }  // namespace mcdem

@@ -9,7 +9,6 @@
 
 #include "core/atomic_file.h"
 #include "core/errors.h"
-#include "core/sha256.h"
 
 namespace mcdem {
 namespace {
@@ -28,7 +27,8 @@ constexpr std::array marks{
     Mark{FileKind::calibration, "a calibration", "{\n", "\"gamma_standard_error\""},
     Mark{FileKind::score, "the score of a challenge", "{\n \"cases\"", "\"not_diagnosed\""},
     Mark{FileKind::score_page, "the score of a challenge", "# Score of the challenge\n", ""},
-    Mark{FileKind::script, "the unedited script of a picture", "", ""},
+    Mark{FileKind::figure, "a figure of mcdem", "", "mcdem figure"},
+    Mark{FileKind::figure_values, "the values of figures", "{\n \"mcdem_figures\"", ""},
     Mark{FileKind::guide, "the guide to an export", "", ""},
     Mark{FileKind::vtk, "an export", "\x89HDF\r\n", "VTKHDF"},
     Mark{FileKind::xyz, "an export", "",
@@ -38,8 +38,7 @@ constexpr std::array marks{
 };
 constexpr std::array<std::string_view, 2> guides{"Grains and contacts for ParaView\n====",
                                                  "replica_*.xyz            grains, one frame a scan"};
-constexpr std::string_view seal_line = "# SHA-256 of the lines above: ";
-constexpr int head_size = 1 << 16, largest_script = 1 << 24;
+constexpr int head_size = 1 << 16, largest_figure = 1 << 24;  ///< a PDF says at its end who made it
 
 const Mark& mark_of(FileKind kind) {
     for (const Mark& mark : marks)
@@ -47,13 +46,7 @@ const Mark& mark_of(FileKind kind) {
     throw RunError("no mark of an output");  // a test writes every kind
 }
 
-bool is_sealed(std::string_view text) {
-    const auto line = text.rfind(seal_line);
-    return line != text.npos && text == sealed_script(text.substr(0, line));
-}
-
 bool is_of_kind(std::string_view head, FileKind kind) {
-    if (kind == FileKind::script) return is_sealed(head);
     if (kind == FileKind::guide)
         return std::ranges::any_of(guides, [&](std::string_view guide) { return head.starts_with(guide); });
     const Mark& mark = mark_of(kind);
@@ -68,17 +61,13 @@ bool is_of_kind(std::string_view head, FileKind kind) {
 
 }  // namespace
 
-std::string sealed_script(std::string_view text) {
-    return fmt::format("{}{}{}\n", text, seal_line, Sha256().add(text).hex());
-}
-
 void expect_replaceable(const fs::path& file, FileKind kind) {
     std::error_code error;
     const auto status = fs::symlink_status(file, error);
     if (status.type() == fs::file_type::not_found) return;
     if (!fs::is_regular_file(file, error)) refuse(file, "is there, but is no file");
     std::ifstream in(file, std::ios::binary);
-    std::string head(static_cast<std::size_t>(kind == FileKind::script ? largest_script : head_size), '\0');
+    std::string head(static_cast<std::size_t>(kind == FileKind::figure ? largest_figure : head_size), '\0');
     in.read(head.data(), static_cast<std::streamsize>(head.size()));
     if (!in.is_open() || in.bad()) refuse(file, "is there and cannot be read");
     head.resize(static_cast<std::size_t>(in.gcount()));

@@ -1,5 +1,5 @@
 // What mcdem may replace: a file that it wrote itself as what it writes now, told by what the file holds. A
-// laboratory's table, a scene, a run.h5, or a picture's script that was edited are none of these, whatever
+// laboratory's table, a scene, a run.h5, or a figure of another program are none of these, whatever
 // their names and however the path is spelled. No command reads what it writes, so that its inputs are safe
 // too.
 #pragma once
@@ -19,7 +19,8 @@ enum class FileKind {
     calibration,
     score,
     score_page,
-    script,
+    figure,
+    figure_values,
     guide,
     vtk,
     xyz,
@@ -38,8 +39,5 @@ void replace_own(const std::filesystem::path& file, FileKind kind,
 
 /// Throws InputError for the folder of an experiment: nothing else is written there.
 void expect_no_experiment(const std::filesystem::path& folder);
-
-/// What makes a script one of ours until it is edited: the text, and a last line with its digest.
-std::string sealed_script(std::string_view text);
 
 }  // namespace mcdem

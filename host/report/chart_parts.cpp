@@ -12,7 +12,7 @@ std::string faint(const std::string& colour) {
 }
 
 /// There and back along the curve. On logarithmic axes a band must not reach zero: at most two thirds down.
-Json band(const Series& series, const std::string& colour, const std::vector<ChartPoint>& points) {
+Json band(const Series& series, const std::string& colour, const std::vector<FigurePoint>& points) {
     Json x = Json::array(), y = Json::array();
     for (const auto& p : points) x.push_back(p.x), y.push_back(p.y + p.error);
     for (auto p = points.rbegin(); p != points.rend(); ++p)
@@ -30,9 +30,9 @@ Json band(const Series& series, const std::string& colour, const std::vector<Cha
             {"showlegend", false}};
 }
 
-bool has_errors(const std::vector<ChartPoint>& points) {
+bool has_errors(const std::vector<FigurePoint>& points) {
     return points.size() > 1 && std::all_of(points.begin(), points.end(),
-                                            [](const ChartPoint& p) { return std::isfinite(p.error); });
+                                            [](const FigurePoint& p) { return std::isfinite(p.error); });
 }
 
 }  // namespace
@@ -45,7 +45,7 @@ std::string chart_colour(const Cast& cast, const Series& series) {
     return cast.is_reference(series) ? "var(--ink)" : series.style.colour;
 }
 
-Json curve_traces(const Series& series, const std::string& colour, const std::vector<ChartPoint>& points,
+Json curve_traces(const Series& series, const std::string& colour, const std::vector<FigurePoint>& points,
                   CurveLook look, const PointWords& words, bool in_key) {
     Json traces = Json::array();
     if (points.empty()) return traces;

@@ -1,16 +1,9 @@
 // What the charts of runs have in common: series as traces of plotly.js.
 #pragma once
-#include <array>
-
-#include "report/figure_parts.h"
 #include "report/page.h"
+#include "report/run_figures.h"
 
 namespace mcdem {
-
-/// A point with the standard error of its y, not-a-number where that is not known.
-struct ChartPoint {
-    double x = 0, y = 0, error = not_available;
-};
 
 /// What a point says when pointed at: x and y with their formats and units.
 struct PointWords {
@@ -21,7 +14,7 @@ struct PointWords {
 /// Traces of one curve: a band of one standard error where it is known, and the line or points over it.
 /// `in_key`: whether it has an entry there; all curves of a series come and go with that.
 enum class CurveLook { line, dashed, points, open_points };
-Json curve_traces(const Series& series, const std::string& colour, const std::vector<ChartPoint>& points,
+Json curve_traces(const Series& series, const std::string& colour, const std::vector<FigurePoint>& points,
                   CurveLook look, const PointWords& words, bool in_key);
 
 /// The series' colour; the page's ink for the reference.

@@ -6,6 +6,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "report/diagnosis_words.h"
+#include "report/series_style.h"
+
 namespace mcdem {
 namespace {
 
@@ -135,55 +138,31 @@ std::string convergence_json(const Convergence& convergence) {
     return json.dump(2) + "\n";
 }
 
-Figure convergence_figure(const Convergence& convergence) {
-    PlotScript script("convergence",
-                      "Error of every observable by the numerics, over the largest that is allowed.",
-                      "error_over_limit,low,high,row,observable");
-    std::vector<Setting> causes;
-    for (const CauseErrors& cause : convergence.causes) causes.push_back({cause.cause, {}});
-    const auto styles = styles_of(causes);
-    std::vector<int> shown_observables;
-    for (int q = 0; q < static_cast<int>(observables().size()); ++q)
-        if (has_any(convergence, q)) shown_observables.push_back(q);
-    const int rows = static_cast<int>(shown_observables.size());
-    script.size(1000, 150 + 22 * rows);
-    script.title("Error by the numerics over its limit");
-    script.set("xlabel 'largest error over phases and displacements / limit, with two standard errors'");
-    script.set(fmt::format("yrange [{}:0.5]", 0.5 - rows - 0.5));
-    script.set("xrange [-4:4]");  // what lies farther out stands at the edge
-    script.set("lmargin 24");
-    script.set(
-        "object 1 rectangle from -1, graph 0 to 1, graph 1 back fillcolor rgb '#e8e8e8' fillstyle solid "
-        "noborder");
-    std::string tics;
-    for (int row = 0; row < rows; ++row)
-        tics += fmt::format(
-            "{}'{}' {}", row ? ", " : "",
-            observables()[static_cast<std::size_t>(shown_observables[static_cast<std::size_t>(row)])].name,
-            -row);
-    script.set("ytics noenhanced (" + tics + ")");
+nlohmann::ordered_json convergence_figure_values(const Convergence& convergence) {
+    using Json = nlohmann::ordered_json;
+    Json causes = Json::array(), rows = Json::array();
     for (std::size_t k = 0; k < convergence.causes.size(); ++k) {
-        const CauseErrors& cause = convergence.causes[k];
-        std::vector<std::vector<std::string>> points;
-        for (int row = 0; row < rows; ++row) {
-            const int q = shown_observables[static_cast<std::size_t>(row)];
-            const int cell = convergence.worst_cell(cause, q);
-            if (cell < 0) continue;
-            const auto c = static_cast<std::size_t>(cell);
-            const double value = cause.cells[c].value / convergence.limit(c);
-            const double bar = 2 * cause.cells[c].standard_error / convergence.limit(c);
-            const double y =
-                -row + 0.3 - 0.6 * static_cast<double>(k) / static_cast<double>(convergence.causes.size());
-            const auto place = [](double x) { return fmt::format("{:.6g}", std::clamp(x, -3.9, 3.9)); };
-            points.push_back({place(value), place(value - bar), place(value + bar), fmt::format("{:.6g}", y),
-                              std::string(observables()[static_cast<std::size_t>(q)].name)});
-        }
-        const std::string look = fmt::format("linecolor rgb '{}' pointtype {} pointsize 0.6",
-                                             styles[k].colour, styles[k].filled_point);
-        script.plot(script.add_block(points), "using 1:4:2:3 with xerrorbars " + look);
-        script.key(cause.cause, "with points " + look);
+        const auto style = style_number(k);
+        causes.push_back(
+            {{"words", convergence.causes[k].cause}, {"colour", style.colour}, {"marker", style.marker}});
     }
-    return script.figure();
+    for (int q = 0; q < static_cast<int>(observables().size()); ++q) {
+        if (!has_any(convergence, q)) continue;
+        const std::string name(observables()[static_cast<std::size_t>(q)].name);
+        Json row{{"observable", name}, {"words", words_of(name)}, {"errors", Json::array()}};
+        for (const CauseErrors& cause : convergence.causes) {
+            const int cell = convergence.worst_cell(cause, q);
+            const auto c = static_cast<std::size_t>(cell);
+            row["errors"].push_back(
+                cell < 0 ? Json()
+                         : Json{{"over_limit", cause.cells[c].value / convergence.limit(c)},
+                                {"standard_error", cause.cells[c].standard_error / convergence.limit(c)}});
+        }
+        rows.push_back(row);
+    }
+    return {{"x_label", "largest error over phases and displacements / limit"},
+            {"causes", causes},
+            {"rows", rows}};
 }
 
 }  // namespace mcdem

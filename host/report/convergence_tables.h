@@ -1,10 +1,10 @@
-// A convergence as a table, a verdict in words, JSON and a picture.
+// A convergence as a table, a verdict in words, JSON and a figure.
 #pragma once
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "diagnose/convergence.h"
-#include "report/plot_script.h"
 #include "report/text_table.h"
 
 namespace mcdem {
@@ -20,7 +20,7 @@ std::vector<std::string> words_of_convergence(const Convergence& convergence);
 
 std::string convergence_json(const Convergence& convergence);
 
-/// Errors of every observable by the causes, with two standard errors, and the limits.
-Figure convergence_figure(const Convergence& convergence);
+/// What its figure shows (figure_values.h): errors of every observable by the causes, over their limits.
+nlohmann::ordered_json convergence_figure_values(const Convergence& convergence);
 
 }  // namespace mcdem

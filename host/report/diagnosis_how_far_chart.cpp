@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "report/diagnosis_charts.h"
-#include "report/diagnosis_figures.h"
 #include "report/diagnosis_parts.h"
 
 namespace mcdem {

@@ -7,11 +7,9 @@
 #include "diagnose/effects.h"
 #include "diagnose/scan_observables.h"
 #include "report/diagnosis_charts.h"
-#include "report/diagnosis_figures.h"
 #include "report/diagnosis_tables.h"
 #include "report/diagnosis_text.h"
 #include "report/diagnosis_words.h"
-#include "report/draw_figure.h"
 
 namespace mcdem {
 namespace {
@@ -105,16 +103,6 @@ void write_diagnosis_page(const Diagnosis& diagnosis, const std::filesystem::pat
     Page page("Diagnosis: " + verdict_headline(diagnosis));
     add_diagnosis(page, diagnosis, "");
     write_page(page, file);
-}
-
-std::vector<std::filesystem::path> draw_diagnosis(const Diagnosis& diagnosis,
-                                                  const std::filesystem::path& folder) {
-    std::vector<std::filesystem::path> pictures;
-    for (const auto& figure : {where_figure(diagnosis), which_figure(diagnosis), how_far_figure(diagnosis)})
-        if (figure)
-            for (const auto& file : draw_figure(*figure, folder))
-                if (file.extension() == ".png") pictures.push_back(file);
-    return pictures;
 }
 
 }  // namespace mcdem

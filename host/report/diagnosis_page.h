@@ -2,7 +2,6 @@
 #pragma once
 #include <filesystem>
 #include <string>
-#include <vector>
 
 #include "diagnose/diagnosis.h"
 #include "report/page.h"
@@ -14,10 +13,5 @@ void add_diagnosis(Page& page, const Diagnosis& diagnosis, const std::string& na
 
 /// A page of this diagnosis alone. Throws RunError where it cannot be made.
 void write_diagnosis_page(const Diagnosis& diagnosis, const std::filesystem::path& file);
-
-/// Draws the pictures where.*, which.* and how_far.* into `folder`, which must exist. Returns the PNG files.
-/// Throws RunError where it cannot.
-std::vector<std::filesystem::path> draw_diagnosis(const Diagnosis& diagnosis,
-                                                  const std::filesystem::path& folder);
 
 }  // namespace mcdem

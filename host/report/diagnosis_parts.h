@@ -9,7 +9,16 @@
 
 namespace mcdem {
 
-/// The picture "where": a row an observable, a column a displacement.
+/// What the figures have in common. Blue and orange are told apart by the colour-blind.
+namespace diagnosis_colour {
+inline constexpr const char* named = "#D55E00";
+inline constexpr const char* other = "#6F9BBF";
+inline constexpr const char* before = "#2B87C8";
+inline constexpr const char* after = "#D55E00";
+inline constexpr const char* faint = "#999999";
+}  // namespace diagnosis_colour
+
+/// The figure "where": a row an observable, a column a displacement.
 struct HeatMap {
     struct Column {
         std::string phase;
@@ -36,6 +45,10 @@ double colour_range(const std::vector<WhereCell>& cells);
 
 /// Candidates that the verdict names: the leader and its group, none where no effect explains the gap.
 std::set<std::string> named_effects(const Diagnosis& diagnosis);
+
+/// Candidates that these data cannot tell apart share a letter: "A", "AB", empty where one stands alone. By
+/// place in the ranking.
+std::vector<std::string> group_letters(const std::vector<Cause>& ranking);
 
 /// A fitted amplitude over the smallest detectable one: that makes all units one.
 struct ShownAmplitude {

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "report/diagnosis_charts.h"
-#include "report/diagnosis_figures.h"
 #include "report/diagnosis_parts.h"
 #include "report/diagnosis_words.h"
 

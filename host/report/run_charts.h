@@ -1,7 +1,7 @@
 // The paper's four figures as charts of a page.
 #pragma once
-#include "report/figure_parts.h"
 #include "report/page.h"
+#include "report/run_figures.h"
 
 namespace mcdem {
 

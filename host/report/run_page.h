@@ -5,9 +5,9 @@
 #include <utility>
 #include <vector>
 
-#include "report/figures.h"
 #include "report/packing_view.h"
 #include "report/page.h"
+#include "report/run_figures.h"
 
 namespace mcdem {
 

@@ -1,12 +1,10 @@
-// Pictures of how well diagnoses of withheld truths did: what was called what, how small an effect was seen,
-// and whether stated probabilities hold.
+// Figures of how well diagnoses of withheld truths did: what was called what, how small an effect was seen,
+// and whether stated probabilities hold. As JSON (figure_values.h).
 #pragma once
 #include <array>
-#include <filesystem>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
-
-#include "report/plot_script.h"
 
 namespace mcdem {
 
@@ -41,9 +39,9 @@ std::array<double, 2> wilson_interval(int successes, int trials);
 /// the points of a power curve scatter around when the limits are right.
 double ideal_power(const PowerCurve& curve, double over_limit);
 
-/// Nothing of these may be empty. Rows that name the column themselves are framed: right answers.
-Figure confusion_figure(const ConfusionMatrix& matrix);
-Figure power_figure(const PowerCurve& curve);
-Figure confidence_figure(const std::vector<ConfidenceBin>& bins);
+/// Nothing of these may be empty. Points without cases are left out.
+nlohmann::ordered_json confusion_values(const ConfusionMatrix& matrix);
+nlohmann::ordered_json power_values(const PowerCurve& curve);
+nlohmann::ordered_json confidence_values(const std::vector<ConfidenceBin>& bins);
 
 }  // namespace mcdem

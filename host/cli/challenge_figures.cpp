@@ -3,9 +3,8 @@
 #include <set>
 
 #include "cli/challenge_tables.h"
-#include "report/challenge_figures.h"
+#include "report/challenge_values.h"
 #include "report/diagnosis_json.h"
-#include "report/draw_figure.h"
 
 namespace mcdem {
 namespace {
@@ -116,19 +115,15 @@ std::vector<ConfidenceBin> confidences_of(const std::vector<ScoredCase>& cases) 
 
 }  // namespace
 
-std::vector<std::filesystem::path> draw_score(const ChallengeScore& score,
-                                              const std::filesystem::path& folder) {
-    std::vector<Figure> figures;
-    if (!score.scored.empty()) figures.push_back(confusion_figure(confusion_of(score.scored)));
+nlohmann::ordered_json score_figure_values(const ChallengeScore& score) {
+    nlohmann::ordered_json values = nlohmann::ordered_json::object();
+    if (!score.scored.empty()) values["confusion"] = confusion_values(confusion_of(score.scored));
     if (const auto power = power_of(score.scored, score.arms.front().limits.false_alarm);
         !power.points.empty())
-        figures.push_back(power_figure(power));
+        values["power"] = power_values(power);
     if (const auto bins = confidences_of(score.scored); !bins.empty())
-        figures.push_back(confidence_figure(bins));
-    std::vector<std::filesystem::path> pictures;
-    for (const Figure& figure : figures)
-        for (const auto& picture : draw_figure(figure, folder)) pictures.push_back(picture);
-    return pictures;
+        values["confidence"] = confidence_values(bins);
+    return values;
 }
 
 }  // namespace mcdem

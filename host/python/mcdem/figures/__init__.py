@@ -1,0 +1,19 @@
+"""Figures for print of runs, comparisons, diagnoses, convergence studies and challenges, by matplotlib.
+
+    axes = mcdem.figures.top_force("out/small")
+    axes.set_xlim(0, 20)
+    mcdem.figures.save(axes, "top_force.pdf")
+
+A function a figure. Its first argument is a folder that a command wrote, or the file `figures.json` in it: all numbers were
+worked out by that command, nothing is computed here but places on the paper. `axes`: where to draw; new ones, of the size
+that the figure has in print, where left out. Functions return the axes, or an array of them where a figure has several.
+"""
+from .challenge import confidence, confusion, power
+from .convergence import convergence
+from .diagnosis import how_far, where, which
+from .runs import coordination, force_distribution, scaling, top_force
+from .style import COLUMN, PAGE, STYLE, new_axes, save
+from .values import read
+
+__all__ = ["COLUMN", "PAGE", "STYLE", "confidence", "confusion", "convergence", "coordination", "force_distribution", "how_far",
+           "new_axes", "power", "read", "save", "scaling", "top_force", "where", "which"]

@@ -1,0 +1,37 @@
+"""What the numerics of a scene do to its observables."""
+import matplotlib.patches
+
+from .style import PAGE, key, new_axes, plain, styled
+from .values import read
+
+EDGE = 4  # what lies farther out stands at the edge
+
+
+@styled
+def convergence(source, axes=None):
+    """Largest error of every observable by each cause, over its limit, with two standard errors. Shaded: within the limits."""
+    values = read(source, "convergence")
+    rows, causes = values["rows"], values["causes"]
+    axes = axes or new_axes(PAGE, 16 + 4.2 * len(rows))
+    axes.axvspan(-1, 1, facecolor="#e8e8e8", linewidth=0)
+    for number, cause in enumerate(causes):
+        for place, row in enumerate(rows):
+            error = row["errors"][number]
+            if error:
+                draw_error(axes, place - 0.3 + 0.6 * (number + 0.5) / len(causes), error, cause)
+    axes.set_xlim(-EDGE, EDGE)
+    axes.set_ylim(len(rows) - 0.5, -0.5)
+    axes.set_yticks(range(len(rows)), [plain(row["words"]) for row in rows])
+    axes.tick_params(axis="y", length=0)
+    axes.set_xlabel(values["x_label"])
+    artists = [(axes.plot([], [], color=cause["colour"], marker=cause["marker"], linestyle="")[0], cause["words"]) for cause in causes]
+    artists.append((matplotlib.patches.Patch(color="#e8e8e8", linewidth=0), "within the limit"))
+    key(axes, artists, loc="upper left", bbox_to_anchor=(1.01, 1))
+    return axes
+
+
+def draw_error(axes, y, error, cause):
+    x, bar = error["over_limit"], 2 * (error["standard_error"] or 0)
+    shown = min(max(x, -EDGE + 0.05), EDGE - 0.05)
+    axes.errorbar(shown, y, xerr=[[min(bar, max(shown + bar - x, 0))], [min(bar, max(x + bar - shown, 0))]], color=cause["colour"],
+                  marker=cause["marker"], markersize=2, elinewidth=0.6, clip_on=False)

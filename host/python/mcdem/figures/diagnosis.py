@@ -1,0 +1,162 @@
+"""Where simulation and experiment differ, which effects are consistent with it, how far the gap shrinks."""
+import matplotlib.cm
+import matplotlib.colors
+import matplotlib.lines
+import matplotlib.patches
+import numpy as np
+
+from .style import COLUMN, INK, PAGE, figure_of, key, new_axes, plain, styled
+from .values import read
+
+# Blue: the experiment lies below the simulation, orange: above.
+BELOW_ABOVE = matplotlib.colors.LinearSegmentedColormap.from_list("below_above", [
+    (0, "#053B78"), (0.2, "#3F86BF"), (0.375, "#B9D5EA"), (0.5, "#F4F4F2"), (0.625, "#F9D3AE"), (0.8, "#E08530"), (1, "#8F3A04")])
+MOST_NUMBERS = 12  # columns in which numbers find room
+
+
+@styled
+def where(source, axes=None):
+    """Gap by observable and displacement, in sigmas of its noise. Left: parameters as stated, right: after they were fitted
+    within their uncertainty. Framed: beyond what noise alone seldom reaches in any cell. `axes`: two."""
+    values = read(source, "where")
+    if axes is None:
+        axes = new_axes(PAGE, 28 + 3.6 * len(values["observables"]), ncols=2, sharey=True)
+    scale = matplotlib.colors.Normalize(-values["colour_range"], values["colour_range"])
+    for place, panel in zip(axes, values["panels"]):
+        for cell in panel["cells"]:
+            draw_cell(place, values, cell, scale)
+        set_columns(place, values, panel["words"])
+    axes[0].set_yticks(range(len(values["observables"])), [plain(words) for words in values["observables"]])
+    axes[0].set_ylim(len(values["observables"]) - 0.5, -0.5)
+    figure_of(axes).colorbar(matplotlib.cm.ScalarMappable(scale, BELOW_ABOVE), ax=list(axes), location="bottom", fraction=0.03,
+                             aspect=60, pad=0.02, label=values["colour_label"])
+    return axes
+
+
+def draw_cell(axes, values, cell, scale):
+    x, row, score = values["columns"][cell["column"]]["x"], cell["row"], cell["z_score"]
+    axes.add_patch(matplotlib.patches.Rectangle((x - 0.49, row - 0.49), 0.98, 0.98, facecolor=BELOW_ABOVE(scale(score)), linewidth=0))
+    if not cell["stands_out"]:
+        return
+    axes.add_patch(matplotlib.patches.Rectangle((x - 0.45, row - 0.45), 0.9, 0.9, fill=False, edgecolor="#111111", linewidth=0.7))
+    if len(values["columns"]) <= MOST_NUMBERS:
+        is_dark = abs(score) > 0.6 * values["colour_range"]
+        axes.text(x, row, f"{score:.1f}", fontsize=5, ha="center", va="center_baseline", color="white" if is_dark else "#111111")
+
+
+def set_columns(axes, values, heading):
+    """Time runs from left to right: loading, then back."""
+    columns = values["columns"]
+    shown = columns[::len(columns) // 12 + 1]  # more would run into each other
+    axes.set_xticks([column["x"] for column in shown], [f"{column['displacement_mm']:.3g}" for column in shown])
+    axes.set_xlim(0, values["width"])
+    axes.set_xlabel(values["x_label"])
+    axes.tick_params(length=0)
+    axes.grid(False)
+    axes.spines[:].set_visible(False)
+    for phase in dict.fromkeys(column["phase"] for column in columns):
+        middle = np.mean([column["x"] for column in columns if column["phase"] == phase])
+        axes.text(middle, -0.7, plain(phase) + ("" if phase == "whole cycle" else " →"), ha="center", va="bottom")
+    axes.set_title(heading, pad=14, fontweight="bold")
+
+
+@styled
+def which(source, axes=None):
+    """Candidate effects. Left: how much better the data are explained with each, diamonds: simulated in full; candidates that
+    share a letter cannot be told apart. Right: fitted amplitude with its 90 % interval over the smallest that shows in
+    these data (dashed line), in words with one standard error, and the probability among the candidates. `axes`: two."""
+    values = read(source, "which")
+    rows = values["rows"]
+    if axes is None:
+        axes = new_axes(PAGE, 18 + 4.2 * len(rows), ncols=2, sharey=True, gridspec_kw={"width_ratios": (1, 0.8)})
+    gain, over_limit = axes
+    largest = max([row["gain"] or 0 for row in rows])
+    for place, row in enumerate(rows):
+        colour = values["colour_named" if row["is_named"] else "colour_other"]
+        draw_gain(gain, place, row, colour, largest)
+        if "over_limit" in row:
+            over_limit.errorbar(row["over_limit"], place, xerr=row["half_interval"], color=colour, marker="o", capsize=1.5,
+                                elinewidth=0.8, capthick=0.8)
+        column(gain, -0.02, place, row["group"], "right")
+        column(over_limit, 1.04, place, row["amplitude"], "left")
+        column(over_limit, 1.62, place, row["probability"], "right")
+    over_limit.axvline(1, color=INK, linestyle=(0, (4, 2)), linewidth=0.7)
+    for place in axes:
+        place.axvline(0, color=INK, linewidth=0.5)
+        place.grid(False, axis="y")
+        place.tick_params(axis="y", length=0)
+        place.spines["left"].set_visible(False)
+    gain.set_xlabel(values["gain_label"])
+    over_limit.set_xlabel(values["over_limit_label"])
+    gain.set_yticks(range(len(rows)), [plain(row["words"]) for row in rows])
+    gain.tick_params(axis="y", pad=14)
+    gain.set_ylim(len(rows) - 0.4, -0.6)
+    gain.margins(x=0.1)
+    for place, x, words, side in ((gain, -0.02, "group", "right"), (over_limit, 1.04, "amplitude", "left"),
+                                  (over_limit, 1.62, "probability", "right")):
+        column(place, x, -1.1, words, side)
+    return axes
+
+
+def draw_gain(axes, place, row, colour, largest):
+    """The number stands at the foot of its bar, beside one that is too short."""
+    if row["gain"] is not None:
+        axes.barh(place, row["gain"], 0.68, color=colour)
+        is_short = row["gain"] < 0.12 * largest
+        axes.annotate(f"{row['gain']:.1f}", (max(row["gain"], row["gain_simulated"] or 0, 0) if is_short else 0, place),
+                      (5 if is_short else 2, 0), textcoords="offset points", va="center", fontsize=6)
+    if row["gain_simulated"] is not None:
+        axes.plot(row["gain_simulated"], place, marker="D", markersize=3.5, markerfacecolor="none", color=INK, markeredgewidth=0.8)
+
+
+def column(axes, x, row, words, side):
+    """A word of a table beside the axes: x as a part of their width."""
+    axes.text(x, row, plain(words), transform=axes.get_yaxis_transform(), ha=side, va="center", fontsize=6.5)
+
+
+@styled
+def how_far(source, axes=None):
+    """Top force before and after the effect is added, and the gap that is left of data held out with its 90 % interval;
+    placebo: the best of many made-up effects. `axes`: two, or one where the experiment has no top force."""
+    values = read(source, "how_far")
+    has_forces = bool(values["forces"])
+    if axes is None:
+        axes = new_axes(COLUMN, 50 * has_forces + 18 + 4.5 * len(values["bars"]), nrows=1 + has_forces, squeeze=False,
+                        gridspec_kw={"height_ratios": (50, 4.5 * len(values["bars"]) + 4)[-1 - has_forces:]})[:, 0]
+    if has_forces:
+        draw_forces(axes[0], values["forces"])
+    draw_bars(axes[-1], values)
+    return axes
+
+
+def draw_forces(axes, values):
+    before, = axes.plot(values["x"], values["before"], color=values["colour_before"], linestyle=(0, (4, 2)))
+    after, = axes.plot(values["x"], values["after"], color=values["colour_after"])
+    experiment, = axes.plot(values["x"], values["experiment"], color=INK, linestyle="", marker="o", markersize=2.2)
+    entries = [(experiment, "experiment"), (before, values["words_before"]), (after, values["words_after"])]
+    if "fitted" in values:
+        fitted = axes.axvspan(*values["fitted"], facecolor="#999999", alpha=0.18, linewidth=0)
+        entries.append((fitted, "fitted here"))
+    axes.set_xlabel(values["x_label"])
+    axes.set_ylabel(values["y_label"])
+    if min(*values["experiment"], *values["before"], *values["after"]) >= 0:
+        axes.set_ylim(bottom=0)
+    key(axes, entries, loc="upper left")
+
+
+def draw_bars(axes, values):
+    for place, bar in enumerate(values["bars"]):
+        left = bar["gap_left"]
+        axes.barh(place, left, 0.6, color=bar["colour"])
+        low, high = bar.get("interval", (left, left))
+        if low < high:
+            axes.plot((low, high), (place, place), color=INK, linewidth=0.8, marker="|", markersize=4)
+        axes.annotate(f"{left:.0f} %", (max(high, left, 0), place), (3, 0), textcoords="offset points", va="center", fontsize=6.5)
+    axes.axvline(0, color=INK, linewidth=0.5)
+    axes.set_yticks(range(len(values["bars"])), [plain(bar["words"]) for bar in values["bars"]])
+    axes.set_ylim(len(values["bars"]) - 0.5, -0.5)
+    axes.margins(x=0.17)
+    axes.grid(False, axis="y")
+    axes.tick_params(axis="y", length=0)
+    axes.spines["left"].set_visible(False)
+    axes.set_xlabel(values["gap_label"])

@@ -1,0 +1,139 @@
+"""The paper's four figures of runs, alone or against a reference."""
+import matplotlib.lines
+import matplotlib.patches
+import numpy as np
+
+from .style import GREY, is_crowded, key, key_height, new_axes, styled
+from .values import read
+
+SIMULATED = {"load": {"linestyle": "-"}, "unload": {"linestyle": (0, (4, 2))}}
+REFERENCE = {"load": {}, "unload": {"markerfacecolor": "white"}}
+PHASES = {"load": "loading", "unload": "unloading"}
+
+
+@styled
+def top_force(source, axes=None):
+    """Force on the plate. Solid lines: loading, dashed: unloading; points: the reference, full and open."""
+    values = read(source, "top_force")
+    values["series"].sort(key=largest, reverse=True)  # the key from top to bottom as the curves end
+    shown = entries(values)
+    axes = axes or keyed_axes(shown, is_crowded(shown))
+    draw_curves(axes, values)
+    axes.set_xlim(left=0)
+    axes.set_ylim(bottom=0)
+    place_key(axes, shown, "upper left")
+    return axes
+
+
+@styled
+def force_distribution(source, axes=None):
+    """Density of contact forces at one level of compression; bands: one standard error over replicas."""
+    values = read(source, "force_distribution")
+    shown = entries(values, phases=())
+    axes = axes or keyed_axes(shown, is_crowded(shown))
+    for series in values["series"]:
+        for curve in series["curves"]:
+            (draw_points if series["is_reference"] else draw_line)(axes, series, {**curve, "phase": "load"})
+    label(axes, values)
+    axes.set_yscale("log")
+    axes.set_xlim(left=0)
+    place_key(axes, shown, "lower left")
+    return axes
+
+
+@styled
+def coordination(source, axes=None):
+    """Contacts per grain, forces below tau left out where there is a reference. Lines and points as of the top force."""
+    values = read(source, "coordination")
+    shown = entries(values)
+    axes = axes or keyed_axes(shown, True)
+    draw_curves(axes, values)
+    axes.set_xlim(left=0)
+    key(axes, shown)
+    return axes
+
+
+@styled
+def scaling(source, axes=None):
+    """Top force against averages over the packing. Full points: loading, open: unloading; lines through zero fit both."""
+    values = read(source, "scaling")
+    shown = [(matplotlib.lines.Line2D([], [], color=series["colour"], marker=series["marker"], linestyle=""), words(series))
+             for series in values["series"]]
+    shown += [(matplotlib.lines.Line2D([], [], color=GREY, marker="o", linestyle="", **REFERENCE[phase]), name)
+              for phase, name in PHASES.items()]
+    axes = axes or keyed_axes(shown, is_crowded(shown))
+    for series in values["series"]:
+        for curve in series["curves"]:
+            draw_points(axes, series, curve, markersize=2.2)
+        end = max(max(curve["x"]) for curve in series["curves"])
+        axes.plot([0, end], [0, series["slope"] * end], color=series["colour"], linewidth=0.7)
+    label(axes, values)
+    axes.set_xlim(left=0)
+    axes.set_ylim(bottom=0)
+    place_key(axes, shown, "upper left")
+    return axes
+
+
+def keyed_axes(shown, is_below):
+    """New axes with room for a key below them."""
+    return new_axes(height=62 + key_height(shown) * is_below)
+
+
+def place_key(axes, shown, place):
+    """Inside the axes, below them where it would hide curves."""
+    key(axes, shown, **({} if is_crowded(shown) else {"loc": place}))
+
+
+def draw_curves(axes, values):
+    """Lines with bands for simulations, points with bars for the reference."""
+    for series in values["series"]:
+        for curve in series["curves"]:
+            (draw_points if series["is_reference"] else draw_line)(axes, series, curve)
+    label(axes, values)
+
+
+def draw_line(axes, series, curve):
+    x, y, error = numbers(curve)
+    axes.plot(x, y, color=series["colour"], **SIMULATED[curve["phase"]])
+    if np.isfinite(error).any():
+        low = np.where(y > 0, np.maximum(y - error, y / 3), y - error)  # a band has a logarithm too
+        axes.fill_between(x, low, y + error, color=series["colour"], alpha=0.18, linewidth=0)
+
+
+def draw_points(axes, series, curve, **look):
+    x, y, error = numbers(curve)
+    bars = error if np.isfinite(error).any() else None
+    axes.errorbar(x, y, bars, color=series["colour"], marker=series["marker"], linestyle="", markeredgewidth=0.6,
+                  elinewidth=0.6, **{**REFERENCE[curve["phase"]], **look})
+
+
+def label(axes, values):
+    axes.set_xlabel(values["x_label"])
+    axes.set_ylabel(values["y_label"])
+
+
+def numbers(curve):
+    """x, y and standard error, not-a-number where that is not known."""
+    return [np.array(curve[quantity], float) for quantity in ("x", "y", "standard_error")]
+
+
+def words(series):
+    return ", ".join(filter(None, (series["words"], series["remark"])))
+
+
+def largest(series):
+    return max(max(curve["y"]) for curve in series["curves"])
+
+
+def entries(values, phases=("load", "unload")):
+    """The series, then what lines, points and bands mean."""
+    series = values["series"]
+    shown = [(matplotlib.lines.Line2D([], [], color=one["colour"], **({"marker": "o", "linestyle": ""} if one["is_reference"]
+                                                                     else {"linewidth": 1.8})), words(one)) for one in series]
+    has_reference = any(one["is_reference"] for one in series)
+    for phase in phases:
+        points = {"load": " (points: full)", "unload": " (points: open)"}[phase] if has_reference else ""
+        shown.append((matplotlib.lines.Line2D([], [], color=GREY, **SIMULATED[phase]), PHASES[phase] + points))
+    if any(one["replicas"] > 1 for one in series):
+        shown.append((matplotlib.patches.Patch(color=GREY, alpha=0.3, linewidth=0), "± standard error"))
+    return shown

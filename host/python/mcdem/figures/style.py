@@ -1,0 +1,93 @@
+"""How figures look: sizes and fonts for print, keys, files."""
+import functools
+import math
+import os
+import pathlib
+import secrets
+
+import matplotlib
+import matplotlib.pyplot as plt
+
+MILLIMETRE = 1 / 25.4  # of an inch, matplotlib's unit of length
+COLUMN = 86            # width of a column of a journal [mm]
+PAGE = 178             # .. of its page [mm]
+
+INK, GREY, GRID = "#222222", "#666666", "#dddddd"
+
+# On top of the user's own settings. Text stays text, so that it can be edited and searched.
+STYLE = {
+    "font.family": "sans-serif", "font.sans-serif": ["DejaVu Sans"], "font.size": 7, "axes.labelsize": 7, "xtick.labelsize": 6.5,
+    "ytick.labelsize": 6.5, "legend.fontsize": 6.5, "text.color": INK, "axes.labelcolor": INK, "xtick.labelcolor": INK,
+    "ytick.labelcolor": INK, "axes.edgecolor": "#444444", "xtick.color": "#444444", "ytick.color": "#444444",
+    "axes.linewidth": 0.6, "xtick.major.width": 0.6, "ytick.major.width": 0.6, "xtick.minor.width": 0.4, "ytick.minor.width": 0.4,
+    "xtick.major.size": 2.5, "ytick.major.size": 2.5, "xtick.minor.size": 1.5, "ytick.minor.size": 1.5,
+    "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True, "axes.axisbelow": True, "grid.color": GRID,
+    "grid.linewidth": 0.4, "lines.linewidth": 1.1, "lines.markersize": 3, "patch.linewidth": 0.8, "legend.frameon": False,
+    "legend.handlelength": 2.2, "legend.labelspacing": 0.3, "legend.borderaxespad": 0.3, "axes.titlesize": 7, "text.usetex": False,
+    "svg.fonttype": "none", "svg.hashsalt": "mcdem", "pdf.fonttype": 42, "savefig.dpi": 300, "savefig.facecolor": "white",
+    "figure.facecolor": "white", "figure.dpi": 200, "figure.constrained_layout.use": True,
+}
+
+
+def styled(draw):
+    """The function draws in STYLE, whatever else the program has set."""
+    @functools.wraps(draw)
+    def drawn(*arguments, **named):
+        with matplotlib.rc_context(STYLE):
+            return draw(*arguments, **named)
+    return drawn
+
+
+def new_axes(width=COLUMN, height=62, **grid):
+    """Axes on a new page of this size [mm]; `grid` as for matplotlib's `subplots`."""
+    with matplotlib.rc_context(STYLE):
+        figure, axes = plt.subplots(figsize=(width * MILLIMETRE, height * MILLIMETRE), **grid)
+        figure.set_constrained_layout_pads(w_pad=1 * MILLIMETRE, h_pad=1 * MILLIMETRE)
+        return axes
+
+
+def figure_of(axes):
+    """The page of axes, or of an array of them."""
+    return axes.figure if hasattr(axes, "figure") else next(iter(getattr(axes, "flat", axes))).figure
+
+
+def plain(text):
+    """Text that matplotlib shows as it stands: no formulas, no label that hides itself."""
+    text = text.replace("$", r"\$")
+    return " " + text if text.startswith("_") else text
+
+
+def key_height(entries):
+    """What a key below the axes takes [mm]."""
+    return 3.1 * math.ceil(len(entries) / key_columns(entries)) + 1
+
+
+def key_columns(entries):
+    return 2 if max(len(words) for _, words in entries) < 30 else 1
+
+
+def is_crowded(entries):
+    """Whether a key inside the axes would hide curves."""
+    return len(entries) > 9 or max(len(words) for _, words in entries) > 36
+
+
+def key(axes, entries, **place):
+    """A key of (artist, words) inside the axes where `place` says so, else below them."""
+    if not place:
+        place = {"loc": "upper left", "bbox_to_anchor": (-0.1, -0.17), "ncol": key_columns(entries), "columnspacing": 1.2}
+    return axes.legend([artist for artist, _ in entries], [plain(words) for _, words in entries], **place)
+
+
+@styled
+def save(axes, file):
+    """The page of the axes as PDF, PNG or SVG, by the file's name; whole or not at all."""
+    file = pathlib.Path(file)
+    kind = file.suffix[1:]
+    creator = {"png": "Software"}.get(kind, "Creator")  # by it `mcdem` knows a figure as its own
+    dates = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}  # the same figure has the same bytes
+    temporary = file.with_name(f"{file.name}.{secrets.token_hex(8)}.tmp")
+    try:
+        figure_of(axes).savefig(temporary, format=kind, metadata={creator: "mcdem figure", **dates.get(kind, {})})
+        os.replace(temporary, file)
+    finally:
+        temporary.unlink(missing_ok=True)

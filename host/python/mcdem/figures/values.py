@@ -1,0 +1,23 @@
+"""Reads figures.json, which the commands write (host/report/figure_values.h)."""
+import json
+import pathlib
+
+FORMAT = 1
+
+
+def read(source, name=None):
+    """What the figure `name` shows; without a name, of all figures that the folder or file has."""
+    file = pathlib.Path(source)
+    if file.is_dir():
+        file = file / "figures.json"
+    if not file.exists():
+        raise FileNotFoundError(f"{file}: is not there; `mcdem figures RUN --out {file.parent}` writes it for a run, "
+                                "`mcdem diagnose`, `converge` and `challenge score` write it beside their results")
+    values = json.loads(file.read_text(encoding="utf-8"))
+    if not isinstance(values, dict) or values.pop("mcdem_figures", None) != FORMAT:
+        raise ValueError(f"{file}: must be a figures.json of this version of mcdem")
+    if name is None:
+        return values
+    if name not in values:
+        raise KeyError(f"{file}: has no figure {name}, but {', '.join(values)}")
+    return values[name]
