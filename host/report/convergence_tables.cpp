@@ -160,7 +160,7 @@ nlohmann::ordered_json convergence_figure_values(const Convergence& convergence)
         }
         rows.push_back(row);
     }
-    return {{"x_label", "largest error over phases and displacements / limit"},
+    return {{"x_label", "largest error over phases and displacements / limit, ± two standard errors"},
             {"causes", causes},
             {"rows", rows}};
 }

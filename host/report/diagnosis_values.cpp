@@ -93,7 +93,8 @@ Json how_far_json(const Diagnosis& diagnosis) {
     Json bars = Json::array();
     for (const auto& [words, colour, value, interval] : gap_bars(*diagnosis.shrink)) {
         Json bar{{"words", words}, {"colour", colour}, {"gap_left", value * 100}};
-        if (interval) bar["interval"] = {(*interval)[0] * 100, (*interval)[1] * 100};
+        if (interval && std::isfinite((*interval)[0]) && std::isfinite((*interval)[1]))
+            bar["interval"] = {(*interval)[0] * 100, (*interval)[1] * 100};
         bars.push_back(bar);
     }
     return {

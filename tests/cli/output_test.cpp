@@ -4,7 +4,6 @@
 #include "cli/cli_test.h"
 #include "core/errors.h"
 #include "core/output_file.h"
-#include "report/draw_figure.h"
 
 namespace mcdem {
 namespace {
@@ -116,22 +115,11 @@ TEST_F(OutputTest, FilesOfOthersAreKept) {
     expect_kept("3/OVITO.txt", {"export", "a", "--xyz", "--out", "3"});
     expect_kept("4/replica_00000.xyz", {"export", "a", "--xyz", "--out", "4"});
     expect_kept("5/replica_00000.contacts.dump", {"export", "a", "--xyz", "--out", "5"});
-    expect_kept("6/top_force.csv", {"figures", "a", "--out", "6"});
+    expect_kept("6/top_force.pdf", {"figures", "a", "--out", "6"});
     expect_kept("7/scaling.svg", {"figures", "a", "--out", "7"});
     expect_kept("8/mcdem-run.1", {"manual", "--out", "8"});
     expect_kept("9/calibration.json", {"calibrate", "small.toml", "--experiment", "a", "--setting",
                                        "elastic_sphere", "--out", "9"});
-}
-
-TEST_F(OutputTest, AnEditedScriptOfAPictureIsKept) {
-    expect_done(mcdem(run_words("a")));
-    expect_done(mcdem({"figures", "a", "--out", "pictures"}));
-    std::string script = text("pictures/top_force.gp");
-    script.replace(script.find("set border 3"), 12, "set border 9");
-    write("pictures/top_force.gp", script);
-    expect_bad_input(mcdem({"figures", "a", "--out", "pictures"}),
-                     "top_force.gp: is not the unedited script of a picture");
-    EXPECT_EQ(text("pictures/top_force.gp"), script);
 }
 
 TEST_F(OutputTest, ADiagnosisReplacesItsOwnFilesOnly) {
@@ -144,7 +132,7 @@ TEST_F(OutputTest, ADiagnosisReplacesItsOwnFilesOnly) {
         EXPECT_EQ(text(file), "of mine\n");
     };
     for (const char* name :
-         {"1/diagnosis.json", "2/diagnosis.html", "3/where.gp", "4/which.png", "5/how_far.csv"})
+         {"1/diagnosis.json", "2/diagnosis.html", "3/figures.json", "4/which.png", "5/how_far.pdf"})
         expect_kept(name);
 }
 

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "report/diagnosis_figures.h"
+#include "report/diagnosis_parts.h"
 #include "report/diagnosis_samples.h"
 
 namespace mcdem {

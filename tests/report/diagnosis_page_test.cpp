@@ -82,9 +82,6 @@ TEST(DiagnosisPage, hostile_texts_are_shown_and_never_run) {
     EXPECT_FALSE(contains(page, "<script>alert"));
     EXPECT_TRUE(contains(page, "&lt;script&gt;alert(1)&lt;/script&gt;&quot;&#39;&amp;`touch pwned1`"));
     EXPECT_TRUE(well_formed(page, folder.path));
-    draw_diagnosis(diagnosis, folder.path);
-    for (const auto& at : {folder.path, std::filesystem::current_path()})
-        for (const auto& name : names_in(at)) EXPECT_FALSE(contains(name, "pwned")) << name;
 }
 
 TEST(DiagnosisPage, every_verdict_has_a_page_of_its_own_even_without_charts) {
@@ -102,25 +99,16 @@ TEST(DiagnosisPage, every_verdict_has_a_page_of_its_own_even_without_charts) {
     EXPECT_EQ(headings.size(), samples::all_verdicts.size());
 }
 
-TEST(DiagnosisPage, is_one_file_and_its_pictures_are_others) {
+TEST(DiagnosisPage, is_one_file) {
     const TestFolder folder;
     const auto diagnosis = samples::diagnosis(Verdict::group);
     write_diagnosis_page(diagnosis, folder.path / "diagnosis.html");
     EXPECT_EQ(names_in(folder.path), std::set<std::string>{"diagnosis.html"});
-    const auto pictures = draw_diagnosis(diagnosis, folder.path);
-    ASSERT_EQ(pictures.size(), 3u);
-    for (const auto& picture : pictures) EXPECT_EQ(picture.extension(), ".png");
-    std::set<std::string> expected{"diagnosis.html"};
-    for (const char* name : {"where", "which", "how_far"})
-        for (const char* ending : {".png", ".svg", ".csv", ".gp"})
-            expected.insert(std::string(name) + ending);
-    EXPECT_EQ(names_in(folder.path), expected);
 }
 
 TEST(DiagnosisPage, needs_a_folder) {
     const auto diagnosis = samples::diagnosis(Verdict::no_gap);
     EXPECT_THROW(write_diagnosis_page(diagnosis, "/nonexistent/folder/page.html"), RunError);
-    EXPECT_THROW(draw_diagnosis(diagnosis, "/nonexistent/folder"), RunError);
 }
 
 }  // namespace

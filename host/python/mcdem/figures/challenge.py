@@ -1,6 +1,7 @@
 """How well diagnoses of withheld truths did."""
 import matplotlib.colors
 import matplotlib.patches
+import matplotlib.ticker
 import numpy as np
 
 from .style import GREY, key, new_axes, plain, styled
@@ -41,21 +42,24 @@ def confusion(source, axes=None):
 @styled
 def power(source, axes=None):
     """Part of the cases that is detected, by amplitude over the predicted detection limit, with its 95 % interval."""
-    axes = proportions(read(source, "power"), axes or new_axes())
+    axes = proportions(read(source, "power"), axes)
     axes.set_xscale("log")
+    axes.xaxis.set_major_locator(matplotlib.ticker.LogLocator(subs=(1, 2, 5)))
     axes.xaxis.set_major_formatter("{x:g}")
+    axes.xaxis.set_minor_formatter(matplotlib.ticker.NullFormatter())
     return axes
 
 
 @styled
 def confidence(source, axes=None):
     """Part of the verdicts that is right, by the probability that was stated with them, with its 95 % interval."""
-    axes = proportions(read(source, "confidence"), axes or new_axes())
+    axes = proportions(read(source, "confidence"), axes)
     axes.set_xlim(-0.02, 1.04)
     return axes
 
 
 def proportions(values, axes):
+    axes = axes or new_axes(height=70)
     measured, predicted = values["measured"], values["predicted"]
     part, interval = np.array(measured["part"]), np.array(measured["interval"]).T
     line, = axes.plot(predicted["x"], predicted["part"], color=GREY)
@@ -66,5 +70,5 @@ def proportions(values, axes):
     axes.set_ylim(-0.02, 1.04)
     axes.set_xlabel(values["x_label"])
     axes.set_ylabel(values["y_label"])
-    key(axes, [(points, "measured, 95 % interval, cases"), (line, values["words_predicted"])], loc="lower right")
+    key(axes, [(points, "measured, 95 % interval, cases"), (line, values["words_predicted"])])
     return axes

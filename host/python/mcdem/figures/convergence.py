@@ -1,5 +1,6 @@
 """What the numerics of a scene do to its observables."""
 import matplotlib.patches
+import numpy as np
 
 from .style import PAGE, key, new_axes, plain, styled
 from .values import read
@@ -18,7 +19,7 @@ def convergence(source, axes=None):
         for place, row in enumerate(rows):
             error = row["errors"][number]
             if error:
-                draw_error(axes, place - 0.3 + 0.6 * (number + 0.5) / len(causes), error, cause)
+                draw_error(axes, place - 0.4 + 0.8 * (number + 0.5) / len(causes), error, cause)
     axes.set_xlim(-EDGE, EDGE)
     axes.set_ylim(len(rows) - 0.5, -0.5)
     axes.set_yticks(range(len(rows)), [plain(row["words"]) for row in rows])
@@ -32,6 +33,6 @@ def convergence(source, axes=None):
 
 def draw_error(axes, y, error, cause):
     x, bar = error["over_limit"], 2 * (error["standard_error"] or 0)
-    shown = min(max(x, -EDGE + 0.05), EDGE - 0.05)
-    axes.errorbar(shown, y, xerr=[[min(bar, max(shown + bar - x, 0))], [min(bar, max(x + bar - shown, 0))]], color=cause["colour"],
-                  marker=cause["marker"], markersize=2, elinewidth=0.6, clip_on=False)
+    low, shown, high = np.clip((x - bar, x, x + bar), -EDGE + 0.05, EDGE - 0.05)
+    axes.plot((low, high), (y, y), color=cause["colour"], linewidth=0.7)
+    axes.plot(shown, y, color=cause["colour"], marker=cause["marker"], markersize=2)

@@ -1,17 +1,20 @@
 """Where simulation and experiment differ, which effects are consistent with it, how far the gap shrinks."""
+import functools
+
 import matplotlib.cm
 import matplotlib.colors
 import matplotlib.lines
 import matplotlib.patches
 import numpy as np
 
-from .style import COLUMN, INK, PAGE, figure_of, key, new_axes, plain, styled
+from .style import COLUMN, INK, PAGE, figure_of, is_crowded, key, new_axes, plain, styled
 from .values import read
 
 # Blue: the experiment lies below the simulation, orange: above.
 BELOW_ABOVE = matplotlib.colors.LinearSegmentedColormap.from_list("below_above", [
     (0, "#053B78"), (0.2, "#3F86BF"), (0.375, "#B9D5EA"), (0.5, "#F4F4F2"), (0.625, "#F9D3AE"), (0.8, "#E08530"), (1, "#8F3A04")])
 MOST_NUMBERS = 12  # columns in which numbers find room
+EXPERIMENT = {"color": INK, "linestyle": "", "marker": "o", "markersize": 2.2}
 
 
 @styled
@@ -68,18 +71,18 @@ def which(source, axes=None):
     values = read(source, "which")
     rows = values["rows"]
     if axes is None:
-        axes = new_axes(PAGE, 18 + 4.2 * len(rows), ncols=2, sharey=True, gridspec_kw={"width_ratios": (1, 0.8)})
+        axes = new_axes(PAGE, 18 + 4.2 * len(rows), ncols=2, sharey=True, gridspec_kw={"width_ratios": (1, 0.75)})
     gain, over_limit = axes
     largest = max([row["gain"] or 0 for row in rows])
     for place, row in enumerate(rows):
         colour = values["colour_named" if row["is_named"] else "colour_other"]
         draw_gain(gain, place, row, colour, largest)
-        if "over_limit" in row:
+        if row.get("over_limit") is not None:
             over_limit.errorbar(row["over_limit"], place, xerr=row["half_interval"], color=colour, marker="o", capsize=1.5,
                                 elinewidth=0.8, capthick=0.8)
         column(gain, -0.02, place, row["group"], "right")
         column(over_limit, 1.04, place, row["amplitude"], "left")
-        column(over_limit, 1.62, place, row["probability"], "right")
+        column(over_limit, 1.95, place, row["probability"], "right")
     over_limit.axvline(1, color=INK, linestyle=(0, (4, 2)), linewidth=0.7)
     for place in axes:
         place.axvline(0, color=INK, linewidth=0.5)
@@ -93,20 +96,23 @@ def which(source, axes=None):
     gain.set_ylim(len(rows) - 0.4, -0.6)
     gain.margins(x=0.1)
     for place, x, words, side in ((gain, -0.02, "group", "right"), (over_limit, 1.04, "amplitude", "left"),
-                                  (over_limit, 1.62, "probability", "right")):
+                                  (over_limit, 1.95, "probability", "right")):
         column(place, x, -1.1, words, side)
     return axes
 
 
 def draw_gain(axes, place, row, colour, largest):
-    """The number stands at the foot of its bar, beside one that is too short."""
-    if row["gain"] is not None:
-        axes.barh(place, row["gain"], 0.68, color=colour)
-        is_short = row["gain"] < 0.12 * largest
-        axes.annotate(f"{row['gain']:.1f}", (max(row["gain"], row["gain_simulated"] or 0, 0) if is_short else 0, place),
-                      (5 if is_short else 2, 0), textcoords="offset points", va="center", fontsize=6)
-    if row["gain_simulated"] is not None:
-        axes.plot(row["gain_simulated"], place, marker="D", markersize=3.5, markerfacecolor="none", color=INK, markeredgewidth=0.8)
+    """The number stands at the foot of its bar, beside one that is too short, and beside a diamond in its place."""
+    gain, simulated = row["gain"], row["gain_simulated"]
+    if gain is not None:
+        axes.barh(place, gain, 0.68, color=colour)
+        end = max(gain, 0) if gain < 0.12 * largest else None
+        if end is not None and simulated is not None and end < simulated < end + 0.15 * largest:
+            end = simulated
+        axes.annotate(f"{gain:.1f}", (end or 0, place), (2 if end is None else 5, 0), textcoords="offset points", va="center",
+                      fontsize=6)
+    if simulated is not None:
+        axes.plot(simulated, place, marker="D", markersize=3.5, markerfacecolor="none", color=INK, markeredgewidth=0.8)
 
 
 def column(axes, x, row, words, side):
@@ -120,9 +126,10 @@ def how_far(source, axes=None):
     placebo: the best of many made-up effects. `axes`: two, or one where the experiment has no top force."""
     values = read(source, "how_far")
     has_forces = bool(values["forces"])
+    below = 15 if has_forces and is_crowded(force_entries(values["forces"])) else 0
     if axes is None:
-        axes = new_axes(COLUMN, 50 * has_forces + 18 + 4.5 * len(values["bars"]), nrows=1 + has_forces, squeeze=False,
-                        gridspec_kw={"height_ratios": (50, 4.5 * len(values["bars"]) + 4)[-1 - has_forces:]})[:, 0]
+        axes = new_axes(COLUMN, (50 + below) * has_forces + 18 + 4.5 * len(values["bars"]), nrows=1 + has_forces, squeeze=False,
+                        gridspec_kw={"height_ratios": (50 + below, 4.5 * len(values["bars"]) + 4)[-1 - has_forces:]})[:, 0]
     if has_forces:
         draw_forces(axes[0], values["forces"])
     draw_bars(axes[-1], values)
@@ -130,23 +137,37 @@ def how_far(source, axes=None):
 
 
 def draw_forces(axes, values):
-    before, = axes.plot(values["x"], values["before"], color=values["colour_before"], linestyle=(0, (4, 2)))
-    after, = axes.plot(values["x"], values["after"], color=values["colour_after"])
-    experiment, = axes.plot(values["x"], values["experiment"], color=INK, linestyle="", marker="o", markersize=2.2)
-    entries = [(experiment, "experiment"), (before, values["words_before"]), (after, values["words_after"])]
     if "fitted" in values:
-        fitted = axes.axvspan(*values["fitted"], facecolor="#999999", alpha=0.18, linewidth=0)
-        entries.append((fitted, "fitted here"))
+        axes.axvspan(*values["fitted"], facecolor="#999999", alpha=0.18, linewidth=0)
+    axes.plot(values["x"], values["before"], **before_look(values))
+    axes.plot(values["x"], values["after"], color=values["colour_after"])
+    axes.plot(values["x"], values["experiment"], **EXPERIMENT)
     axes.set_xlabel(values["x_label"])
     axes.set_ylabel(values["y_label"])
     if min(*values["experiment"], *values["before"], *values["after"]) >= 0:
         axes.set_ylim(bottom=0)
-    key(axes, entries, loc="upper left")
+    entries = force_entries(values)
+    key(axes, entries, **({} if is_crowded(entries) else {"loc": "upper left"}))
+
+
+def before_look(values):
+    return {"color": values["colour_before"], "linestyle": (0, (4, 2))}
+
+
+def force_entries(values):
+    line = functools.partial(matplotlib.lines.Line2D, [], [])
+    entries = [(line(**EXPERIMENT), "experiment"), (line(**before_look(values)), values["words_before"]),
+               (line(color=values["colour_after"]), values["words_after"])]
+    if "fitted" in values:
+        entries.append((matplotlib.patches.Patch(facecolor="#999999", alpha=0.18, linewidth=0), "fitted here"))
+    return entries
 
 
 def draw_bars(axes, values):
     for place, bar in enumerate(values["bars"]):
         left = bar["gap_left"]
+        if left is None:
+            continue
         axes.barh(place, left, 0.6, color=bar["colour"])
         low, high = bar.get("interval", (left, left))
         if low < high:

@@ -15,7 +15,7 @@ PHASES = {"load": "loading", "unload": "unloading"}
 def top_force(source, axes=None):
     """Force on the plate. Solid lines: loading, dashed: unloading; points: the reference, full and open."""
     values = read(source, "top_force")
-    values["series"].sort(key=largest, reverse=True)  # the key from top to bottom as the curves end
+    values["series"].sort(key=lambda series: (series["is_reference"], -largest(series)))  # the key from top to bottom as the curves end
     shown = entries(values)
     axes = axes or keyed_axes(shown, is_crowded(shown))
     draw_curves(axes, values)
@@ -65,8 +65,9 @@ def scaling(source, axes=None):
     for series in values["series"]:
         for curve in series["curves"]:
             draw_points(axes, series, curve, markersize=2.2)
-        end = max(max(curve["x"]) for curve in series["curves"])
-        axes.plot([0, end], [0, series["slope"] * end], color=series["colour"], linewidth=0.7)
+        if "slope" in series:
+            end = max(max(curve["x"]) for curve in series["curves"])
+            axes.plot([0, end], [0, series["slope"] * end], color=series["colour"], linewidth=0.7)
     label(axes, values)
     axes.set_xlim(left=0)
     axes.set_ylim(bottom=0)

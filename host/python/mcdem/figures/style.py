@@ -42,7 +42,7 @@ def new_axes(width=COLUMN, height=62, **grid):
     """Axes on a new page of this size [mm]; `grid` as for matplotlib's `subplots`."""
     with matplotlib.rc_context(STYLE):
         figure, axes = plt.subplots(figsize=(width * MILLIMETRE, height * MILLIMETRE), **grid)
-        figure.set_constrained_layout_pads(w_pad=1 * MILLIMETRE, h_pad=1 * MILLIMETRE)
+        figure.get_layout_engine().set(w_pad=MILLIMETRE, h_pad=MILLIMETRE)
         return axes
 
 

@@ -1,0 +1,210 @@
+"""Figures of runs show what run.h5 says. run_figures_test.py PROGRAM"""
+import os
+import pathlib
+import shutil
+import tempfile
+import unittest
+
+import drawn
+import h5py
+import matplotlib.pyplot as plt
+import numpy as np
+from drawn import figures
+
+from report import page_truth as truth
+
+SCENE = """
+name = "small"
+[box]
+size_x = 0.06
+size_y = 0.06
+[packing]
+count = 30
+packing_fraction = 0.5
+[plate]
+start = 0.09
+end = 0.07
+[protocol]
+scans_per_stroke = 6
+scan_at_start = true
+[batch]
+replicas = 2
+[batch.vary]
+"contact.model" = ["independent", "mc_dem"]
+"""
+COLOURS = {"Independent contacts": "#0072B2", "MC-DEM": "#D55E00"}
+NAMES = ("top_force", "force_distribution", "coordination", "scaling")
+PROGRAM = ""
+
+
+def setUpModule():
+    global folder, mcdem, settings, experiment
+    folder = pathlib.Path(tempfile.mkdtemp())
+    unittest.addModuleCleanup(shutil.rmtree, folder)
+    mcdem = drawn.Program(PROGRAM, folder)
+    (folder / "scene.toml").write_text(SCENE)
+    mcdem("run", "scene.toml", "--out", "run")
+    mcdem("experiment", "from-run", "run", "--replica", "mc_dem #1", "--seed", "0", "--out", "reality")
+    mcdem("figures", "run", "--against", "reality", "--displacement", "0.011", "--out", "against")
+    with h5py.File(folder / "run/run.h5") as run:
+        settings = truth.settings_of(run)
+    experiment = truth.recording_of_experiment(folder / "reality")
+
+
+class Curves(unittest.TestCase):
+    def tearDown(self):
+        plt.close("all")
+
+    def expect_line(self, axes, name, linestyle, curve):
+        line, = drawn.lines_of(axes, COLOURS[name], linestyle)
+        np.testing.assert_allclose(line, (curve.x, curve.y), rtol=1e-6, atol=1e-12)
+
+    def expect_points(self, axes, colour, curves):
+        for found, curve in zip(drawn.lines_of(axes, colour, "None"), curves, strict=True):
+            np.testing.assert_allclose(found, (curve.x, curve.y), rtol=1e-6, atol=1e-12)
+
+    def test_top_force(self):
+        axes = figures.top_force(folder / "run")
+        for name, recordings in settings.items():
+            for phase, linestyle in ((0, "-"), (1, "--")):
+                self.expect_line(axes, name, linestyle, truth.curve(recordings, lambda r: r.top_force, phase))
+        self.assertEqual(drawn.words_of(axes), ["MC-DEM", "Independent contacts", "loading", "unloading", "± standard error"])
+        self.assertEqual((axes.get_xlabel(), axes.get_ylabel()), ("plate displacement [mm]", "top force [N]"))
+
+    def test_bands_are_one_standard_error(self):
+        axes = figures.top_force(folder / "run")
+        curve = truth.curve(settings["MC-DEM"], lambda r: r.top_force, 0)
+        corners = drawn.bands_of(axes, COLOURS["MC-DEM"])[0]
+        for x, y, error in zip(curve.x, curve.y, curve.error):
+            at_x = corners[np.isclose(corners[:, 0], x), 1]
+            self.assertAlmostEqual(at_x.max(), y + error, places=6)
+            self.assertAlmostEqual(at_x.min(), max(y - error, y / 3), places=6)
+
+    def test_force_distribution(self):
+        axes = figures.force_distribution(folder / "against")
+        densities = truth.distributions({**settings, "reality": [experiment]}, 11)
+        for name in settings:
+            self.expect_line(axes, name, "-", densities[name])
+        self.expect_points(axes, "#000000", [densities["reality"]])
+        self.assertEqual(axes.get_yscale(), "log")
+
+    def test_coordination(self):
+        axes = figures.coordination(folder / "run")
+        for name, recordings in settings.items():
+            for phase, linestyle in ((0, "-"), (1, "--")):
+                self.expect_line(axes, name, linestyle, truth.curve(recordings, lambda r: truth.contacts_per_grain(r, 0), phase))
+
+    def test_scaling(self):
+        axes = figures.scaling(folder / "run")
+        for name, recordings in settings.items():
+            curves = [truth.scaling_curve(recordings, phase) for phase in (0, 1)]
+            self.expect_points(axes, COLOURS[name], curves)
+            (_, end), (_, force) = drawn.lines_of(axes, COLOURS[name], "-")[0]
+            slope = truth.slope_through_zero(curves)
+            self.assertAlmostEqual(force / end * 1e3 / slope, 1, places=6)
+            self.assertIn(f"{name}, {slope:.0f} /m", drawn.words_of(axes))
+            _, low, high = drawn.bars_of(axes, COLOURS[name])
+            errors = np.concatenate([curve.error for curve in curves])
+            np.testing.assert_allclose(high - low, 2 * errors, rtol=1e-6, atol=1e-12)
+
+    def test_a_reference_is_points(self):
+        axes = figures.top_force(folder / "against")
+        self.expect_points(axes, "#000000", [truth.curve([experiment], lambda r: r.top_force, phase) for phase in (0, 1)])
+        words = drawn.words_of(axes)
+        self.assertEqual(words[2:5], ["small, mc_dem #1", "loading (points: full)", "unloading (points: open)"])
+        self.assertRegex(words[0], r"^MC-DEM, Rtop \d\.\d\d$")
+
+    def test_axes_of_the_user(self):
+        _, mine = plt.subplots()
+        self.assertIs(figures.top_force(folder / "run", mine), mine)
+        self.assertTrue(mine.lines)
+
+    def test_any_label_is_shown_as_it_stands(self):
+        values = (folder / "run/figures.json").read_text()
+        hostile = r"_$\\frac{1}$ <b>&"
+        (folder / "figures.json").write_text(values.replace('"words": "MC-DEM"', f'"words": "{hostile}"'))
+        axes = figures.top_force(folder)
+        figures.save(axes, folder / "hostile.svg")
+        self.assertIn(r" _$\frac{1}$ <b>&", drawn.texts_of_svg(folder / "hostile.svg"))
+
+    def test_a_crowded_key_hides_no_curve(self):
+        values = (folder / "run/figures.json").read_text()
+        (folder / "figures.json").write_text(values.replace('"words": "MC-DEM"', f'"words": "{"long " * 8}"'))
+        axes = figures.top_force(folder)
+        axes.figure.canvas.draw()
+        self.assertLess(axes.get_legend().get_window_extent().y1, axes.get_window_extent().y0)
+
+
+class Files(unittest.TestCase):
+    def test_every_command_leaves_three_kinds(self):
+        for made in ("run", "against"):
+            files = {file.name for file in (folder / made).iterdir() if file.suffix[1:] in drawn.KINDS}
+            self.assertEqual(files, {f"{name}.{kind}" for name in NAMES for kind in drawn.KINDS})
+
+    def test_print_size(self):
+        for name in NAMES:
+            png = plt.imread(folder / f"run/{name}.png")
+            self.assertAlmostEqual(png.shape[1] / 300 / drawn.MILLIMETRE, 86, delta=0.2)
+            self.assertIn(b"/MediaBox [ 0 0 243.7", (folder / f"run/{name}.pdf").read_bytes())
+
+    def test_text_is_text_and_there_is_no_title(self):
+        texts = drawn.texts_of_svg(folder / "run/top_force.svg")
+        for words in ("plate displacement [mm]", "top force [N]", "MC-DEM", "loading"):
+            self.assertIn(words, texts)
+        self.assertNotIn("Force on the plate", texts)
+
+    def test_again_gives_the_same_bytes(self):
+        before = {file: file.read_bytes() for file in (folder / "against").iterdir()}
+        mcdem("figures", "run", "--against", "reality", "--displacement", "0.011", "--out", "against")
+        self.assertEqual(before, {file: file.read_bytes() for file in (folder / "against").iterdir()})
+
+    def test_a_failure_leaves_nothing(self):
+        axes = figures.top_force(folder / "run")
+        with self.assertRaises(ValueError):
+            figures.save(axes, folder / "away.exe")
+        self.assertEqual(list(folder.glob("away*")), [])
+
+    def test_what_is_no_figures_json_is_told(self):
+        (folder / "other").mkdir()
+        with self.assertRaisesRegex(FileNotFoundError, "mcdem figures"):
+            figures.top_force(folder / "other")
+        (folder / "other/figures.json").write_text("{}")
+        with self.assertRaisesRegex(ValueError, "must be a figures.json"):
+            figures.top_force(folder / "other")
+        with self.assertRaisesRegex(KeyError, "no figure where, but top_force"):
+            figures.where(folder / "run")
+
+
+class WithoutMatplotlib(unittest.TestCase):
+    """A run succeeds and says once what to install; a command whose only purpose is a figure fails."""
+    @classmethod
+    def setUpClass(cls):
+        bare = folder / "bare"
+        bare.mkdir()
+        (bare / "matplotlib.py").write_text("raise ModuleNotFoundError(\"No module named 'matplotlib'\", name='matplotlib')")
+        cls.environment = {**os.environ, "PYTHONPATH": str(bare)}
+
+    def test_run(self):
+        done = mcdem.run("run", "scene.toml", "--out", "run_bare", **self.environment)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(done.stderr.count("matplotlib"), 2, done.stderr)  # the module and its package, in one line
+        self.assertRegex(done.stderr, "matplotlib.* install python3-matplotlib")
+        self.assertNotIn("png", done.stdout)
+        self.assertTrue((folder / "run_bare/figures.json").exists())
+
+    def test_figures(self):
+        done = mcdem.run("figures", "run", "--out", "figures_bare", **self.environment)
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertIn("install python3-matplotlib", done.stderr)
+
+    def test_no_python(self):
+        environment = {**os.environ, "MCDEM_PYTHON": "/nowhere/python3"}
+        done = mcdem.run("run", "scene.toml", "--out", "run_alone", **environment)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("/nowhere/python3: cannot be started", done.stderr)
+        done = mcdem.run("figures", "run", "--out", "figures_bare", **environment)
+        self.assertEqual(done.returncode, 1, done.stderr)
+
+
+if __name__ == "__main__":
+    drawn.main()
