@@ -73,20 +73,20 @@ void MovingPlate::make_steps(int steps, double plate_velocity, double settle_dra
     const int replicas = engine_.replicas();
     std::vector<int> left(replicas, steps);
     while (std::ranges::any_of(left, [](int n) { return n > 0; })) {
-        std::vector<Stretch> stretches(replicas);
+        std::vector<StepInterval> intervals(replicas);
         for (int r = 0; r < replicas; ++r)
-            stretches[r] = {std::min(left[r], engine_.longest_stretch(r, plate_velocity)), plate_z_[r],
+            intervals[r] = {std::min(left[r], engine_.max_interval(r, plate_velocity)), plate_z_[r],
                             plate_velocity, settle_drag};
-        const auto results = engine_.advance(stretches);
+        const auto results = engine_.advance(intervals);
         for (int r = 0; r < replicas; ++r) {
-            if (stretches[r].steps == 0) continue;
+            if (intervals[r].steps == 0) continue;
             if (results[r].status)
                 throw RunError(fmt::format("replica {} stopped with status {} at grain {}", r,
                                            results[r].status, results[r].failed_grain));
             left[r] -= results[r].steps;
             plate_z_[r] += plate_velocity * engine_.time_step(r) * results[r].steps;
         }
-        if (stretches[0].steps > 0) top_force_ = results[0].wall_force[static_cast<int>(Wall::plate)].z();
+        if (intervals[0].steps > 0) top_force_ = results[0].wall_force[static_cast<int>(Wall::plate)].z();
     }
 }
 

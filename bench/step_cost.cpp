@@ -12,7 +12,7 @@ constexpr double see_neighbours = 3 + 5 + 1 + inverse_root + 3 + 3;
 constexpr double hertz = 2 + 2 + 2 + 2 + 2;  // gap, delta, a, S, F
 constexpr double reduced = 12;               // R* and m*
 constexpr double damping = 5 + 5;            // v_n, F_d
-constexpr double own_bulge = 4;
+constexpr double own_displacement = 4;
 constexpr double contact_point = 5 + 1;
 constexpr double sliding = 9 + 18 + 2;  // both spins, v_t, limit
 constexpr double saturated = 6 + inverse_root + 1 + 1 + 3;
@@ -51,16 +51,17 @@ StepCost step_cost(ContactModel model, FrictionLaw friction, Precision precision
     const bool springs = friction == FrictionLaw::mindlin;
 
     // Reals: position, velocity and spin come and go (4 each), the listed position comes. Per slot, the
-    // predicted bulge and those of two and four steps before come, the next prediction and this step's bulge
-    // go; the three spring components come and go. Integers: partner, and mirror where surfaces move. What
-    // neighbours hold is read by themselves anyway and counts as cached.
+    // predicted displacement and those of two and four steps before come, the next prediction and this step's
+    // displacement go; the three spring components come and go. Integers: partner, and partner slot where
+    // surfaces move. What neighbours hold is read by themselves anyway and counts as cached.
     const double reals = 2 * 3 * 4 + 4 + slots * ((bulging ? 5 : 0) + (springs ? 6 : 0));
     const double integers = slots * (bulging ? 2 : 1);
 
     const double friction_flops = springs ? mindlin : saturated;
     const double self = model == ContactModel::elastic_sphere ? self_term : 0;
-    const double slot = see_neighbours + hertz + reduced + damping + own_bulge + contact_point + sliding +
-                        friction_flops + force_and_torque + checks + self + (bulging ? extrapolation : 0);
+    const double slot = see_neighbours + hertz + reduced + damping + own_displacement + contact_point +
+                        sliding + friction_flops + force_and_torque + checks + self +
+                        (bulging ? extrapolation : 0);
     // Each touching contact displaces the surface at every slot.
     return {reals * real + integers * 4,
             slots * (slot + contacts * surface_term(model)) + reductions + integration};

@@ -10,7 +10,7 @@ struct StepCost {
 };
 
 /// `contacts`: Z, contacts a grain. For Poisson ratio 1/2, where two terms of Eq. 1 vanish. The neighbour
-/// list (made anew every few dozen steps) and measuring (once a stretch) are left out.
+/// list (made anew every few dozen steps) and measuring (once an interval) are left out.
 StepCost step_cost(ContactModel model, FrictionLaw friction, Precision precision, double contacts);
 
 }  // namespace mcdem::bench

@@ -18,12 +18,12 @@ kernel void empty_cells(global const Replica* restrict replicas, global const in
 }
 
 kernel void fill_cells(global const Replica* restrict replicas, global const int* restrict blocks,
-                       global const int* restrict replica_of_block, global const real4* restrict position,
+                       global const int* restrict replica_of_block, global const Motion* restrict motion,
                        global volatile int* restrict cell_head, global int* restrict cell_next) {
     const int block = blocks[get_group_id(0)];
     const int grain = block * BLOCK + get_local_id(0);
     global const Replica* restrict replica = replicas + replica_of_block[block];
-    const real4 own = position[grain];
+    const real4 own = motion[grain].position;
     if (!(own.w > R(0))) return;
     const int cell = cell_index(replica, cell_along(own.x, replica->cell_size, replica->span_x),
                                 cell_along(own.y, replica->cell_size, replica->span_y),

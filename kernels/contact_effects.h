@@ -1,17 +1,17 @@
 /* What goes beyond the plain contact, effect by effect, each off at its default. Every expression is the same
    seen from both sides, to the last bit. */
 
-/* Grains of unequal stiffness, E_i = E / (1 + softness_i):
-   1/E* = (1 - nu^2)/E_i + (1 - nu^2)/E_j, the shear modulus likewise; a wall's softness is zero. */
-INLINE lanes scattered_modulus(lanes modulus, real compliance, lanes softness) {
-    return modulus / (R(1) + modulus * compliance * softness);
+/* Grains of unequal stiffness, E_i = E / (1 + excess_compliance_i):
+   1/E* = (1 - nu^2)/E_i + (1 - nu^2)/E_j, the shear modulus likewise; a wall's excess compliance is zero. */
+INLINE lanes scattered_modulus(lanes modulus, real compliance, lanes excess_compliance) {
+    return modulus / (R(1) + modulus * compliance * excess_compliance);
 }
 
-/* The bulges as far as they count: only `part` of them where the grains by themselves do not overlap, all of
+/* The displacements as far as they count: only `part` of them where the grains by themselves do not overlap, all of
    them from where the geometric overlap is as large as they are. */
-INLINE lanes counted_bulges(lanes gap, lanes bulges, real part) {
-    const lanes share = clamp(-gap / fmax(fabs(bulges), (lanes)(R(1e-30))), (lanes)(R(0)), (lanes)(R(1)));
-    return bulges * (part + (R(1) - part) * share);
+INLINE lanes counted_displacements(lanes gap, lanes outward, real part) {
+    const lanes share = clamp(-gap / fmax(fabs(outward), (lanes)(R(1e-30))), (lanes)(R(0)), (lanes)(R(1)));
+    return outward * (part + (R(1) - part) * share);
 }
 
 /* A part of the deepest overlap stays: d_p = p d_max. Unloading follows F(d_max) ((d - d_p)/(d_max - d_p))^(3/2)
@@ -38,11 +38,11 @@ typedef struct { lanes force, range; } Attraction;
 INLINE Attraction attraction(global const Replica* restrict replica, lanes approach, lanes reduced_radius, lanes reduced_mass,
                              mask occupied) {
     const real dt = replica->time_step;
-    const lanes most = replica->adhesion * reduced_radius;
-    const lanes resolved = fmax(R(0.01) * reduced_radius, R(20) * dt * dt * most / reduced_mass);
+    const lanes pull_off_force = replica->adhesion * reduced_radius;
+    const lanes resolved = fmax(R(0.01) * reduced_radius, R(20) * dt * dt * pull_off_force / reduced_mass);
     Attraction a;
     a.range = fmax(fmin(resolved, (lanes)(replica->probe_gap)), (lanes)(R(1e-30)));
-    a.force = WHERE(occupied, most * clamp(R(1) + approach / a.range, (lanes)(R(0)), (lanes)(R(1))), R(0));
+    a.force = WHERE(occupied, pull_off_force * clamp(R(1) + approach / a.range, (lanes)(R(0)), (lanes)(R(1))), R(0));
     return a;
 }
 
@@ -55,12 +55,12 @@ INLINE lanes stiffened(global const Replica* restrict replica, lanes elastic, la
 
 /* What the springs of a contact store beyond 2/5 F delta, nothing of what has relaxed or stays behind for good [J]. The
    integral of F over the overlap is exact for stiffening; for softening a rational function meets it within 3 %. */
-INLINE lanes effect_energy(global const Replica* restrict replica, lanes elastic, lanes held, lanes overlap,
+INLINE lanes effect_energy(global const Replica* restrict replica, lanes elastic, lanes relaxed_force, lanes overlap,
                            lanes reduced_radius) {
     const lanes change = fabs(replica->stiffening) * overlap / reduced_radius;
     const real slower = replica->stiffening > R(0) ? R(1) : R(3) / R(7);
     const lanes loading = elastic * overlap * (R(0.4) + change * R(2) / R(7)) / (R(1) + change * slower);
-    const lanes lasting = (R(1) - replica->plasticity) * (loading - R(0.4) * (elastic - held) * overlap);
+    const lanes lasting = (R(1) - replica->plasticity) * (loading - R(0.4) * (elastic - relaxed_force) * overlap);
     return lasting - R(0.4) * elastic * overlap;
 }
 
@@ -72,16 +72,16 @@ INLINE lanes attraction_energy(Attraction a, lanes overlap, lanes approach) {
 
 /* Couple of constant size mu_r R* F_n against the relative angular velocity, rolling and twisting alike (Zhou et al.
    1999; model A of Ai et al. 2011). It fades to a viscous one as saturated friction does. */
-INLINE lanes3 rolling_couple(global const Replica* restrict replica, lanes push, real radius, lanes radius_there, mask wall,
-                             lanes reduced_radius, real3 spin, lanes3 spin_there) {
-    const real fifth = radius * radius * radius * radius * radius;
-    const lanes fifth_there = radius_there * radius_there * radius_there * radius_there * radius_there;
+INLINE lanes3 rolling_couple(Grain at, Neighbours seen, lanes normal_force, lanes reduced_radius) {
+    global const Replica* restrict replica = at.replica;
+    const real r = at.now.position.w, fifth = r * r * r * r * r;
+    const lanes r_there = seen.radius, fifth_there = r_there * r_there * r_there * r_there * r_there;
     const lanes reduced_inertia = replica->density * (R(8) / R(15)) * PI *
-                                  WHERE(wall, fifth, R(1) / (R(1) / fifth + R(1) / fifth_there));
-    const lanes3 relative = {spin_there.x - spin.x, spin_there.y - spin.y, spin_there.z - spin.z};
+                                  WHERE(seen.wall, fifth, R(1) / (R(1) / fifth + R(1) / fifth_there));
+    const lanes3 relative = subtract3(seen.spin, same3(at.now.angular_velocity.xyz));
     const lanes slow = replica->sliding_velocity / reduced_radius;
-    const lanes limit = replica->rolling_resistance * reduced_radius * fmax(push, (lanes)(R(0)));
+    const lanes limit = replica->rolling_resistance * reduced_radius * fmax(normal_force, (lanes)(R(0)));
     const lanes viscosity =
         fmin(limit / sqrt(dot3(relative, relative) + slow * slow), reduced_inertia * (R(0.1) / replica->time_step));
-    return (lanes3){viscosity * relative.x, viscosity * relative.y, viscosity * relative.z};
+    return scale3(viscosity, relative);
 }

@@ -3,11 +3,11 @@
 
 typedef struct {
     mask touching;
-    lanes approach;   /* delta, corrected by both bulges; negative where there is a gap [m] */
+    lanes approach;   /* delta, corrected by both displacements; negative where there is a gap [m] */
     lanes overlap;    /* delta where touching, else zero [m] */
     lanes radius;     /* a = sqrt(R* delta), of the contact [m] */
     lanes elastic;    /* Hertz force, as stiffened: what displaces surfaces [N] */
-    lanes bulge;      /* of this grain's surface there, all contacts together [m] */
+    lanes displacement; /* b of this grain's surface there, all contacts together [m] */
     lanes arm;        /* from the centre to the contact point, or to the probed surface point [m] */
     lanes3 force;     /* on this grain [N] */
     lanes3 tangential;/* its friction part [N] */
@@ -33,38 +33,40 @@ INLINE Reduced reduced(global const Replica* restrict replica, real radius, lane
     return r;
 }
 
-/* A grain's own side of its contacts. */
-typedef struct { real radius, softness; real3 spin; } OwnSide;
-
 /* What the elastic part of a contact leaves for the rest. */
 typedef struct {
     Reduced pair;
-    lanes stiffness;    /* 2 E* a [N/m] */
-    lanes held;         /* elastic force less what has relaxed [N] */
-    lanes bulge_there;  /* of the other surface [m] */
+    lanes stiffness;           /* 2 E* a [N/m] */
+    lanes relaxed_force;       /* elastic force less what has relaxed [N] */
+    lanes displacement_there;  /* of the other surface [m] */
 } Pressed;
 
+/* b of both surfaces at a row's contacts [m]. */
+typedef struct { lanes here, there; } Displaced;
+
 /* Overlap and elastic force. `effects` are the replica's, or a plain 0 that leaves them out when this is compiled. */
-INLINE Pressed press(global const Replica* restrict replica, const int effects, OwnSide own, Neighbours seen, lanes bulge,
-                     lanes bulge_there, Memory* restrict memory, Contacts* restrict c) {
+INLINE Pressed press(Grain at, const int effects, Neighbours seen, Displaced b, Memory* restrict memory, Contacts* restrict c) {
+    global const Replica* restrict replica = at.replica;
+    const real radius = at.now.position.w, excess_compliance = at.now.velocity.w;
     Pressed p;
-    const lanes gap = seen.distance - (own.radius + seen.radius);
-    p.pair = reduced(replica, own.radius, seen.radius, seen.wall);
+    const lanes gap = seen.distance - (radius + seen.radius);
+    p.pair = reduced(replica, radius, seen.radius, seen.wall);
     lanes modulus = WHERE(seen.wall, replica->modulus_wall, replica->modulus_grain);
     if (effects & EFFECT_MODULUS_SCATTER)
-        modulus = scattered_modulus(modulus, replica->grain_compliance, own.softness + seen.softness);
-    lanes bulges = bulge + bulge_there;
-    if (effects & EFFECT_BULGE_CONTACTS) bulges = counted_bulges(gap, bulges, replica->bulge_contacts);
-    c->approach = bulges - gap;
+        modulus = scattered_modulus(modulus, replica->grain_compliance, excess_compliance + seen.excess_compliance);
+    lanes outward = b.here + b.there;
+    if (effects & EFFECT_BULGE_CONTACTS) outward = counted_displacements(gap, outward, replica->bulge_contacts);
+    c->approach = outward - gap;
     if (effects & EFFECT_PLASTICITY)
         c->approach = plastic_approach(c->approach, replica->plasticity, seen.occupied, &memory->deepest);
     c->touching = AS_MASK(c->approach > R(0)) & seen.occupied;
     c->overlap = WHERE(c->touching, c->approach, R(0));
     SelfCompliance self = {R(0), R(0)};
     if (replica->finite_contacts) {
-        const Softer softer = {effects ? R(1) + own.softness : R(1), effects ? R(1) + seen.softness : (lanes)(R(1))};
+        const ComplianceRatio ratio = {effects ? R(1) + excess_compliance : R(1),
+                                       effects ? R(1) + seen.excess_compliance : (lanes)(R(1))};
         const SelfConsistent solved =
-            self_consistent(replica, softer, c->overlap, p.pair.radius, modulus, own.radius, seen.radius, seen.wall);
+            self_consistent(replica, ratio, c->overlap, p.pair.radius, modulus, radius, seen.radius, seen.wall);
         c->overlap = solved.overlap;
         self = solved.compliance;
         c->approach = WHERE(c->touching, c->overlap, c->approach);
@@ -74,69 +76,63 @@ INLINE Pressed press(global const Replica* restrict replica, const int effects, 
     c->radius = sqrt(p.pair.radius * c->overlap);
     p.stiffness = R(2) * modulus * c->radius;
     c->elastic = (R(2) / R(3)) * p.stiffness * c->overlap;
-    c->bulge = bulge + self.here * c->elastic;
-    p.bulge_there = bulge_there + self.there * c->elastic;
+    c->displacement = b.here + self.here * c->elastic;
+    p.displacement_there = b.there + self.there * c->elastic;
     if (effects & EFFECT_STIFFENING) c->elastic = stiffened(replica, c->elastic, c->overlap, p.pair.radius);
-    p.held = c->elastic;
+    p.relaxed_force = c->elastic;
     if (effects & EFFECT_VISCOELASTICITY)
-        p.held = relaxing_force(c->elastic, replica->viscoelasticity, replica->relaxing_share, &memory->relaxed);
+        p.relaxed_force = relaxing_force(c->elastic, replica->viscoelasticity, replica->relaxing_share, &memory->relaxed);
     return p;
 }
 
 /* Stiffness of a tangential spring, 8 G* a. */
-INLINE lanes shear_stiffness(global const Replica* restrict replica, const int effects, mask wall, lanes contact_radius,
-                             lanes softness) {
-    lanes modulus = WHERE(wall, replica->shear_wall, replica->shear_grain);
-    if (effects & EFFECT_MODULUS_SCATTER) modulus = scattered_modulus(modulus, replica->shear_compliance, softness);
+INLINE lanes shear_stiffness(Grain at, const int effects, Neighbours seen, lanes contact_radius) {
+    global const Replica* restrict replica = at.replica;
+    lanes modulus = WHERE(seen.wall, replica->shear_wall, replica->shear_grain);
+    if (effects & EFFECT_MODULUS_SCATTER)
+        modulus = scattered_modulus(modulus, replica->shear_compliance, at.now.velocity.w + seen.excess_compliance);
     return R(8) * modulus * contact_radius;
 }
 
-INLINE Contacts contact_forces(global const Replica* restrict replica, const int effects, OwnSide own, Neighbours seen,
-                               lanes bulge, lanes bulge_there, real elapsed, Memory* restrict memory) {
+/* Velocity of the other surface past this one at the contact point, without what separates them. */
+INLINE lanes3 sliding_velocity(Grain at, Neighbours seen, lanes arm, lanes separating) {
+    const lanes3 turn = add_scaled3(scale3(seen.distance - arm, seen.spin), arm, same3(at.now.angular_velocity.xyz));
+    return subtract3(add_scaled3(seen.velocity, -separating, seen.normal), cross3(turn, seen.normal));
+}
+
+INLINE Contacts contact_forces(Grain at, const int effects, Neighbours seen, Displaced b, real elapsed, Memory* restrict memory) {
+    global const Replica* restrict replica = at.replica;
+    const real radius = at.now.position.w;
     Contacts c;
-    const Pressed pressed = press(replica, effects, own, seen, bulge, bulge_there, memory, &c);
+    const Pressed pressed = press(at, effects, seen, b, memory, &c);
     const Reduced pair = pressed.pair;
     const lanes damping = WHERE(seen.wall, replica->damping_wall, replica->damping_grain);
     const lanes separating = dot3(seen.velocity, seen.normal);
-    const lanes push = pressed.held - damping * sqrt(pressed.stiffness * pair.mass) * separating;
+    const lanes normal_force = pressed.relaxed_force - damping * sqrt(pressed.stiffness * pair.mass) * separating;
 
     /* The contact point lies midway between the two displaced surfaces [paper]. */
-    const lanes midway = R(0.5) * (seen.distance + (own.radius + c.bulge) - (seen.radius + pressed.bulge_there));
-    const lanes at_wall = seen.distance;
-    c.arm = WHERE(c.touching, WHERE(seen.wall, at_wall, midway), own.radius + c.bulge);
-    const lanes arm_there = seen.distance - c.arm;
-    const lanes3 turn = {c.arm * own.spin.x + arm_there * seen.spin.x, c.arm * own.spin.y + arm_there * seen.spin.y,
-                         c.arm * own.spin.z + arm_there * seen.spin.z};
-    const lanes3 n = seen.normal;
-    const lanes3 sliding = {seen.velocity.x - separating * n.x - (turn.y * n.z - turn.z * n.y),
-                            seen.velocity.y - separating * n.y - (turn.z * n.x - turn.x * n.z),
-                            seen.velocity.z - separating * n.z - (turn.x * n.y - turn.y * n.x)};
-    const lanes limit = WHERE(seen.wall, replica->friction_wall, replica->friction_grain) * fmax(push, (lanes)(R(0)));
-    lanes shear = R(0);
-    if (replica->mindlin) shear = shear_stiffness(replica, effects, seen.wall, c.radius, own.softness + seen.softness);
-    c.tangential = friction(replica, effects, limit, sliding, n, shear, damping, pair.mass, elapsed, c.touching, &memory->spring);
-    if (effects & EFFECT_ROLLING_RESISTANCE)
-        c.couple = rolling_couple(replica, push, own.radius, seen.radius, seen.wall, pair.radius, own.spin, seen.spin);
-    lanes normal = push;
-    if (effects) c.energy = effect_energy(replica, c.elastic, pressed.held, c.overlap, pair.radius);
+    const lanes midway = R(0.5) * (seen.distance + (radius + c.displacement) - (seen.radius + pressed.displacement_there));
+    c.arm = WHERE(c.touching, WHERE(seen.wall, seen.distance, midway), radius + c.displacement);
+
+    const lanes friction_coefficient = WHERE(seen.wall, replica->friction_wall, replica->friction_grain);
+    FrictionTerms terms = {friction_coefficient * fmax(normal_force, (lanes)(R(0))), R(0), damping, pair.mass, c.touching};
+    if (replica->mindlin) terms.stiffness = shear_stiffness(at, effects, seen, c.radius);
+    c.tangential = friction(replica, effects, terms, sliding_velocity(at, seen, c.arm, separating), seen.normal, elapsed,
+                            &memory->spring);
+    if (effects & EFFECT_ROLLING_RESISTANCE) c.couple = rolling_couple(at, seen, normal_force, pair.radius);
+    lanes pressing = normal_force;
+    if (effects) c.energy = effect_energy(replica, c.elastic, pressed.relaxed_force, c.overlap, pair.radius);
     if (effects & EFFECT_ADHESION) {
         const Attraction pull = attraction(replica, c.approach, pair.radius, pair.mass, seen.occupied);
-        normal -= pull.force;
+        pressing -= pull.force;
         c.energy += attraction_energy(pull, c.overlap, c.approach);
     }
-    c.force = (lanes3){c.tangential.x - normal * n.x, c.tangential.y - normal * n.y, c.tangential.z - normal * n.z};
+    c.force = add_scaled3(c.tangential, -pressing, seen.normal);
     return c;
 }
 
 /* Adds a row's forces and torques r_i x F_t, lane by lane. */
-INLINE void add_contacts(Contacts c, lanes3 n, lanes3* restrict force, lanes3* restrict torque) {
-    const lanes3 t = c.tangential;
-    force->x += c.force.x; force->y += c.force.y; force->z += c.force.z;
-    torque->x += c.arm * (n.y * t.z - n.z * t.y);
-    torque->y += c.arm * (n.z * t.x - n.x * t.z);
-    torque->z += c.arm * (n.x * t.y - n.y * t.x);
-}
-
-INLINE void add_couples(Contacts c, lanes3* restrict torque) {
-    torque->x += c.couple.x; torque->y += c.couple.y; torque->z += c.couple.z;
+INLINE void add_contacts(Contacts c, lanes3 normal, lanes3* restrict force, lanes3* restrict torque) {
+    *force = add3(*force, c.force);
+    *torque = add_scaled3(*torque, c.arm, cross3(normal, c.tangential));
 }

@@ -1,11 +1,10 @@
 /* Which grain a work-item works for, and sums over the slots of a grain, on both kinds of device. Opens
-   every kernel that treats contacts side by side; declares block, grain, row, table and scratch. */
+   every kernel that treats contacts side by side; declares block, index, table and scratch. */
 #if LANES == 16
 #define IS_LEADER true
 #define GRAIN_OF_WORK_ITEM                                   \
     const int block = blocks[get_group_id(0)];               \
-    const int grain = block * BLOCK + (int)get_local_id(0);  \
-    const size_t row = (size_t)grain * SLOTS;                \
+    const int index = block * BLOCK + (int)get_local_id(0);  \
     private ContactTable own_table;                          \
     private real scratch[1];                                 \
     EXCHANGE ContactTable* table = &own_table;
@@ -13,8 +12,7 @@
 #define IS_LEADER (get_local_id(0) % SLOTS == 0)
 #define GRAIN_OF_WORK_ITEM                                          \
     const int block = blocks[get_group_id(0)];                      \
-    const int grain = block * BLOCK + (int)(get_local_id(0) / SLOTS); \
-    const size_t row = (size_t)grain * SLOTS;                       \
+    const int index = block * BLOCK + (int)(get_local_id(0) / SLOTS); \
     local ContactTable tables[BLOCK];                               \
     local real scratches[BLOCK * SLOTS];                            \
     EXCHANGE ContactTable* table = &tables[get_local_id(0) / SLOTS]; \
@@ -65,24 +63,21 @@ INLINE real4 sum_lanes(lanes a, lanes b, lanes c, lanes d, EXCHANGE real* scratc
 #endif
 
 /* The surface displacements of both sides of a row's contacts, predicted for this step. */
-INLINE void load_bulges(global const Replica* restrict replica, size_t row, int v,
-                               global const int* restrict mirror, global const real* restrict bulge,
-                               lanes* here, lanes* there) {
-    *here = R(0);
-    *there = R(0);
-    if (replica->surface == SURFACE_RIGID) return;
-    *here = LOAD_LANES(bulge + row, v);
-    *there = gather(bulge, LOAD_LANES(mirror + row, v));
+INLINE Displaced load_displacements(Grain at, Batch batch, int v) {
+    Displaced b = {R(0), R(0)};
+    if (at.replica->surface == SURFACE_RIGID) return b;
+    b.here = LOAD_LANES(batch.displacement + at.row, v);
+    b.there = gather(batch.displacement, LOAD_LANES(batch.partner_slot + at.row, v));
+    return b;
 }
 
-/* Calls for what load_bulges will gather for the next grain: the mirrors lie scattered over the rows of its neighbours, where no
-   processor sees them coming. On a GPU other work-items fill the wait. */
-INLINE void fetch_next_bulges(global const Replica* restrict replica, size_t row, global const int* restrict mirror,
-                              global const real* restrict bulge) {
+/* Calls for what load_displacements will gather for the next grain: its partner slots lie scattered over the rows of its
+   neighbours, where no processor sees them coming. On a GPU other work-items fill the wait. */
+INLINE void prefetch_next_displacements(Grain at, Batch batch) {
 #if LANES == 16
-    if (replica->surface == SURFACE_RIGID || (int)get_local_id(0) == BLOCK - 1) return;
-    for (int slot = SLOTS; slot < 2 * SLOTS; ++slot) PREFETCH(bulge + mirror[row + slot]);
+    if (at.replica->surface == SURFACE_RIGID || (int)get_local_id(0) == BLOCK - 1) return;
+    for (int slot = SLOTS; slot < 2 * SLOTS; ++slot) PREFETCH(batch.displacement + batch.partner_slot[at.row + slot]);
 #else
-    (void)replica, (void)row, (void)mirror, (void)bulge;
+    (void)at, (void)batch;
 #endif
 }

@@ -45,7 +45,22 @@ typedef int slots;
 typedef struct { lanes x, y, z; } lanes3;
 typedef struct { lanes x, y, z, w; } lanes4;
 
+INLINE lanes3 same3(real3 a) { return (lanes3){a.x, a.y, a.z}; }
+INLINE lanes3 add3(lanes3 a, lanes3 b) { return (lanes3){a.x + b.x, a.y + b.y, a.z + b.z}; }
+INLINE lanes3 subtract3(lanes3 a, lanes3 b) { return (lanes3){a.x - b.x, a.y - b.y, a.z - b.z}; }
+INLINE lanes3 scale3(lanes factor, lanes3 a) { return (lanes3){factor * a.x, factor * a.y, factor * a.z}; }
+/* a + factor b, fused: compilers do so within one expression only. */
+INLINE lanes3 add_scaled3(lanes3 a, lanes factor, lanes3 b) {
+    return (lanes3){a.x + factor * b.x, a.y + factor * b.y, a.z + factor * b.z};
+}
 INLINE lanes dot3(lanes3 a, lanes3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+INLINE lanes3 cross3(lanes3 a, lanes3 b) {
+    return (lanes3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+INLINE lanes3 where3(mask condition, lanes3 yes, lanes3 no) {
+    return (lanes3){WHERE(condition, yes.x, no.x), WHERE(condition, yes.y, no.y), WHERE(condition, yes.z, no.z)};
+}
+#define ZERO3 ((lanes3){R(0), R(0), R(0)})
 
 #if LANES == 16
 /* any() by halves: PoCL's own branches lane by lane. */

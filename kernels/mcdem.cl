@@ -4,6 +4,8 @@
 #include "status.h"
 #include "report.h"
 #include "lanes.h"
+#include "partner.h"
+#include "motion.h"
 #include "plate.h"
 #include "contact_geometry.h"
 #include "self_displacement.h"

@@ -1,50 +1,51 @@
-/* The state between two stretches of steps: contact forces slot by slot, energies grain by grain, and
+/* The state between two intervals of steps: contact forces slot by slot, energies grain by grain, and
    their sums replica by replica, each in one fixed order. */
+
+/* Hertz energy 2/5 F delta, half of it this grain's, less the work of its own surface displacement; and what effects store. */
+INLINE lanes elastic_energy(int effects, Neighbours seen, Contacts c) {
+    lanes energy = c.elastic * (WHERE(seen.wall, R(0.4), R(0.2)) * c.overlap - R(0.5) * c.displacement);
+    if (effects) energy += WHERE(seen.wall, R(1), R(0.5)) * c.energy;
+    return energy;
+}
+
+INLINE real kinetic_energy(Grain at) {
+    const real3 velocity = at.now.velocity.xyz, spin = at.now.angular_velocity.xyz;
+    const real radius = at.now.position.w;
+    return R(0.5) * sphere_mass(at.replica, radius) * (dot(velocity, velocity) + R(0.4) * radius * radius * dot(spin, spin));
+}
 
 kernel void measure(global const Replica* restrict replicas, global const int* restrict blocks,
                     global const int* restrict replica_of_block, global const int* restrict steps,
-                    global const real4* restrict position, global const real4* restrict velocity,
-                    global const real4* restrict angular_velocity, global const int* restrict partner,
-                    global const int* restrict mirror, global const real* restrict bulge,
-                    global const real* restrict spring_x, global const real* restrict spring_y,
-                    global const real* restrict spring_z, global const real* restrict deepest_overlap,
-                    global const real* restrict relaxed, global const real4* restrict listed_position,
+                    global const Motion* restrict motion, global const int* restrict partner,
+                    global const int* restrict partner_slot, global const real* restrict displacement,
+                    global real* restrict memory, global const real4* restrict listed_position,
                     global real* restrict force_x, global real* restrict force_y, global real* restrict force_z,
                     global real* restrict overlap, global real* restrict arm, global real4* restrict energy) {
     GRAIN_OF_WORK_ITEM
-    global const Replica* restrict replica = replicas + replica_of_block[block];
-    const real4 own = position[grain];
-    const real4 own_velocity = velocity[grain];
-    const real4 own_spin = angular_velocity[grain];
-    fetch_next_bulges(replica, row, mirror, bulge);
-    const real plate_z = plate_position(replica, steps[replica_of_block[block]]);
-    const OwnSide side = {own.w, own_velocity.w, own_spin.xyz};
-    lanes elastic_energy = R(0), deepest = R(0);
+    const int r = replica_of_block[block];
+    global const Replica* restrict replica = replicas + r;
+    const Batch batch = {motion, partner, partner_slot, displacement, memory};
+    const Grain at = {replica, index, (size_t)index * SLOTS, plate_position(replica, steps[r]), motion[index]};
+    prefetch_next_displacements(at, batch);
+    (void)table;
+    lanes stored = R(0), deepest = R(0);
     for (int v = 0; v < VECTORS; ++v) {
-        const slots partners = LOAD_LANES(partner + row, v);
-        const Neighbours seen = see_neighbours(replica, replica->effects, plate_z, grain, partners, position, velocity, angular_velocity);
-        lanes here, there;
-        load_bulges(replica, row, v, mirror, bulge, &here, &there);
-        Memory memory = load_memory(replica, replica->effects, row, v, spring_x, spring_y, spring_z, deepest_overlap, relaxed);
-        const Contacts c = contact_forces(replica, replica->effects, side, seen, here, there, R(0), &memory);
-        /* Hertz energy 2/5 F delta, half of it this grain's, less the work of its own bulge */
-        elastic_energy += c.elastic * (WHERE(seen.wall, R(0.4), R(0.2)) * c.overlap - R(0.5) * c.bulge);
-        if (replica->effects) elastic_energy += WHERE(seen.wall, R(1), R(0.5)) * c.energy;
-        deepest = fmax(deepest, WHERE(seen.occupied, c.overlap / (own.w + seen.radius), R(0)));
-        STORE_LANES(c.force.x, force_x + row, v);
-        STORE_LANES(c.force.y, force_y + row, v);
-        STORE_LANES(c.force.z, force_z + row, v);
-        STORE_LANES(c.overlap, overlap + row, v);
-        STORE_LANES(c.arm, arm + row, v);
+        const Neighbours seen = see_neighbours(at, replica->effects, motion, LOAD_LANES(partner + at.row, v));
+        Memory remembered = load_memory(replica, replica->effects, memory_of(replica, memory, at.row), v);
+        const Contacts c = contact_forces(at, replica->effects, seen, load_displacements(at, batch, v), R(0), &remembered);
+        stored += elastic_energy(replica->effects, seen, c);
+        deepest = fmax(deepest, WHERE(seen.occupied, c.overlap / (at.now.position.w + seen.radius), R(0)));
+        STORE_LANES(c.force.x, force_x + at.row, v);
+        STORE_LANES(c.force.y, force_y + at.row, v);
+        STORE_LANES(c.force.z, force_z + at.row, v);
+        STORE_LANES(c.overlap, overlap + at.row, v);
+        STORE_LANES(c.arm, arm + at.row, v);
     }
-    const real stored = sum_lanes(elastic_energy, elastic_energy, elastic_energy, elastic_energy, scratch).x;
+    const real elastic = sum_lanes(stored, stored, stored, stored, scratch).x;
     const real deepest_slot = max_lanes(deepest, scratch);
-    if (IS_LEADER && own.w > R(0)) {
-        const real mass = sphere_mass(replica, own.w);
-        const real moving = R(0.5) * mass * (dot(own_velocity.xyz, own_velocity.xyz) +
-                                             R(0.4) * own.w * own.w * dot(own_spin.xyz, own_spin.xyz));
-        const real3 moved = own.xyz - listed_position[grain].xyz;
-        energy[grain] = (real4)(moving, stored, dot(moved, moved), deepest_slot);
+    if (IS_LEADER && at.now.position.w > R(0)) {
+        const real3 moved = at.now.position.xyz - listed_position[index].xyz;
+        energy[index] = (real4)(kinetic_energy(at), elastic, dot(moved, moved), deepest_slot);
     }
 }
 
@@ -55,7 +56,7 @@ kernel void measure(global const Replica* restrict replicas, global const int* r
 INLINE void add_wall_forces(global const int* partner, global const real* x, global const real* y,
                                    global const real* z, real* sums) {
     for (int c = 0; c < SLOTS; ++c)
-        if (partner[c] < EMPTY) {
+        if (partner[c] < NO_PARTNER) {
             const int wall = WALL_PARTNER(0) - partner[c];
             sums[2 + 3 * wall] -= x[c];
             sums[3 + 3 * wall] -= y[c];

@@ -1,5 +1,5 @@
 /* Who is near whom: each grain's row of grains and walls within the probed gap plus the margin, grains
-   first in order of index. What a slot remembers (bulges, springs, ..) moves with its neighbour. */
+   first in order of index. What a slot remembers (surface displacements, springs, ..) moves with its neighbour. */
 
 /* Puts `entry` into the sorted grains of a row; `count` goes on counting past a full row. */
 INLINE int insert_sorted(int* row, int count, int entry) {
@@ -11,9 +11,9 @@ INLINE int insert_sorted(int* row, int count, int entry) {
     return count + 1;
 }
 
-INLINE int near_grains(global const Replica* restrict replica, int grain, global const real4* restrict position,
-                              global const int* restrict cell_head, global const int* restrict cell_next, int* row) {
-    const real4 own = position[grain];
+INLINE int near_grains(global const Replica* restrict replica, int grain, global const Motion* restrict motion,
+                       global const int* restrict cell_head, global const int* restrict cell_next, int* row) {
+    const real4 own = motion[grain].position;
     const real reach = replica->probe_gap + replica->skin;
     const int x = cell_along(own.x, replica->cell_size, replica->span_x);
     const int y = cell_along(own.y, replica->cell_size, replica->span_y);
@@ -24,7 +24,7 @@ INLINE int near_grains(global const Replica* restrict replica, int grain, global
             for (int i = max(x - 1, 0); i <= min(x + 1, replica->span_x - 1); ++i) {
                 for (int other = cell_head[cell_index(replica, i, j, k)]; other >= 0; other = cell_next[other]) {
                     if (other == grain) continue;
-                    const real4 there = position[other];
+                    const real4 there = motion[other].position;
                     const real3 apart = there.xyz - own.xyz;
                     const real within = own.w + there.w + reach;
                     if (dot(apart, apart) < within * within) count = insert_sorted(row, count, other);
@@ -54,33 +54,31 @@ INLINE void carry(const int* before, const int* after, global real* restrict val
     for (int c = 0; c < SLOTS; ++c) {
         real value = R(0);
         for (int k = 0; k < SLOTS; ++k)
-            if (after[c] != EMPTY && before[k] == after[c]) value = kept[k];
+            if (after[c] != NO_PARTNER && before[k] == after[c]) value = kept[k];
         values[c] = value;
     }
 }
 
 kernel void list_neighbours(const int slot_count, global const Replica* restrict replicas, global const int* restrict blocks,
-                            global const int* restrict replica_of_block, global const real4* restrict position,
+                            global const int* restrict replica_of_block, global const Motion* restrict motion,
                             global const int* restrict cell_head, global const int* restrict cell_next,
-                            global int* restrict partner, global real* restrict bulge, global real* restrict history,
-                            global real* restrict spring_x, global real* restrict spring_y,
-                            global real* restrict spring_z, global real* restrict deepest, global real* restrict relaxed,
-                            global real4* restrict listed_position,
+                            global int* restrict partner, global real* restrict displacement, global real* restrict history,
+                            global real* restrict memory, global real4* restrict listed_position,
                             global int* restrict status) {
     const int block = blocks[get_group_id(0)];
     const int grain = block * BLOCK + get_local_id(0);
     global const Replica* restrict replica = replicas + replica_of_block[block];
     const size_t row = (size_t)grain * SLOTS;
-    const real4 own = position[grain];
+    const real4 own = motion[grain].position;
     listed_position[grain] = own;
     if (!(own.w > R(0))) return;
 
     int before[SLOTS], after[SLOTS];
     for (int c = 0; c < SLOTS; ++c) {
         before[c] = partner[row + c];
-        after[c] = EMPTY;
+        after[c] = NO_PARTNER;
     }
-    int count = near_grains(replica, grain, position, cell_head, cell_next, after);
+    int count = near_grains(replica, grain, motion, cell_head, cell_next, after);
     count = near_walls(replica, own, after, count);
     if (count > SLOTS) status[grain] |= STATUS_SLOTS;
 
@@ -89,22 +87,17 @@ kernel void list_neighbours(const int slot_count, global const Replica* restrict
     if (same) return;
     for (int c = 0; c < SLOTS; ++c) partner[row + c] = after[c];
     if (replica->surface != SURFACE_RIGID) {
-        carry(before, after, bulge + row);
+        carry(before, after, displacement + row);
         for (int turn = 0; turn < 4; ++turn) carry(before, after, history + (size_t)turn * slot_count + row);
     }
-    if (replica->mindlin) {
-        carry(before, after, spring_x + row);
-        carry(before, after, spring_y + row);
-        carry(before, after, spring_z + row);
-    }
-    if (replica->effects & EFFECT_PLASTICITY) carry(before, after, deepest + row);
-    if (replica->effects & EFFECT_VISCOELASTICITY) carry(before, after, relaxed + row);
+    for (int kind = 0; kind < replica->memory_rows; ++kind)
+        carry(before, after, memory_of(replica, memory, row) + kind * SLOTS);
 }
 
-/* mirror: where the same contact stands in the neighbour's row. For walls and empty slots, the one place past
-   all rows, where bulges are always zero. */
-kernel void link_mirrors(const int slot_count, global const int* restrict blocks, global const int* restrict partner,
-                         global int* restrict mirror) {
+/* partner_slot: where the same contact stands in the neighbour's row. For walls and empty slots, the one place past
+   all rows, where displacements are always zero. */
+kernel void link_partner_slots(const int slot_count, global const int* restrict blocks, global const int* restrict partner,
+                         global int* restrict partner_slot) {
     const int grain = blocks[get_group_id(0)] * BLOCK + get_local_id(0);
     const size_t row = (size_t)grain * SLOTS;
     for (int c = 0; c < SLOTS; ++c) {
@@ -113,6 +106,6 @@ kernel void link_mirrors(const int slot_count, global const int* restrict blocks
         if (other >= 0)
             for (int k = 0; k < SLOTS; ++k)
                 if (partner[(size_t)other * SLOTS + k] == grain) found = other * SLOTS + k;
-        mirror[row + c] = found;
+        partner_slot[row + c] = found;
     }
 }

@@ -41,7 +41,7 @@ typedef struct {
     real relaxing_share;      /* 1 - exp(-dt / T): of what is left to relax, in a step */
     real stiffening;          /* c, per overlap over R*; below zero it softens */
     real plasticity;          /* part of the deepest overlap that stays */
-    real bulge_contacts;      /* part of the bulges that counts without geometric overlap */
+    real bulge_contacts;      /* part of the surface displacements that counts without geometric overlap */
     real mindlin_share;       /* of the friction force, the rest is saturated */
     real rolling_resistance;  /* mu_r */
     int first_grain;          /* of the padded arrays */
@@ -53,10 +53,13 @@ typedef struct {
     int span_x; /* along the box; where more than cells_x, the grid repeats */
     int span_y;
     int span_z;
-    int steps_before;         /* this stretch, modulo 4: turns the ring of surface displacements */
+    int steps_before;         /* this interval, modulo 4: turns the ring of surface displacements */
     int surface;              /* SURFACE_* below */
     int finite_contacts;      /* 1: the sphere's size and self terms are not zero */
     int mindlin;              /* 1: friction with history, all or a share */
+    int memory_rows;          /* of a grain's contacts (contact_memory.h); springs take the first three */
+    int deepest_row;          /* among them, of plasticity */
+    int relaxed_row;          /* .. of viscoelasticity */
     int effects;              /* EFFECT_* bits: what goes beyond the plain model */
 } Replica;
 

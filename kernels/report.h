@@ -1,4 +1,4 @@
-/* What the host learns of a replica at the end of every stretch of steps. Shared by host and device;
+/* What the host learns of a replica at the end of every interval of steps. Shared by host and device;
    scalars and arrays of scalars only, widest first. */
 typedef struct {
     real kinetic_energy;   /* [J] */

@@ -16,16 +16,16 @@ INLINE lanes self_displacement(global const Replica* restrict replica, lanes rel
 typedef struct { lanes here, there; } SelfCompliance;
 
 /* E over a grain's own Young's modulus, on both sides. */
-typedef struct { real here; lanes there; } Softer;
+typedef struct { real here; lanes there; } ComplianceRatio;
 
-INLINE SelfCompliance self_compliance(global const Replica* restrict replica, Softer softer, lanes contact_radius,
+INLINE SelfCompliance self_compliance(global const Replica* restrict replica, ComplianceRatio ratio, lanes contact_radius,
                                       real inverse_radius, lanes inverse_there) {
     SelfCompliance c;
     c.here = self_displacement(replica, contact_radius * inverse_radius) *
-             (replica->sphere_scale * inverse_radius * softer.here);
+             (replica->sphere_scale * inverse_radius * ratio.here);
     /* zero for a wall, whose inverse radius is zero */
     c.there = self_displacement(replica, contact_radius * inverse_there) *
-              (replica->sphere_scale * inverse_there * softer.there);
+              (replica->sphere_scale * inverse_there * ratio.there);
     return c;
 }
 
@@ -35,7 +35,7 @@ typedef struct { lanes overlap; SelfCompliance compliance; } SelfConsistent;
 /* Solves overlap = given + compliance F(overlap), F = 4/3 E* sqrt(R* overlap) overlap, by Newton's method; the
    compliance goes slowly with the contact radius and is taken anew at each step. Three steps leave some 1e-6 of
    the overlap (tests/kernels measures it against bisection). */
-INLINE SelfConsistent self_consistent(global const Replica* restrict replica, Softer softer, lanes given,
+INLINE SelfConsistent self_consistent(global const Replica* restrict replica, ComplianceRatio ratio, lanes given,
                                       lanes reduced_radius, lanes modulus, real radius, lanes radius_there, mask wall) {
     const real inverse_radius = R(1) / radius;
     const lanes inverse_there = WHERE(wall, R(0), R(1) / radius_there);
@@ -43,7 +43,7 @@ INLINE SelfConsistent self_consistent(global const Replica* restrict replica, So
     s.overlap = given;
     for (int step = 0; step < 3; ++step) {
         const lanes a = sqrt(reduced_radius * s.overlap);
-        s.compliance = self_compliance(replica, softer, a, inverse_radius, inverse_there);
+        s.compliance = self_compliance(replica, ratio, a, inverse_radius, inverse_there);
         const lanes slope = (s.compliance.here + s.compliance.there) * R(2) * modulus * a;
         const lanes excess = given + (R(2) / R(3)) * slope * s.overlap - s.overlap;
         s.overlap += fmax(excess / fmax(R(1) - slope, (lanes)(R(0.25))), R(-0.5) * s.overlap);

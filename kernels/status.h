@@ -4,4 +4,4 @@
 #define STATUS_NOT_A_NUMBER 2 /* position or velocity not finite */
 #define STATUS_LOST 4         /* centre outside the box */
 #define STATUS_SLOTS 8        /* more neighbours than slots */
-#define STATUS_UNPROBED 16    /* a surface bulges as far as the probed gap: contacts may be missed */
+#define STATUS_UNPROBED 16    /* a surface is displaced as far as the probed gap: contacts may be missed */

@@ -61,7 +61,7 @@ INLINE void tabulate(Contacts c, lanes3 normal, int v, EXCHANGE ContactTable* ta
 
 /* The sum over the contacts k of the grain, for its slots v. */
 INLINE lanes half_space_sum(global const Replica* restrict replica, EXCHANGE const ContactTable* table,
-                                   real softer, lanes3 direction, int v) {
+                                   real compliance_ratio, lanes3 direction, int v) {
     const lanes arm = LOAD_LANES(table->arm, v);
     lanes sum = R(0);
     for (int k = 0; k < SLOTS; ++k) {
@@ -71,11 +71,11 @@ INLINE lanes half_space_sum(global const Replica* restrict replica, EXCHANGE con
         const lanes term = half_space_displacement(replica, cosine, arm, table->arm[k]) * force;
         sum += WHERE(AS_MASK(SLOT_NUMBERS(v) == k), R(0), term);
     }
-    return sum * (replica->half_space_scale * softer);
+    return sum * (replica->half_space_scale * compliance_ratio);
 }
 
 INLINE lanes sphere_sum(global const Replica* restrict replica, EXCHANGE const ContactTable* table,
-                               real radius, real softer, lanes3 direction, int v) {
+                               real radius, real compliance_ratio, lanes3 direction, int v) {
     const lanes relative = LOAD_LANES(table->radius, v) / radius;
     const lanes receiving = (R(2) / R(3)) * relative * relative;
     lanes sum = R(0);
@@ -87,13 +87,13 @@ INLINE lanes sphere_sum(global const Replica* restrict replica, EXCHANGE const C
         const lanes term = sphere_displacement(replica, cosine, receiving + R(0.4) * source * source) * force;
         sum += WHERE(AS_MASK(SLOT_NUMBERS(v) == k), R(0), term);
     }
-    return sum * (replica->sphere_scale / radius * softer);
+    return sum * (replica->sphere_scale / radius * compliance_ratio);
 }
 
-/* `softer` is E over the grain's own Young's modulus. */
+/* `compliance_ratio` is E over the grain's own Young's modulus. */
 INLINE lanes surface_displacement(global const Replica* restrict replica, EXCHANGE const ContactTable* table,
-                                         real radius, real softer, int v) {
+                                         real radius, real compliance_ratio, int v) {
     const lanes3 direction = {LOAD_LANES(table->x, v), LOAD_LANES(table->y, v), LOAD_LANES(table->z, v)};
-    return replica->surface == SURFACE_HALF_SPACE ? half_space_sum(replica, table, softer, direction, v)
-                                                  : sphere_sum(replica, table, radius, softer, direction, v);
+    return replica->surface == SURFACE_HALF_SPACE ? half_space_sum(replica, table, compliance_ratio, direction, v)
+                                                  : sphere_sum(replica, table, radius, compliance_ratio, direction, v);
 }

@@ -1,16 +1,34 @@
 // A kernel whose argument types are checked when the host is compiled.
 #pragma once
+#include <fmt/format.h>
+
 #include "cl/field.h"
 
 namespace mcdem {
 
-/// `Arguments`: int or Field<..>, in the kernel's order.
+/// Of a quantity that is kept twice: the copy that a step reads, and the one that it writes.
+template <class Quantity>
+struct Now {
+    Field<Quantity>& field;
+};
+template <class Quantity>
+struct Next {
+    Field<Quantity>& field;
+};
+
+/// `Arguments`: int, Field<..>, Now<..> or Next<..>, in the kernel's order.
 template <class... Arguments>
 class Kernel {
 public:
     Kernel() = default;
     Kernel(Device& device, const cl::Program& program, const char* name)
-        : queue_(device.queue()), kernel_(program, name) {}
+        : queue_(device.queue()), kernel_(program, name) {
+        const auto wanted = kernel_.getInfo<CL_KERNEL_NUM_ARGS>();
+        if (wanted != sizeof...(Arguments))
+            throw RunError(fmt::format(
+                "the kernel {} takes {} arguments, the host has {}: the kernels are of another version", name,
+                wanted, sizeof...(Arguments)));
+    }
 
     /// Enqueues `groups` work-groups of `work_items` each; does not wait.
     void operator()(std::size_t groups, std::size_t work_items, const Arguments&... arguments) {
@@ -26,6 +44,14 @@ private:
     template <class Quantity>
     void set(cl_uint index, const Field<Quantity>& field) {
         kernel_.setArg(index, field.buffer());
+    }
+    template <class Quantity>
+    void set(cl_uint index, const Now<Quantity>& now) {
+        set(index, now.field);
+    }
+    template <class Quantity>
+    void set(cl_uint index, const Next<Quantity>& next) {
+        set(index, next.field);
     }
     cl::CommandQueue queue_;
     cl::Kernel kernel_;

@@ -24,12 +24,12 @@ Packing true_packing(const Replica& replica, Packing stated) {
     return stated;
 }
 
-std::vector<double> softness(const Replica& replica, std::size_t grains) {
+std::vector<double> excess_compliance(const Replica& replica, std::size_t grains) {
     const double s = replica.effects.modulus_scatter;
     std::vector<double> all(grains, 0.0);
     if (s == 0) return all;
     Random random(replica.packing.seed, Stream::moduli);
-    for (double& softness : all) softness = std::expm1(s * s / 2 - s * random.normal());
+    for (double& excess : all) excess = std::expm1(s * s / 2 - s * random.normal());
     return all;
 }
 

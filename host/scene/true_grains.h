@@ -12,6 +12,6 @@ Packing true_packing(const Replica& replica, Packing stated);
 
 /// E/E_i - 1 of every grain, ln E_i normal with mean ln E - s^2/2 and sd s = effects.modulus_scatter (so that
 /// the mean of E_i is E), drawn with the packing's seed.
-std::vector<double> softness(const Replica& replica, std::size_t grains);
+std::vector<double> excess_compliance(const Replica& replica, std::size_t grains);
 
 }  // namespace mcdem

@@ -48,6 +48,17 @@ std::string memory_text(std::uint64_t bytes) {
     return size < 1e9 ? fmt::format("{:.3g} MB", size / 1e6) : fmt::format("{:.3g} GB", size / 1e9);
 }
 
+FieldNeeds field_needs(const std::vector<Replica>& replicas) {
+    FieldNeeds needs;
+    for (const Replica& replica : replicas) {
+        needs.displacements |= replica.contact.model != ContactModel::independent;
+        needs.springs |= mindlin_share(replica) > 0;
+        needs.deepest |= replica.effects.plasticity > 0;
+        needs.relaxed |= replica.effects.viscoelasticity > 0;
+    }
+    return needs;
+}
+
 FieldExtents field_extents(const KernelBuild& build, const std::vector<Replica>& replicas,
                            const std::vector<PackingSize>& sizes, std::uint64_t cells) {
     FieldExtents extents;
@@ -57,12 +68,7 @@ FieldExtents field_extents(const KernelBuild& build, const std::vector<Replica>&
     extents.cells = cells;
     extents.slots = build.slots;
     extents.precision = build.precision;
-    for (const Replica& replica : replicas) {
-        extents.needs.bulges |= replica.contact.model != ContactModel::independent;
-        extents.needs.springs |= mindlin_share(replica) > 0;
-        extents.needs.deepest |= replica.effects.plasticity > 0;
-        extents.needs.relaxed |= replica.effects.viscoelasticity > 0;
-    }
+    extents.needs = field_needs(replicas);
     return extents;
 }
 
@@ -100,7 +106,7 @@ void expect_countable_steps(const Replica& replica, double time_step) {
     if (!(time_step >= min_time_step))
         throw InputError(
             fmt::format("numerics.time_step must leave steps of at least {} s, got {} s: take larger, "
-                        "heavier or softer grains",
+                        "heavier or excess_compliance grains",
                         min_time_step, time_step));
     const double steps = seconds / time_step + 2 * scans;
     if (!(steps <= max_steps))

@@ -15,6 +15,9 @@ std::string memory_text(std::uint64_t bytes);
 FieldMemory memory_needed(Precision precision, int slots, const std::vector<Replica>& replicas,
                           const std::vector<PackingSize>& sizes);
 
+/// Which optional fields a batch of these needs.
+FieldNeeds field_needs(const std::vector<Replica>& replicas);
+
 /// All fields of a batch. `cells`: of all replicas.
 FieldExtents field_extents(const KernelBuild& build, const std::vector<Replica>& replicas,
                            const std::vector<PackingSize>& sizes, std::uint64_t cells);

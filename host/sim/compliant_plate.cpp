@@ -24,17 +24,17 @@ double gain(const Replica& replica) {
 
 // A plate that moves at v feels Z v more, Z = stiffness * the time that a wave takes through the packing:
 // going after the force faster than that rings, and the more so the more compliant it is. Besides, what one
-// stretch corrects must not be undone by the next: catch_up (1 + gain) < 2.
+// interval corrects must not be undone by the next: catch_up (1 + gain) < 2.
 CompliantPlate::CompliantPlate(const Replica& replica)
     : compliance_(replica.effects.plate_compliance),
       follow_time_(replica.plate.start / rayleigh_speed(replica.grains) * std::max(1.0, gain(replica))),
       most_catch_up_(1 / (1 + gain(replica))) {}
 
-void CompliantPlate::give_way(Stretch& stretch, double time_step, double farthest) {
+void CompliantPlate::give_way(StepInterval& interval, double time_step, double farthest) {
     change_ = 0;
-    if (compliance_ == 0 || stretch.steps == 0) return;
-    const double duration = time_step * stretch.steps;
-    const double commanded = stretch.plate_velocity * duration;
+    if (compliance_ == 0 || interval.steps == 0) return;
+    const double duration = time_step * interval.steps;
+    const double commanded = interval.plate_velocity * duration;
     const double catch_up = std::min(most_catch_up_, -std::expm1(-duration / follow_time_));
     if (commanded != 0)
         state_.slope =
@@ -42,12 +42,12 @@ void CompliantPlate::give_way(Stretch& stretch, double time_step, double farthes
     const double most = std::max(farthest, std::abs(commanded));
     const double change =
         std::clamp(state_.slope * commanded + catch_up * error(), -most - commanded, most - commanded);
-    stretch.plate_z += state_.given;
-    stretch.plate_velocity += change / duration;
-    change_ = change / stretch.steps;
+    interval.plate_z += state_.given;
+    interval.plate_velocity += change / duration;
+    change_ = change / interval.steps;
 }
 
-void CompliantPlate::made(const StretchResult& result) {
+void CompliantPlate::made(const IntervalResult& result) {
     state_.given += change_ * result.steps;
     state_.force = result.wall_force[static_cast<int>(Wall::plate)].z();
 }

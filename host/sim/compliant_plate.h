@@ -1,5 +1,5 @@
 // A plate that gives way: its true position is where it is sent to plus compliance times the force on it. The
-// force is known from the last stretch only; the plate goes after it smoothly, stretch by stretch.
+// force is known from the last interval only; the plate goes after it smoothly, interval by interval.
 #pragma once
 #include "scene/scene.h"
 #include "sim/engine.h"
@@ -12,16 +12,16 @@ public:
     struct State {
         double given = 0;  ///< true less commanded position [m]
         double slope = 0;  ///< how much of a commanded move it gives way by, -1 to 0
-        double force = 0;  ///< on the plate at the end of the last stretch, upward [N]
+        double force = 0;  ///< on the plate at the end of the last interval, upward [N]
     };
 
     explicit CompliantPlate(const Replica& replica);
 
-    /// Turns the commanded stretch into the true one. The plate moves at most `farthest` [m] or as far as
+    /// Turns the commanded interval into the true one. The plate moves at most `farthest` [m] or as far as
     /// commanded.
-    void give_way(Stretch& stretch, double time_step, double farthest);
-    /// Takes note of the force at the stretch's end.
-    void made(const StretchResult& result);
+    void give_way(StepInterval& interval, double time_step, double farthest);
+    /// Takes note of the force at the interval's end.
+    void made(const IntervalResult& result);
 
     /// The plate gives way as much as it should, to a thousandth of that or of `farthest` [m].
     bool arrived(double farthest) const;
@@ -34,9 +34,9 @@ private:
 
     double compliance_;     ///< [m/N]
     double follow_time_;    ///< in which an error shrinks to 1/e [s]
-    double most_catch_up_;  ///< part of an error that a stretch makes good
+    double most_catch_up_;  ///< part of an error that an interval makes good
     State state_;
-    double change_ = 0;  ///< of `given` a step, in the stretch under way [m]
+    double change_ = 0;  ///< of `given` a step, in the interval under way [m]
 };
 
 }  // namespace mcdem

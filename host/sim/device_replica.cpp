@@ -45,8 +45,10 @@ void set_materials(DeviceReplica& d, const Replica& replica) {
     d.drag = g.drag;
     d.modulus_grain = reduced_modulus(g.youngs_modulus, g.poisson_ratio, g.youngs_modulus, g.poisson_ratio);
     d.modulus_wall = reduced_modulus(g.youngs_modulus, g.poisson_ratio, w.youngs_modulus, w.poisson_ratio);
-    d.shear_grain = reduced_shear_modulus(g.youngs_modulus, g.poisson_ratio, g.youngs_modulus, g.poisson_ratio);
-    d.shear_wall = reduced_shear_modulus(g.youngs_modulus, g.poisson_ratio, w.youngs_modulus, w.poisson_ratio);
+    d.shear_grain =
+        reduced_shear_modulus(g.youngs_modulus, g.poisson_ratio, g.youngs_modulus, g.poisson_ratio);
+    d.shear_wall =
+        reduced_shear_modulus(g.youngs_modulus, g.poisson_ratio, w.youngs_modulus, w.poisson_ratio);
     d.damping_grain = damping_factor(g.restitution);
     d.damping_wall = damping_factor(w.restitution);
     d.friction_grain = g.friction;
@@ -86,7 +88,8 @@ void set_effects(DeviceReplica& d, const Replica& replica, double time_step) {
 
 template <class DeviceReplica>
 void set_surface(DeviceReplica& d, const Replica& replica) {
-    const auto surface = surface_law(replica.contact.model, replica.grains.poisson_ratio, replica.contact.gamma);
+    const auto surface =
+        surface_law(replica.contact.model, replica.grains.poisson_ratio, replica.contact.gamma);
     const double nu = replica.grains.poisson_ratio;
     const double e = replica.grains.youngs_modulus;
     d.surface = static_cast<int>(surface.shape);
@@ -152,14 +155,16 @@ double mindlin_share(const Replica& replica) {
 }
 
 double rayleigh_speed(const GrainMaterial& g) {
-    return std::sqrt(shear_modulus(g.youngs_modulus, g.poisson_ratio) / g.density) * (0.163 * g.poisson_ratio + 0.8766);
+    return std::sqrt(shear_modulus(g.youngs_modulus, g.poisson_ratio) / g.density) *
+           (0.163 * g.poisson_ratio + 0.8766);
 }
 
 double time_step(const Replica& replica, const Packing& packing) {
-    const auto softer = softness(replica, packing.size());
-    double smallest = 0.5 * packing.diameter[0] * std::sqrt(1 + softer[0]);  // grain of mean stiffness as slow as this one
+    const auto excess = excess_compliance(replica, packing.size());
+    double smallest =
+        0.5 * packing.diameter[0] * std::sqrt(1 + excess[0]);  // grain of mean stiffness as slow as this one
     for (std::size_t i = 1; i < packing.size(); ++i)
-        smallest = std::min(smallest, 0.5 * packing.diameter[i] * std::sqrt(1 + softer[i]));
+        smallest = std::min(smallest, 0.5 * packing.diameter[i] * std::sqrt(1 + excess[i]));
     return time_step(replica, smallest);
 }
 

@@ -12,5 +12,6 @@ using real = double;
 #include "kernels/replica.h"
 #include "kernels/report.h"
 }  // namespace f64
+#include "kernels/partner.h"
 #include "kernels/status.h"
 }  // namespace mcdem

@@ -15,19 +15,23 @@ namespace {
 
 /// A list is made anew when a grain or the plate has moved this part of the margin. Half the margin is the
 /// limit that the kernels enforce step by step.
-constexpr double relist_at = 0.3;
-/// The plate moves at most this part of the margin in a stretch: relist_at + plate_stretch <= 1/2.
-constexpr double plate_stretch = 0.2;
-constexpr int longest_stretch_steps = 60;
+constexpr double rebuild_at = 0.3;
+/// The plate moves at most this part of the margin in an interval: rebuild_at + plate_share <= 1/2.
+constexpr double plate_share = 0.2;
+constexpr int max_interval_steps = 60;
 
 template <class DeviceReplica>
-std::vector<DeviceReplica> device_replicas(const std::vector<Replica>& replicas, const std::vector<Packing>& packings,
-                                           const Layout& layout) {
+std::vector<DeviceReplica> device_replicas(const std::vector<Replica>& replicas,
+                                           const std::vector<Packing>& packings, const Layout& layout) {
     std::vector<DeviceReplica> all;
     int cells = 0;
+    const MemoryRows rows = memory_rows(field_needs(replicas));
     for (int r = 0; r < layout.replicas(); ++r) {
         all.push_back(device_replica<DeviceReplica>(replicas[r], packings[r],
                                                     {layout.first_grain[r], layout.grain_count[r], cells}));
+        all.back().memory_rows = rows.count;
+        all.back().deepest_row = rows.deepest;
+        all.back().relaxed_row = rows.relaxed;
         cells += cell_count(all.back());
     }
     return all;
@@ -59,7 +63,7 @@ Engine::Engine(Device& device, const KernelBuild& build, std::vector<Replica> re
       replicas_(std::move(replicas)),
       layout_((expect_within_limits(device.info(), build, replicas_, sizes_of(packings)),
                make_layout(packings, build.block))),
-      relist_(replicas_.size(), 1),
+      rebuild_(replicas_.size(), 1),
       plate_moved_(replicas_.size(), 0),
       plate_z_(replicas_.size(), 0),
       steps_made_(replicas_.size(), 0),
@@ -71,33 +75,32 @@ Engine::Engine(Device& device, const KernelBuild& build, std::vector<Replica> re
       kernels_(device, build) {
     for (int r = 0; r < layout_.replicas(); ++r) {
         time_step_.push_back(mcdem::time_step(replicas_[r], packings[r]));
-        softness_.push_back(softness(replicas_[r], packings[r].size()));
+        excess_compliance_.push_back(mcdem::excess_compliance(replicas_[r], packings[r].size()));
         skin_.push_back(std::visit([&](const auto& all) { return double(all[r].skin); }, device_replicas_));
     }
     upload_packings(packings);
 }
 
 void Engine::upload_packings(const std::vector<Packing>& packings) {
-    std::vector<double> values(4 * layout_.grains(), 0.0), velocities(4 * layout_.grains(), 0.0);
+    std::vector<double> values(reals_of_motion * layout_.grains(), 0.0);
     for (int r = 0; r < layout_.replicas(); ++r)
         for (int k = 0; k < layout_.grain_count[r]; ++k) {
             const int grain = layout_.order[r][k];
-            double* at = &values[4 * (layout_.first_grain[r] + k)];
+            double* at = &values[reals_of_motion * (layout_.first_grain[r] + k)];
             for (int axis = 0; axis < 3; ++axis) at[axis] = packings[r].position[grain][axis];
             at[3] = 0.5 * packings[r].diameter[grain];
-            velocities[4 * (layout_.first_grain[r] + k) + 3] = softness_[r][grain];
+            at[7] = excess_compliance_[r][grain];
         }
-    for (auto& copy : fields_.position.copies) write_reals(copy, 0, values);
-    for (auto& copy : fields_.velocity.copies) write_reals(copy, 0, velocities);
+    for (auto& copy : fields_.motion.copies) write_reals(copy, 0, values);
 }
 
-int Engine::longest_stretch(int replica, double plate_velocity) const {
+int Engine::max_interval(int replica, double plate_velocity) const {
     const double step = std::abs(plate_velocity) * time_step_[replica];
-    const double steps = step > 0 ? farthest_plate_move(replica) / step : longest_stretch_steps;
-    return std::clamp(static_cast<int>(std::min(steps, 1e6)), 1, longest_stretch_steps);
+    const double steps = step > 0 ? max_plate_move(replica) / step : max_interval_steps;
+    return std::clamp(static_cast<int>(std::min(steps, 1e6)), 1, max_interval_steps);
 }
 
-double Engine::farthest_plate_move(int replica) const { return plate_stretch * skin_[replica]; }
+double Engine::max_plate_move(int replica) const { return plate_share * skin_[replica]; }
 
 Engine::Part Engine::part(const std::vector<char>& wanted) const {
     Part part;
@@ -110,36 +113,36 @@ Engine::Part Engine::part(const std::vector<char>& wanted) const {
     return part;
 }
 
-std::vector<StretchResult> Engine::advance(const std::vector<Stretch>& stretches) {
+std::vector<IntervalResult> Engine::advance(const std::vector<StepInterval>& intervals) {
     std::vector<char> active(layout_.replicas());
     int most = 0;
     for (int r = 0; r < layout_.replicas(); ++r) {
-        active[r] = stretches[r].steps > 0;
-        most = std::max(most, stretches[r].steps);
+        active[r] = intervals[r].steps > 0;
+        most = std::max(most, intervals[r].steps);
     }
-    if (most == 0) return std::vector<StretchResult>(stretches.size());
+    if (most == 0) return std::vector<IntervalResult>(intervals.size());
     const Part working = part(active);
-    upload_stretches(stretches);
+    upload_intervals(intervals);
     find_neighbours(active);
     fields_.blocks.write(working.blocks.data(), 0, working.blocks.size() * sizeof(int));
     make_steps(most, working.blocks.size());
     measure(working);
-    return read_reports(stretches);
+    return read_reports(intervals);
 }
 
-void Engine::upload_stretches(const std::vector<Stretch>& stretches) {
+void Engine::upload_intervals(const std::vector<StepInterval>& intervals) {
     std::vector<int> steps;
-    for (const auto& stretch : stretches) steps.push_back(stretch.steps);
+    for (const auto& interval : intervals) steps.push_back(interval.steps);
     fields_.stop_at.write(steps.data());
     std::visit(
         [&](auto& all) {
             for (std::size_t r = 0; r < all.size(); ++r) {
-                if (stretches[r].steps == 0) continue;
-                all[r].wall_position[5] = stretches[r].plate_z;
-                all[r].plate_velocity = stretches[r].plate_velocity;
+                if (intervals[r].steps == 0) continue;
+                all[r].wall_position[5] = intervals[r].plate_z;
+                all[r].plate_velocity = intervals[r].plate_velocity;
                 all[r].steps_before = static_cast<int>(steps_made_[r] % 4);
-                all[r].drag = replicas_[r].grains.drag + stretches[r].settle_drag;
-                all[r].spin_drag = stretches[r].settle_drag;
+                all[r].drag = replicas_[r].grains.drag + intervals[r].settle_drag;
+                all[r].spin_drag = intervals[r].settle_drag;
             }
             fields_.replicas.write(all.data());
         },
@@ -148,23 +151,24 @@ void Engine::upload_stretches(const std::vector<Stretch>& stretches) {
 
 void Engine::find_neighbours(const std::vector<char>& active) {
     std::vector<char> wanted(active);
-    for (int r = 0; r < layout_.replicas(); ++r) wanted[r] = active[r] && relist_[r];
+    for (int r = 0; r < layout_.replicas(); ++r) wanted[r] = active[r] && rebuild_[r];
     const Part stale = part(wanted);
     if (stale.replicas.empty()) return;
     const std::size_t blocks = stale.blocks.size();
     const std::size_t block = build_.block;
     auto& f = fields_;
-    f.relisted.write(stale.replicas.data(), 0, stale.replicas.size() * sizeof(int));
-    f.relisted_blocks.write(stale.blocks.data(), 0, blocks * sizeof(int));
-    kernels_.empty_cells(stale.replicas.size(), 64, f.replicas, f.relisted, f.cell_head);
-    kernels_.fill_cells(blocks, block, f.replicas, f.relisted_blocks, f.replica_of_block, f.position.now(0),
+    f.rebuilt.write(stale.replicas.data(), 0, stale.replicas.size() * sizeof(int));
+    f.rebuilt_blocks.write(stale.blocks.data(), 0, blocks * sizeof(int));
+    kernels_.empty_cells(stale.replicas.size(), 64, f.replicas, f.rebuilt, f.cell_head);
+    kernels_.fill_cells(blocks, block, f.replicas, f.rebuilt_blocks, f.replica_of_block, f.motion.now(0),
                         f.cell_head, f.cell_next);
-    kernels_.list_neighbours(blocks, block, f.slot_count, f.replicas, f.relisted_blocks, f.replica_of_block, f.position.now(0),
-                             f.cell_head, f.cell_next, f.partner, f.bulge.now(0), f.bulge_history,
-                             f.spring_x, f.spring_y, f.spring_z, f.deepest, f.relaxed, f.listed_position, f.status);
-    if (f.has_bulges()) kernels_.link_mirrors(blocks, block, f.slot_count, f.relisted_blocks, f.partner, f.mirror);
+    kernels_.list_neighbours(blocks, block, f.slot_count, f.replicas, f.rebuilt_blocks, f.replica_of_block,
+                             f.motion.now(0), f.cell_head, f.cell_next, f.partner, f.displacement.now(0),
+                             f.displacement_history, f.memory_of_contacts, f.listed_position, f.status);
+    if (f.has_displacements())
+        kernels_.link_partner_slots(blocks, block, f.slot_count, f.rebuilt_blocks, f.partner, f.partner_slot);
     for (int r : stale.replicas) {
-        relist_[r] = 0;
+        rebuild_[r] = 0;
         plate_moved_[r] = 0;
     }
 }
@@ -175,35 +179,35 @@ void Engine::make_steps(int steps, std::size_t blocks) {
     auto& f = fields_;
     for (int s = 0; s < steps + steps % 2; ++s) {
         const int p = s % 2;
-        kernels_.advance(blocks, build_.work_items(), s, f.slot_count, f.replicas, f.blocks, f.replica_of_block, f.stop_at,
-                         f.position.now(p), f.velocity.now(p), f.angular_velocity.now(p), f.position.next(p),
-                         f.velocity.next(p), f.angular_velocity.next(p), f.partner, f.mirror, f.bulge.now(p),
-                         f.bulge.next(p), f.bulge_history, f.spring_x, f.spring_y, f.spring_z,
-                         f.deepest, f.relaxed, f.listed_position, f.status);
+        kernels_.advance(blocks, build_.work_items(), s, f.slot_count, f.replicas, f.blocks,
+                         f.replica_of_block, f.stop_at, f.motion.now(p), f.motion.next(p), f.partner,
+                         f.partner_slot, f.displacement.now(p), f.displacement.next(p),
+                         f.displacement_history, f.memory_of_contacts, f.listed_position, f.status);
     }
 }
 
 void Engine::measure(const Part& working) {
     auto& f = fields_;
-    kernels_.measure(working.blocks.size(), build_.work_items(), f.replicas, f.blocks, f.replica_of_block, f.stop_at,
-                     f.position.now(0), f.velocity.now(0), f.angular_velocity.now(0), f.partner, f.mirror,
-                     f.bulge.now(0), f.spring_x, f.spring_y, f.spring_z, f.deepest, f.relaxed, f.listed_position, f.force_x, f.force_y,
-                     f.force_z, f.overlap, f.arm, f.energy);
+    kernels_.measure(working.blocks.size(), build_.work_items(), f.replicas, f.blocks, f.replica_of_block,
+                     f.stop_at, f.motion.now(0), f.partner, f.partner_slot, f.displacement.now(0),
+                     f.memory_of_contacts, f.listed_position, f.force_x, f.force_y, f.force_z, f.overlap,
+                     f.arm, f.energy);
     f.chosen.write(working.replicas.data(), 0, working.replicas.size() * sizeof(int));
-    kernels_.reduce(working.replicas.size(), 64, f.replicas, f.chosen, f.partner, f.force_x, f.force_y, f.force_z,
-                    f.energy, f.status, f.reports);
+    kernels_.reduce(working.replicas.size(), 64, f.replicas, f.chosen, f.partner, f.force_x, f.force_y,
+                    f.force_z, f.energy, f.status, f.reports);
 }
 
 namespace {
 
 template <class Report>
-StretchResult to_result(const Report& report) {
-    StretchResult result;
+IntervalResult to_result(const Report& report) {
+    IntervalResult result;
     result.kinetic_energy = report.kinetic_energy;
     result.elastic_energy = report.elastic_energy;
     result.deepest_overlap = report.deepest_overlap;
     for (int w = 0; w < wall_count; ++w)
-        result.wall_force[w] = {report.wall_force[3 * w], report.wall_force[3 * w + 1], report.wall_force[3 * w + 2]};
+        result.wall_force[w] = {report.wall_force[3 * w], report.wall_force[3 * w + 1],
+                                report.wall_force[3 * w + 2]};
     result.status = report.status;
     result.failed_grain = report.failed_grain;
     return result;
@@ -211,28 +215,29 @@ StretchResult to_result(const Report& report) {
 
 }  // namespace
 
-std::vector<StretchResult> Engine::read_reports(const std::vector<Stretch>& stretches) {
+std::vector<IntervalResult> Engine::read_reports(const std::vector<StepInterval>& intervals) {
     std::vector<int> made(layout_.replicas());
     fields_.stop_at.read(made.data());
-    std::vector<StretchResult> results(layout_.replicas());
+    std::vector<IntervalResult> results(layout_.replicas());
     std::visit(
         [&]<class DeviceReplica>(const std::vector<DeviceReplica>& all) {
-            using Report = std::conditional_t<std::is_same_v<DeviceReplica, f64::Replica>, f64::Report, f32::Report>;
+            using Report =
+                std::conditional_t<std::is_same_v<DeviceReplica, f64::Replica>, f64::Report, f32::Report>;
             std::vector<Report> reports(all.size());
             fields_.reports.read(reports.data());
             for (int r = 0; r < layout_.replicas(); ++r) {
-                if (stretches[r].steps == 0) continue;
+                if (intervals[r].steps == 0) continue;
                 auto& result = results[r] = to_result(reports[r]);
                 result.steps = made[r];
                 if (result.failed_grain >= 0)
                     result.failed_grain = layout_.order[r][result.failed_grain - layout_.first_grain[r]];
-                const double plate_move = stretches[r].plate_velocity * time_step_[r] * made[r];
+                const double plate_move = intervals[r].plate_velocity * time_step_[r] * made[r];
                 plate_moved_[r] += std::abs(plate_move);
                 steps_made_[r] += made[r];
-                plate_z_[r] = stretches[r].plate_z + plate_move;
-                const double limit = relist_at * skin_[r];
-                relist_[r] = made[r] < stretches[r].steps || plate_moved_[r] > limit ||
-                             !(reports[r].moved_squared <= limit * limit);
+                plate_z_[r] = intervals[r].plate_z + plate_move;
+                const double limit = rebuild_at * skin_[r];
+                rebuild_[r] = made[r] < intervals[r].steps || plate_moved_[r] > limit ||
+                              !(reports[r].moved_squared <= limit * limit);
             }
         },
         device_replicas_);

@@ -1,5 +1,5 @@
-// Advances a batch of replicas on a device, stretch by stretch. A stretch is a number of steps, each
-// replica's own, with the plate at constant velocity; between stretches the host may look and decide.
+// Advances a batch of replicas on a device, interval by interval. An interval is a number of steps, each
+// replica's own, with the plate at constant velocity; between intervals the host may look and decide.
 #pragma once
 #include <array>
 #include <map>
@@ -15,22 +15,22 @@
 namespace mcdem {
 
 /// What a replica is to do next.
-struct Stretch {
+struct StepInterval {
     int steps = 0;              ///< 0: nothing, the replica is left as it is
-    double plate_z = 0;         ///< when the stretch begins [m]
+    double plate_z = 0;         ///< when the interval begins [m]
     double plate_velocity = 0;  ///< [m/s]
     double settle_drag = 0;     ///< of velocities, on top of the scene's, and of spins [1/s]
 };
 
 /// What became of it.
-struct StretchResult {
-    int steps = 0;  ///< made; fewer than asked for where the neighbour list had to be made anew
-    double kinetic_energy = 0;    ///< [J]
-    double elastic_energy = 0;    ///< [J]
-    double deepest_overlap = 0;   ///< corrected overlap over the sum of radii
+struct IntervalResult {
+    int steps = 0;               ///< made; fewer than asked for where the neighbour list had to be made anew
+    double kinetic_energy = 0;   ///< [J]
+    double elastic_energy = 0;   ///< [J]
+    double deepest_overlap = 0;  ///< corrected overlap over the sum of radii
     std::array<Vec3, wall_count> wall_force = no_wall_forces();  ///< on the walls [N]
-    int status = 0;               ///< STATUS_* bits
-    int failed_grain = -1;        ///< the user's grain number
+    int status = 0;                                              ///< STATUS_* bits
+    int failed_grain = -1;                                       ///< the user's grain number
 };
 
 /// A replica as it stands: by the user's grain numbers.
@@ -42,25 +42,27 @@ struct ReplicaState {
 class Engine {
 public:
     /// `replicas[r]` starts from `packings[r]` at rest.
-    Engine(Device& device, const KernelBuild& build, std::vector<Replica> replicas, std::vector<Packing> packings);
+    Engine(Device& device, const KernelBuild& build, std::vector<Replica> replicas,
+           std::vector<Packing> packings);
 
     int replicas() const { return layout_.replicas(); }
     double time_step(int replica) const { return time_step_[replica]; }
-    /// The most steps a stretch of `replica` may have with the plate at this velocity, so that the plate
+    /// The most steps an interval of `replica` may have with the plate at this velocity, so that the plate
     /// does not outrun the neighbour list.
-    int longest_stretch(int replica, double plate_velocity) const;
-    /// How far the plate may move in one stretch of more than one step [m].
-    double farthest_plate_move(int replica) const;
+    int max_interval(int replica, double plate_velocity) const;
+    /// How far the plate may move in one interval of more than one step [m].
+    double max_plate_move(int replica) const;
     /// Device memory in use [bytes].
     FieldMemory memory() const { return fields_.memory(); }
 
-    /// One stretch of every replica; returns when done.
-    std::vector<StretchResult> advance(const std::vector<Stretch>& stretches);
+    /// One interval of every replica; returns when done.
+    std::vector<IntervalResult> advance(const std::vector<StepInterval>& intervals);
 
-    /// Positions and contacts as the last stretch of `replica` left them.
+    /// Positions and contacts as the last interval of `replica` left them.
     ReplicaState state(int replica) const;
     /// For tests: sets velocities by the user's grain numbers.
-    void set_velocities(int replica, const std::vector<Vec3>& velocity, const std::vector<Vec3>& angular_velocity);
+    void set_velocities(int replica, const std::vector<Vec3>& velocity,
+                        const std::vector<Vec3>& angular_velocity);
 
     /// Everything that continues the run bit for bit, as named bytes.
     std::map<std::string, std::vector<std::byte>> save();
@@ -74,12 +76,12 @@ private:
     };
     Part part(const std::vector<char>& wanted) const;
     void upload_packings(const std::vector<Packing>& packings);
-    void upload_stretches(const std::vector<Stretch>& stretches);
+    void upload_intervals(const std::vector<StepInterval>& intervals);
     void find_neighbours(const std::vector<char>& active);
     void make_steps(int steps, std::size_t blocks);
     void measure(const Part& active);
-    std::vector<StretchResult> read_reports(const std::vector<Stretch>& stretches);
-    StretchResult result_of(int replica, const double* reals, int status, int failed_place) const;
+    std::vector<IntervalResult> read_reports(const std::vector<StepInterval>& intervals);
+    IntervalResult result_of(int replica, const double* reals, int status, int failed_place) const;
     template <class Quantity>
     std::vector<double> read_reals(const Field<Quantity>& field, std::size_t first, std::size_t count) const;
     template <class Quantity>
@@ -90,11 +92,11 @@ private:
     std::vector<Replica> replicas_;
     Layout layout_;
     std::vector<double> time_step_;
-    std::vector<double> skin_;            ///< [m]
-    std::vector<std::vector<double>> softness_;  ///< E/E_i - 1 by the user's grain numbers
-    std::vector<char> relist_;            ///< 1: the neighbour list is to be made anew
-    std::vector<double> plate_moved_;     ///< since the list was made [m]
-    std::vector<double> plate_z_;         ///< where the last stretch left it [m]
+    std::vector<double> skin_;                            ///< [m]
+    std::vector<std::vector<double>> excess_compliance_;  ///< E/E_i - 1 by the user's grain numbers
+    std::vector<char> rebuild_;                           ///< 1: the neighbour list is to be made anew
+    std::vector<double> plate_moved_;                     ///< since the list was made [m]
+    std::vector<double> plate_z_;                         ///< where the last interval left it [m]
     std::vector<long> steps_made_;
     std::variant<std::vector<f32::Replica>, std::vector<f64::Replica>> device_replicas_;
     Fields fields_;

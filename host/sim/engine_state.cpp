@@ -1,8 +1,8 @@
-// What the host reads of a replica between stretches, and what a restart needs.
+// What the host reads of a replica between intervals, and what a restart needs.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstring>
-
-#include <fmt/format.h>
 
 #include "core/errors.h"
 #include "scene/plate_face.h"
@@ -11,10 +11,14 @@
 namespace mcdem {
 namespace {
 
-std::vector<Vec3> by_grain(const std::vector<double>& values, const std::vector<int>& order) {
+/// One vector of each grain's motion, `first` reals from its beginning.
+std::vector<Vec3> by_grain(const std::vector<double>& motion, std::size_t first,
+                           const std::vector<int>& order) {
     std::vector<Vec3> vectors(order.size());
-    for (std::size_t k = 0; k < order.size(); ++k)
-        vectors[order[k]] = {values[4 * k], values[4 * k + 1], values[4 * k + 2]};
+    for (std::size_t k = 0; k < order.size(); ++k) {
+        const double* at = &motion[reals_of_motion * k + first];
+        vectors[order[k]] = {at[0], at[1], at[2]};
+    }
     return vectors;
 }
 
@@ -25,35 +29,36 @@ int number_at(const std::byte* bytes, std::size_t index) {
 }
 
 [[noreturn]] void refuse(const char* name, std::size_t slot, int number) {
-    throw InputError(
-        fmt::format("the checkpoint is damaged: slot {} of '{}' holds {}, which there is not: start the run anew in "
-                    "another folder",
-                    slot, name, number));
+    throw InputError(fmt::format(
+        "the checkpoint is damaged: slot {} of '{}' holds {}, which there is not: start the run anew in "
+        "another folder",
+        slot, name, number));
 }
 
-/// Kernels look up what partners and mirrors point to, and do not check.
+/// Kernels look up what partners and partner slots point to, and do not check.
 void expect_partners(const Layout& layout, int slots, const std::byte* partner) {
     for (int r = 0; r < layout.replicas(); ++r) {
         const int first = layout.first_grain[r], last = first + layout.grain_count[r];
         const auto from = std::size_t(first) * slots, to = std::size_t(layout.first_grain[r + 1]) * slots;
         for (std::size_t slot = from; slot < to; ++slot) {
             const int other = number_at(partner, slot);
-            if (other < -1 - wall_count || (other >= 0 && (other < first || other >= last)))
+            if (other < WALL_PARTNER(wall_count - 1) || (other >= 0 && (other < first || other >= last)))
                 refuse("partner", slot, other);
         }
     }
 }
 
-void expect_mirrors(int slot_count, const std::byte* mirror, std::size_t bytes) {
+void expect_partner_slots(int slot_count, const std::byte* partner_slot, std::size_t bytes) {
     for (std::size_t slot = 0; slot < bytes / sizeof(int); ++slot)
-        if (const int place = number_at(mirror, slot); place < 0 || place > slot_count)
-            refuse("mirror", slot, place);
+        if (const int place = number_at(partner_slot, slot); place < 0 || place > slot_count)
+            refuse("partner_slot", slot, place);
 }
 
 }  // namespace
 
 template <class Quantity>
-std::vector<double> Engine::read_reals(const Field<Quantity>& field, std::size_t first, std::size_t count) const {
+std::vector<double> Engine::read_reals(const Field<Quantity>& field, std::size_t first,
+                                       std::size_t count) const {
     std::vector<double> values(count);
     if (build_.precision == Precision::double_precision) {
         field.read(values.data(), first * sizeof(double), count * sizeof(double));
@@ -75,17 +80,17 @@ void Engine::write_reals(Field<Quantity>& field, std::size_t first, const std::v
     }
 }
 
-template void Engine::write_reals(Field<Position>&, std::size_t, const std::vector<double>&);
-template void Engine::write_reals(Field<Velocity>&, std::size_t, const std::vector<double>&);
+template void Engine::write_reals(Field<Motion>&, std::size_t, const std::vector<double>&);
 
 ReplicaState Engine::state(int replica) const {
     const auto& order = layout_.order[replica];
-    const std::size_t first = 4 * std::size_t(layout_.first_grain[replica]);
-    const std::size_t count = 4 * order.size();
+    const auto motion =
+        read_reals(fields_.motion.copies[0], reals_of_motion * std::size_t(layout_.first_grain[replica]),
+                   reals_of_motion * order.size());
     ReplicaState state;
-    state.position = by_grain(read_reals(fields_.position.now(0), first, count), order);
-    state.velocity = by_grain(read_reals(fields_.velocity.now(0), first, count), order);
-    state.angular_velocity = by_grain(read_reals(fields_.angular_velocity.now(0), first, count), order);
+    state.position = by_grain(motion, 0, order);
+    state.velocity = by_grain(motion, 4, order);
+    state.angular_velocity = by_grain(motion, 8, order);
     state.contacts = contacts(replica, state.position);
     return state;
 }
@@ -95,7 +100,8 @@ std::vector<Contact> Engine::contacts(int replica, const std::vector<Vec3>& posi
     const std::size_t first = std::size_t(layout_.first_grain[replica]) * build_.slots;
     const std::size_t count = order.size() * build_.slots;
     const auto x = read_reals(fields_.force_x, first, count), y = read_reals(fields_.force_y, first, count),
-               z = read_reals(fields_.force_z, first, count), overlap = read_reals(fields_.overlap, first, count),
+               z = read_reals(fields_.force_z, first, count),
+               overlap = read_reals(fields_.overlap, first, count),
                arm = read_reals(fields_.arm, first, count);
     std::vector<int> partner(count);
     fields_.partner.read(partner.data(), first * sizeof(int), count * sizeof(int));
@@ -106,8 +112,8 @@ std::vector<Contact> Engine::contacts(int replica, const std::vector<Vec3>& posi
         Contact contact;
         contact.grain = order[slot / build_.slots];
         Vec3 direction;
-        if (partner[slot] < -1) {
-            const int wall = -2 - partner[slot];
+        if (partner[slot] < NO_PARTNER) {
+            const int wall = WALL_PARTNER(0) - partner[slot];
             contact.partner = wall_partner(static_cast<Wall>(wall));
             direction = Vec3::Zero();
             direction[wall / 2] = wall % 2 ? 1 : -1;
@@ -129,18 +135,17 @@ std::vector<Contact> Engine::contacts(int replica, const std::vector<Vec3>& posi
     return found;
 }
 
-void Engine::set_velocities(int replica, const std::vector<Vec3>& velocity, const std::vector<Vec3>& angular_velocity) {
+void Engine::set_velocities(int replica, const std::vector<Vec3>& velocity,
+                            const std::vector<Vec3>& angular_velocity) {
     const auto& order = layout_.order[replica];
-    std::vector<double> v(4 * order.size()), w(4 * order.size());
+    const std::size_t first = reals_of_motion * std::size_t(layout_.first_grain[replica]);
+    auto motion = read_reals(fields_.motion.copies[0], first, reals_of_motion * order.size());
     for (std::size_t k = 0; k < order.size(); ++k)
         for (int axis = 0; axis < 3; ++axis) {
-            v[4 * k + axis] = velocity[order[k]][axis];
-            w[4 * k + axis] = angular_velocity[order[k]][axis];
+            motion[reals_of_motion * k + 4 + axis] = velocity[order[k]][axis];
+            motion[reals_of_motion * k + 8 + axis] = angular_velocity[order[k]][axis];
         }
-    for (std::size_t k = 0; k < order.size(); ++k) v[4 * k + 3] = softness_[replica][order[k]];
-    const std::size_t first = 4 * std::size_t(layout_.first_grain[replica]);
-    write_reals(fields_.velocity.copies[0], first, v);
-    write_reals(fields_.angular_velocity.copies[0], first, w);
+    write_reals(fields_.motion.copies[0], first, motion);
 }
 
 std::map<std::string, std::vector<std::byte>> Engine::save() {
@@ -154,7 +159,7 @@ std::map<std::string, std::vector<std::byte>> Engine::save() {
         const auto* begin = reinterpret_cast<const std::byte*>(values.data());
         saved[name].assign(begin, begin + values.size() * sizeof(values[0]));
     };
-    keep("relist", relist_);
+    keep("rebuild", rebuild_);
     keep("plate_moved", plate_moved_);
     keep("steps_made", steps_made_);
     return saved;
@@ -164,24 +169,27 @@ void Engine::restore(const std::map<std::string, std::vector<std::byte>>& saved)
     const auto bytes_of = [&](const char* name, std::size_t size) -> const std::byte* {
         const auto found = saved.find(name);
         if (found == saved.end() || found->second.size() != size)
-            throw RunError(fmt::format("the checkpoint does not belong to this scene: '{}' must have {} bytes, has {}",
-                                       name, size, found == saved.end() ? 0 : found->second.size()));
+            throw RunError(
+                fmt::format("the checkpoint does not belong to this scene: '{}' must have {} bytes, has {}",
+                            name, size, found == saved.end() ? 0 : found->second.size()));
         return found->second.data();
     };
     expect_partners(layout_, build_.slots, bytes_of("partner", fields_.partner.bytes()));
-    if (fields_.has_bulges())
-        expect_mirrors(fields_.slot_count, bytes_of("mirror", fields_.mirror.bytes()), fields_.mirror.bytes());
+    if (fields_.has_displacements())
+        expect_partner_slots(fields_.slot_count, bytes_of("partner_slot", fields_.partner_slot.bytes()),
+                             fields_.partner_slot.bytes());
     fields_.visit_state([&](const char* name, auto& field) { field.write(bytes_of(name, field.bytes())); });
     const auto bring_back = [&](const char* name, auto& values) {
         const std::size_t size = values.size() * sizeof(values[0]);
         std::memcpy(values.data(), bytes_of(name, size), size);
     };
-    bring_back("relist", relist_);
+    bring_back("rebuild", rebuild_);
     bring_back("plate_moved", plate_moved_);
     bring_back("steps_made", steps_made_);
     if (!std::ranges::all_of(steps_made_, [](auto steps) { return steps >= 0; }))
-        throw InputError("the checkpoint is damaged: it holds a negative number of steps: start the run anew in another "
-                         "folder");
+        throw InputError(
+            "the checkpoint is damaged: it holds a negative number of steps: start the run anew in another "
+            "folder");
 }
 
 }  // namespace mcdem

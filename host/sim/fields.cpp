@@ -6,6 +6,14 @@
 
 namespace mcdem {
 
+MemoryRows memory_rows(const FieldNeeds& needs) {
+    MemoryRows rows;
+    if (needs.springs) rows.count += 3;
+    if (needs.deepest) rows.deepest = rows.count++;
+    if (needs.relaxed) rows.relaxed = rows.count++;
+    return rows;
+}
+
 template <class Make>
 void Fields::visit_extents(const FieldExtents& extents, Make make) {
     const bool is_double = extents.precision == Precision::double_precision;
@@ -18,27 +26,20 @@ void Fields::visit_extents(const FieldExtents& extents, Make make) {
     make(stop_at, extents.replicas, sizeof(int));
     make(reports, extents.replicas, is_double ? sizeof(f64::Report) : sizeof(f32::Report));
     make(chosen, extents.replicas, sizeof(int));
-    make(relisted, extents.replicas, sizeof(int));
+    make(rebuilt, extents.replicas, sizeof(int));
     make(blocks, extents.blocks, sizeof(int));
-    make(relisted_blocks, extents.blocks, sizeof(int));
+    make(rebuilt_blocks, extents.blocks, sizeof(int));
     make(replica_of_block, extents.blocks, sizeof(int));
-    make_pair(position, extents.grains, 4 * real);
-    make_pair(velocity, extents.grains, 4 * real);
-    make_pair(angular_velocity, extents.grains, 4 * real);
+    make_pair(motion, extents.grains, reals_of_motion * real);
     make(listed_position, extents.grains, 4 * real);
     make(status, extents.grains, sizeof(int));
     make(energy, extents.grains, 4 * real);
     make(partner, slots, sizeof(int));
-    const std::uint64_t bulge_slots = extents.needs.bulges ? slots : 1;
-    make(mirror, bulge_slots, sizeof(int));
-    make_pair(bulge, bulge_slots + 1, real);
-    make(bulge_history, 4 * bulge_slots, real);
-    const std::uint64_t spring_slots = extents.needs.springs ? slots : 1;
-    make(spring_x, spring_slots, real);
-    make(spring_y, spring_slots, real);
-    make(spring_z, spring_slots, real);
-    make(deepest, extents.needs.deepest ? slots : 1, real);
-    make(relaxed, extents.needs.relaxed ? slots : 1, real);
+    const std::uint64_t moving_slots = extents.needs.displacements ? slots : 1;
+    make(partner_slot, moving_slots, sizeof(int));
+    make_pair(displacement, moving_slots + 1, real);
+    make(displacement_history, 4 * moving_slots, real);
+    make(memory_of_contacts, slots * memory_rows(extents.needs).count, real);
     make(force_x, slots, real);
     make(force_y, slots, real);
     make(force_z, slots, real);
@@ -65,10 +66,10 @@ Fields::Fields(Device& device, const FieldExtents& extents, const Layout& layout
         memory_.largest_field = std::max<std::uint64_t>(memory_.largest_field, field.bytes());
     });
     const auto slots = static_cast<std::size_t>(extents.grains * extents.slots);
-    slot_count = extents.needs.bulges ? static_cast<int>(slots) : 1;
+    slot_count = extents.needs.displacements ? static_cast<int>(slots) : 1;
     replica_of_block.write(layout.replica_of_block.data());
-    partner.write(std::vector<int>(slots, -1).data());
-    mirror.write(std::vector<int>(static_cast<std::size_t>(slot_count), slot_count).data());
+    partner.write(std::vector<int>(slots, NO_PARTNER).data());
+    partner_slot.write(std::vector<int>(static_cast<std::size_t>(slot_count), slot_count).data());
 }
 
 Kernels::Kernels(Device& device, const KernelBuild& build) : Kernels(device, build_program(device, build)) {}
@@ -77,7 +78,7 @@ Kernels::Kernels(Device& device, const cl::Program& program)
     : empty_cells(device, program, "empty_cells"),
       fill_cells(device, program, "fill_cells"),
       list_neighbours(device, program, "list_neighbours"),
-      link_mirrors(device, program, "link_mirrors"),
+      link_partner_slots(device, program, "link_partner_slots"),
       advance(device, program, "advance"),
       measure(device, program, "measure"),
       reduce(device, program, "reduce") {}

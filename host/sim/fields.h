@@ -17,18 +17,12 @@ struct Blocks;
 struct ReplicaOfBlock;
 struct Chosen;
 struct StopAt;
-struct Position;
-struct Velocity;
-struct AngularVelocity;
+struct Motion;
 struct Partner;
-struct Mirror;
-struct Bulge;
-struct BulgeHistory;
-struct SpringX;
-struct SpringY;
-struct SpringZ;
-struct Deepest;
-struct Relaxed;
+struct PartnerSlot;
+struct SurfaceDisplacement;
+struct DisplacementHistory;
+struct ContactMemory;
 struct ListedPosition;
 struct Status;
 struct CellHead;
@@ -45,17 +39,27 @@ struct Reports;
 template <class Quantity>
 struct Pair {
     Field<Quantity> copies[2];
-    const Field<Quantity>& now(int parity) const { return copies[parity]; }
-    const Field<Quantity>& next(int parity) const { return copies[1 - parity]; }
+    Now<Quantity> now(int parity) { return {copies[parity]}; }
+    Next<Quantity> next(int parity) { return {copies[1 - parity]}; }
 };
+
+/// Reals of a grain in the field Motion: position, radius, velocity, excess compliance, angular velocity,
+/// padding.
+inline constexpr std::size_t reals_of_motion = 12;
 
 /// Which of the optional fields a batch needs.
 struct FieldNeeds {
-    bool bulges = false;   ///< some replica has interacting contacts
-    bool springs = false;  ///< some replica has friction with history
-    bool deepest = false;  ///< some replica has plasticity
-    bool relaxed = false;  ///< some replica has viscoelasticity
+    bool displacements = false;  ///< some replica has interacting contacts
+    bool springs = false;        ///< some replica has friction with history
+    bool deepest = false;        ///< some replica has plasticity
+    bool relaxed = false;        ///< some replica has viscoelasticity
 };
+
+/// Rows of a grain's contact memory (kernels/contact_memory.h): springs, where kept, take the first three.
+struct MemoryRows {
+    int count = 0, deepest = 0, relaxed = 0;
+};
+MemoryRows memory_rows(const FieldNeeds& needs);
 
 /// How many there are of what fields have one value of, in a batch.
 struct FieldExtents {
@@ -77,56 +81,44 @@ struct Fields {
     /// What fields of these extents will take, without a device.
     static FieldMemory memory_of(const FieldExtents& extents);
 
-    Field<Constants> replicas;               ///< a replica
-    Field<StopAt> stop_at;                  ///< a replica: steps it makes in this stretch
-    Field<Reports> reports;                 ///< a replica
-    Field<Chosen> chosen, relisted;         ///< replicas in work
-    Field<Blocks> blocks, relisted_blocks;  ///< blocks in work
+    Field<Constants> replicas;             ///< a replica
+    Field<StopAt> stop_at;                 ///< a replica: steps it makes in this interval
+    Field<Reports> reports;                ///< a replica
+    Field<Chosen> chosen, rebuilt;         ///< replicas in work
+    Field<Blocks> blocks, rebuilt_blocks;  ///< blocks in work
     Field<ReplicaOfBlock> replica_of_block;
-    Pair<Position> position;                ///< x y z radius
-    Pair<Velocity> velocity;
-    Pair<AngularVelocity> angular_velocity;
+    Pair<Motion> motion;
     Field<ListedPosition> listed_position;
     Field<Status> status;
     Field<Energy> energy;
-    Field<Partner> partner;                 ///< a slot, as all below
-    Field<Mirror> mirror;                   ///< into bulge; slot_count where there is none
-    Pair<Bulge> bulge;                      ///< and one more, always zero, at slot_count
-    Field<BulgeHistory> bulge_history;      ///< a slot, for each of the last four steps
-    Field<SpringX> spring_x;
-    Field<SpringY> spring_y;
-    Field<SpringZ> spring_z;
-    Field<Deepest> deepest;                 ///< overlap
-    Field<Relaxed> relaxed;                 ///< force
+    Field<Partner> partner;                           ///< a slot, as all below
+    Field<PartnerSlot> partner_slot;                  ///< into displacement; slot_count where there is none
+    Pair<SurfaceDisplacement> displacement;           ///< and one more, always zero, at slot_count
+    Field<DisplacementHistory> displacement_history;  ///< a slot, for each of the last four steps
+    Field<ContactMemory> memory_of_contacts;          ///< rows of a grain, side by side
     Field<ForceX> force_x;
     Field<ForceY> force_y;
     Field<ForceZ> force_z;
     Field<Overlap> overlap;
     Field<Arm> arm;
-    Field<CellHead> cell_head;              ///< a cell
+    Field<CellHead> cell_head;  ///< a cell
     Field<CellNext> cell_next;
 
     /// Calls visit(name, field) for every field that a restart must bring back.
     template <class Visit>
     void visit_state(Visit visit) {
-        visit("position", position.copies[0]);
-        visit("velocity", velocity.copies[0]);
-        visit("angular_velocity", angular_velocity.copies[0]);
+        visit("motion", motion.copies[0]);
         visit("listed_position", listed_position);
         visit("status", status);
         visit("partner", partner);
-        visit("mirror", mirror);
-        visit("bulge", bulge.copies[0]);
-        visit("bulge_history", bulge_history);
-        visit("spring_x", spring_x);
-        visit("spring_y", spring_y);
-        visit("spring_z", spring_z);
-        visit("deepest", deepest);
-        visit("relaxed", relaxed);
+        visit("partner_slot", partner_slot);
+        visit("displacement", displacement.copies[0]);
+        visit("displacement_history", displacement_history);
+        visit("contact_memory", memory_of_contacts);
     }
     FieldMemory memory() const { return memory_; }
-    /// Some replica's surfaces move; else no mirror is ever looked up.
-    bool has_bulges() const { return slot_count > 1; }
+    /// Some replica's surfaces move; else no partner slot is ever looked up.
+    bool has_displacements() const { return slot_count > 1; }
     int slot_count = 0;  ///< of all grains that have surface displacements; 1 if none
 
 private:
@@ -143,23 +135,22 @@ struct Kernels {
     Kernels(Device& device, const KernelBuild& build);
 
     Kernel<Field<Constants>, Field<Chosen>, Field<CellHead>> empty_cells;
-    Kernel<Field<Constants>, Field<Blocks>, Field<ReplicaOfBlock>, Field<Position>, Field<CellHead>,
+    Kernel<Field<Constants>, Field<Blocks>, Field<ReplicaOfBlock>, Now<Motion>, Field<CellHead>,
            Field<CellNext>>
         fill_cells;
-    Kernel<int, Field<Constants>, Field<Blocks>, Field<ReplicaOfBlock>, Field<Position>, Field<CellHead>, Field<CellNext>,
-           Field<Partner>, Field<Bulge>, Field<BulgeHistory>, Field<SpringX>, Field<SpringY>,
-           Field<SpringZ>, Field<Deepest>, Field<Relaxed>, Field<ListedPosition>, Field<Status>>
+    Kernel<int, Field<Constants>, Field<Blocks>, Field<ReplicaOfBlock>, Now<Motion>, Field<CellHead>,
+           Field<CellNext>, Field<Partner>, Now<SurfaceDisplacement>, Field<DisplacementHistory>,
+           Field<ContactMemory>, Field<ListedPosition>, Field<Status>>
         list_neighbours;
-    Kernel<int, Field<Blocks>, Field<Partner>, Field<Mirror>> link_mirrors;
-    Kernel<int, int, Field<Constants>, Field<Blocks>, Field<ReplicaOfBlock>, Field<StopAt>, Field<Position>,
-           Field<Velocity>, Field<AngularVelocity>, Field<Position>, Field<Velocity>, Field<AngularVelocity>,
-           Field<Partner>, Field<Mirror>, Field<Bulge>, Field<Bulge>, Field<BulgeHistory>,
-           Field<SpringX>, Field<SpringY>, Field<SpringZ>, Field<Deepest>, Field<Relaxed>, Field<ListedPosition>, Field<Status>>
+    Kernel<int, Field<Blocks>, Field<Partner>, Field<PartnerSlot>> link_partner_slots;
+    Kernel<int, int, Field<Constants>, Field<Blocks>, Field<ReplicaOfBlock>, Field<StopAt>, Now<Motion>,
+           Next<Motion>, Field<Partner>, Field<PartnerSlot>, Now<SurfaceDisplacement>,
+           Next<SurfaceDisplacement>, Field<DisplacementHistory>, Field<ContactMemory>, Field<ListedPosition>,
+           Field<Status>>
         advance;
-    Kernel<Field<Constants>, Field<Blocks>, Field<ReplicaOfBlock>, Field<StopAt>, Field<Position>, Field<Velocity>,
-           Field<AngularVelocity>, Field<Partner>, Field<Mirror>, Field<Bulge>, Field<SpringX>, Field<SpringY>,
-           Field<SpringZ>, Field<Deepest>, Field<Relaxed>, Field<ListedPosition>, Field<ForceX>, Field<ForceY>, Field<ForceZ>, Field<Overlap>,
-           Field<Arm>, Field<Energy>>
+    Kernel<Field<Constants>, Field<Blocks>, Field<ReplicaOfBlock>, Field<StopAt>, Now<Motion>, Field<Partner>,
+           Field<PartnerSlot>, Now<SurfaceDisplacement>, Field<ContactMemory>, Field<ListedPosition>,
+           Field<ForceX>, Field<ForceY>, Field<ForceZ>, Field<Overlap>, Field<Arm>, Field<Energy>>
         measure;
     Kernel<Field<Constants>, Field<Chosen>, Field<Partner>, Field<ForceX>, Field<ForceY>, Field<ForceZ>,
            Field<Energy>, Field<Status>, Field<Reports>>

@@ -8,18 +8,18 @@ namespace {
 
 using Stage = ProtocolState::Stage;
 
-/// Stretches in a row below the limit: a packing that passes through rest at the turning point of an
+/// Intervals in a row below the limit: a packing that passes through rest at the turning point of an
 /// oscillation is not taken for one at rest.
-constexpr int settled_stretches = 2;
-/// Part of a stretch's pressure that is taken over, so that waves in the packing do not shake the plate.
+constexpr int enough_settled_intervals = 2;
+/// Part of an interval's pressure that is taken over, so that waves in the packing do not shake the plate.
 constexpr double pressure_share = 0.2;
-/// The integrator takes away drag * time step of a velocity in a step. Where the plate halts, motion ends at once; before
-/// the first stroke grains still have some way to fall.
+/// The integrator takes away drag * time step of a velocity in a step. Where the plate halts, motion ends at
+/// once; before the first stroke grains still have some way to fall.
 constexpr double max_drag = 0.5, max_relax_drag = 0.02;
 /// Closer than this to a level, over the plate's start, the plate has arrived.
 constexpr double rounding = 1e-12;
 
-double force_along_z(const StretchResult& result, Wall wall) {
+double force_along_z(const IntervalResult& result, Wall wall) {
     return result.wall_force[static_cast<std::size_t>(wall)].z();
 }
 
@@ -50,9 +50,9 @@ long ProtocolRunner::longest_wait() const {
     return std::lround(time / time_step_);
 }
 
-/// The next stretch as far as the protocol is concerned. The plate ends a move at the scan position: its last
-/// speed is a little lower.
-Stretch ProtocolRunner::planned() const {
+/// The next interval as far as the protocol is concerned. The plate ends a move at the scan position: its
+/// last speed is a little lower.
+StepInterval ProtocolRunner::planned() const {
     constexpr double max_steps = 1e6;
     if (state_.stage != Stage::move) {
         const long left = std::max(1L, longest_wait() - state_.stage_step);
@@ -65,31 +65,32 @@ Stretch ProtocolRunner::planned() const {
 }
 
 double ProtocolRunner::drag() const {
-    return std::min(protocol_.settle_drag, (state_.stage == Stage::relax ? max_relax_drag : max_drag) / time_step_);
+    return std::min(protocol_.settle_drag,
+                    (state_.stage == Stage::relax ? max_relax_drag : max_drag) / time_step_);
 }
 
-void ProtocolRunner::take_pressure(const StretchResult& result) {
+void ProtocolRunner::take_pressure(const IntervalResult& result) {
     const double now =
         quasi_static_.pressure(force_along_z(result, Wall::plate), force_along_z(result, Wall::floor));
     state_.pressure += pressure_share * (now - state_.pressure);
 }
 
 /// At rest: net forces are small. The drag is so strong that velocities follow from the net forces alone.
-bool ProtocolRunner::settled(const StretchResult& result, bool plate_arrived) {
-    const double unbalanced =
-        quasi_static_.unbalanced_force(result.kinetic_energy, drag(), state_.pressure);
+bool ProtocolRunner::settled(const IntervalResult& result, bool plate_arrived) {
+    const double unbalanced = quasi_static_.unbalanced_force(result.kinetic_energy, drag(), state_.pressure);
     const bool still = plate_arrived && unbalanced <= protocol_.settle_unbalanced_force;
-    state_.settle_stretches = still ? state_.settle_stretches + 1 : 0;
-    return state_.settle_stretches >= settled_stretches;
+    state_.settled_intervals = still ? state_.settled_intervals + 1 : 0;
+    return state_.settled_intervals >= enough_settled_intervals;
 }
 
 void ProtocolRunner::begin(Stage stage) {
     state_.stage = stage;
     state_.stage_step = 0;
-    state_.settle_stretches = 0;
+    state_.settled_intervals = 0;
 }
 
-std::optional<ProtocolRunner::ScanTag> ProtocolRunner::made(const StretchResult& result, bool plate_arrived) {
+std::optional<ProtocolRunner::ScanTag> ProtocolRunner::made(const IntervalResult& result,
+                                                            bool plate_arrived) {
     if (finished()) return std::nullopt;
     if (state_.stage == Stage::move) {
         auto scan = moved(result.steps);

@@ -1,4 +1,4 @@
-// The experiment of one replica as a sequence of stretches: relax, then cycles of load and unload strokes
+// The experiment of one replica as a sequence of intervals: relax, then cycles of load and unload strokes
 // with scans on the way. It depends on its own replica's results only, so that a replica does the same
 // alone and in any batch.
 #pragma once
@@ -19,12 +19,12 @@ struct ProtocolState {
     Stage stage = Stage::relax;
     int cycle = 0;
     Phase phase = Phase::load;
-    int level = 0;             ///< scans of this stroke taken or under way
-    int frame = 0;             ///< scans taken
-    int settle_stretches = 0;  ///< in a row that met the settling criterion
-    double plate_z = 0;        ///< [m]
-    double pressure = 0;       ///< smoothed over some stretches [Pa]
-    double rate_error = 0;     ///< estimated, of the last move
+    int level = 0;              ///< scans of this stroke taken or under way
+    int frame = 0;              ///< scans taken
+    int settled_intervals = 0;  ///< in a row that met the settling criterion
+    double plate_z = 0;         ///< [m]
+    double pressure = 0;        ///< smoothed over some intervals [Pa]
+    double rate_error = 0;      ///< estimated, of the last move
 };
 static_assert(std::is_trivially_copyable_v<ProtocolState> && sizeof(ProtocolState) == 8 * (2 + 3 + 3),
               "no padding: equal states have equal bytes in checkpoints");
@@ -36,22 +36,22 @@ public:
 
     /// What to do next, at most `longest(plate_velocity)` steps; no steps when finished or stopped.
     template <class Longest>
-    Stretch next(Longest longest) const {
+    StepInterval next(Longest longest) const {
         if (state_.stage == ProtocolState::Stage::finished) return {};
-        Stretch stretch = planned();
-        stretch.steps = std::min(stretch.steps, longest(stretch.plate_velocity));
-        return stretch;
+        StepInterval interval = planned();
+        interval.steps = std::min(interval.steps, longest(interval.plate_velocity));
+        return interval;
     }
 
-    /// A scan to be taken of the state that a stretch has led to.
+    /// A scan to be taken of the state that an interval has led to.
     struct ScanTag {
         int frame, cycle;
         Phase phase;
         double plate_z, time, rate_error;
         bool settled;
     };
-    /// Takes note of a stretch. Nothing counts as settled while the plate is still on its way.
-    std::optional<ScanTag> made(const StretchResult& result, bool plate_arrived = true);
+    /// Takes note of an interval. Nothing counts as settled while the plate is still on its way.
+    std::optional<ScanTag> made(const IntervalResult& result, bool plate_arrived = true);
 
     void stop() { state_.stage = ProtocolState::Stage::finished; }
     bool finished() const { return state_.stage == ProtocolState::Stage::finished; }
@@ -66,10 +66,10 @@ private:
     double level_z(int level) const;
     double distance_left() const;
     long longest_wait() const;
-    Stretch planned() const;
+    StepInterval planned() const;
     double drag() const;  ///< while the plate stands still [1/s]
-    void take_pressure(const StretchResult& result);
-    bool settled(const StretchResult& result, bool plate_arrived);
+    void take_pressure(const IntervalResult& result);
+    bool settled(const IntervalResult& result, bool plate_arrived);
     std::optional<ScanTag> moved(int steps);
     std::optional<ScanTag> arrive(bool settled);
     ScanTag tag(int cycle, bool settled);

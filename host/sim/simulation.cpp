@@ -18,38 +18,44 @@ void expect_possible(const ProtocolState& state) {
     const bool possible = state.step >= 0 && state.stage_step >= 0 && stage >= 0 &&
                           stage <= static_cast<int>(ProtocolState::Stage::finished) && state.cycle >= 0 &&
                           (phase == 0 || phase == 1) && state.level >= 0 && state.frame >= 0 &&
-                          state.settle_stretches >= 0;
+                          state.settled_intervals >= 0;
     if (!possible)
         throw InputError(
-            "the checkpoint is damaged: it holds a state of the plate's program that there is not: start the run anew "
+            "the checkpoint is damaged: it holds a state of the plate's program that there is not: start the "
+            "run anew "
             "in another folder");
 }
 void expect_possible(const CompliantPlate::State&) {}
 
 /// What a user can do about each way in which a replica stops (kernels/status.h).
-std::string cause_of(const StretchResult& result, const Replica& replica, int slots) {
+std::string cause_of(const IntervalResult& result, const Replica& replica, int slots) {
     std::string cause;
     const auto add = [&](int bit, const std::string& text) {
         if (result.status & bit) cause += (cause.empty() ? "" : "; ") + text;
     };
     add(STATUS_OVERLAP,
-        fmt::format("a corrected overlap passed {} of the sum of the radii: no static solution at this compression, "
-                    "the force runs away (compress less, or lower contact.gamma)",
-                    replica.numerics.overlap_limit));
-    add(STATUS_NOT_A_NUMBER, "a position is not a number: the time step is too long (lower numerics.time_step)");
+        fmt::format(
+            "a corrected overlap passed {} of the sum of the radii: no static solution at this compression, "
+            "the force runs away (compress less, or lower contact.gamma)",
+            replica.numerics.overlap_limit));
+    add(STATUS_NOT_A_NUMBER,
+        "a position is not a number: the time step is too long (lower numerics.time_step)");
     add(STATUS_LOST,
         "the centre of a grain left the box: too fast a plate or too long a time step (lower plate.speed or "
         "numerics.time_step)");
-    add(STATUS_SLOTS, fmt::format("a grain has more than {} near neighbours (raise numerics.slots, or lower numerics.skin)",
-                                  slots));
-    add(STATUS_UNPROBED, fmt::format("a free surface moved out by more than numerics.probe_gap = {} mean radii: "
-                                     "contacts could be missed (raise numerics.probe_gap)",
-                                     replica.numerics.probe_gap));
+    add(STATUS_SLOTS,
+        fmt::format("a grain has more than {} near neighbours (raise numerics.slots, or lower numerics.skin)",
+                    slots));
+    add(STATUS_UNPROBED,
+        fmt::format("a free surface moved out by more than numerics.probe_gap = {} mean radii: "
+                    "contacts could be missed (raise numerics.probe_gap)",
+                    replica.numerics.probe_gap));
     return cause;
 }
 
 std::vector<Packing> true_packings(const std::vector<Replica>& replicas, std::vector<Packing> stated) {
-    for (std::size_t r = 0; r < stated.size(); ++r) stated[r] = true_packing(replicas[r], std::move(stated[r]));
+    for (std::size_t r = 0; r < stated.size(); ++r)
+        stated[r] = true_packing(replicas[r], std::move(stated[r]));
     return stated;
 }
 
@@ -64,7 +70,8 @@ Simulation::Simulation(Device& device, const Scene& scene, std::vector<Packing> 
       }()),
       scale_([&] {
           std::vector<PackingScale> all;
-          for (std::size_t r = 0; r < packings.size(); ++r) all.push_back(scale_of(scene.replicas[r], packings[r]));
+          for (std::size_t r = 0; r < packings.size(); ++r)
+              all.push_back(scale_of(scene.replicas[r], packings[r]));
           return all;
       }()),
       engine_(device, kernel_build(device, scene.precision, scene.slots), scene.replicas,
@@ -77,21 +84,21 @@ Simulation::Simulation(Device& device, const Scene& scene, std::vector<Packing> 
 }
 
 bool Simulation::advance(const ScanSink& on_scan, const FailureSink& on_failure) {
-    std::vector<Stretch> stretches;
+    std::vector<StepInterval> intervals;
     bool any = false;
     for (int r = 0; r < engine_.replicas(); ++r) {
-        stretches.push_back(
-            runners_[r].next([&](double plate_velocity) { return engine_.longest_stretch(r, plate_velocity); }));
-        plates_[r].give_way(stretches[r], engine_.time_step(r), engine_.farthest_plate_move(r));
-        any |= stretches.back().steps > 0;
+        intervals.push_back(
+            runners_[r].next([&](double plate_velocity) { return engine_.max_interval(r, plate_velocity); }));
+        plates_[r].give_way(intervals[r], engine_.time_step(r), engine_.max_plate_move(r));
+        any |= intervals.back().steps > 0;
     }
     if (!any) return false;
-    const auto results = engine_.advance(stretches);
+    const auto results = engine_.advance(intervals);
     for (int r = 0; r < engine_.replicas(); ++r) {
-        if (stretches[r].steps == 0) continue;
+        if (intervals[r].steps == 0) continue;
         grain_steps_ += static_cast<long>(results[r].steps) * static_cast<long>(diameter_[r].size());
         plates_[r].made(results[r]);
-        const auto tag = runners_[r].made(results[r], plates_[r].arrived(engine_.farthest_plate_move(r)));
+        const auto tag = runners_[r].made(results[r], plates_[r].arrived(engine_.max_plate_move(r)));
         if (results[r].status) {
             on_failure(r, failure(r, results[r]));
             runners_[r].stop();
@@ -102,7 +109,7 @@ bool Simulation::advance(const ScanSink& on_scan, const FailureSink& on_failure)
     return true;
 }
 
-Scan Simulation::scan(int replica, const ProtocolRunner::ScanTag& tag, const StretchResult& result) const {
+Scan Simulation::scan(int replica, const ProtocolRunner::ScanTag& tag, const IntervalResult& result) const {
     Scan scan;
     scan.frame = tag.frame;
     scan.cycle = tag.cycle;
@@ -124,7 +131,7 @@ Scan Simulation::scan(int replica, const ProtocolRunner::ScanTag& tag, const Str
     return scan;
 }
 
-Failure Simulation::failure(int replica, const StretchResult& result) const {
+Failure Simulation::failure(int replica, const IntervalResult& result) const {
     return {runners_[replica].state().step, result.failed_grain,
             cause_of(result, scene_.replicas[replica], scene_.slots)};
 }
@@ -155,7 +162,8 @@ void Simulation::restore(const std::map<std::string, std::vector<std::byte>>& sa
         auto state = parts.front().state();
         const auto found = saved.find(name);
         if (found == saved.end() || found->second.size() != parts.size() * sizeof state)
-            throw RunError("the checkpoint does not belong to this scene: it holds another number of replicas");
+            throw RunError(
+                "the checkpoint does not belong to this scene: it holds another number of replicas");
         for (std::size_t r = 0; r < parts.size(); ++r) {
             std::memcpy(&state, found->second.data() + r * sizeof state, sizeof state);
             expect_possible(state);

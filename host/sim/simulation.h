@@ -20,10 +20,10 @@ public:
     using ScanSink = std::function<void(int replica, Scan scan)>;
     using FailureSink = std::function<void(int replica, const Failure& failure)>;
 
-    /// One stretch of every replica that is not finished. Returns false when none is left.
+    /// One interval of every replica that is not finished. Returns false when none is left.
     bool advance(const ScanSink& on_scan, const FailureSink& on_failure);
 
-    double progress() const;       ///< mean over the replicas, 0 to 1
+    double progress() const;                           ///< mean over the replicas, 0 to 1
     long grain_steps() const { return grain_steps_; }  ///< made by this object
     const Engine& engine() const { return engine_; }
 
@@ -31,8 +31,8 @@ public:
     void restore(const std::map<std::string, std::vector<std::byte>>& saved);
 
 private:
-    Scan scan(int replica, const ProtocolRunner::ScanTag& tag, const StretchResult& result) const;
-    Failure failure(int replica, const StretchResult& result) const;
+    Scan scan(int replica, const ProtocolRunner::ScanTag& tag, const IntervalResult& result) const;
+    Failure failure(int replica, const IntervalResult& result) const;
 
     Scene scene_;
     std::vector<std::vector<double>> diameter_;  ///< as stated [m]

@@ -20,11 +20,11 @@ struct CellScene {
         }
         cell_head.assign(cells, 12345);
         cell_next.assign(layout.grains(), 12345);
-        position.assign(4 * layout.grains(), 0);
+        motion.assign(mcdem::reals_of_motion * layout.grains(), 0);
         for (int r = 0; r < layout.replicas(); ++r)
             for (int k = 0; k < layout.grain_count[r]; ++k) {
                 const int grain = layout.order[r][k];
-                float* at = &position[4 * (layout.first_grain[r] + k)];
+                float* at = &motion[mcdem::reals_of_motion * (layout.first_grain[r] + k)];
                 for (int axis = 0; axis < 3; ++axis)
                     at[axis] = float(starts[r].packing.position[grain][axis]);
                 at[3] = float(starts[r].packing.diameter[grain] / 2);
@@ -41,18 +41,17 @@ struct CellScene {
         mcdem::Fields fields(device(), extents, layout);
         mcdem::Kernels program(device(), kernels);
         fields.replicas.write(replicas.data());
-        fields.position.copies[0].write(position.data());
+        fields.motion.copies[0].write(motion.data());
         fields.cell_head.write(cell_head.data());
         fields.cell_next.write(cell_next.data());
         std::vector<int> blocks;
         for (int r : chosen)
             for (int b = layout.first_block(r); b < layout.first_block(r + 1); ++b) blocks.push_back(b);
-        fields.relisted.write(chosen.data(), 0, chosen.size() * sizeof(int));
-        fields.relisted_blocks.write(blocks.data(), 0, blocks.size() * sizeof(int));
-        program.empty_cells(chosen.size(), 64, fields.replicas, fields.relisted, fields.cell_head);
-        program.fill_cells(blocks.size(), kernels.block, fields.replicas, fields.relisted_blocks,
-                           fields.replica_of_block, fields.position.now(0), fields.cell_head,
-                           fields.cell_next);
+        fields.rebuilt.write(chosen.data(), 0, chosen.size() * sizeof(int));
+        fields.rebuilt_blocks.write(blocks.data(), 0, blocks.size() * sizeof(int));
+        program.empty_cells(chosen.size(), 64, fields.replicas, fields.rebuilt, fields.cell_head);
+        program.fill_cells(blocks.size(), kernels.block, fields.replicas, fields.rebuilt_blocks,
+                           fields.replica_of_block, fields.motion.now(0), fields.cell_head, fields.cell_next);
         fields.cell_head.read(cell_head.data());
         fields.cell_next.read(cell_next.data());
     }
@@ -67,7 +66,7 @@ struct CellScene {
     mcdem::Layout layout;
     std::vector<mcdem::f32::Replica> replicas;
     std::vector<int> cell_head, cell_next;
-    std::vector<float> position;
+    std::vector<float> motion;
 };
 
 int cell_along(float x, float size, int cells) {
@@ -82,7 +81,7 @@ void expect_cells(const CellScene& scene, int r) {
              grain = scene.cell_next[grain]) {
             ASSERT_LT(grain, scene.layout.grains());
             ASSERT_EQ(seen[grain]++, 0) << "grain " << grain << " is in a cell twice";
-            const float* x = &scene.position[4 * grain];
+            const float* x = &scene.motion[mcdem::reals_of_motion * grain];
             const int expected =
                 (cell_along(x[2], replica.cell_size, replica.span_z) % replica.cells_z * replica.cells_y +
                  cell_along(x[1], replica.cell_size, replica.span_y) % replica.cells_y) *

@@ -1,4 +1,4 @@
-// Cells, neighbour rows and mirrors against every pair looked at, and what slots remember when rows are
+// Cells, neighbour rows and partner_slots against every pair looked at, and what slots remember when rows are
 // made anew.
 #include <fmt/core.h>
 
@@ -43,9 +43,9 @@ Near near_by_brute_force(const StepReference& reference, const Start& start, int
 void expect_row(const SavedRows& rows, const StepReference& reference, const Start& start, int r, int grain) {
     const std::vector<int> row = rows.row(r, grain);
     const std::string where = fmt::format("replica {} grain {}", r, grain);
-    const auto end = std::find(row.begin(), row.end(), empty_slot);
-    EXPECT_EQ(std::count(end, row.end(), empty_slot), row.end() - end) << where << ": no holes";
-    const auto walls = std::find_if(row.begin(), end, [](int entry) { return entry < empty_slot; });
+    const auto end = std::find(row.begin(), row.end(), NO_PARTNER);
+    EXPECT_EQ(std::count(end, row.end(), NO_PARTNER), row.end() - end) << where << ": no holes";
+    const auto walls = std::find_if(row.begin(), end, [](int entry) { return entry < NO_PARTNER; });
     EXPECT_TRUE(std::is_sorted(row.begin(), walls)) << where;
     EXPECT_TRUE(std::is_sorted(walls, end, std::greater<>())) << where << ": walls last, in their order";
     std::vector<int> found;
@@ -59,15 +59,16 @@ void expect_row(const SavedRows& rows, const StepReference& reference, const Sta
 
 void expect_mirrors(const SavedRows& rows, int slots) {
     const auto& partners = rows.partners();
-    const auto mirrors = rows.mirrors();
-    ASSERT_EQ(mirrors.size(), partners.size());
+    const auto partner_slots = rows.partner_slots();
+    ASSERT_EQ(partner_slots.size(), partners.size());
     for (std::size_t slot = 0; slot < partners.size(); ++slot) {
         if (partners[slot] < 0) {
-            EXPECT_FALSE(0 <= mirrors[slot] && mirrors[slot] < int(partners.size())) << "slot " << slot;
+            EXPECT_FALSE(0 <= partner_slots[slot] && partner_slots[slot] < int(partners.size()))
+                << "slot " << slot;
             continue;
         }
-        ASSERT_EQ(mirrors[slot] / slots, partners[slot]) << "slot " << slot;
-        ASSERT_EQ(partners[mirrors[slot]], int(slot) / slots) << "slot " << slot;
+        ASSERT_EQ(partner_slots[slot] / slots, partners[slot]) << "slot " << slot;
+        ASSERT_EQ(partners[partner_slots[slot]], int(slot) / slots) << "slot " << slot;
     }
 }
 
@@ -182,7 +183,7 @@ void expect_memory_moves_with_neighbours(const Start& start, const char* quantit
     Uniform uniform(5);
     batch.engine().set_velocities(0, uniform.vectors(27, 0.5), uniform.vectors(27, 20));
     StepReference reference = reference_of(batch.engine(), 0, start);
-    int relisted = 0, changed = 0;
+    int rebuilt = 0, changed = 0;
     bool differs = false;
     for (int step = 0; step < 120; ++step) {
         const auto result = batch.advance(1).front();
@@ -200,21 +201,21 @@ void expect_memory_moves_with_neighbours(const Start& start, const char* quantit
                 differs |= std::abs(value) > 1e-3 * size;
             }
         }
-        if (!rows.relisting(0)) continue;
+        if (!rows.rebuilding(0)) continue;
         const auto before = reference.memory;
         reference.list_neighbours();
-        ++relisted;
+        ++rebuilt;
         for (int grain = 0; grain < 27; ++grain)
             for (const auto& [partner, memory] : before[grain])
                 changed += !reference.memory[grain].count(partner);
     }
-    EXPECT_GT(relisted, 10);
+    EXPECT_GT(rebuilt, 10);
     EXPECT_GT(changed, 10) << "neighbours that were lost";
     EXPECT_TRUE(differs) << "nothing was remembered";
 }
 
-// Grains cross the list's margin several times within a stretch, and the plate comes down on them: a stretch
-// ends early rather than miss a contact. The reference looks at every pair in every step.
+// Grains cross the list's margin several times within an interval, and the plate comes down on them: an
+// interval ends early rather than miss a contact. The reference looks at every pair in every step.
 TEST(NeighbourList, LongStretchesMissNoContact) {
     if (!has_double()) GTEST_SKIP() << "the device has no double precision";
     const Start start = mixing(FrictionLaw::saturated, ContactModel::independent);
@@ -226,8 +227,8 @@ TEST(NeighbourList, LongStretchesMissNoContact) {
     reference.begin(start.replica.plate.start, plate_velocity);
     double plate = start.replica.plate.start;
     int cut_short = 0;
-    for (int stretch = 0; stretch < 60; ++stretch) {
-        const int asked = batch.engine().longest_stretch(0, plate_velocity);
+    for (int interval = 0; interval < 60; ++interval) {
+        const int asked = batch.engine().max_interval(0, plate_velocity);
         ASSERT_GT(asked, 0);
         const auto result = batch.engine().advance({{asked, plate, plate_velocity, 0}}).front();
         ASSERT_EQ(result.status, 0);
@@ -238,43 +239,45 @@ TEST(NeighbourList, LongStretchesMissNoContact) {
         }
         plate += plate_velocity * result.steps * reference.time_step();
         reference.begin(plate, plate_velocity);
-        ASSERT_LT(relative_difference(batch.engine().state(0).velocity, reference.velocity), 1e-9) << stretch;
+        ASSERT_LT(relative_difference(batch.engine().state(0).velocity, reference.velocity), 1e-9)
+            << interval;
     }
     EXPECT_GT(cut_short, 3);
 }
 
-// The most that a stretch may let the plate come nearer is a fifth of the margin (grains may use the rest).
+// The most that an interval may let the plate come nearer is a fifth of the margin (grains may use the rest).
 TEST(NeighbourList, StretchesEndBeforeThePlateOutrunsTheList) {
     const Start start = jittered_lattice(test_replica(), 64, 16);
     Batch batch(build(Precision::single_precision), start);
     const double margin = 0.2 * start.replica.numerics.skin * 0.01;
     for (double velocity : {-10.0, -1.0, 0.01}) {
-        const int steps = batch.engine().longest_stretch(0, velocity);
+        const int steps = batch.engine().max_interval(0, velocity);
         const double step = std::abs(velocity) * batch.engine().time_step(0);
         EXPECT_TRUE(steps == 1 || steps * step < 1.02 * margin) << velocity;
         EXPECT_GT((steps + 1) * step, steps == 60 ? 0 : 0.98 * margin)
             << velocity << ": no shorter than needed";
     }
-    EXPECT_EQ(batch.engine().longest_stretch(0, 0), 60);
+    EXPECT_EQ(batch.engine().max_interval(0, 0), 60);
 }
 
 TEST(NeighbourList, BulgesMoveWithTheirNeighbours) {
     if (!has_double()) GTEST_SKIP() << "the device has no double precision";
-    expect_memory_moves_with_neighbours(mixing(FrictionLaw::saturated, ContactModel::mc_dem), "bulge", 0.01,
-                                        [](const Memory& memory) { return memory.predicted; });
+    expect_memory_moves_with_neighbours(mixing(FrictionLaw::saturated, ContactModel::mc_dem), "displacement",
+                                        0.01, [](const Memory& memory) { return memory.predicted; });
 }
 
 TEST(NeighbourList, SpringsMoveWithTheirNeighbours) {
     if (!has_double()) GTEST_SKIP() << "the device has no double precision";
-    expect_memory_moves_with_neighbours(mixing(FrictionLaw::mindlin, ContactModel::independent), "spring_x",
-                                        0.01, [](const Memory& memory) { return memory.spring.x(); });
+    expect_memory_moves_with_neighbours(mixing(FrictionLaw::mindlin, ContactModel::independent),
+                                        "contact_memory", 0.01,
+                                        [](const Memory& memory) { return memory.spring.x(); });
 }
 
 TEST(NeighbourList, DeepestOverlapsMoveWithTheirNeighbours) {
     if (!has_double()) GTEST_SKIP() << "the device has no double precision";
     Start start = mixing(FrictionLaw::saturated, ContactModel::independent);
     start.replica.effects.plasticity = 0.3;
-    expect_memory_moves_with_neighbours(start, "deepest", 0.01,
+    expect_memory_moves_with_neighbours(start, "contact_memory", 0.01,
                                         [](const Memory& memory) { return memory.deepest; });
 }
 
@@ -283,7 +286,7 @@ TEST(NeighbourList, RelaxedForcesMoveWithTheirNeighbours) {
     Start start = mixing(FrictionLaw::saturated, ContactModel::independent);
     start.replica.effects.viscoelasticity = 0.5;
     start.replica.effects.relaxation_time = 3e-3;
-    expect_memory_moves_with_neighbours(start, "relaxed", 0.1,
+    expect_memory_moves_with_neighbours(start, "contact_memory", 0.1,
                                         [](const Memory& memory) { return memory.relaxed; });
 }
 

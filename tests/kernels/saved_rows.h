@@ -6,11 +6,10 @@
 
 #include "core/recording.h"
 #include "reference/test_scene.h"
+#include "sim/device_types.h"
 #include "sim/layout.h"
 
 namespace reference {
-
-inline constexpr int empty_slot = -1;  ///< EMPTY of kernels/contact_geometry.h
 
 template <class T>
 std::vector<T> saved_values(const std::map<std::string, std::vector<std::byte>>& saved,
@@ -52,22 +51,23 @@ public:
     }
     /// An entry of a row in the user's numbers.
     int user_partner(int replica, int entry) const {
-        if (entry < empty_slot) return mcdem::wall_partner(static_cast<mcdem::Wall>(-2 - entry));
+        if (entry < NO_PARTNER) return mcdem::wall_partner(static_cast<mcdem::Wall>(WALL_PARTNER(0) - entry));
         return layout_.order[replica][entry - layout_.first_grain[replica]];
     }
-    /// partner -> value of a remembered quantity, for one grain.
+    /// partner -> value of a remembered quantity, for one grain; of contact memory its first row.
     std::map<int, double> by_partner(const std::string& name, int replica, int grain) const {
         const auto values = saved_reals(saved_, name, build_.precision);
         std::map<int, double> found;
         const auto entries = row(replica, grain);
+        const std::size_t rows = values.size() / partner_.size();
         for (int c = 0; c < build_.slots; ++c)
-            if (entries[c] != empty_slot)
-                found[user_partner(replica, entries[c])] = values[first_slot(replica, grain) + c];
+            if (entries[c] != NO_PARTNER)
+                found[user_partner(replica, entries[c])] = values[rows * first_slot(replica, grain) + c];
         return found;
     }
-    std::vector<int> mirrors() const { return saved_values<int>(saved_, "mirror"); }
+    std::vector<int> partner_slots() const { return saved_values<int>(saved_, "partner_slot"); }
     const std::vector<int>& partners() const { return partner_; }
-    bool relisting(int replica) const { return saved_values<char>(saved_, "relist")[replica] != 0; }
+    bool rebuilding(int replica) const { return saved_values<char>(saved_, "rebuild")[replica] != 0; }
 
 private:
     static std::vector<Packing> packings(const std::vector<Start>& starts) {

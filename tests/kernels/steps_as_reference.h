@@ -65,7 +65,7 @@ inline void compare_contacts(const std::vector<mcdem::Contact>& contacts, const 
     d.overlap = relative_difference(overlap, overlap_0);
 }
 
-inline Differences compare(const Engine& engine, int r, const mcdem::StretchResult& result,
+inline Differences compare(const Engine& engine, int r, const mcdem::IntervalResult& result,
                            const StepReference& reference, double skim) {
     Differences d;
     const auto state = engine.state(r);
@@ -107,9 +107,9 @@ inline void expect_steps_as_reference(const KernelBuild& build, const std::vecto
         plate.push_back(starts[r].replica.plate.start);
     }
     for (int step = 0; step < 6; ++step) {
-        std::vector<mcdem::Stretch> stretches;
-        for (double z : plate) stretches.push_back({1, z, plate_velocity, 0});
-        const auto results = engine.advance(stretches);
+        std::vector<mcdem::StepInterval> intervals;
+        for (double z : plate) intervals.push_back({1, z, plate_velocity, 0});
+        const auto results = engine.advance(intervals);
         for (std::size_t r = 0; r < starts.size(); ++r) {
             references[r].step();
             plate[r] += plate_velocity * references[r].time_step();

@@ -22,7 +22,7 @@ double worst_displacement(const KernelBuild& kernels, const Start& start) {
     const SavedRows rows(batch, kernels, {start});
     double worst = 0, largest = 0;
     for (std::size_t grain = 0; grain < start.packing.size(); ++grain) {
-        const auto found = rows.by_partner("bulge", 0, grain);
+        const auto found = rows.by_partner("displacement", 0, grain);
         EXPECT_EQ(found.size(), reference.memory[grain].size());
         for (const auto& [partner, memory] : reference.memory[grain]) {
             worst = std::max(worst, std::abs(found.at(partner) - memory.predicted));
@@ -33,7 +33,7 @@ double worst_displacement(const KernelBuild& kernels, const Start& start) {
     return worst / largest;
 }
 
-/// Float: a force is known to some 3e-5 (step_test.cpp), and the extrapolation in time adds up errors with
+/// Float: a force is known to some 3e-5 (advance_test.cpp), and the extrapolation in time adds up errors with
 /// the weights 10/6, 5/6 and 1/6. At nu = 0 the sphere's polynomials have coefficients up to 40 that cancel
 /// to some 0.1: another 3e-4. The elastic sphere's overlaps are found by Newton's method, good to 1e-6.
 double tolerance(Precision precision, ContactModel model, double poisson_ratio) {
@@ -90,7 +90,7 @@ std::array<double, 4> displacements(ContactModel model) {
     const double modulus = start.replica.grains.youngs_modulus;
     const double hertz = 4.0 / 3 * modulus / 0.75 * std::sqrt(radius) * std::pow(overlap, 1.5);
     EXPECT_NEAR(-force / hertz, 1, 0.01);
-    const auto bulge = SavedRows(batch, kernels, {start}).by_partner("bulge", 0, 0);
+    const auto bulge = SavedRows(batch, kernels, {start}).by_partner("displacement", 0, 0);
     std::array<double, 4> found;
     for (int k = 0; k < 4; ++k) found[k] = bulge.at(k + 1) / (hertz / (modulus * radius));
     return found;

@@ -12,24 +12,23 @@ using FillCells = decltype(Kernels::fill_cells);
 template <class... Arguments>
 constexpr bool callable = std::is_invocable_v<FillCells&, std::size_t, std::size_t, const Arguments&...>;
 
-static_assert(callable<Field<Constants>, Field<Blocks>, Field<ReplicaOfBlock>, Field<Position>,
-                       Field<CellHead>, Field<CellNext>>);
-static_assert(!callable<Field<Constants>, Field<Blocks>, Field<ReplicaOfBlock>, Field<Velocity>,
-                        Field<CellHead>, Field<CellNext>>,
-              "a velocity is no position");
-static_assert(!callable<Field<Constants>, Field<Blocks>, Field<ReplicaOfBlock>, Field<Position>,
-                        Field<CellNext>, Field<CellHead>>,
+static_assert(callable<Field<Constants>, Field<Blocks>, Field<ReplicaOfBlock>, Now<Motion>, Field<CellHead>,
+                       Field<CellNext>>);
+static_assert(!callable<Field<Constants>, Field<Blocks>, Field<ReplicaOfBlock>, Next<Motion>, Field<CellHead>,
+                        Field<CellNext>>,
+              "what a step writes is not what it reads");
+static_assert(!callable<Field<Constants>, Field<Blocks>, Field<ReplicaOfBlock>, Now<Motion>, Field<CellNext>,
+                        Field<CellHead>>,
               "swapped");
-static_assert(
-    !callable<Field<Constants>, Field<Blocks>, Field<ReplicaOfBlock>, Field<Position>, Field<CellHead>>,
-    "one is missing");
+static_assert(!callable<Field<Constants>, Field<Blocks>, Field<ReplicaOfBlock>, Now<Motion>, Field<CellHead>>,
+              "one is missing");
 static_assert(
     !callable<Field<Constants>, Field<Blocks>, Field<ReplicaOfBlock>, int, Field<CellHead>, Field<CellNext>>,
     "a number is no field");
 
 template <class A, class B>
 constexpr bool assignable = std::is_assignable_v<Field<A>&, const Field<B>&>;
-static_assert(assignable<Velocity, Velocity> && !assignable<Velocity, AngularVelocity>,
+static_assert(assignable<ForceX, ForceX> && !assignable<ForceX, ForceY>,
               "fields of one form and another quantity do not mix");
 
 TEST(TypedArguments, AreCheckedWhenThisFileIsCompiled) {}

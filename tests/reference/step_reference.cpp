@@ -33,8 +33,8 @@ StepReference::StepReference(const mcdem::Replica& scene, const mcdem::Packing& 
       law_(mcdem::surface_law(scene.contact.model, scene.grains.poisson_ratio, scene.contact.gamma)) {
     for (double diameter : packing.diameter) radius_.push_back(diameter / 2);
     const auto& g = scene.grains;
-    for (double softness : mcdem::softness(scene, packing.size()))
-        youngs_modulus_.push_back(g.youngs_modulus / (1 + softness));
+    for (double excess_compliance : mcdem::excess_compliance(scene, packing.size()))
+        youngs_modulus_.push_back(g.youngs_modulus / (1 + excess_compliance));
     const double rayleigh_speed = 0.163 * g.poisson_ratio + 0.8766;  // over sqrt(G / rho)
     std::vector<double> rayleigh_time;
     for (std::size_t i = 0; i < radius_.size(); ++i)

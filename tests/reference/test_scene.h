@@ -164,15 +164,15 @@ public:
     Engine& engine() { return engine_; }
     const Start& start(int replica = 0) const { return starts_[replica]; }
 
-    /// `steps` of every replica, in as many stretches as it takes. Returns the last stretch's results.
-    std::vector<mcdem::StretchResult> advance(int steps, double settle_drag = 0) {
+    /// `steps` of every replica, in as many intervals as it takes. Returns the last interval's results.
+    std::vector<mcdem::IntervalResult> advance(int steps, double settle_drag = 0) {
         std::vector<int> left(starts_.size(), steps);
-        std::vector<mcdem::StretchResult> last(starts_.size());
+        std::vector<mcdem::IntervalResult> last(starts_.size());
         for (bool any = steps > 0; any;) {
-            std::vector<mcdem::Stretch> stretches;
+            std::vector<mcdem::StepInterval> intervals;
             for (std::size_t r = 0; r < starts_.size(); ++r)
-                stretches.push_back({std::min(left[r], 60), starts_[r].replica.plate.start, 0, settle_drag});
-            const auto results = engine_.advance(stretches);
+                intervals.push_back({std::min(left[r], 60), starts_[r].replica.plate.start, 0, settle_drag});
+            const auto results = engine_.advance(intervals);
             any = false;
             for (std::size_t r = 0; r < starts_.size(); ++r) {
                 if (left[r] == 0) continue;

@@ -14,7 +14,7 @@ Packing stated(std::size_t count) {
 
 TEST(TrueGrains, AreAsStatedWithoutEffects) {
     EXPECT_EQ(true_packing(Replica{}, stated(5)).diameter, stated(5).diameter);
-    EXPECT_EQ(softness(Replica{}, 3), std::vector<double>(3, 0.0));
+    EXPECT_EQ(excess_compliance(Replica{}, 3), std::vector<double>(3, 0.0));
 }
 
 TEST(TrueGrains, ShareTheDiameterError) {

@@ -82,7 +82,7 @@ TEST(Bits, ACheckpointOfAnotherSceneIsRefused) {
 TEST(Bits, ACheckpointThatPointsOutsideItsArraysIsRefused) {
     WholeRun run(Precision::single_precision, starts({0, 1}));
     const auto whole = run.save();
-    for (const char* field : {"partner", "mirror", "steps_made", "protocol"})
+    for (const char* field : {"partner", "partner_slot", "steps_made", "protocol"})
         for (const std::int64_t number : {std::int64_t{-9} << 32 | 0xfffffff7, std::int64_t{1} << 30}) {
             const bool is_count = std::string(field) == "steps_made" || std::string(field) == "protocol";
             if (is_count && number > 0) continue;

@@ -97,7 +97,7 @@ std::vector<mcdem::Scan> scans(const Replica& replica, int count = 1) {
 }
 
 // Settled, force and position solve z = commanded z + C F, F = F_H(R - z/2); C dF/dz goes up to 12. A scan
-// waits for the plate, to a thousandth of its give or of what it may move in a stretch.
+// waits for the plate, to a thousandth of its give or of what it may move in an interval.
 TEST(PlateCompliance, ForceAndPositionAgree) {
     for (double compliance : {1e-3, 1e-2, 5e-2}) {
         Replica replica = single_grain();
@@ -133,17 +133,17 @@ class Spring {
 public:
     Spring(const Replica& replica, double stiffness) : plate_(replica), stiffness_(stiffness) {}
 
-    /// One stretch in which the commanded plate moves by `move` from where it is; the spring is free above
+    /// One interval in which the commanded plate moves by `move` from where it is; the spring is free above
     /// zero.
-    void stretch(double move, int steps) {
-        mcdem::Stretch stretch{steps, commanded_, move / (steps * time_step), 0};
-        plate_.give_way(stretch, time_step, farthest);
-        EXPECT_NEAR(stretch.plate_z, true_z_, 1e-13) << "the plate does not jump";
-        const double went = stretch.plate_velocity * steps * time_step;
+    void interval(double move, int steps) {
+        mcdem::StepInterval interval{steps, commanded_, move / (steps * time_step), 0};
+        plate_.give_way(interval, time_step, farthest);
+        EXPECT_NEAR(interval.plate_z, true_z_, 1e-13) << "the plate does not jump";
+        const double went = interval.plate_velocity * steps * time_step;
         EXPECT_LE(std::abs(went), std::max(farthest, std::abs(move)) * (1 + 1e-12));
         true_z_ += went;
         commanded_ += move;
-        mcdem::StretchResult result;
+        mcdem::IntervalResult result;
         result.steps = steps;
         result.wall_force[plate_wall] = {0, 0, force()};
         plate_.made(result);
@@ -167,11 +167,11 @@ TEST(PlateCompliance, FollowsAMovingPlateWithoutLag) {
         replica.plate.start = 2 * radius;
         replica.box = {2.2 * radius, 2.2 * radius};
         Spring spring(replica, stiffness);
-        for (int k = 0; k < 1000; ++k) spring.stretch(-move, 10);
+        for (int k = 0; k < 1000; ++k) spring.interval(-move, 10);
         EXPECT_NEAR(spring.lag(compliance), 0, 1e-2 * move) << compliance;
         const double gain = compliance * stiffness, depth = 1000 * move;
         EXPECT_NEAR(spring.force() / (stiffness * depth / (1 + gain)), 1, 1e-4);
-        for (int k = 0; k < 100; ++k) spring.stretch(0, 60);
+        for (int k = 0; k < 100; ++k) spring.interval(0, 60);
         EXPECT_NEAR(spring.lag(compliance), 0, 1e-9) << compliance << ": at rest nothing is left";
     }
 }
@@ -184,17 +184,17 @@ TEST(PlateCompliance, ArrivesWhenItGivesAsMuchAsItShould) {
     Spring spring(replica, 1000);
     EXPECT_TRUE(spring.arrived()) << "nothing to give";
     for (int k = 0; k < 20; ++k) {
-        spring.stretch(-1e-4, 10);
+        spring.interval(-1e-4, 10);
         EXPECT_FALSE(spring.arrived()) << k << ": the force has grown";
     }
-    for (int k = 0; k < 200; ++k) spring.stretch(0, 60);
+    for (int k = 0; k < 200; ++k) spring.interval(0, 60);
     EXPECT_TRUE(spring.arrived());
     EXPECT_LT(std::abs(spring.lag(compliance)), 1e-3 * compliance * spring.force());
 }
 
 TEST(PlateCompliance, NothingIsSettledBeforeThePlateArrives) {
     mcdem::ProtocolRunner runner(single_grain(), 1e-4, {2 * radius, 0, 1});
-    mcdem::StretchResult still;
+    mcdem::IntervalResult still;
     still.steps = 60;
     still.elastic_energy = 1;
     for (int k = 0; k < 5; ++k) runner.made(still, false);
@@ -205,14 +205,14 @@ TEST(PlateCompliance, NothingIsSettledBeforeThePlateArrives) {
 
 TEST(PlateCompliance, ARigidPlateIsLeftAlone) {
     mcdem::CompliantPlate plate(single_grain());
-    mcdem::Stretch stretch{17, 0.1, -0.03, 2};
-    mcdem::StretchResult result;
+    mcdem::StepInterval interval{17, 0.1, -0.03, 2};
+    mcdem::IntervalResult result;
     result.steps = 17;
     result.wall_force[plate_wall] = {0, 0, 5};
     plate.made(result);
-    plate.give_way(stretch, 1e-4, 1e-4);
-    EXPECT_EQ(stretch.plate_z, 0.1);
-    EXPECT_EQ(stretch.plate_velocity, -0.03);
+    plate.give_way(interval, 1e-4, 1e-4);
+    EXPECT_EQ(interval.plate_z, 0.1);
+    EXPECT_EQ(interval.plate_velocity, -0.03);
 }
 
 }  // namespace

@@ -12,8 +12,8 @@ namespace {
 /// Young's moduli as the scene says they are drawn.
 std::vector<double> moduli(const Replica& replica, std::size_t grains) {
     std::vector<double> all;
-    for (double softness : mcdem::softness(replica, grains))
-        all.push_back(replica.grains.youngs_modulus / (1 + softness));
+    for (double excess_compliance : mcdem::excess_compliance(replica, grains))
+        all.push_back(replica.grains.youngs_modulus / (1 + excess_compliance));
     return all;
 }
 

@@ -69,17 +69,17 @@ std::vector<Record> ring(const std::vector<Start>& starts) {
     Batch batch(build(Precision::double_precision), starts);
     std::vector<Record> records(starts.size());
     for (bool any = true; any;) {
-        std::vector<mcdem::Stretch> stretches;
+        std::vector<mcdem::StepInterval> intervals;
         any = false;
         for (std::size_t r = 0; r < starts.size(); ++r) {
-            stretches.push_back({records[r].done() ? 0 : 1, starts[r].replica.plate.start, 0, 0});
-            any |= stretches.back().steps > 0;
+            intervals.push_back({records[r].done() ? 0 : 1, starts[r].replica.plate.start, 0, 0});
+            any |= intervals.back().steps > 0;
         }
-        const auto results = batch.engine().advance(stretches);
+        const auto results = batch.engine().advance(intervals);
         for (std::size_t r = 0; r < starts.size(); ++r) {
             EXPECT_EQ(results[r].status, 0);
             if (results[r].status) return {};
-            if (stretches[r].steps) records[r].add(results[r].kinetic_energy, results[r].elastic_energy);
+            if (intervals[r].steps) records[r].add(results[r].kinetic_energy, results[r].elastic_energy);
         }
     }
     return records;
@@ -132,7 +132,7 @@ TEST(Energy, ElasticCollisionGivesEverythingBack) {
         batch.engine().set_velocities(0, {{0.05, 0, 0}, {0, 0, 0}}, std::vector<Vec3>(2, Vec3::Zero()));
         const double before = batch.advance(1).front().kinetic_energy;
         double highest = 0;
-        mcdem::StretchResult result;
+        mcdem::IntervalResult result;
         for (int step = 0; step < 40 / time_step; ++step) {
             result = batch.advance(1).front();
             highest = std::max(highest, result.elastic_energy);

@@ -31,7 +31,7 @@ Start squeezed(ContactModel model, double gamma, double overlap, int large) {
 }
 
 /// Makes `steps` of every replica that is well. Returns the last results of each.
-std::vector<mcdem::StretchResult> run(Batch& batch, int steps) { return batch.advance(steps, 50); }
+std::vector<mcdem::IntervalResult> run(Batch& batch, int steps) { return batch.advance(steps, 50); }
 
 TEST(Failure, RunAwayStopsItsReplicaAlone) {
     const Start healthy = squeezed(ContactModel::mc_dem, 1.125, 0.05, 2);

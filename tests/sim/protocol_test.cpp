@@ -25,8 +25,8 @@ Replica replica_of(int cycles, int scans, bool stop_at_scans) {
 }
 
 /// What a packing would answer that is at rest, or never is.
-StretchResult answer(int steps, double kinetic) {
-    StretchResult result;
+IntervalResult answer(int steps, double kinetic) {
+    IntervalResult result;
     result.steps = steps;
     result.kinetic_energy = kinetic;
     result.elastic_energy = 1;
@@ -36,7 +36,7 @@ StretchResult answer(int steps, double kinetic) {
 /// A whole protocol and what came of it.
 struct Course {
     std::vector<ProtocolRunner::ScanTag> scans;
-    std::vector<Stretch> stretches;
+    std::vector<StepInterval> intervals;
     std::vector<double> progress;
     long steps = 0;
     Course(const Replica& replica, double kinetic, int longest = 60) { run(replica, kinetic, longest); }
@@ -45,12 +45,12 @@ private:
     void run(const Replica& replica, double kinetic, int longest) {
         ProtocolRunner runner(replica, time_step, scale);
         while (!runner.finished()) {
-            stretches.push_back(runner.next([&](double) { return longest; }));
-            ASSERT_GT(stretches.back().steps, 0);
-            ASSERT_LE(stretches.back().steps, longest);
-            ASSERT_LT(stretches.size(), 100000u);
-            steps += stretches.back().steps;
-            if (const auto scan = runner.made(answer(stretches.back().steps, kinetic)))
+            intervals.push_back(runner.next([&](double) { return longest; }));
+            ASSERT_GT(intervals.back().steps, 0);
+            ASSERT_LE(intervals.back().steps, longest);
+            ASSERT_LT(intervals.size(), 100000u);
+            steps += intervals.back().steps;
+            if (const auto scan = runner.made(answer(intervals.back().steps, kinetic)))
                 scans.push_back(*scan);
             progress.push_back(runner.progress());
         }
@@ -99,17 +99,18 @@ TEST(Protocol, TheRelaxedPackingIsScannedFirstWhereAskedFor) {
     }
 }
 
-// 25 mm at 0.5 m/s are 50 steps; the plate stands where the stretches before have brought it.
+// 25 mm at 0.5 m/s are 50 steps; the plate stands where the intervals before have brought it.
 TEST(Protocol, MovesAtTheSpeedAskedForWithoutAJump) {
     const Course course(replica_of(1, 4, true), 0, 7);
     double plate = 0.2;
     int moving = 0;
-    for (const Stretch& stretch : course.stretches) {
-        EXPECT_NEAR(stretch.plate_z, plate, 1e-12);
-        plate += stretch.plate_velocity * stretch.steps * time_step;
-        moving += stretch.plate_velocity != 0 ? stretch.steps : 0;
-        EXPECT_NEAR(std::abs(stretch.plate_velocity), stretch.plate_velocity != 0 ? 0.5 : 0, 1e-9);
-        EXPECT_EQ(stretch.settle_drag > 0, stretch.plate_velocity == 0) << "drag while the plate stands still";
+    for (const StepInterval& interval : course.intervals) {
+        EXPECT_NEAR(interval.plate_z, plate, 1e-12);
+        plate += interval.plate_velocity * interval.steps * time_step;
+        moving += interval.plate_velocity != 0 ? interval.steps : 0;
+        EXPECT_NEAR(std::abs(interval.plate_velocity), interval.plate_velocity != 0 ? 0.5 : 0, 1e-9);
+        EXPECT_EQ(interval.settle_drag > 0, interval.plate_velocity == 0)
+            << "drag while the plate stands still";
     }
     EXPECT_EQ(moving, 2 * 4 * 50);
     EXPECT_NEAR(plate, 0.2, 1e-12);
@@ -122,20 +123,20 @@ struct Pressed {
         replica.plate.speed = 100;
         ProtocolRunner runner(replica, time_step, scale);
         while (runner.state().phase == Phase::load) {
-            const Stretch stretch = runner.next([](double) { return 5; });
-            StretchResult result = answer(stretch.steps, 0);
-            const double force = 2e4 * std::max(0.0, 0.19 - stretch.plate_z);
+            const StepInterval interval = runner.next([](double) { return 5; });
+            IntervalResult result = answer(interval.steps, 0);
+            const double force = 2e4 * std::max(0.0, 0.19 - interval.plate_z);
             result.wall_force[static_cast<int>(Wall::plate)] = {0, 0, force};
             result.wall_force[static_cast<int>(Wall::floor)] = {0, 0, -force};
             const double last = runner.state().pressure;
             if (const auto scan = runner.made(result)) scans.push_back(*scan);
             pressure.push_back(last);
-            stretches.push_back(stretch);
+            intervals.push_back(interval);
         }
     }
     Replica replica = replica_of(1, 4, false);
-    std::vector<Stretch> stretches;
-    std::vector<double> pressure;  ///< that each stretch was planned with
+    std::vector<StepInterval> intervals;
+    std::vector<double> pressure;  ///< that each interval was planned with
     std::vector<ProtocolRunner::ScanTag> scans;
 };
 
@@ -143,14 +144,15 @@ struct Pressed {
 TEST(Protocol, KeepsTheInertialNumberThatTheToleranceAllows) {
     const Pressed pressed(0.02);
     double slowest = 1e9, fastest = 0;
-    for (std::size_t k = 0; k < pressed.stretches.size(); ++k) {
-        const Stretch& stretch = pressed.stretches[k];
-        if (stretch.plate_velocity == 0) continue;
-        const double speed = std::abs(stretch.plate_velocity);
-        const double inertial_number = speed / stretch.plate_z * 0.02 *
-                                       std::sqrt(pressed.replica.grains.density / pressed.pressure[k]);
+    for (std::size_t k = 0; k < pressed.intervals.size(); ++k) {
+        const StepInterval& interval = pressed.intervals[k];
+        if (interval.plate_velocity == 0) continue;
+        const double speed = std::abs(interval.plate_velocity);
+        const double inertial_number =
+            speed / interval.plate_z * 0.02 * std::sqrt(pressed.replica.grains.density / pressed.pressure[k]);
         EXPECT_LE(10 * inertial_number, 0.02 * (1 + 1e-9)) << k;
-        EXPECT_GE(10 * inertial_number, 0.02 * 0.5) << k << ": no slower than it must be, but at a scan's approach";
+        EXPECT_GE(10 * inertial_number, 0.02 * 0.5)
+            << k << ": no slower than it must be, but at a scan's approach";
         slowest = std::min(slowest, speed);
         fastest = std::max(fastest, speed);
     }
@@ -164,7 +166,8 @@ TEST(Protocol, WithoutAToleranceTheSpeedIsTheScenes) {
     ProtocolRunner runner(replica, time_step, scale);
     while (runner.state().stage == ProtocolState::Stage::relax) runner.made(answer(10, 0));
     EXPECT_NEAR(runner.next([](double) { return 5; }).plate_velocity, -0.5, 1e-9);
-    const double strain_rate = 0.5 / replica.plate.start, least_pressure = 1e-5 * replica.grains.youngs_modulus;
+    const double strain_rate = 0.5 / replica.plate.start,
+                 least_pressure = 1e-5 * replica.grains.youngs_modulus;
     ASSERT_FALSE(runner.made(answer(5, 0)));
     EXPECT_NEAR(runner.state().rate_error,
                 10 * strain_rate * 0.02 * std::sqrt(replica.grains.density / least_pressure), 1e-6 * 10)
@@ -175,9 +178,9 @@ TEST(Protocol, WithoutAToleranceTheSpeedIsTheScenes) {
 TEST(Protocol, NeverMovesFasterThanAskedFor) {
     Replica replica = replica_of(1, 7, true);
     replica.plate.speed = 0.37;
-    for (const Stretch& stretch : Course(replica, 0).stretches) {
-        EXPECT_LE(std::abs(stretch.plate_velocity), 0.37 * (1 + 1e-9));
-        EXPECT_TRUE(stretch.plate_velocity == 0 || std::abs(stretch.plate_velocity) > 0.35);
+    for (const StepInterval& interval : Course(replica, 0).intervals) {
+        EXPECT_LE(std::abs(interval.plate_velocity), 0.37 * (1 + 1e-9));
+        EXPECT_TRUE(interval.plate_velocity == 0 || std::abs(interval.plate_velocity) > 0.35);
     }
 }
 
@@ -189,7 +192,7 @@ TEST(Protocol, WaitsUntilThePackingIsAtRestOrTimeIsUp) {
     // 80 steps of relaxation, then 100 of motion and 50 of waiting for each scan
     EXPECT_EQ(restless.steps, 80 + 4 * (100 + 50));
 
-    EXPECT_EQ(calm.steps, 20 + 4 * (100 + 20)) << "settled after two stretches in a row";
+    EXPECT_EQ(calm.steps, 20 + 4 * (100 + 20)) << "settled after two intervals in a row";
 }
 
 TEST(Protocol, ProgressGrowsFromZeroToOne) {
@@ -208,7 +211,7 @@ TEST(Protocol, GoesOnFromItsStateAlone) {
         ProtocolRunner other(replica, time_step, scale);
         other.set_state(runner.state());
         const auto longest = [](double) { return 17; };
-        const Stretch one = runner.next(longest), two = other.next(longest);
+        const StepInterval one = runner.next(longest), two = other.next(longest);
         ASSERT_EQ(one.steps, two.steps) << "round " << round;
         ASSERT_EQ(one.plate_z, two.plate_z);
         ASSERT_EQ(one.plate_velocity, two.plate_velocity);

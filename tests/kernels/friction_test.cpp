@@ -37,7 +37,7 @@ public:
         const double shear_modulus = youngs_modulus / (2 * (1 + poisson_ratio));
         return 8 * shear_modulus / (2 - poisson_ratio) * std::sqrt(radius * overlap());
     }
-    /// Stretch at which the contact begins to slip.
+    /// StepInterval at which the contact begins to slip.
     static double slip() { return friction * weight() / stiffness(); }
 
 private:

@@ -78,14 +78,15 @@ TEST(Step, FollowsTheReferenceTheOtherWayInDouble) {
     expect_other_way_as_reference(Precision::double_precision);
 }
 
-// The comparison itself can fail: a reference whose material is softer by a thousandth is told apart.
+// The comparison itself can fail: a reference whose material is excess_compliance by a thousandth is told
+// apart.
 TEST(Step, AnotherMaterialIsToldApart) {
     const Start start = start_of(ContactModel::mc_dem, FrictionLaw::saturated, 63, 1);
     Batch batch(build(Precision::single_precision), start);
-    Start softer = start;
-    softer.replica.grains.youngs_modulus *= 0.999;
+    Start excess_compliance = start;
+    excess_compliance.replica.grains.youngs_modulus *= 0.999;
     StepReference same = reference_of(batch.engine(), 0, start),
-                  other = reference_of(batch.engine(), 0, softer);
+                  other = reference_of(batch.engine(), 0, excess_compliance);
     same.step();
     other.step();
     const auto result = batch.advance(1).front();

@@ -100,7 +100,7 @@ TEST(EffectSteps, EachIsToldApartFromNone) {
         batch.engine().set_velocities(0, uniform.vectors(64, 0.05), uniform.vectors(64, 5));
         StepReference same = reference_of(batch.engine(), 0, start),
                       other = reference_of(batch.engine(), 0, plain);
-        mcdem::StretchResult result;
+        mcdem::IntervalResult result;
         for (int step = 0; step < 3; ++step) {
             same.step();
             other.step();

@@ -1,0 +1,30 @@
+/* A grain as its neighbours see it. Side by side in memory, so that one line of it brings most of what a contact needs. */
+typedef struct {
+    real4 position;         /* w: radius, zero for padding [m] */
+    real4 velocity;         /* w: excess compliance, E/E_i - 1 [m/s] */
+    real4 angular_velocity; /* [1/s] */
+} Motion;
+#define MOTION_VECTORS 3 /* the real4 of one grain */
+
+/* One quantity of grains, lane by lane; `vector` counts the real4 of a Motion. */
+INLINE lanes4 gather_motion(global const Motion* restrict motion, slots grain, int vector) {
+    return gather4((global const real4*)motion + vector, grain * MOTION_VECTORS);
+}
+
+/* What one work-item of a step works for. */
+typedef struct {
+    global const Replica* replica;
+    int index;     /* among all grains of the batch */
+    size_t row;    /* its first slot */
+    real plate_z;  /* where the plate is now [m] */
+    Motion now;
+} Grain;
+
+/* The batch as a step finds it. */
+typedef struct {
+    global const Motion* motion;
+    global const int* partner;       /* a slot */
+    global const int* partner_slot;  /* where the same contact stands in the neighbour's row */
+    global const real* displacement; /* b of the surface at a slot, outward [m] */
+    global real* memory;             /* contact_memory.h */
+} Batch;
