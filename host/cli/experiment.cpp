@@ -48,12 +48,12 @@ std::string wrapped(const std::string& head, const std::string& text) {
     return all + line + '\n';
 }
 
-void add_experiment(CLI::App& app, int&) {
+void add_experiment(CLI::App& app, int& exit_code) {
     auto* sub = app.add_subcommand("experiment",
                                    "Check an experiment's folder, or make one of tables or of a simulation");
     sub->require_subcommand(1);
     add_experiment_check(*sub);
-    add_experiment_import(*sub);
+    add_experiment_import(*sub, exit_code);
     add_experiment_from_run(*sub);
     sub->footer(
         "An experiment's folder is described in host/experiment/README.md.\n"

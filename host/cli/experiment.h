@@ -8,7 +8,7 @@ namespace mcdem {
 
 void add_experiment_check(CLI::App& experiment);
 void add_experiment_from_run(CLI::App& experiment);
-void add_experiment_import(CLI::App& experiment);
+void add_experiment_import(CLI::App& experiment, int& exit_code);
 
 /// Refuses a folder that holds another experiment or run.
 void expect_free(const std::filesystem::path& out);

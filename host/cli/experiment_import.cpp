@@ -1,19 +1,22 @@
 // mcdem experiment import
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <stdlib.h>
 
 #include <cerrno>
+#include <cmath>
 #include <cstring>
+#include <optional>
+#include <sstream>
 
+#include "cli/commands.h"
 #include "cli/experiment.h"
 #include "cli/messages.h"
+#include "cli/python_program.h"
 #include "cli/standard_streams.h"
 #include "core/atomic_file.h"
 #include "core/errors.h"
 #include "core/input_file.h"
 #include "core/make_folder.h"
-#include "experiment/import_experiment.h"
 #include "experiment/settings.h"
 #include "io/output_folder.h"
 
@@ -21,10 +24,12 @@ namespace mcdem {
 namespace {
 
 namespace fs = std::filesystem;
+constexpr double largest_voxel = 1;  // [m]
 
 struct ImportCommand {
     std::vector<std::string> tables, settings;
     std::string out, mapping, metadata, name;
+    std::optional<double> voxel_size;  ///< [m]
     bool gzip = false;
 };
 
@@ -56,46 +61,49 @@ Experiment known_of(const ImportCommand& command, ExperimentProblems& problems) 
     return known;
 }
 
-void print_entry(const std::string& key, const Guess& guess) {
-    print_out("{}", wrapped(fmt::format("  {:<13} {:<18} {:<8}", key,
-                                        fmt::format("{}", fmt::join(guess.words, " + ")), name(guess.sure)),
-                            guess.why));
-}
-
-/// What each table is taken for, column by column.
-void print_mapping(const Mapping& mapping) {
-    for (const MappedTable& table : mapping.tables) {
-        const auto more =
-            table.files.size() > 1 ? fmt::format(" and {} more", table.files.size() - 1) : std::string();
-        print_out("{}{}: {} ({}{}{})\n", table.files.front(), more, name(table.role), name(table.role_sure),
-                  table.role_why.empty() ? "" : ": ", table.role_why);
-        for (const MappingKey& key : mapping_keys(table.role))
-            if (const Guess* guess = table.find(key.name)) print_entry(std::string(key.name), *guess);
-        for (const auto& [word, guess] : table.walls) print_entry("wall " + word, guess);
-        if (!table.aside.empty())
-            print_out("{}", wrapped("  left aside   ", fmt::format("{}", fmt::join(table.aside, ", "))));
-    }
-}
-
 fs::path kept_mapping(const ImportCommand& command) { return fs::path(command.out) / "mapping.toml"; }
 
-/// Whether the mapping lies in its place already, in the user's own words. Throws InputError where another
-/// one does.
-bool keeps_mapping(const ImportCommand& command, const std::string& mapping) {
-    const fs::path kept = kept_mapping(command);
-    if (!fs::exists(kept)) return false;
-    if (text_of_file(kept.string()) == mapping || mapping_text(read_mapping(kept)) == mapping) return true;
-    throw InputError(
-        fmt::format("{}: is another mapping, and is not replaced: give another folder (--out), or remove it",
-                    kept.string()));
+/// Of a file that the Python module has left (host/python/mcdem/importing/__main__.py); none where there is
+/// none.
+std::vector<std::string> lines_of(const fs::path& file) {
+    std::vector<std::string> lines;
+    std::istringstream in(fs::exists(file) ? read_file(file) : "");
+    for (std::string line; std::getline(in, line);) lines.push_back(line);
+    return lines;
+}
+
+/// What the Python module is asked to do.
+std::vector<std::string> words_of(const ImportCommand& command, const Experiment& known,
+                                  const ExperimentProblems& settings, const fs::path& work) {
+    std::vector<std::string> words{"--work=" + work.string(), "--kept=" + kept_mapping(command).string()};
+    const auto add = [&](const std::string& option, std::optional<double> value) {
+        if (value && std::isfinite(*value)) words.push_back(fmt::format("{}={}", option, *value));
+    };
+    const auto material = [&](const std::string& key) {
+        const auto found = known.materials.find(key);
+        return found == known.materials.end() ? std::nullopt : std::optional(found->second);
+    };
+    const Recording& recording = known.recording;
+    add("--box-x", recording.box.size_x);
+    add("--box-y", recording.box.size_y);
+    add("--plate-start", recording.plate_start);
+    add("--youngs-modulus", material("grains.youngs_modulus"));
+    add("--poisson-ratio", material("grains.poisson_ratio"));
+    add("--voxel-size", command.voxel_size);
+    if (command.gzip) words.push_back("--gzip");
+    if (!command.mapping.empty()) words.push_back("--mapping=" + command.mapping);
+    for (const std::string& problem : settings.lines()) words.push_back("--settings-problem=" + problem);
+    words.push_back("--");
+    words.insert(words.end(), command.tables.begin(), command.tables.end());
+    return words;
 }
 
 /// The mapping for the user to correct, and every problem.
-[[noreturn]] void refuse(const ImportCommand& command, const std::string& mapping,
+[[noreturn]] void refuse(const ImportCommand& command, const fs::path& work,
                          std::vector<std::string> problems, bool wrong_rows) {
     const std::string file = kept_mapping(command).string();
     make_folder(command.out);
-    if (!create_file(file, mapping))
+    if (!create_file(file, read_file(work / "mapping.toml")))
         throw InputError(fmt::format("{}: another program has just written it", file));
     problems.push_back(
         wrong_rows
@@ -130,10 +138,10 @@ private:
     fs::path path_;
 };
 
-/// Reads it back: what `out` gets can be read. Files are told as they would be in `out`.
-void expect_readable(const fs::path& folder, const std::string& out) {
+/// What `out` gets can be read. Files are told as they would be in `out`.
+Experiment read_back(const fs::path& folder, const std::string& out) {
     try {
-        read_experiment(folder);
+        return read_experiment(folder);
     } catch (const InputError& error) {
         std::vector<std::string> problems{
             "the tables make no experiment that can be read, as they stand in the mapping; it would have:"};
@@ -145,87 +153,64 @@ void expect_readable(const fs::path& folder, const std::string& out) {
     }
 }
 
-/// Written beside its place and read back first.
-void write_whole(const ImportCommand& command, const Experiment& experiment) {
-    const fs::path out = whole_path(command.out);
-    const FolderBeside beside(out);
-    write_experiment(beside.path(), experiment, command.gzip ? Packed::gzip : Packed::plain);
-    expect_readable(beside.path(), fs::path(command.out).lexically_normal().string());
+/// Puts the tables into place, experiment.toml last: with it the folder is an experiment.
+void put_in_place(const fs::path& work, const fs::path& out) {
     const FolderLock lock = open_output_folder(out);
     expect_free(out);  // still
     for (const char* table : {"contacts.csv", "grains.csv", "plate.csv", "experiment.toml"})
         for (const std::string end : {"", ".gz"})
-            if (fs::exists(beside.path() / (table + end)))
-                fs::rename(beside.path() / (table + end), out / (table + end));
+            if (fs::exists(work / (table + end))) move_file(work / (table + end), out / (table + end));
 }
 
-/// The tables by their mapping, or by a guess that is safe; its text is what `out` keeps.
-std::vector<ImportTable> tables_of(const ImportCommand& command, const Experiment& known,
-                                   const ExperimentProblems& settings, std::string& mapping_toml) {
-    const fs::path kept = kept_mapping(command);
-    if (!command.mapping.empty()) {
-        auto tables = read_import_tables(read_mapping(command.mapping), command.tables);
-        const Mapping mapping = mapping_of(tables);
-        mapping_toml = command.tables.empty() ? text_of_file(command.mapping) : mapping_text(mapping);
-        print_mapping(mapping);
-        settings.report();
-        return tables;
-    }
-    if (command.tables.empty())
-        throw InputError("TABLE: must be at least one file, or --mapping must name them, got neither");
-    if (fs::exists(kept))
-        throw InputError(
-            fmt::format("{0}: is there already: import with --mapping {0}, or remove it", kept.string()));
-    auto tables = guess_tables(command.tables, known);
-    const Mapping mapping = mapping_of(tables);
-    mapping_toml = mapping_text(mapping);
-    print_mapping(mapping);
-    std::fflush(stdout);
-    auto problems = unclear_entries(mapping_toml, kept.string());
-    for (const std::string& problem : settings.lines()) problems.push_back(problem);
-    if (problems.empty()) return tables;
-    const auto rows = wrong_rows(tables);
-    problems.insert(problems.end(), rows.begin(), rows.end());
-    refuse(command, mapping_toml, problems, !rows.empty());
-}
-
-void run_import(const ImportCommand& command) {
-    expect_free(command.out);
-    ExperimentProblems settings;
-    const Experiment known = known_of(command, settings);
-    std::string mapping;
-    const auto tables = tables_of(command, known, settings, mapping);
-    keeps_mapping(command, mapping);
-    const Imported imported = [&] {
-        try {
-            Imported all = import_tables(tables, known);
-            write_whole(command, all.experiment);
-            return all;
-        } catch (const InputError& error) {
-            if (command.mapping.empty()) refuse(command, mapping, error.problems(), true);
-            throw;
-        }
-    }();
-    if (!keeps_mapping(command, mapping)) replace_file(kept_mapping(command), mapping);
-    for (const std::string& note : imported.notes) spdlog::warn("{}", note);
-    const Recording& recording = imported.experiment.recording;
+void print_summary(const std::string& out, const Recording& recording) {
     std::size_t contacts = 0, measured = 0;
     for (const Scan& scan : recording.scans)
         contacts += scan.contacts.size(), measured += scan.position.empty() ? 0 : 1;
-    print_out("{}: {} frames, {} grains in {} of them, {} contacts\n", command.out, recording.scans.size(),
+    print_out("{}: {} frames, {} grains in {} of them, {} contacts\n", out, recording.scans.size(),
               recording.diameter.size(), measured, contacts);
+}
+
+int run_import(const ImportCommand& command) {
+    expect_free(command.out);
+    if (command.voxel_size && !(*command.voxel_size > 0 && *command.voxel_size <= largest_voxel))
+        throw InputError(fmt::format("--voxel-size: must be > 0 and <= {} [m], got {}", largest_voxel,
+                                     *command.voxel_size));
+    ExperimentProblems settings;
+    Experiment known = known_of(command, settings);
+    const fs::path out = whole_path(command.out);
+    const FolderBeside beside(out);
+    const fs::path& work = beside.path();
+    const int exit_code = run_python_module("mcdem.importing", words_of(command, known, settings, work));
+    if (exit_code != exit_done) return exit_code;
+    if (const auto problems = lines_of(work / "problems"); !problems.empty())
+        refuse(command, work, problems, fs::exists(work / "wrong_rows"));
+    if (std::isnan(known.recording.plate_start))
+        known.recording.plate_start = std::stod(read_file(work / "plate_start"));
+    replace_file(work / "experiment.toml", settings_text(known));
+    try {
+        const Experiment read = read_back(work, fs::path(command.out).lexically_normal().string());
+        put_in_place(work, out);
+        create_file(kept_mapping(command), read_file(work / "mapping.toml"));
+        for (const std::string& note : lines_of(work / "notes")) spdlog::warn("{}", note);
+        print_summary(command.out, read.recording);
+    } catch (const InputError& error) {
+        if (command.mapping.empty()) refuse(command, work, error.problems(), true);
+        throw;
+    }
+    return exit_done;
 }
 
 }  // namespace
 
-void add_experiment_import(CLI::App& experiment) {
+void add_experiment_import(CLI::App& experiment, int& exit_code) {
     auto* sub = experiment.add_subcommand("import",
                                           "Make an experiment of a laboratory's or another program's tables");
     auto command = std::make_shared<ImportCommand>();
     sub->add_option(
         "TABLE", command->tables,
         "Tables of the plate, the grains and the contacts: text, dumps of LAMMPS and LIGGGHTS, text "
-        "and VTK of Yade; any may be packed with gzip");
+        "and VTK of Yade, extended xyz, regions of scikit-image, trackpy's and SPAM's tables; any may be "
+        "packed with gzip");
     sub->add_option("--out", command->out, "Folder to be made")->required()->type_name("DIR");
     sub->add_option("--mapping", command->mapping,
                     "What the columns are: the mapping.toml that an import without it has written, corrected")
@@ -237,6 +222,9 @@ void add_experiment_import(CLI::App& experiment) {
         ->allow_extra_args(false);
     sub->add_option("--metadata", command->metadata, "The same as a file like experiment.toml")
         ->type_name("FILE");
+    sub->add_option("--voxel-size", command->voxel_size,
+                    "Edge of a voxel [m], where tables of images count in voxels")
+        ->type_name("LENGTH");
     sub->add_option("--name", command->name,
                     "Name of the experiment (else that of the metadata, or of the folder)")
         ->type_name("TEXT");
@@ -257,7 +245,7 @@ void add_experiment_import(CLI::App& experiment) {
         "  mcdem experiment import --mapping out/lab/mapping.toml --metadata data/known.toml --out out/lab\n"
         "  mcdem experiment import data/second/* --mapping out/lab/mapping.toml --metadata data/known.toml "
         "--out out/second");
-    sub->callback([command] { run_import(*command); });
+    sub->callback([command, &exit_code] { exit_code = run_import(*command); });
 }
 
 }  // namespace mcdem

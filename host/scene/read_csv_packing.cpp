@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 #include <libfccp/csv.h>
 
+#include <set>
+
 #include "scene/packing_fields.h"
 #include "scene/read_packing.h"
 
@@ -12,43 +14,85 @@ namespace mcdem {
 namespace {
 
 // Words are read as text: the library's own numbers are not rounded to the nearest double.
-using Reader = io::CSVReader<4, io::trim_chars<' ', '\t'>, io::no_quote_escape<','>, io::throw_on_overflow,
+using Reader = io::CSVReader<5, io::trim_chars<' ', '\t'>, io::no_quote_escape<','>, io::throw_on_overflow,
                              io::single_and_empty_line_comment<'#'>>;
 
-void read_rows(Reader& reader, Packing& packing, FileProblems& problems) {
-    const char *x = nullptr, *y = nullptr, *z = nullptr, *diameter = nullptr;
-    while (!problems.full()) {
-        try {
-            if (!reader.read_row(x, y, z, diameter)) return;
-            add_grain(packing, x, y, z, diameter, reader.get_file_line(), problems);
-        } catch (const io::error::too_few_columns&) {
-            problems.add(reader.get_file_line(), "a line must have as many columns as the header, got fewer");
-        } catch (const io::error::too_many_columns&) {
-            problems.add(reader.get_file_line(), "a line must have as many columns as the header, got more");
-        }
-        if (packing.size() > static_cast<std::size_t>(largest_packing)) {
-            problems.add(fmt::format("a packing must have at most {} grains, got more", largest_packing));
-            return;
-        }
+/// The rows of one frame; a file without frames is one.
+class RowReader {
+public:
+    RowReader(Reader& reader, std::optional<long> wanted, FileProblems& problems)
+        : reader_(reader), wanted_(wanted), has_frames_(reader.has_column("frame")), problems_(problems) {}
+
+    Packing read() {
+        if (wanted_ && !has_frames_)
+            problems_.add("must have a column frame where packing.frame is given, got none");
+        while (!problems_.full() && next())
+            if (packing_.size() > static_cast<std::size_t>(largest_packing)) {
+                problems_.add(
+                    fmt::format("a packing must have at most {} grains, got more", largest_packing));
+                break;
+            }
+        if (packing_.size() == 0 && problems_.empty() && frames_.empty())
+            problems_.add("a packing must have at least 1 grain, got none");
+        else if (packing_.size() == 0 && problems_.empty())
+            problems_.add(fmt::format("the frame must be one of its {} frames, {} to {}, got {}",
+                                      frames_.size(), *frames_.begin(), *frames_.rbegin(), *wanted_));
+        return std::move(packing_);
     }
-}
+
+private:
+    bool next() {
+        const char *x = nullptr, *y = nullptr, *z = nullptr, *diameter = nullptr, *frame = nullptr;
+        try {
+            if (!reader_.read_row(x, y, z, diameter, frame)) return false;
+            const long line = reader_.get_file_line();
+            if (!has_frames_ || is_wanted(frame, line))
+                add_grain(packing_, x, y, z, diameter, line, problems_);
+        } catch (const io::error::too_few_columns&) {
+            problems_.add(reader_.get_file_line(),
+                          "a line must have as many columns as the header, got fewer");
+        } catch (const io::error::too_many_columns&) {
+            problems_.add(reader_.get_file_line(),
+                          "a line must have as many columns as the header, got more");
+        }
+        return true;
+    }
+
+    bool is_wanted(const char* word, long line) {
+        const auto frame = to_whole_number(word);
+        if (!frame)
+            problems_.add(line, fmt::format("frame must be a whole number, got {}", quoted(word)));
+        else
+            frames_.insert(*frame);
+        if (!wanted_) wanted_ = frame;  // the first
+        return frame == wanted_;
+    }
+
+    Reader& reader_;
+    std::optional<long> wanted_;
+    const bool has_frames_;
+    FileProblems& problems_;
+    std::set<long> frames_;
+    Packing packing_;
+};
 
 }  // namespace
 
-Packing read_csv_packing(std::istream& input, const std::string& source) {
+Packing read_csv_packing(std::istream& input, const std::string& source, std::optional<long> frame) {
     FileProblems problems(source);
     Packing packing;
     try {
         Reader reader(source, input);
-        reader.read_header(io::ignore_extra_column, "x_m", "y_m", "z_m", "diameter_m");
-        read_rows(reader, packing, problems);
-        if (packing.size() == 0 && problems.empty())
-            problems.add("a packing must have at least 1 grain, got none");
+        reader.read_header(io::ignore_extra_column | io::ignore_missing_column, "x_m", "y_m", "z_m",
+                           "diameter_m", "frame");
+        for (const char* column : {"x_m", "y_m", "z_m", "diameter_m"})
+            if (!reader.has_column(column))
+                problems.add(
+                    1, fmt::format("the header must name x_m, y_m, z_m and diameter_m, got none named {}",
+                                   column));
+        if (problems.empty()) packing = RowReader(reader, frame, problems).read();
     } catch (const io::error::header_missing&) {
         problems.add("must begin with the header x_m,y_m,z_m,diameter_m, got an empty file");
-    } catch (const io::error::missing_column_in_header& error) {
-        problems.add(1, fmt::format("the header must name x_m, y_m, z_m and diameter_m, got none named {}",
-                                    error.column_name));
     } catch (const io::error::duplicated_column_in_header& error) {
         problems.add(1, fmt::format("the header must name {} once, got it twice", error.column_name));
     } catch (const io::error::base& error) {

@@ -6,11 +6,10 @@
 
 #include "core/errors.h"
 #include "core/input_file.h"
-#include "scene/foreign_table.h"
 
 namespace mcdem {
 
-Packing read_packing(const std::filesystem::path& file, std::optional<long> step) {
+Packing read_packing(const std::filesystem::path& file, std::optional<long> frame) {
     std::error_code error;
     if (!std::filesystem::exists(file, error))
         throw InputError(fmt::format("{}: must be a packing, got no such file", file.string()));
@@ -20,17 +19,24 @@ Packing read_packing(const std::filesystem::path& file, std::optional<long> step
     constexpr std::uintmax_t largest_file = std::uintmax_t{2} << 30;
     if (std::filesystem::file_size(file, error) > largest_file)
         throw InputError(fmt::format("{}: must be a packing of at most 2 GiB, got more", file.string()));
-    std::istringstream input(read_file(file));
-    if (file.extension() != ".csv") {
-        const std::string beginning(input.view().substr(0, 1 << 16));
-        if (looks_like_dump(beginning) || looks_like_yade(beginning))
-            return packing_of(read_foreign_table(file), step);
+    const std::string text = read_file(file), source = file.string();
+    const std::string_view beginning = std::string_view(text).substr(0, 1 << 16);
+    if (beginning.starts_with("\x89HDF\r\n")) {
+        if (!read_run_packing) throw InputError(source + ": this program reads no run.h5 as a packing");
+        return read_run_packing(file, frame);
     }
-    if (step)
-        throw InputError(fmt::format(
-            "{}: must be a dump where packing.frame is given, got a file with one packing", file.string()));
-    return file.extension() == ".csv" ? read_csv_packing(input, file.string())
-                                      : read_lammps_packing(input, file.string());
+    if (beginning.starts_with("\x1f\x8b"))
+        throw InputError(fmt::format("{}: must not be packed, got a file of gzip: unpack it", source));
+    std::istringstream input(text);
+    if (file.extension() == ".csv") return read_csv_packing(input, source, frame);
+    if (looks_like_dump(beginning)) return read_dump_packing(text, source, frame);
+    if (frame)
+        throw InputError(
+            fmt::format("{}: must be a dump, grains.csv or run.h5 where packing.frame is given, got a file "
+                        "with one packing",
+                        source));
+    if (looks_like_yade(beginning)) return read_yade_packing(text, source);
+    return read_lammps_packing(input, source);
 }
 
 }  // namespace mcdem

@@ -2,10 +2,10 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
+#include <functional>
 #include <sstream>
 
 #include "core/errors.h"
-#include "scene/foreign_table.h"
 #include "scene/read_packing.h"
 
 namespace {
@@ -13,23 +13,30 @@ namespace {
 void expect_sound(const mcdem::Packing& packing) {
     if (packing.position.size() != packing.diameter.size()) std::abort();
     for (std::size_t i = 0; i < packing.position.size(); ++i)
-        if (!packing.position[i].allFinite() || !(packing.diameter[i] > 0) || !std::isfinite(packing.diameter[i]))
+        if (!packing.position[i].allFinite() || !(packing.diameter[i] > 0) ||
+            !std::isfinite(packing.diameter[i]))
             std::abort();
 }
 
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
-    for (const auto read : {mcdem::read_lammps_packing, mcdem::read_csv_packing}) {
-        std::istringstream input(std::string(reinterpret_cast<const char*>(bytes), size));
-        try {
-            expect_sound(read(input, "packing"));
+    const std::string text(reinterpret_cast<const char*>(bytes), size);
+    const auto streamed = [&](auto read) {
+        return [&text, read] {
+            std::istringstream input(text);
+            return read(input, "packing");
+        };
+    };
+    const std::function<mcdem::Packing()> readers[] = {
+        streamed(mcdem::read_lammps_packing), streamed([](std::istream& input, const std::string& name) {
+            return mcdem::read_csv_packing(input, name);
+        }),
+        [&] { return mcdem::read_dump_packing(text, "packing"); },
+        [&] { return mcdem::read_yade_packing(text, "packing"); }};
+    for (const auto& read : readers) try {
+            expect_sound(read());
         } catch (const mcdem::InputError&) {
         }
-    }
-    try {
-        expect_sound(packing_of(mcdem::parse_foreign_table({reinterpret_cast<const char*>(bytes), size}, "packing")));
-    } catch (const mcdem::InputError&) {
-    }
     return 0;
 }

@@ -1,0 +1,134 @@
+"""What `mcdem experiment import` starts (host/cli/experiment_import.cpp): reads and guesses, prints what each table is taken for,
+and leaves the results in the folder --work, from which the program puts them into place: mapping.toml, and either problems or
+plate.csv, grains.csv, contacts.csv, plate_start and notes. Mistakes for which no mapping can be written are bad input."""
+import argparse
+import os
+import sys
+import textwrap
+
+from ..errors import InputError
+from .assemble import Known, import_tables, write_tables
+from .guess import guess_tables, mapping_of, read_import_tables, wrong_rows
+from .mapping import KEYS, mapping_text, unclear_entries
+from .read_mapping import parse_mapping, text_of_mapping
+
+LINE = 110
+
+
+def arguments_of(words):
+    parser = argparse.ArgumentParser(prog="mcdem experiment import", allow_abbrev=False)
+    parser.add_argument("--work", required=True)
+    parser.add_argument("--kept", required=True, help="where the mapping is kept")
+    parser.add_argument("--mapping")
+    parser.add_argument("--settings-problem", action="append", default=[])
+    parser.add_argument("--gzip", action="store_true")
+    for name in ("--box-x", "--box-y", "--plate-start", "--youngs-modulus", "--poisson-ratio", "--voxel-size"):
+        parser.add_argument(name, type=float)
+    parser.add_argument("tables", nargs="*")
+    return parser.parse_args(words)
+
+
+def known_of(arguments):
+    stated = {name: getattr(arguments, name) for name in ("plate_start", "youngs_modulus", "poisson_ratio", "voxel_size")}
+    return Known(box=(arguments.box_x or 0.0, arguments.box_y or 0.0), **{name: value for name, value in stated.items() if value is not None})
+
+
+def print_entry(key, of):
+    head = f"  {key:<13} {' + '.join(of.words):<18} {of.sure:<8}"
+    print(textwrap.fill(of.why, LINE, initial_indent=head, subsequent_indent=" " * len(head), break_long_words=False,
+                        break_on_hyphens=False) if of.why else head)
+
+
+def print_mapping(mapping):
+    """What each table is taken for, column by column."""
+    for table in mapping:
+        more = f" and {len(table.files) - 1} more" if len(table.files) > 1 else ""
+        why = f": {table.role_why}" if table.role_why else ""
+        print(f"{table.files[0]}{more}: {table.role} ({table.role_sure}{why})")
+        for key in KEYS[table.role]:
+            if key.name in table:
+                print_entry(key.name, table[key.name])
+        for word, of in sorted(table.walls.items()):
+            print_entry("wall " + word, of)
+        if table.aside:
+            print(textwrap.fill(", ".join(table.aside), LINE, initial_indent="  left aside   ", subsequent_indent=" " * 15,
+                                break_long_words=False, break_on_hyphens=False))
+    sys.stdout.flush()
+
+
+class Results:
+    """Files for the program, in its folder."""
+
+    def __init__(self, folder):
+        self.folder = folder
+
+    def write(self, name, text):
+        with open(os.path.join(self.folder, name), "w", encoding="utf-8", errors="surrogateescape", newline="") as out:
+            out.write(text)
+
+    def write_lines(self, name, lines):
+        self.write(name, "".join(line.replace("\n", " ") + "\n" for line in lines))
+
+
+def expect_kept(kept, text):
+    """Throws where another mapping lies there; the same may, in the user's own words."""
+    if not os.path.lexists(kept):
+        return
+    there = text_of_mapping(kept)
+    try:
+        same = there == text or mapping_text(parse_mapping(there, kept)) == text
+    except InputError:
+        same = False
+    if not same:
+        raise InputError(f"{kept}: is another mapping, and is not replaced: give another folder (--out), or remove it")
+
+
+def import_by_mapping(arguments, known, results):
+    text = text_of_mapping(arguments.mapping)
+    tables = read_import_tables(parse_mapping(text, arguments.mapping), arguments.tables, arguments.mapping)
+    mapping = mapping_of(tables)
+    print_mapping(mapping)
+    if arguments.settings_problem:
+        raise InputError(arguments.settings_problem)
+    text = mapping_text(mapping) if arguments.tables else text
+    expect_kept(arguments.kept, text)
+    results.write("mapping.toml", text)
+    return import_tables(tables, known)
+
+
+def import_by_guess(arguments, known, results):
+    """None where the guess is not safe."""
+    if not arguments.tables:
+        raise InputError("TABLE: must be at least one file, or --mapping must name them, got neither")
+    if os.path.lexists(arguments.kept):
+        raise InputError(f"{arguments.kept}: is there already: import with --mapping {arguments.kept}, or remove it")
+    tables = guess_tables(arguments.tables, known)
+    mapping = mapping_of(tables)
+    text = mapping_text(mapping)
+    results.write("mapping.toml", text)
+    print_mapping(mapping)
+    problems = unclear_entries(text, arguments.kept) + arguments.settings_problem
+    rows = wrong_rows(tables) if problems else []
+    if not problems:
+        try:
+            return import_tables(tables, known)
+        except InputError as error:
+            rows = error.problems
+    results.write_lines("problems", problems + rows)
+    if rows:
+        results.write("wrong_rows", "")
+    return None
+
+
+def main():
+    arguments = arguments_of(sys.argv[1:])
+    known, results = known_of(arguments), Results(arguments.work)
+    imported = (import_by_mapping if arguments.mapping else import_by_guess)(arguments, known, results)
+    if imported is not None:
+        write_tables(imported, arguments.work, arguments.gzip)
+        results.write("plate_start", repr(imported.plate_start))
+        results.write_lines("notes", imported.notes)
+
+
+if __name__ == "__main__":
+    main()

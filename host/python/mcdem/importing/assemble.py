@@ -1,0 +1,205 @@
+"""Plate, grains and contacts put together: the tables of an experiment folder."""
+import os
+from dataclasses import dataclass, field
+
+import numpy as np
+import pandas as pd
+
+from .contacts import import_contacts
+from .grains import import_grains
+from .mapping import WALLS
+from .plate import PlateRows, import_plate
+from .problems import Problems, number_text
+
+MOST_APART, WEAK = 0.5, 0.01  # of a contact's two sides: of the larger force, of the largest of the frame
+
+
+@dataclass
+class Known:
+    """What the tables do not tell; the scale that tells millimetres from metres."""
+
+    box: tuple = (0.0, 0.0)  # [m]; 0: not known
+    plate_start: float = np.nan
+    youngs_modulus: float = np.nan  # of the grains [Pa]
+    poisson_ratio: float = 0.4
+    voxel_size: float = np.nan  # [m]
+
+
+@dataclass
+class Imported:
+    """Tables as an experiment folder has them, and what was left out."""
+
+    plate: pd.DataFrame
+    grains: pd.DataFrame
+    contacts: pd.DataFrame
+    plate_start: float
+    notes: list = field(default_factory=list)
+
+
+class _Assembly:
+    def __init__(self, tables, known):
+        self.tables, self.known, self.problems = tables, known, Problems()
+        self.plate, self.grains, self.notes, self.dropped = PlateRows(), None, [], 0
+
+    def of(self, role):
+        return [table for table in self.tables if table.role == role]
+
+    def run(self):
+        plates, grains, contacts = map(self.of, ("plate", "grains", "contacts"))
+        if len(plates) != 1:
+            self.problems.add("plate", f"must be one table with the plate's position and force by frame, got {len(plates)}: say "
+                              '`role = "plate"` in the mapping, or give the table')
+        else:
+            self.place_plate(plates[0])
+        self.grains = import_grains(grains, self.problems)
+        if contacts and not grains:
+            self.problems.add("grains", "must be a table of the grains, for contacts name them, got none")
+        self.problems.report()
+        if grains:
+            self.place_grains(grains[0].map.word("frames_by", "plate"))
+        tables = []
+        if self.grains.row is not None and -1 not in self.grains.row:
+            for table in contacts:
+                tables.append(self.contacts_of(table, tables))
+        self.problems.report()
+        return self.result(pd.concat(tables) if tables else None)
+
+    def place_plate(self, table):
+        if "displacement" in table.map and np.isnan(self.known.plate_start):
+            self.problems.add(table.map.files[0], "displacements count downwards from plate.start, which must be given [m]: --set "
+                              "plate.start=..")
+        else:
+            self.plate = import_plate(table, self.known.plate_start, self.problems)
+
+    def place_grains(self, by):
+        grains = self.grains
+        grains.place("order" if by == "order" else "rows" if by == "rows" else "plate", self.plate)
+        for frame, row in enumerate(grains.row):
+            rows, first = grains.where[frame]
+            if row < 0:
+                rows.problem_once("frame", first, f"frame {number_text(grains.keys[frame])} must be one of the plate's {len(self.plate)} rows, "
+                                  "got none like it: see frame and frames_by in the mapping")
+                continue
+            size = np.array([*self.known.box, self.plate.z[row]])
+            outside = ((grains.position[frame] < 0) | (grains.position[frame] > size)).any(axis=1)
+            if outside.any():
+                at = ", ".join(f"{x:.4g}" for x in grains.position[frame][np.argmax(outside)])
+                rows.problem_once("inside", first, f"centres must lie in the box of {size[0]:g} by {size[1]:g} m below the plate at "
+                                  f"{size[2]:g} m, got {at} in frame {number_text(grains.keys[frame])}: see length_unit, origin_x, "
+                                  "origin_y, origin_z and frames_by in the mapping")
+        if min(grains.row) > 0:  # an experiment begins with the grains
+            self.dropped = min(grains.row)
+            self.notes.append(f"the plate's first {self.dropped} rows are left out: grains are known from then on")
+
+    def contacts_of(self, table, before):
+        """Each contact once, grain < partner, by row of the plate."""
+        by = table.map.word("frames_by", "plate")
+        frames = import_contacts(table, self.grains, self.problems)
+        scans = self.grains.plate_rows_of(by, frames.keys)
+        lost = np.flatnonzero(scans[frames.frame] < 0) if len(frames) else []
+        if len(lost):
+            key = number_text(frames.keys[frames.frame[lost[0]]])
+            whose = "grains' frames" if by == "grains" else "plate's rows"
+            frames.rows.problem_once("frame", frames.row[lost[0]], f"frame {key} must be one of the {whose}, got none like it: see frame and "
+                                     "frames_by in the mapping")
+        reversed_ = (frames.partner >= 0) & (frames.partner < frames.grain)
+        force = np.where(reversed_, -1, 1)[:, None] * frames.force
+        all_of = pd.DataFrame({"scan": scans[frames.frame] if len(frames) else frames.frame,
+                               "grain": np.where(reversed_, frames.partner, frames.grain),
+                               "partner": np.where(reversed_, frames.grain, frames.partner), "side": reversed_, "row": frames.row,
+                               **dict(zip(("x", "y", "z", "fx", "fy", "fz"), np.hstack([frames.point, force]).T))})
+        all_of = all_of[all_of.scan >= 0].reset_index(drop=True)
+        return self.put_points(self.joined(all_of, table.map.word("sides", "one") == "both", frames, before), frames)
+
+    def joined(self, contacts, both, frames, before):
+        """The mean of both sides where each contact is listed from either."""
+        pair = ["scan", "grain", "partner"]
+        place, size = contacts.groupby(pair).cumcount(), np.linalg.norm(contacts[["fx", "fy", "fz"]], axis=1)
+        first_side = contacts.groupby(pair).side.transform("first")
+        in_others = contacts[pair].apply(tuple, axis=1).isin({key for table in before for key in map(tuple, table[pair].values)}) \
+            if before and len(contacts) else np.zeros(len(contacts), bool)
+        from_other_side = (place == 1) & (contacts.side != first_side) & ~in_others
+        twice = (place > 0) & ~(from_other_side & both) | in_others
+        for i in np.flatnonzero(twice)[:1]:
+            frames.rows.problem_once("twice", contacts.row[i], "each contact must be there once in a frame, got it " + (
+                'from its other side too: write `sides = "both"` in the mapping where each is listed from either side'
+                if from_other_side[i] else "again in the same direction or in another table: make one row of rows of normal and tangential "
+                "parts, and leave out what is there twice"))
+        kept = contacts[place == 0].set_index(pair)
+        if both and from_other_side.any():
+            other = contacts[from_other_side].set_index(pair)
+            largest = pd.Series(size).groupby(contacts.scan).max()
+            self.check_sides(kept.loc[other.index], other, largest.loc[other.index.get_level_values("scan")].values, frames)
+            values = ["x", "y", "z", "fx", "fy", "fz"]
+            kept.loc[other.index, values] = (kept.loc[other.index, values] + other[values]) / 2
+        return kept.reset_index()
+
+    @staticmethod
+    def check_sides(first, other, largest, frames):
+        """Weak forces may differ more: their errors are those of the strong ones."""
+        a, b = first[["fx", "fy", "fz"]].values, other[["fx", "fy", "fz"]].values
+        sizes, apart = (np.linalg.norm(a, axis=1), np.linalg.norm(b, axis=1)), np.linalg.norm(a - b, axis=1)
+        wrong = np.flatnonzero(apart > np.maximum(MOST_APART * np.maximum(*sizes), WEAK * largest))
+        if len(wrong):
+            i = wrong[0]
+            frames.rows.problem_once("sides", other.row.iloc[i], f"the forces of a contact's two sides must be opposite, got sizes of "
+                                     f"{sizes[0][i]:.4g} and {sizes[1][i]:.4g} N, {apart[i]:.4g} N apart when one is turned round: leave one "
+                                     'of the sides out of the table and write `sides = "one"`')
+
+    def put_points(self, contacts, frames):
+        """Where none was measured: midway between the surfaces; on a wall under the centre."""
+        lost = np.flatnonzero(contacts.x.isna())
+        if not len(lost):
+            return contacts
+        frame_of = {row: frame for frame, row in reversed(list(enumerate(self.grains.row)))}
+        frame = np.array([frame_of.get(scan, -1) for scan in contacts.scan[lost]])
+        position, radius = np.array(self.grains.position), self.grains.diameter / 2
+        grain, partner = contacts.grain.values[lost], contacts.partner.values[lost]
+        centre = position[frame, grain]
+        line = position[frame, np.maximum(partner, 0)] - centre
+        distance = np.linalg.norm(line, axis=1)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            point = centre + ((radius[grain] + distance - radius[np.maximum(partner, 0)]) / (2 * distance))[:, None] * line
+        for wall in range(6):
+            mine = partner == -1 - wall
+            point[mine] = centre[mine]
+            point[mine, wall // 2] = (0, self.known.box[0], 0, self.known.box[1], 0, self.plate.z[contacts.scan.values[lost][mine]])[wall]
+        nowhere = np.flatnonzero((frame < 0) | ~np.isfinite(point).all(axis=1))
+        if len(nowhere):
+            frames.rows.problem_once("point", contacts.row[lost[nowhere[0]]], "a contact must have a point, or its grains a position in its "
+                                     "frame, two places, got neither")
+        contacts.loc[lost, ["x", "y", "z"]] = point
+        return contacts
+
+    def result(self, contacts):
+        plate, grains, first = self.plate, self.grains, self.dropped
+        start = self.known.plate_start if np.isfinite(self.known.plate_start) else float(np.nanmax(plate.z, initial=-np.inf))
+        rows = np.arange(first, len(plate))
+        plate_table = pd.DataFrame({"frame": rows - first, "cycle": plate.cycle[rows] - (plate.cycle[first] if len(rows) else 0),
+                                    "phase": np.where(plate.phase[rows] == 0, "load", "unload"), "plate_z_m": plate.z[rows],
+                                    "top_force_N": plate.force[rows]})
+        of_frames = [pd.DataFrame({"frame": row - first, "grain": np.arange(len(position)), **dict(zip(("x_m", "y_m", "z_m"), position.T)),
+                                   "diameter_m": grains.diameter})
+                     for row, position in sorted(zip(grains.row or [], grains.position), key=lambda one: one[0])]
+        grain_table = pd.concat(of_frames) if of_frames else None
+        if contacts is not None:
+            contacts = contacts[contacts.scan >= first].sort_values("scan", kind="stable")
+            partner = contacts.partner.where(contacts.partner >= 0, contacts.partner.map(lambda p: WALLS[-1 - p] if p < 0 else p))
+            contacts = pd.DataFrame({"frame": contacts.scan - first, "grain": contacts.grain, "partner": partner, "x_m": contacts.x,
+                                     "y_m": contacts.y, "z_m": contacts.z, "fx_N": contacts.fx, "fy_N": contacts.fy, "fz_N": contacts.fz})
+        return Imported(plate_table, grain_table, contacts, start, self.notes)
+
+
+def import_tables(tables, known):
+    return _Assembly(tables, known).run()
+
+
+def write_tables(imported, folder, packed=False):
+    """No rows: no table. Numbers with the shortest digits that read back; forced to the disk."""
+    for name in ("plate", "grains", "contacts"):
+        table = getattr(imported, name)
+        if table is not None and len(table):
+            file = os.path.join(folder, name + ".csv" + (".gz" if packed else ""))
+            table.to_csv(file, index=False, compression={"method": "gzip", "mtime": 0} if packed else None)
+            with open(file, "rb") as written:
+                os.fsync(written.fileno())

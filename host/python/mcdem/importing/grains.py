@@ -1,0 +1,138 @@
+"""Grains by frame, each frame whole, in the order of their ids."""
+import numpy as np
+
+from .mapping import signed_column
+from .problems import number_text
+from .rows import FrameIndex, Rows, whole_entry
+
+
+class GrainFrames:
+    def __init__(self):
+        self.keys, self.position = [], []  # of each frame: its key, centres [n][3] [m]
+        self.ids, self.diameter = np.zeros(0, int), np.zeros(0)  # of the first frame; [m]
+        self.where = []  # of each frame, for messages
+        self.origin = np.zeros(3)  # of the box, in the tables' axes once they are turned [m]
+        self.sign = np.ones(3)  # -1 where a table's axis counts the other way
+        self.index, self.plate = FrameIndex(), FrameIndex()
+        self.row = None  # of the plate, of each frame; -1: none; None: not known
+        self.plate_rows = 0
+
+    def number_of(self, ids):
+        """From the table's numbers of grains; -1 where there is none."""
+        ids = np.asarray(ids)
+        at = np.minimum(np.searchsorted(self.ids, ids), max(len(self.ids) - 1, 0))
+        return np.where(self.ids[at] == ids, at, -1) if len(self.ids) else np.full(ids.shape, -1)
+
+    def top(self, frame):
+        """Of the highest grain [m]."""
+        return max(0.0, float(np.max(self.position[frame][:, 2] + self.diameter / 2)))
+
+    def plate_rows_of(self, by, keys):
+        """The plate's rows of another table's frames, in their order; `by` as in frames_by. -1: none."""
+        keys = np.asarray(keys, float)
+        if by in ("order", "rows"):
+            rows = np.arange(len(keys)) if by == "order" else keys
+            return np.where((rows >= 0) & (rows < self.plate_rows) & (rows == np.round(rows)), rows, -1).astype(int)
+        if by == "plate":
+            return self.plate.find(keys)
+        frames = self.index.find(keys)
+        return np.where(frames < 0, -1, np.asarray(self.row)[frames]) if self.row is not None else np.full(len(keys), -1)
+
+    def frames_of(self, by, keys):
+        """The same of the grains' frames. Where the plate's rows are not known, frames in order are the grains' own."""
+        if by == "grains" or (by == "plate" and self.row is None):
+            return self.index.find(keys)
+        if self.row is None:
+            places = np.arange(len(keys))
+            return np.where(places < len(self.keys), places, -1)
+        first = {row: frame for frame, row in reversed(list(enumerate(self.row)))}
+        return np.array([first.get(row, -1) if row >= 0 else -1 for row in self.plate_rows_of(by, keys)], int)
+
+    def place(self, by, plate):
+        """Finds each frame's row of the plate."""
+        self.plate, self.plate_rows = plate.index, len(plate)
+        self.row = list(self.plate_rows_of(by, self.keys))
+
+
+def _read_columns(rows, mapped, problems):
+    """Number, centre and diameter in each row, and which rows are whole."""
+    unit, size_key = mapped.length_factor(), next((key for key in ("radius", "diameter") if key in rows), None)
+    wanted = np.nan_to_num(rows.number("where")) != 0 if "where" in rows else np.ones(len(rows), bool)
+    centres = np.column_stack([rows.number(key, wanted) for key in "xyz"])
+    sign = np.array([signed_column(mapped.word(key))[0] for key in "xyz"], float)
+    begin = sign * [mapped.number(f"origin_{axis}") for axis in "xyz"]
+    size = rows.number(size_key, wanted) if size_key else np.full(len(rows), mapped.number("same_diameter"))
+    ids = rows.whole_number("grain") if "grain" in rows else None
+    wrong = np.flatnonzero((size <= 0) & wanted)
+    if len(wrong):
+        rows.problem_once("size", wrong[0], f"{size_key or 'same_diameter'} must be > 0, got {number_text(size[wrong[0]])}")
+    whole = wanted & np.isfinite(centres).all(axis=1) & np.isfinite(size) & (True if ids is None else np.isfinite(ids))
+    diameter = (2 if size_key == "radius" else 1) * unit * size
+    return ids, unit * (centres - begin), diameter, whole, sign, unit * begin
+
+
+class _Reader:
+    def __init__(self, frames, problems):
+        self.frames, self.problems, self.used = frames, problems, set()
+
+    def read(self, table):
+        mapped, rows = table.map, Rows(table, self.problems)
+        size = "radius" if "radius" in rows else "diameter"
+        for key in ["x", "y", "z"] + ([] if "same_diameter" in mapped else [size]):
+            if key not in rows:
+                return self.problems.add(mapped.files[0], f"must have a column for {key}, got none: name it in the mapping")
+        first = whole_entry(mapped, "first_grain", self.problems)
+        if not len(rows):
+            return self.problems.add(mapped.files[0], "must have rows, one for each grain of a frame: leave a table without any out")
+        ids, centres, diameter, whole, self.frames.sign, self.frames.origin = _read_columns(rows, mapped, self.problems)
+        self.by_place = ids is None
+        starts = rows.frames()
+        for begin, end in zip(starts, starts[1:]):
+            mine = begin + np.flatnonzero(whole[begin:end])
+            if len(mine):
+                of_frame = first + np.arange(len(mine)) if ids is None else ids[mine].astype(int)
+                order = np.argsort(of_frame, kind="stable")
+                self.end_frame(rows, mine[order], of_frame[order], centres[mine[order]], diameter[mine[order]])
+        return None
+
+    def end_frame(self, rows, mine, ids, centres, diameter):
+        frames, key = self.frames, rows.key[mine[0]]
+        shown = number_text(key)
+        twice = np.flatnonzero(np.diff(ids) == 0)
+        if len(twice):
+            rows.problem_once("twice", mine[twice[0] + 1], f"each grain must be there once in frame {shown}, got {ids[twice[0]]} again: "
+                              "see frame in the mapping")
+        if key in self.used:
+            rows.problem(mine[0], f"the rows of frame {shown} must follow one another, got more behind others: sort them")
+        self.used.add(key)
+        if not frames.keys:
+            frames.ids, first = np.unique(ids, return_index=True)
+            frames.diameter, centres = diameter[first], centres[first]
+        else:
+            others = np.isin(ids, frames.ids, invert=True).sum()
+            if others or len(np.unique(ids)) != len(frames.ids) or len(ids) != len(frames.ids):
+                rows.problem_once("all", mine[0], f"frame {shown} must list the {len(frames.ids)} grains of the first frame, got {len(ids)}, "
+                                  f"of which {others} are other ones: number grains alike in all frames, and leave a frame out where "
+                                  "one is missing")
+            elif self.by_place:
+                self.expect_diameters(rows, mine[0], shown, diameter)
+        frames.keys.append(key)
+        frames.where.append((rows, mine[0]))
+        frames.position.append(centres)
+
+    def expect_diameters(self, rows, row, shown, diameter):
+        """Without numbers, rows in another order show in their diameters. All may swell alike."""
+        growth = diameter / self.frames.diameter
+        differ = np.mean(np.abs(growth / np.mean(growth) - 1))
+        if differ > 0.02:
+            rows.problem_once("diameters", row, "grains without numbers must stand in the same order in all frames, got diameters in frame "
+                              f"{shown} that differ by {100 * differ:.0f} % from those of the first: number the grains")
+
+
+def import_grains(tables, problems):
+    frames = GrainFrames()
+    reader = _Reader(frames, problems)
+    for table in tables:
+        reader.read(table)
+    frames.index = FrameIndex(frames.keys)
+    return frames

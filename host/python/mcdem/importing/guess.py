@@ -1,0 +1,172 @@
+"""What the tables in files are. A guess is sure where a name says it and the numbers do not contradict, or where the numbers leave
+one possibility; unclear where they leave several."""
+import re
+
+import numpy as np
+
+from ..errors import InputError
+from .assemble import import_grains
+from .grains import GrainFrames
+from .guess_contacts import guess_contact_meaning
+from .guess_frames import guess_frames
+from .guess_lengths import guess_grain_lengths, guess_grains_upwards
+from .guess_names import guess_by_names
+from .guess_plate import guess_plate_units
+from .guess_values import guess_contacts_by_values, guess_grains_by_values, guess_plate_by_values
+from .mapping import UNCLEAR, Guess, MappedTable, columns_of, find_key, left_aside, must_be_stated, signed_column
+from .names import VOXEL
+from .plate import import_plate
+from .problems import Problems
+from .rows import ImportTable
+from .tables import read_table, read_tables
+
+
+def _natural(file):
+    """Numbers in names by their size."""
+    return [(0, int(word), "") if word.isdigit() and word.isascii() and len(word) < 1000 else (1, 0, word)
+            for word in re.split(r"([0-9]+)", file)]
+
+
+def _group(parts):
+    """Files with the same columns are the frames of one table, in the order of the numbers in their names."""
+    groups = []
+    for part in parts:
+        alike = next((group for group in groups if part.named and group[0].named and group[0].columns == part.columns
+                      and group[0].format == part.format and group[0].form == part.form), None)
+        if alike is None:
+            groups.append(alike := [])
+        alike.append(part)
+    tables = []
+    for group in groups:
+        group.sort(key=lambda part: _natural(part.file))
+        if all(part.frames for part in group):
+            group.sort(key=lambda part: part.frames[0][0])
+        mapped = MappedTable(files=[part.file for part in group], form=group[0].form if group[0].format == "text" else None)
+        if not any(part.decimal_clear for part in group):
+            mapped.decimal_unclear = "every comma has three digits behind it: if they part thousands, write the table without them"
+        tables.append(ImportTable(mapped, group))
+    return tables
+
+
+def _grains_so_far(tables):
+    """As they stand; empty where they cannot be read yet."""
+    of_grains, problems = [table for table in tables if table.role == "grains"], Problems()
+    grains = import_grains(of_grains, problems)
+    if problems.count or not grains.keys:
+        return GrainFrames()
+    for table in tables:
+        if table.role == "plate":
+            grains.place(of_grains[0].map.word("frames_by", "plate"), import_plate(table, 0.0, Problems()))
+    return grains
+
+
+def guess_tables(files, known):
+    tables = _group(read_tables(files))
+    for table in tables:
+        guess_by_names(table)
+        if table.role == "aside":
+            guess_grains_by_values(table)
+    guess_grains_upwards(tables)
+    for table in tables:
+        if table.role == "grains":
+            guess_grain_lengths(table, known)
+    guess_frames(tables)
+    grains = _grains_so_far(tables)
+    open_ = [table for table in tables if table.role == "aside" and table.map.role_sure == UNCLEAR]
+    for table in open_:
+        guess_contacts_by_values(table, grains)
+    has_plate = any(table.role == "plate" for table in tables)
+    for table in open_:
+        if table.role == "aside" and not has_plate:
+            guess_plate_by_values(table)
+    guess_frames(tables)
+    grains = grains if has_plate else _grains_so_far(tables)
+    voxel_sizes = [table.map.number("voxel_size") for table in tables if table.role == "grains" and table.map.word("length_unit") == VOXEL]
+    voxel_size = known.voxel_size if known.voxel_size > 0 else voxel_sizes[0] if voxel_sizes else np.nan
+    for table in tables:
+        if table.role == "contacts":
+            guess_contact_meaning(table, grains, known, voxel_size)
+    for table in tables:
+        if table.role == "plate":
+            guess_plate_units(table, tables, grains, known, voxel_size)
+        table.map.aside = left_aside(table.map, table.parts[0].columns)
+    return tables
+
+
+def mapping_of(tables):
+    """Units and signs that a guess leaves out are unclear in it."""
+    for table in tables:
+        for key in must_be_stated(table.map):
+            if key not in table.map:
+                words = find_key(table.role, key).words
+                table.map[key] = Guess([words[0] if words else "1"], UNCLEAR, "nothing tells it")
+    return [table.map for table in tables]
+
+
+def wrong_rows(tables):
+    """Of plate and grains, where the guess knows their columns: they are why it does not know more."""
+    lines = []
+    for table in tables:
+        columns_known = all(of.sure != UNCLEAR or "_" in key for key, of in table.map.entries.items())
+        if not columns_known or table.map.role_sure == UNCLEAR:
+            continue
+        problems = Problems()
+        if table.role == "plate":
+            import_plate(table, np.nan, problems)
+        if table.role == "grains":
+            import_grains([table], problems)
+        lines += problems.lines()
+    return lines
+
+
+def _columns_in(mapped, part):
+    """How many columns the mapping names in this table, where the file has all of them; -1 where it lacks one."""
+    words = [word for _, words in columns_of(mapped) for word in words]
+    return len(words) if all(part.find(signed_column(word)[1]) is not None for word in words) else -1
+
+
+def _distribute(files, tables, problems):
+    """Each file to the table that it fits best; two of the same merit are a problem."""
+    for file in files:
+        best, most, why = None, 0, f"{file}: must have the columns of a table of the mapping, got others"
+        for table in tables:
+            if table.role == "aside":
+                continue
+            try:
+                part = read_table(file, table.map.form)
+            except InputError as error:
+                why = why if best else str(error)
+                continue
+            columns = _columns_in(table.map, part)
+            if columns == most and best:
+                why, best = f"{file}: must fit one table of the mapping, got two that it fits: name the files in the mapping", None
+            elif columns > most:
+                best, most = (table, part), columns
+        if best:
+            best[0].parts.append(best[1])
+            best[0].map.files.append(file)
+        else:
+            problems.append(why)
+
+
+def read_import_tables(mapping, files=(), file="mapping"):
+    """The tables of a mapping with their files read. `files`, where there are any, take the place of the mapping's: each goes to the
+    table whose columns it has."""
+    tables, problems = [], []
+    for mapped in mapping:
+        tables.append(ImportTable(mapped.changed(), []))
+        try:
+            tables[-1].parts = read_tables([] if files or mapped.role == "aside" else mapped.files, mapped.form)
+        except InputError as error:
+            problems += error.problems
+        tables[-1].map.files = [] if files else mapped.files
+    if files:
+        _distribute(files, tables, problems)
+        for table, mapped in zip(tables, mapping):
+            if not problems and table.role != "aside" and not table.map.files:
+                problems.append(f"{file}:{mapped.line}: the table of {mapped.role}, {mapped.files[0]} there, must have a file too, got none "
+                                "among those given: give it, or remove the table from the mapping")
+        tables = [table for table in tables if table.map.files]
+    if problems:
+        raise InputError(problems)
+    return tables

@@ -1,0 +1,185 @@
+"""Unit, origin, size and upward direction of the tables of grains."""
+import numpy as np
+
+from .assemble import import_grains
+from .guess_names import is_trackpy
+from .mapping import UNCLEAR, guess
+from .names import LENGTHS, VOXEL, column_name, DOWNWARDS, is_among
+from .problems import Problems, number_text
+
+METRES = guess("m", "stated", "")
+
+
+def plain_grains(table):
+    """The grains as they stand, in metres."""
+    return import_grains([table.changed(length_unit=METRES)], Problems())
+
+
+def fitting_units(factors, value, scale, low, high):
+    """Of the units those for which `value` in that unit over `scale` lies between `low` and `high`."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return [unit for unit, factor in factors.items() if low < abs(value) * factor / abs(np.float64(scale)) < high]
+
+
+def length_factors(voxel_size):
+    return {**LENGTHS, **({VOXEL: voxel_size} if np.isfinite(voxel_size) and voxel_size > 0 else {})}
+
+
+def nearest_over_radii(position, diameter):
+    """Median over grains of the distance to the neighbour that is nearest for the sum of the radii, over that sum: about 1 in a
+    dense packing."""
+    position, diameter = position[:2000], diameter[:2000]
+    if len(position) < 3:
+        return np.nan
+    few = min(len(position), 200)
+    distance = np.linalg.norm(position[:few, None] - position[None], axis=2)
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        ratio = 2 * distance / (diameter[:few, None] + diameter[None])
+    ratio[np.arange(few), np.arange(few)] = np.inf
+    return float(np.median(ratio.min(axis=1)))
+
+
+def _guess_same_diameter(table):
+    """Where no column has a size, a suggestion."""
+    mapped = table.map
+    if any(key in mapped for key in ("diameter", "radius", "same_diameter")) or not all(axis in mapped for axis in "xyz"):
+        return
+    grains = plain_grains(table.changed(same_diameter=guess("1", "stated", "")))
+    if grains.keys:
+        distance = nearest_over_radii(grains.position[0], grains.diameter)
+        why = "trackpy's size is the radius of gyration of the brightness, not a radius" if is_trackpy(table.parts[0].columns) \
+            else "no column has a size"
+        mapped["same_diameter"] = guess(f"{distance:.4g}" if distance > 0 else "1", UNCLEAR, why + "; the nearest neighbours are so far apart: "
+                                        "are all grains of one size? If not, give a table with diameters")
+
+
+def _check_size(mapped, grains):
+    """Radii taken for diameters look twice too far apart; the other way round, twice too near."""
+    now, other = ("radius", "diameter") if "radius" in mapped else ("diameter", "radius")
+    if now not in mapped:
+        return
+    ratio = nearest_over_radii(grains.position[0], grains.diameter)
+    if (0.35 < ratio < 0.6) if now == "radius" else (1.65 < ratio < 2.6):
+        mapped[now].sure = UNCLEAR
+        mapped[now].why = (f"but then the nearest neighbours are {ratio:.2f} times the sum of their radii apart: is it the {other}? "
+                           f"Then write {other} in place of {now}")
+    elif 0.75 < ratio < 1.25 and mapped[now].sure != UNCLEAR:
+        mapped[now].why += f"; neighbours touch ({ratio:.2f} of the sum of radii)"
+
+
+def _unit_by_box(mapped, width, depth, known):
+    (box_x, box_y), named = known.box, mapped.get("length_unit")
+    factors = length_factors(known.voxel_size)
+    fits = [unit for unit in fitting_units(factors, width, box_x, 0.55, 1.15) if 0.55 < depth * factors[unit] / box_y < 1.15] \
+        if box_x > 0 else []
+    spans = f"the packing is {width:.4g} by {depth:.4g} wide, the box {box_x:g} by {box_y:g} m"
+    likely = "mm" if width > 0.5 else "m"
+    if named:
+        if named.sure == UNCLEAR or box_x <= 0 or named.word not in factors:
+            return named
+        if named.word in fits:
+            return guess(named.word, "sure", "named so, and the packing fills the box")
+        return guess(named.word, UNCLEAR, f"{'the columns say so' if named.why == '' else named.why}, but {spans}")
+    if len(fits) == 1:
+        return guess(fits[0], "sure", spans)
+    if box_x <= 0:
+        return guess(likely, UNCLEAR, "no name says it, and the box is not known: --set box.size=[..] would tell")
+    return guess(likely, UNCLEAR, ("several units make" if fits else "no unit makes") + f" the packing fit the box: {spans}")
+
+
+def state_voxel_size(mapped, known, width=0):
+    """Where a table counts in voxels: as stated, else what would make a packing `width` wide fill the box."""
+    if mapped.word("length_unit") != VOXEL:
+        return
+    if known.voxel_size > 0:
+        mapped["voxel_size"] = guess(number_text(known.voxel_size), "sure", "--voxel-size says so")
+    else:
+        fills = known.box[0] > 0 and width > 0
+        mapped["voxel_size"] = guess(f"{known.box[0] / width:.4g}" if fills else "1", UNCLEAR, "--voxel-size would tell"
+                                     + (f"; with this one the packing, {width:.4g} voxels wide, fills the box" if fills else ""))
+
+
+def _guess_origin(mapped, low, high, grains, box):
+    if box[0] <= 0:
+        return
+    unit, margin = mapped.length_factor(), 0.12 * grains.diameter[0]  # soft grains reach into the walls
+    for axis, key in enumerate(("origin_x", "origin_y", "origin_z")):
+        size = box[axis] / unit if axis < 2 else np.inf
+        reach = f"grains reach from {low[axis]:.4g} to {high[axis]:.4g}"
+        if low[axis] >= -margin and high[axis] <= size + margin:
+            mapped[key] = guess("0", UNCLEAR if axis == 2 and low[axis] > 5 * margin else "sure", reach)
+            continue
+        place = (low[axis] + high[axis] - size) / 2 if axis < 2 else low[axis]
+        place = -size / 2 if axis < 2 and abs(place + size / 2) < margin else place
+        mapped[key] = guess(f"{grains.sign[axis] * place:.6g}", UNCLEAR,
+                            reach + (f", the box is {size:.4g} wide" if axis < 2 else ", and the floor is not at 0"))
+
+
+def guess_grain_lengths(table, known):
+    mapped, grains = table.map, plain_grains(table)
+    if not grains.keys or not len(grains.diameter) or len(grains.position[0]) != len(grains.diameter):
+        return
+    _check_size(mapped, grains)
+    low = (grains.position[0] - grains.diameter[:, None] / 2).min(axis=0)
+    high = (grains.position[0] + grains.diameter[:, None] / 2).max(axis=0)
+    width, depth = (high - low)[:2]
+    mapped["length_unit"] = _unit_by_box(mapped, width, depth, known)
+    state_voxel_size(mapped, known, width)
+    _guess_origin(mapped, low, high, grains, known.box)
+
+
+def _end_that_gives(ends, diameter):
+    """The end that nears the other one from the highest frame to the lowest; the plate presses from above."""
+    heights = ends[:, 1] - ends[:, 0]
+    lowest, highest = ends[np.argmin(heights)], ends[np.argmax(heights)]
+    shrink = heights.max() - heights.min()
+    if not shrink > 0.1 * diameter:  # less may be noise
+        return "none"
+    at_low = (lowest[0] - highest[0]) / shrink
+    return "low" if at_low > 0.8 else "high" if at_low < 0.2 else "both"
+
+
+def _upwards(column, now, ends, diameter):
+    """What the ends and the column's name say of a table whose z is not turned yet."""
+    gives, margin, (low, high) = _end_that_gives(ends, diameter), 0.12 * diameter, ends[0]
+    turned, reach = "-" + column, f"grains reach from {low:.4g} to {high:.4g}"
+    if is_among(column_name(column).base, DOWNWARDS):
+        if gives in ("high", "both"):
+            return guess(turned, UNCLEAR, "its name says downwards, but the packing gives way at its upper end: remove the - if z is upwards")
+        return guess(turned, "sure", "its name says downwards")
+    if gives == "low" and abs(high) < margin:
+        return guess(turned, "sure", reach + ", and the packing gives way at its lower end: z is downwards")
+    if gives == "low":
+        return guess(turned, UNCLEAR, reach + ", and the packing gives way at its lower end: is z downwards? If not, remove the -")
+    if gives == "both":
+        return guess(now.word, UNCLEAR, "the packing gives way at both ends: is z upwards, and does the floor stand still?")
+    if gives == "none" and high < margin and low < -margin:
+        return guess(turned, UNCLEAR, reach + ": is z downwards? If not, remove the -")
+    if gives == "high" and now.sure != UNCLEAR:
+        now.why += "; upwards, for the packing gives way there"
+    return now
+
+
+def guess_grains_upwards(tables):
+    """Turned round where that is sure, unclear where it may be."""
+    told = []  # and whether the frames tell
+    for table in tables:
+        if table.role != "grains" or "z" not in table.map:
+            continue
+        _guess_same_diameter(table)
+        grains = plain_grains(table)
+        if not grains.keys or not len(grains.diameter):
+            continue
+        ends = []
+        for position in grains.position:
+            n = min(len(position), len(grains.diameter))
+            z, radius = position[:n, 2], grains.diameter[:n] / 2
+            ends.append([(z - radius).min(), (z + radius).max()])
+        z = table.map["z"]
+        if len(z.words) == 1:
+            table.map["z"] = _upwards(z.word, z, np.array(ends), float(np.median(grains.diameter)))
+        told.append((table.map, len(grains.keys) > 1))
+    if any(mapped.word("z").startswith("-") for mapped, _ in told):
+        for mapped, several in told:
+            if not several and not mapped.word("z").startswith("-"):
+                mapped["z"].sure, mapped["z"].why = UNCLEAR, "it is downwards in another table: write a - before its name if it is here too"

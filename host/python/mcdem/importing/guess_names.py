@@ -1,0 +1,110 @@
+"""Role and columns of a table by the names of its columns, with the units that they state."""
+from .mapping import UNCLEAR, guess, signed_column
+from .names import FORCES, LENGTH_WORDS, VOXEL, column_name, columns_by_key
+
+LENGTH_KEYS = ("x", "y", "z", "diameter", "radius", "plate_z", "displacement")
+FORCE_KEYS = ("fx", "fy", "fz", "force", "top_force")
+
+
+def _role_of(columns):
+    def has(role, *keys):
+        found = columns_by_key(role, columns)
+        return all(key in found for key in keys)
+
+    if has("contacts", "grain", "partner") and (has("contacts", "fx", "fy", "fz") or has("contacts", "force")):
+        return "contacts"
+    if has("grains", "x", "y", "z") and (has("grains", "diameter") or has("grains", "radius") or _size_is_missing(columns)):
+        return "grains"
+    if has("plate", "top_force") and (has("plate", "plate_z") or has("plate", "displacement")):
+        return "plate"
+    return None
+
+
+def is_trackpy(columns):
+    return {"mass", "ecc", "signal"} <= set(columns) or {"raw_mass", "signal"} <= set(columns)
+
+
+def is_spam(columns):
+    return {"Label", "Zpos", "Ypos", "Xpos"} <= set(columns)
+
+
+def _size_is_missing(columns):
+    return is_trackpy(columns) or is_spam(columns) or ("centroid-2" in columns and "label" in columns)
+
+
+def _note_unit(mapped, key, keys, known):
+    """The unit that the names of these columns state, if they agree and it is one that is known."""
+    units, others = set(), set()
+    for entry in keys:
+        for word in mapped[entry].words if entry in mapped else ():
+            name = column_name(signed_column(word)[1])
+            if name.unit in known:
+                units.add(name.unit)
+            elif name.unit or name.unknown:
+                others.add(name.unit + name.unknown)
+    first = min(units) if units else known[0]
+    if others:
+        mapped[key] = guess(first, UNCLEAR, f"a name says [{min(others)}], which is none of {' '.join(known)}: change the table")
+    elif len(units) == 1:
+        mapped[key] = guess(first, "sure", "the columns' names say so")
+    elif units:
+        mapped[key] = guess(first, UNCLEAR, "the columns' names say different units, and a table has one: change the table")
+
+
+def _note_tangential(mapped, columns):
+    """A size of the normal force beside a tangential one, whose direction nothing tells."""
+    for column in columns:
+        base = column_name(column).base
+        if base.startswith(("ft", "fs")) or any(word in base for word in ("tang", "shear", "scher")):
+            mapped["force"].sure = UNCLEAR
+            mapped["force"].why = f"{column} would be left aside: give fx, fy, fz, or confirm that the normal part is enough"
+
+
+def _note_programs(mapped, columns):
+    """What programs that measure images mean by their columns."""
+    if is_spam(columns):
+        for axis in "xyz" if "Xdisp" in columns else "":
+            mapped[axis].words = [f"{axis.upper()}pos", f"{axis.upper()}disp"]
+            mapped[axis].why = "SPAM's position and displacement"
+    if is_spam(columns):
+        mapped["where"] = guess("Label", "likely", "label 0 is the background")
+    program = "SPAM" if is_spam(columns) else "trackpy" if is_trackpy(columns) else "scikit-image" if "centroid-2" in columns else ""
+    if program and "length_unit" not in mapped:
+        mapped["length_unit"] = guess(VOXEL, "likely", f"{program} counts in voxels")
+
+
+def guess_by_names(table):
+    mapped, columns = table.map, table.parts[0].columns
+    mapped.role = role = _role_of(columns) or "aside"
+    mapped.role_sure, mapped.role_why = ("sure", "its columns are named so") if role != "aside" else (
+        UNCLEAR, "its columns say nothing that is known")
+    found = columns_by_key("contacts", columns)
+    if role == "aside" and "grain" in found and "partner" in found and _only_touching(columns):
+        mapped.role_sure, mapped.role_why = "likely", "pairs of grains that touch, without forces: an experiment's contacts have forces"
+    if role == "aside":
+        return
+    found = columns_by_key(role, columns)
+    if "plate_z" in found:
+        found.pop("displacement", None)
+    if "diameter" in found:
+        found.pop("radius", None)
+    if all(key in found for key in ("fx", "fy", "fz")):
+        found.pop("force", None)
+    if role == "contacts" and not all(key in found for key in "xyz"):
+        for key in "xyz":
+            found.pop(key, None)
+    for key, names in found.items():
+        one = len(names) == 1 or key == "frame"  # "time" beside "frame" is another way to say the same
+        mapped[key] = guess(names[0], "sure" if one else UNCLEAR, "its name" if one else f"{len(names)} columns have such a name")
+    if "force" in mapped:
+        _note_tangential(mapped, columns)
+    _note_unit(mapped, "length_unit", LENGTH_KEYS, LENGTH_WORDS)
+    _note_unit(mapped, "force_unit", FORCE_KEYS, list(FORCES))
+    if role == "grains":
+        _note_programs(mapped, columns)
+
+
+def _only_touching(columns):
+    """SPAM's lists of contacts: labels of grains, orientations, numbers of voxels."""
+    bases = {column_name(column).base for column in columns}
+    return bool({"label1", "lab1", "labeli"} & bases) and not any(base.startswith(("f", "kraft")) for base in bases)

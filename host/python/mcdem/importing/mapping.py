@@ -1,0 +1,262 @@
+"""What the columns of tables mean: guessed, and written as mapping.toml for the user to correct (read_mapping reads it back)."""
+import json
+import re
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+from .names import FORCES, LENGTH_WORDS, LENGTHS, VOXEL
+from .problems import to_number
+from .text import Form
+
+WALLS = ["x_min", "x_max", "y_min", "y_max", "floor", "plate"]
+BY_DIRECTION = "by direction"  # a wall of which the direction of each force decides which one it is
+UNCLEAR = "unclear"  # beside stated, sure, likely: must be confirmed in the mapping before anything is imported
+
+
+@dataclass
+class Guess:
+    words: list  # a word, or columns: "-z" where z counts the other way
+    sure: str = "stated"
+    why: str = ""
+
+    @property
+    def word(self):
+        return self.words[0]
+
+
+def guess(word, sure, why):
+    return Guess([word], sure, why)
+
+
+def signed_column(word):
+    return (-1, word[1:]) if word.startswith("-") else (1, word)
+
+
+def turned(of):
+    """The entry with every column counting the other way."""
+    return Guess([word[1:] if word.startswith("-") else "-" + word for word in of.words], of.sure, of.why)
+
+
+class Key(NamedTuple):
+    name: str
+    kind: str  # column, quantity (may have a sign), quantities (several that are added up), word, number
+    meaning: str = ""
+    words: tuple = ()
+
+
+_LENGTHS, _FORCES = tuple(LENGTH_WORDS), tuple(FORCES)
+_LENGTH_KEYS = [Key("voxel_size", "number", "edge of a voxel [m], where length_unit is voxel")]
+_FRAMES_BY = ("plate: frames have the plate's numbers, times or steps; order: the first is the plate's first row, and so on; rows: "
+              "they are the plate's rows, counted from 0")
+KEYS = {
+    "plate": [
+        Key("frame", "column", "a row's frame number, time or step; without it the rows count"),
+        Key("cycle", "column", "compression cycle, rising; without it from the plate's turns"),
+        Key("phase", "column", "load or unload (down or up, compression or decompression); without it from the plate's direction"),
+        Key("plate_z", "quantity", "height of the plate; this or displacement; with a - before its name where it counts downwards"),
+        Key("displacement", "quantity", "how far the plate has gone down from plate.start; with a - where it counts upwards"),
+        Key("top_force", "quantities", "force on the plate"),
+        Key("length_unit", "word", "", _LENGTHS),
+        *_LENGTH_KEYS,
+        Key("origin_z", "number", "where the floor is, as plate_z's column counts; 0 where left out"),
+        Key("force_unit", "word", "", _FORCES),
+        Key("force_sign", "word", "+: upward force on the plate is positive; -: negative", ("+", "-")),
+    ],
+    "grains": [
+        Key("frame", "column", "which rows belong together: frame number, time or step"),
+        Key("frames_by", "word", _FRAMES_BY, ("plate", "order", "rows")),
+        Key("grain", "column", "a grain's number, alike in all frames; without it the rows of a frame count"),
+        Key("first_grain", "number", "the number of the first row's grain, where no column has it"),
+        Key("where", "column", "rows with 0 here are no grains"),
+        Key("x", "quantities", "centre; of several columns the sum, such as position and displacement"),
+        Key("y", "quantities", "centre"),
+        Key("z", "quantities", "centre, upwards; with a - before its name where it counts downwards"),
+        Key("diameter", "column", "this or radius"),
+        Key("radius", "column", "this or diameter"),
+        Key("same_diameter", "number", "of all grains, in the table's unit, where no column has it"),
+        Key("length_unit", "word", "", _LENGTHS),
+        *_LENGTH_KEYS,
+        Key("origin_x", "number", "where the wall x_min stands, in the table's unit, as x's column counts"),
+        Key("origin_y", "number", "where the wall y_min stands"),
+        Key("origin_z", "number", "where the floor is"),
+    ],
+    "contacts": [
+        Key("frame", "column", "which rows belong together: frame number, time or step"),
+        Key("frames_by", "word", "whose frame numbers, times or steps these are; order: the plate's rows, one after the other; rows: "
+            "the plate's rows, counted from 0", ("plate", "grains", "order", "rows")),
+        Key("grain", "column", "the grain"),
+        Key("partner", "column", "the other grain, or a wall; or one wall's name, where all rows are its"),
+        Key("where", "column", "rows with 0 here are no contacts"),
+        Key("id_offset", "number", "added to grain and partner gives the numbers of the grains' table"),
+        Key("x", "quantity", "contact point; without it midway between the surfaces"),
+        Key("y", "quantity", "contact point"),
+        Key("z", "quantity", "contact point"),
+        Key("fx", "quantities", "force; several columns are added up, such as normal and tangential parts, those with a - are taken off"),
+        Key("fy", "quantities", "force"),
+        Key("fz", "quantities", "force"),
+        Key("force", "quantities", "in place of fx, fy, fz: size of a force along the line of centres, > 0 where it pushes"),
+        Key("force_on", "word", "on which of the two the force is", ("grain", "partner")),
+        Key("sides", "word", "both: each contact is listed from either side, and the mean counts", ("one", "both")),
+        Key("length_unit", "word", "of contact points", _LENGTHS),
+        *_LENGTH_KEYS,
+        Key("force_unit", "word", "", _FORCES),
+    ],
+    "aside": [],
+}
+COLUMN_KINDS = ("column", "quantity", "quantities")
+
+
+def find_key(role, name):
+    return next((key for key in KEYS[role] if key.name == name), None)
+
+
+@dataclass
+class MappedTable:
+    role: str = "aside"
+    role_sure: str = "stated"
+    role_why: str = ""
+    line: int = 0  # in the mapping
+    files: list = field(default_factory=list)  # alike, in the order of the frames
+    aside: list = field(default_factory=list)  # columns that were seen and are not used
+    form: Form = None  # of text
+    decimal_unclear: str = ""  # why; empty: it is clear
+    entries: dict = field(default_factory=dict)
+    walls: dict = field(default_factory=dict)  # of contacts: from what the table calls a wall to its name
+
+    def __contains__(self, key):
+        return key in self.entries
+
+    def __getitem__(self, key):
+        return self.entries[key]
+
+    def __setitem__(self, key, value):
+        self.entries[key] = value
+
+    def get(self, key):
+        return self.entries.get(key)
+
+    def word(self, key, otherwise=""):
+        return self.entries[key].word if key in self.entries else otherwise
+
+    def number(self, key):
+        return to_number(self.word(key, "0")) or 0.0
+
+    def length_factor(self, otherwise="m"):
+        """Metres in the table's unit."""
+        unit = self.word("length_unit", otherwise)
+        return self.number("voxel_size") if unit == VOXEL else LENGTHS[unit]
+
+    def force_factor(self):
+        return FORCES[self.word("force_unit", "N")]
+
+    def changed(self, **entries):
+        """A copy with other entries."""
+        copy = MappedTable(**vars(self))
+        copy.entries = {**self.entries, **entries}
+        copy.walls = dict(self.walls)
+        return copy
+
+
+def must_be_stated(table):
+    """Units and signs that the table's columns need: no mapping may leave them out."""
+    def has(*keys):
+        return any(key in table for key in keys)
+
+    keys = []
+    if has("plate_z", "displacement", "x", "y", "z", "diameter", "radius", "same_diameter"):
+        keys.append("length_unit")
+    if table.word("length_unit") == VOXEL:
+        keys.append("voxel_size")
+    if has("top_force", "force", "fx", "fy", "fz"):
+        keys.append("force_unit")
+    if table.role == "plate" and has("top_force"):
+        keys.append("force_sign")
+    if table.role == "contacts" and has("fx", "fy", "fz"):
+        keys.append("force_on")
+    return keys
+
+
+def columns_of(table):
+    """Key and words of every entry that names columns."""
+    for key in KEYS[table.role]:
+        words = table[key.name].words if key.name in table and key.kind in COLUMN_KINDS else []
+        if words and not (key.name == "partner" and words[0] in WALLS):
+            yield key.name, words
+
+
+def left_aside(table, columns):
+    used = {signed_column(word)[1] for entry in table.entries.values() for word in entry.words}
+    return [column for column in columns if column not in used]
+
+
+INTRODUCTION = """\
+# What the tables of an experiment mean, for `mcdem experiment import --mapping`. Every entry says how sure it is and why.
+# An entry that begins with a question mark is not safe: put in what is right, without the question mark, and import
+# again with --mapping. Columns go by their names, or as "column 3"; where several are listed they are added up.
+"""
+UNCLEAR_MARK = "  # unclear: "
+
+
+def toml_text(text):
+    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
+
+
+def _one_line(text):
+    return re.sub(r"[\x00-\x1f\x7f]", " ", text)
+
+
+def _value_text(of):
+    words = list(of.words)
+    if of.sure == UNCLEAR:
+        words[0] = "?" + words[0]
+    return toml_text(words[0]) if len(words) == 1 else "[" + ", ".join(map(toml_text, words)) + "]"
+
+
+def _line_text(key, of, meaning):
+    text = f"{key} = {_value_text(of)}"
+    if of.sure != "stated":
+        text += f"  # {of.sure}: {_one_line(of.why)}"
+    if of.sure == UNCLEAR and meaning:
+        text += f" ({meaning})"
+    return text + "\n"
+
+
+def _meaning(key):
+    words = "one of " + ", ".join(key.words) if key.words else ""
+    return words + ("; " if words and key.meaning else "") + key.meaning
+
+
+def _table_text(table):
+    text = "\n[[table]]\n" + _line_text("role", guess(table.role, table.role_sure, table.role_why),
+                                        "one of plate, grains, contacts, aside")
+    text += f"files = [{', '.join(map(toml_text, table.files))}]\n"
+    if table.form:
+        separator = {"\t": "tab", " ": "blanks"}.get(table.form.separator, table.form.separator)
+        text += f'separator = "{separator}"\n'
+        text += _line_text("decimal", guess(table.form.decimal, UNCLEAR if table.decimal_unclear else "stated", table.decimal_unclear),
+                           "a comma or a point")
+    if table.aside:
+        text += f"# columns left aside: {_one_line(', '.join(table.aside))}\n"
+    for key in KEYS[table.role]:
+        text += _line_text(key.name, table[key.name], _meaning(key)) if key.name in table else f"# {key.name} =  # {_meaning(key)}\n"
+    if table.walls:
+        text += "[table.walls]  # what the table calls a wall, and which it is\n"
+        for word, of in sorted(table.walls.items()):
+            text += _line_text(toml_text(word), of, ", ".join([*WALLS, BY_DIRECTION]))
+    return text
+
+
+def mapping_text(tables):
+    """Each guess with how sure it is and why; unclear ones begin with a question mark."""
+    return INTRODUCTION + "".join(map(_table_text, tables))
+
+
+def unclear_entries(text, file):
+    """The lines that must be confirmed, each as a problem with what to choose from."""
+    problems = []
+    for number, line in enumerate(text.split("\n"), 1):
+        key, equals, rest = line.partition(" = ")
+        value, mark, why = rest.rpartition(UNCLEAR_MARK)
+        if equals and mark and not line.startswith("#"):
+            problems.append(f"{file}:{number}: {key} must be confirmed, got {value}: {why}")
+    return problems

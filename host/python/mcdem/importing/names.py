@@ -1,0 +1,109 @@
+"""What the name of a column says: a quantity, and perhaps a unit, in the words of laboratories and programs."""
+import re
+from dataclasses import dataclass
+
+import pint
+
+_units = pint.UnitRegistry()
+
+
+def _factors(words, base):
+    return {word: _units.Quantity(1, word).to(base).magnitude for word in words.split()}
+
+
+LENGTHS = _factors("m cm mm um", "m")
+FORCES = _factors("N mN uN kN cN daN gf kgf lbf", "N")
+TIMES = _factors("s sec ms min h", "s")
+VOXEL = "voxel"  # a length unit whose size the mapping states
+LENGTH_WORDS = [*LENGTHS, VOXEL]
+SYNONYMS = {"µm": "um", "μm": "um", "micron": "um", "µN": "uN", "μN": "uN", "g": "gf", "kg": "kgf", "gram": "gf", "newton": "N",
+            "meter": "m", "voxels": VOXEL, "vox": VOXEL, "vx": VOXEL, "px": VOXEL, "pixel": VOXEL, "pixels": VOXEL}
+DOWNWARDS = "depth tiefe profondeur zdown zdownwards"  # names of z where it counts downwards
+_FRAME = ("frame", "frame scan image snapshot step timestep bild schritt state time t zeit temps iter")
+
+# Key of the mapping and names without units and punctuation; the first that fits counts.
+WORDS = {
+    "plate": [
+        _FRAME,
+        ("cycle", "cycle zyklus ncycle cyclenumber"),
+        ("phase", "phase direction richtung loading"),
+        ("plate_z", "platez zplate plateheight height z gap plateposition position pos hoehe h platte top ztop topz lid piston"),
+        ("displacement", "displacement disp stroke travel weg hub verschiebung compression"),
+        ("top_force", "topforce force load f fz kraft last ftop forcez plateforce normalforce loadcell platefz fplate3"),
+    ],
+    "grains": [
+        _FRAME,
+        ("grain", "grain id particle label index korn teilchen nr no number atom particleid grainid bead beadid"),
+        ("x", "x xc cx posx xpos centroidx xcentroid centerx xcenter xu px positionx centroid2"),
+        ("y", "y yc cy posy ypos centroidy ycentroid centery ycenter yu py positiony centroid1"),
+        ("z", "z zc cz posz zpos centroidz zcentroid centerz zcenter zu pz positionz centroid0"),
+        ("z", DOWNWARDS),
+        ("diameter", "diameter d dia diam durchmesser diametre equivalentdiameterarea equivalentdiameter eqdiameter"),
+        ("radius", "radius r rad radii halbmesser rayon equivalentradius equivalentradii equivradius equivradii eqradius"),
+    ],
+    "contacts": [
+        _FRAME,
+        ("grain", "grain id1 i grain1 particle1 particlei p1 a graina idi korn1 teilchen1 atom1 patom1 ida part1 g1 i1 label1 lab1 "
+                  "labeli"),
+        ("partner", "partner id2 j grain2 particle2 particlej p2 b grainb idj korn2 teilchen2 atom2 patom2 idb part2 g2 i2 "
+                    "neighbour neighbor nachbar other contactwith label2 lab2 labelj"),
+        ("x", "x xc cx px contactx xcontact cpx pointx xpos"),
+        ("y", "y yc cy py contacty ycontact cpy pointy ypos"),
+        ("z", "z zc cz pz contactz zcontact cpz pointz zpos"),
+        ("z", DOWNWARDS),
+        ("fx", "fx forcex xforce f1 kraftx ffx fcx"),
+        ("fy", "fy forcey yforce f2 krafty ffy fcy"),
+        ("fz", "fz forcez zforce f3 kraftz ffz fcz"),
+        ("force", "force f forcemagnitude fn normalforce kraft fabs fmag forcenorm"),
+    ],
+}
+# What the numbers of frames count.
+COUNTED = {"time": "time t zeit temps", "step": "step timestep schritt iter", "scan": "frame scan image snapshot bild state"}
+_LETTERS = str.maketrans({"ä": "ae", "ö": "oe", "ü": "ue", "ß": "ss", "Ä": "ae", "Ö": "oe", "Ü": "ue"})
+
+
+@dataclass
+class ColumnName:
+    base: str = ""  # small letters and digits only, without the unit: "toppressure"
+    unit: str = ""  # of length, force or time; empty where none is named
+    unknown: str = ""  # what stands in brackets in a unit's place and is none that is known
+
+
+def _known_unit(word):
+    word = SYNONYMS.get(word, word)
+    return word if word in LENGTH_WORDS or word in FORCES or word in TIMES else ""
+
+
+def column_name(name):
+    """"Kraft [mN]", "x_mm" and "z in mm" name units, "c_force[1]" does not."""
+    name, all_of = name.strip(), ColumnName()
+    brackets = re.fullmatch(r"(.+)[\[(]([^\[(]*)[\])]", name, re.DOTALL)
+    if brackets and not re.search(r"\d", brackets[2]):
+        name, inside = brackets[1], brackets[2].strip()
+        all_of.unit = _known_unit(inside)
+        all_of.unknown = "" if all_of.unit else inside
+    elif not brackets:
+        for mark in (" in ", "/", "_", " "):
+            before, found, behind = name.rpartition(mark)
+            if found and before and _known_unit(behind.strip()):
+                name, all_of.unit = before, _known_unit(behind.strip())
+                break
+    all_of.base = re.sub(r"[^a-z0-9]", "", name.translate(_LETTERS).lower())
+    return all_of
+
+
+def is_among(base, words):
+    return bool(base) and base in words.split()
+
+
+def key_of_name(role, name):
+    """The key of a table of that role that a column of this name stands for, or None."""
+    return next((key for key, words in WORDS.get(role, []) if is_among(name.base, words)), None)
+
+
+def columns_by_key(role, columns):
+    found = {}
+    for column in columns:
+        if key := key_of_name(role, column_name(column)):
+            found.setdefault(key, []).append(column)
+    return found

@@ -1,0 +1,101 @@
+"""The plate's table: height and force by row, phases and cycles from its turns where no column says them."""
+import numpy as np
+
+from .mapping import signed_column
+from .names import column_name
+from .problems import number_text, quoted
+from .rows import FrameIndex, Rows
+
+TURN = 0.01  # of the stroke: smaller steps back are noise
+LOAD, UNLOAD = 0, 1
+PHASES = {**dict.fromkeys("load loading down compression compress belastung".split(), LOAD),
+          **dict.fromkeys("unload unloading up decompression decompress entlastung".split(), UNLOAD)}
+
+
+class PlateRows:
+    def __init__(self, z=(), force=(), keys=(), keyed=False):
+        self.z, self.force = np.asarray(z, float), np.asarray(force, float)  # [m], upward force on it [N]
+        self.keys, self.keyed, self.index = np.asarray(keys, float), keyed, FrameIndex(keys)
+        self.phase = np.zeros(len(self.z), int)
+        self.cycle = np.zeros(len(self.z), int)
+
+    def __len__(self):
+        return len(self.z)
+
+
+def _phases(z):
+    """A phase begins behind the lowest or highest position before a turn."""
+    turn, phase, now, extreme = TURN * (z.max() - z.min()), np.zeros(len(z), int), LOAD, 0
+    for i in range(1, len(z)):
+        back = (z[i] - z[extreme]) * (1 if now == LOAD else -1)
+        phase[i] = now
+        if back <= 0:
+            extreme = i
+        elif back > turn:
+            now = 1 - now
+            phase[extreme + 1:i + 1] = now
+            extreme = i
+    return phase
+
+
+def _check_order(rows, keys):
+    falls = np.flatnonzero(~(np.diff(keys) > 0))
+    if len(falls):
+        i = falls[0] + 1
+        rows.problem_once("order", i, f"frame must rise from row to row, got {number_text(keys[i])} after {number_text(keys[i - 1])}")
+
+
+def _check_heights(rows, plate, start, goes_down):
+    low = np.flatnonzero(plate.z <= 0)
+    if len(low):
+        rows.problem_once("plate", low[0], f"the plate must be over the floor, got a height of {plate.z[low[0]]:g} m: see length_unit"
+                          + (" and plate.start" if goes_down else ", plate_z and origin_z"))
+    highest, down = int(np.nanargmax(plate.z)), np.nanmin(plate.z)
+    high = plate.z[highest]
+    if high - start > 1e-9 * high and high - start > start - down:  # a little above the start is noise
+        rows.problem(highest, f"the plate must go down from plate.start, {start:g} m, got {high:g} m: "
+                     + ("displacements count downwards, write a - before the column's name where it counts upwards" if goes_down
+                        else "see length_unit, and --set plate.start=.."))
+
+
+def _read_phases(rows, plate, problems):
+    if "phase" in rows:
+        for i in range(len(rows)):
+            text = rows.text(i, "phase")
+            phase = PHASES.get(column_name(text).base)
+            if phase is None:
+                rows.problem(i, f"phase must be load or unload, got {quoted(text)}")
+            plate.phase[i] = phase or LOAD
+    elif not problems.count:
+        plate.phase = _phases(plate.z)
+    if "cycle" in rows:
+        cycle = np.nan_to_num(rows.whole_number("cycle"))
+        plate.cycle = (cycle - cycle[0]).astype(int)  # many count from 1
+        falls = np.flatnonzero(np.diff(plate.cycle) < 0)
+        if len(falls):
+            rows.problem_once("cycle", falls[0] + 1, "cycle must not fall: sort the rows by time")
+    elif not problems.count:
+        plate.cycle = np.cumsum(np.diff(plate.phase, prepend=LOAD) == LOAD - UNLOAD)
+
+
+def import_plate(table, start, problems):
+    """Heights need `start` [m] where the table states displacements; not-a-number where it is not known."""
+    mapped, rows = table.map, Rows(table, problems)
+    goes_down = "displacement" in rows
+    for key in ("top_force", "displacement" if goes_down else "plate_z"):
+        if key not in rows:
+            problems.add(mapped.files[0], f"must have a column for {key}, got none: name it in the mapping")
+            return PlateRows()
+    keys = rows.key if rows.keyed else np.arange(len(rows), dtype=float)
+    place = rows.number("displacement" if goes_down else "plate_z")
+    force = rows.number("top_force") * mapped.force_factor() * (-1 if mapped.word("force_sign", "+") == "-" else 1)
+    origin = mapped.number("origin_z") * signed_column(mapped.word("plate_z"))[0]
+    z = start - mapped.length_factor() * place if goes_down else mapped.length_factor() * (place - origin)
+    plate = PlateRows(z, force, keys, rows.keyed)
+    if not len(plate):
+        return plate
+    _check_order(rows, keys)
+    if np.isfinite(z).any():
+        _check_heights(rows, plate, start, goes_down)
+    _read_phases(rows, plate, problems)
+    return plate

@@ -1,0 +1,59 @@
+"""Problems in what the user gave, collected and told together; numbers and words as messages show them."""
+import math
+import re
+
+from ..errors import InputError
+
+MOST_TOLD = 20  # further ones are only counted
+NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
+
+
+class Problems:
+    def __init__(self):
+        self.first, self.told, self.count = [], set(), 0
+
+    def add(self, where, what):
+        """`where` is a file, or file:line, or a function that finds it."""
+        if len(self.first) < MOST_TOLD:
+            self.first.append(f"{where() if callable(where) else where}: {what}")
+        self.count += 1
+
+    def once(self, topic, where, what):
+        """Told once for each topic: a column in millimetres is one problem, not one for each line."""
+        if topic not in self.told:
+            self.told.add(topic)
+            self.add(where, what)
+
+    @property
+    def full(self):
+        return self.count >= MOST_TOLD
+
+    def lines(self):
+        more = self.count - len(self.first)
+        return self.first + ([f".. and {more} more"] if more else [])
+
+    def report(self):
+        if self.count:
+            raise InputError(self.lines())
+
+
+def to_number(word):
+    """The whole word as a finite number, or None."""
+    if not NUMBER.fullmatch(word):
+        return None
+    value = float(word)
+    return value if math.isfinite(value) else None
+
+
+def is_whole(value):
+    return value is not None and abs(value) <= 2e9 and value == round(value)
+
+
+def number_text(value):
+    """The shortest digits that read back: 17, 0.5."""
+    return repr(float(value)).removesuffix(".0")
+
+
+def quoted(word):
+    shown = "".join(c if c.isprintable() else "?" for c in word[:60])
+    return f'"{shown}{".." if len(word) > 60 else ""}"'

@@ -1,0 +1,166 @@
+"""The rows of a table's files as arrays, by the mapping's keys; frames by their number, time or step."""
+import os
+import re
+
+import numpy as np
+
+from .mapping import columns_of, signed_column
+from .names import TIMES, column_name
+from .problems import is_whole, number_text, quoted
+
+
+class ImportTable:
+    """A table of the mapping with its files."""
+
+    def __init__(self, mapped, parts):
+        self.map, self.parts = mapped, parts
+
+    def changed(self, **entries):
+        return ImportTable(self.map.changed(**entries), self.parts)
+
+    @property
+    def role(self):
+        return self.map.role
+
+
+def whole_entry(mapped, key, problems):
+    """A whole number of the mapping, 0 where it has none; anything else is a problem."""
+    if is_whole(value := mapped.number(key)):
+        return int(value)
+    problems.add(mapped.files[0], f'{key} must be a whole number of at most 2e9, got "{mapped.word(key)}": see the mapping')
+    return 0
+
+
+def _number_in_name(file):
+    """The last number in a file's name, its endings left aside: 3 of "scan2/grains_003.csv.gz"."""
+    stem = os.path.splitext(os.path.basename(file).removesuffix(".gz"))[0]
+    digits = re.findall(r"[0-9]+", stem)
+    return float(digits[-1]) if digits else None
+
+
+def _keys_of_files(parts):
+    """The files' numbers where all have one and they rise; else their places."""
+    numbers = [_number_in_name(part.file) for part in parts]
+    if len(parts) > 1 and None not in numbers and all(a < b for a, b in zip(numbers, numbers[1:])):
+        return numbers, "file"
+    return list(range(len(parts))), "place"
+
+
+class Rows:
+    """The rows in the order of the files. `keyed_by` tells the rows' frames: the files' places in the list, the last numbers in
+    their names, a dump's steps, a column. `key` is the frame's number, time [s where the column names a unit] or step."""
+
+    def __init__(self, table, problems, most=None):
+        self.map, self.parts, self.problems = table.map, table.parts, problems
+        self.columns = {}  # by key: for each part its signs and columns
+        before = problems.count
+        self._find_columns()
+        whole = problems.count == before
+        counts = [(part.rows if most is None else min(part.rows, most)) if whole else 0 for part in self.parts]
+        self.part = np.repeat(np.arange(len(counts)), counts)
+        self.row = np.concatenate([np.arange(n) for n in counts]) if counts else np.zeros(0, int)
+        keys, self.keyed_by = _keys_of_files(self.parts)
+        self.key = np.concatenate([np.full(n, float(key)) for n, key in zip(counts, keys)]) if counts else np.zeros(0)
+        if "frame" in self.columns:
+            self.keyed_by = "column"
+            unit = TIMES.get(column_name(self.map.word("frame")).unit, 1)
+            self.key = unit * self.number("frame")
+            known = np.isfinite(self.key)
+            self.part, self.row, self.key = self.part[known], self.row[known], self.key[known]
+        elif any(part.frames for part in self.parts):
+            self.keyed_by = "step"
+            for number, part in enumerate(self.parts):
+                mine = self.part == number
+                steps, first = zip(*part.frames) if part.frames else ((keys[number],), (0,))
+                self.key[mine] = np.array(steps, float)[np.searchsorted(first, self.row[mine], "right") - 1]
+
+    @property
+    def keyed(self):
+        """Frames have numbers, times or steps of their own."""
+        return self.keyed_by in ("step", "column")
+
+    def __len__(self):
+        return len(self.row)
+
+    def __contains__(self, key):
+        return key in self.columns
+
+    def _find_columns(self):
+        for key, words in columns_of(self.map):
+            of_parts = self.columns[key] = []
+            for part in self.parts:
+                found = [(sign, part.find(name)) for sign, name in map(signed_column, words)]
+                of_parts.append(found)
+                for (_, column), word in zip(found, words):
+                    if column is None:
+                        self.problems.add(part.file, f"must have the column {quoted(signed_column(word)[1])} that the mapping names for "
+                                          f"{key}, got {', '.join(part.columns)}")
+
+    def each_part(self, key):
+        """Part, its rows, where they stand among all, and its columns of that key."""
+        for number, part in enumerate(self.parts):
+            mine = np.flatnonzero(self.part == number)
+            if len(mine):
+                yield part, self.row[mine], mine, self.columns[key][number]
+
+    def number(self, key, of=None):
+        """The entry's value in each row: of several columns their sum. Not-a-number is a problem, in the rows `of`."""
+        values = np.zeros(len(self))
+        for part, rows, mine, columns in self.each_part(key):
+            for sign, column in columns:
+                numbers = part.numbers(column)[rows]
+                wrong = np.isnan(numbers) if of is None else np.isnan(numbers) & of[mine]
+                for row in rows[wrong] if wrong.any() else ():
+                    self.problems.add(lambda part=part, row=row: part.where(row), f"{part.columns[column]} must be a finite number, got "
+                                      f"{quoted(part.text(row, column))}: leave the row out where nothing was measured")
+                    if self.problems.full:
+                        break
+                values[mine] += sign * numbers
+        return values
+
+    def whole_number(self, key):
+        values = self.number(key)
+        for i in np.flatnonzero(np.isfinite(values) & ~((np.abs(values) <= 2e9) & (values == np.round(values))))[:20]:
+            self.problem(i, f"{key} must be a whole number, got {number_text(values[i])}")
+            values[i] = np.nan
+        return values
+
+    def text(self, i, key):
+        part = self.parts[self.part[i]]
+        return part.text(self.row[i], self.columns[key][self.part[i]][0][1])
+
+    def where(self, i):
+        return self.parts[self.part[i]].where(self.row[i])
+
+    def problem(self, i, what):
+        self.problems.add(lambda: self.where(i), what)
+
+    def problem_once(self, topic, i, what):
+        """Told once for each topic and file."""
+        self.problems.once(self.parts[self.part[i]].file + topic, lambda: self.where(i), what)
+
+    def frames(self):
+        """First row of each frame, and behind the last: rows of the same key that follow one another."""
+        changes = np.flatnonzero(np.diff(self.key)) + 1
+        return np.concatenate([[0], changes, [len(self)]]) if len(self) else np.zeros(1, int)
+
+
+class FrameIndex:
+    """Finds frames. Times may differ by a thousandth of the shortest interval."""
+
+    def __init__(self, keys=()):
+        keys = np.asarray(keys, float)
+        self.order = np.argsort(keys, kind="stable")
+        self.sorted = keys[self.order]
+        steps = np.diff(self.sorted)
+        steps = steps[steps > 0]
+        self.tolerance = 1e-3 * steps.min() if len(steps) else 1e-9 * abs(self.sorted[0]) if len(keys) else 0.0
+
+    def find(self, keys):
+        """Places; -1 where there is none."""
+        keys = np.asarray(keys, float)
+        if not len(self.sorted):
+            return np.full(keys.shape, -1)
+        at = np.minimum(np.searchsorted(self.sorted, keys - self.tolerance), len(self.sorted) - 1)
+        near = np.abs(self.sorted[at] - keys) <= self.tolerance * (1 + 1e-12)
+        return np.where(near, self.order[at], -1)

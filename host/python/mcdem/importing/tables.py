@@ -1,0 +1,160 @@
+"""Tables as other programs and laboratories write them: all become named columns, whose meaning and units come later."""
+import gzip
+import os
+import zlib
+
+import numpy as np
+
+from ..errors import InputError
+from . import formats
+from .problems import Problems, number_text
+from .text import cell_number, cut, parse_text
+
+LARGEST = 1 << 30  # bytes of a table, unpacked
+CHUNK = 20_000  # rows whose cells are kept as text
+
+
+class Table:
+    def __init__(self, file):
+        self.file, self.format, self.form = file, "text", None
+        self.lines = []  # of the file, for cells that are no numbers and for messages
+        self.decimal_clear = True  # else every comma may part thousands as well: 1,306
+        self.named, self.columns = False, []  # whether the file names its columns; else they are "column 1", ..
+        self.frames = []  # of a dump: (timestep, first row)
+        self.line_of = []  # of each row, from 1; empty where rows are no lines
+        self.rows, self._pending, self._chunks, self._texts = 0, [], [], {}
+
+    def begin(self, format_, lines, form):
+        self.format, self.lines, self.form = format_, lines, form
+
+    def name_columns(self, names, count):
+        """Names that are missing, were there before or begin with a question mark or a minus, which a mapping keeps for what is not
+        confirmed and what counts the other way, give way to the column's number."""
+        taken = set()
+        self.columns = []
+        for i in range(count):
+            name = names[i].strip(" \t\r") if i < len(names) else ""
+            if not name or name[0] in "?-" or name in taken:
+                name = f"column {i + 1}"
+            taken.add(name)
+            self.columns.append(name)
+        self.named = bool(names)
+
+    def add_row(self, cells, line):
+        self._pending.append(cells)
+        self.line_of.append(line)
+        self.rows += 1
+        if len(self._pending) == CHUNK:
+            self._convert()
+
+    def set_numbers(self, columns, values, line_of=()):
+        self.name_columns(columns, len(columns))
+        self._chunks = [np.asarray(values, float).reshape(-1, len(columns))]
+        self.rows, self.line_of = len(self._chunks[0]), list(line_of)
+
+    def _convert(self):
+        decimal, columns = self.form.decimal, []
+        for cells in zip(*self._pending):
+            try:
+                if any("_" in cell or not cell.isascii() for cell in cells):  # Python reads 1_000 as a number
+                    raise ValueError
+                columns.append(list(map(float, (cell.replace(",", ".") for cell in cells) if decimal == "," else cells)))
+            except ValueError:
+                columns.append([np.nan if (value := cell_number(cell, decimal)) is None else value for cell in cells])
+        self._chunks.append(np.array(columns, float).T.reshape(len(self._pending), -1))
+        self._pending = []
+
+    def numbers(self, column):
+        """Not-a-number where the cell is no finite number."""
+        if self._pending:
+            self._convert()
+        if len(self._chunks) > 1:
+            self._chunks = [np.concatenate(self._chunks)]
+        values = self._chunks[0][:, column] if self._chunks else np.empty(0)
+        return np.where(np.isfinite(values), values, np.nan)
+
+    def text(self, row, column):
+        if not self.lines:
+            return number_text(self._chunks[0][row, column])
+        return cut(self.lines[self.line_of[row] - 1], self.form.separator)[column]
+
+    def texts(self, column):
+        if column not in self._texts:
+            self._texts[column] = [self.text(row, column) for row in range(self.rows)]
+        return self._texts[column]
+
+    def find(self, name):
+        if name in self.columns:
+            return self.columns.index(name)
+        number = name.removeprefix("column ")
+        if number != name and number.isascii() and number.isdigit() and 1 <= int(number[:9]) <= len(self.columns):
+            return int(number[:9]) - 1
+        return None
+
+    def where(self, row):
+        return f"{self.file}:{self.line_of[row]}" if self.line_of else self.file
+
+
+def _bytes_of(file):
+    """The file's bytes, unpacked where it is packed."""
+    if not os.path.isfile(file):
+        got = "something that is not a file" if os.path.lexists(file) else "no such file"
+        raise InputError(f"{file}: must be a table, got {got}")
+    with open(file, "rb") as stream:
+        packed = stream.read(2) == b"\x1f\x8b"
+        stream.seek(0)
+        try:
+            content = (gzip.GzipFile(fileobj=stream) if packed else stream).read(LARGEST + 1)
+        except (EOFError, gzip.BadGzipFile, zlib.error) as error:
+            raise InputError(f"{file}: must be whole, got one that cannot be unpacked ({error}): pack it again with gzip") from None
+    if len(content) > LARGEST:
+        raise InputError(f"{file}: must have at most 1 GiB, got more: leave out frames, or split it into several files")
+    return content
+
+
+def parse_table(content, file, form=None):
+    """`form` overrules the guess of how a text is cut."""
+    table, problems = Table(file), Problems()
+    if formats.is_mesh(content):
+        formats.parse_mesh(table, content, problems)
+        problems.report()
+        return table
+    content = content.removeprefix(b"\xef\xbb\xbf")
+    try:
+        text = content.decode()
+    except UnicodeDecodeError:
+        text = content.decode("latin-1")  # what European spreadsheets write where they do not write UTF-8
+    lines = [line.removesuffix("\r") for line in text.split("\n")]
+    if lines[-1] == "":
+        lines.pop()
+    if "\0" in text:
+        problems.add(file, "must be text, got zero bytes: save it as text in UTF-8")
+    elif text[:1000].lstrip(" \t\r").startswith("ITEM: "):
+        formats.parse_dump(table, lines, problems)
+    elif text.startswith("# vtk DataFile"):
+        formats.parse_vtk(table, lines, problems)
+    elif formats.looks_like_data(lines):
+        formats.parse_data(table, lines, problems)
+    elif formats.looks_like_xyz(lines):
+        formats.parse_xyz(table, text, problems)
+    else:
+        parse_text(table, lines, form, problems)
+    problems.report()
+    return table
+
+
+def read_table(file, form=None):
+    return parse_table(_bytes_of(file), file, form)
+
+
+def read_tables(files, form=None):
+    """All of them, or the problems of all of them together."""
+    tables, problems = [], []
+    for file in files:
+        try:
+            tables.append(read_table(file, form))
+        except InputError as error:
+            problems += error.problems
+    if problems:
+        raise InputError(problems)
+    return tables

@@ -1,0 +1,229 @@
+"""Text in rows and columns, cut by commas, semicolons, tabs or blanks, with decimal points or commas.
+
+What comes before the first row with a number in it may name the columns, and in a line below state their units; Yade's
+`#format` line, and a line of words behind a # where nothing else does, name them too.
+"""
+import re
+from collections import Counter
+from typing import NamedTuple
+
+from .problems import quoted, to_number
+
+SAMPLED_LINES = 100
+MOST_COLUMNS = 10_000
+NOTHING = {"", "-", "--", "nan", "NaN", "NAN", "na", "NA", "N/A", "n/a", "null", "NULL", "inf"}
+UNITS = {"", "-", "m", "cm", "mm", "um", "µm", "N", "mN", "kN", "uN", "µN", "g", "gf", "s", "ms", "%", "1", "min", "voxel"}
+THOUSANDS = {",": re.compile(r"[+-]?[1-9]\d{0,2}(\.\d{3})+(,.*)?", re.ASCII | re.DOTALL),  # 12.345,6 where the decimal is a comma
+             ".": re.compile(r"[+-]?[1-9]\d{0,2}(,\d{3})+(\..*)?", re.ASCII | re.DOTALL)}
+
+
+class Form(NamedTuple):
+    separator: str = ","  # " " stands for any blanks
+    decimal: str = "."
+
+
+# In the order in which equally good ones are preferred.
+FORMS = [Form(";", "."), Form(";", ","), Form("\t", "."), Form("\t", ","), Form(",", "."), Form(" ", "."), Form(" ", ",")]
+
+
+def cut(line, separator):
+    """Cells of a line; a cell in quotes may hold the separator."""
+    if separator == " ":
+        return line.split()
+    if '"' not in line:
+        return [cell.strip(" \t\r") for cell in line.split(separator)]
+    cells, first, inside = [], 0, False
+    for i, c in enumerate(line + separator):
+        inside ^= c == '"'
+        if i == len(line) or (c == separator and not inside):
+            cell = line[first:i].strip(" \t\r")
+            cells.append(cell[1:-1] if len(cell) >= 2 and cell[0] == cell[-1] == '"' else cell)
+            first = i + 1
+    return cells
+
+
+def cell_number(cell, decimal):
+    if decimal == "." or "," not in cell:
+        return to_number(cell)
+    return to_number(cell.replace(",", ".", 1)) if "." not in cell and len(cell) <= 64 else None
+
+
+def _numbers_in(cells, decimal):
+    return sum(cell_number(cell, decimal) is not None for cell in cells)
+
+
+def is_blank_or_comment(line):
+    words = line.strip(" \t\r")
+    return not words or words[0] == "#"
+
+
+def sample(lines):
+    found = []
+    for line in lines:
+        if not is_blank_or_comment(line):
+            found.append(line)
+        if len(found) == SAMPLED_LINES:
+            break
+    return found
+
+
+def _usual_width(lines, separator):
+    """The number of cells that most lines have; of several the largest."""
+    counts = Counter(len(cut(line, separator)) for line in lines)
+    return max(counts, key=lambda width: (counts[width], width))
+
+
+def _merit(lines, form):
+    """The share of lines as wide as most, times that of numbers among their cells."""
+    width = _usual_width(lines, form.separator)
+    alike = [cells for cells in (cut(line, form.separator) for line in lines) if len(cells) == width]
+    numbers = sum(_numbers_in(cells, form.decimal) for cells in alike) / max(width, 1)
+    return (1 if width > 1 else 0.1) * len(alike) / len(lines) * (0.01 + numbers / len(alike))
+
+
+def guess_form(lines):
+    lines = sample(lines)
+    best, most = Form(), -1.0
+    for form in FORMS if lines else []:
+        good = _merit(lines, form)
+        if good > most * (1 + 1e-9):
+            best, most = form, good
+    return best
+
+
+def _kind(cell):
+    if cell_number(cell, ".") is not None or cell_number(cell, ",") is not None:
+        return "number"
+    return "nothing" if cell in NOTHING else "word"
+
+
+def _lines_above_names(rows, width):
+    """Lines above the last one of words only, which names the columns, where each of them has a word in a column that holds only
+    numbers below it: `Vorkraft;0,5;N` is no row of `Zeit;Weg;Kraft`."""
+    numeric = [True] * width
+    for names in range(len(rows), 0, -1):
+        kinds = [_kind(cell) for cell in rows[names - 1]]
+        if "word" in kinds and "number" not in kinds:
+            break
+        for c, kind in enumerate(kinds[:width]):
+            numeric[c] &= kind != "word"
+    else:
+        return 0
+    if names == len(rows) or len(rows[names - 1]) < width:
+        return 0
+    for cells in rows[:names - 1]:
+        kinds = [_kind(cell) for cell in cells]
+        if len(cells) >= width and "number" in kinds and not any(n and k == "word" for n, k in zip(numeric, kinds)):
+            return 0
+    return names - 1
+
+
+def _lines_above(lines, separator):
+    """Lines before the first as wide as most, where they hold a word: `Probe;17` is no row."""
+    rows = [cut(line, separator) for line in sample(lines)]
+    if not rows:
+        return 0
+    width = _usual_width(sample(lines), separator)
+    if above := _lines_above_names(rows, width):
+        return above
+    for above, cells in enumerate(rows):
+        if len(cells) == width or not any(_kind(cell) == "word" for cell in cells):
+            return above
+    return len(rows)
+
+
+class _DecimalComma:
+    """What the cells tell of a table whose decimal is taken for a comma: the first of each kind with its line."""
+
+    def __init__(self):
+        self.seen = {}
+
+    def look_at(self, cell, line):
+        if cell_number(cell, ",") is not None and ("," in cell or "." in cell):
+            kind = "point" if "." in cell else "either" if THOUSANDS["."].fullmatch(cell) else "comma"
+            self.seen.setdefault(kind, (cell, line))
+
+    def report(self, table, problems):
+        table.decimal_clear = "either" not in self.seen or "comma" in self.seen
+        if "either" in self.seen and "point" in self.seen:
+            (cell, line), (point, point_line) = self.seen["either"], self.seen["point"]
+            problems.add(f"{table.file}:{line}", "numbers must have one decimal mark and no separators of thousands, got "
+                         f"{quoted(cell)} beside {quoted(point)} in line {point_line}: write the table with points only")
+
+
+def _without_brackets(word):
+    return word[1:-1] if len(word) >= 2 and word[0] in "[(" else word
+
+
+def _names_of(headings, comment, format_, width):
+    """The last line of names before the first row counts, or the two last, where the second states units."""
+    headings = [names for names in headings if len(names) in (width, width + 1)]
+    if not headings:
+        return comment if len(comment) == width else format_
+    names = headings[-1]
+    if len(headings) > 1 and all(_without_brackets(word) in UNITS for word in names):
+        units = [_without_brackets(word) for word in names] + [""]
+        names = [name + (f" [{unit}]" if unit else "") for name, unit in zip(headings[-2], units)]
+    return names
+
+
+def _read_comment(words, separator):
+    """Names in a comment, and those of Yade's format."""
+    words = words.strip(" \t\r")
+    if words.startswith("format "):
+        names = words[7:].strip().split("_")
+        return None, names[:-1] if names[-1] == "attrs" else names
+    return cut(words, separator if separator in words else " "), None
+
+
+def _has_thousands(cells, form, where, problems):
+    for cell in cells:
+        if THOUSANDS[form.decimal].fullmatch(cell):
+            problems.add(where, f"numbers must have no separators of thousands, got {quoted(cell)} where the decimal is "
+                         f'"{form.decimal}": write the table without them')
+            return True
+    return False
+
+
+def parse_text(table, lines, form, problems):
+    form = form or guess_form(lines)
+    table.begin("text", lines, form)
+    above = _lines_above(lines, form.separator)
+    comma, mark = _DecimalComma(), "." if form.decimal == "," else ","
+    headings, comment, format_, trailing = [], [], [], False
+    for number, line in enumerate(lines, 1):
+        words = line.strip(" \t\r")
+        if not words or problems.full:
+            continue
+        if words[0] == "#":
+            if not table.columns:
+                names, of_yade = _read_comment(words[1:], form.separator)
+                comment, format_ = (comment, of_yade) if names is None else (names, format_)
+            continue
+        cells = cut(line, form.separator)
+        is_row = bool(table.columns)
+        has_numbers = is_row or _numbers_in(cells, form.decimal) > 0
+        if len(cells) > 1 and not cells[-1] and (_numbers_in(cells, form.decimal) > 0):  # a separator at the line's end
+            trailing = trailing or not is_row
+            cells = cells[:-1] if trailing else cells
+        if not is_row and (above > 0 or not has_numbers):
+            headings.append(cells)
+            above -= 1
+            continue
+        if not is_row:
+            if len(cells) > MOST_COLUMNS:
+                problems.add(f"{table.file}:{number}", f"must have at most {MOST_COLUMNS} columns, got {len(cells)}")
+            table.name_columns(_names_of(headings, comment, format_, len(cells)), len(cells))
+        if form.decimal == ",":
+            for cell in cells:
+                comma.look_at(cell, number)
+        if mark in line and _has_thousands(cells, form, f"{table.file}:{number}", problems):
+            continue
+        if len(cells) == len(table.columns):
+            table.add_row(cells, number)
+        else:
+            problems.add(f"{table.file}:{number}", f"must have {len(table.columns)} columns as the first row, got {len(cells)}")
+    if form.decimal == ",":
+        comma.report(table, problems)
+    if table.rows == 0 and not problems.count:
+        problems.add(table.file, "must have at least one row with a number in it, got none")

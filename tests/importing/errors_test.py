@@ -1,0 +1,151 @@
+"""Tables and mappings that cannot be imported: told with file and line."""
+import unittest
+
+from lab import ImportCase, Style, lab_contacts, lab_grains, lab_plate
+from mcdem.importing.guess import guess_tables, mapping_of, wrong_rows
+from mcdem.importing.mapping import mapping_text
+from mcdem.importing.read_mapping import parse_mapping
+
+
+class Errors(ImportCase):
+    def mapping_problems(self, text):
+        return self.problems_of(lambda: parse_mapping(text, "m"))
+
+    def test_wrong_rows_are_told_with_their_lines(self):
+        self.write_lab()
+        mapping = mapping_text(mapping_of(self.guess([self.path(name) for name in ("kraft.csv", "koerner.csv", "kontakte.csv")])))
+        texts = {"kraft.csv": lab_plate(self.truth), "koerner.csv": lab_grains(self.truth), "kontakte.csv": lab_contacts(self.truth)}
+
+        def problems_with(name, wrong, right):
+            self.assertIn(wrong, texts[name])
+            self.write(name, texts[name].replace(wrong, right, 1))
+            problems = self.problems_of(lambda: self.imported(self.by_mapping(mapping)))
+            self.write(name, texts[name])
+            return problems
+
+        self.assertEqual(problems_with("kraft.csv", ";0;60,5", ";null;60,5"),
+                         ['kraft.csv:2: Zeit [s] must be a finite number, got "null": leave the row out where nothing was measured'])
+        self.expect_one(problems_with("kraft.csv", ";0,5;", ";-0,5;"), "kraft.csv:3: frame must rise from row to row, got -0.5 after 0")
+        self.expect_among(problems_with("koerner.csv", ";2;", ";1;"),
+                          "koerner.csv:3: each grain must be there once in frame 0, got 1 again: see frame in the mapping")
+        self.expect_one(problems_with("kontakte.csv", "Boden", "Keller"),
+                        'partner must be a grain, or a wall that [table.walls] of the mapping names, got "Keller"')
+        self.expect_one(problems_with("kontakte.csv", "Korn 1", "Korn 3"),
+                        'kontakte.csv: must have the column "Korn 1" that the mapping names for grain')
+        lines = texts["koerner.csv"].splitlines(keepends=True)
+        self.expect_one(problems_with("koerner.csv", lines[-1], ""), "frame 3 must list the 36 grains of the first frame, got 35")
+        self.assertEqual(self.problems_of(lambda: self.by_mapping('[[table]]\nrole = "plate"\nfiles = ["none", "neither"]\n')),
+                         ["none: must be a table, got no such file", "neither: must be a table, got no such file"])
+
+    def test_wrong_mappings_are_told_at_once(self):
+        self.assertEqual(self.mapping_problems(""), ["m: must hold at least one [[table]], got none"])
+        self.expect_one(self.mapping_problems("[[table]\n"), "m:1: must be TOML, got")
+        self.assertEqual(self.mapping_problems('x = 1\n[[table]]\nrole = "sand"\nseparator = "|"\n'),
+                         ['m:1: "x" must be a list of tables, [[table]], got something else',
+                          'm:3: role must be one of plate, grains, contacts, aside, got "sand"',
+                          "m:2: files must name at least one file, got none",
+                          'm:4: separator must be one of ",", ";", tab, blanks, got "|"'])
+        problems = self.mapping_problems('[[table]]\nrole = "grains"\nfiles = ["a"]\nx = 3\nlength_unit = "ft"\norigin_x = "left"\n'
+                                         'fx = "f"\ndiameter = ["a", "b"]\n')
+        self.assertEqual(len(problems), 5)
+        for part in ("m:8: diameter must be one text, got 2", 'm:7: "fx" must be a key of a table of grains, got another',
+                     'm:5: length_unit must be one of m cm mm um voxel, got "ft"', 'm:6: origin_x must be a number in quotes, got "left"',
+                     'm:4: "x" must be a text, or a list of texts'):
+            self.expect_among(problems, part)
+        self.assertEqual(self.mapping_problems('[[table]]\nrole = "contacts"\nfiles = ["a"]\n[table.walls]\n1 = "roof"\n'),
+                         ['m:5: a wall must be one of x_min, x_max, y_min, y_max, floor, plate, by direction, got "roof"'])
+
+    def test_units_and_signs_must_be_stated(self):
+        def problems(text):
+            return self.mapping_problems('[[table]]\nfiles = ["a"]\n' + text)
+
+        self.assertEqual(problems('role = "plate"\nplate_z = "h"\ntop_force = "F"\n'),
+                         ["m:1: length_unit must be stated, one of m cm mm um voxel, got none",
+                          "m:1: force_unit must be stated, one of N mN uN kN cN daN gf kgf lbf, got none",
+                          "m:1: force_sign must be stated, one of + -: +: upward force on the plate is positive; -: negative, got none"])
+        self.expect_one(problems('role = "grains"\nx = "h"\n'), "length_unit must")
+        self.expect_one(problems('role = "grains"\nx = "h"\nlength_unit = "voxel"\n'), "voxel_size must be stated: edge of a voxel [m]")
+        self.expect_one(problems('role = "grains"\nx = "h"\nlength_unit = "voxel"\nvoxel_size = "0"\n'), "voxel_size must be > 0 [m]")
+        missing = problems('role = "contacts"\nfx = "F"\n')
+        self.assertEqual(len(missing), 2)
+        self.expect_among(missing, "force_unit must")
+        self.expect_among(missing, "force_on must be stated, one of grain partner: on which")
+        missing = problems('role = "contacts"\nforce = "F"\nx = "x"\n')
+        self.assertEqual(len(missing), 2)
+        self.expect_among(missing, "length_unit must")
+
+    def test_signs_stand_before_columns_of_quantities_only(self):
+        def problems(text):
+            return self.mapping_problems('[[table]]\nfiles = ["a"]\n' + text)
+
+        grains = 'role = "grains"\nlength_unit = "m"\nx = "-x"\n'
+        self.assertEqual(problems(grains), [])
+        self.assertEqual(problems(grains + 'radius = "-r"\n'), ['m:6: radius must be a column without a sign, got "-r"'])
+        self.assertEqual(len(problems(grains + 'grain = "-id"\n')), 1)
+        self.assertEqual(problems(grains + 'z = "-"\n'), ["m:6: z must be a column, got a sign only"])
+        self.assertEqual(problems('role = "plate"\nforce_sign = "-"\n'), [])
+
+    def test_what_wrong_rows_hide_is_unclear(self):
+        style = Style(";", ".", False)
+        files = self.write_lab(style)
+        lines = lab_grains(self.truth, style).splitlines()
+        lines[1] = "NaN" + lines[1][lines[1].index(";"):]
+        self.write("koerner.csv", "\n".join(lines) + "\n")
+        tables = self.guess(files)
+        contacts = mapping_of(tables)[2]
+        for key in ("id_offset", "force_on", "length_unit", "force_unit"):
+            self.assertEqual(contacts[key].sure, "unclear", key)
+        self.expect_among(wrong_rows(tables), 'must be a finite number, got "NaN"')
+
+    def test_what_is_missing_is_told(self):
+        self.expect_one(self.problems_of(lambda: self.imported(self.guess(self.write_lab()[1:2]))),
+                        "plate: must be one table with the plate's position and force by frame, got 0")
+        self.assertEqual(len(self.problems_of(lambda: self.guess([self.path("a"), self.path("b")]))), 2)
+
+    def test_nothing_and_missing_grains_are_no_walls(self):
+        files, contacts = self.write_lab(), lab_contacts(self.truth)
+        self.write("kontakte.csv", contacts.replace("Boden", "NaN", 1))
+        tables = self.guess(files)
+        self.assertNotIn("NaN", self.of(tables, "contacts").walls)
+        self.expect_one(self.problems_of(lambda: self.imported(tables)), "partner must be a grain, or a wall")
+        self.write("kontakte.csv", contacts)
+        self.write("koerner.csv", "".join(line for line in lab_grains(self.truth).splitlines(keepends=True) if ";17;" not in line))
+        self.expect_among(self.unclear(self.guess(files)), '"17" must be confirmed, got "?by direction"')
+
+    def test_units_that_are_not_known_must_be_confirmed(self):
+        files = self.write_lab()
+        self.write("kraft.csv", lab_plate(self.truth).replace("[mN]", "[MPa]"))
+        self.expect_among(self.unclear(self.guess(files)), "a name says [MPa], which is none of")
+
+    def test_what_is_not_a_number_in_the_plates_table_is_named_by_its_line(self):
+        files = self.write_lab()
+        for nothing in ("NaN", "nan", "inf", "", "-"):
+            for units in (True, False):
+                lines = lab_plate(self.truth, Style(named=units)).splitlines()
+                lines[2] = lines[2][:lines[2].rindex(";") + 1] + nothing
+                self.write("kraft.csv", "\n".join(lines) + "\n")
+                self.expect_one(wrong_rows(self.guess(files)), "kraft.csv:3: Hoehe")
+
+    def test_columns_of_text_are_not_taken_for_numbers_by_their_place(self):
+        plate = self.of(self.guess([self.write("a.csv", "load;60,5;start;0\nload;59,5;;0,3\nunload;60;ende;0,1\n")]), "plate")
+        self.assertEqual([plate.word("plate_z"), plate.word("top_force")], ["column 2", "column 4"])
+        self.assertEqual(self.guess([self.write("b.csv", "load;a;1,5\nload;b;2,5\n")])[0].role, "aside")
+
+    def test_commas_that_may_part_thousands_must_be_confirmed(self):
+        files = self.write_lab()
+        self.write("kraft.csv", "Hoehe [mm];Kraft [mN]\n" + "".join(
+            f"{int(1e3 * s.plate_z)},{int(1e6 * s.plate_z) % 1000:03};{int(1e3 * s.top_force)}\n" for s in self.truth.scans))
+        self.expect_one(self.unclear(self.guess(files)), 'decimal must be confirmed, got "?,": every comma has three digits')
+
+    def test_umlauts_are_letters(self):
+        files = self.write_lab()
+        self.write("kraft.csv", lab_plate(self.truth).replace("Hoehe", "H\xf6he"))
+        self.assertEqual(self.unclear(self.guess(files)), [])
+
+    def test_a_table_of_nothing_known_must_be_named(self):
+        files = self.write_lab() + [self.write("wetter.csv", "Tag;Regen;Wind\n1;2,5;3\n2;0;1\n")]
+        self.expect_one(self.unclear(guess_tables(files, self.known)), 'role must be confirmed, got "?aside": its columns say nothing')
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,191 @@
+"""Tables as Yade, scikit-image, trackpy and SPAM write them, and tables that state less than a force."""
+import unittest
+
+import numpy as np
+
+from lab import BOX, ImportCase, Style, lab_plate, plain_plate
+from mcdem.importing.assemble import Known
+from mcdem.importing.guess import mapping_of
+from mcdem.importing.mapping import mapping_text
+
+YADE_WALLS = 6  # bodies 0 to 5 in the order of WALLS; grains follow
+VTK = "# vtk DataFile Version 3.0.\ncomment\nASCII\n\nDATASET POLYDATA\nPOINTS {} double\n"
+VOXEL = 5e-5  # [m]
+
+
+def vectors(rows):
+    return "".join(" ".join(f"{x:.9g}" for x in np.atleast_1d(row)) + "\n" for row in rows)
+
+
+def vtk_of_spheres(truth, scan):
+    return (VTK.format(len(scan.position)) + vectors(scan.position) + f"\nPOINT_DATA {len(scan.position)}\nSCALARS radius double 1\n"
+            "LOOKUP_TABLE default\n" + vectors(truth.diameter / 2))
+
+
+def vtk_of_interactions(scan):
+    """exportInteractions(what={'id1': .., 'id2': .., 'force': ..}), the smaller id first, the force on it."""
+    n = len(scan.contacts)
+    ids = [(-1 - c.partner, c.grain + YADE_WALLS) if c.is_wall else (c.grain + YADE_WALLS, c.partner + YADE_WALLS) for c in scan.contacts]
+    forces = [-c.force if c.is_wall else c.force for c in scan.contacts]
+    scalars = "\nSCALARS {} double 1\nLOOKUP_TABLE default\n"
+    return (VTK.format(2 * n) + n * "0 0 0\n1 1 1\n" + f"LINES {n} {3 * n}\n" + vectors((2, 2 * k, 2 * k + 1) for k in range(n))
+            + f"\nCELL_DATA {n}\n" + scalars.format("id1") + vectors(one for one, _ in ids)
+            + scalars.format("id2") + vectors(two for _, two in ids) + "\nVECTORS f double\n" + vectors(forces))
+
+
+class Yade(ImportCase):
+    def test_vtk_files_one_a_frame_with_walls_that_count_first(self):
+        files = [self.write("plate.txt", plain_plate(self.truth, " ", "").replace("force_N", "top_force").replace("_m", ""))]
+        for scan in self.truth.scans:
+            files += [self.write(f"y-spheres-{scan.frame:04}.vtk", vtk_of_spheres(self.truth, scan)),
+                      self.write(f"y-intrs-{scan.frame:04}.vtk", vtk_of_interactions(scan))]
+        tables = self.guess(files)
+        self.assertEqual(len(tables), 3)
+        contacts = self.of(tables, "contacts")
+        self.assertEqual(contacts.word("id_offset"), "-6")
+        self.assertEqual(len(contacts.walls), 6)
+        self.assertEqual(contacts.word("fx"), "f_x")
+        self.assertEqual(self.unclear(tables), [])
+        self.expect_truth(tables)
+
+
+class Forces(ImportCase):
+    def test_of_which_only_the_size_is_known(self):
+        files = self.write_lab()
+        self.write("kontakte.csv", Style(",", ".").table(["Zeit [s]", "id1", "id2", "force_N"], (
+            (0.5 * s.frame, str(c.grain + 1), c.partner_text(), f"{np.linalg.norm(c.force):.12g}") for s in self.truth.scans for c in s.contacts)))
+        tables = self.guess(files)
+        self.assertEqual(self.unclear(tables), [])
+        self.expect_truth(tables)
+
+    def test_of_a_plate_are_measured_by_its_contacts(self):
+        files = self.write_lab()
+        self.write("kraft.csv", lab_plate(self.truth).replace(" [mN]", "", 1))
+        self.known = Known(box=BOX)  # no Hertz's law
+        tables = self.guess(files)
+        self.assertEqual(self.of(tables, "plate").word("force_unit"), "mN")
+        self.assertEqual(self.unclear(tables), [])
+
+
+class Images(ImportCase):
+    """Grains of every frame as programs that analyse images write them, in voxels, and the plate's table of the laboratory."""
+
+    def setUp(self):
+        super().setUp()
+        for scan in self.truth.scans:
+            scan.contacts = []
+
+    def frames(self, name, columns, row):
+        """A file for each frame; `row` gives the cells of grain i at x, y, z in voxels."""
+        files = [self.write("plate.csv", lab_plate(self.truth))]
+        for scan in self.truth.scans:
+            rows = (row(i, *at) for i, at in enumerate(scan.position / VOXEL))
+            files.append(self.write(f"{name}_{scan.frame:03}.csv", Style(",", ".").table(columns, rows)))
+        return files
+
+    def scikit_image(self):
+        columns = ["label", "area", "centroid-0", "centroid-1", "centroid-2", "equivalent_diameter_area"]
+        return self.frames("regions", columns, lambda i, x, y, z: (
+            str(i + 1), np.pi / 6 * (self.truth.diameter[i] / VOXEL) ** 3, z, y, x, self.truth.diameter[i] / VOXEL))
+
+    def test_regions_of_scikit_image_are_z_y_x_in_voxels(self):
+        self.known.voxel_size = VOXEL
+        tables = self.guess(self.scikit_image())
+        self.assertEqual(self.unclear(tables), [])
+        grains = self.of(tables, "grains")
+        self.assertEqual([grains.word(axis) for axis in "xyz"], ["centroid-2", "centroid-1", "centroid-0"])
+        self.assertEqual(grains.word("length_unit"), "voxel")
+        self.expect_truth(tables)
+        again = self.by_mapping(mapping_text(mapping_of(tables)))
+        self.known.voxel_size = np.nan
+        self.expect_truth(again)
+
+    def test_the_size_of_a_voxel_must_be_confirmed(self):
+        tables = self.guess(self.scikit_image())
+        self.expect_one(self.unclear(tables), "voxel_size must be confirmed")
+        self.assertAlmostEqual(self.of(tables, "grains").number("voxel_size"), VOXEL, delta=0.1 * VOXEL)
+        text = mapping_text(mapping_of(tables))
+        at = text.index('voxel_size = "?')
+        self.expect_truth(self.by_mapping(text[:at] + f'voxel_size = "{VOXEL}"' + text[text.index('"', at + 15) + 1:]))
+
+    def test_a_stated_size_that_does_not_fit_is_unclear(self):
+        self.known.voxel_size = 3 * VOXEL
+        self.expect_among(self.unclear(self.guess(self.scikit_image())), 'length_unit must be confirmed, got "?voxel"', "the box 0.06 by 0.08 m")
+
+    def test_units_may_be_named_voxels(self):
+        self.known.voxel_size = VOXEL
+        tables = self.guess(self.frames("grains", ["id", "x [px]", "y [px]", "z [px]", "d [px]"], lambda i, x, y, z: (
+            str(i), x, y, z, self.truth.diameter[i] / VOXEL)))
+        self.assertEqual(self.unclear(tables), [])
+        self.expect_truth(tables)
+
+    def test_trackpys_size_is_no_radius(self):
+        """The features of all frames in one table; mass and size of the brightness."""
+        self.known.voxel_size = VOXEL
+        columns = ["", "z", "y", "x", "mass", "size", "ecc", "signal", "raw_mass", "ep", "frame", "particle"]
+        rows = ((str(i), *(at[::-1] / VOXEL), 900.5, 0.77 * self.truth.diameter[i] / VOXEL / 2, 0.1, 30.5, 1000.5, 0.05, str(scan.frame), str(i))
+                for scan in self.truth.scans for i, at in enumerate(scan.position))
+        plate = Style(",", ".").table(["frame", "height_mm", "force_N"], ((s.frame, 1e3 * s.plate_z, s.top_force) for s in self.truth.scans))
+        tables = self.guess([self.write("features.csv", Style(",", ".").table(columns, rows)), self.write("plate.csv", plate)])
+        grains = self.of(tables, "grains")
+        self.assertEqual([grains.word(key) for key in ("grain", "frame", "frames_by")], ["particle", "frame", "plate"])
+        self.expect_one(self.unclear(tables), "same_diameter must be confirmed")
+        self.assertIn("radius of gyration", grains["same_diameter"].why)
+        diameter = grains.number("same_diameter") * VOXEL
+        self.assertAlmostEqual(diameter, 0.02, delta=0.001)
+        text = mapping_text(mapping_of(tables)).replace('same_diameter = "?', 'same_diameter = "')
+        self.truth.diameter[:] = diameter
+        self.expect_truth(self.by_mapping(text))
+
+    def spam_labels(self, radius=True):
+        """Positions in the first image and displacements since; label 0 is the background."""
+        columns = ["Label", "Zpos", "Ypos", "Xpos", "Zdisp", "Ydisp", "Xdisp", "returnStatus"] + (["EquivRadius"] if radius else [])
+        first, files = self.truth.scans[0].position / VOXEL, [self.write("plate.csv", lab_plate(self.truth))]
+        for scan in self.truth.scans:
+            rows = [["0"] + ["nan"] * 6 + ["0"] + ["0"] * radius]
+            for i, at in enumerate(scan.position / VOXEL):
+                rows.append([float(i + 1), *first[i][::-1], *(at - first[i])[::-1], 2] + [self.truth.diameter[i] / VOXEL / 2] * radius)
+            files.append(self.write(f"ddic-{scan.frame:02}.tsv", Style("\t", ".").table(columns, rows)))
+        return files
+
+    def test_spams_positions_and_displacements_are_added(self):
+        self.known.voxel_size = VOXEL
+        tables = self.guess(self.spam_labels())
+        self.assertEqual(self.of(tables, "grains")["z"].words, ["Zpos", "Zdisp"])
+        self.assertEqual(self.unclear(tables), [])
+        self.expect_truth(tables)
+
+    def test_spams_contacts_without_forces_are_left_aside(self):
+        self.known.voxel_size = VOXEL
+        pairs = [(i, i + 1, 0.5, 0.5, 0.7, 12) for i in range(1, 30)]
+        contacts = self.write("contacts.csv", Style(",", ".").table(["label1", "label2", "orientZ", "orientY", "orientX", "voxels"], pairs))
+        tables = self.guess(self.spam_labels() + [contacts])
+        aside = next(table.map for table in tables if table.map.files == [contacts])
+        self.assertEqual((aside.role, aside.role_sure), ("aside", "likely"))
+        self.assertIn("without forces", aside.role_why)
+        self.assertEqual(self.unclear(tables), [])
+        self.expect_truth(tables)
+
+    def test_spams_contacts_with_forces_are_contacts(self):
+        from lab import PRESSED
+
+        self.known.voxel_size = VOXEL
+        for scan, pressed in zip(self.truth.scans, PRESSED.scans):
+            scan.contacts = [c for c in pressed.contacts if not c.is_wall]
+        files = self.spam_labels()
+        for scan in self.truth.scans:
+            rows = ((str(c.grain + 1), str(c.partner + 1), *(c.point[::-1] / VOXEL), *c.force[::-1]) for c in scan.contacts)
+            files.append(self.write(f"forces-{scan.frame:02}.tsv", Style("\t", ".").table(
+                ["label1", "label2", "Zpos", "Ypos", "Xpos", "fz_N", "fy_N", "fx_N"], rows)))
+        tables = self.guess(files)
+        self.assertEqual(self.of(tables, "contacts").word("length_unit"), "voxel")
+        self.assertEqual(self.unclear(tables), [])
+        self.expect_truth(tables)
+
+    def test_spams_labels_without_radii_ask_for_one(self):
+        self.known.voxel_size = VOXEL
+        self.expect_one(self.unclear(self.guess(self.spam_labels(False))), "same_diameter must be confirmed")
+
+
+if __name__ == "__main__":
+    unittest.main()

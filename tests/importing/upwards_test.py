@@ -1,0 +1,106 @@
+"""Tables whose z points downwards: turned round where that is certain, refused where it is not."""
+import copy
+import re
+import unittest
+
+from lab import ImportCase, Style, lab_contacts, lab_grains, lab_plate
+from mcdem.importing.guess import mapping_of
+from mcdem.importing.mapping import mapping_text
+
+
+def downwards(truth, begin):
+    """The same with z counted downwards from `begin` [m]."""
+    truth = copy.deepcopy(truth)
+    for scan in truth.scans:
+        scan.plate_z = begin - scan.plate_z
+        if len(scan.position):
+            scan.position[:, 2] = begin - scan.position[:, 2]
+        for contact in scan.contacts:
+            contact.point[2] = begin - contact.point[2]
+            contact.force[2] *= -1
+    return truth
+
+
+class Upwards(ImportCase):
+    def write_downwards(self, begin, *which):
+        """The laboratory's tables, those named counted downwards."""
+        truth = {True: downwards(self.truth, begin), False: self.truth}
+        return [self.write("kraft.csv", lab_plate(truth["plate" in which])), self.write("koerner.csv", lab_grains(truth["grains" in which])),
+                self.write("kontakte.csv", lab_contacts(truth["contacts" in which]))]
+
+    def test_downwards_from_the_floor_is_seen(self):
+        tables = self.guess(self.write_downwards(0, "plate", "grains", "contacts"))
+        self.assertEqual(self.unclear(tables), [])
+        self.assertEqual(self.of(tables, "plate").word("plate_z"), "-Hoehe [mm]")
+        self.assertEqual(self.of(tables, "grains").word("z"), "-z [mm]")
+        self.assertEqual(self.of(tables, "contacts").word("z"), "-z [mm]")
+        self.assertEqual(self.of(tables, "contacts").word("fz"), "-fz [mN]")
+        self.assertEqual(self.of(tables, "grains").aside, [])
+        self.expect_truth(tables)
+        self.expect_truth(self.by_mapping(mapping_text(mapping_of(tables))))
+
+    def test_downwards_from_the_plate_must_be_confirmed(self):
+        tables = self.guess(self.write_downwards(0.0605, "plate", "grains", "contacts"))
+        unclear = self.unclear(tables)
+        self.expect_among(unclear, 'z must be confirmed, got "?-z [mm]"', "gives way at its lower end: is z downwards?")
+        self.expect_among(unclear, 'origin_z must be confirmed, got "?6')
+        text = mapping_text(mapping_of(tables)).replace('"?', '"')
+        text = re.sub(r'\norigin_z = "[0-9.]+"', '\norigin_z = "60.5"', text)
+        for line in ('z = "-z [mm]"', 'fz = "-fz [mN]"', 'plate_z = "-Hoehe [mm]"'):
+            self.assertIn(line, text)
+        self.expect_truth(self.by_mapping(text))
+
+    def test_one_table_may_be_downwards_beside_others_that_are_not(self):
+        tables = self.guess(self.write_downwards(0, "plate"))
+        self.assertEqual(self.of(tables, "plate").word("plate_z"), "-Hoehe [mm]")
+        self.assertEqual(self.unclear(tables), [])
+        self.expect_truth(tables)
+        self.expect_one(self.unclear(self.guess(self.write_downwards(0, "plate")[:1])), "where is the floor, as Hoehe [mm] counts?")
+        self.expect_among(self.unclear(self.guess(self.write_downwards(-0.03, "plate"))), "origin_z must be confirmed")
+        tables = self.guess(self.write_downwards(0, "contacts"))
+        self.assertEqual(self.of(tables, "contacts").word("fz"), "-fz [mN]")
+        self.assertEqual(self.of(tables, "contacts").word("z"), "-z [mm]")
+        self.assertEqual(self.unclear(tables), [])
+        self.expect_truth(tables)
+
+    def test_names_say_it_and_walls_turn_round_too(self):
+        files, turned = self.write_downwards(0, "plate"), downwards(self.truth, 0)
+        self.write("koerner.csv", lab_grains(turned).replace(";z [mm]", ";Tiefe [mm]"))
+        self.write("kontakte.csv", lab_contacts(turned).replace("Deckel", "zmin").replace("Boden", "zmax"))
+        tables = self.guess(files)
+        self.assertEqual(self.unclear(tables), [])
+        self.assertEqual(self.of(tables, "grains")["z"].why, "its name says downwards")
+        self.assertEqual(self.of(tables, "contacts").walls["zmin"].word, "plate")
+        self.expect_truth(tables)
+
+    def test_one_frame_below_zero_may_be_either(self):
+        for scan in self.truth.scans[1:]:
+            scan.position = scan.position[:0]
+        files = self.write_downwards(0, "plate", "grains", "contacts")
+        self.expect_among(self.unclear(self.guess(files[:2])), 'z must be confirmed, got "?-z [mm]"', "is z downwards?")
+
+    def test_displacements_that_count_upwards_are_turned_round(self):
+        files = self.write_lab()
+        self.write("kraft.csv", Style(",", ".").table(["Zeit [s]", "displacement_mm", "force_N"], (
+            (0.5 * s.frame, repr(float(-1e3 * (0.0605 - s.plate_z))), repr(float(s.top_force))) for s in self.truth.scans)))
+        self.known.plate_start = 0.0605
+        tables = self.guess(files)
+        self.assertEqual(self.of(tables, "plate").word("displacement"), "-displacement_mm")
+        self.assertEqual(self.unclear(tables), [])
+        self.expect_truth(tables)
+
+    def test_walls_of_a_turned_axis_must_be_named(self):
+        files = self.write_lab()
+        self.write("kontakte.csv", lab_contacts(self.truth).replace("links", "x_min"))
+        text = mapping_text(mapping_of(self.guess(files)))
+        text = text.replace('\nx = "x [mm]"', '\nx = "-x [mm]"', 1).replace('origin_x = "0"', 'origin_x = "60"')
+        self.expect_one(self.problems_of(lambda: self.imported(self.by_mapping(text))),
+                        "x_min must be named in [table.walls] where x is turned round")
+
+    def test_several_columns_have_signs_of_their_own(self):
+        text = mapping_text(mapping_of(self.guess(self.write_lab())))
+        self.expect_truth(self.by_mapping(re.sub(r'\nfz = ".*?"', '\nfz = ["fz [mN]", "fx [mN]", "-fx [mN]"]', text)))
+
+
+if __name__ == "__main__":
+    unittest.main()
