@@ -6,6 +6,8 @@
 #include "cli/messages.h"
 #include "cli/standard_streams.h"
 #include "core/version.h"
+#include "io/run_packing.h"
+#include "scene/read_packing.h"
 
 namespace mcdem {
 namespace {
@@ -89,6 +91,7 @@ int run_cli(int argc, const char* const* argv) {
         set_up_messages();
         hint_at_crashes();
         opencl_started = hint_at_crashes;
+        read_run_packing = packing_of_run;
         return exit_code_of_output(command_line(argc, argv));
     } catch (const std::exception& error) {
         return report_error(error);

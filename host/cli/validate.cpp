@@ -2,11 +2,14 @@
 #include <fmt/format.h>
 
 #include <optional>
+#include <set>
 
 #include "cli/commands.h"
 #include "cli/scene_options.h"
 #include "cli/standard_streams.h"
 #include "core/errors.h"
+#include "scene/packing_state.h"
+#include "scene/read_packing.h"
 #include "sim/batch_limits.h"
 
 namespace mcdem {
@@ -32,6 +35,21 @@ void print_memory(const Scene& scene, const std::optional<Device>& device) {
     print_out("\n");
 }
 
+/// What each packing that is read is like.
+void print_packings(const Scene& scene) {
+    std::set<std::pair<std::string, std::optional<long>>> printed;
+    for (const Replica& replica : scene.replicas) {
+        const auto* file = std::get_if<PackingFile>(&replica.packing.source);
+        if (!file || !printed.emplace(file->path, file->step).second) continue;
+        const Packing packing = read_packing(file->path, file->step);
+        const PackingState state =
+            packing_state(packing, replica.box, plate_face(replica, replica.plate.start));
+        print_out("{}: {} grains, Z = {:.2f}, deepest overlap {:.3g} mm ({:.2g} % of a diameter)\n",
+                  file->path, packing.size(), state.coordination_number, 1e3 * state.deepest_overlap,
+                  100 * state.relative_overlap);
+    }
+}
+
 void print_scene(const SceneOptions& options, const std::string& choice) {
     const Scene scene = options.read();
     const auto device = chosen_device(choice);
@@ -39,8 +57,9 @@ void print_scene(const SceneOptions& options, const std::string& choice) {
     const Protocol& protocol = scene.replicas.front().protocol;
     print_out("{}: good\n", options.file);
     print_out("{}, {} precision; {} cycle{} with {} scans a stroke\n", size_text(scene),
-               name(scene.precision), protocol.cycles, protocol.cycles == 1 ? "" : "s",
-               protocol.scans_per_stroke);
+              name(scene.precision), protocol.cycles, protocol.cycles == 1 ? "" : "s",
+              protocol.scans_per_stroke);
+    print_packings(scene);
     print_memory(scene, device);
     std::size_t shown = 0;
     for (const auto& replica : scene.replicas) {

@@ -4,7 +4,9 @@
 #include "cl/opencl.h"
 #include "core/errors.h"
 #include "core/version.h"
+#include "io/run_packing.h"
 #include "python/bindings.h"
+#include "scene/read_packing.h"
 
 namespace mcdem {
 namespace {
@@ -28,6 +30,7 @@ void translate(std::exception_ptr error) {
 PYBIND11_MODULE(_engine, module) {
     pybind11::register_exception_translator(mcdem::translate);
     module.attr("__version__") = mcdem::version_text;
+    mcdem::read_run_packing = mcdem::packing_of_run;
     mcdem::bind_scene(module);
     mcdem::bind_results(module);
     mcdem::bind_simulation(module);

@@ -57,8 +57,8 @@ const Key table[] = {
     {"contact.friction_law", replica<&Replica::contact, &ContactLaw::friction_law>, "", none, each, "saturated: always mu times the normal force, against sliding; mindlin: a spring with history, cut there"},
     {"contact.sliding_velocity", replica<&Replica::contact, &ContactLaw::sliding_velocity>, "m/s", above_zero_to(100), each, "below it saturated friction fades to zero"},
 
-    {"packing.file", &follow<&Settings::packing_file>, "", none, each, "LIGGGHTS/LAMMPS data file or text dump, Yade's text (x y z r), or .csv with columns x_m,y_m,z_m,diameter_m; relative to the scene file (in --set: to the current folder). Without it the packing is generated"},
-    {"packing.frame", &follow<&Settings::packing_frame>, "", between(-1, 2e9), each, "timestep of the dump that packing.file names; -1: its last frame"},
+    {"packing.file", &follow<&Settings::packing_file>, "", none, each, "LIGGGHTS/LAMMPS data file or text dump, Yade's text (x y z r), run.h5, or .csv with columns x_m,y_m,z_m,diameter_m, such as an experiment's grains.csv; relative to the scene file (in --set: to the current folder). Without it the packing is generated"},
+    {"packing.frame", &follow<&Settings::packing_frame>, "", between(-1, 2e9), each, "timestep of the dump that packing.file names, or frame of a grains.csv or run.h5; -1: the last of a dump, the first of the others"},
     {"packing.count", generated<&GeneratedPacking::count>, "", between(1, 1e7), each, "grains generated"},
     {"packing.diameter_mean", generated<&GeneratedPacking::diameter_mean>, "m", grain_size, each, "of a normal distribution"},
     {"packing.diameter_sd", generated<&GeneratedPacking::diameter_sd>, "m", between(0, 10), each, "its standard deviation"},

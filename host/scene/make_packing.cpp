@@ -41,6 +41,15 @@ std::vector<std::string> packing_problems(const Packing& packing, const Box& box
             "{}: lengths must be in metres and fit the box of {} x {} m, got a median diameter of {}{}",
             source, box.size_x, box.size_y, typical,
             typical * 1e-3 <= widest ? "; millimetres? divide by 1000" : "")};
+    Vec3 low = packing.position.front(), high = low;
+    for (const Vec3& p : packing.position) low = low.cwiseMin(p), high = high.cwiseMax(p);
+    const double width = std::max(box.size_x, box.size_y);
+    if (width > widest_box && width * 1e-3 >= typical && (high - low).maxCoeff() + typical < 0.01 * width)
+        return {
+            fmt::format("{}: the box must be in metres and fit the packing, {:.3g} m wide, got {} x {} m: "
+                        "divide box.size_x and "
+                        "box.size_y by 1000 if they are in millimetres",
+                        source, (high - low).head<2>().maxCoeff() + typical, box.size_x, box.size_y)};
     std::vector<std::string> problems;
     std::size_t outside = 0;
     for (std::size_t i = 0; i < packing.size(); ++i) {

@@ -18,6 +18,9 @@ PackingSize size_of(const Packing& packing);
 /// Of each replica. Reads packing files, each once.
 std::vector<PackingSize> packing_sizes(const std::vector<Replica>& replicas);
 
+/// A wider box may have been given in millimetres [m].
+inline constexpr double widest_box = 20;
+
 /// Read or generated, then jittered. Throws InputError where the file is bad or a grain is out of the box.
 Packing make_packing(const Replica& replica);
 

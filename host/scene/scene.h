@@ -36,10 +36,10 @@ struct ContactLaw {
     double sliding_velocity = 1e-3;  ///< below it saturated friction fades to zero [m/s]
 };
 
-/// Read from a LIGGGHTS/LAMMPS data file or dump, Yade's text or a CSV (x_m,y_m,z_m,diameter_m).
+/// Read from a LIGGGHTS/LAMMPS data file or dump, Yade's text, a CSV (x_m,y_m,z_m,diameter_m) or a run.h5.
 struct PackingFile {
     std::string path;
-    std::optional<long> step = std::nullopt;  ///< of a dump; its last frame where left out
+    std::optional<long> step = std::nullopt;  ///< or frame, as read_packing takes it
 };
 
 /// Drawn at random: truncated normal diameters, grown and relaxed without weight or friction.

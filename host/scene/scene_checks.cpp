@@ -23,6 +23,17 @@ struct Check {
     Found (*find)(const Settings&);
 };
 
+/// A box that its grains would not cover once, but would if it was meant in millimetres.
+Found millimetres(double width, const Settings& settings) {
+    const auto& grains = settings.generated;
+    return unless(
+        width <= widest_box || width * 1e-3 < grains.diameter_max ||
+            expected_height(grains, settings.replica.box) >= grains.diameter_max,
+        fmt::format("must be in metres, got {}, {:.3g} times packing.diameter_max: divide by 1000 if it is "
+                    "in millimetres",
+                    width, width / grains.diameter_max));
+}
+
 /// Positions must be known well enough for overlaps of a thousandth of a radius.
 Found coarse_positions(const Settings& settings, double smallest_diameter) {
     if (settings.run.precision == Precision::double_precision) return {};
@@ -92,6 +103,14 @@ const std::vector<Check> checks{
         return unless(s.replica.box.size_x >= s.generated.diameter_max,
                       fmt::format("must be at least packing.diameter_max = {}, got {}", s.generated.diameter_max, s.replica.box.size_x));
     }},
+    {{"box.size_x", "packing.diameter_max", "packing.count", "packing.diameter_mean", "packing.packing_fraction"},
+     Check::Packing::generated, [](const Settings& s) {
+        return millimetres(s.replica.box.size_x, s);
+    }},
+    {{"box.size_y", "packing.diameter_max", "packing.count", "packing.diameter_mean", "packing.packing_fraction"},
+     Check::Packing::generated, [](const Settings& s) {
+        return millimetres(s.replica.box.size_y, s);
+    }},
     {{"box.size_y", "packing.diameter_max"}, Check::Packing::generated, [](const Settings& s) {
         return unless(s.replica.box.size_y >= s.generated.diameter_max,
                       fmt::format("must be at least packing.diameter_max = {}, got {}", s.generated.diameter_max, s.replica.box.size_y));
@@ -145,15 +164,17 @@ std::vector<std::string> packing_file_problems(const Settings& settings, Checked
         }
     }
     if (!file.problems.empty()) return file.problems;
-    auto problems = packing_problems(file.packing, settings.replica.box,
-                                     plate_face(settings.replica, settings.replica.plate.start), settings.packing_file);
+    auto problems =
+        packing_problems(file.packing, settings.replica.box,
+                         plate_face(settings.replica, settings.replica.plate.start), settings.packing_file);
     if (settings.replica.packing.position_jitter > 0.1 * file.smallest)
         problems.push_back(fmt::format(
             "{}: packing.position_jitter must be at most a tenth of the smallest diameter {}, got {}",
             settings.packing_file, file.smallest, settings.replica.packing.position_jitter));
     if (!(settings.replica.effects.diameter_error > -file.smallest))
-        problems.push_back(fmt::format("{}: effects.diameter_error must be above minus the smallest diameter {}, got {}",
-                                       settings.packing_file, file.smallest, settings.replica.effects.diameter_error));
+        problems.push_back(
+            fmt::format("{}: effects.diameter_error must be above minus the smallest diameter {}, got {}",
+                        settings.packing_file, file.smallest, settings.replica.effects.diameter_error));
     if (const auto coarse = coarse_positions(settings, file.smallest))
         problems.push_back(fmt::format("{}: numerics.precision {}", settings.packing_file, *coarse));
     return problems;

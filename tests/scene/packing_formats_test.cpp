@@ -1,6 +1,7 @@
 // Packings in dumps, in Yade's text and of one frame among several: right, or told by line.
 #include <fstream>
 
+#include "scene/packing_state.h"
 #include "scene/read_packing.h"
 #include "scene/read_scene.h"
 #include "scene_test_tools.h"
@@ -133,6 +134,21 @@ TEST(PackingFrame, IsAKeyOfScenes) {
         << "told with the scene's other problems";
     EXPECT_THAT(problems_of([&] { parse_scene("[packing]\nframe = 7\n", "s.toml"); }),
                 ElementsAre("s.toml:2: packing.frame must be left out where no packing.file is given"));
+}
+
+TEST(PackingState, CountsContactsAndFindsTheDeepest) {
+    // Two grains that overlap by 1 mm, the lower one 0.5 mm in the floor, the upper one 2 mm in the plate.
+    const Packing packing{{Vec3(0.5, 0.5, 0.0095), Vec3(0.5, 0.5, 0.0335)}, {0.02, 0.03}};
+    const Box box{1, 1};
+    const PlateFace plate{0.0465, 0, 0, 0.5, 0.5};
+    const PackingState state = packing_state(packing, box, plate);
+    EXPECT_DOUBLE_EQ(state.coordination_number, 2) << "a pair counts for both";
+    EXPECT_NEAR(state.deepest_overlap, 2e-3, 1e-12);
+    EXPECT_NEAR(state.relative_overlap, 2e-3 / 0.03, 1e-12);
+    const PackingState loose = packing_state(packing, box, {0.1, 0, 0, 0.5, 0.5});
+    EXPECT_DOUBLE_EQ(loose.coordination_number, 1.5);
+    EXPECT_NEAR(loose.deepest_overlap, 1e-3, 1e-12);
+    EXPECT_NEAR(loose.relative_overlap, 1e-3 / 0.02, 1e-12) << "of the smaller grain";
 }
 
 }  // namespace

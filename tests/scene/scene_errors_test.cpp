@@ -33,6 +33,23 @@ TEST(SceneErrors, ABoxTooLargeForSinglePrecisionIsRefused) {
     EXPECT_NO_THROW(parse_scene(drawn, "good.toml", {"packing.diameter_min=0.0013"}));
 }
 
+TEST(SceneErrors, ABoxInMillimetresIsSuspected) {
+    using testing::Contains;
+    EXPECT_THAT(
+        problems_in("[box]\nsize_x = 80\n"),
+        Contains(AllOf(
+            HasSubstr(
+                "bad.toml:2: box.size_x must be in metres, got 80, 3.26e+03 times packing.diameter_max"),
+            HasSubstr("divide by 1000 if it is in millimetres"))));
+    EXPECT_THAT(problems_in("[box]\nsize_y = 80\n"), Contains(HasSubstr("box.size_y must be in metres")));
+    const TestFolder folder;
+    const auto two =
+        folder.write("two.csv", "x_m,y_m,z_m,diameter_m\n0.01,0.01,0.01,0.02\n0.03,0.01,0.01,0.02\n");
+    EXPECT_THAT(problems_in("[box]\nsize_x = 80\nsize_y = 80\n[packing]\nfile = \"" + two.string() + "\"\n"),
+                Contains(HasSubstr(
+                    "two.csv: the box must be in metres and fit the packing, 0.04 m wide, got 80 x 80 m")));
+}
+
 TEST(SceneErrors, OfEveryKindAreReportedTogether) {
     const auto problems = problems_in(R"(speed = 3
 [grains]

@@ -1,0 +1,34 @@
+// A recorded run as a packing.
+#include "io/run_packing.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/errors.h"
+#include "io/results.h"
+#include "io/synthetic_run.h"
+
+namespace mcdem::test {
+namespace {
+
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+TEST(RunPacking, IsTheFirstFrameOrTheStatedOne) {
+    const TemporaryFolder folder;
+    const auto run = synthetic_run({1, 27, 6});
+    write_run(folder / "run.h5", run);
+    const Recording& recording = run.recordings.front();
+    EXPECT_EQ(packing_of_run(folder / "run.h5", {}).position, recording.scans[0].position);
+    EXPECT_EQ(packing_of_run(folder / "run.h5", {}).diameter, recording.diameter);
+    EXPECT_EQ(packing_of_run(folder / "run.h5", recording.scans[3].frame).position,
+              recording.scans[3].position);
+    EXPECT_THAT([&] { packing_of_run(folder / "run.h5", 99); },
+                ThrowsMessage<InputError>(HasSubstr("must hold positions of frame 99")));
+    write_run(folder / "two.h5", synthetic_run({2, 27, 6}));
+    EXPECT_THAT([&] { packing_of_run(folder / "two.h5", {}); },
+                ThrowsMessage<InputError>(HasSubstr("must hold one replica where it is a packing, got 2")));
+}
+
+}  // namespace
+}  // namespace mcdem::test
