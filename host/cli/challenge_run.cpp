@@ -85,28 +85,12 @@ int run_alone(RunChallengeCommand& command, const Scene& scene) {
     return report(command);
 }
 
-SharedWork shared_work(RunChallengeCommand& command, const Scene& scene) {
+SharedWork shared_work(const RunChallengeCommand& command, const Scene& scene) {
     SharedWork work;
     work.words = words_of(command);
     work.out = command.out;
-    const auto here = std::make_shared<double>(0);  // by this program's own count, which knows of the library
-    work.join = [&command, &scene, here](Device& device, std::size_t, const std::function<void()>& tick) {
-        command.options.share = true;
-        command.options.on_progress = [here, &tick](double fraction) {
-            *here = fraction;
-            tick();
-        };
-        try {
-            run_challenge(device, scene, command.options);
-        } catch (const Interrupted&) {
-            return false;
-        }
-        return true;
-    };
-    work.check = [&command] { expect_sharable_challenge(command.options.out); };
-    work.fraction = [&command, here] { return std::max(*here, cases_done(command.options)); };
-    work.done = [&command] { return cases_done(command.options) >= 1; };
-    work.report = [&command] { return report(command); };
+    work.begin = [&](std::size_t) { return challenge_parts(scene, command.options); };
+    work.report = [&] { return report(command); };
     return work;
 }
 
@@ -153,10 +137,10 @@ void add_challenge_run(CLI::App& challenge, int& exit_code) {
     add_sharing_options(*sub, command->sharing, command->device);
     sub->footer(
         "The same command goes on where an interrupted one stopped.\n"
-        "Shared by many devices or nodes, each takes cases that no other has; those of a worker that is lost "
-        "are done\n"
-        "again by the others. Example:\n"
-        "  mpirun -n 4 --enable-recovery mcdem challenge run out/challenge --scene scenes/challenge.toml \\\n"
+        "Its parts, for many devices or nodes, are the cases, and before them the simulations of the "
+        "library. "
+        "Example:\n"
+        "  mpirun -n 4 mcdem challenge run out/challenge --scene scenes/challenge.toml \\\n"
         "      --library out/library.json --out out/answers --mpi");
     sub->callback([command, &exit_code] { exit_code = run(*command); });
 }

@@ -1,17 +1,21 @@
 // mcdem diagnose
+#include <fmt/ranges.h>
+
 #include "cli/commands.h"
 #include "cli/figures.h"
 #include "cli/interrupt.h"
 #include "cli/messages.h"
 #include "cli/progress.h"
 #include "cli/scene_options.h"
+#include "cli/sharing.h"
 #include "cli/standard_streams.h"
 #include "core/atomic_file.h"
 #include "core/make_folder.h"
 #include "core/output_file.h"
 #include "core/version.h"
-#include "ensemble/diagnose_experiment.h"
+#include "ensemble/library_parts.h"
 #include "io/output_folder.h"
+#include "io/result_folder.h"
 #include "report/diagnosis_json.h"
 #include "report/diagnosis_page.h"
 #include "report/diagnosis_text.h"
@@ -27,6 +31,7 @@ struct DiagnoseCommand {
     int replicates = 32, pairs = 8, confirmations = 8;
     double refine = 4;
     std::uint64_t seed = 1;
+    SharingOptions sharing;
 };
 
 DiagnoseOptions options_of(const DiagnoseCommand& command) {
@@ -76,10 +81,8 @@ Diagnosis diagnose(const DiagnoseCommand& command, const Scene& scene, const Exp
     return diagnose_experiment(device, scene, experiment, options);
 }
 
-int run(const DiagnoseCommand& command) {
+int run_alone(const DiagnoseCommand& command, const Scene& scene, const Experiment& experiment) {
     try {
-        const Scene scene = command.scene.read();
-        const Experiment experiment = read_experiment(command.experiment);
         const std::filesystem::path folder = command.out;
         const FolderLock lock = open_output_folder(folder);
         const std::filesystem::path simulations = folder / "simulations";
@@ -101,6 +104,43 @@ int run(const DiagnoseCommand& command) {
         spdlog::warn("{}", interrupted.what());
         return exit_interrupted;
     }
+}
+
+/// The command line without what says where and how it runs.
+std::vector<std::string> words_of(const DiagnoseCommand& command) {
+    std::vector<std::string> words{"diagnose", command.scene.file};
+    for (const auto& setting : command.scene.overrides) words.insert(words.end(), {"--set", setting});
+    const auto add = [&](const char* option, const std::string& value) {
+        if (!value.empty()) words.insert(words.end(), {option, value});
+    };
+    add("--experiment", command.experiment);
+    add("--out", command.out);
+    add("--candidates", fmt::format("{}", fmt::join(command.candidates, ",")));
+    add("--replicates", std::to_string(command.replicates));
+    add("--pairs", std::to_string(command.pairs));
+    add("--seed", std::to_string(command.seed));
+    add("--library", command.library);
+    return words;
+}
+
+int run(DiagnoseCommand& command) {
+    const Scene scene = command.scene.read();
+    const Experiment experiment = read_experiment(command.experiment);
+    if (!is_shared(command.sharing, command.device)) return run_alone(command, scene, experiment);
+    const DiagnoseOptions options = options_of(command);
+    SharedWork work;
+    work.words = words_of(command);
+    work.out = command.out;
+    work.begin = [&](std::size_t) {
+        expect_no_experiment(command.out);
+        make_result_folder(command.out);
+        return library_parts(scene, experiment, options);
+    };
+    work.report = [&] {
+        if (command.device == "all") command.device.clear();
+        return run_alone(command, scene, experiment);
+    };
+    return share(work, command.sharing, command.device);
 }
 
 }  // namespace
@@ -138,7 +178,7 @@ void add_diagnose(CLI::App& app, int& exit_code) {
     sub->add_option("--library", command->library,
                     "File of signatures: read where it is there, else made and written")
         ->type_name("FILE");
-    add_device_option(*sub, command->device);
+    add_part_options(*sub, command->sharing, command->device);
     sub->footer(
         "The scene is the simulation as it stands; box, plate and scans are the experiment's. Prints the "
         "verdict in\n"
@@ -146,6 +186,10 @@ void add_diagnose(CLI::App& app, int& exit_code) {
         "are kept\n"
         "in DIR/simulations: nothing is computed twice, and an interrupted diagnosis goes on with the same "
         "command.\n"
+        "The simulations of its library are parts that many devices or nodes compute; the rest of the "
+        "diagnosis is "
+        "done by\n"
+        "--merge (`mcdem distribute diagnose ..` does both).\n"
         "Verdicts: no_gap, effect, group (effects that these data cannot tell apart), unknown_effect (none "
         "of the\n"
         "library), not_converged (the simulation's own numerics), calibration_suspect. `mcdem experiment "

@@ -12,7 +12,7 @@
 #include "cli/standard_streams.h"
 #include "core/errors.h"
 #include "core/version.h"
-#include "ensemble/share_run.h"
+#include "ensemble/run_parts.h"
 #include "io/checkpoint.h"
 #include "io/result_folder.h"
 #include "io/results.h"
@@ -27,7 +27,7 @@ struct RunCommand {
     std::string out, device;
     bool resume = false, no_figures = false;
     SharingOptions sharing;
-    std::size_t part_replicas = 0;
+    RunCut cut;
 };
 
 /// The command line without what says where and how it runs.
@@ -109,28 +109,22 @@ int report_run(const RunCommand& command, const RunSummary& summary) {
     return exit_failed;
 }
 
-/// The run as work that many share.
+/// The run in parts.
 SharedWork shared_work(const RunCommand& command, const Scene& scene) {
     SharedWork work;
     work.words = words_of(command);
-    if (command.part_replicas > 0)
-        work.words.insert(work.words.end(), {"--part-replicas", std::to_string(command.part_replicas)});
     work.out = command.out;
-    work.join = [&](Device& device, std::size_t workers, const std::function<void()>& tick) {
-        ShareOptions options;
+    work.begin = [&](std::size_t workers) {
+        RunOptions options;
         options.folder = command.out;
-        options.part_replicas = command.part_replicas;
-        options.workers = workers;
         options.program = version_text;
-        options.on_tick = tick;
         options.on_failure = warn_of_failure;
         options.on_warning = [](const std::string& message) { spdlog::warn("{}", message); };
         options.stop_wanted = Interrupt::wanted;
-        return share_run(device, scene, options) != RunEnd::interrupted;
+        RunCut cut = command.cut;
+        cut.workers = workers;
+        return std::make_unique<RunParts>(scene, options, cut);
     };
-    work.check = [&] { expect_sharable(command.out, scene); };
-    work.done = [&] { return shared_state(command.out).done; };
-    work.fraction = [&] { return shared_state(command.out).fraction; };
     work.report = [&] { return report_run(command, {}); };
     return work;
 }
@@ -164,7 +158,7 @@ int run_alone(const RunCommand& command, const Scene& scene) {
 
 int run(const RunCommand& command) {
     const Scene scene = command.scene.read();
-    if (is_shared(command.sharing, command.device) || (command.resume && is_shared_run(command.out)))
+    if (is_shared(command.sharing, command.device) || (command.resume && is_run_in_parts(command.out)))
         return share(shared_work(command, scene), command.sharing, command.device);
     return run_alone(command, scene);
 }
@@ -181,8 +175,8 @@ void add_run(CLI::App& app, int& exit_code) {
     sub->add_flag("--resume", command->resume, "Go on with the interrupted run in DIR");
     sub->add_flag("--no-figures", command->no_figures, "Draw no figures at the end");
     add_sharing_options(*sub, command->sharing, command->device);
-    sub->add_option("--part-replicas", command->part_replicas,
-                    "Replicas that a worker takes at a time; without it enough to fill a device")
+    sub->add_option("--part-replicas", command->cut.part_replicas,
+                    "Replicas of a part; without it enough to fill a device, and two parts a process")
         ->check(CLI::Range(1, 10'000))
         ->type_name("N")
         ->group("Many devices and nodes");
@@ -192,16 +186,18 @@ void add_run(CLI::App& app, int& exit_code) {
         "cannot go on is named and recorded; the others go on. The exit code is 1 only where all failed.\n"
         "Interrupted by Ctrl-C, a crash or a power cut, a run loses no more than the time since its last\n"
         "checkpoint (output.checkpoint_minutes) and ends, resumed, with the same bits.\n"
-        "Shared by many devices or nodes, the result is the same to the last bit; work of a worker that is "
-        "lost\n"
-        "is done again by the others, and the same command goes on with what was left.\n"
+        "Computed in parts by many devices or nodes, the result is the same to the last bit; parts that were "
+        "lost are\n"
+        "computed again, and the same command goes on with what is missing. `mcdem distribute` gives parts "
+        "to "
+        "Dask.\n"
         "Examples:\n"
         "  mcdem run scenes/small.toml --out out/small\n"
         "  mcdem run scenes/compression.toml --out out/soft --set grains.youngs_modulus=10e3\n"
         "  mcdem run scenes/compression.toml --out out/one --set contact.model=elastic_sphere\n"
         "  mcdem run scenes/compression.toml --out out/one --set contact.model=elastic_sphere --resume\n"
         "  mcdem run scenes/replicas.toml --out out/shared --device all\n"
-        "  mpirun -n 4 --enable-recovery mcdem run scenes/replicas.toml --out out/shared --mpi\n"
+        "  mpirun -n 4 mcdem run scenes/replicas.toml --out out/shared --mpi\n"
         "  mcdem run scenes/replicas.toml --out out/shared --slurm --slurm-tasks 8 --slurm-time 2:00:00");
     sub->callback([command, &exit_code] { exit_code = run(*command); });
 }

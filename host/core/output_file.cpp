@@ -29,6 +29,7 @@ constexpr std::array marks{
     Mark{FileKind::score_page, "the score of a challenge", "# Score of the challenge\n", ""},
     Mark{FileKind::figure, "a figure of mcdem", "", "mcdem figure"},
     Mark{FileKind::figure_values, "the values of figures", "{\n \"mcdem_figures\"", ""},
+    Mark{FileKind::job_script, "a job script of mcdem", "#!/bin/bash\n# Written by mcdem", ""},
     Mark{FileKind::guide, "the guide to an export", "", ""},
     Mark{FileKind::vtk, "an export", "\x89HDF\r\n", "VTKHDF"},
     Mark{FileKind::xyz, "an export", "",

@@ -25,7 +25,8 @@ enum class FileKind {
     vtk,
     xyz,
     dump,
-    manual
+    manual,
+    job_script
 };
 
 /// Throws InputError unless nothing, an empty file, or a file of this kind lies there. Asked before long

@@ -46,29 +46,43 @@ std::vector<Trial> baseline_trials(const Model& model, const LibraryPlan& plan) 
     return trials;
 }
 
-Library build_library(Device& device, const Question& question, const Model& model, const LibraryPlan& plan,
-                      const ObservationStore& store, const TrialOptions& options) {
-    std::vector<Trial> trials = baseline_trials(model, plan);
-    Library library;
-    library.grid = question.grid;
+namespace {
+
+/// Baseline trials that are repeated with every probe.
+std::vector<std::size_t> paired_trials(const LibraryPlan& plan) {
     std::vector<std::size_t> paired;
-    for (std::size_t t = 0; t < trials.size(); ++t) {
-        library.packing.push_back(static_cast<int>(t) / plan.replicates);
+    for (std::size_t t = 0; t < plan.packings.size() * static_cast<std::size_t>(plan.replicates); ++t)
         if (static_cast<int>(t) % plan.replicates < plan.pairs) paired.push_back(t);
-    }
-    const std::size_t baseline_count = trials.size();
-    const auto probes = probes_of(model, plan);
-    for (const Probe& probe : probes)
+    return paired;
+}
+
+}  // namespace
+
+std::vector<Trial> library_trials(const Model& model, const LibraryPlan& plan) {
+    std::vector<Trial> trials = baseline_trials(model, plan);
+    const std::vector<std::size_t> paired = paired_trials(plan);
+    for (const Probe& probe : probes_of(model, plan))
         for (const double amplitude : probe.amplitudes)
             for (const std::size_t t : paired) {
                 trials.push_back(trials[t]);
                 probe.apply(trials.back().model, amplitude);
             }
-    const Eigen::MatrixXd observed = observe_trials(device, question, trials, store, options);
+    return trials;
+}
+
+Library build_library(Device& device, const Question& question, const Model& model, const LibraryPlan& plan,
+                      const ObservationStore& store, const TrialOptions& options) {
+    Library library;
+    library.grid = question.grid;
+    const std::size_t baseline_count = plan.packings.size() * static_cast<std::size_t>(plan.replicates);
+    for (std::size_t t = 0; t < baseline_count; ++t)
+        library.packing.push_back(static_cast<int>(t) / plan.replicates);
+    const Eigen::MatrixXd observed =
+        observe_trials(device, question, library_trials(model, plan), store, options);
     library.baseline = observed.topRows(static_cast<Eigen::Index>(baseline_count));
-    const Eigen::MatrixXd before = library.baseline(paired, Eigen::all);
+    const Eigen::MatrixXd before = library.baseline(paired_trials(plan), Eigen::all);
     auto next = static_cast<Eigen::Index>(baseline_count);
-    for (const Probe& probe : probes) {
+    for (const Probe& probe : probes_of(model, plan)) {
         Eigen::MatrixXd differences[2];
         for (Eigen::MatrixXd& difference : differences) {
             difference = observed.middleRows(next, before.rows()) - before;

@@ -20,6 +20,9 @@ struct LibraryPlan {
 /// The trials of a baseline: replicate r of packing p has the same seed in every library and diagnosis.
 std::vector<Trial> baseline_trials(const Model& model, const LibraryPlan& plan);
 
+/// All trials of a library: those of the baseline, then pairs of them with every effect and nuisance.
+std::vector<Trial> library_trials(const Model& model, const LibraryPlan& plan);
+
 Library build_library(Device& device, const Question& question, const Model& model, const LibraryPlan& plan,
                       const ObservationStore& store, const TrialOptions& options);
 

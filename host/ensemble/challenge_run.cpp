@@ -4,10 +4,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <chrono>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <thread>
 
 #include "core/atomic_file.h"
 #include "core/errors.h"
@@ -16,9 +14,9 @@
 #include "core/sha256.h"
 #include "diagnose/challenge_evidence.h"
 #include "diagnose/challenge_files.h"
-#include "ensemble/agreement.h"
 #include "ensemble/library_origin.h"
 #include "ensemble/make_packings.h"
+#include "ensemble/manifest.h"
 #include "io/folder_lock.h"
 #include "io/result_folder.h"
 #include "scene/random.h"
@@ -28,16 +26,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// In simulations, for the progress.
-double work_for(const ChallengeLibrary& library, std::size_t probes) {
-    return library.packings * (library.replicates + 2.0 * library.pairs * static_cast<double>(probes));
-}
-
-constexpr std::chrono::milliseconds pause{500};  ///< of a program that waits for the others
-
 const char* const evidence_folder = "evidence";
 const char* const findings_folder = "findings";
-fs::path claims_folder(const fs::path& out) { return out / "claims"; }
 fs::path case_file(const fs::path& folder, const OpenCase& c) { return folder / (c.folder + ".json"); }
 
 std::string text_of(const fs::path& file) {
@@ -47,13 +37,22 @@ std::string text_of(const fs::path& file) {
 
 std::size_t grains_of(const Experiment& experiment) { return experiment.recording.diameter.size(); }
 
-class Running {
+/// What lies in the folder is looked at once those cannot come any more whom the lock keeps away.
+FolderLock lock_folder(const fs::path& out, FolderLock::Use use) {
+    expect_no_experiment(out);
+    make_result_folder(out);
+    FolderLock lock(out, use);
+    if (const fs::path file = file_of_a_run(out); !file.empty())
+        throw InputError(
+            fmt::format("{}: holds a run ({}): give another folder for the answers to a challenge",
+                        out.string(), file.filename().string()));
+    return lock;
+}
+
+class ChallengeParts : public PartedWork {
 public:
-    Running(Device& device, const Scene& scene, const ChallengeRunOptions& options)
-        : device_(device),
-          scene_(scene),
-          options_(options),
-          challenge_(read_open_challenge(options.challenge)) {
+    ChallengeParts(const Scene& scene, const ChallengeRunOptions& options, FolderLock::Use use)
+        : scene_(scene), options_(options), challenge_(read_open_challenge(options.challenge)) {
         if (Sha256().add(scene.text).hex() != challenge_.scene)
             throw InputError(fmt::format("{}: is not the scene that {} was made with", scene.name,
                                          (options.challenge / "challenge.json").string()));
@@ -61,67 +60,113 @@ public:
             if (!fs::exists(options.challenge / c.folder / "experiment.toml"))
                 throw InputError(fmt::format("{}: {} is not made yet: go on with `mcdem challenge make`",
                                              options.challenge.string(), c.folder));
+        lock_.emplace(lock_folder(options.out, use));
+        expect_own_options();
         make_folder_of(options.library.file);  // now, not after the library is made
+        for (const char* folder : {evidence_folder, findings_folder}) make_folder(options.out / folder);
     }
 
-    void all() {
-        const auto left = missing();
+    /// Cases come first in the numbers, and last to be computed: they need the library.
+    std::vector<std::size_t> missing() override {
+        std::vector<std::size_t> parts;
+        if (missing_cases().empty()) return parts;
+        if (!fs::exists(options_.library.file)) {
+            const auto kept = read_manifest(device_file(options_.out));
+            for (std::size_t k = 0; k < library_parts().size(); ++k)
+                if (!kept ||
+                    !are_observed(kept->at(device_description), question(), library_parts()[k], store()))
+                    parts.push_back(challenge_.cases.size() + k);
+        }
+        return parts.empty() ? missing_cases() : parts;
+    }
+
+    bool compute(Device& device, std::size_t part) override try {
+        expect_device(device);
+        if (part < challenge_.cases.size()) {
+            const OpenCase& c = challenge_.cases[part];
+            if (is_done(c)) return true;
+            make_library(device);
+            diagnose(device, c);
+            return true;
+        }
+        if (fs::exists(options_.library.file)) return true;
+        part -= challenge_.cases.size();
+        if (part >= library_parts().size())
+            throw InputError(
+                fmt::format("--part: must be below {}, the number of cases and of parts of the library",
+                            challenge_.cases.size() + library_parts().size()));
+        observe_trials(device, question(), library_parts()[part], store(), trial_options());
+        return true;
+    } catch (const Interrupted&) {
+        return false;
+    }
+
+    bool merge() override { return missing_cases().empty(); }
+
+    void all(Device& device) {
+        const auto left = missing_cases();
         if (left.empty()) return;
-        left_ = left.size();
-        make_library(challenge_.cases.front());
-        for (const OpenCase* c : left) {
-            diagnose(*c, nullptr);
-            --left_;
+        expect_device(device);
+        const double library = fs::exists(options_.library.file) ? 0 : work_of_library();
+        const double whole = library + work_a_case() * static_cast<double>(left.size());
+        on_progress = [&](double fraction) { options_.on_progress(library * fraction / whole); };
+        make_library(device);
+        double before = library;
+        on_progress = [&](double fraction) {
+            options_.on_progress((before + work_a_case() * fraction) / whole);
+        };
+        for (const std::size_t c : left) {
+            diagnose(device, challenge_.cases[c]);
+            before += work_a_case();
         }
-    }
-
-    /// With other programs: each takes a case that no other has.
-    void share() {
-        left_ = missing().size();
-        if (left_ == 0) return;
-        Claims claims(claims_folder(options_.out), {device_.info().index, device_.info().name});
-        claims_ = &claims;
-        agree(claims_folder(options_.out) / "agreement.json", common(), {});
-        make_library(challenge_.cases.front());
-        for (auto left = missing(); !left.empty(); left = missing()) {
-            left_ = left.size();
-            std::vector<std::string> names;
-            for (const OpenCase* c : left) names.push_back(c->folder);
-            show(0);
-            if (options_.stop_wanted()) throw Interrupted();
-            const auto claim = claims.take_one_of(names);
-            if (!claim)
-                std::this_thread::sleep_for(pause);
-            else if (const OpenCase& c = **std::ranges::find(left, claim->task(), &OpenCase::folder);
-                     !is_done(c))
-                diagnose(c, claim.get());
-        }
-        std::error_code used_by_another;  // .. which removes it in its turn
-        fs::remove_all(claims_folder(options_.out), used_by_another);
     }
 
 private:
+    static constexpr const char* device_description = "device";
+
     fs::path file_of(const OpenCase& c, const std::string& folder) const {
         return case_file(options_.out / folder, c);
     }
     bool is_done(const OpenCase& c) const { return fs::exists(file_of(c, "")); }
-    std::vector<const OpenCase*> missing() const {
-        std::vector<const OpenCase*> cases;
-        for (const OpenCase& c : challenge_.cases)
-            if (!is_done(c)) cases.push_back(&c);
+    std::vector<std::size_t> missing_cases() const {
+        std::vector<std::size_t> cases;
+        for (std::size_t c = 0; c < challenge_.cases.size(); ++c)
+            if (!is_done(challenge_.cases[c])) cases.push_back(c);
         return cases;
     }
-    Common common() const {
-        Common all = common_of(device_, scene_, options_.program);
-        all["challenge"] = Sha256().add(text_of(options_.challenge / "challenge.json")).hex();
+
+    /// Throws InputError where the answers in the folder were begun with other options.
+    void expect_own_options() const {
+        Manifest wanted = manifest_of(scene_, options_.program);
+        wanted["challenge"] = Sha256().add(text_of(options_.challenge / "challenge.json")).hex();
         const ChallengeLibrary& library = options_.library;
-        all["options"] = fmt::format(
-            "replicates {}, confirmations {}, library {} packings, {} replicates, {} pairs, of {}, seed {}",
-            options_.replicates, options_.confirmations, library.packings, library.replicates, library.pairs,
-            fmt::join(library.candidates, ","), options_.seed);
-        return all;
+        for (const auto& [name, value] : {std::pair{"--replicates", options_.replicates},
+                                          {"--confirmations", options_.confirmations},
+                                          {"--library-packings", library.packings},
+                                          {"--library-replicates", library.replicates},
+                                          {"--library-pairs", library.pairs}})
+            wanted[name] = std::to_string(value);
+        wanted["--candidates"] = fmt::format("{}", fmt::join(library.candidates, ","));
+        wanted["--seed"] = std::to_string(options_.seed);
+        const fs::path file = manifest_file(options_.out);
+        if (fs::exists(file) && !read_manifest(file) && missing_cases().size() < challenge_.cases.size())
+            throw InputError(
+                fmt::format("{}: is damaged, and cases were answered with the options that it held: "
+                            "restore it from a copy, or give another folder (--out)",
+                            file.string()));
+        keep_manifest(file, wanted);
     }
+    void expect_device(const Device& device) const {
+        keep_manifest(device_file(options_.out), {{device_description, device.description()}});
+    }
+
     fs::path library_file() const { return options_.out / "library.json"; }
+    /// In simulations, for the progress.
+    double work_of_library() {
+        double trials = 0;
+        for (const auto& part : library_parts()) trials += static_cast<double>(part.size());
+        return trials;
+    }
     double work_a_case() const { return options_.replicates + 2.0 * options_.confirmations; }
 
     /// Other packings of the same kind; the seeds of the cases' are not known here, and are not met by
@@ -152,16 +197,30 @@ private:
         return grid;
     }
 
+    /// The first case's experiment is what the library is made for.
+    const Experiment& first_experiment() {
+        if (!first_) first_ = read_experiment(options_.challenge / challenge_.cases.front().folder);
+        return *first_;
+    }
+
+    Question question() { return question_of(first_experiment()); }
+
     Question question_of(const Experiment& experiment) const {
         const Model model = model_of(scene_, experiment);
         return {scene_, grid_of_scene(experiment), reference_material(model), model.replica.protocol.discard,
                 options_.program};
     }
 
-    Library new_library(const Experiment& experiment) {
-        Model model = model_of(scene_, experiment);
+    Model library_model() {
+        Model model = model_of(scene_, first_experiment());
         model.replica.plate = scene_.replicas.front().plate;
-        const Question question = question_of(experiment);
+        return model;
+    }
+
+    const LibraryPlan& library_plan() {
+        if (plan_) return *plan_;
+        const Experiment& experiment = first_experiment();
+        const Model model = library_model();
         LibraryPlan plan;
         plan.packings = other_packings(model.replica);
         plan.replicates = options_.library.replicates;
@@ -171,45 +230,54 @@ private:
         plan.seed = options_.seed;
         plan.candidates = choose_candidates(model, options_.library.candidates).chosen;
         plan.nuisances = nuisances(model, experiment);
-        work_of_library_ = work_for(options_.library, plan.candidates.size() + plan.nuisances.size());
+        return plan_.emplace(std::move(plan));
+    }
+
+    const std::vector<std::vector<Trial>>& library_parts() {
+        if (!library_parts_)
+            library_parts_ = parts_of_trials(question(), library_trials(library_model(), library_plan()));
+        return *library_parts_;
+    }
+
+    ObservationStore store() const { return ObservationStore(options_.out / "simulations"); }
+
+    TrialOptions trial_options() const {
         TrialOptions trials;
-        trials.on_progress = [&](double fraction) { show(fraction * work_of_library_); };
+        trials.on_progress = on_progress;
         trials.stop_wanted = options_.stop_wanted;
-        trials.claims = claims_;
-        return build_library(device_, question, model, plan, ObservationStore(options_.out / "simulations"),
-                             trials);
+        return trials;
     }
 
     /// Reads the library, or makes it as the first case is measured; a copy goes to the results. Throws
     /// InputError where it was made from something else, or the results are of another one.
-    void make_library(const OpenCase& first) {
+    void make_library(Device& device) {
+        if (library_) return;
         const fs::path& file = options_.library.file;
-        const Experiment experiment = read_experiment(options_.challenge / first.folder);
-        if (!fs::exists(file)) {
-            create_file(file, library_text(new_library(experiment)));  // or another program was quicker
-        }
-        library_ = read_library(file);
-        expect_origin(
-            library_,
-            library_origin(question_of(experiment), model_of(scene_, experiment), grains_of(experiment)),
-            file);
-        const std::string text = library_text(library_);
+        const Experiment& experiment = first_experiment();
+        if (!fs::exists(file))  // or another process is quicker, with the same library
+            create_file(file, library_text(build_library(device, question(), library_model(), library_plan(),
+                                                         store(), trial_options())));
+        Library library = read_library(file);
+        expect_origin(library,
+                      library_origin(question(), model_of(scene_, experiment), grains_of(experiment)), file);
+        const std::string text = library_text(library);
         if (!create_file(library_file(), text) && text_of(library_file()) != text)
             throw InputError(fmt::format(
                 "{}: is another library than {}, and cases there were diagnosed with it: give that "
                 "library, or another folder (--out)",
                 library_file().string(), file.string()));
+        library_ = std::move(library);
     }
 
     std::vector<std::string> candidates_of(const OpenCase& c) const {
         std::vector<std::string> names;
-        for (const Signature& effect : library_.effects)
+        for (const Signature& effect : library_->effects)
             if (!c.candidates || std::ranges::find(*c.candidates, effect.name) != c.candidates->end())
                 names.push_back(effect.name);
         return names;
     }
 
-    void diagnose(const OpenCase& c, Claim* claim) {
+    void diagnose(Device& device, const OpenCase& c) {
         DiagnoseOptions how;
         how.folder = options_.out;
         how.candidates = candidates_of(c);
@@ -220,9 +288,7 @@ private:
         how.library = library_file();
         how.program = options_.program;
         how.on_progress = [&](const std::string& stage, double fraction) {
-            const double part = stage == "baseline" ? 0.5 * fraction : 0.5 + 0.5 * fraction;
-            show(work_a_case() * part);
-            if (claim) claim->show(part);
+            on_progress(stage == "baseline" ? 0.5 * fraction : 0.5 + 0.5 * fraction);
         };
         how.stop_wanted = options_.stop_wanted;
         how.on_evidence = [&](const Evidence& evidence) {
@@ -233,48 +299,24 @@ private:
         };
         try {
             const Experiment experiment = read_experiment(options_.challenge / c.folder);
-            options_.keep(file_of(c, ""), diagnose_experiment(device_, scene_, experiment, how));
+            options_.keep(file_of(c, ""), diagnose_experiment(device, scene_, experiment, how));
         } catch (const InputError& error) {
             replace_file(file_of(c, ""), nlohmann::json{{"problem", error.what()}}.dump(1) + "\n");
             options_.on_problem(fmt::format("{}: could not be diagnosed: {}", c.folder, error.what()));
         }
     }
 
-    /// `work_now`: of the library while it is made, else of this case.
-    void show(double work_now) const {
-        const auto cases = static_cast<double>(challenge_.cases.size());
-        const double done = (library_.effects.empty() ? 0 : work_of_library_) +
-                            work_a_case() * (cases - static_cast<double>(left_));
-        options_.on_progress((done + work_now) / (work_of_library_ + work_a_case() * cases));
-    }
-
-    Device& device_;
     const Scene& scene_;
     const ChallengeRunOptions& options_;
     OpenChallenge challenge_;
-    Library library_;
-    double work_of_library_ = 0;
-    std::size_t left_ = 0;      ///< cases
-    Claims* claims_ = nullptr;  ///< where the work is shared
+    std::optional<FolderLock> lock_;
+    std::optional<Experiment> first_;
+    std::optional<LibraryPlan> plan_;
+    std::optional<std::vector<std::vector<Trial>>> library_parts_;
+    std::optional<Library> library_;
 };
 
-/// What lies in the folder is looked at once those cannot come any more whom the lock keeps away.
-FolderLock lock_folder(const fs::path& out, FolderLock::Use use) {
-    expect_no_experiment(out);
-    FolderLock lock(out, use);
-    if (const fs::path file = file_of_a_run(out); !file.empty())
-        throw InputError(
-            fmt::format("{}: holds a run ({}): give another folder for the answers to a challenge",
-                        out.string(), file.filename().string()));
-    return lock;
-}
-
 }  // namespace
-
-void expect_sharable_challenge(const fs::path& out) {
-    expect_no_file(out);
-    if (fs::exists(out)) lock_folder(out, FolderLock::Use::shared);
-}
 
 void expect_no_challenge(const fs::path& folder) {
     if (fs::exists(folder / evidence_folder))
@@ -283,30 +325,11 @@ void expect_no_challenge(const fs::path& folder) {
 }
 
 void run_challenge(Device& device, const Scene& scene, const ChallengeRunOptions& options) {
-    Running running(device, scene, options);
-    expect_no_experiment(options.out);
-    make_result_folder(options.out);
-    const FolderLock lock =
-        lock_folder(options.out, options.share ? FolderLock::Use::shared : FolderLock::Use::alone);
-    for (const char* folder : {evidence_folder, findings_folder}) make_folder(options.out / folder);
-    if (!options.share) return running.all();
-    try {
-        running.share();
-    } catch (const RunError&) {
-        if (cases_done(options) < 1) throw;  // else others have ended all, and taken the claims away
-    }
+    ChallengeParts(scene, options, FolderLock::Use::alone).all(device);
 }
 
-double cases_done(const ChallengeRunOptions& options) {
-    const OpenChallenge challenge = read_open_challenge(options.challenge);
-    std::map<std::string, double> under_way;
-    if (fs::exists(claims_folder(options.out))) under_way = Claims(claims_folder(options.out)).under_way();
-    double done = 0;
-    for (const OpenCase& c : challenge.cases) {
-        const auto held = under_way.find(c.folder);
-        done += fs::exists(case_file(options.out, c)) ? 1 : held == under_way.end() ? 0 : 0.99 * held->second;
-    }
-    return challenge.cases.empty() ? 1 : done / static_cast<double>(challenge.cases.size());
+std::unique_ptr<PartedWork> challenge_parts(const Scene& scene, const ChallengeRunOptions& options) {
+    return std::make_unique<ChallengeParts>(scene, options, FolderLock::Use::shared);
 }
 
 }  // namespace mcdem

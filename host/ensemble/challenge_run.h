@@ -1,6 +1,9 @@
 // Every case of a blind challenge diagnosed, from its experiment alone.
 #pragma once
+#include <memory>
+
 #include "ensemble/diagnose_experiment.h"
+#include "ensemble/parted_work.h"
 
 namespace mcdem {
 
@@ -27,21 +30,17 @@ struct ChallengeRunOptions {
     /// A case could not be diagnosed; its file says why, and it counts as a miss.
     std::function<void(const std::string& message)> on_problem = [](const std::string&) {};
     std::function<bool()> stop_wanted = [] { return false; };
-    bool share = false;  ///< with other programs that work on the same folder
 };
 
-/// Throws InputError, also where a run lies in the folder or others at work there do not go with this;
-/// RunError or Interrupted.
+/// Throws InputError, also where a run lies in the folder, others are at work there, or the answers there
+/// were begun with other options; RunError or Interrupted.
 void run_challenge(Device& device, const Scene& scene, const ChallengeRunOptions& options);
 
-/// For those who only start others: throws InputError where run_challenge would because of what lies in the
-/// folder or is written there.
-void expect_sharable_challenge(const std::filesystem::path& out);
+/// The same in parts: every case is one, and before them so is every batch of the library's simulations,
+/// where the library is not there yet. `scene` and `options` must live as long.
+std::unique_ptr<PartedWork> challenge_parts(const Scene& scene, const ChallengeRunOptions& options);
 
 /// Throws InputError where the answers to a challenge lie, or are made: no folder for a run.
 void expect_no_challenge(const std::filesystem::path& folder);
-
-/// The part of the cases that are diagnosed, with those under way; 1 when all are.
-double cases_done(const ChallengeRunOptions& options);
 
 }  // namespace mcdem

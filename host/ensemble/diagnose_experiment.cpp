@@ -11,6 +11,7 @@
 
 #include "core/errors.h"
 #include "ensemble/library_origin.h"
+#include "ensemble/library_parts.h"
 #include "ensemble/paper_metrics.h"
 #include "experiment/check_experiment.h"
 #include "scene/keys.h"
@@ -61,9 +62,6 @@ std::vector<std::string> differing_keys(const Replica& before, const Replica& af
     return list;
 }
 
-/// Whole recordings that the paper's metrics are taken from, on either side.
-constexpr std::size_t recordings_kept = 4;
-
 /// Real runs of a proposal, and again with what they taught.
 constexpr int most_rounds = 3;
 
@@ -81,16 +79,8 @@ public:
           store_(options.folder / "simulations"),
           model_(model_of(scene, experiment)),
           choice_(choose_candidates(model_, options.candidates)) {
-        question_ = {scene, grid_of(experiment.recording), reference_material(model_),
-                     model_.replica.protocol.discard, options.program};
-        plan_ = {{start_packing(experiment)},
-                 options.replicates,
-                 options.pairs,
-                 experiment.measurement.position_error,
-                 experiment.measurement.diameter_error,
-                 options.seed,
-                 choice_.chosen,
-                 nuisances(model_, experiment)};
+        question_ = question_of(scene, experiment, options, model_);
+        plan_ = plan_of(experiment, options, model_, choice_);
     }
 
     Diagnosis all() {
@@ -279,8 +269,8 @@ private:
 
     /// The first few trials, with their whole recordings kept.
     std::vector<Trial> recorded(std::vector<Trial> trials) const {
-        trials.resize(std::min<std::size_t>(trials.size(), recordings_kept));
-        for (Trial& trial : trials) trial.keep_recording = true;
+        trials.resize(std::min<std::size_t>(trials.size(), trials_recorded));
+        keep_recordings(trials);
         observe_trials(device_, question_, trials, store_, stage(options_, "recordings"));
         return trials;
     }

@@ -1,10 +1,9 @@
 #include "ensemble/observe_trials.h"
 
-#include <chrono>
+#include <algorithm>
 #include <map>
 #include <numeric>
 #include <optional>
-#include <thread>
 
 #include "core/in_parallel.h"
 #include "core/sha256.h"
@@ -18,15 +17,12 @@ namespace mcdem {
 namespace {
 
 constexpr std::size_t most_grains_at_once = 32'768;
-/// .. of one program among several: less, so that each of them gets some.
-constexpr std::size_t most_grains_of_a_share = 8'192;
-
-constexpr std::chrono::milliseconds pause{200};  // of a program that waits for the others
+constexpr std::size_t most_grains_of_a_part = 8'192;  // less, so that every process gets some
 
 /// What the simulation of a trial is made of.
-std::string simulation_name(const Device& device, const Question& question, const Trial& trial) {
+std::string simulation_name(const std::string& device, const Question& question, const Trial& trial) {
     Sha256 digest;
-    digest.add(question.program).add(device.description()).add(name(question.scene.precision));
+    digest.add(question.program).add(device).add(name(question.scene.precision));
     Settings settings;
     settings.replica = trial.model.replica;
     for (const Key& key : keys())
@@ -73,6 +69,41 @@ struct Job {
     std::vector<std::size_t> trials;
 };
 
+/// Of these trials, by the names of their simulations.
+std::vector<Job> jobs_of(const std::vector<std::size_t>& trials,
+                         const std::vector<std::string>& simulations) {
+    std::map<std::string, std::size_t> job_of;
+    std::vector<Job> jobs;
+    for (const std::size_t t : trials) {
+        const auto [place, is_new] = job_of.emplace(simulations[t], jobs.size());
+        if (is_new) jobs.emplace_back();
+        jobs[place->second].trials.push_back(t);
+    }
+    return jobs;
+}
+
+/// Jobs that a device does at a time.
+std::vector<std::vector<Job>> batches_of(const std::vector<Job>& jobs, const std::vector<Trial>& trials,
+                                         std::size_t most_grains) {
+    std::vector<std::vector<Job>> batches;
+    std::size_t grains = most_grains;
+    for (const Job& job : jobs) {
+        if (grains >= most_grains) {
+            batches.emplace_back();
+            grains = 0;
+        }
+        batches.back().push_back(job);
+        grains += trials[job.trials.front()].packing.size();
+    }
+    return batches;
+}
+
+std::vector<std::size_t> numbers_of(const std::vector<Trial>& trials) {
+    std::vector<std::size_t> numbers(trials.size());
+    std::iota(numbers.begin(), numbers.end(), std::size_t{0});
+    return numbers;
+}
+
 class Work {
 public:
     Work(Device& device, const Question& question, const std::vector<Trial>& trials,
@@ -89,10 +120,10 @@ public:
 
     Eigen::MatrixXd all() {
         for (std::size_t t = 0; t < trials_.size(); ++t) {
-            simulations_.push_back(simulation_name(device_, question_, trials_[t]));
+            simulations_.push_back(simulation_name(device_.description(), question_, trials_[t]));
             names_[t] = observation_name(simulations_[t], question_, trials_[t].model.instrument);
         }
-        options_.claims ? share() : alone();
+        simulate_missing();
         return std::move(result_);
     }
 
@@ -112,86 +143,17 @@ private:
         return left;
     }
 
-    std::vector<Job> jobs_of(const std::vector<std::size_t>& trials) const {
-        std::map<std::string, std::size_t> job_of;
-        std::vector<Job> jobs;
-        for (const std::size_t t : trials) {
-            const auto [place, is_new] = job_of.emplace(simulations_[t], jobs.size());
-            if (is_new) jobs.emplace_back();
-            jobs[place->second].trials.push_back(t);
-        }
-        return jobs;
-    }
-
-    /// Jobs that a device does at a time.
-    std::vector<std::vector<Job>> batches_of(const std::vector<Job>& jobs, std::size_t most_grains) const {
-        std::vector<std::vector<Job>> batches;
-        std::size_t grains = most_grains;
-        for (const Job& job : jobs) {
-            if (grains >= most_grains) {
-                batches.emplace_back();
-                grains = 0;
-            }
-            batches.back().push_back(job);
-            grains += trials_[job.trials.front()].packing.size();
-        }
-        return batches;
-    }
-
-    std::vector<std::size_t> all_trials() const {
-        std::vector<std::size_t> trials(trials_.size());
-        std::iota(trials.begin(), trials.end(), std::size_t{0});
-        return trials;
-    }
-
-    void alone() {
-        const std::vector<Job> jobs = jobs_of(take_from_store(all_trials()));
+    void simulate_missing() {
+        const std::vector<Job> jobs = jobs_of(take_from_store(numbers_of(trials_)), simulations_);
         double done = 0;
-        for (const auto& batch : batches_of(jobs, most_grains_at_once)) {
+        for (const auto& batch : batches_of(jobs, trials_, most_grains_at_once)) {
             const double part = static_cast<double>(batch.size()) / static_cast<double>(jobs.size());
-            run(batch, done, done + part, nullptr);
+            run(batch, done, done + part);
             done += part;
         }
     }
 
-    /// All programs make the same batches of the same trials, whatever is done already: a batch's name means
-    /// the same to each.
-    void share() {
-        const auto batches = batches_of(jobs_of(all_trials()), most_grains_of_a_share);
-        std::map<std::string, std::vector<std::size_t>> left;  // trials by the batch's name
-        for (const auto& batch : batches) {
-            Sha256 digest;
-            std::vector<std::size_t> trials;
-            for (const Job& job : batch)
-                for (const std::size_t t : job.trials) {
-                    digest.add(names_[t]).add(trials_[t].keep_recording ? "+" : " ");
-                    trials.push_back(t);
-                }
-            left.emplace("trials-" + digest.hex(), std::move(trials));
-        }
-        while (true) {
-            std::vector<std::string> names;
-            for (auto& [name, trials] : left)
-                if (!(trials = take_from_store(trials)).empty()) names.push_back(name);
-            if (names.empty()) return;
-            const double done = 1 - static_cast<double>(names.size()) / static_cast<double>(batches.size());
-            options_.on_progress(done);
-            if (options_.stop_wanted()) throw Interrupted();
-            if (const auto claim = options_.claims->take_one_of(names))
-                observe_share(*claim, left.at(claim->task()), done,
-                              1.0 / static_cast<double>(batches.size()));
-            else
-                std::this_thread::sleep_for(pause);
-        }
-    }
-
-    void observe_share(Claim& claim, std::vector<std::size_t>& trials, double done, double part) {
-        trials = take_from_store(trials);  // another may have ended it between looking and taking
-        if (!trials.empty()) run(jobs_of(trials), done, done + part, &claim);
-        trials.clear();
-    }
-
-    void run(const std::vector<Job>& jobs, double from, double to, Claim* claim) {
+    void run(const std::vector<Job>& jobs, double from, double to) {
         Scene batch = question_.scene;
         batch.output.positions = batch.output.contacts = true;
         batch.replicas.clear();
@@ -218,7 +180,6 @@ private:
         };
         while (simulation.advance(keep, note)) {
             options_.on_progress(from + (to - from) * simulation.progress());
-            if (claim) claim->show(simulation.progress());
             if (options_.stop_wanted()) throw Interrupted();
         }
         look(jobs, recordings);
@@ -261,12 +222,34 @@ Eigen::MatrixXd observe_trials(Device& device, const Question& question, const s
     return Work(device, question, trials, store, options).all();
 }
 
+std::vector<std::vector<Trial>> parts_of_trials(const Question& question, const std::vector<Trial>& trials) {
+    std::vector<std::string> simulations;
+    for (const Trial& trial : trials) simulations.push_back(simulation_name("", question, trial));
+    std::vector<std::vector<Trial>> parts;
+    for (const auto& batch :
+         batches_of(jobs_of(numbers_of(trials), simulations), trials, most_grains_of_a_part)) {
+        parts.emplace_back();
+        for (const Job& job : batch)
+            for (const std::size_t t : job.trials) parts.back().push_back(trials[t]);
+    }
+    return parts;
+}
+
+bool are_observed(const std::string& device, const Question& question, const std::vector<Trial>& trials,
+                  const ObservationStore& store) {
+    return std::ranges::all_of(trials, [&](const Trial& trial) {
+        const std::string name =
+            observation_name(simulation_name(device, question, trial), question, trial.model.instrument);
+        return store.find(name) && (!trial.keep_recording || store.has_recording(name));
+    });
+}
+
 std::vector<Recording> kept_recordings(const Device& device, const Question& question,
                                        const std::vector<Trial>& trials, const ObservationStore& store) {
     std::vector<Recording> recordings;
     for (const Trial& trial : trials)
-        recordings.push_back(store.recording(
-            observation_name(simulation_name(device, question, trial), question, trial.model.instrument)));
+        recordings.push_back(store.recording(observation_name(
+            simulation_name(device.description(), question, trial), question, trial.model.instrument)));
     return recordings;
 }
 

@@ -9,7 +9,6 @@
 #include "diagnose/effects.h"
 #include "diagnose/observation.h"
 #include "ensemble/observation_store.h"
-#include "io/claims.h"
 
 namespace mcdem {
 
@@ -36,9 +35,6 @@ struct Question {
 struct TrialOptions {
     std::function<void(double fraction)> on_progress = [](double) {};
     std::function<bool()> stop_wanted = [] { return false; };
-    /// Where several programs observe the same trials into one store: what each of them is at. Every one gets
-    /// all observations.
-    Claims* claims = nullptr;
 };
 
 /// Row: trial, column: cell; not-a-number where a simulation failed. Trials that differ in the instrument
@@ -46,6 +42,14 @@ struct TrialOptions {
 /// Interrupted when stop_wanted says so.
 Eigen::MatrixXd observe_trials(Device& device, const Question& question, const std::vector<Trial>& trials,
                                const ObservationStore& store, const TrialOptions& options);
+
+/// The trials in parts that a process simulates alone, the same ones on every device. Trials that share a
+/// simulation lie in one part.
+std::vector<std::vector<Trial>> parts_of_trials(const Question& question, const std::vector<Trial>& trials);
+
+/// Whether the store has the observations of all these trials by a device of this description.
+bool are_observed(const std::string& device, const Question& question, const std::vector<Trial>& trials,
+                  const ObservationStore& store);
 
 /// Recordings of trials that were observed with keep_recording.
 std::vector<Recording> kept_recordings(const Device& device, const Question& question,

@@ -9,7 +9,7 @@
 #include "core/input_file.h"
 #include "core/sha256.h"
 #include "diagnose/library.h"
-#include "ensemble/agreement.h"
+#include "ensemble/manifest.h"
 #include "ensemble/observation_store.h"
 #include "experiment/experiment_files.h"
 #include "io/checkpoint.h"
@@ -69,6 +69,16 @@ void check_sums(const fs::path& folder, std::vector<Verified>& all) {
     }
 }
 
+/// What the work in the folder was begun with.
+void check_manifests(const fs::path& folder, std::vector<Verified>& all) {
+    for (const fs::path& file : {manifest_file(folder), device_file(folder)})
+        if (fs::exists(file))
+            all.push_back(looked_at(file, [&]() -> std::string {
+                if (!read_manifest(file)) throw InputError("it is damaged");
+                return "";
+            }));
+}
+
 void check_run(const fs::path& folder, std::vector<Verified>& all) {
     const auto result = [&](const fs::path& file) {
         all.push_back(looked_at(file, [&] { return check_result_file(file); }));
@@ -91,11 +101,7 @@ void check_run(const fs::path& folder, std::vector<Verified>& all) {
     }
     const fs::path parts = parts_folder(folder);
     if (!fs::is_directory(parts)) return;
-    if (fs::exists(parts / "agreement.json"))
-        all.push_back(looked_at(parts / "agreement.json", [&] {
-            read_chosen(parts / "agreement.json");
-            return std::string();
-        }));
+    check_manifests(parts, all);
     std::vector<fs::path> files;
     for (const auto& entry : fs::directory_iterator(parts)) {
         if (entry.path().extension() == ".h5") files.push_back(entry.path());
@@ -143,6 +149,7 @@ std::vector<Verified> verify(const fs::path& path) {
         return all;
     }
     check_run(path, all);
+    check_manifests(path, all);
     check_library(path, all);
     if (fs::exists(path / sums_file))
         check_sums(path, all);

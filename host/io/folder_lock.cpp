@@ -27,8 +27,7 @@ const char* obstacle(int descriptor, FolderLock::Use use) {
         return ": another program is writing there alone, which cannot be shared: wait for it, or give "
                "another folder";
     const bool is_shared = lock(descriptor, LOCK_SH) != Answer::held_by_others;
-    return is_shared ? ": other programs share work there: wait for them, join them with --worker, or give "
-                       "another folder"
+    return is_shared ? ": other programs share work there: wait for them, or give another folder"
                      : ": another program is writing there: wait for it, or give another folder";
 }
 

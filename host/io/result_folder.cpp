@@ -93,7 +93,7 @@ std::vector<fs::path> result_files(const fs::path& file_or_folder) {
     if (fs::exists(parts_folder(file_or_folder)))
         throw InputError(
             file_or_folder.string() +
-            ": holds parts of a run that are not merged yet: wait for the programs that share it, or "
+            ": holds parts of a run that are not merged yet: wait for the programs that compute them, or "
             "go on with --resume");
     const auto segments = segment_files(file_or_folder);
     if (segments.empty())
@@ -133,9 +133,9 @@ ResultFolder ResultFolder::open_for_resume(const fs::path& folder) {
     expect_writable(folder);
     ResultFolder found(folder, FolderLock(folder, FolderLock::Use::alone));
     if (fs::exists(parts_folder(folder)))
-        throw InputError(folder.string() +
-                         ": holds parts of a run that programs share: join it with --worker, "
-                         "or give another folder");
+        throw InputError(
+            folder.string() +
+            ": holds parts of a run: go on with `mcdem run .. --resume`, or give another folder");
     if (found.is_finished()) {
         found.remove_segments();  // a finish() cut short after its last write
     } else {

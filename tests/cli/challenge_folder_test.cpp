@@ -1,6 +1,7 @@
 // One folder, one work: who comes where a challenge is answered, or to answer one where a run is, is refused.
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "cli/tiny_challenge.h"
 #include "core/sha256.h"
@@ -15,7 +16,7 @@ namespace fs = std::filesystem;
 
 const char* const alone = "another program is writing there: wait for it";
 const char* const not_shared = "another program is writing there alone, which cannot be shared";
-const char* const shared = "other programs share work there: wait for them, join them with --worker";
+const char* const shared = "other programs share work there: wait for them";
 
 class ChallengeFolderTest : public CliTest {
 protected:
@@ -46,13 +47,13 @@ TEST_F(ChallengeFolderTest, WhereOneProgramAnswersAChallenge) {
     const auto one = held_challenge();
     expect_refused(challenge_words(), alone);
     expect_refused(run_words("out"), alone);
-    for (const char* how : {"--worker", "--device=all"}) {
+    for (const char* how : {"--part=0", "--device=all"}) {
         expect_refused(challenge_words({how}), not_shared);
         expect_refused(run_words("out", {how}), not_shared);
     }
     let_go_on(*one);
     expect_done(one->wait());
-    for (const Words& more : {Words{}, {"--resume"}, {"--worker"}, {"--device=all"}})
+    for (const Words& more : {Words{}, {"--resume"}, {"--part=0"}, {"--device=all"}})
         expect_refused(run_words("out", more), "holds the answers to a challenge");
     EXPECT_TRUE(file_of_a_run(path("out")).empty());
 }
@@ -126,28 +127,68 @@ TEST_F(ChallengeFolderTest, ALibraryOfAnotherSceneIsRefusedBeforeAnyWork) {
 }
 
 TEST_F(ChallengeFolderTest, WhereProgramsShareAChallenge) {
-    const auto one = held_challenge({"--worker"});
+    const auto one = held_challenge({"--part=0"});
     expect_refused(challenge_words(), shared);
     expect_refused(run_words("out"), shared);
-    expect_refused(run_words("out", {"--worker"}), "holds the answers to a challenge");
+    expect_refused(run_words("out", {"--part=0"}), "holds the answers to a challenge");
     let_go_on(*one);
     expect_done(one->wait());
     EXPECT_TRUE(fs::exists(path("out/case_0001.json")));
     EXPECT_TRUE(file_of_a_run(path("out")).empty());
 }
 
+TEST_F(ChallengeFolderTest, InPartsTheAnswersAreTheSame) {
+    Words alone = challenge_words();
+    *(std::ranges::find(alone, "--out") + 1) = "alone";
+    *(std::ranges::find(alone, "--library") + 1) = "alone.json";
+    expect_done(mcdem(alone));
+    int computed = 0;
+    for (std::string missing; !(missing = mcdem(challenge_words({"--missing"})).out).empty();) {
+        if (computed == 0) {
+            EXPECT_FALSE(missing.starts_with("0\n")) << "a case before the library";
+            EXPECT_EQ(mcdem(challenge_words({"--merge"})).exit_code, 1);
+            expect_bad_input(mcdem(challenge_words({"--part", "99"})), "--part: must be below");
+        }
+        std::istringstream numbers(missing);
+        for (std::string number; numbers >> number; ++computed)
+            expect_done(mcdem(challenge_words({"--part", number})));
+        ASSERT_LT(computed, 100);
+    }
+    expect_done(mcdem(challenge_words({"--merge"})));
+    EXPECT_GT(computed, 1);
+    EXPECT_EQ(bytes_of_file(path("library.json")), bytes_of_file(path("alone.json")));
+    for (const char* file : {"evidence/case_0001.json", "findings/case_0001.json"})
+        EXPECT_EQ(bytes_of_file(path("out") / file), bytes_of_file(path("alone") / file));
+}
+
+TEST_F(ChallengeFolderTest, OtherOptionsThanItWasBegunWithAreRefused) {
+    Words words = challenge_words();
+    expect_done(mcdem(words));
+    for (const char* option : {"--replicates", "--confirmations", "--library-packings"}) {
+        Words other = words;
+        *(std::ranges::find(other, option) + 1) = "4";
+        expect_refused(other, std::string("out: was begun with another ") + option);
+    }
+    const std::string manifest = bytes_of_file(path("out/manifest.json"));
+    std::ofstream(path("out/manifest.json")) << "{";
+    expect_refused(words, "manifest.json: is damaged, and cases were answered");
+    fs::remove(path("out/case_0001.json"));
+    expect_done(mcdem(words));
+    EXPECT_EQ(bytes_of_file(path("out/manifest.json")), manifest);
+}
+
 TEST_F(ChallengeFolderTest, WhereARunIsWritten) {
     {
         const auto run = ResultFolder::create(path("out"));  // as of a run before its first checkpoint
         expect_refused(challenge_words(), alone);
-        for (const char* how : {"--worker", "--device=all"})
+        for (const char* how : {"--part=0", "--device=all"})
             expect_refused(challenge_words({how}), not_shared);
     }
     {
         const FolderLock worker(path("out"), FolderLock::Use::shared);
         fs::create_directory(parts_folder(path("out")));
         expect_refused(challenge_words(), shared);
-        for (const char* how : {"--worker", "--device=all"})
+        for (const char* how : {"--part=0", "--device=all"})
             expect_refused(challenge_words({how}), "holds a run (parts)");
     }
     expect_refused(challenge_words(), "holds a run (parts)");

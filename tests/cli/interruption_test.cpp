@@ -235,7 +235,7 @@ TEST_F(InterruptionTest, FolderThatCannotBeWrittenToIsRefusedAtOnce) {
     };
     expect_refused(words("disk/empty", false), "cannot be written to: Read-only file system");
     expect_refused(words("disk/begun", true), "cannot be written to: Read-only file system");
-    expect_refused(run_words("disk/shared", {"--worker"}), "cannot be written to: Read-only file system");
+    expect_refused(run_words("disk/shared", {"--part=0"}), "cannot be written to: Read-only file system");
 }
 
 TEST_F(InterruptionTest, FolderThatTurnsReadOnlyEndsTheRunWhichGoesOnLater) {

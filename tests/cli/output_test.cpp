@@ -40,7 +40,7 @@ TEST_F(OutputTest, NothingIsWrittenIntoAnExperimentHoweverItsPathIsSpelled) {
     const auto before = all("lab");
     for (const std::string out : {"lab", "./begun/../lab", "link", "lab/"}) {
         for (const std::vector<std::string>& how :
-             {std::vector<std::string>{}, {"--worker"}, {"--device=all"}})
+             {std::vector<std::string>{}, {"--part=0"}, {"--device=all"}})
             expect_bad_input(mcdem(run_words(out, how)), "is the folder of an experiment");
         expect_bad_input(mcdem({"diagnose", "small.toml", "--experiment", "lab", "--out", out}),
                          "of an experiment");
@@ -62,7 +62,7 @@ TEST_F(OutputTest, ARunTakesNoTableForItsOwn) {
          {"frame,cycle,phase,plate_z_m,top_force_N\n0,0,load,0.1,0\n", "my notes"}) {
         write("tables/plate.csv", table);
         for (const std::vector<std::string>& how :
-             {std::vector<std::string>{}, {"--worker"}, {"--device=all"}})
+             {std::vector<std::string>{}, {"--part=0"}, {"--device=all"}})
             expect_bad_input(mcdem(run_words("tables", how)),
                              "plate.csv: is not the table of a run, and is not replaced");
         EXPECT_EQ(text("tables/plate.csv"), table);

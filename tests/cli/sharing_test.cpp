@@ -1,7 +1,7 @@
-// Work spread over devices, ranks and jobs: what is said of it, and that no name reaches a shell as a
-// command.
+// Work in parts: what is said of it, and that no name reaches a shell as a command.
 #include <cstdlib>
 #include <memory>
+#include <sstream>
 
 #include "cli/cli_test.h"
 #include "cli/shell_word.h"
@@ -37,11 +37,11 @@ TEST(Subprocess, ThatIsNotThereIsToldFromOneThatFails) {
 
 class SharingTest : public CliTest {
 protected:
-    /// The run of a worker, held in the middle: it has its folder until it is let go on.
-    std::unique_ptr<Child> held_worker(const std::string& out) const {
-        auto worker = std::make_unique<Child>(folder_.path, run_words(out, {"--worker"}), held_after(100));
-        wait_until_held(*worker);
-        return worker;
+    /// A part of a run, held in the middle: it has its folder until it is let go on.
+    std::unique_ptr<Child> held_part(const std::string& out) const {
+        auto part = std::make_unique<Child>(folder_.path, run_words(out, {"--part", "0"}), held_after(100));
+        wait_until_held(*part);
+        return part;
     }
 };
 
@@ -50,12 +50,25 @@ TEST_F(SharingTest, AJobScriptRunsTheWordsAsTheyAre) {
     job.words = {"printf", "%s|"};
     job.words.insert(job.words.end(), odd_words.begin(), odd_words.end());
     job.lines_file = path("lines");
+    job.partition = "a 'b' $(touch hacked)";
     std::ofstream(path("lines")) << "#SBATCH --account=mine";
-    std::ofstream(path("job.sh")) << job_script(job);
+    std::ofstream(path("job.sh")) << job_script(job, {3, 5});
     std::string expected;
     for (const auto& word : odd_words) expected += word + "|";
-    EXPECT_EQ(output_of({"bash", path("job.sh")})->out, expected);
-    EXPECT_THAT(job_script(job), testing::StartsWith("#!/bin/bash\n#SBATCH --account=mine\nexec printf"));
+    EXPECT_EQ(output_of({"env", "SLURM_ARRAY_TASK_ID=1", "bash", path("job.sh"), "part"})->out,
+              expected + "--part|5|");
+    EXPECT_EQ(output_of({"bash", path("job.sh"), "next"})->out,
+              expected +
+                  "--slurm|--no-wait|--slurm-tasks|1|--slurm-partition|a 'b' $(touch hacked)|--slurm-lines|" +
+                  path("lines").string() + "|");
+    EXPECT_THAT(job_script(job, {}), HasSubstr("--slurm-lines.\n#SBATCH --account=mine\nparts=()\n"));
+}
+
+TEST_F(SharingTest, AnotherJobScriptIsKept) {
+    fs::create_directories(path("out/slurm"));
+    std::ofstream(path("out/slurm/job.sh")) << "#!/bin/bash\nmine\n";
+    expect_bad_input(mcdem(run_words("out", {"--slurm"})), "job.sh: is not a job script of mcdem");
+    EXPECT_EQ(bytes_of_file(path("out/slurm/job.sh")), "#!/bin/bash\nmine\n");
 }
 
 TEST_F(SharingTest, SlurmThatIsNotThereIsBadInput) {
@@ -64,16 +77,31 @@ TEST_F(SharingTest, SlurmThatIsNotThereIsBadInput) {
 }
 
 TEST_F(SharingTest, OptionsThatDoNotGoTogetherAreRefused) {
-    for (const std::vector<std::string>& words :
-         {std::vector<std::string>{"--mpi", "--slurm"}, {"--worker", "--mpi"}, {"--slurm-tasks", "2"}})
+    for (const std::vector<std::string>& words : {std::vector<std::string>{"--mpi", "--slurm"},
+                                                  {"--part", "1", "--mpi"},
+                                                  {"--missing", "--merge"},
+                                                  {"--slurm-tasks", "2"}})
         EXPECT_EQ(mcdem(run_words("out", words)).exit_code, 2) << words.front();
 }
 
-TEST_F(SharingTest, AWorkerSaysNothingAndLeavesTheWholeResult) {
+TEST_F(SharingTest, PartsOneByOneGiveTheWholeResult) {
     expect_done(mcdem(run_words("alone")));
-    const auto worker = mcdem(run_words("shared", {"--worker", "--part-replicas", "1"}));
-    expect_done(worker);
-    EXPECT_EQ(worker.out, "");
+    const auto missing = mcdem(run_words("shared", {"--part-replicas", "1", "--missing"}));
+    expect_done(missing);
+    ASSERT_THAT(missing.out, testing::StartsWith("0\n1\n"));
+    const auto part = mcdem(run_words("shared", {"--part", "1"}));
+    expect_done(part);
+    EXPECT_EQ(part.out, "");
+    const auto early = mcdem(run_words("shared", {"--merge"}));
+    EXPECT_EQ(early.exit_code, 1);
+    EXPECT_THAT(early.err, HasSubstr(" missing: 0"));
+    for (std::istringstream numbers(mcdem(run_words("shared", {"--missing"})).out); !numbers.eof();)
+        if (std::string number; numbers >> number)
+            expect_done(mcdem(run_words("shared", {"--part", number})));
+    EXPECT_EQ(mcdem(run_words("shared", {"--missing"})).out, "");
+    const auto merged = mcdem(run_words("shared", {"--merge"}));
+    expect_done(merged);
+    EXPECT_THAT(merged.out, HasSubstr("replicas done"));
     for (const char* file : {"run.h5", "plate.csv"})
         EXPECT_TRUE(bytes_of_file(path("shared") / file) == bytes_of_file(path("alone") / file)) << file;
 }
@@ -85,19 +113,20 @@ TEST_F(SharingTest, AnotherProgramsRunIsRefused) {
     expect_bad_input(finished, "must be resumed with the scene it was begun with");
 }
 
-TEST_F(SharingTest, WhereAWorkerIsAtWorkNoneWritesAlone) {
+TEST_F(SharingTest, WhereAPartIsComputedNoneWritesAlone) {
     expect_done(mcdem(run_words("alone")));
-    const auto worker = held_worker("shared");
+    const auto part = held_part("shared");
     expect_bad_input(mcdem(run_words("shared", {"--set", "grains.friction=0.3"})),
-                     "other programs share work there: wait for them, join them with --worker");
-    let_go_on(*worker);
-    expect_done(worker->wait());
+                     "other programs share work there: wait for them");
+    let_go_on(*part);
+    expect_done(part->wait());
+    expect_done(mcdem(run_words("shared", {"--resume"})));
     EXPECT_TRUE(bytes_of_file(path("shared/run.h5")) == bytes_of_file(path("alone/run.h5")));
 }
 
-TEST_F(SharingTest, WhereOneProgramWritesNoWorkerJoins) {
+TEST_F(SharingTest, WhereOneProgramWritesNoPartIsComputed) {
     const auto one = ResultFolder::create(path("out"));  // as of a run before its first checkpoint
-    for (const char* how : {"--worker", "--device=all"})
+    for (const char* how : {"--part=0", "--device=all", "--missing", "--merge"})
         expect_bad_input(mcdem(run_words("out", {how})), "another program is writing there alone");
     EXPECT_FALSE(fs::exists(path("out/parts")));
 }

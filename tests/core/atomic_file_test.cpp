@@ -4,9 +4,12 @@
 #include <gmock/gmock.h>
 #include <sys/stat.h>
 
+#include <atomic>
 #include <cstdlib>
 #include <fstream>
 #include <set>
+#include <thread>
+#include <vector>
 
 #include "core/errors.h"
 #include "core/input_file.h"
@@ -36,6 +39,22 @@ TEST_F(AtomicFileTest, TemporaryNamesCannotBeForeseen) {
     }
     EXPECT_EQ(names.size(), 20u);
     EXPECT_TRUE(fs::is_empty(folder_));
+}
+
+TEST_F(AtomicFileTest, OneOfManyIsFirstAndItsTextStays) {
+    std::atomic<int> first{0}, winner{-1};
+    {
+        std::vector<std::jthread> threads;
+        for (int t = 0; t < 8; ++t)
+            threads.emplace_back([&, t] {
+                if (!create_file(folder_ / "file", std::to_string(t))) return;
+                ++first;
+                winner = t;
+            });
+    }
+    EXPECT_EQ(first, 1);
+    EXPECT_EQ(read_file(folder_ / "file"), std::to_string(winner));
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 1) << "temporaries stay";
 }
 
 TEST_F(AtomicFileTest, ALinkInItsPlaceIsReplacedAndNotFollowed) {

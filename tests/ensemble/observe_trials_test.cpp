@@ -199,7 +199,8 @@ TEST(TrialNames, TellEveryKeyOfAReplicaApart) {
     Names names;
     int tried = 0;
     for (const Key& key : keys()) {
-        if (key.scope != Scope::replica || is_generator_key(key.name) || key.name == "packing.file" || key.name == "packing.frame")
+        if (key.scope != Scope::replica || is_generator_key(key.name) || key.name == "packing.file" ||
+            key.name == "packing.frame")
             continue;
         Trial trial = names.small.trial(1);
         Settings settings;
@@ -266,35 +267,31 @@ TEST(TrialNames, TellQuestionsApart) {
     expect_apart("precision");
 }
 
-TEST(ObserveTrials, SharedByTwoEachGetsAllAndNothingIsSimulatedTwice) {
+TEST(ObserveTrials, InPartsTheyAreTheSame) {
     const SmallTrials small, alone;
-    const std::vector<Trial> trials{small.trial(1), small.trial(2), small.trial(3)};
+    const std::vector<Trial> trials{small.trial(1), small.trial(2), small.trial(1)};
     Device device;
     const auto expected = observe_trials(device, alone.question, trials, alone.store, {});
-    std::atomic<int> simulated{0};
-    std::vector<Eigen::MatrixXd> got(2);
-    {
-        std::vector<std::jthread> workers;
-        for (auto& mine : got)
-            workers.emplace_back([&] {
-                Device own;
-                Claims claims(small.folder.path / "claims");
-                bool worked = false;
-                TrialOptions options;
-                options.claims = &claims;
-                options.on_progress = [&](double fraction) {
-                    worked = worked || (fraction > 0 && fraction < 1);
-                };
-                mine = observe_trials(own, small.question, trials, small.store, options);
-                simulated += worked;
-            });
+    const std::size_t enough =
+        8'192 / trials.front().packing.size() + 2;  // for one more than fits into a part
+    std::vector<Trial> many;
+    while (many.size() < enough) many.push_back(small.trial(many.size()));
+    const auto parts = parts_of_trials(small.question, many);
+    ASSERT_EQ(parts.size(), 2u);
+    EXPECT_EQ(parts[0].size() + parts[1].size(), many.size());
+    const auto few = parts_of_trials(small.question, trials);
+    ASSERT_EQ(few.size(), 1u);
+    EXPECT_FALSE(are_observed(device.description(), small.question, few[0], small.store));
+    observe_trials(device, small.question, few[0], small.store, {});
+    EXPECT_TRUE(are_observed(device.description(), small.question, trials, small.store));
+    EXPECT_FALSE(are_observed("another", small.question, trials, small.store));
+    EXPECT_EQ(files_in(small.folder.path / "simulations"), 2);
+    TrialOptions none;
+    none.on_progress = [](double) { ADD_FAILURE() << "simulated again"; };
+    const auto got = observe_trials(device, small.question, trials, small.store, none);
+    for (Eigen::Index t = 0; t < expected.rows(); ++t) {
+        EXPECT_TRUE(same(got.row(t), expected.row(t))) << t;
     }
-    EXPECT_EQ(simulated, 1) << "three small trials are one batch, for one of the two";
-    for (const auto& mine : got)
-        for (Eigen::Index t = 0; t < expected.rows(); ++t) {
-            EXPECT_TRUE(same(mine.row(t), expected.row(t))) << t;
-        }
-    EXPECT_EQ(files_in(small.folder.path / "simulations"), 3);
 }
 
 }  // namespace

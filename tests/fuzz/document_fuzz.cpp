@@ -8,9 +8,8 @@
 #include "diagnose/challenge_files.h"
 #include "diagnose/challenge_truth.h"
 #include "diagnose/synthetic_evidence.h"
-#include "ensemble/agreement.h"
+#include "ensemble/manifest.h"
 #include "ensemble/observation_store.h"
-#include "ensemble/share_run.h"
 #include "fuzz/mutate_json.h"
 #include "fuzz/scratch_folder.h"
 #include "report/diagnosis_json.h"
@@ -47,11 +46,10 @@ std::string truth() {
 const std::vector<Document>& documents() {
     static const Evidence evidence = synthetic_evidence();
     static const std::vector<Document> all{
-        {"parts/agreement.json",
-         R"({"common": {"program": "0.1"}, "chosen": {"replicas": "4", "replicas of a part": "2"}})",
+        {"manifest.json", R"({"program": "0.1", "number of replicas": "4", "replicas of a part": "2"})",
          [](const std::filesystem::path& file) {
-             shared_state(scratch_folder());
-             read_chosen(file);
+             read_manifest(file);
+             keep_manifest(file, {{"program", "0.1"}, {"replicas of a part", "1"}}, "replicas of a part");
          }},
         {"challenge.json",
          open_challenge_text({std::string(64, 'a'),

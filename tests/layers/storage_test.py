@@ -39,7 +39,7 @@ settle_time = 0.03
 "contact.model" = ["independent", "mc_dem"]
 """
 RUN = ["run", "tiny.toml", "--out", "out", "--no-figures"]
-SHARED = RUN + ["--worker", "--part-replicas", "1"]
+IN_PARTS = RUN + ["--device", "all", "--part-replicas", "1"]
 
 
 def mcdem(place, *words, **layer):
@@ -63,9 +63,9 @@ def whole_run(place):
 
 
 def stopped_before_merge(place):
-    """All parts are there, and the worker was killed when it took the merge."""
-    done = mcdem(place, *SHARED, fault="KILL", fault_at=1, fault_kinds="link", fault_name="merge.claim")
-    assert done.returncode == -9, done
+    """All parts are there, and none is merged."""
+    for part in "0", "1":
+        expect(mcdem(place, *RUN, "--part-replicas", "1", "--part", part), 0)
     parts = sorted((place / "out/parts").glob("*.h5"))
     assert len(parts) == 2
     return parts
@@ -78,11 +78,11 @@ def a_passing_error_at_the_merge_deletes_no_part(place):
             if (fault, kind) in (("EMFILE", "read"), ("EACCES", "read")):
                 continue
             identities = [part.stat().st_ino for part in (place / "out/parts").glob("*.h5")]
-            done = mcdem(place, *SHARED, fault=fault, fault_at=1, fault_kinds=kind, fault_name="parts/00000.h5")
+            done = mcdem(place, *IN_PARTS, fault=fault, fault_at=1, fault_kinds=kind, fault_name="parts/00000.h5")
             expect(done, 1, "parts/00000.h5")
             assert "damaged" not in done.stderr and "computed again" not in done.stderr, done.stderr
             assert identities == [part.stat().st_ino for part in (place / "out/parts").glob("*.h5")]
-    expect(mcdem(place, *SHARED), 0)
+    expect(mcdem(place, *IN_PARTS), 0)
 
 
 def a_passing_error_is_not_called_damage(place):
@@ -109,35 +109,35 @@ def a_refused_read_is_not_a_missing_object(place):
             expect(done, 1, "Input/output error")
 
 
-def an_agreement_that_is_not_whole_costs_no_part(place):
+def a_manifest_that_is_not_whole_costs_no_part(place):
     result = whole_run(place)
     for length in [0, 40]:
         shutil.rmtree(place / "out")
         stopped_before_merge(place)
-        agreement = place / "out/parts/agreement.json"
-        agreement.write_text(agreement.read_text()[:length])
-        expect(mcdem(place, *SHARED, fault_log=place.parent / "log"), 0, "agreement.json: is damaged, and made anew")
+        manifest = place / "out/parts/manifest.json"
+        manifest.write_text(manifest.read_text()[:length])
+        expect(mcdem(place, *IN_PARTS, fault_log=place.parent / "log"), 0, "manifest.json: is damaged, and made anew")
         assert (place / "out/run.h5").read_bytes() == result
     assert ".work-" not in (place.parent / "log").read_text()  # where parts are computed
 
 
-def an_agreement_is_on_the_disk_before_it_has_its_name(place):
+def a_manifest_is_on_the_disk_before_it_has_its_name(place):
     log = place.parent / "log"
-    expect(mcdem(place, *SHARED, fault_log=log, fault_name="agreement.json"), 0)
+    expect(mcdem(place, *IN_PARTS, fault_log=log, fault_name="manifest.json"), 0)
     kinds = [line.split()[1] for line in log.read_text().splitlines()]
     assert kinds.index("fsync") < kinds.index("link"), kinds
     log.unlink()
-    expect(mcdem(place, "run", "tiny.toml", "--out", "again", "--no-figures", "--worker", fault_log=log), 0)
+    expect(mcdem(place, "run", "tiny.toml", "--out", "again", "--no-figures", "--device", "all", fault_log=log), 0)
     lines = [line.split(" ", 2)[1:] for line in log.read_text().splitlines()]
-    linked = next(n for n, (kind, path) in enumerate(lines) if kind == "link" and path.endswith("agreement.json"))
+    linked = next(n for n, (kind, path) in enumerate(lines) if kind == "link" and path.endswith("manifest.json"))
     assert ["fsync", str(place / "again/parts")] in lines[linked:linked + 5], lines[linked:linked + 5]
 
 
 def parts_of_no_replicas_are_refused(place):
     stopped_before_merge(place)
-    agreement = place / "out/parts/agreement.json"
-    agreement.write_text(re.sub(r'("replicas of a part": )"\d+"', r'\1"0"', agreement.read_text()))
-    expect(mcdem(place, *SHARED), 2, "must be a number of replicas above 0")
+    manifest = place / "out/parts/manifest.json"
+    manifest.write_text(re.sub(r'("replicas of a part": )"\d+"', r'\1"0"', manifest.read_text()))
+    expect(mcdem(place, *IN_PARTS), 2, "must be a number of replicas above 0")
 
 
 def parts_cut_in_another_way_are_computed_again(place):
@@ -145,7 +145,7 @@ def parts_cut_in_another_way_are_computed_again(place):
     shutil.rmtree(place / "out")
     parts = stopped_before_merge(place)
     shutil.copy(parts[0], parts[1])
-    done = mcdem(place, *SHARED)
+    done = mcdem(place, *IN_PARTS)
     expect(done, 0, "part 00001 is computed again")
     assert (place / "out/run.h5").read_bytes() == result
 

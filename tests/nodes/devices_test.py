@@ -1,9 +1,13 @@
 """Several devices of one machine: `--device all` uses them all, and the result is that of one.
 
-devices_test.py MCDEM DEVICE_LAYER; the layer of tests/layers makes devices vanish and holds workers; PoCL stands for a machine with two devices (POCL_DEVICES).
+devices_test.py MCDEM DEVICE_LAYER; the layer of tests/layers makes devices vanish and holds processes; PoCL stands for a machine with two devices (POCL_DEVICES).
 """
+import os
 import pathlib
+import re
+import signal
 import sys
+import time
 
 import shared_runs
 from shared_runs import PARTS, SWEEP, TWO_DEVICES, Hold, command_of, finish, skip
@@ -19,17 +23,20 @@ def vanishing():
     return {"OPENCL_LAYERS": str(pathlib.Path(sys.argv[2]).resolve()), "MCDEM_TEST_KERNELS": str(shared_runs.LAUNCHES // 2)}
 
 
+def device_of(process):
+    return re.search(r"--device\0(\d+)", pathlib.Path(f"/proc/{process}/cmdline").read_text())[1]
+
+
 def uses_all_of_them(place):
-    """Two devices, a worker on each, the bytes of one process."""
+    """Two devices, a process on each, the bytes of one process."""
     place.run_alone()
     hold = Hold(place)
     process = all_devices(place, "both", environment=hold.environment)
-    hold.wait_for(2)
-    devices = shared_runs.devices_at_work(place.path / "both/parts")
+    devices = {device_of(held) for held in hold.wait_for(2)}
     hold.end()
     said = finish(process)
-    assert "2 devices, a worker on each" in said and "8 of 8 replicas done" in said, said
-    assert devices == {0, 1}, f"parts were computed on {devices}"
+    assert "2 devices, a process on each" in said and "8 of 8 replicas done" in said, said
+    assert devices == {"0", "1"}, f"parts were computed on {devices}"
     place.expect_like_alone("both")
     assert "8 of 8 replicas done" in finish(all_devices(place, "both")), "a run that is done is told of again"
 
@@ -43,8 +50,8 @@ def refuses_another_run(place):
     assert (place.path / "alone/run.h5").read_bytes() == before
 
 
-def outlives_a_killed_worker(place):
-    """One of two workers is killed: the other does its part."""
+def outlives_a_killed_process(place):
+    """One of two processes is killed: its part is computed again, from its checkpoint."""
     place.run_alone()
     hold = Hold(place, only_one=True)
     process = all_devices(place, "both", environment=hold.environment)
@@ -54,11 +61,33 @@ def outlives_a_killed_worker(place):
     place.expect_like_alone("both")
 
 
+def gives_up_a_part_that_kills_its_processes(place):
+    """Every process of one part is killed: the other parts are done, and the command says so and goes on later."""
+    place.run_alone()
+    hold = Hold(place)
+    process = all_devices(place, "both", environment=hold.environment)
+    killed = []
+    while process.poll() is None:
+        for file in shared_runs.files_in(place.path / "held", "*"):
+            words = pathlib.Path(f"/proc/{file.name}/cmdline").read_text() if file.name not in killed else ""
+            if "--part\x000\x00" in words:
+                os.kill(int(file.name), signal.SIGKILL)
+                killed.append(file.name)
+            elif words:
+                file.unlink(missing_ok=True)
+        time.sleep(0.01)
+    said = finish(process, exit_codes=(1,))
+    assert len(killed) == 6 and "no part could be finished" in said, (killed, said)
+    assert len(list((place.path / "both/parts").glob("*.h5"))) == 3
+    place.run([place.mcdem, *command_of("sweep.toml", "both"), "--resume"])
+    place.expect_like_alone("both")
+
+
 def outlives_a_vanished_device(place):
-    """One of two devices stops answering: its worker says so, the other does its part."""
+    """One of two devices stops answering: its process says so, the other gets the part."""
     place.run_alone()
     said = finish(all_devices(place, "both", environment={**vanishing(), "MCDEM_TEST_VICTIM": str(place.path / "victim")}))
-    assert said.count("the device or its driver has failed") == 1 and "other workers go on with it" in said, said
+    assert said.count("the device or its driver has failed") == 1 and "is left out from here on" in said, said
     assert "8 of 8 replicas done" in said, said
     place.expect_like_alone("both")
 
@@ -98,7 +127,8 @@ def main():
         two = shared_runs.has_two_devices(place)
     if not two:
         skip("this OpenCL has no two devices alike (PoCL makes them: POCL_DEVICES)")
-    shared_runs.run_tests([uses_all_of_them, refuses_another_run, outlives_a_killed_worker, outlives_a_vanished_device,
+    shared_runs.run_tests([uses_all_of_them, refuses_another_run, outlives_a_killed_process,
+                           gives_up_a_part_that_kills_its_processes, outlives_a_vanished_device,
                            goes_on_when_all_devices_vanished, goes_on_as_one])
 
 

@@ -1,5 +1,4 @@
-"""What the tests of many devices and nodes share: a sweep of seconds, its result by one process, and a worker killed."""
-import json
+"""What the tests of many devices and nodes share: a sweep of seconds, its result by one process, and a process killed."""
 import os
 import pathlib
 import re
@@ -13,7 +12,7 @@ import time
 SKIPPED = 77
 TIME_LIMIT = 300  # seconds for one command
 
-# 8 replicas in parts of 2; checkpoints so often that a worker that is killed in the middle leaves one.
+# 8 replicas in parts of 2; checkpoints so often that a process that is killed in the middle leaves one.
 SWEEP = """name = "sweep"
 [box]
 size_x = 0.08
@@ -145,16 +144,8 @@ def files_in(folder, pattern):
         return []
 
 
-def claim_of(file):
-    """What a claim says; an empty one where another program has just moved or removed it."""
-    try:
-        return json.loads(file.read_text())
-    except (OSError, ValueError):
-        return {}
-
-
 class Hold:
-    """Holds workers in the middle of their work (tests/layers/device_layer.cpp), so that it cannot be done before a test has
+    """Holds processes in the middle of their work (tests/layers/device_layer.cpp), so that it cannot be done before a test has
     done its part, at any speed of the machine: all of them, or the first only, each after so many launches of kernels."""
 
     def __init__(self, place, launches=LAUNCHES // 2, only_one=False, after=None):
@@ -167,13 +158,13 @@ class Hold:
         if after:
             self.environment["MCDEM_TEST_AFTER"] = str(after)
 
-    def wait_for(self, workers):
+    def wait_for(self, processes):
         """Until so many are held; their numbers."""
-        files = wait_until(lambda: len(found := files_in(self._folder, "*")) >= workers and found, f"{workers} held")
+        files = wait_until(lambda: len(found := files_in(self._folder, "*")) >= processes and found, f"{processes} held")
         return sorted(int(file.name) for file in files)
 
     def kill_one(self):
-        """kill -9 of a worker that is held."""
+        """kill -9 of a process that is held."""
         victim = self.wait_for(1)[0]
         os.kill(victim, signal.SIGKILL)
         return victim
@@ -181,11 +172,6 @@ class Hold:
     def end(self):
         """They go on, and none is held any more."""
         remove_until_gone(self._folder)
-
-
-def devices_at_work(folder):
-    """Numbers of the devices on which parts in the folder are computed."""
-    return {claim["device"]["number"] for claim in map(claim_of, files_in(folder, "0*.claim-*")) if claim.get("state") == "held"}
 
 
 def is_told_to_end(process):

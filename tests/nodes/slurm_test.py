@@ -1,4 +1,4 @@
-"""Runs and challenges as Slurm job arrays, on a real Slurm of two nodes that this test starts: a worker killed in the
+"""Runs and challenges as Slurm job arrays, on a real Slurm of two nodes that this test starts: a task killed in the
 middle, nodes lost, names that a shell would stumble over, the bytes of one process.
 
 slurm_test.py MCDEM DEVICE_LAYER; skipped (77) where a program is missing or this is not root.
@@ -20,36 +20,38 @@ def run_words(place, out, more=(), parts=PARTS, hold=None):
                        {**cluster.environment, **(hold.environment if hold else {})})
 
 
-def outlives_a_killed_worker(place):
-    """The others do its part; parts are done once; nothing of a name is taken for a command."""
+def outlives_a_killed_task(place):
+    """The job after the array submits its part again; nothing of a name is taken for a command."""
     place.run_alone()
     (place.path / "lines").write_text("#SBATCH --comment=mine\nexport MCDEM_TOLD=yes")
     hold = Hold(place, only_one=True)
     process = run_words(place, ODD, ["--slurm-lines", "lines"], hold=hold)
     hold.kill_one()
     said = finish(process)
-    assert "8 of 8 replicas done" in said and "3 workers" in said, said
+    assert "8 of 8 replicas done" in said and "4 parts, 3 at a time" in said, said
     place.expect_like_alone(ODD)
     assert not (place.path / "hacked").exists() and not list(place.path.rglob("hacked"))
     script = (place.path / ODD / "slurm/job.sh").read_text()
-    assert script.startswith("#!/bin/bash\n#SBATCH --comment=mine\nexport MCDEM_TOLD=yes\nexec "), script
+    assert "\n#SBATCH --comment=mine\nexport MCDEM_TOLD=yes\nparts=(" in script, script
     logs = list((place.path / ODD / "slurm").glob("*_*.log"))
-    assert len(logs) == 3, logs
+    assert len(logs) == 5, logs
 
 
 def goes_on_after_a_cancelled_job(place):
-    """All workers are cancelled: the command says so, and given again does only what is missing."""
+    """The array is cancelled: nothing is submitted again, the command says so, and given again does what is missing."""
     place.run_alone()
-    hold = Hold(place, launches=LAUNCHES * 3 // 2)  # every worker in its second part
+    hold = Hold(place)
     process = run_words(place, "jobs", parts=ALONE, hold=hold)
-    hold.wait_for(3)
+    held = hold.wait_for(3)
+    (place.path / "held" / str(held[0])).unlink()  # one part is done
     parts = PartsSeen(place.path / "jobs/parts")
-    parts.look()
-    number = (place.path / "jobs/slurm/job").read_text().strip()
-    place.run(["scancel", "--signal=KILL", "--full", number], cluster.environment)
-    place.run(["scancel", number], cluster.environment)
+    shared_runs.wait_until(lambda: parts.look() or parts.inodes, "a part")
+    array, following, _ = (place.path / "jobs/slurm/jobs").read_text().splitlines()
+    place.run(["scancel", "--signal=KILL", "--full", array], cluster.environment)
+    place.run(["scancel", array], cluster.environment)
     said = finish(process, exit_codes=(1,))
-    assert f"job {number} has ended before the work was done" in said, said
+    assert f"job {array} has ended before the work was done" in said, said
+    assert f"job {array} was cancelled" in (place.path / f"jobs/slurm/{following}.log").read_text()
     hold.end()
     process = run_words(place, "jobs", parts=ALONE)
     parts.watch(process)
@@ -62,14 +64,14 @@ def is_not_submitted_twice(place):
     """--no-wait returns at once; the same command then waits for that job."""
     place.run_alone()
     said = finish(run_words(place, "jobs", ["--no-wait"]))
-    number = re.search(r"job (\d+)", said)[1]
+    number = re.search(r"job (\d+):", said)[1]
     said = finish(run_words(place, "jobs"))
     assert f"job {number} of this work is still there" in said, said
     place.expect_like_alone("jobs")
 
 
 def outlives_a_lost_node(place):
-    """The power fails on the node of a worker: those on the other do its part."""
+    """The power fails on the node of a task: it is queued again, on the other node."""
     place.run_alone()
     hold = Hold(place, only_one=True)
     process = run_words(place, "jobs", hold=hold)
@@ -111,13 +113,13 @@ def a_challenge_is_shared(place):
                           {**cluster.environment, **hold.environment})
     hold.kill_one()
     said = finish(process)
-    assert "3 workers" in said and "all cases are diagnosed" in said, said
+    assert "3 at a time" in said and "all cases are diagnosed" in said, said
     shared_challenge.expect_like_alone(place, "jobs")
 
 
 def main():
     with cluster.running():
-        shared_runs.run_tests([outlives_a_killed_worker, goes_on_after_a_cancelled_job, is_not_submitted_twice,
+        shared_runs.run_tests([outlives_a_killed_task, goes_on_after_a_cancelled_job, is_not_submitted_twice,
                                outlives_a_lost_node, outlives_the_loss_of_all_nodes, says_what_slurm_refuses,
                                a_challenge_is_shared], cluster.wait_for_jobs)
 
