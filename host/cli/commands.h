@@ -13,6 +13,7 @@ inline constexpr int exit_interrupted = 130;
 void add_devices(CLI::App& app, int& exit_code);
 void add_validate(CLI::App& app, int& exit_code);
 void add_run(CLI::App& app, int& exit_code);
+void add_distribute(CLI::App& app, int& exit_code);
 void add_verify(CLI::App& app, int& exit_code);
 void add_table(CLI::App& app, int& exit_code);
 void add_compare(CLI::App& app, int& exit_code);

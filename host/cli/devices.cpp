@@ -34,7 +34,13 @@ void add_devices(CLI::App& app, int&) {
         "The number in the first column, or a part of the name, is what --device takes:\n"
         "  mcdem run scenes/small.toml --out out/small --device 0\n"
         "Where nothing is said, a run uses MCDEM_DEVICE, else the first GPU, else the first device.");
-    command->callback([] { print_devices(); });
+    auto alike = std::make_shared<bool>(false);
+    command->add_flag("--alike", *alike,
+                      "Print the numbers of those that `--device all` takes, and nothing else");
+    command->callback([alike] {
+        if (!*alike) return print_devices();
+        for (const int device : alike_devices("")) print_out("{}\n", device);
+    });
 }
 
 }  // namespace mcdem

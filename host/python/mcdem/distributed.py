@@ -1,0 +1,175 @@
+"""Parts of a run, a challenge or a diagnosis as tasks of Dask: on this machine, or wherever a Dask cluster runs.
+
+mcdem.distributed.run("scene.toml", out="out/sweep")                           # a process for each device of this machine
+mcdem.distributed.run("scene.toml", out="out/sweep", client=Client(cluster))   # any cluster: Slurm, PBS, LSF, Kubernetes, ..
+mcdem.distributed.compute(["challenge", "run", ...])                           # any command that works in parts
+
+Each task is a process `mcdem .. --part K`. Machines need the program and the folders by the same paths. A part that a lost
+worker was at is computed again by another: parts are the same bits wherever they are computed.
+"""
+import argparse
+import contextlib
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+
+from .errors import InputError, RunError
+
+TRIES = 3  # of a part, beside those that end with a lost worker
+
+
+def program_path():
+    """MCDEM_PROGRAM, else mcdem of the search path."""
+    found = os.environ.get("MCDEM_PROGRAM") or shutil.which("mcdem")
+    if not found:
+        raise RunError("the program mcdem is not in the search path: name it by MCDEM_PROGRAM")
+    return str(pathlib.Path(found).resolve())
+
+
+def run(scene, out, *, settings=None, part_replicas=None, figures=False, **how):
+    """Runs a scene into the folder `out`: its replicas, in parts. `settings` overrides keys; `how`: see compute."""
+    words = ["run", os.fspath(scene), "--out", os.fspath(out)] + ([] if figures else ["--no-figures"])
+    for key, value in (settings or {}).items():
+        words += ["--set", f"{key}={value}"]
+    if part_replicas:
+        words += ["--part-replicas", str(part_replicas)]
+    compute(words, **how)
+
+
+def compute(words, *, client=None, folder=None, tries=TRIES, report=None):
+    """Computes what is missing of a command's work, and puts it together. Given again, it goes on where it stopped.
+
+    `words`: the command line after `mcdem`. `client`: a distributed.Client, else a cluster of this machine with a worker
+    for each of its devices. `folder`: where the command is run. Raises InputError and RunError.
+    """
+    report = report or (lambda line: print(f"mcdem: {line}", file=sys.stderr, flush=True))
+    work = Work([program_path(), *words], os.path.abspath(folder or "."), tries, report)
+    with contextlib.ExitStack() as stack:
+        client = client or stack.enter_context(local_client(work))
+        report(f"dashboard: {client.dashboard_link}")
+        work.compute(client)
+
+
+@contextlib.contextmanager
+def local_client(work):
+    """Named 0, 1, ..: the place of each one's device."""
+    from distributed import Client, LocalCluster
+    with LocalCluster(n_workers=len(work.devices()), threads_per_worker=1, processes=True) as cluster, \
+            Client(cluster) as client:
+        yield client
+
+
+class Work:
+    def __init__(self, command, folder, tries, report):
+        self.command, self.folder, self.tries, self.report = command, folder, tries, report
+
+    def ask(self, *words):
+        """What the program prints."""
+        done = subprocess.run([self.command[0], *words], cwd=self.folder, capture_output=True, text=True, errors="replace")
+        if done.returncode == 2:
+            raise InputError(problems_of(done.stderr))
+        if done.returncode != 0:
+            raise RunError(f"exit code {done.returncode}: {done.stderr.strip()}")
+        print(done.stderr, end="", file=sys.stderr, flush=True)
+        return done.stdout
+
+    def devices(self):
+        return self.ask("devices", "--alike").split()
+
+    def missing(self, workers):
+        return [int(part) for part in self.ask(*self.command[1:], "--missing", "--workers", str(workers)).split()]
+
+    def compute(self, client):
+        before = None
+        while True:
+            missing = self.missing(max(1, len(client.scheduler_info()["workers"])))
+            if not missing:
+                code = subprocess.run([*self.command, "--merge"], cwd=self.folder).returncode
+                if code == 0:
+                    return
+                missing = self.missing(1)  # what was found to be damaged
+                if not missing:
+                    raise RunError(f"what was computed could not be put together: exit code {code}")
+            if missing == before:
+                raise RunError("no part could be finished: what is said above must be mended first")
+            self.deal(client, missing)
+            before = missing
+
+    def deal(self, client, parts):
+        """One task a part, until all have ended. Raises InputError where the program does not take its input."""
+        from distributed import as_completed
+        futures = {client.submit(compute_part, self.command, self.folder, part, key=f"part-{part}-{os.urandom(4).hex()}",
+                                 retries=self.tries - 1, pure=False): part for part in parts}
+        try:
+            for done, future in enumerate(as_completed(futures), 1):
+                part = futures[future]
+                if future.status != "finished":
+                    self.report(f"part {part}: {future.exception()}")
+                elif future.result():
+                    raise InputError(problems_of(future.result()))
+                else:
+                    self.report(f"part {part}: {done} of {len(parts)}")
+        finally:
+            client.cancel(list(futures))
+
+
+def problems_of(messages):
+    return [line.removeprefix("mcdem: ") for line in messages.splitlines()]
+
+
+def compute_part(command, folder, part):
+    """The task: None, or why the program does not take its input. Raises RuntimeError, for another try, where it failed."""
+    import shutil
+    import subprocess
+    from distributed import get_worker
+    words = [*command, "--part", str(part)]
+    place = get_worker().name
+    if isinstance(place, int):  # of a cluster with a worker a device
+        devices = subprocess.run([command[0], "devices", "--alike"], capture_output=True, text=True).stdout.split()
+        if devices:
+            words += ["--device", devices[place % len(devices)]]
+    if shutil.which("setpriv"):  # the process ends when its worker does
+        words = ["setpriv", "--pdeathsig", "TERM", *words]
+    done = subprocess.run(words, cwd=folder, stdin=subprocess.DEVNULL, capture_output=True, text=True, errors="replace")
+    if done.returncode == 2:
+        return done.stderr
+    if done.returncode != 0:
+        raise RuntimeError(f"exit code {done.returncode}: {done.stderr.strip()[-1000:]}")
+    return None
+
+
+def send_by_value():
+    """Workers need no package mcdem: the task goes to them with all that it is."""
+    if __name__ != "__main__":
+        import cloudpickle
+        cloudpickle.register_pickle_by_value(sys.modules[__name__])
+
+
+def main():
+    parser = argparse.ArgumentParser(
+        prog="mcdem distribute", description="Parts of a command's work as tasks of Dask: by default on all devices of "
+        "this machine, with --scheduler on a cluster that runs already.")
+    parser.add_argument("--scheduler", metavar="ADDRESS|FILE", help="of a running Dask scheduler: tcp://.., or its file")
+    parser.add_argument("--tries", type=int, default=TRIES, metavar="N", help="of a part that fails (default: %(default)s)")
+    parser.add_argument("words", nargs=argparse.REMAINDER, metavar="COMMAND ..",
+                        help="the command line: run, challenge run or diagnose, with their options")
+    options = parser.parse_args()
+    if not options.words:
+        parser.error("a command is needed: run, challenge run or diagnose")
+    import distributed
+    with contextlib.ExitStack() as stack:
+        client = None
+        if options.scheduler:
+            is_file = os.path.exists(options.scheduler)
+            client = stack.enter_context(distributed.Client(scheduler_file=options.scheduler) if is_file
+                                         else distributed.Client(options.scheduler))
+        compute(options.words, client=client, tries=options.tries)
+
+
+if __name__ == "__main__":
+    main()
+else:
+    with contextlib.suppress(ModuleNotFoundError):  # found missing where it is used
+        send_by_value()

@@ -1,0 +1,126 @@
+"""Runs and challenges by Dask: on a cluster of this machine whose workers are killed, and on a client of a user's own. The bytes
+of one process.
+
+dask_test.py MCDEM DEVICE_LAYER; skipped (77) without python3-distributed, and run by the Python that has it.
+"""
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+
+import shared_challenge
+import shared_runs
+from shared_runs import ALONE, PARTS, TWO_DEVICES, Hold, command_of, finish, skip
+
+try:
+    import distributed  # noqa: F401
+except ImportError:
+    skip("the Python package distributed is not there (Debian package python3-distributed)")
+
+PACKAGE = pathlib.Path(__file__).resolve().parents[2] / "host/python"
+PYTHON = {"MCDEM_PYTHON": sys.executable}
+BY_HAND = """
+import mcdem.distributed
+from distributed import Client, LocalCluster
+
+if __name__ == "__main__":
+    with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=":0") as cluster, Client(cluster) as client:
+        mcdem.distributed.run("sweep.toml", "dask", client=client, part_replicas=1)
+        try:
+            mcdem.distributed.run("sweep.toml", "dask", settings={"grains.friction": -7}, client=client)
+        except ValueError as error:
+            print("refused:", error)
+"""
+
+
+def distribute(place, words, hold=None, more=None):
+    environment = {**PYTHON, **(hold.environment if hold else {}), **(more or {})}
+    return place.start([place.mcdem, "distribute", *words], environment)
+
+
+def parent_of(process):
+    return int(pathlib.Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[1])
+
+
+def kill_a_worker(hold):
+    """kill -9 of the Dask worker whose part is held; what it had started ends by itself."""
+    held = hold.wait_for(1)[0]
+    os.kill(parent_of(held), signal.SIGKILL)
+    shared_runs.wait_until(lambda: shared_runs.is_told_to_end(held), "the part of the killed worker to be told")
+    hold.end()
+
+
+def outlives_a_killed_worker(place):
+    """Its part is computed by another; the address of the dashboard is said."""
+    place.run_alone()
+    hold = Hold(place, only_one=True)
+    process = distribute(place, [*command_of("sweep.toml", "dask"), *PARTS], hold, TWO_DEVICES)
+    kill_a_worker(hold)
+    said = finish(process)
+    assert "8 of 8 replicas done" in said and "dashboard: http" in said, said
+    place.expect_like_alone("dask")
+    assert "8 of 8 replicas done" in finish(distribute(place, command_of("sweep.toml", "dask")))
+
+
+def tries_a_failed_part_again(place):
+    """A device stops answering in the middle of one part."""
+    place.run_alone()
+    vanishing = {"OPENCL_LAYERS": str(pathlib.Path(sys.argv[2]).resolve()), "MCDEM_TEST_KERNELS": "3000",
+                 "MCDEM_TEST_VICTIM": str(place.path / "victim")}
+    finish(distribute(place, [*command_of("sweep.toml", "dask"), *PARTS], more=vanishing))
+    assert (place.path / "victim").exists()
+    place.expect_like_alone("dask")
+
+
+def goes_on_after_an_interruption(place):
+    """Ctrl-C: what was done stays, and the same command goes on with what is missing."""
+    place.run_alone()
+    words = [*command_of("sweep.toml", "dask"), *ALONE]
+    hold = Hold(place)
+    process = distribute(place, words, hold)
+    hold.wait_for(1)
+    process.terminate()
+    hold.end()
+    finish(process, exit_codes=(130,))
+    assert not (place.path / "dask/run.h5").exists()
+    finish(distribute(place, words))
+    place.expect_like_alone("dask")
+
+
+def works_from_python(place):
+    """With a client of the user's own, and without the compiled module."""
+    place.run_alone()
+    (place.path / "by_hand.py").write_text(BY_HAND)
+    said = place.run([sys.executable, "by_hand.py"], {"PYTHONPATH": str(PACKAGE), "MCDEM_PROGRAM": place.mcdem})
+    assert "refused: " in said and "grains.friction" in said, said
+    place.expect_like_alone("dask")
+
+
+def a_challenge_is_distributed(place):
+    """Library and cases; a worker is killed while the cases are diagnosed."""
+    shared_challenge.run_alone(place)
+    hold = shared_challenge.hold(place, "dask")
+    process = distribute(place, shared_challenge.command_of("dask"), hold)
+    kill_a_worker(hold)
+    finish(process)
+    shared_challenge.expect_like_alone(place, "dask")
+
+
+def says_what_is_wrong(place):
+    """Bad input, and what is to be installed."""
+    said = finish(distribute(place, [*command_of("sweep.toml", "dask"), "--set", "nothing=1"]), exit_codes=(2,))
+    assert "mcdem: " in said and "nothing" in said and "Traceback" not in said, said
+    without = place.path / "python"
+    without.write_text(f"#!/bin/sh\nexec {sys.executable} -S \"$@\"\n")
+    without.chmod(0o755)
+    said = finish(distribute(place, command_of("sweep.toml", "dask"), more={"MCDEM_PYTHON": str(without)}), exit_codes=(1,))
+    assert "install python3-distributed" in said, said
+
+
+def main():
+    shared_runs.run_tests([says_what_is_wrong, outlives_a_killed_worker, tries_a_failed_part_again,
+                           goes_on_after_an_interruption, works_from_python, a_challenge_is_distributed])
+
+
+main()
