@@ -1,6 +1,7 @@
 // Diagnoses of realities made by the program itself, in a scene of 64 grains.
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "cli/tiny_challenge.h"
 
@@ -66,6 +67,33 @@ TEST_F(DiagnoseTest, ACandidateWhoseRunsFailCostsItselfAtMost) {
     const auto told = diagnosis(words);
     EXPECT_EQ(told["verdict"], "no_gap") << told["sentence"];
     EXPECT_GT(told["cells"].size(), 100u);
+}
+
+TEST_F(DiagnoseTest, WithItsLibraryInPartsIsTheSame) {
+    experiment({"grains.friction=0.3"});
+    const Words options{"--replicates", "8", "--pairs", "2", "--confirmations", "2", "--candidates", "friction"};
+    auto alone = diagnosis(options);
+    const auto in_parts = [&](const Words& more) {
+        Words words{"diagnose", "tiny.toml", "--experiment", "e", "--out", "parts"};
+        words.insert(words.end(), options.begin(), options.end());
+        words.insert(words.end(), more.begin(), more.end());
+        return mcdem(words);
+    };
+    const auto missing = in_parts({"--missing"});
+    expect_done(missing);
+    EXPECT_THAT(missing.out, testing::StartsWith("0\n"));
+    std::istringstream numbers(missing.out);
+    for (std::string number; numbers >> number;) expect_done(in_parts({"--part", number}));
+    EXPECT_EQ(in_parts({"--missing"}).out, "");
+    expect_bad_input(in_parts({"--part", "99"}), "--part: must be below");
+    expect_done(in_parts({"--merge"}));
+    auto told = nlohmann::json::parse(std::ifstream(path("parts/diagnosis.json")));
+    for (auto* one : {&alone, &told}) one->erase("seconds");
+    EXPECT_EQ(told, alone);
+    const auto simulations = [&](const char* folder) {
+        return std::distance(std::filesystem::directory_iterator(path(folder) / "simulations"), {});
+    };
+    EXPECT_EQ(simulations("parts"), simulations("d"));
 }
 
 }  // namespace
