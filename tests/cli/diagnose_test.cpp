@@ -71,7 +71,8 @@ TEST_F(DiagnoseTest, ACandidateWhoseRunsFailCostsItselfAtMost) {
 
 TEST_F(DiagnoseTest, WithItsLibraryInPartsIsTheSame) {
     experiment({"grains.friction=0.3"});
-    const Words options{"--replicates", "8", "--pairs", "2", "--confirmations", "2", "--candidates", "friction"};
+    const Words options{"--replicates",    "8", "--pairs",      "2",
+                        "--confirmations", "2", "--candidates", "friction"};
     auto alone = diagnosis(options);
     const auto in_parts = [&](const Words& more) {
         Words words{"diagnose", "tiny.toml", "--experiment", "e", "--out", "parts"};

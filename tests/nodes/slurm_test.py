@@ -4,6 +4,8 @@ middle, nodes lost, names that a shell would stumble over, the bytes of one proc
 slurm_test.py MCDEM DEVICE_LAYER; skipped (77) where a program is missing or this is not root.
 """
 import re
+import subprocess
+import sys
 
 import own_slurm
 import shared_challenge
@@ -117,11 +119,40 @@ def a_challenge_is_shared(place):
     shared_challenge.expect_like_alone(place, "jobs")
 
 
+def dask_computes_on_its_nodes(place):
+    """Dask workers started by srun, one on each node; a node is lost, and the worker of the other computes its part."""
+    if subprocess.run([sys.executable, "-c", "import distributed"], stderr=subprocess.DEVNULL).returncode != 0:
+        print("left out: the Python package distributed is not there (Debian package python3-distributed)")
+        return
+    place.run_alone()
+    hold = Hold(place, only_one=True)
+    scheduler = place.start([sys.executable, "-m", "distributed.cli.dask_scheduler", "--port", "0", "--dashboard-address",
+                             ":0", "--scheduler-file", "dask.json"])
+    shared_runs.wait_until((place.path / "dask.json").exists, "the scheduler")
+    worker = [sys.executable, "-m", "distributed.cli.dask_worker", "--scheduler-file", "dask.json", "--nthreads", "1",
+              "--no-dashboard"]
+    workers = [place.start(["srun", "--partition=short", f"--nodelist={node}", "--ntasks=1", *worker],
+                           {**cluster.environment, **hold.environment}) for node in own_slurm.NODES]
+    process = place.start([place.mcdem, "distribute", "--scheduler", "dask.json", *command_of("sweep.toml", "dask"), *PARTS],
+                          {"MCDEM_PYTHON": sys.executable})
+    node = cluster.node_of(hold.wait_for(1)[0])
+    cluster.lose(node)
+    hold.end()
+    said = finish(process)
+    assert "8 of 8 replicas done" in said, said
+    place.expect_like_alone("dask")
+    place.run(["scancel", "--user=root"], cluster.environment)
+    scheduler.terminate()
+    for ended in (scheduler, *workers):
+        finish(ended, exit_codes=range(-64, 256))
+    cluster.bring_back(node)
+
+
 def main():
     with cluster.running():
         shared_runs.run_tests([outlives_a_killed_task, goes_on_after_a_cancelled_job, is_not_submitted_twice,
                                outlives_a_lost_node, outlives_the_loss_of_all_nodes, says_what_slurm_refuses,
-                               a_challenge_is_shared], cluster.wait_for_jobs)
+                               a_challenge_is_shared, dask_computes_on_its_nodes], cluster.wait_for_jobs)
 
 
 main()

@@ -1,7 +1,7 @@
 """Parts of a run, a challenge or a diagnosis as tasks of Dask: on this machine, or wherever a Dask cluster runs.
 
-mcdem.distributed.run("scene.toml", out="out/sweep")                           # a process for each device of this machine
-mcdem.distributed.run("scene.toml", out="out/sweep", client=Client(cluster))   # any cluster: Slurm, PBS, LSF, Kubernetes, ..
+mcdem.distributed.run("scene.toml", "out/sweep")                           # a process for each device of this machine
+mcdem.distributed.run("scene.toml", "out/sweep", client=Client(cluster))   # any cluster: Slurm, PBS, LSF, Kubernetes, ..
 mcdem.distributed.compute(["challenge", "run", ...])                           # any command that works in parts
 
 Each task is a process `mcdem .. --part K`. Machines need the program and the folders by the same paths. A part that a lost
@@ -14,6 +14,7 @@ import pathlib
 import shutil
 import subprocess
 import sys
+from typing import Any, Callable
 
 from .errors import InputError, RunError
 
@@ -28,7 +29,8 @@ def program_path():
     return str(pathlib.Path(found).resolve())
 
 
-def run(scene, out, *, settings=None, part_replicas=None, figures=False, **how):
+def run(scene: str | os.PathLike[str], out: str | os.PathLike[str], *, settings: dict[str, Any] | None = None,
+        part_replicas: int | None = None, figures: bool = False, **how: Any) -> None:
     """Runs a scene into the folder `out`: its replicas, in parts. `settings` overrides keys; `how`: see compute."""
     words = ["run", os.fspath(scene), "--out", os.fspath(out)] + ([] if figures else ["--no-figures"])
     for key, value in (settings or {}).items():
@@ -38,7 +40,8 @@ def run(scene, out, *, settings=None, part_replicas=None, figures=False, **how):
     compute(words, **how)
 
 
-def compute(words, *, client=None, folder=None, tries=TRIES, report=None):
+def compute(words: list[str], *, client: Any = None, folder: str | os.PathLike[str] | None = None, tries: int = TRIES,
+            report: Callable[[str], None] | None = None) -> None:
     """Computes what is missing of a command's work, and puts it together. Given again, it goes on where it stopped.
 
     `words`: the command line after `mcdem`. `client`: a distributed.Client, else a cluster of this machine with a worker
