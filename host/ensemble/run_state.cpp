@@ -7,8 +7,10 @@
 #include "cl/program.h"
 #include "core/errors.h"
 #include "core/output_file.h"
+#include "core/parameters.h"
 #include "ensemble/challenge_run.h"
 #include "io/result_file.h"
+#include "scene/read_scene.h"
 
 namespace mcdem {
 namespace {
@@ -53,7 +55,26 @@ std::string digest_of(const std::vector<Packing>& packings) {
     return digest.text();
 }
 
-/// The first line in which two scenes differ, as "now has .., had ..".
+/// The keys in which two scenes differ with their values, of the first replica that differs: "contact.gamma
+/// is 1.2, was 1". Empty where no key tells.
+std::string changed_keys(const std::string& now, const std::string& then) {
+    std::string text;
+    try {
+        const Scene new_scene = parse_scene(now, "scene"), old_scene = parse_scene(then, "scene");
+        const std::size_t replicas = std::min(new_scene.replicas.size(), old_scene.replicas.size());
+        for (std::size_t r = 0; r < replicas && text.empty(); ++r) {
+            const auto& is = new_scene.replicas[r].parameters;
+            const auto& was = old_scene.replicas[r].parameters;
+            for (const auto& key : keys_that_vary({is, was}))
+                text += fmt::format("{}{} is {}, was {}", text.empty() ? "" : "; ", key, value_of(is, key),
+                                    value_of(was, key));
+        }
+    } catch (const InputError&) {  // a scene of another version
+    }
+    return text;
+}
+
+/// The first line in which two scenes differ.
 std::string first_difference(const std::string& now, const std::string& then) {
     const auto line_of = [](const std::string& text, std::size_t begin) {
         return begin < text.size() ? text.substr(begin, text.find('\n', begin) - begin) : "nothing";
@@ -65,11 +86,12 @@ std::string first_difference(const std::string& now, const std::string& then) {
 }
 
 void expect_same_scene(const std::string& now, const std::string& then, const std::string& folder) {
-    if (now != then)
-        throw InputError(
-            fmt::format("{}: must be resumed with the scene it was begun with, overrides "
-                        "included; {}: give that one, or another folder",
-                        folder, first_difference(now, then)));
+    if (now == then) return;
+    const std::string changes = changed_keys(now, then);
+    throw InputError(
+        fmt::format("{}: must be resumed with the scene it was begun with, overrides "
+                    "included; {}: give that one, or another folder",
+                    folder, changes.empty() ? first_difference(now, then) : changes));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "core/output_file.h"
+#include "core/parameters.h"
 
 namespace mcdem {
 namespace {
@@ -12,7 +13,7 @@ namespace {
 constexpr const char* header =
     "replica,label,frame,cycle,phase,time_s,plate_z_m,displacement_m,top_force_N,floor_force_N,"
     "x_min_force_N,x_max_force_N,y_min_force_N,y_max_force_N,coordination_number,mean_force_N,"
-    "packing_fraction,branch_length_m,kinetic_energy_J,elastic_energy_J,settled,rate_error\n";
+    "packing_fraction,branch_length_m,kinetic_energy_J,elastic_energy_J,settled,rate_error";
 
 std::string quoted(const std::string& text) {
     std::string result = "\"";
@@ -21,6 +22,18 @@ std::string quoted(const std::string& text) {
         result += c == '\n' ? ' ' : c;
     }
     return result + '"';
+}
+
+/// A number as it stands, a word in quotes.
+std::string value_text(const std::string& value) {
+    const bool is_number = !value.empty() && value.find_first_not_of("0123456789+-.eE") == value.npos;
+    return is_number || value.empty() ? value : quoted(without_quotes(value));
+}
+
+std::vector<std::string> varying_keys(const Run& run) {
+    std::vector<Parameters> all;
+    for (const auto& recording : run.recordings) all.push_back(recording.parameters);
+    return keys_that_vary(all);
 }
 
 /// The force that presses the wall outwards [N].
@@ -48,19 +61,24 @@ double pressing(const Scan& scan, Wall wall) {
 std::string csv_text(const Run& run) {
     fmt::memory_buffer text;
     auto out = std::back_inserter(text);
+    const auto keys = varying_keys(run);
     fmt::format_to(out, header);
+    for (const auto& key : keys) fmt::format_to(out, ",{}", key);
+    fmt::format_to(out, "\n");
     for (std::size_t r = 0; r < run.recordings.size(); ++r) {
         const Recording& recording = run.recordings[r];
         const std::string label = quoted(recording.label);
+        std::string parameters;
+        for (const auto& key : keys) parameters.append(",").append(value_text(value_of(recording.parameters, key)));
         for (const Scan& scan : recording.scans) {
             // "{}" prints the shortest digits that read back as the same number.
             fmt::format_to(out, "{},{},{},{},{},{},{},{},", r, label, scan.frame, scan.cycle,
                            name(scan.phase), scan.time, scan.plate_z, recording.displacement(scan));
             for (Wall wall : {Wall::plate, Wall::floor, Wall::x_min, Wall::x_max, Wall::y_min, Wall::y_max})
                 fmt::format_to(out, "{},", pressing(scan, wall));
-            fmt::format_to(out, "{},{},{},{},{},{},{:d},{}\n", scan.coordination_number, scan.mean_force,
+            fmt::format_to(out, "{},{},{},{},{},{},{:d},{}{}\n", scan.coordination_number, scan.mean_force,
                            scan.packing_fraction, scan.branch_length, scan.kinetic_energy,
-                           scan.elastic_energy, scan.settled, scan.rate_error);
+                           scan.elastic_energy, scan.settled, scan.rate_error, parameters);
         }
     }
     return fmt::to_string(text);

@@ -1,4 +1,4 @@
-// Summaries as CSV, for spreadsheets and gnuplot.
+// Summaries as CSV, for spreadsheets.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -8,6 +8,7 @@
 namespace mcdem {
 
 /// The text of `plate.csv`: one row per replica and scan, without positions and contacts.
+/// A column for each scene key that is not the same in all replicas comes last.
 /// Wall forces are the components that press the wall outwards; what is not known is `nan`.
 std::string csv_text(const Run& run);
 

@@ -35,6 +35,21 @@ double largest_rate_error(const Replicas& replicas) {
     return largest;
 }
 
+/// The largest displacement of all that did not stop early; not-a-number where all did.
+double largest_stroke(const std::vector<Setting>& settings, const LevelOptions& options) {
+    double largest = not_available;
+    for (const auto& setting : settings)
+        largest = std::fmax(largest, full_stroke(group_levels(setting.replicas, options), setting.replicas));
+    return largest;
+}
+
+/// Displacement of the furthest scan, of replicas that stopped early too.
+double last_scan(const Levels& levels) {
+    double last = not_available;
+    for (const auto& level : levels) last = std::fmax(last, level.displacement);
+    return last;
+}
+
 }  // namespace
 
 ModelTable model_table(const std::vector<Setting>& settings, const LevelOptions& options,
@@ -45,12 +60,20 @@ ModelTable model_table(const std::vector<Setting>& settings, const LevelOptions&
     const auto over_levels = group_levels(over.replicas, options);
     table.reference = over.label;
     table.displacement = full_stroke(over_levels, over.replicas);
-    const auto below = top_force_at(over_levels, over.replicas, table.displacement, options.tolerance);
+    if (std::isnan(table.displacement)) table.displacement = largest_stroke(settings, options);
     for (const auto& setting : settings) {
         const auto levels = group_levels(setting.replicas, options);
-        const auto above = top_force_at(levels, setting.replicas, table.displacement, options.tolerance);
-        ModelRow row{setting.label, model_of(setting.replicas), mean_over_replicas(above.value),
-                     ratio_of_means(above, below), static_cast<int>(setting.replicas.size())};
+        const auto at = [&](double displacement) {
+            const auto above = top_force_at(levels, setting.replicas, displacement, options.tolerance);
+            const auto below = top_force_at(over_levels, over.replicas, displacement, options.tolerance);
+            return ModelRow{setting.label, model_of(setting.replicas), mean_over_replicas(above.value),
+                            ratio_of_means(above, below), static_cast<int>(setting.replicas.size())};
+        };
+        ModelRow row = at(table.displacement);
+        if (const double last = last_scan(levels); !row.top_force.available() && std::isfinite(last)) {
+            row = at(last);
+            row.reached = last;
+        }
         for (const auto* recording : setting.replicas) row.failed += recording->failure.has_value();
         table.rate_error = std::fmax(table.rate_error, largest_rate_error(setting.replicas));
         table.rows.push_back(row);

@@ -8,17 +8,21 @@ namespace mcdem {
 struct ModelRow {
     std::string setting;
     std::optional<ContactModel> model;
-    Estimate top_force;  ///< at full stroke [N]
+    Estimate top_force;  ///< at full stroke, or at `reached` [N]
     Estimate ratio;      ///< over the reference setting's; paired over packing seeds where they match
     int replicas = 0;
     int failed = 0;  ///< replicas that stopped before the end of their protocol
+    /// Displacement of the last scan where no replica reached full stroke [m].
+    std::optional<double> reached = std::nullopt;
 };
 
 struct ModelTable {
     std::vector<ModelRow> rows;           ///< in the order of the settings
     std::string reference;                ///< label of the setting that ratios are taken over
-    double displacement = not_available;  ///< full stroke of the reference setting [m]
-    double rate_error = not_available;    ///< largest that the engine estimated where a tenth of the top force is reached
+    double displacement = not_available;  ///< full stroke of the reference setting, or the largest that any
+                                          ///< setting reached where the reference stopped early [m]
+    double rate_error =
+        not_available;  ///< largest that the engine estimated where a tenth of the top force is reached
 };
 
 /// The reference is the setting of that label; none: the first of model mc_dem, else the first.

@@ -1,7 +1,9 @@
 #include "metrics/replicas.h"
 
+#include <algorithm>
 #include <charconv>
-#include <set>
+
+#include "core/parameters.h"
 
 namespace mcdem {
 namespace {
@@ -11,44 +13,46 @@ const std::string seed_key = "packing.seed";
 const std::string model_key = "contact.model";
 const std::string discard_key = "protocol.discard";
 
-using Parameters = std::map<std::string, std::string>;
-
-std::string value_of(const Parameters& parameters, const std::string& key) {
-    const auto found = parameters.find(key);
-    return found == parameters.end() ? "" : found->second;
-}
-
-/// TOML writes words in quotes; parameters may hold them either way.
-std::string without_quotes(const std::string& text) {
-    const bool quoted = text.size() >= 2 && text.front() == '"' && text.back() == '"';
-    return quoted ? text.substr(1, text.size() - 2) : text;
-}
-
 Parameters without_seed(Parameters parameters) {
     parameters.erase(seed_key);
     return parameters;
 }
 
-/// Keys whose value is not the same in all settings.
-std::set<std::string> keys_that_vary(const std::vector<Parameters>& settings) {
-    std::set<std::string> all, varying;
-    for (const auto& parameters : settings)
-        for (const auto& [key, value] : parameters) all.insert(key);
-    for (const auto& key : all)
-        for (const auto& parameters : settings)
-            if (value_of(parameters, key) != value_of(settings.front(), key)) varying.insert(key);
-    return varying;
-}
-
-std::string label_of(const Parameters& parameters, const std::set<std::string>& varying) {
-    std::string label = varying.contains(model_key) ? without_quotes(value_of(parameters, model_key)) : "";
+/// "gamma=1" of every key that varies, the model's word first.
+std::string label_of(const Parameters& parameters, const std::vector<std::string>& varying) {
+    std::string label =
+        std::ranges::count(varying, model_key) ? without_quotes(value_of(parameters, model_key)) : "";
     for (const auto& key : varying) {
         if (key == model_key) continue;
         const auto value = without_quotes(value_of(parameters, key));
-        label += (label.empty() ? "" : ", ") + key.substr(key.rfind('.') + 1) + " = " +
+        label += (label.empty() ? "" : ", ") + key.substr(key.rfind('.') + 1) + "=" +
                  (value.empty() ? "none" : value);
     }
     return label;
+}
+
+/// What all recordings are called but for their copy's number " #2"; empty where they are not.
+std::string common_label(const Replicas& replicas) {
+    const auto without_copy = [](const std::string& label) {
+        const auto end = label.find_last_not_of("0123456789");
+        const bool is_copy =
+            end != label.npos && end > 0 && end + 1 < label.size() && label.compare(end - 1, 2, " #") == 0;
+        return is_copy ? label.substr(0, end - 1) : label;
+    };
+    const std::string label = without_copy(replicas.front()->label);
+    for (const auto* recording : replicas)
+        if (recording->parameters.empty() || without_copy(recording->label) != label) return "";
+    return label;
+}
+
+/// The labels that the scene gave, where they tell all settings apart.
+std::vector<std::string> labels_of_scene(const std::vector<Setting>& settings) {
+    std::vector<std::string> labels;
+    for (const auto& setting : settings) {
+        labels.push_back(common_label(setting.replicas));
+        if (labels.back().empty() || std::ranges::count(labels, labels.back()) > 1) return {};
+    }
+    return labels;
 }
 
 }  // namespace
@@ -73,8 +77,9 @@ std::vector<Setting> group_by_setting(const Run& run) {
         settings[which].replicas.push_back(&recording);
     }
     const auto varying = keys_that_vary(parameters);
+    const auto labels = labels_of_scene(settings);
     for (std::size_t s = 0; s < settings.size(); ++s) {
-        settings[s].label = label_of(parameters[s], varying);
+        settings[s].label = labels.empty() ? label_of(parameters[s], varying) : labels[s];
         if (settings[s].label.empty()) settings[s].label = without_quotes(value_of(parameters[s], model_key));
         if (settings[s].label.empty()) settings[s].label = run.name;
     }

@@ -12,7 +12,7 @@ namespace mcdem {
 using Replicas = std::vector<const Recording*>;
 
 struct Setting {
-    std::string label;  ///< what sets it apart from the run's other settings, e.g. "mc_dem" or "gamma = 1.2"
+    std::string label;  ///< what sets it apart from the run's other settings, e.g. "mc_dem" or "gamma=1.2"
     Replicas replicas;
 };
 

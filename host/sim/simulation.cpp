@@ -36,8 +36,9 @@ std::string cause_of(const IntervalResult& result, const Replica& replica, int s
     add(STATUS_OVERLAP,
         fmt::format(
             "a corrected overlap passed {} of the sum of the radii: no static solution at this compression, "
-            "the force runs away (compress less, or lower contact.gamma)",
-            replica.numerics.overlap_limit));
+            "the force runs away (compress less: raise plate.end{})",
+            replica.numerics.overlap_limit,
+            replica.contact.model == ContactModel::mc_dem ? ", or lower contact.gamma" : ""));
     add(STATUS_NOT_A_NUMBER,
         "a position is not a number: the time step is too long (lower numerics.time_step)");
     add(STATUS_LOST,

@@ -111,6 +111,7 @@ TEST_F(SharingTest, AnotherProgramsRunIsRefused) {
     const auto finished =
         mcdem(run_words("out", {"--device", "all", "--set", "protocol.scans_per_stroke=2"}));
     expect_bad_input(finished, "must be resumed with the scene it was begun with");
+    EXPECT_THAT(finished.err, testing::ContainsRegex("; protocol\\.scans_per_stroke is 2, was [0-9]+: give"));
 }
 
 TEST_F(SharingTest, WhereAPartIsComputedNoneWritesAlone) {

@@ -61,6 +61,18 @@ TEST(csv, a_row_per_scan_reads_back_exactly) {
     EXPECT_EQ(value("settled"), "1");
 }
 
+TEST(csv, what_is_not_the_same_in_all_replicas_has_a_column) {
+    auto run = synthetic_run();
+    ASSERT_GE(run.recordings.size(), 2u);
+    for (auto& recording : run.recordings) recording.parameters = {{"contact.gamma", "1"}, {"name", "\"a\""}};
+    run.recordings[1].parameters["contact.gamma"] = "1.125";
+    run.recordings[1].parameters["contact.model"] = "\"mc_dem\"";
+    const std::string text = csv_text(run);
+    EXPECT_NE(text.find(",rate_error,contact.gamma,contact.model\n"), std::string::npos) << text;
+    EXPECT_NE(text.find(",1,\n"), std::string::npos);
+    EXPECT_NE(text.find(",1.125,\"mc_dem\"\n"), std::string::npos);
+}
+
 TEST(vtk, vtk_reads_grains_and_contacts) {
     TemporaryFolder folder;
     const auto run = synthetic_run({.replicas = 2, .scans = 3});
@@ -74,7 +86,8 @@ TEST(vtk, vtk_reads_grains_and_contacts) {
             << (folder / "view/replica_00001").string() << " 000002 " << scan.position.size() << ' '
             << scan.contacts.size() << ' ' << last.force.z() << ' ' << scan.plate_z;
     const Finished finished = run_command(command.str());
-    if (finished.exit_code == module_missing) GTEST_SKIP() << "neither python3-paraview nor python3-vtk9 is installed";
+    if (finished.exit_code == module_missing)
+        GTEST_SKIP() << "neither python3-paraview nor python3-vtk9 is installed";
     EXPECT_EQ(finished.exit_code, 0) << finished.output;
 }
 
@@ -103,7 +116,8 @@ TEST(vtk, a_scan_without_contacts_still_makes_files) {
             << (folder / "view/replica_00000").string() << " 000000 27 0 0 "
             << run.recordings[0].scans[0].plate_z;
     const Finished finished = run_command(command.str());
-    if (finished.exit_code == module_missing) GTEST_SKIP() << "neither python3-paraview nor python3-vtk9 is installed";
+    if (finished.exit_code == module_missing)
+        GTEST_SKIP() << "neither python3-paraview nor python3-vtk9 is installed";
     EXPECT_EQ(finished.exit_code, 0) << finished.output;
 }
 

@@ -103,6 +103,25 @@ TEST(ModelTable, replicas_that_stopped_early_do_not_count) {
     EXPECT_NEAR(table.rows[0].ratio.value, 0.8, 1e-12);
 }
 
+TEST(ModelTable, a_setting_that_stopped_early_shows_its_last_scan) {
+    auto run = synthetic::run({{.model = "independent", .top = 6}, {.model = "mc_dem", .top = 15}}, 2);
+    for (int i : {2, 3}) {
+        run.recordings[i].scans.resize(6);
+        run.recordings[i].failure = Failure{1, 2, "ran away"};
+    }
+    const auto table = model_table(group_by_setting(run));
+    EXPECT_EQ(table.reference, "mc_dem");
+    EXPECT_NEAR(table.displacement, 30e-3, 1e-12);  // of the independent contacts
+    EXPECT_FALSE(table.rows[0].reached);
+    EXPECT_NEAR(table.rows[0].top_force.value, 6, 1e-12);
+    EXPECT_FALSE(table.rows[0].ratio.available());
+    const auto& stopped = table.rows[1];
+    ASSERT_TRUE(stopped.reached);
+    EXPECT_NEAR(*stopped.reached, run.recordings[2].displacement(run.recordings[2].scans[5]), 1e-12);
+    EXPECT_NEAR(stopped.top_force.value, run.recordings[2].scans[5].top_force(), 1e-12);
+    EXPECT_NEAR(stopped.ratio.value, 1, 1e-12);
+}
+
 TEST(ModelTable, reference_may_be_named_or_is_the_first) {
     const auto run =
         synthetic::run({{.model = "sphere_to_sphere", .top = 10}, {.model = "independent", .top = 5}}, 1);

@@ -23,9 +23,23 @@ TEST(GroupBySetting, label_tells_what_differs) {
     for (int i = 0; i < 4; ++i) run.recordings[i].parameters["contact.gamma"] = i < 2 ? "1" : "1.125";
     const auto settings = group_by_setting(run);
     ASSERT_EQ(settings.size(), 2u);
-    EXPECT_EQ(settings[0].label, "gamma = 1");
-    EXPECT_EQ(settings[1].label, "gamma = 1.125");
+    EXPECT_EQ(settings[0].label, "gamma=1");
+    EXPECT_EQ(settings[1].label, "gamma=1.125");
     EXPECT_EQ(settings[1].replicas.size(), 2u);
+}
+
+TEST(GroupBySetting, goes_by_the_labels_of_the_scene) {
+    auto run = synthetic::run({{.model = "mc_dem"}}, 4);
+    for (int i = 0; i < 4; ++i) {
+        run.recordings[i].parameters["contact.gamma"] = i < 2 ? "1" : "1.125";
+        run.recordings[i].label = std::string(i < 2 ? "packing 7" : "gamma=1.125") + (i % 2 ? " #2" : " #1");
+    }
+    const auto settings = group_by_setting(run);
+    EXPECT_EQ(settings[0].label, "packing 7");
+    EXPECT_EQ(settings[1].label, "gamma=1.125");
+    run.recordings[3].label = "packing 7 #4";  // no longer told apart
+    EXPECT_EQ(group_by_setting(run)[1].label, "gamma=1.125");
+    EXPECT_EQ(group_by_setting(run)[0].label, "gamma=1");
 }
 
 TEST(GroupBySetting, words_in_quotes_are_the_same_words) {

@@ -4,6 +4,7 @@
 #include <random>
 #include <string>
 
+#include "core/parameters.h"
 #include "core/recording.h"
 
 namespace mcdem::synthetic {
@@ -61,7 +62,7 @@ inline Scan scan_at(const Law& law, Phase phase, double displacement, double fac
 inline Recording recording(const Law& law) {
     std::mt19937_64 random(law.seed * 7919 + 17);
     Recording made;
-    made.label = law.model + ", packing " + std::to_string(law.seed);
+    made.label = without_quotes(law.model) + " #" + std::to_string(law.seed);
     made.parameters = {{"contact.model", law.model}, {"packing.seed", std::to_string(law.seed)}};
     made.plate_start = 0.17;
     made.diameter.assign(law.grains, 0.0215);

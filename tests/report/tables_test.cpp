@@ -57,6 +57,29 @@ TEST(TableOfModels, names_reference_stroke_and_failures) {
     EXPECT_THAT(text, HasSubstr("stopped early"));
 }
 
+TEST(TableOfModels, marks_what_did_not_reach_full_stroke) {
+    auto run = synthetic::run({{.model = "independent", .top = 6.45}, {.model = "mc_dem"}}, 1);
+    run.recordings[1].failure = Failure{};
+    run.recordings[1].scans.resize(6);
+    const auto text = to_text(table_of_models(model_table(group_by_setting(run))), TableFormat::terminal);
+    EXPECT_THAT(text, HasSubstr("top force at 30.00 mm [N]"));
+    EXPECT_THAT(text, testing::ContainsRegex("MC-DEM +[0-9.]+ \\* at [0-9.]+ mm +1\\.000 +1 +1"));
+    EXPECT_THAT(text, HasSubstr("*: no replica reached full stroke"));
+}
+
+TEST(CsvOfModels, has_a_column_for_each_key_that_is_not_the_same_in_all) {
+    auto run = synthetic::run({{.model = "mc_dem", .top = 12}}, 2);
+    run.recordings[1].parameters["contact.gamma"] = "1.125";
+    run.recordings[0].parameters["contact.gamma"] = "1";
+    run.recordings[0].parameters["name"] = run.recordings[1].parameters["name"] = "\"same\"";
+    const auto settings = group_by_setting(run);
+    EXPECT_EQ(csv_of_models(model_table(settings), settings),
+              "setting,contact.gamma,displacement_mm,top_force_N,standard_error_N,over,ratio,"
+              "ratio_standard_error,replicas,stopped_early\n"
+              "gamma=1,1,30,12,,gamma=1,1,,1,0\n"
+              "gamma=1.125,1.125,30,12,,gamma=1,1,,1,0\n");
+}
+
 TEST(TableOfComparisons, has_the_papers_columns_and_units) {
     Comparison c;
     c.setting = "mc_dem";

@@ -148,9 +148,22 @@ TEST(Failure, SimulationNamesReplicaGrainStepAndCause) {
     EXPECT_GT(failures[0].second.step, 0);
     EXPECT_NE(failures[0].second.cause.find("no static solution"), std::string::npos)
         << failures[0].second.cause;
+    EXPECT_NE(failures[0].second.cause.find("lower contact.gamma"), std::string::npos)
+        << failures[0].second.cause;
     EXPECT_EQ(scans[0], 4) << "two levels, there and back";
     EXPECT_EQ(scans[1], 0);
     EXPECT_DOUBLE_EQ(simulation.progress(), 1);
+}
+
+TEST(Failure, AdviceNamesOnlyKeysThatTheModelUses) {
+    const Start start = squeezed(ContactModel::elastic_half_space, 1, 0.35, 5);
+    mcdem::Simulation simulation(device(), short_scene({start}), {start.packing});
+    std::string cause;
+    while (simulation.advance([](int, const mcdem::Scan&) {},
+                              [&](int, const mcdem::Failure& failure) { cause = failure.cause; })) {
+    }
+    EXPECT_NE(cause.find("raise plate.end"), std::string::npos) << cause;
+    EXPECT_EQ(cause.find("contact.gamma"), std::string::npos) << cause;
 }
 
 }  // namespace
