@@ -44,7 +44,6 @@ py::dtype scan_type() {
         .add("settled", &Scan::settled, "?")
         .add("time", &Scan::time, "f8")
         .add("plate_z", &Scan::plate_z, "f8")
-        .add("wall_force", &Scan::wall_force, "(6,3)f8")
         .add("kinetic_energy", &Scan::kinetic_energy, "f8")
         .add("elastic_energy", &Scan::elastic_energy, "f8")
         .add("rate_error", &Scan::rate_error, "f8")
@@ -69,6 +68,14 @@ py::dtype contact_type() {
 
 py::array scans_array(const Recording& recording, py::handle owner) {
     return rows(recording.scans, scan_type(), owner);
+}
+
+py::array wall_force_array(const Recording& recording, py::handle owner) {
+    static_assert(sizeof(Scan::wall_force) == 6 * sizeof(Vec3));
+    const auto count = static_cast<py::ssize_t>(recording.scans.size());
+    const Vec3* first = count == 0 ? nullptr : recording.scans.front().wall_force.data();
+    return view(py::dtype::of<double>(), {count, 6, 3}, {sizeof(Scan), sizeof(Vec3), sizeof(double)}, first,
+                owner);
 }
 
 py::array top_force_array(const Recording& recording, py::handle owner) {

@@ -6,9 +6,10 @@
 
 namespace mcdem {
 
-/// Each is read-only and has `owner` as its base. Shapes: [S] rows named as in run.h5, [S], [N], [N][3], [C]
-/// rows.
+/// Each is read-only and has `owner` as its base. Shapes: [S] rows named as in run.h5, [S][6][3], [S], [N],
+/// [N][3], [C] rows.
 pybind11::array scans_array(const Recording& recording, pybind11::handle owner);
+pybind11::array wall_force_array(const Recording& recording, pybind11::handle owner);
 pybind11::array top_force_array(const Recording& recording, pybind11::handle owner);
 pybind11::array diameter_array(const Recording& recording, pybind11::handle owner);
 pybind11::array position_array(const Scan& scan, pybind11::handle owner);

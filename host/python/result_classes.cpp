@@ -6,6 +6,7 @@
 
 #include "python/arrays.h"
 #include "python/bindings.h"
+#include "python/parameters.h"
 
 namespace mcdem {
 namespace {
@@ -56,7 +57,11 @@ void bind_failure(py::module_& module) {
     py::class_<Failure>(module, "Failure", "Why a replica stopped before its protocol ended.")
         .def_readonly("step", &Failure::step)
         .def_readonly("grain", &Failure::grain, "Grain number; -1 where none is to blame.")
-        .def_readonly("cause", &Failure::cause);
+        .def_readonly("cause", &Failure::cause)
+        .def("__repr__", [](const Failure& self) {
+            return fmt::format("<mcdem.Failure at step {}{}: {}>", self.step,
+                               self.grain < 0 ? "" : fmt::format(", grain {}", self.grain), self.cause);
+        });
 }
 
 void bind_recording(py::module_& module) {
@@ -66,8 +71,8 @@ void bind_recording(py::module_& module) {
                              "long as one of them is held.")
         .def_property_readonly("label", [](const OneRecording& self) { return self.get().label; })
         .def_property_readonly(
-            "parameters", [](const OneRecording& self) { return self.get().parameters; },
-            "Every scene key and its value for this replica, as text.")
+            "parameters", [](const OneRecording& self) { return typed_parameters(self.get().parameters); },
+            "Every scene key and its value for this replica; None where the key does not apply.")
         .def_property_readonly(
             "box",
             [](const OneRecording& self) { return std::pair(self.get().box.size_x, self.get().box.size_y); },
@@ -80,9 +85,11 @@ void bind_recording(py::module_& module) {
         .def_property_readonly(
             "scans", array_property(scans_array),
             "[S] rows with the fields of /observables in run.h5: frame, cycle, phase (0 load, 1 "
-            "unload), settled, time [s], plate_z [m], wall_force [6][3] [N], kinetic_energy [J], "
-            "elastic_energy [J], rate_error, coordination_number, mean_force [N], packing_fraction, "
+            "unload), settled, time [s], plate_z [m], kinetic_energy [J], elastic_energy [J], "
+            " rate_error, coordination_number, mean_force [N], packing_fraction, "
             "branch_length [m].")
+        .def_property_readonly("wall_force", array_property(wall_force_array),
+                               "[S][6][3] force on each wall [N]: x_min, x_max, y_min, y_max, floor, plate.")
         .def_property_readonly("top_force", array_property(top_force_array),
                                "[S] upward force on the plate [N].")
         .def("positions", array_of_scan(position_array), py::arg("scan"),

@@ -3,6 +3,7 @@
 #include <pybind11/stl/filesystem.h>
 
 #include "python/bindings.h"
+#include "python/parameters.h"
 #include "python/toml_text.h"
 #include "scene/read_scene.h"
 
@@ -24,9 +25,9 @@ std::vector<std::string> labels(const Scene& scene) {
     return all;
 }
 
-std::vector<std::map<std::string, std::string>> parameters(const Scene& scene) {
-    std::vector<std::map<std::string, std::string>> all;
-    for (const Replica& replica : scene.replicas) all.push_back(replica.parameters);
+py::list parameters(const Scene& scene) {
+    py::list all;
+    for (const Replica& replica : scene.replicas) all.append(typed_parameters(replica.parameters));
     return all;
 }
 
@@ -57,7 +58,8 @@ void bind_scene(py::module_& module) {
         .def_readonly("name", &Scene::name, "What results are called.")
         .def_readonly("text", &Scene::text, "TOML, with what was overridden: what results keep.")
         .def_property_readonly("labels", &labels, "What sets each replica apart; [replicas].")
-        .def_property_readonly("parameters", &parameters, "Every key and its value as text, by replica.")
+        .def_property_readonly("parameters", &parameters,
+                               "Every key and its value, by replica; None where the key does not apply.")
         .def("__len__", [](const Scene& scene) { return scene.replicas.size(); })
         .def("__repr__", [](const Scene& scene) {
             return "<mcdem.Scene " + scene.name + ": " + std::to_string(scene.replicas.size()) + " replica" +

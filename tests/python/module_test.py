@@ -2,6 +2,7 @@
 import gc
 import os
 import pathlib
+import re
 import signal
 import sys
 import tempfile
@@ -32,7 +33,7 @@ class Scenes(Folder):
         parsed = mcdem.Scene.parse(nested.text)
         self.assertEqual(nested.parameters, dotted.parameters)
         self.assertEqual(nested.parameters, parsed.parameters)
-        self.assertEqual(nested.parameters[0]["grains.friction"], "0.25")
+        self.assertEqual(nested.parameters[0]["grains.friction"], 0.25)
         self.assertEqual(nested.name, "small")
 
     def test_values_of_every_type_arrive(self):
@@ -40,9 +41,9 @@ class Scenes(Folder):
                             output={"positions": False, "contacts": np.bool_(True)}, plate={"end": np.float32(0.125)},
                             batch={"vary": {"grains.friction": np.array([0.0, 0.1, 1 / 3])}})
         self.assertEqual(scene.name, 'a "b"\\\u00e9')
-        self.assertEqual([one["grains.friction"] for one in scene.parameters], ["0", "0.1", repr(1 / 3)])
-        self.assertEqual(scene.parameters[0]["plate.end"], "0.125")
-        self.assertEqual(scene.parameters[0]["packing.count"], "514")
+        self.assertEqual([one["grains.friction"] for one in scene.parameters], [0, 0.1, 1 / 3])
+        self.assertEqual(scene.parameters[0]["plate.end"], 0.125)
+        self.assertEqual(scene.parameters[0]["packing.count"], 514)
         self.assertEqual(len(scene), 3)
         self.assertEqual(len(scene.labels), 3)
 
@@ -55,10 +56,10 @@ class Scenes(Folder):
                                            "packing.count": np.array(400), "grains.friction": np.float64(0.5)})
         parameters = scene.parameters[0]
         self.assertEqual([parameters[key] for key in ("contact.gamma", "protocol.scan_at_start", "packing.count", "grains.friction")],
-                         ["1.25", "true", "400", "0.5"])
+                         [1.25, True, 400, 0.5])
         varied = mcdem.Scene(batch={"vary": {"contact.gamma": np.linspace(1, 1.5, 3), "protocol.scan_at_start": [np.False_, np.True_]}})
-        self.assertEqual({one["contact.gamma"] for one in varied.parameters}, {"1", "1.25", "1.5"})
-        self.assertEqual({one["protocol.scan_at_start"] for one in varied.parameters}, {"false", "true"})
+        self.assertEqual({one["contact.gamma"] for one in varied.parameters}, {1, 1.25, 1.5})
+        self.assertEqual({one["protocol.scan_at_start"] for one in varied.parameters}, {False, True})
 
     def test_what_holds_itself_or_is_nested_without_end_is_refused(self):
         holds_itself = {}
@@ -80,7 +81,7 @@ class Scenes(Folder):
         file = self.folder / "soft.toml"
         file.write_text("[grains]\nfriction = 0.1\n")
         scene = mcdem.Scene.read(file, set={"grains.friction": 0.5, "contact.model": "mc_dem"})
-        self.assertEqual(scene.parameters[0]["grains.friction"], "0.5")
+        self.assertEqual(scene.parameters[0]["grains.friction"], 0.5)
         self.assertEqual(scene.parameters[0]["contact.model"], "mc_dem")
 
     def test_every_problem_is_a_line_of_one_value_error(self):
@@ -111,7 +112,8 @@ class Arrays(unittest.TestCase):
         self.assertEqual([one.label for one in self.run_], ["independent", "elastic_sphere"])
         self.assertEqual(scans.shape, (len(recording),))
         self.assertEqual(recording.diameter.shape, (30,))
-        self.assertTrue(np.array_equal(recording.top_force, scans["wall_force"][:, 5, 2]))
+        self.assertTrue(np.array_equal(recording.top_force, recording.wall_force[:, 5, 2]))
+        self.assertEqual(recording.wall_force.shape, (len(recording), 6, 3))
         self.assertTrue((np.diff(scans["frame"]) == 1).all())
         self.assertGreater(recording.top_force.max(), 0)
         last = int(np.argmax(recording.top_force))
@@ -124,6 +126,22 @@ class Arrays(unittest.TestCase):
         distance = np.linalg.norm(position[contacts["grain"][between]] - position[contacts["partner"][between]], axis=1)
         self.assertLess(distance.max(), recording.diameter.max() * 1.05)
         self.assertTrue(np.array_equal(recording.positions(-1), recording.positions(len(recording) - 1)))
+
+    def test_scans_are_a_pandas_table(self):
+        import pandas
+        scans = self.run_[0].scans
+        table = pandas.DataFrame(scans)
+        self.assertEqual(list(table.columns), list(scans.dtype.names))
+        self.assertTrue((table["plate_z"] == scans["plate_z"]).all())
+
+    def test_parameters_have_types(self):
+        parameters = self.run_["elastic_sphere"].parameters
+        self.assertEqual(parameters["packing.count"], 30)
+        self.assertIs(type(parameters["packing.count"]), int)
+        self.assertIs(type(parameters["contact.gamma"]), float)
+        self.assertIs(parameters["output.positions"], True)
+        self.assertEqual(parameters["contact.model"], "elastic_sphere")
+        self.assertIsNone(parameters["packing.file"])
 
     def test_memory_is_shared_not_copied(self):
         recording = self.run_[0]
@@ -172,7 +190,8 @@ class Runs(Folder):
             for number, recording in enumerate(again):
                 table = file[f"observables/replica_{number:05}"][:]
                 for name in table.dtype.names:
-                    self.assertTrue(np.array_equal(table[name], recording.scans[name], equal_nan=True), name)
+                    held = recording.wall_force if name == "wall_force" else recording.scans[name]
+                    self.assertTrue(np.array_equal(table[name], held, equal_nan=True), name)
                 stored = file[f"contacts/replica_{number:05}/contact"][:]
                 contacts = np.concatenate([recording.contacts(s) for s in range(len(recording))])
                 for name in stored.dtype.names:
@@ -274,6 +293,16 @@ class Runs(Folder):
             with self.assertRaisesRegex(RuntimeError, "no replica came to its end"):
                 mcdem.simulate(scene)
         self.assertTrue(any("stopped at step" in str(one.message) for one in said))
+
+    def test_a_failure_says_where_and_why(self):
+        scene = mcdem.Scene(SMALL, plate={"start": 0.088, "end": 0.03},
+                            batch={"vary": {"contact.model": ["independent", "mc_dem"]}}, contact={"gamma": 1.8})
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            run = mcdem.simulate(scene)
+        failure = run["mc_dem"].failure
+        self.assertRegex(repr(failure), f"^<mcdem.Failure at step {failure.step}.*: .*{re.escape(failure.cause[-20:])}>$")
+        self.assertIsNone(run["independent"].failure)
 
     def test_devices(self):
         devices = mcdem.devices()

@@ -1,0 +1,13 @@
+// Scene keys and their values as Python's.
+#pragma once
+#include <pybind11/pybind11.h>
+
+#include <map>
+#include <string>
+
+namespace mcdem {
+
+/// Texts of a scene's values as int, float, bool or str; None for an empty text.
+pybind11::dict typed_parameters(const std::map<std::string, std::string>& parameters);
+
+}  // namespace mcdem
