@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "core/errors.h"
-#include "experiment/experiment.h"
+#include "ensemble/reference.h"
 
 namespace mcdem {
 namespace {
@@ -37,32 +37,6 @@ Run read_result(const std::string& path, ReadWhat what) {
     return read_run(path, what);
 }
 
-/// An experiment in the form of a run.
-Run run_of(const Experiment& experiment, int discard) {
-    Run run;
-    run.name = experiment.name;
-    run.recordings = {experiment.recording};
-    if (run.recordings.front().label.empty()) run.recordings.front().label = experiment.name;
-    run.recordings.front().parameters["protocol.discard"] = std::to_string(discard);
-    return run;
-}
-
-Setting chosen_setting(const Run& run, const std::string& wanted, const std::string& path) {
-    const auto settings = group_by_setting(run);
-    std::string known;
-    for (const auto& setting : settings) {
-        if (setting.label == wanted) return setting;
-        known += (known.empty() ? "" : ", ") + setting.label;
-    }
-    if (!wanted.empty())
-        throw InputError(fmt::format("--setting: must be one of {}'s: {}; got {}", path, known, wanted));
-    if (settings.size() == 1) return settings.front();
-    for (const auto& setting : settings)
-        if (model_of(setting.replicas) == ContactModel::mc_dem) return setting;
-    throw InputError(
-        fmt::format("{}: holds several settings; choose one with --setting, of {}", path, known));
-}
-
 }  // namespace
 
 LoadedRuns load_runs(const std::vector<std::string>& paths, ReadWhat what) {
@@ -79,15 +53,12 @@ LoadedRuns load_runs(const std::vector<std::string>& paths, ReadWhat what) {
 
 LoadedReference load_reference(const ReferenceOptions& options, ReadWhat what) {
     LoadedReference loaded;
-    for (const auto& path : options.paths) {
-        const bool measured = fs::exists(fs::path(path) / "experiment.toml");
-        loaded.runs.push_back(measured ? run_of(read_experiment(path), options.discard)
-                                       : read_result(path, what));
-    }
+    for (const auto& path : options.paths) loaded.runs.push_back(read_reference(path, options.discard, what));
     for (std::size_t k = 0; k < options.paths.size(); ++k) {
         const bool measured = fs::exists(fs::path(options.paths[k]) / "experiment.toml");
-        const auto setting = measured ? Setting{loaded.runs[k].name, replicas_of(loaded.runs[k].recordings)}
-                                      : chosen_setting(loaded.runs[k], options.setting, options.paths[k]);
+        const auto setting =
+            measured ? Setting{loaded.runs[k].name, replicas_of(loaded.runs[k].recordings)}
+                     : chosen_setting(loaded.runs[k], options.setting, options.paths[k], "--setting");
         loaded.setting.label += (k ? ", " : "") + setting.label;
         for (const auto* replica : setting.replicas) loaded.setting.replicas.push_back(replica);
     }

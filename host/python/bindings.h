@@ -13,6 +13,7 @@ void bind_results(pybind11::module_& module);
 void bind_simulation(pybind11::module_& module);
 void bind_diagnosis(pybind11::module_& module);
 void bind_convergence(pybind11::module_& module);
+void bind_comparison(pybind11::module_& module);
 
 /// A run as Python holds it: arrays and recordings share it, and nobody changes it.
 using SharedRun = std::shared_ptr<Run>;

@@ -285,6 +285,28 @@ class Runs(Folder):
         with self.assertRaisesRegex(RuntimeError, "file"):
             mcdem.run(mcdem.Scene(SMALL), self.folder / "file/below")
 
+    def test_compare_and_calibrate(self):
+        run = mcdem.simulate(mcdem.Scene(SMALL, **MODELS))
+        independent, sphere = mcdem.compare(run, run, setting="elastic_sphere")
+        self.assertEqual((independent["setting"], sphere["setting"]), ("independent", "elastic_sphere"))
+        self.assertEqual((sphere["Rtop"], sphere["errf"]), (1, 0))
+        force = [run[name].top_force.max() for name in ("independent", "elastic_sphere")]
+        self.assertAlmostEqual(independent["Rtop"], force[0] / force[1], delta=1e-12)
+        self.assertIsNone(independent["Rtop_standard_error"])
+        with self.assertRaisesRegex(ValueError, "choose one with setting, of independent, elastic_sphere"):
+            mcdem.compare(run, run)
+        told = []
+        found = mcdem.calibrate(mcdem.Scene(SMALL), run, setting="elastic_sphere", rounds=2, batch=4, progress=told.append)
+        self.assertAlmostEqual(found["target_top_force_N"], force[1], delta=1e-12)
+        self.assertTrue(0.5 < found["gamma"] < 1.5 and told)
+
+    def test_export(self):
+        mcdem.run(mcdem.Scene(SMALL), self.folder / "shown")
+        count = mcdem.export(self.folder / "shown", self.folder / "view", vtk=True, xyz=True)
+        self.assertEqual(count, sum(1 for file in (self.folder / "view").rglob("*.*") if file.suffix in (".hdf", ".xyz", ".dump")))
+        with self.assertRaisesRegex(ValueError, "vtk=True"):
+            mcdem.export(self.folder / "shown", self.folder / "view")
+
     def test_where_all_replicas_fail_the_run_fails(self):
         # far beyond what a half space bears: the corrections run away
         scene = mcdem.Scene(SMALL, plate={"start": 0.088, "end": 0.03}, contact={"model": "mc_dem", "gamma": 1.8})

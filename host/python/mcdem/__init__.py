@@ -1,7 +1,8 @@
 """Dense soft granular matter by MC-DEM: scenes, runs, results as NumPy arrays, diagnoses. SI units throughout."""
 import importlib
 
-__all__ = ["Failure", "Recording", "Run", "Scene", "__version__", "converge", "devices", "diagnose", "read", "run", "simulate"]
+__all__ = ["Failure", "Recording", "Run", "Scene", "__version__", "calibrate", "compare", "converge", "devices", "diagnose",
+           "export", "read", "run", "simulate"]
 
 
 def __getattr__(name):

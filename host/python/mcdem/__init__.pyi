@@ -206,6 +206,29 @@ def run(
 def read(
     path: Path, *, what: Literal["everything", "observables", "positions", "contacts"] = "everything"
 ) -> Run: ...
+def compare(
+    run: Run,
+    reference: Run | Path,
+    *,
+    setting: str = "",
+    discard: int = 0,
+    touch_force: float | None = None,
+) -> list[dict[str, Any]]: ...
+def calibrate(
+    scene: Scene,
+    reference: Run | Path,
+    *,
+    setting: str = "",
+    discard: int = 0,
+    low: float = 0.5,
+    high: float = 1.5,
+    tolerance: float = 0.005,
+    batch: int = 6,
+    rounds: int = 8,
+    device: str = "",
+    progress: Callable[[float], object] | None = None,
+) -> dict[str, Any]: ...
+def export(path: Path, folder: Path, *, vtk: bool = False, xyz: bool = False) -> int: ...
 def converge(
     scene: Scene,
     folder: Path,

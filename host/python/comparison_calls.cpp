@@ -1,0 +1,128 @@
+// mcdem.compare, calibrate and export
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include "core/errors.h"
+#include "ensemble/calibrate_scene.h"
+#include "ensemble/reference.h"
+#include "io/output_folder.h"
+#include "io/result_folder.h"
+#include "io/vtk.h"
+#include "io/xyz.h"
+#include "metrics/compare.h"
+#include "python/bindings.h"
+#include "python/watch.h"
+
+namespace mcdem {
+namespace {
+
+namespace py = pybind11;
+
+/// A run, or what lies at a path.
+SharedRun reference_of(const py::object& reference, int discard, ReadWhat what) {
+    if (py::isinstance<Run>(reference)) return reference.cast<SharedRun>();
+    const auto path = reference.cast<std::filesystem::path>();
+    const py::gil_scoped_release others_go_on;
+    return std::make_shared<Run>(read_reference(path, discard, what));
+}
+
+py::object value(double number) {
+    return std::isfinite(number) ? py::object(py::float_(number)) : py::none();
+}
+
+py::dict dict_of(const Comparison& c) {
+    py::dict all(py::arg("setting") = c.setting, py::arg("replicas") = c.replicas);
+    const auto add = [&](const char* name, const Estimate& estimate) {
+        all[name] = value(estimate.value);
+        all[(std::string(name) + "_standard_error").c_str()] = value(estimate.standard_error);
+    };
+    add("Rtop", c.Rtop), add("errf", c.errf), add("errZ", c.errZ), add("bhat", c.bhat), add("tau", c.tau);
+    all["notes"] = c.notes;
+    return all;
+}
+
+py::list compare_run(const SharedRun& run, const py::object& reference, const std::string& setting,
+                     int discard, std::optional<double> touch_force) {
+    const SharedRun other = reference_of(reference, discard, ReadWhat::contacts);
+    std::vector<Comparison> comparisons;
+    {
+        const py::gil_scoped_release others_go_on;
+        CompareOptions options;
+        options.touch_force = touch_force;
+        const auto against = chosen_setting(*other, setting, other->name, "setting").replicas;
+        for (const auto& one : group_by_setting(*run)) comparisons.push_back(compare(one, against, options));
+    }
+    py::list all;
+    for (const auto& comparison : comparisons) all.append(dict_of(comparison));
+    return all;
+}
+
+py::dict calibrate(const Scene& scene, const py::object& reference, const std::string& setting, int discard,
+                   double low, double high, double tolerance, int batch, int rounds,
+                   const std::string& choice, py::object progress) {
+    const SharedRun other = reference_of(reference, discard, ReadWhat::observables);
+    Watch watch(std::move(progress));
+    CalibrateOptions options{{low, high}, {tolerance, batch, rounds}};
+    struct Stopped {};
+    options.on_progress = [&](int round, double part) {
+        watch.show_progress((round + part) / rounds);
+        if (watch.stop_wanted()) throw Stopped();
+    };
+    SceneCalibration result;
+    try {
+        const py::gil_scoped_release others_go_on;
+        Device device(choice);
+        result = calibrate_scene(device, scene,
+                                 chosen_setting(*other, setting, other->name, "setting").replicas, options);
+    } catch (const Stopped&) {
+    }
+    watch.raise();
+    return py::dict(py::arg("gamma") = value(result.found.gamma),
+                    py::arg("gamma_standard_error") = value(result.found.standard_error),
+                    py::arg("converged") = result.found.converged,
+                    py::arg("runs_away_at_gamma") = value(result.found.runs_away_at),
+                    py::arg("target_top_force_N") = value(result.target.value),
+                    py::arg("target_standard_error_N") = value(result.target.standard_error),
+                    py::arg("displacement_m") = value(result.displacement),
+                    py::arg("replicas") = result.replicas);
+}
+
+int export_run(const std::filesystem::path& path, const std::filesystem::path& folder, bool vtk, bool xyz) {
+    const py::gil_scoped_release others_go_on;
+    if (!vtk && !xyz) throw InputError("export: must be told what to write, with vtk=True, xyz=True or both");
+    if (!std::filesystem::exists(path))
+        throw InputError(path.string() + ": must be a result folder or file, got nothing there");
+    result_files(path);  // said before a folder is made where there are none
+    const FolderLock lock = open_output_folder(folder);
+    const int files = (vtk ? export_vtk(path, folder) : 0) + (xyz ? export_xyz(path, folder) : 0);
+    if (files == 0)
+        throw InputError(path.string() + ": has no positions to export: run with output.positions = true");
+    return files;
+}
+
+}  // namespace
+
+void bind_comparison(py::module_& module) {
+    module.def(
+        "compare", &compare_run, py::arg("run"), py::arg("reference"), py::kw_only(), py::arg("setting") = "",
+        py::arg("discard") = 0, py::arg("touch_force") = py::none(),
+        "The paper's metrics of every setting of a run against a reference, a dict a setting, as `mcdem "
+        "compare`\nprints them: Rtop, errf [N], errZ, bhat and tau [N] with standard errors, None where not "
+        "known.\n`reference`: a run, a result folder, or the folder of an experiment; `setting` chooses one "
+        "of a run's.");
+    module.def(
+        "calibrate", &calibrate, py::arg("scene"), py::arg("reference"), py::kw_only(),
+        py::arg("setting") = "", py::arg("discard") = 0, py::arg("low") = CalibrateOptions{}.bracket.low,
+        py::arg("high") = CalibrateOptions{}.bracket.high,
+        py::arg("tolerance") = CalibrationOptions{}.tolerance, py::arg("batch") = CalibrationOptions{}.batch,
+        py::arg("rounds") = CalibrationOptions{}.rounds, py::arg("device") = "",
+        py::arg("progress") = py::none(),
+        "The gamma of MC-DEM that gives the reference's top force, as `mcdem calibrate` finds it; keys of "
+        "the dict\nas in calibration.json.");
+    module.def("export", &export_run, py::arg("path"), py::arg("folder"), py::kw_only(),
+               py::arg("vtk") = false, py::arg("xyz") = false,
+               "Writes grains and contacts of a result folder for ParaView (vtk) or OVITO (xyz), as `mcdem "
+               "export` does.\nReturns the number of files.");
+}
+
+}  // namespace mcdem
