@@ -59,6 +59,7 @@ def command_of(scene, out):
 
 class Place:
     """A folder with the sweep in it, and mcdem run there."""
+    _alone = {}  # results of one process, by the sweep
 
     def __init__(self, mcdem):
         self.mcdem = str(pathlib.Path(mcdem).resolve())
@@ -80,7 +81,14 @@ class Place:
         return finish(self.start(words, environment))
 
     def run_alone(self):
-        self.run([self.mcdem, *command_of("sweep.toml", "alone")])
+        """The result of one process; the same for every test with this sweep."""
+        scene = (self.path / "sweep.toml").read_text()
+        if scene not in self._alone:
+            self.run([self.mcdem, *command_of("sweep.toml", "alone")])
+            self._alone[scene] = {file.name: file.read_bytes() for file in (self.path / "alone").iterdir()}
+        (self.path / "alone").mkdir(exist_ok=True)
+        for name, content in self._alone[scene].items():
+            (self.path / "alone" / name).write_bytes(content)
 
     def expect_like_alone(self, out):
         """The bytes of the result, and nothing beside it but what the caller knows of."""

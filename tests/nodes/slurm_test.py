@@ -10,7 +10,7 @@ import sys
 import own_slurm
 import shared_challenge
 import shared_runs
-from shared_runs import ALONE, LAUNCHES, PARTS, Hold, PartsSeen, command_of, finish
+from shared_runs import PARTS, Hold, PartsSeen, command_of, finish
 
 cluster = own_slurm.Cluster()
 ODD = "out $(touch hacked) `touch hacked` 'it''s' %j; touch hacked"
@@ -43,7 +43,7 @@ def goes_on_after_a_cancelled_job(place):
     """The array is cancelled: nothing is submitted again, the command says so, and given again does what is missing."""
     place.run_alone()
     hold = Hold(place)
-    process = run_words(place, "jobs", parts=ALONE, hold=hold)
+    process = run_words(place, "jobs", hold=hold)
     held = hold.wait_for(3)
     (place.path / "held" / str(held[0])).unlink()  # one part is done
     parts = PartsSeen(place.path / "jobs/parts")
@@ -55,7 +55,7 @@ def goes_on_after_a_cancelled_job(place):
     assert f"job {array} has ended before the work was done" in said, said
     assert f"job {array} was cancelled" in (place.path / f"jobs/slurm/{following}.log").read_text()
     hold.end()
-    process = run_words(place, "jobs", parts=ALONE)
+    process = run_words(place, "jobs")
     parts.watch(process)
     finish(process)
     parts.expect_each_once()
