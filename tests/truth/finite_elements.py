@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draws finite_elements.png from finite_elements.txt: python3 doc/finite_elements.py."""
+"""Draws finite_elements.png from finite_elements.txt: python3 tests/truth/finite_elements.py."""
 import pathlib
 import sys
 
@@ -7,7 +7,7 @@ import matplotlib
 import numpy as np
 
 FOLDER = pathlib.Path(__file__).resolve().parent
-sys.path.insert(0, str(FOLDER.parent / "host/python"))
+sys.path.insert(0, str(FOLDER.parent.parent / "host/python"))
 from mcdem.figures import PAGE, STYLE, new_axes, save  # noqa: E402
 
 # In the order of the columns, with the colours that models have in all figures.
