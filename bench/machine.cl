@@ -1,7 +1,7 @@
 /* What the machine can do at most: memory traffic, arithmetic, and the cost of a launch. */
 
-kernel void triad(global float16* restrict a, global const float16* restrict b, global const float16* restrict c,
-                  const float factor) {
+kernel void triad(global float16* restrict a, global const float16* restrict b,
+                  global const float16* restrict c, const float factor) {
     const size_t i = get_global_id(0);
     a[i] = b[i] + factor * c[i];
 }
@@ -15,9 +15,18 @@ kernel void multiply_add(global float* restrict out, const float factor, const f
     chain x8 = start + 8.0f, x9 = start + 9.0f, xa = start + 10.0f, xb = start + 11.0f;
     const chain f = (chain)(factor), t = (chain)(term);
     for (int round = 0; round < FMA_ROUNDS; ++round) {
-        x0 = fma(x0, f, t); x1 = fma(x1, f, t); x2 = fma(x2, f, t); x3 = fma(x3, f, t);
-        x4 = fma(x4, f, t); x5 = fma(x5, f, t); x6 = fma(x6, f, t); x7 = fma(x7, f, t);
-        x8 = fma(x8, f, t); x9 = fma(x9, f, t); xa = fma(xa, f, t); xb = fma(xb, f, t);
+        x0 = fma(x0, f, t);
+        x1 = fma(x1, f, t);
+        x2 = fma(x2, f, t);
+        x3 = fma(x3, f, t);
+        x4 = fma(x4, f, t);
+        x5 = fma(x5, f, t);
+        x6 = fma(x6, f, t);
+        x7 = fma(x7, f, t);
+        x8 = fma(x8, f, t);
+        x9 = fma(x9, f, t);
+        xa = fma(xa, f, t);
+        xb = fma(xb, f, t);
     }
     const chain sum = ((x0 + x1) + (x2 + x3)) + ((x4 + x5) + (x6 + x7)) + ((x8 + x9) + (xa + xb));
     out[get_global_id(0)] = FIRST_LANE(sum);

@@ -26,7 +26,7 @@ install(DIRECTORY host/python/mcdem DESTINATION ${share}/mcdem/python COMPONENT 
 install(DIRECTORY scenes DESTINATION ${share}/mcdem COMPONENT program)
 
 # The engine: every floor below the command line and the Python module.
-set(floors core scene cl sim io experiment metrics calibrate diagnose report ensemble)
+set(floors core elasticity scene cl sim io experiment metrics calibrate diagnose report ensemble)
 add_library(mcdem_engine INTERFACE)
 target_link_libraries(mcdem_engine INTERFACE mcdem_ensemble mcdem_report)
 set_target_properties(mcdem_engine PROPERTIES EXPORT_NAME mcdem)
@@ -50,9 +50,11 @@ install(FILES ${CMAKE_BINARY_DIR}/mcdemConfig.cmake ${CMAKE_BINARY_DIR}/mcdemCon
 
 if(MCDEM_PYTHON)
   # Where this Python looks below a prefix; Debian's calls the folder dist-packages.
-  execute_process(COMMAND ${Python3_EXECUTABLE} -c "import site, sys; print('lib/python%d.%d/' % sys.version_info[:2] \
+  if(NOT MCDEM_PYTHON_DIR)
+    execute_process(COMMAND ${Python3_EXECUTABLE} -c "import site, sys; print('lib/python%d.%d/' % sys.version_info[:2] \
 + site.getsitepackages()[0].rsplit('/', 1)[1])" OUTPUT_VARIABLE site OUTPUT_STRIP_TRAILING_WHITESPACE)
-  set(MCDEM_PYTHON_DIR ${site} CACHE STRING "Folder of the Python module, below the prefix")
+    set(MCDEM_PYTHON_DIR ${site} CACHE STRING "Folder of the Python module, below the prefix")
+  endif()
   install(TARGETS mcdem_python LIBRARY DESTINATION ${MCDEM_PYTHON_DIR}/mcdem COMPONENT python)
   install(DIRECTORY host/python/mcdem DESTINATION ${MCDEM_PYTHON_DIR} COMPONENT python
     PATTERN __pycache__ EXCLUDE)

@@ -7,14 +7,16 @@ typedef struct {
     mask too_deep, unprobed;
 } RowSums;
 
-/* See the neighbours, then the forces of their contacts; tabulates them for the surfaces. `effects` are the replica's, or a
-   plain 0 that leaves them out when this is compiled. */
-INLINE RowSums row_forces(Grain at, const int effects, Batch batch, bool is_done, EXCHANGE ContactTable* table) {
+/* See the neighbours, then the forces of their contacts; tabulates them for the surfaces. `effects` are the
+   replica's, or a plain 0 that leaves them out when this is compiled. */
+INLINE RowSums row_forces(Grain at, const int effects, Batch batch, bool is_done,
+                          EXCHANGE ContactTable* table) {
     global const Replica* restrict replica = at.replica;
     global real* memory_rows = memory_of(replica, batch.memory, at.row);
     RowSums sums = {ZERO3, ZERO3, 0, 0};
     for (int v = 0; v < VECTORS; ++v) {
-        const Neighbours seen = see_neighbours(at, effects, batch.motion, LOAD_LANES(batch.partner + at.row, v));
+        const Neighbours seen =
+            see_neighbours(at, effects, batch.motion, LOAD_LANES(batch.partner + at.row, v));
         const Displaced b = load_displacements(at, batch, v);
         Memory memory = load_memory(replica, effects, memory_rows, v);
         const Contacts c = contact_forces(at, effects, seen, b, replica->time_step, &memory);
@@ -22,7 +24,8 @@ INLINE RowSums row_forces(Grain at, const int effects, Batch batch, bool is_done
         add_contacts(c, seen.normal, &sums.force, &sums.torque);
         if (effects & EFFECT_ROLLING_RESISTANCE) sums.torque = add3(sums.torque, c.couple);
         /* Asked this way round, a displacement that is not a number counts as too deep as well. */
-        sums.too_deep |= ~AS_MASK(c.approach <= replica->overlap_limit * (at.now.position.w + seen.radius)) & seen.occupied;
+        sums.too_deep |= ~AS_MASK(c.approach <= replica->overlap_limit * (at.now.position.w + seen.radius)) &
+                         seen.occupied;
         sums.unprobed |= AS_MASK(b.here > replica->probe_gap) & ~c.touching & seen.occupied;
         tabulate(c, seen.normal, v, table);
     }
@@ -32,8 +35,8 @@ INLINE RowSums row_forces(Grain at, const int effects, Batch batch, bool is_done
 /* Where the contacts of this step push the surface at every slot, extrapolated to the next step:
      b(t + dt) = (10 b(t) - 5 b(t - 2 dt) + b(t - 4 dt)) / 6.
    Its phase error is 8/3 sin^5(omega dt), so that the delay neither pumps nor drains energy that matters, and
-   it is stable wherever the plain delayed iteration is, for gains from -1 to 1 (ARCHITECTURE.md). `history` is a
-   ring of the last four steps, each `slot_count` long; `step` counts this replica's steps. */
+   it is stable wherever the plain delayed iteration is, for gains from -1 to 1 (ARCHITECTURE.md). `history`
+   is a ring of the last four steps, each `slot_count` long; `step` counts this replica's steps. */
 INLINE void displace_surfaces(Grain at, EXCHANGE const ContactTable* table, int step, size_t slot_count,
                               global real* restrict displacement_next, global real* restrict history) {
     global real* two_before = history + ((step + 2) & 3) * slot_count + at.row;
@@ -49,7 +52,8 @@ INLINE void displace_surfaces(Grain at, EXCHANGE const ContactTable* table, int 
 }
 
 /* A replica that has made its steps keeps its state in both copies of every field. */
-INLINE void keep_state(Grain at, Batch batch, global Motion* restrict motion_next, global real* restrict displacement_next) {
+INLINE void keep_state(Grain at, Batch batch, global Motion* restrict motion_next,
+                       global real* restrict displacement_next) {
     motion_next[at.index] = at.now;
     if (at.replica->surface == SURFACE_RIGID) return;
     for (int v = 0; v < VECTORS; ++v)
@@ -63,10 +67,13 @@ INLINE int trouble_status(real counts) {
     return (count % DEEP_SLOTS ? STATUS_OVERLAP : 0) | (count / DEEP_SLOTS ? STATUS_UNPROBED : 0);
 }
 
-/* Stops the replica after this step where a grain is in trouble or has moved half the margin of its neighbour list. */
-INLINE void expect_listed(Grain at, Motion after, int bits, real3 listed_position, int step, global volatile int* stop_at) {
+/* Stops the replica after this step where a grain is in trouble or has moved half the margin of its neighbour
+ * list. */
+INLINE void expect_listed(Grain at, Motion after, int bits, real3 listed_position, int step,
+                          global volatile int* stop_at) {
     const real3 moved = after.position.xyz - listed_position;
-    if (bits || dot(moved, moved) > R(0.25) * at.replica->skin * at.replica->skin) atomic_min(stop_at, step + 1);
+    if (bits || dot(moved, moved) > R(0.25) * at.replica->skin * at.replica->skin)
+        atomic_min(stop_at, step + 1);
 }
 
 kernel void advance(const int step, const int slot_count, global const Replica* restrict replicas,
@@ -74,8 +81,9 @@ kernel void advance(const int step, const int slot_count, global const Replica* 
                     global volatile int* restrict stop_at, global const Motion* restrict motion,
                     global Motion* restrict motion_next, global const int* restrict partner,
                     global const int* restrict partner_slot, global const real* restrict displacement,
-                    global real* restrict displacement_next, global real* restrict history, global real* restrict memory,
-                    global const real4* restrict listed_position, global int* restrict status) {
+                    global real* restrict displacement_next, global real* restrict history,
+                    global real* restrict memory, global const real4* restrict listed_position,
+                    global int* restrict status) {
     GRAIN_OF_WORK_ITEM
     const int r = replica_of_block[block];
     global const Replica* restrict replica = replicas + r;

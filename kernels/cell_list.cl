@@ -7,7 +7,8 @@ INLINE int cell_along(real coordinate, real cell_size, int span) {
 
 INLINE int cell_index(global const Replica* restrict replica, int x, int y, int z) {
     return replica->first_cell +
-           (z % replica->cells_z * replica->cells_y + y % replica->cells_y) * replica->cells_x + x % replica->cells_x;
+           (z % replica->cells_z * replica->cells_y + y % replica->cells_y) * replica->cells_x +
+           x % replica->cells_x;
 }
 
 kernel void empty_cells(global const Replica* restrict replicas, global const int* restrict chosen,

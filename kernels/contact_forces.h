@@ -3,16 +3,16 @@
 
 typedef struct {
     mask touching;
-    lanes approach;   /* delta, corrected by both displacements; negative where there is a gap [m] */
-    lanes overlap;    /* delta where touching, else zero [m] */
-    lanes radius;     /* a = sqrt(R* delta), of the contact [m] */
-    lanes elastic;    /* Hertz force, as stiffened: what displaces surfaces [N] */
+    lanes approach;     /* delta, corrected by both displacements; negative where there is a gap [m] */
+    lanes overlap;      /* delta where touching, else zero [m] */
+    lanes radius;       /* a = sqrt(R* delta), of the contact [m] */
+    lanes elastic;      /* Hertz force, as stiffened: what displaces surfaces [N] */
     lanes displacement; /* b of this grain's surface there, all contacts together [m] */
-    lanes arm;        /* from the centre to the contact point, or to the probed surface point [m] */
-    lanes3 force;     /* on this grain [N] */
-    lanes3 tangential;/* its friction part [N] */
-    lanes3 couple;    /* rolling resistance on this grain, set where there is any [N m] */
-    lanes energy;     /* stored beyond Hertz's 2/5 F delta by effects, set where there are any [J] */
+    lanes arm;          /* from the centre to the contact point, or to the probed surface point [m] */
+    lanes3 force;       /* on this grain [N] */
+    lanes3 tangential;  /* its friction part [N] */
+    lanes3 couple;      /* rolling resistance on this grain, set where there is any [N m] */
+    lanes energy;       /* stored beyond Hertz's 2/5 F delta by effects, set where there are any [J] */
 } Contacts;
 
 INLINE real sphere_mass(global const Replica* restrict replica, real radius) {
@@ -20,7 +20,9 @@ INLINE real sphere_mass(global const Replica* restrict replica, real radius) {
 }
 
 /* R* and m* of each pair from one division; both sides of a pair get the same bits. */
-typedef struct { lanes radius, mass; } Reduced;
+typedef struct {
+    lanes radius, mass;
+} Reduced;
 
 INLINE Reduced reduced(global const Replica* restrict replica, real radius, lanes radius_there, mask wall) {
     const lanes sum = radius + radius_there, product = radius * radius_there;
@@ -36,16 +38,20 @@ INLINE Reduced reduced(global const Replica* restrict replica, real radius, lane
 /* What the elastic part of a contact leaves for the rest. */
 typedef struct {
     Reduced pair;
-    lanes stiffness;           /* 2 E* a [N/m] */
-    lanes relaxed_force;       /* elastic force less what has relaxed [N] */
-    lanes displacement_there;  /* of the other surface [m] */
+    lanes stiffness;          /* 2 E* a [N/m] */
+    lanes relaxed_force;      /* elastic force less what has relaxed [N] */
+    lanes displacement_there; /* of the other surface [m] */
 } Pressed;
 
 /* b of both surfaces at a row's contacts [m]. */
-typedef struct { lanes here, there; } Displaced;
+typedef struct {
+    lanes here, there;
+} Displaced;
 
-/* Overlap and elastic force. `effects` are the replica's, or a plain 0 that leaves them out when this is compiled. */
-INLINE Pressed press(Grain at, const int effects, Neighbours seen, Displaced b, Memory* restrict memory, Contacts* restrict c) {
+/* Overlap and elastic force. `effects` are the replica's, or a plain 0 that leaves them out when this is
+ * compiled. */
+INLINE Pressed press(Grain at, const int effects, Neighbours seen, Displaced b, Memory* restrict memory,
+                     Contacts* restrict c) {
     global const Replica* restrict replica = at.replica;
     const real radius = at.now.position.w, excess_compliance = at.now.velocity.w;
     Pressed p;
@@ -53,9 +59,11 @@ INLINE Pressed press(Grain at, const int effects, Neighbours seen, Displaced b, 
     p.pair = reduced(replica, radius, seen.radius, seen.wall);
     lanes modulus = WHERE(seen.wall, replica->modulus_wall, replica->modulus_grain);
     if (effects & EFFECT_MODULUS_SCATTER)
-        modulus = scattered_modulus(modulus, replica->grain_compliance, excess_compliance + seen.excess_compliance);
+        modulus =
+            scattered_modulus(modulus, replica->grain_compliance, excess_compliance + seen.excess_compliance);
     lanes outward = b.here + b.there;
-    if (effects & EFFECT_BULGE_CONTACTS) outward = counted_displacements(gap, outward, replica->bulge_contacts);
+    if (effects & EFFECT_BULGE_CONTACTS)
+        outward = counted_displacements(gap, outward, replica->bulge_contacts);
     c->approach = outward - gap;
     if (effects & EFFECT_PLASTICITY)
         c->approach = plastic_approach(c->approach, replica->plasticity, seen.occupied, &memory->deepest);
@@ -65,8 +73,8 @@ INLINE Pressed press(Grain at, const int effects, Neighbours seen, Displaced b, 
     if (replica->finite_contacts) {
         const ComplianceRatio ratio = {effects ? R(1) + excess_compliance : R(1),
                                        effects ? R(1) + seen.excess_compliance : (lanes)(R(1))};
-        const SelfConsistent solved =
-            self_consistent(replica, ratio, c->overlap, p.pair.radius, modulus, radius, seen.radius, seen.wall);
+        const SelfConsistent solved = self_consistent(replica, ratio, c->overlap, p.pair.radius, modulus,
+                                                      radius, seen.radius, seen.wall);
         c->overlap = solved.overlap;
         self = solved.compliance;
         c->approach = WHERE(c->touching, c->overlap, c->approach);
@@ -81,7 +89,8 @@ INLINE Pressed press(Grain at, const int effects, Neighbours seen, Displaced b, 
     if (effects & EFFECT_STIFFENING) c->elastic = stiffened(replica, c->elastic, c->overlap, p.pair.radius);
     p.relaxed_force = c->elastic;
     if (effects & EFFECT_VISCOELASTICITY)
-        p.relaxed_force = relaxing_force(c->elastic, replica->viscoelasticity, replica->relaxing_share, &memory->relaxed);
+        p.relaxed_force =
+            relaxing_force(c->elastic, replica->viscoelasticity, replica->relaxing_share, &memory->relaxed);
     return p;
 }
 
@@ -90,17 +99,20 @@ INLINE lanes shear_stiffness(Grain at, const int effects, Neighbours seen, lanes
     global const Replica* restrict replica = at.replica;
     lanes modulus = WHERE(seen.wall, replica->shear_wall, replica->shear_grain);
     if (effects & EFFECT_MODULUS_SCATTER)
-        modulus = scattered_modulus(modulus, replica->shear_compliance, at.now.velocity.w + seen.excess_compliance);
+        modulus =
+            scattered_modulus(modulus, replica->shear_compliance, at.now.velocity.w + seen.excess_compliance);
     return R(8) * modulus * contact_radius;
 }
 
 /* Velocity of the other surface past this one at the contact point, without what separates them. */
 INLINE lanes3 sliding_velocity(Grain at, Neighbours seen, lanes arm, lanes separating) {
-    const lanes3 turn = add_scaled3(scale3(seen.distance - arm, seen.spin), arm, same3(at.now.angular_velocity.xyz));
+    const lanes3 turn =
+        add_scaled3(scale3(seen.distance - arm, seen.spin), arm, same3(at.now.angular_velocity.xyz));
     return subtract3(add_scaled3(seen.velocity, -separating, seen.normal), cross3(turn, seen.normal));
 }
 
-INLINE Contacts contact_forces(Grain at, const int effects, Neighbours seen, Displaced b, real elapsed, Memory* restrict memory) {
+INLINE Contacts contact_forces(Grain at, const int effects, Neighbours seen, Displaced b, real elapsed,
+                               Memory* restrict memory) {
     global const Replica* restrict replica = at.replica;
     const real radius = at.now.position.w;
     Contacts c;
@@ -108,17 +120,20 @@ INLINE Contacts contact_forces(Grain at, const int effects, Neighbours seen, Dis
     const Reduced pair = pressed.pair;
     const lanes damping = WHERE(seen.wall, replica->damping_wall, replica->damping_grain);
     const lanes separating = dot3(seen.velocity, seen.normal);
-    const lanes normal_force = pressed.relaxed_force - damping * sqrt(pressed.stiffness * pair.mass) * separating;
+    const lanes normal_force =
+        pressed.relaxed_force - damping * sqrt(pressed.stiffness * pair.mass) * separating;
 
     /* The contact point lies midway between the two displaced surfaces [paper]. */
-    const lanes midway = R(0.5) * (seen.distance + (radius + c.displacement) - (seen.radius + pressed.displacement_there));
+    const lanes midway =
+        R(0.5) * (seen.distance + (radius + c.displacement) - (seen.radius + pressed.displacement_there));
     c.arm = WHERE(c.touching, WHERE(seen.wall, seen.distance, midway), radius + c.displacement);
 
     const lanes friction_coefficient = WHERE(seen.wall, replica->friction_wall, replica->friction_grain);
-    FrictionTerms terms = {friction_coefficient * fmax(normal_force, (lanes)(R(0))), R(0), damping, pair.mass, c.touching};
+    FrictionTerms terms = {friction_coefficient * fmax(normal_force, (lanes)(R(0))), R(0), damping, pair.mass,
+                           c.touching};
     if (replica->mindlin) terms.stiffness = shear_stiffness(at, effects, seen, c.radius);
-    c.tangential = friction(replica, effects, terms, sliding_velocity(at, seen, c.arm, separating), seen.normal, elapsed,
-                            &memory->spring);
+    c.tangential = friction(replica, effects, terms, sliding_velocity(at, seen, c.arm, separating),
+                            seen.normal, elapsed, &memory->spring);
     if (effects & EFFECT_ROLLING_RESISTANCE) c.couple = rolling_couple(at, seen, normal_force, pair.radius);
     lanes pressing = normal_force;
     if (effects) c.energy = effect_energy(replica, c.elastic, pressed.relaxed_force, c.overlap, pair.radius);

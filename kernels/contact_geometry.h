@@ -5,15 +5,16 @@
 typedef struct {
     mask occupied;
     mask wall;
-    lanes3 normal;    /* e, from this grain's centre to the neighbour */
-    lanes distance;   /* to the neighbour's centre, or to the wall [m] */
-    lanes radius;     /* the neighbour's, zero for a wall [m] */
-    lanes3 velocity;  /* the neighbour's less this grain's [m/s] */
-    lanes3 spin;      /* the neighbour's angular velocity [1/s] */
-    lanes excess_compliance;  /* E/E_j - 1 of the neighbour, zero for a wall */
+    lanes3 normal;           /* e, from this grain's centre to the neighbour */
+    lanes distance;          /* to the neighbour's centre, or to the wall [m] */
+    lanes radius;            /* the neighbour's, zero for a wall [m] */
+    lanes3 velocity;         /* the neighbour's less this grain's [m/s] */
+    lanes3 spin;             /* the neighbour's angular velocity [1/s] */
+    lanes excess_compliance; /* E/E_j - 1 of the neighbour, zero for a wall */
 } Neighbours;
 
-/* The foot of the perpendicular to each wall among the partners, and the other coordinates of `there` for grains. */
+/* The foot of the perpendicular to each wall among the partners, and the other coordinates of `there` for
+ * grains. */
 INLINE lanes3 wall_feet(Grain at, const int effects, slots partner, lanes3 there) {
     global const Replica* restrict replica = at.replica;
     lanes3 foot = where3(AS_MASK(partner < NO_PARTNER), same3(at.now.position.xyz), there);
@@ -31,7 +32,8 @@ INLINE lanes3 wall_feet(Grain at, const int effects, slots partner, lanes3 there
     return foot;
 }
 
-INLINE Neighbours see_neighbours(Grain at, const int effects, global const Motion* restrict motion, slots partner) {
+INLINE Neighbours see_neighbours(Grain at, const int effects, global const Motion* restrict motion,
+                                 slots partner) {
     const mask wall = AS_MASK(partner < NO_PARTNER);
     const slots index = select((slots)(at.index), partner, partner >= 0);
     const lanes4 position = gather_motion(motion, index, 0), velocity = gather_motion(motion, index, 1),

@@ -2,25 +2,27 @@
 
 /* What limits a contact's friction, beside how it slides. */
 typedef struct {
-    lanes limit;         /* mu F_n [N] */
-    lanes stiffness;     /* of the spring, 8 G* a [N/m] */
-    lanes damping;       /* 2 sqrt(5/6) beta */
-    lanes reduced_mass;  /* m* [kg] */
+    lanes limit;        /* mu F_n [N] */
+    lanes stiffness;    /* of the spring, 8 G* a [N/m] */
+    lanes damping;      /* 2 sqrt(5/6) beta */
+    lanes reduced_mass; /* m* [kg] */
     mask touching;
 } FrictionTerms;
 
 /* Always saturated [paper]: mu F_n against the sliding. Below `sliding_velocity`, and where a step's
    friction could do more than stop the sliding, it fades to a viscous force so that it cannot chatter. */
-INLINE lanes3 saturated_friction(global const Replica* restrict replica, FrictionTerms contact, lanes3 sliding) {
+INLINE lanes3 saturated_friction(global const Replica* restrict replica, FrictionTerms contact,
+                                 lanes3 sliding) {
     const real slow = replica->sliding_velocity;
     const lanes inverse_speed = inverse_root(dot3(sliding, sliding) + slow * slow);
     const lanes max_viscosity = contact.reduced_mass * (R(0.1) / replica->time_step);
     return scale3(fmin(contact.limit * inverse_speed, max_viscosity), sliding);
 }
 
-/* Mindlin spring with damping, cut at the Coulomb limit; a slipping spring keeps the elongation that carries the limit.
-   Updates `spring`. */
-INLINE lanes3 mindlin_friction(FrictionTerms contact, lanes3 sliding, lanes3 normal, real elapsed, lanes3* restrict spring) {
+/* Mindlin spring with damping, cut at the Coulomb limit; a slipping spring keeps the elongation that carries
+   the limit. Updates `spring`. */
+INLINE lanes3 mindlin_friction(FrictionTerms contact, lanes3 sliding, lanes3 normal, real elapsed,
+                               lanes3* restrict spring) {
     const lanes damping = contact.damping * sqrt(contact.stiffness * contact.reduced_mass);
     lanes3 s = add_scaled3(*spring, elapsed, sliding);
     s = add_scaled3(s, -dot3(s, normal), normal);
@@ -36,8 +38,8 @@ INLINE lanes3 mindlin_friction(FrictionTerms contact, lanes3 sliding, lanes3 nor
 }
 
 /* Saturated, with history, or as much of each as `mindlin_share` says. */
-INLINE lanes3 friction(global const Replica* restrict replica, const int effects, FrictionTerms contact, lanes3 sliding,
-                       lanes3 normal, real elapsed, lanes3* restrict spring) {
+INLINE lanes3 friction(global const Replica* restrict replica, const int effects, FrictionTerms contact,
+                       lanes3 sliding, lanes3 normal, real elapsed, lanes3* restrict spring) {
     lanes3 with_history = ZERO3;
     if (replica->mindlin) with_history = mindlin_friction(contact, sliding, normal, elapsed, spring);
     if (replica->mindlin && !(effects & EFFECT_FRICTION_HISTORY)) return with_history;

@@ -2,20 +2,22 @@
    every kernel that treats contacts side by side; declares block, index, table and scratch. */
 #if LANES == 16
 #define IS_LEADER true
-#define GRAIN_OF_WORK_ITEM                                   \
-    const int block = blocks[get_group_id(0)];               \
-    const int index = block * BLOCK + (int)get_local_id(0);  \
-    private ContactTable own_table;                          \
-    private real scratch[1];                                 \
+#define GRAIN_OF_WORK_ITEM                                  \
+    const int block = blocks[get_group_id(0)];              \
+    const int index = block * BLOCK + (int)get_local_id(0); \
+private                                                     \
+    ContactTable own_table;                                 \
+private                                                     \
+    real scratch[1];                                        \
     EXCHANGE ContactTable* table = &own_table;
 #else
 #define IS_LEADER (get_local_id(0) % SLOTS == 0)
-#define GRAIN_OF_WORK_ITEM                                          \
-    const int block = blocks[get_group_id(0)];                      \
+#define GRAIN_OF_WORK_ITEM                                            \
+    const int block = blocks[get_group_id(0)];                        \
     const int index = block * BLOCK + (int)(get_local_id(0) / SLOTS); \
-    local ContactTable tables[BLOCK];                               \
-    local real scratches[BLOCK * SLOTS];                            \
-    EXCHANGE ContactTable* table = &tables[get_local_id(0) / SLOTS]; \
+    local ContactTable tables[BLOCK];                                 \
+    local real scratches[BLOCK * SLOTS];                              \
+    EXCHANGE ContactTable* table = &tables[get_local_id(0) / SLOTS];  \
     EXCHANGE real* scratch = &scratches[get_local_id(0) / SLOTS * SLOTS];
 #endif
 
@@ -38,21 +40,21 @@ INLINE real max_lanes(lanes value, EXCHANGE real* scratch) {
     return fmax(fmax(four.x, four.z), fmax(four.y, four.w));
 }
 #else
-#define TREE(name, combine)                                                                         \
-    INLINE real name(lanes value, EXCHANGE real* scratch) {                                         \
-        const int lane = get_local_id(0) % SLOTS;                                                   \
-        SYNCHRONISE();                                                                              \
-        scratch[lane] = value;                                                                      \
-        SYNCHRONISE();                                                                              \
-        if (lane < 16)                                                                              \
-            for (int other = lane + 16; other < SLOTS; other += 16)                                 \
-                scratch[lane] = combine(scratch[lane], scratch[other]);                             \
-        for (int half_way = 8; half_way > 0; half_way /= 2) {                                       \
-            SYNCHRONISE();                                                                          \
-            if (lane < half_way) scratch[lane] = combine(scratch[lane], scratch[lane + half_way]);  \
-        }                                                                                           \
-        SYNCHRONISE();                                                                              \
-        return scratch[0];                                                                          \
+#define TREE(name, combine)                                                                        \
+    INLINE real name(lanes value, EXCHANGE real* scratch) {                                        \
+        const int lane = get_local_id(0) % SLOTS;                                                  \
+        SYNCHRONISE();                                                                             \
+        scratch[lane] = value;                                                                     \
+        SYNCHRONISE();                                                                             \
+        if (lane < 16)                                                                             \
+            for (int other = lane + 16; other < SLOTS; other += 16)                                \
+                scratch[lane] = combine(scratch[lane], scratch[other]);                            \
+        for (int half_way = 8; half_way > 0; half_way /= 2) {                                      \
+            SYNCHRONISE();                                                                         \
+            if (lane < half_way) scratch[lane] = combine(scratch[lane], scratch[lane + half_way]); \
+        }                                                                                          \
+        SYNCHRONISE();                                                                             \
+        return scratch[0];                                                                         \
     }
 #define PLUS(a, b) ((a) + (b))
 TREE(sum_one, PLUS)
@@ -71,12 +73,13 @@ INLINE Displaced load_displacements(Grain at, Batch batch, int v) {
     return b;
 }
 
-/* Calls for what load_displacements will gather for the next grain: its partner slots lie scattered over the rows of its
-   neighbours, where no processor sees them coming. On a GPU other work-items fill the wait. */
+/* Calls for what load_displacements will gather for the next grain: its partner slots lie scattered over the
+   rows of its neighbours, where no processor sees them coming. On a GPU other work-items fill the wait. */
 INLINE void prefetch_next_displacements(Grain at, Batch batch) {
 #if LANES == 16
     if (at.replica->surface == SURFACE_RIGID || (int)get_local_id(0) == BLOCK - 1) return;
-    for (int slot = SLOTS; slot < 2 * SLOTS; ++slot) PREFETCH(batch.displacement + batch.partner_slot[at.row + slot]);
+    for (int slot = SLOTS; slot < 2 * SLOTS; ++slot)
+        PREFETCH(batch.displacement + batch.partner_slot[at.row + slot]);
 #else
     (void)at, (void)batch;
 #endif

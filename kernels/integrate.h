@@ -5,10 +5,12 @@ INLINE Motion integrate(global const Replica* restrict replica, Motion now, real
     const real mass = sphere_mass(replica, radius);
     real3 acceleration = force / mass - replica->drag * now.velocity.xyz;
     acceleration.z -= replica->weight_density / replica->density;
-    const real3 turning = torque / (R(0.4) * mass * radius * radius) - replica->spin_drag * now.angular_velocity.xyz;
+    const real3 turning =
+        torque / (R(0.4) * mass * radius * radius) - replica->spin_drag * now.angular_velocity.xyz;
     const real3 v = now.velocity.xyz + acceleration * dt;
     const real3 w = now.angular_velocity.xyz + turning * dt;
-    const Motion after = {(real4)(now.position.xyz + v * dt, radius), (real4)(v, now.velocity.w), (real4)(w, R(0))};
+    const Motion after = {(real4)(now.position.xyz + v * dt, radius), (real4)(v, now.velocity.w),
+                          (real4)(w, R(0))};
     return after;
 }
 

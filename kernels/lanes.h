@@ -26,7 +26,7 @@ typedef int16 slots;
 #else
 #define PREFETCH(place)
 #endif
-#define SLOT_NUMBERS(v) ((int16)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15) + (v) * 16)
+#define SLOT_NUMBERS(v) ((int16)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15) + (v)*16)
 #else
 typedef real lanes;
 typedef int mask;
@@ -42,8 +42,12 @@ typedef int slots;
 #define SLOT_NUMBERS(v) ((int)(get_local_id(0) % SLOTS))
 #endif
 
-typedef struct { lanes x, y, z; } lanes3;
-typedef struct { lanes x, y, z, w; } lanes4;
+typedef struct {
+    lanes x, y, z;
+} lanes3;
+typedef struct {
+    lanes x, y, z, w;
+} lanes4;
 
 INLINE lanes3 same3(real3 a) { return (lanes3){a.x, a.y, a.z}; }
 INLINE lanes3 add3(lanes3 a, lanes3 b) { return (lanes3){a.x + b.x, a.y + b.y, a.z + b.z}; }
@@ -58,7 +62,8 @@ INLINE lanes3 cross3(lanes3 a, lanes3 b) {
     return (lanes3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 INLINE lanes3 where3(mask condition, lanes3 yes, lanes3 no) {
-    return (lanes3){WHERE(condition, yes.x, no.x), WHERE(condition, yes.y, no.y), WHERE(condition, yes.z, no.z)};
+    return (lanes3){WHERE(condition, yes.x, no.x), WHERE(condition, yes.y, no.y),
+                    WHERE(condition, yes.z, no.z)};
 }
 #define ZERO3 ((lanes3){R(0), R(0), R(0)})
 
@@ -77,17 +82,19 @@ INLINE bool any_lane(mask m) {
     return (two.x | two.y) != 0;
 }
 
-/* Nothing to the processor; to the compiler a value it cannot see through. LLVM else takes the vectors of a transposition apart
-   into loads of single numbers, twice the instructions. */
+/* Nothing to the processor; to the compiler a value it cannot see through. LLVM else takes the vectors of a
+   transposition apart into loads of single numbers, twice the instructions. */
 #if defined(__AVX__) && !MCDEM_DOUBLE
 #define KEEP_WHOLE(vector) __asm__("" : "+x"(vector))
 #else
 #define KEEP_WHOLE(vector)
 #endif
 
-/* Eight rows of four turned into four vectors of eight: every fourth row lies in one vector, so that two rounds of
-   interleaving within halves bring the lanes into order. */
-typedef struct { real8 x, y, z, w; } eight4;
+/* Eight rows of four turned into four vectors of eight: every fourth row lies in one vector, so that two
+   rounds of interleaving within halves bring the lanes into order. */
+typedef struct {
+    real8 x, y, z, w;
+} eight4;
 #define INTERLEAVE_LOW(a, b) (real8)(a.s0, b.s0, a.s1, b.s1, a.s4, b.s4, a.s5, b.s5)
 #define INTERLEAVE_HIGH(a, b) (real8)(a.s2, b.s2, a.s3, b.s3, a.s6, b.s6, a.s7, b.s7)
 #define LOW_PAIRS(a, b) (real8)(a.s01, b.s01, a.s45, b.s45)
@@ -108,7 +115,8 @@ INLINE eight4 gather_eight(global const real4* restrict field, int8 i) {
 /* field[index], lane by lane */
 INLINE lanes4 gather4(global const real4* restrict field, slots index) {
     const eight4 low = gather_eight(field, index.lo), high = gather_eight(field, index.hi);
-    return (lanes4){(lanes)(low.x, high.x), (lanes)(low.y, high.y), (lanes)(low.z, high.z), (lanes)(low.w, high.w)};
+    return (lanes4){(lanes)(low.x, high.x), (lanes)(low.y, high.y), (lanes)(low.z, high.z),
+                    (lanes)(low.w, high.w)};
 }
 INLINE lanes gather(global const real* restrict field, slots index) {
     return (lanes)(field[index.s0], field[index.s1], field[index.s2], field[index.s3], field[index.s4],
@@ -124,8 +132,8 @@ INLINE lanes4 gather4(global const real4* restrict field, slots index) {
 INLINE lanes gather(global const real* restrict field, slots index) { return field[index]; }
 #endif
 
-/* 1 / sqrt(x). In float on x86 to 3e-7: the processor's estimate and one step of Newton's method, where the root and the division
-   would keep its one divider busy for most of the loop over pairs of contacts. */
+/* 1 / sqrt(x). In float on x86 to 3e-7: the processor's estimate and one step of Newton's method, where the
+   root and the division would keep its one divider busy for most of the loop over pairs of contacts. */
 INLINE lanes inverse_root(lanes x) {
 #if LANES == 16 && defined(__AVX__) && !MCDEM_DOUBLE
     real8 low, high;

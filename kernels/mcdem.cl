@@ -1,4 +1,5 @@
 /* The program: every kernel, in the order in which one concept needs another. */
+/* clang-format off */
 #include "real.h"
 #include "replica.h"
 #include "status.h"
@@ -20,3 +21,4 @@
 #include "neighbour_list.cl"
 #include "advance.cl"
 #include "measure.cl"
+/* clang-format on */

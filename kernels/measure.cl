@@ -1,7 +1,8 @@
 /* The state between two intervals of steps: contact forces slot by slot, energies grain by grain, and
    their sums replica by replica, each in one fixed order. */
 
-/* Hertz energy 2/5 F delta, half of it this grain's, less the work of its own surface displacement; and what effects store. */
+/* Hertz energy 2/5 F delta, half of it this grain's, less the work of its own surface displacement; and what
+ * effects store. */
 INLINE lanes elastic_energy(int effects, Neighbours seen, Contacts c) {
     lanes energy = c.elastic * (WHERE(seen.wall, R(0.4), R(0.2)) * c.overlap - R(0.5) * c.displacement);
     if (effects) energy += WHERE(seen.wall, R(1), R(0.5)) * c.energy;
@@ -11,7 +12,8 @@ INLINE lanes elastic_energy(int effects, Neighbours seen, Contacts c) {
 INLINE real kinetic_energy(Grain at) {
     const real3 velocity = at.now.velocity.xyz, spin = at.now.angular_velocity.xyz;
     const real radius = at.now.position.w;
-    return R(0.5) * sphere_mass(at.replica, radius) * (dot(velocity, velocity) + R(0.4) * radius * radius * dot(spin, spin));
+    return R(0.5) * sphere_mass(at.replica, radius) *
+           (dot(velocity, velocity) + R(0.4) * radius * radius * dot(spin, spin));
 }
 
 kernel void measure(global const Replica* restrict replicas, global const int* restrict blocks,
@@ -19,20 +21,23 @@ kernel void measure(global const Replica* restrict replicas, global const int* r
                     global const Motion* restrict motion, global const int* restrict partner,
                     global const int* restrict partner_slot, global const real* restrict displacement,
                     global real* restrict memory, global const real4* restrict listed_position,
-                    global real* restrict force_x, global real* restrict force_y, global real* restrict force_z,
-                    global real* restrict overlap, global real* restrict arm, global real4* restrict energy) {
+                    global real* restrict force_x, global real* restrict force_y,
+                    global real* restrict force_z, global real* restrict overlap, global real* restrict arm,
+                    global real4* restrict energy) {
     GRAIN_OF_WORK_ITEM
     const int r = replica_of_block[block];
     global const Replica* restrict replica = replicas + r;
     const Batch batch = {motion, partner, partner_slot, displacement, memory};
-    const Grain at = {replica, index, (size_t)index * SLOTS, plate_position(replica, steps[r]), motion[index]};
+    const Grain at = {replica, index, (size_t)index * SLOTS, plate_position(replica, steps[r]),
+                      motion[index]};
     prefetch_next_displacements(at, batch);
     (void)table;
     lanes stored = R(0), deepest = R(0);
     for (int v = 0; v < VECTORS; ++v) {
         const Neighbours seen = see_neighbours(at, replica->effects, motion, LOAD_LANES(partner + at.row, v));
         Memory remembered = load_memory(replica, replica->effects, memory_of(replica, memory, at.row), v);
-        const Contacts c = contact_forces(at, replica->effects, seen, load_displacements(at, batch, v), R(0), &remembered);
+        const Contacts c =
+            contact_forces(at, replica->effects, seen, load_displacements(at, batch, v), R(0), &remembered);
         stored += elastic_energy(replica->effects, seen, c);
         deepest = fmax(deepest, WHERE(seen.occupied, c.overlap / (at.now.position.w + seen.radius), R(0)));
         STORE_LANES(c.force.x, force_x + at.row, v);
@@ -54,7 +59,7 @@ kernel void measure(global const Replica* restrict replicas, global const int* r
 #define SUMS 20 /* kinetic, elastic, 18 wall force components */
 
 INLINE void add_wall_forces(global const int* partner, global const real* x, global const real* y,
-                                   global const real* z, real* sums) {
+                            global const real* z, real* sums) {
     for (int c = 0; c < SLOTS; ++c)
         if (partner[c] < NO_PARTNER) {
             const int wall = WALL_PARTNER(0) - partner[c];
@@ -99,7 +104,8 @@ kernel void reduce(global const Replica* restrict replicas, global const int* re
         barrier(CLK_LOCAL_MEM_FENCE);
         if (lane < half_way) {
             for (int q = 0; q < SUMS; ++q) shared_sums[lane][q] += shared_sums[lane + half_way][q];
-            for (int q = 0; q < 2; ++q) shared_most[lane][q] = fmax(shared_most[lane][q], shared_most[lane + half_way][q]);
+            for (int q = 0; q < 2; ++q)
+                shared_most[lane][q] = fmax(shared_most[lane][q], shared_most[lane + half_way][q]);
             shared_status[lane][0] |= shared_status[lane + half_way][0];
             shared_status[lane][1] = min(shared_status[lane][1], shared_status[lane + half_way][1]);
         }

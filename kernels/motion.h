@@ -1,4 +1,5 @@
-/* A grain as its neighbours see it. Side by side in memory, so that one line of it brings most of what a contact needs. */
+/* A grain as its neighbours see it. Side by side in memory, so that one line of it brings most of what a
+ * contact needs. */
 typedef struct {
     real4 position;         /* w: radius, zero for padding [m] */
     real4 velocity;         /* w: excess compliance, E/E_i - 1 [m/s] */
@@ -14,9 +15,9 @@ INLINE lanes4 gather_motion(global const Motion* restrict motion, slots grain, i
 /* What one work-item of a step works for. */
 typedef struct {
     global const Replica* replica;
-    int index;     /* among all grains of the batch */
-    size_t row;    /* its first slot */
-    real plate_z;  /* where the plate is now [m] */
+    int index;    /* among all grains of the batch */
+    size_t row;   /* its first slot */
+    real plate_z; /* where the plate is now [m] */
     Motion now;
 } Grain;
 

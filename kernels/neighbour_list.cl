@@ -1,5 +1,6 @@
 /* Who is near whom: each grain's row of grains and walls within the probed gap plus the margin, grains
-   first in order of index. What a slot remembers (surface displacements, springs, ..) moves with its neighbour. */
+   first in order of index. What a slot remembers (surface displacements, springs, ..) moves with its
+   neighbour. */
 
 /* Puts `entry` into the sorted grains of a row; `count` goes on counting past a full row. */
 INLINE int insert_sorted(int* row, int count, int entry) {
@@ -11,8 +12,9 @@ INLINE int insert_sorted(int* row, int count, int entry) {
     return count + 1;
 }
 
-INLINE int near_grains(global const Replica* restrict replica, int grain, global const Motion* restrict motion,
-                       global const int* restrict cell_head, global const int* restrict cell_next, int* row) {
+INLINE int near_grains(global const Replica* restrict replica, int grain,
+                       global const Motion* restrict motion, global const int* restrict cell_head,
+                       global const int* restrict cell_next, int* row) {
     const real4 own = motion[grain].position;
     const real reach = replica->probe_gap + replica->skin;
     const int x = cell_along(own.x, replica->cell_size, replica->span_x);
@@ -22,7 +24,8 @@ INLINE int near_grains(global const Replica* restrict replica, int grain, global
     for (int k = max(z - 1, 0); k <= min(z + 1, replica->span_z - 1); ++k)
         for (int j = max(y - 1, 0); j <= min(y + 1, replica->span_y - 1); ++j)
             for (int i = max(x - 1, 0); i <= min(x + 1, replica->span_x - 1); ++i) {
-                for (int other = cell_head[cell_index(replica, i, j, k)]; other >= 0; other = cell_next[other]) {
+                for (int other = cell_head[cell_index(replica, i, j, k)]; other >= 0;
+                     other = cell_next[other]) {
                     if (other == grain) continue;
                     const real4 there = motion[other].position;
                     const real3 apart = there.xyz - own.xyz;
@@ -39,7 +42,9 @@ INLINE int near_walls(global const Replica* restrict replica, real4 own, int* ro
         const real coordinate = w / 2 == 0 ? own.x : w / 2 == 1 ? own.y : own.z;
         const real wall = replica->wall_position[w];
         const bool leaning = w == 5 && (replica->effects & EFFECT_PLATE_TILT);
-        const real distance = leaning ? plate_distance(replica, wall, own) : w % 2 ? wall - coordinate : coordinate - wall;
+        const real distance = leaning ? plate_distance(replica, wall, own)
+                              : w % 2 ? wall - coordinate
+                                      : coordinate - wall;
         if (distance >= reach) continue;
         if (count < SLOTS) row[count] = WALL_PARTNER(w);
         ++count;
@@ -47,7 +52,8 @@ INLINE int near_walls(global const Replica* restrict replica, real4 own, int* ro
     return count;
 }
 
-/* Rearranges one remembered row: the value that went with a neighbour stays with it, new neighbours get zero. */
+/* Rearranges one remembered row: the value that went with a neighbour stays with it, new neighbours get zero.
+ */
 INLINE void carry(const int* before, const int* after, global real* restrict values) {
     real kept[SLOTS];
     for (int c = 0; c < SLOTS; ++c) kept[c] = values[c];
@@ -59,10 +65,11 @@ INLINE void carry(const int* before, const int* after, global real* restrict val
     }
 }
 
-kernel void list_neighbours(const int slot_count, global const Replica* restrict replicas, global const int* restrict blocks,
-                            global const int* restrict replica_of_block, global const Motion* restrict motion,
-                            global const int* restrict cell_head, global const int* restrict cell_next,
-                            global int* restrict partner, global real* restrict displacement, global real* restrict history,
+kernel void list_neighbours(const int slot_count, global const Replica* restrict replicas,
+                            global const int* restrict blocks, global const int* restrict replica_of_block,
+                            global const Motion* restrict motion, global const int* restrict cell_head,
+                            global const int* restrict cell_next, global int* restrict partner,
+                            global real* restrict displacement, global real* restrict history,
                             global real* restrict memory, global real4* restrict listed_position,
                             global int* restrict status) {
     const int block = blocks[get_group_id(0)];
@@ -94,10 +101,10 @@ kernel void list_neighbours(const int slot_count, global const Replica* restrict
         carry(before, after, memory_of(replica, memory, row) + kind * SLOTS);
 }
 
-/* partner_slot: where the same contact stands in the neighbour's row. For walls and empty slots, the one place past
-   all rows, where displacements are always zero. */
-kernel void link_partner_slots(const int slot_count, global const int* restrict blocks, global const int* restrict partner,
-                         global int* restrict partner_slot) {
+/* partner_slot: where the same contact stands in the neighbour's row. For walls and empty slots, the one
+   place past all rows, where displacements are always zero. */
+kernel void link_partner_slots(const int slot_count, global const int* restrict blocks,
+                               global const int* restrict partner, global int* restrict partner_slot) {
     const int grain = blocks[get_group_id(0)] * BLOCK + get_local_id(0);
     const size_t row = (size_t)grain * SLOTS;
     for (int c = 0; c < SLOTS; ++c) {

@@ -22,5 +22,6 @@ INLINE real3 plate_foot(global const Replica* restrict replica, real plate_z, re
 /* From a point below the face to its foot. */
 INLINE real plate_distance(global const Replica* restrict replica, real plate_z, real4 point) {
     return (plate_height(replica, plate_z, point) - point.z) /
-           sqrt(R(1) + replica->plate_tilt_x * replica->plate_tilt_x + replica->plate_tilt_y * replica->plate_tilt_y);
+           sqrt(R(1) + replica->plate_tilt_x * replica->plate_tilt_x +
+                replica->plate_tilt_y * replica->plate_tilt_y);
 }

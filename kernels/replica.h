@@ -5,46 +5,46 @@
 #define SELF_TERMS 5
 
 typedef struct {
-    real time_step;           /* dt [s] */
-    real density;             /* inertial [kg/m3] */
-    real weight_density;      /* (density - fluid density) g [N/m3] */
-    real drag;                /* of velocities [1/s] */
-    real spin_drag;           /* of angular velocities, while the packing settles [1/s] */
-    real modulus_grain;       /* E*, grain on grain [Pa] */
-    real modulus_wall;        /* E*, grain on wall [Pa] */
-    real shear_grain;         /* G*, grain on grain [Pa] */
-    real shear_wall;          /* G*, grain on wall [Pa] */
-    real damping_grain;       /* 2 sqrt(5/6) beta */
+    real time_step;      /* dt [s] */
+    real density;        /* inertial [kg/m3] */
+    real weight_density; /* (density - fluid density) g [N/m3] */
+    real drag;           /* of velocities [1/s] */
+    real spin_drag;      /* of angular velocities, while the packing settles [1/s] */
+    real modulus_grain;  /* E*, grain on grain [Pa] */
+    real modulus_wall;   /* E*, grain on wall [Pa] */
+    real shear_grain;    /* G*, grain on grain [Pa] */
+    real shear_wall;     /* G*, grain on wall [Pa] */
+    real damping_grain;  /* 2 sqrt(5/6) beta */
     real damping_wall;
-    real friction_grain;      /* mu */
+    real friction_grain; /* mu */
     real friction_wall;
-    real sliding_velocity;    /* regularises saturated friction [m/s] */
-    real half_space_scale;    /* -gamma (1 + nu) / (2 pi E) [1/Pa] */
-    real half_space_normal;   /* 3 - 4 nu */
-    real half_space_shear;    /* 1 - 2 nu */
-    real sphere_scale;        /* 1 / E [1/Pa] */
+    real sliding_velocity;          /* regularises saturated friction [m/s] */
+    real half_space_scale;          /* -gamma (1 + nu) / (2 pi E) [1/Pa] */
+    real half_space_normal;         /* 3 - 4 nu */
+    real half_space_shear;          /* 1 - 2 nu */
+    real sphere_scale;              /* 1 / E [1/Pa] */
     real sphere_point[POINT_TERMS]; /* P: a point force moves the surface by P(s)/s, s = sin(theta/2) */
     real sphere_size[SIZE_TERMS];   /* T: contact radii add (2/5 a_k^2 + 2/3 a_c^2)/R^2 T(s)/s^3 */
     real sphere_self[SELF_TERMS];   /* S0 + S1 ln(a/R) + S2 a/R + ..: the loaded contact itself */
-    real skin;                /* neighbour list margin [m] */
-    real probe_gap;           /* gap up to which surfaces are probed [m] */
-    real overlap_limit;       /* over the sum of radii */
-    real cell_size;           /* [m] */
-    real wall_position[6];    /* x_min x_max y_min y_max floor plate, at the chunk's start [m] */
-    real plate_velocity;      /* along z [m/s] */
-    real plate_tilt_x;        /* slope of the plate's face along x, about the middle of the box */
-    real plate_tilt_y;        /* .. along y */
-    real grain_compliance;    /* (1 - nu^2) / E of a grain [1/Pa] */
-    real shear_compliance;    /* (2 - nu) / G of a grain [1/Pa] */
-    real adhesion;            /* 2 pi w, pull-off force over R* [N/m] */
-    real viscoelasticity;     /* part of the force that relaxes */
-    real relaxing_share;      /* 1 - exp(-dt / T): of what is left to relax, in a step */
-    real stiffening;          /* c, per overlap over R*; below zero it softens */
-    real plasticity;          /* part of the deepest overlap that stays */
-    real bulge_contacts;      /* part of the surface displacements that counts without geometric overlap */
-    real mindlin_share;       /* of the friction force, the rest is saturated */
-    real rolling_resistance;  /* mu_r */
-    int first_grain;          /* of the padded arrays */
+    real skin;                      /* neighbour list margin [m] */
+    real probe_gap;                 /* gap up to which surfaces are probed [m] */
+    real overlap_limit;             /* over the sum of radii */
+    real cell_size;                 /* [m] */
+    real wall_position[6];          /* x_min x_max y_min y_max floor plate, at the chunk's start [m] */
+    real plate_velocity;            /* along z [m/s] */
+    real plate_tilt_x;              /* slope of the plate's face along x, about the middle of the box */
+    real plate_tilt_y;              /* .. along y */
+    real grain_compliance;          /* (1 - nu^2) / E of a grain [1/Pa] */
+    real shear_compliance;          /* (2 - nu) / G of a grain [1/Pa] */
+    real adhesion;                  /* 2 pi w, pull-off force over R* [N/m] */
+    real viscoelasticity;           /* part of the force that relaxes */
+    real relaxing_share;            /* 1 - exp(-dt / T): of what is left to relax, in a step */
+    real stiffening;                /* c, per overlap over R*; below zero it softens */
+    real plasticity;                /* part of the deepest overlap that stays */
+    real bulge_contacts;     /* part of the surface displacements that counts without geometric overlap */
+    real mindlin_share;      /* of the friction force, the rest is saturated */
+    real rolling_resistance; /* mu_r */
+    int first_grain;         /* of the padded arrays */
     int grain_count;
     int first_cell;
     int cells_x; /* of the grid in memory */
@@ -53,14 +53,14 @@ typedef struct {
     int span_x; /* along the box; where more than cells_x, the grid repeats */
     int span_y;
     int span_z;
-    int steps_before;         /* this interval, modulo 4: turns the ring of surface displacements */
-    int surface;              /* SURFACE_* below */
-    int finite_contacts;      /* 1: the sphere's size and self terms are not zero */
-    int mindlin;              /* 1: friction with history, all or a share */
-    int memory_rows;          /* of a grain's contacts (contact_memory.h); springs take the first three */
-    int deepest_row;          /* among them, of plasticity */
-    int relaxed_row;          /* .. of viscoelasticity */
-    int effects;              /* EFFECT_* bits: what goes beyond the plain model */
+    int steps_before;    /* this interval, modulo 4: turns the ring of surface displacements */
+    int surface;         /* SURFACE_* below */
+    int finite_contacts; /* 1: the sphere's size and self terms are not zero */
+    int mindlin;         /* 1: friction with history, all or a share */
+    int memory_rows;     /* of a grain's contacts (contact_memory.h); springs take the first three */
+    int deepest_row;     /* among them, of plasticity */
+    int relaxed_row;     /* .. of viscoelasticity */
+    int effects;         /* EFFECT_* bits: what goes beyond the plain model */
 } Replica;
 
 #define SURFACE_RIGID 0      /* independent contacts */

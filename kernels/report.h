@@ -1,11 +1,11 @@
 /* What the host learns of a replica at the end of every interval of steps. Shared by host and device;
    scalars and arrays of scalars only, widest first. */
 typedef struct {
-    real kinetic_energy;   /* [J] */
-    real elastic_energy;   /* [J] */
-    real moved_squared;    /* farthest move of a grain since the neighbour list was made, squared [m2] */
-    real deepest_overlap;  /* corrected overlap over the sum of radii */
-    real wall_force[18];   /* on x_min x_max y_min y_max floor plate, x y z each [N] */
-    int status;            /* STATUS_* bits of all grains */
-    int failed_grain;      /* lowest grain with a bit, -1 if none */
+    real kinetic_energy;  /* [J] */
+    real elastic_energy;  /* [J] */
+    real moved_squared;   /* farthest move of a grain since the neighbour list was made, squared [m2] */
+    real deepest_overlap; /* corrected overlap over the sum of radii */
+    real wall_force[18];  /* on x_min x_max y_min y_max floor plate, x y z each [N] */
+    int status;           /* STATUS_* bits of all grains */
+    int failed_grain;     /* lowest grain with a bit, -1 if none */
 } Report;

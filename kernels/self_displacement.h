@@ -13,13 +13,18 @@ INLINE lanes self_displacement(global const Replica* restrict replica, lanes rel
 }
 
 /* What a force moves the contact by on this side and on the other, per newton [m/N]. */
-typedef struct { lanes here, there; } SelfCompliance;
+typedef struct {
+    lanes here, there;
+} SelfCompliance;
 
 /* E over a grain's own Young's modulus, on both sides. */
-typedef struct { real here; lanes there; } ComplianceRatio;
+typedef struct {
+    real here;
+    lanes there;
+} ComplianceRatio;
 
-INLINE SelfCompliance self_compliance(global const Replica* restrict replica, ComplianceRatio ratio, lanes contact_radius,
-                                      real inverse_radius, lanes inverse_there) {
+INLINE SelfCompliance self_compliance(global const Replica* restrict replica, ComplianceRatio ratio,
+                                      lanes contact_radius, real inverse_radius, lanes inverse_there) {
     SelfCompliance c;
     c.here = self_displacement(replica, contact_radius * inverse_radius) *
              (replica->sphere_scale * inverse_radius * ratio.here);
@@ -30,13 +35,17 @@ INLINE SelfCompliance self_compliance(global const Replica* restrict replica, Co
 }
 
 /* The overlap that agrees with the force it causes. */
-typedef struct { lanes overlap; SelfCompliance compliance; } SelfConsistent;
+typedef struct {
+    lanes overlap;
+    SelfCompliance compliance;
+} SelfConsistent;
 
-/* Solves overlap = given + compliance F(overlap), F = 4/3 E* sqrt(R* overlap) overlap, by Newton's method; the
-   compliance goes slowly with the contact radius and is taken anew at each step. Three steps leave some 1e-6 of
-   the overlap (tests/kernels measures it against bisection). */
-INLINE SelfConsistent self_consistent(global const Replica* restrict replica, ComplianceRatio ratio, lanes given,
-                                      lanes reduced_radius, lanes modulus, real radius, lanes radius_there, mask wall) {
+/* Solves overlap = given + compliance F(overlap), F = 4/3 E* sqrt(R* overlap) overlap, by Newton's method;
+   the compliance goes slowly with the contact radius and is taken anew at each step. Three steps leave some
+   1e-6 of the overlap (tests/kernels measures it against bisection). */
+INLINE SelfConsistent self_consistent(global const Replica* restrict replica, ComplianceRatio ratio,
+                                      lanes given, lanes reduced_radius, lanes modulus, real radius,
+                                      lanes radius_there, mask wall) {
     const real inverse_radius = R(1) / radius;
     const lanes inverse_there = WHERE(wall, R(0), R(1) / radius_there);
     SelfConsistent s;

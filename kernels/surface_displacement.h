@@ -3,19 +3,20 @@
 
 /* The contacts of one grain as every slot of it must see them. */
 typedef struct {
-    real x[SLOTS], y[SLOTS], z[SLOTS];  /* direction e */
-    real arm[SLOTS];                    /* distance of the contact or probed point [m] */
-    real elastic[SLOTS];                /* force, zero where there is no contact [N] */
-    real radius[SLOTS];                 /* of the contact [m] */
+    real x[SLOTS], y[SLOTS], z[SLOTS]; /* direction e */
+    real arm[SLOTS];                   /* distance of the contact or probed point [m] */
+    real elastic[SLOTS];               /* force, zero where there is no contact [N] */
+    real radius[SLOTS];                /* of the contact [m] */
 } ContactTable;
 
 /* Paper, Eq. 1, from contact k with unit force and unit prefactor, at the deformed contact points. With
    n = -e at both, all products follow from cos(theta) = e_k . e_c and the two arms. */
-INLINE lanes half_space_displacement(global const Replica* restrict replica, lanes cosine, lanes arm, real arm_k) {
+INLINE lanes half_space_displacement(global const Replica* restrict replica, lanes cosine, lanes arm,
+                                     real arm_k) {
     const lanes squared = arm * arm + arm_k * arm_k - R(2) * arm * arm_k * cosine;
     const lanes inverse = inverse_root(squared);
-    const lanes along_k = (arm_k - arm * cosine) * inverse;  /* n_k . u */
-    const lanes along_c = (arm_k * cosine - arm) * inverse;  /* n_c . u */
+    const lanes along_k = (arm_k - arm * cosine) * inverse; /* n_k . u */
+    const lanes along_c = (arm_k * cosine - arm) * inverse; /* n_c . u */
     lanes bracket = along_k * along_c + replica->half_space_normal * cosine;
     if (replica->half_space_shear != R(0))
         bracket -= replica->half_space_shear * (cosine + along_c) / (R(1) + along_k);
@@ -61,13 +62,14 @@ INLINE void tabulate(Contacts c, lanes3 normal, int v, EXCHANGE ContactTable* ta
 
 /* The sum over the contacts k of the grain, for its slots v. */
 INLINE lanes half_space_sum(global const Replica* restrict replica, EXCHANGE const ContactTable* table,
-                                   real compliance_ratio, lanes3 direction, int v) {
+                            real compliance_ratio, lanes3 direction, int v) {
     const lanes arm = LOAD_LANES(table->arm, v);
     lanes sum = R(0);
     for (int k = 0; k < SLOTS; ++k) {
         const real force = table->elastic[k];
         if (!(force > R(0))) continue;
-        const lanes cosine = direction.x * table->x[k] + direction.y * table->y[k] + direction.z * table->z[k];
+        const lanes cosine =
+            direction.x * table->x[k] + direction.y * table->y[k] + direction.z * table->z[k];
         const lanes term = half_space_displacement(replica, cosine, arm, table->arm[k]) * force;
         sum += WHERE(AS_MASK(SLOT_NUMBERS(v) == k), R(0), term);
     }
@@ -75,14 +77,15 @@ INLINE lanes half_space_sum(global const Replica* restrict replica, EXCHANGE con
 }
 
 INLINE lanes sphere_sum(global const Replica* restrict replica, EXCHANGE const ContactTable* table,
-                               real radius, real compliance_ratio, lanes3 direction, int v) {
+                        real radius, real compliance_ratio, lanes3 direction, int v) {
     const lanes relative = LOAD_LANES(table->radius, v) / radius;
     const lanes receiving = (R(2) / R(3)) * relative * relative;
     lanes sum = R(0);
     for (int k = 0; k < SLOTS; ++k) {
         const real force = table->elastic[k];
         if (!(force > R(0))) continue;
-        const lanes cosine = direction.x * table->x[k] + direction.y * table->y[k] + direction.z * table->z[k];
+        const lanes cosine =
+            direction.x * table->x[k] + direction.y * table->y[k] + direction.z * table->z[k];
         const real source = table->radius[k] / radius;
         const lanes term = sphere_displacement(replica, cosine, receiving + R(0.4) * source * source) * force;
         sum += WHERE(AS_MASK(SLOT_NUMBERS(v) == k), R(0), term);
@@ -92,8 +95,9 @@ INLINE lanes sphere_sum(global const Replica* restrict replica, EXCHANGE const C
 
 /* `compliance_ratio` is E over the grain's own Young's modulus. */
 INLINE lanes surface_displacement(global const Replica* restrict replica, EXCHANGE const ContactTable* table,
-                                         real radius, real compliance_ratio, int v) {
+                                  real radius, real compliance_ratio, int v) {
     const lanes3 direction = {LOAD_LANES(table->x, v), LOAD_LANES(table->y, v), LOAD_LANES(table->z, v)};
-    return replica->surface == SURFACE_HALF_SPACE ? half_space_sum(replica, table, compliance_ratio, direction, v)
-                                                  : sphere_sum(replica, table, radius, compliance_ratio, direction, v);
+    return replica->surface == SURFACE_HALF_SPACE
+               ? half_space_sum(replica, table, compliance_ratio, direction, v)
+               : sphere_sum(replica, table, radius, compliance_ratio, direction, v);
 }

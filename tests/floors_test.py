@@ -9,9 +9,10 @@ import sys
 # Floor -> the floors whose headers it may include, besides its own.
 FLOORS = {
     "core": [],
+    "elasticity": ["core"],
     "cl": ["core"],
     "scene": ["core"],
-    "sim": ["scene", "cl", "core"],
+    "sim": ["scene", "elasticity", "cl", "core"],
     "io": ["scene", "core"],
     "experiment": ["scene", "core"],
     "metrics": ["core"],
@@ -19,7 +20,8 @@ FLOORS = {
     "diagnose": ["metrics", "experiment", "scene", "core"],
     "report": ["diagnose", "metrics", "core"],
     "ensemble": ["diagnose", "calibrate", "metrics", "sim", "io", "experiment", "scene", "cl", "core"],
-    "cli": ["ensemble", "report", "diagnose", "calibrate", "metrics", "sim", "io", "experiment", "scene", "cl",
+    "challenge": ["ensemble", "report", "diagnose", "metrics", "sim", "io", "experiment", "scene", "cl", "core"],
+    "cli": ["challenge", "ensemble", "report", "diagnose", "calibrate", "metrics", "sim", "io", "experiment", "scene", "cl",
             "core"],
     "python": ["ensemble", "report", "diagnose", "calibrate", "metrics", "sim", "io", "experiment", "scene", "cl",
                "core"],
@@ -45,12 +47,25 @@ def floor_of(include):
 def wrong_includes(root):
     for floor, below in FLOORS.items():
         allowed = {floor, *below, *(["kernels"] if floor == "sim" else [])}
-        for file in sorted((root / "host" / floor).glob("*.*")):
+        for file in sorted((root / "host" / floor).rglob("*.*")):
+            if file.suffix not in SOURCES:
+                continue
             for number, line in enumerate(file.read_text().splitlines(), 1):
                 include = re.match(r'\s*#\s*include\s+"([^"]+)"', line)
                 if include and floor_of(include[1]) not in allowed | {None}:
                     yield (f"{file.relative_to(root)}:{number}: {floor} must not include {include[1]}; "
                            f"it may use {', '.join(sorted(allowed - {floor})) or 'nothing'}")
+
+
+def types_twice(root):
+    """Two types of one name in one namespace break the one-definition rule; each floor has one namespace."""
+    for floor in FLOORS:
+        seen = {}
+        for file in sorted((root / "host" / floor).rglob("*.h")):
+            for name in re.findall(r"^(?:struct|class|enum class) (\w+)[^;{]*\{", file.read_text(), re.MULTILINE):
+                if name in seen and seen[name] != file:
+                    yield f"{file.relative_to(root)}: {name} is also in {seen[name].relative_to(root)}"
+                seen[name] = file
 
 
 def strange_folders(root):
@@ -103,7 +118,7 @@ def self_test():
 def main():
     self_test()
     root = pathlib.Path(sys.argv[1])
-    problems = [problem for rule in (strange_folders, wrong_includes, long_files, long_functions)
+    problems = [problem for rule in (strange_folders, wrong_includes, types_twice, long_files, long_functions)
                 for problem in rule(root)]
     print("\n".join(problems) or f"{sum(1 for _ in sources(root))} files in order")
     return 1 if problems else 0

@@ -9,7 +9,7 @@
 #include "calibrate/local_fit.h"
 #include "core/errors.h"
 
-namespace mcdem {
+namespace mcdem::inline calibrate {
 namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
@@ -179,4 +179,4 @@ Calibration calibrate_gamma(const TopForces& top_forces, double target, const Br
     return result;
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::calibrate

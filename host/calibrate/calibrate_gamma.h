@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace mcdem {
+namespace mcdem::inline calibrate {
 
 struct Bracket {
     double low = 0;
@@ -47,4 +47,4 @@ using TopForces = std::function<std::vector<double>(const std::vector<double>& g
 Calibration calibrate_gamma(const TopForces& top_forces, double target, const Bracket& bracket,
                             const CalibrationOptions& options = {});
 
-}  // namespace mcdem
+}  // namespace mcdem::calibrate

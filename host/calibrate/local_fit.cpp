@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace mcdem {
+namespace mcdem::inline calibrate {
 namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
@@ -83,4 +83,4 @@ std::vector<double> rising_fit(const std::vector<Point>& points) {
     return values;
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::calibrate

@@ -2,7 +2,7 @@
 #pragma once
 #include <vector>
 
-namespace mcdem {
+namespace mcdem::inline calibrate {
 
 struct Point {
     double x = 0;
@@ -21,4 +21,4 @@ Crossing crossing_of_fit(const std::vector<Point>& points, double low, double hi
 /// `points` must be sorted by x.
 std::vector<double> rising_fit(const std::vector<Point>& points);
 
-}  // namespace mcdem
+}  // namespace mcdem::calibrate

@@ -9,7 +9,7 @@
 #include "cl/kernel_cache.h"
 #include "cl/process_limits.h"
 
-namespace mcdem {
+namespace mcdem::inline opencl {
 namespace {
 
 struct Found {
@@ -130,4 +130,4 @@ std::string Device::description() const {
     return fmt::format("{} ({}, {})", info_.name, info_.platform, info_.version);
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::opencl

@@ -6,17 +6,17 @@
 #include "cl/opencl.h"
 #include "core/errors.h"
 
-namespace mcdem {
+namespace mcdem::inline opencl {
 
 struct DeviceInfo {
-    int index = 0;         ///< what `--device` takes
+    int index = 0;  ///< what `--device` takes
     std::string name;
     std::string platform;
-    std::string version;   ///< of device and driver
+    std::string version;  ///< of device and driver
     bool gpu = false;
     bool double_precision = false;
     int compute_units = 0;
-    std::size_t memory = 0;  ///< [bytes]
+    std::size_t memory = 0;              ///< [bytes]
     std::size_t largest_allocation = 0;  ///< of memory in one piece [bytes]
     int largest_work_group = 0;          ///< work-items
 };
@@ -27,8 +27,8 @@ RunError no_device();
 /// Every OpenCL device, GPUs first (the order of `--device`).
 std::vector<DeviceInfo> list_devices();
 
-/// The numbers of all devices that give the same bits as the one that `choice` means (see Device): of its name,
-/// platform and driver. A choice by number means that one alone.
+/// The numbers of all devices that give the same bits as the one that `choice` means (see Device): of its
+/// name, platform and driver. A choice by number means that one alone.
 std::vector<int> alike_devices(const std::string& choice);
 
 /// One device with its context and in-order queue.
@@ -52,4 +52,4 @@ private:
     cl::CommandQueue queue_;
 };
 
-}  // namespace mcdem
+}  // namespace mcdem::opencl

@@ -5,7 +5,7 @@
 
 #include "cl/device.h"
 
-namespace mcdem {
+namespace mcdem::inline opencl {
 
 /// Memory on the device that holds `Quantity`, a type that only names. Elements may be reals of either
 /// precision: the bytes of one element are fixed when the field is made.
@@ -41,4 +41,4 @@ private:
     std::size_t bytes_ = 0;
 };
 
-}  // namespace mcdem
+}  // namespace mcdem::opencl

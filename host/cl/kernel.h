@@ -4,7 +4,7 @@
 
 #include "cl/field.h"
 
-namespace mcdem {
+namespace mcdem::inline opencl {
 
 /// Of a quantity that is kept twice: the copy that a step reads, and the one that it writes.
 template <class Quantity>
@@ -57,4 +57,4 @@ private:
     cl::Kernel kernel_;
 };
 
-}  // namespace mcdem
+}  // namespace mcdem::opencl

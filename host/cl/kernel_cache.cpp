@@ -11,7 +11,7 @@
 #include <fstream>
 #include <optional>
 
-namespace mcdem {
+namespace mcdem::inline opencl {
 namespace {
 
 namespace fs = std::filesystem;
@@ -119,4 +119,4 @@ void prepare_kernel_cache() {
     (void)once;
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::opencl

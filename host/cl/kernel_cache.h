@@ -3,7 +3,7 @@
 #pragma once
 #include <filesystem>
 
-namespace mcdem {
+namespace mcdem::inline opencl {
 
 /// Called when OpenCL has started: drivers change what signals do.
 inline void (*opencl_started)() = [] {};
@@ -16,4 +16,4 @@ std::filesystem::path kernel_cache_folder();
 /// anew.
 void prepare_kernel_cache();
 
-}  // namespace mcdem
+}  // namespace mcdem::opencl

@@ -3,7 +3,7 @@
 #include <map>
 #include <string>
 
-namespace mcdem {
+namespace mcdem::inline opencl {
 /// File name -> content.
 const std::map<std::string, std::string>& embedded_kernel_sources();
-}
+}  // namespace mcdem::opencl

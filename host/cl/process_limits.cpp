@@ -5,7 +5,7 @@
 
 #include "core/errors.h"
 
-namespace mcdem {
+namespace mcdem::inline opencl {
 
 void expect_enough_open_files() {
     constexpr rlim_t enough = 64, plenty = 1024;
@@ -31,4 +31,4 @@ void expect_room_for_kernels() {
             limit.rlim_cur, largest_file));
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::opencl

@@ -12,7 +12,7 @@
 #include "cl/process_limits.h"
 #include "core/errors.h"
 
-namespace mcdem {
+namespace mcdem::inline opencl {
 namespace {
 
 std::string kernel_source(const std::string& name) {
@@ -86,4 +86,4 @@ cl::Program build_program(const Device& device, const KernelBuild& build) {
     return program;
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::opencl

@@ -4,7 +4,7 @@
 #include "cl/device.h"
 #include "core/names.h"
 
-namespace mcdem {
+namespace mcdem::inline opencl {
 
 /// What distinguishes one build of the kernels from another.
 struct KernelBuild {
@@ -27,4 +27,4 @@ std::string program_text();
 /// Throws RunError with the compiler's log.
 cl::Program build_program(const Device& device, const KernelBuild& build);
 
-}  // namespace mcdem
+}  // namespace mcdem::opencl

@@ -13,7 +13,7 @@
 
 #include "core/errors.h"
 
-namespace mcdem {
+namespace mcdem::inline core {
 namespace {
 
 namespace fs = std::filesystem;
@@ -157,4 +157,4 @@ void remove_temporaries(const fs::path& folder) {
         if (is_temporary(entry.path())) fs::remove(entry.path());
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::core

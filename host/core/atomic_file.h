@@ -4,7 +4,7 @@
 #include <functional>
 #include <string_view>
 
-namespace mcdem {
+namespace mcdem::inline core {
 
 /// A file on its way: written under a random name beside its place, which nobody can foresee and no link is
 /// followed from. Goes with its owner unless it was put into place. Every failing operation throws RunError.
@@ -53,4 +53,4 @@ void remove_temporaries_of(const std::filesystem::path& file);
 /// programs' files on their way go too.
 void remove_temporaries(const std::filesystem::path& folder);
 
-}  // namespace mcdem
+}  // namespace mcdem::core

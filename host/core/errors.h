@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace mcdem {
+namespace mcdem::inline core {
 
 /// What the user gave is wrong: a scene, a packing, an experiment, an option (exit code 2).
 /// Carries every problem found, each as `where: what must be, what was got`.
@@ -12,8 +12,7 @@ class InputError : public std::runtime_error {
 public:
     explicit InputError(std::vector<std::string> problems)
         : std::runtime_error(join(problems)), problems_(std::move(problems)) {}
-    explicit InputError(const std::string& problem)
-        : InputError(std::vector<std::string>{problem}) {}
+    explicit InputError(const std::string& problem) : InputError(std::vector<std::string>{problem}) {}
     const std::vector<std::string>& problems() const { return problems_; }
 
 private:
@@ -30,4 +29,4 @@ class RunError : public std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-}  // namespace mcdem
+}  // namespace mcdem::core

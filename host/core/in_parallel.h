@@ -7,7 +7,7 @@
 #include <thread>
 #include <vector>
 
-namespace mcdem {
+namespace mcdem::inline core {
 
 /// Calls work(i) for i below `count` on as many threads as there are cores. Where one throws, no further ones
 /// begin, and the first exception is thrown again once all threads have ended.
@@ -32,4 +32,4 @@ void in_parallel(std::size_t count, Work work) {
     if (failure) std::rethrow_exception(failure);
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::core

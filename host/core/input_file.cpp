@@ -9,7 +9,7 @@
 
 #include "core/errors.h"
 
-namespace mcdem {
+namespace mcdem::inline core {
 namespace {
 
 /// Closed with its owner.
@@ -79,4 +79,4 @@ std::string read_file(const std::filesystem::path& file, std::string_view if_mis
 
 void expect_input(const std::filesystem::path& file) { const Descriptor in{open_input(file)}; }
 
-}  // namespace mcdem
+}  // namespace mcdem::core

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace mcdem {
+namespace mcdem::inline core {
 
 /// Descriptor of a file opened for reading. Throws InputError where there is no such file or it is a folder,
 /// pipe, device or socket (which are not waited for), RunError where the system refuses.
@@ -26,4 +26,4 @@ void expect_input(const std::filesystem::path& file);
 /// RunError: the system has refused `what` with this errno, which says nothing of the file's content.
 [[noreturn]] void fail_reading(const std::string& what, int error);
 
-}  // namespace mcdem
+}  // namespace mcdem::core

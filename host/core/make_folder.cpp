@@ -7,7 +7,7 @@
 
 #include "core/errors.h"
 
-namespace mcdem {
+namespace mcdem::inline core {
 
 void make_folder(const std::filesystem::path& folder) {
     std::error_code error;
@@ -25,4 +25,4 @@ void expect_writable(const std::filesystem::path& folder) {
         throw RunError(folder.string() + ": cannot be written to: " + std::generic_category().message(errno));
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::core

@@ -1,7 +1,7 @@
 #pragma once
 #include <filesystem>
 
-namespace mcdem {
+namespace mcdem::inline core {
 
 /// A folder to write into, with the folders above it; there may be one already. Throws RunError that names it
 /// where it cannot be made or written to: asked before long work, not after.
@@ -13,4 +13,4 @@ void make_folder_of(const std::filesystem::path& file);
 /// The second half: it must be there.
 void expect_writable(const std::filesystem::path& folder);
 
-}  // namespace mcdem
+}  // namespace mcdem::core

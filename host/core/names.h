@@ -6,9 +6,9 @@
 #include <string>
 #include <string_view>
 
-namespace mcdem {
+namespace mcdem::inline core {
 
-/// How the contacts of one grain feel one another (shared with kernels/replica.h by value).
+/// How a force at one contact of a grain displaces its surface at the others.
 enum class ContactModel {
     independent,            ///< Hertz, contacts independent
     point_force_on_sphere,  ///< exact elastic sphere under point forces, no self term
@@ -34,9 +34,9 @@ template <class Enum>
 struct Names;
 template <>
 struct Names<ContactModel> {
-    static constexpr std::array<std::string_view, 6> list{"independent",        "point_force_on_sphere",
-                                                          "sphere_to_sphere",   "elastic_half_space",
-                                                          "mc_dem",             "elastic_sphere"};
+    static constexpr std::array<std::string_view, 6> list{"independent",      "point_force_on_sphere",
+                                                          "sphere_to_sphere", "elastic_half_space",
+                                                          "mc_dem",           "elastic_sphere"};
 };
 template <>
 struct Names<FrictionLaw> {
@@ -78,4 +78,4 @@ std::string all_names() {
     return text;
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::core

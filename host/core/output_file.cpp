@@ -10,7 +10,7 @@
 #include "core/atomic_file.h"
 #include "core/errors.h"
 
-namespace mcdem {
+namespace mcdem::inline core {
 namespace {
 
 namespace fs = std::filesystem;
@@ -87,6 +87,12 @@ void replace_own(const fs::path& file, FileKind kind, const std::function<void(N
     replace_file(file, write);
 }
 
+void expect_no_answers(const fs::path& folder) {
+    std::error_code ignored;
+    if (fs::is_directory(folder / answers_folder, ignored))
+        throw InputError(folder.string() + ": holds the answers to a challenge: give another folder (--out)");
+}
+
 void expect_no_experiment(const fs::path& folder) {
     std::error_code ignored;
     if (fs::exists(folder / "experiment.toml", ignored))
@@ -96,4 +102,4 @@ void expect_no_experiment(const fs::path& folder) {
             folder.string()));
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::core

@@ -7,7 +7,7 @@
 #include <functional>
 #include <string_view>
 
-namespace mcdem {
+namespace mcdem::inline core {
 
 class NewFile;
 
@@ -38,7 +38,13 @@ void replace_own(const std::filesystem::path& file, FileKind kind, std::string_v
 void replace_own(const std::filesystem::path& file, FileKind kind,
                  const std::function<void(NewFile& out)>& write);
 
+/// A folder of the answers to a challenge holds this one.
+inline constexpr const char* answers_folder = "evidence";
+
+/// Throws InputError for the folder of the answers to a challenge.
+void expect_no_answers(const std::filesystem::path& folder);
+
 /// Throws InputError for the folder of an experiment: nothing else is written there.
 void expect_no_experiment(const std::filesystem::path& folder);
 
-}  // namespace mcdem
+}  // namespace mcdem::core

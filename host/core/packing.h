@@ -4,7 +4,7 @@
 
 #include "core/vec3.h"
 
-namespace mcdem {
+namespace mcdem::inline core {
 
 struct Packing {
     std::vector<Vec3> position;    ///< centres [m]
@@ -18,4 +18,4 @@ struct Box {
     double size_y = 0;  ///< [m]
 };
 
-}  // namespace mcdem
+}  // namespace mcdem::core

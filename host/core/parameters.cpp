@@ -2,7 +2,7 @@
 
 #include <set>
 
-namespace mcdem {
+namespace mcdem::inline core {
 
 std::string value_of(const Parameters& parameters, const std::string& key) {
     const auto found = parameters.find(key);
@@ -24,4 +24,4 @@ std::vector<std::string> keys_that_vary(const std::vector<Parameters>& all) {
     return {varying.begin(), varying.end()};
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::core

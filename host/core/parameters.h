@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace mcdem {
+namespace mcdem::inline core {
 
 using Parameters = std::map<std::string, std::string>;
 
@@ -17,4 +17,4 @@ std::string without_quotes(const std::string& text);
 /// Keys whose value is not the same in all, in alphabetical order.
 std::vector<std::string> keys_that_vary(const std::vector<Parameters>& all);
 
-}  // namespace mcdem
+}  // namespace mcdem::core

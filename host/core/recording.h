@@ -11,15 +11,15 @@
 #include "core/names.h"
 #include "core/packing.h"
 
-namespace mcdem {
+namespace mcdem::inline core {
 
 /// One contact as seen from `grain`. A contact between two grains is listed once, with grain < partner.
 struct Contact {
     int grain = 0;
-    int partner = 0;    ///< a grain, or wall_partner(wall) < 0
+    int partner = 0;            ///< a grain, or wall_partner(wall) < 0
     Vec3 point = Vec3::Zero();  ///< where it is [m]
     Vec3 force = Vec3::Zero();  ///< on `grain`, normal and tangential together [N]
-    double overlap = 0; ///< corrected overlap delta [m]; not-a-number where not known (measured data)
+    double overlap = 0;         ///< corrected overlap delta [m]; not-a-number where not known (measured data)
 };
 constexpr int wall_partner(Wall wall) { return -1 - static_cast<int>(wall); }
 constexpr bool is_wall(int partner) { return partner < 0; }
@@ -38,18 +38,19 @@ struct Scan {
     int frame = 0;  ///< counts the scans of one recording from 0
     int cycle = 0;  ///< compression cycle, from 0
     Phase phase = Phase::load;
-    double time = 0;     ///< [s]
-    double plate_z = 0;  ///< [m]
+    double time = 0;                                             ///< [s]
+    double plate_z = 0;                                          ///< [m]
     std::array<Vec3, wall_count> wall_force = no_wall_forces();  ///< on each wall by the grains [N]
-    double kinetic_energy = 0;                  ///< [J]
-    double elastic_energy = 0;                  ///< [J]
-    bool settled = false;                       ///< the settling criterion was met
-    double rate_error = std::numeric_limits<double>::quiet_NaN();  ///< of forces, by the plate's speed, estimated; relative
-    double coordination_number = 0;             ///< Z: contacts per grain, walls counted, above the scene's threshold
-    double mean_force = 0;        ///< <f>: mean |force| of those contacts [N]
-    double packing_fraction = 0;  ///< phi, more than a mean diameter from every wall
-    double branch_length = 0;     ///< <b>: mean distance of centres of touching grains [m]
-    std::vector<Vec3> position;   ///< by grain [m]
+    double kinetic_energy = 0;                                   ///< [J]
+    double elastic_energy = 0;                                   ///< [J]
+    bool settled = false;                                        ///< the settling criterion was met
+    double rate_error =
+        std::numeric_limits<double>::quiet_NaN();  ///< of forces, by the plate's speed, estimated; relative
+    double coordination_number = 0;  ///< Z: contacts per grain, walls counted, above the scene's threshold
+    double mean_force = 0;           ///< <f>: mean |force| of those contacts [N]
+    double packing_fraction = 0;     ///< phi, more than a mean diameter from every wall
+    double branch_length = 0;        ///< <b>: mean distance of centres of touching grains [m]
+    std::vector<Vec3> position;      ///< by grain [m]
     std::vector<Contact> contacts;
 
     /// Upward force on the plate [N].
@@ -65,10 +66,10 @@ struct Failure {
 
 /// One packing taken through its protocol: a replica of a run, or an experiment.
 struct Recording {
-    std::string label;                              ///< what sets it apart in its run, e.g. "mc_dem, packing 3"
+    std::string label;  ///< what sets it apart in its run, e.g. "mc_dem, packing 3"
     std::map<std::string, std::string> parameters;  ///< every scene key as it held for this replica
     Box box;
-    double plate_start = 0;  ///< plate position that counts as displacement zero [m]
+    double plate_start = 0;        ///< plate position that counts as displacement zero [m]
     std::vector<double> diameter;  ///< [m]
     std::vector<Scan> scans;
     std::optional<Failure> failure;
@@ -86,4 +87,4 @@ struct Run {
     std::vector<Recording> recordings;
 };
 
-}  // namespace mcdem
+}  // namespace mcdem::core

@@ -6,7 +6,7 @@
 
 #include "core/errors.h"
 
-namespace mcdem {
+namespace mcdem::inline core {
 
 struct Sha256::Context {
     EVP_MD_CTX* handle = EVP_MD_CTX_new();
@@ -46,4 +46,4 @@ std::string Sha256::hex() {
     return text;
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::core

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace mcdem {
+namespace mcdem::inline core {
 
 class Sha256 {
 public:
@@ -21,4 +21,4 @@ private:
     std::unique_ptr<Context> context_;
 };
 
-}  // namespace mcdem
+}  // namespace mcdem::core

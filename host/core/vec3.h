@@ -2,6 +2,6 @@
 #pragma once
 #include <Eigen/Core>
 
-namespace mcdem {
+namespace mcdem::inline core {
 using Vec3 = Eigen::Vector3d;
 }

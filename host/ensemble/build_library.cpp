@@ -8,7 +8,7 @@
 #include "core/errors.h"
 #include "ensemble/library_origin.h"
 
-namespace mcdem {
+namespace mcdem::inline ensemble {
 namespace {
 
 /// Amplitudes of the paired runs of a nuisance: both sides of the model, so that its slope there is met.
@@ -122,4 +122,4 @@ CandidateChoice choose_candidates(const Model& model, const std::vector<std::str
     return choice;
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::ensemble

@@ -1,10 +1,10 @@
 // Makes the signature library of a scene: baseline replicates and, from the same starts, every effect and
 // nuisance at two amplitudes.
 #pragma once
-#include "diagnose/library.h"
+#include "diagnose/infer/library.h"
 #include "ensemble/observe_trials.h"
 
-namespace mcdem {
+namespace mcdem::inline ensemble {
 
 struct LibraryPlan {
     std::vector<Packing> packings;  ///< one or several
@@ -34,4 +34,4 @@ struct CandidateChoice {
 /// Throws InputError for names that are no effects.
 CandidateChoice choose_candidates(const Model& model, const std::vector<std::string>& wanted);
 
-}  // namespace mcdem
+}  // namespace mcdem::ensemble

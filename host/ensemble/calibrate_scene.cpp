@@ -10,7 +10,7 @@
 #include "ensemble/simulate.h"
 #include "metrics/top_force.h"
 
-namespace mcdem {
+namespace mcdem::inline ensemble {
 namespace {
 
 const std::set<std::string> left_aside{"contact.model", "contact.gamma", "packing.seed"};
@@ -139,4 +139,4 @@ SceneCalibration calibrate_scene(Device& device, const Scene& scene, const Repli
     return result;
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::ensemble

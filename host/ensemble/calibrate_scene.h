@@ -10,7 +10,7 @@
 #include "metrics/replicas.h"
 #include "scene/scene.h"
 
-namespace mcdem {
+namespace mcdem::inline ensemble {
 
 struct CalibrateOptions {
     Bracket bracket{0.5, 1.5};
@@ -35,4 +35,4 @@ SceneCalibration calibrate_scene(Device& device, const Scene& scene, const Repli
 /// The replicas that a calibration runs for each gamma: one for each packing of the scene.
 std::vector<Replica> calibration_replicas(const Scene& scene);
 
-}  // namespace mcdem
+}  // namespace mcdem::ensemble

@@ -9,7 +9,7 @@
 #include "ensemble/observe_trials.h"
 #include "scene/make_packing.h"
 
-namespace mcdem {
+namespace mcdem::inline ensemble {
 namespace {
 
 constexpr double jitter_of_diameter = 0.005;
@@ -156,4 +156,4 @@ Convergence converge_scene(Device& device, const Scene& scene, const ConvergeOpt
     return Converging(device, scene, options).all();
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::ensemble

@@ -6,10 +6,10 @@
 #include <string>
 
 #include "cl/device.h"
-#include "diagnose/convergence.h"
+#include "diagnose/infer/convergence.h"
 #include "scene/scene.h"
 
-namespace mcdem {
+namespace mcdem::inline ensemble {
 
 struct ConvergeOptions {
     std::filesystem::path folder;  ///< every simulation is kept below it and not made twice
@@ -28,4 +28,4 @@ struct ConvergeOptions {
 /// stop_wanted says so.
 Convergence converge_scene(Device& device, const Scene& scene, const ConvergeOptions& options);
 
-}  // namespace mcdem
+}  // namespace mcdem::ensemble

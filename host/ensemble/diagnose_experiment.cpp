@@ -11,12 +11,12 @@
 
 #include "core/errors.h"
 #include "ensemble/library_origin.h"
-#include "ensemble/library_parts.h"
 #include "ensemble/paper_metrics.h"
+#include "ensemble/parts/library_parts.h"
 #include "experiment/check_experiment.h"
 #include "scene/keys.h"
 
-namespace mcdem {
+namespace mcdem::inline ensemble {
 namespace {
 
 /// The part of a diagnosis' work that one stage is.
@@ -374,4 +374,4 @@ Diagnosis diagnose_experiment(Device& device, const Scene& scene, const Experime
     return diagnosis;
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::ensemble

@@ -3,10 +3,10 @@
 #include <filesystem>
 #include <optional>
 
-#include "diagnose/diagnose.h"
+#include "diagnose/decide/diagnose.h"
 #include "ensemble/build_library.h"
 
-namespace mcdem {
+namespace mcdem::inline ensemble {
 
 struct DiagnoseOptions {
     std::filesystem::path folder;         ///< observations are kept here, in `simulations`
@@ -45,4 +45,4 @@ Packing start_packing(const Experiment& experiment);
 Diagnosis diagnose_experiment(Device& device, const Scene& scene, const Experiment& experiment,
                               const DiagnoseOptions& options);
 
-}  // namespace mcdem
+}  // namespace mcdem::ensemble

@@ -13,7 +13,7 @@
 #include "scene/keys.h"
 #include "scene/packing_fields.h"
 
-namespace mcdem {
+namespace mcdem::inline ensemble {
 namespace {
 
 /// What may differ between a library and a diagnosis, relative to the library's.
@@ -104,4 +104,4 @@ void expect_origin(const Library& library, const std::map<std::string, std::stri
     throw InputError(problems);
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::ensemble

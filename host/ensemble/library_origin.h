@@ -4,10 +4,10 @@
 #include <map>
 #include <string>
 
-#include "diagnose/library.h"
+#include "diagnose/infer/library.h"
 #include "ensemble/observe_trials.h"
 
-namespace mcdem {
+namespace mcdem::inline ensemble {
 
 /// All that signatures and scatter depend on, by name: keys of the scene, the instrument's stated errors, the
 /// sizes of grains, the kernels, the program's version and the observables.
@@ -19,4 +19,4 @@ std::map<std::string, std::string> library_origin(const Question& question, cons
 void expect_origin(const Library& library, const std::map<std::string, std::string>& needed,
                    const std::filesystem::path& file);
 
-}  // namespace mcdem
+}  // namespace mcdem::ensemble

@@ -10,7 +10,7 @@
 #include "core/in_parallel.h"
 #include "scene/make_packing.h"
 
-namespace mcdem {
+namespace mcdem::inline ensemble {
 namespace {
 
 /// Everything that make_packing looks at, so that equal texts mean equal packings.
@@ -67,4 +67,4 @@ std::vector<Packing> make_packings(const Scene& scene, const std::function<bool(
     return packings;
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::ensemble

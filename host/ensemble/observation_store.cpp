@@ -10,7 +10,7 @@
 #include "core/sha256.h"
 #include "io/results.h"
 
-namespace mcdem {
+namespace mcdem::inline ensemble {
 namespace {
 
 /// A digest of the numbers comes first: a file damaged later is not believed.
@@ -73,4 +73,4 @@ void ObservationStore::keep(const std::string& name, const Recording& recording)
     write_run(recording_file(name), run);
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::ensemble

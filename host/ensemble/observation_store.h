@@ -8,7 +8,7 @@
 
 #include "core/recording.h"
 
-namespace mcdem {
+namespace mcdem::inline ensemble {
 
 class ObservationStore {
 public:
@@ -30,4 +30,4 @@ private:
     std::filesystem::path folder_;
 };
 
-}  // namespace mcdem
+}  // namespace mcdem::ensemble

@@ -13,7 +13,7 @@
 #include "scene/random.h"
 #include "sim/simulation.h"
 
-namespace mcdem {
+namespace mcdem::inline ensemble {
 namespace {
 
 constexpr std::size_t most_grains_at_once = 32'768;
@@ -267,4 +267,4 @@ ReferenceMaterial reference_material(const Model& model) {
             model.instrument.stated.force_threshold};
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::ensemble

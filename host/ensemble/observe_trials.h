@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "cl/device.h"
-#include "diagnose/effects.h"
-#include "diagnose/observation.h"
+#include "diagnose/infer/effects.h"
+#include "diagnose/observe/observation.h"
 #include "ensemble/observation_store.h"
 
-namespace mcdem {
+namespace mcdem::inline ensemble {
 
 /// One simulation and one look at it.
 struct Trial {
@@ -62,4 +62,4 @@ struct Interrupted : std::runtime_error {
 /// The material that observations are evaluated with: the model's.
 ReferenceMaterial reference_material(const Model& model);
 
-}  // namespace mcdem
+}  // namespace mcdem::ensemble

@@ -2,7 +2,7 @@
 
 #include "metrics/compare.h"
 
-namespace mcdem {
+namespace mcdem::inline ensemble {
 namespace {
 
 void add(Shrink& shrink, const char* metric, const Estimate& before, const Estimate& after) {
@@ -38,4 +38,4 @@ void add_paper_metrics(Shrink& shrink, const Recording& experiment, const Before
     }
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::ensemble

@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "core/recording.h"
-#include "diagnose/diagnosis.h"
+#include "diagnose/decide/diagnosis.h"
 
-namespace mcdem {
+namespace mcdem::inline ensemble {
 
 struct BeforeAfter {
     std::vector<Recording> before, after;  ///< replicates, as measured
@@ -15,4 +15,4 @@ struct BeforeAfter {
 /// Fills in Shrink::metrics (Rtop, errf [N], errZ, bhat) and Shrink::top_force.
 void add_paper_metrics(Shrink& shrink, const Recording& experiment, const BeforeAfter& simulated);
 
-}  // namespace mcdem
+}  // namespace mcdem::ensemble

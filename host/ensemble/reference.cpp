@@ -5,7 +5,7 @@
 #include "core/errors.h"
 #include "experiment/experiment.h"
 
-namespace mcdem {
+namespace mcdem::inline ensemble {
 namespace {
 
 namespace fs = std::filesystem;
@@ -45,4 +45,4 @@ Setting chosen_setting(const Run& run, const std::string& label, const std::stri
         fmt::format("{}: holds several settings; choose one with {}, of {}", where, option, known));
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::ensemble

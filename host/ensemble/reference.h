@@ -6,7 +6,7 @@
 #include "io/results.h"
 #include "metrics/replicas.h"
 
-namespace mcdem {
+namespace mcdem::inline ensemble {
 
 /// A result folder or file, or the folder of an experiment in the form of a run, whose first `discard` cycles
 /// metrics leave out. Throws InputError where there is none.
@@ -17,4 +17,4 @@ Run read_reference(const std::filesystem::path& path, int discard, ReadWhat what
 Setting chosen_setting(const Run& run, const std::string& label, const std::string& where,
                        const std::string& option);
 
-}  // namespace mcdem
+}  // namespace mcdem::ensemble

@@ -11,7 +11,7 @@
 #include "sim/batch_limits.h"
 #include "sim/simulation.h"
 
-namespace mcdem {
+namespace mcdem::inline ensemble {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -169,4 +169,4 @@ RunSummary run_scene(Device& device, const Scene& scene, const RunOptions& optio
     return summary;
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::ensemble

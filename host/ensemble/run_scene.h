@@ -9,7 +9,7 @@
 #include "core/recording.h"
 #include "scene/scene.h"
 
-namespace mcdem {
+namespace mcdem::inline ensemble {
 
 enum class Start { fresh, resume };
 
@@ -45,4 +45,4 @@ struct RunSummary {
 /// cannot be done. Replicas that fail are recorded and end nothing.
 RunSummary run_scene(Device& device, const Scene& scene, const RunOptions& options);
 
-}  // namespace mcdem
+}  // namespace mcdem::ensemble

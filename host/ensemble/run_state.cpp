@@ -8,11 +8,10 @@
 #include "core/errors.h"
 #include "core/output_file.h"
 #include "core/parameters.h"
-#include "ensemble/challenge_run.h"
 #include "io/result_file.h"
 #include "scene/read_scene.h"
 
-namespace mcdem {
+namespace mcdem::inline ensemble {
 namespace {
 
 const std::string program_field = "program";
@@ -105,7 +104,7 @@ RunIdentity identity_of(const Device& device, const Scene& scene, const std::str
 
 void expect_room_for_run(const std::filesystem::path& folder) {
     expect_no_experiment(folder);
-    expect_no_challenge(folder);
+    expect_no_answers(folder);
     expect_replaceable(folder / "plate.csv", FileKind::run_table);
 }
 
@@ -159,4 +158,4 @@ std::optional<Checkpoint> find_checkpoint(const ResultFolder& folder, const RunI
     return checkpoint;
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::ensemble

@@ -7,7 +7,7 @@
 #include "io/result_folder.h"
 #include "scene/scene.h"
 
-namespace mcdem {
+namespace mcdem::inline ensemble {
 
 /// What must be the same for a run to go on as if it had not stopped.
 struct RunIdentity {
@@ -34,4 +34,4 @@ void expect_scene_of(const std::filesystem::path& folder, const Scene& scene);
 /// is another run. Fills in Checkpoint::warning where results may differ from an uninterrupted run.
 std::optional<Checkpoint> find_checkpoint(const ResultFolder& folder, const RunIdentity& identity);
 
-}  // namespace mcdem
+}  // namespace mcdem::ensemble

@@ -4,7 +4,7 @@
 
 #include "sim/simulation.h"
 
-namespace mcdem {
+namespace mcdem::inline ensemble {
 
 std::vector<Recording> simulate(Device& device, const Scene& scene, const std::vector<Packing>& packings,
                                 std::size_t scans_needed,
@@ -23,4 +23,4 @@ std::vector<Recording> simulate(Device& device, const Scene& scene, const std::v
     return recordings;
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::ensemble

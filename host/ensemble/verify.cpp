@@ -8,9 +8,9 @@
 #include "core/errors.h"
 #include "core/input_file.h"
 #include "core/sha256.h"
-#include "diagnose/library.h"
-#include "ensemble/manifest.h"
+#include "diagnose/infer/library.h"
 #include "ensemble/observation_store.h"
+#include "ensemble/parts/manifest.h"
 #include "experiment/experiment_files.h"
 #include "io/checkpoint.h"
 #include "io/csv.h"
@@ -19,7 +19,7 @@
 #include "io/result_folder.h"
 #include "io/results.h"
 
-namespace mcdem {
+namespace mcdem::inline ensemble {
 namespace {
 
 namespace fs = std::filesystem;
@@ -164,4 +164,4 @@ std::vector<Verified> verify(const fs::path& path) {
     return all;
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::ensemble

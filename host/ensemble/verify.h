@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace mcdem {
+namespace mcdem::inline ensemble {
 
 /// One file that was looked at.
 struct Verified {
@@ -17,4 +17,4 @@ struct Verified {
 /// that this program writes, RunError where the system refuses to read.
 std::vector<Verified> verify(const std::filesystem::path& file_or_folder);
 
-}  // namespace mcdem
+}  // namespace mcdem::ensemble

@@ -3,7 +3,7 @@
 
 #include "experiment/measurements.h"
 
-namespace mcdem {
+namespace mcdem::inline experiment {
 namespace {
 
 /// Walls whose contacts were measured at all: on the others no contacts does not mean no force.
@@ -57,4 +57,4 @@ void average_contacts(Recording& recording, double force_threshold) {
     }
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::experiment

@@ -7,7 +7,7 @@
 
 #include "experiment/findings.h"
 
-namespace mcdem {
+namespace mcdem::inline experiment {
 namespace {
 
 constexpr double gravity = 9.81;       // [m/s2]
@@ -97,4 +97,4 @@ void check_balance(const Experiment& experiment, Findings& findings) {
                          unbalanced.text());
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::experiment

@@ -7,7 +7,7 @@
 
 #include "experiment/findings.h"
 
-namespace mcdem {
+namespace mcdem::inline experiment {
 namespace {
 
 constexpr double most_apart = 0.15;   // gap over the mean diameter: as far as simulations look for contacts
@@ -185,4 +185,4 @@ void check_contacts(const Experiment& experiment, Findings& findings) {
     check_stiffness(experiment, findings);
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::experiment

@@ -8,7 +8,7 @@
 
 #include "experiment/findings.h"
 
-namespace mcdem {
+namespace mcdem::inline experiment {
 namespace {
 
 void describe_plate(const Recording& recording, Findings& findings) {
@@ -88,4 +88,4 @@ void describe(const Experiment& experiment, Findings& findings) {
     describe_settings(experiment, findings);
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::experiment

@@ -8,7 +8,7 @@
 
 #include "experiment/findings.h"
 
-namespace mcdem {
+namespace mcdem::inline experiment {
 
 void Tally::add(const Scan& scan, const std::function<std::string()>& example) {
     ++count_;
@@ -66,4 +66,4 @@ ExperimentCheck check_experiment(const Experiment& experiment) {
     return result;
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::experiment

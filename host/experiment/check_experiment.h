@@ -5,7 +5,7 @@
 
 #include "experiment/experiment.h"
 
-namespace mcdem {
+namespace mcdem::inline experiment {
 
 enum class Severity {
     note,     ///< what is there
@@ -32,4 +32,4 @@ ExperimentCheck check_experiment(const Experiment& experiment);
 /// diagnosed.
 std::vector<std::string> needed_to_diagnose(const Experiment& experiment);
 
-}  // namespace mcdem
+}  // namespace mcdem::experiment

@@ -8,7 +8,7 @@
 #include "experiment/findings.h"
 #include "scene/cell_pairs.h"
 
-namespace mcdem {
+namespace mcdem::inline experiment {
 namespace {
 
 constexpr double least_fraction = 0.3, most_fraction = 0.95;  // of a packing that carries load
@@ -106,4 +106,4 @@ void check_grains(const Experiment& experiment, Findings& findings) {
     check_jumps(recording, findings);
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::experiment

@@ -8,7 +8,7 @@
 
 #include "experiment/findings.h"
 
-namespace mcdem {
+namespace mcdem::inline experiment {
 namespace {
 
 constexpr double rest = 0.005;    // of the stroke: a frame 0 below that is under load
@@ -157,4 +157,4 @@ void find_missing(const Experiment& experiment, Findings& findings) {
     missing_settings(experiment, findings);
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::experiment

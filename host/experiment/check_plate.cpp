@@ -6,7 +6,7 @@
 
 #include "experiment/findings.h"
 
-namespace mcdem {
+namespace mcdem::inline experiment {
 namespace {
 
 constexpr double clear_load = 10;  // over the threshold of a contact
@@ -109,4 +109,4 @@ void check_errors(const Experiment& experiment, Findings& findings) {
                                  part));
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::experiment

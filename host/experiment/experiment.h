@@ -9,7 +9,7 @@
 
 #include "core/recording.h"
 
-namespace mcdem {
+namespace mcdem::inline experiment {
 
 /// How well it was measured; a simulation seen through the same instrument is comparable.
 struct Measurement {
@@ -47,4 +47,4 @@ enum class Packed { plain, gzip };
 void write_experiment(const std::filesystem::path& folder, const Experiment& experiment,
                       Packed packed = Packed::plain);
 
-}  // namespace mcdem
+}  // namespace mcdem::experiment

@@ -5,7 +5,7 @@
 
 #include "experiment/experiment.h"
 
-namespace mcdem {
+namespace mcdem::inline experiment {
 
 /// Bytes by file name.
 std::map<std::string, std::string> experiment_files(const Experiment& experiment, Packed packed);
@@ -16,4 +16,4 @@ std::string sums_text(const std::map<std::string, std::string>& files);
 /// The file of an experiment that holds them.
 inline constexpr const char* sums_file = "SHA256SUMS";
 
-}  // namespace mcdem
+}  // namespace mcdem::experiment

@@ -2,7 +2,7 @@
 
 #include "core/errors.h"
 
-namespace mcdem {
+namespace mcdem::inline experiment {
 namespace {
 constexpr std::size_t most_told = 20;
 }
@@ -30,4 +30,4 @@ void ExperimentProblems::report() const {
     if (!empty()) throw InputError(lines());
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::experiment

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace mcdem {
+namespace mcdem::inline experiment {
 
 class ExperimentProblems {
 public:
@@ -28,4 +28,4 @@ private:
     long count_ = 0;
 };
 
-}  // namespace mcdem
+}  // namespace mcdem::experiment

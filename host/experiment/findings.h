@@ -5,7 +5,7 @@
 
 #include "experiment/check_experiment.h"
 
-namespace mcdem {
+namespace mcdem::inline experiment {
 
 class Findings {
 public:
@@ -61,4 +61,4 @@ void check_grains(const Experiment& experiment, Findings& findings);
 void check_contacts(const Experiment& experiment, Findings& findings);
 void check_balance(const Experiment& experiment, Findings& findings);
 
-}  // namespace mcdem
+}  // namespace mcdem::experiment

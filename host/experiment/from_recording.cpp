@@ -2,7 +2,7 @@
 
 #include "scene/packing_fields.h"
 
-namespace mcdem {
+namespace mcdem::inline experiment {
 
 Experiment experiment_from(const Recording& truth, const Instrument& instrument, std::uint64_t seed) {
     Experiment experiment;
@@ -21,4 +21,4 @@ Experiment experiment_from(const Recording& truth, const Instrument& instrument,
     return experiment;
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::experiment

@@ -7,7 +7,7 @@
 #include "experiment/measurements.h"
 #include "scene/random.h"
 
-namespace mcdem {
+namespace mcdem::inline experiment {
 namespace {
 
 class Reading {
@@ -117,4 +117,4 @@ Recording measured(const Recording& truth, const Instrument& instrument, std::ui
     return recording;
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::experiment

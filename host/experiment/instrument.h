@@ -5,7 +5,7 @@
 
 #include "experiment/experiment.h"
 
-namespace mcdem {
+namespace mcdem::inline experiment {
 
 /// What the instrument states of itself, and where it is wrong without knowing.
 struct Instrument {
@@ -27,4 +27,4 @@ struct Instrument {
 /// it is alike.
 Recording measured(const Recording& truth, const Instrument& instrument, std::uint64_t seed);
 
-}  // namespace mcdem
+}  // namespace mcdem::experiment

@@ -3,7 +3,7 @@
 #include "experiment/experiment.h"
 #include "experiment/table.h"
 
-namespace mcdem {
+namespace mcdem::inline experiment {
 
 /// A scan of which nothing is known yet: not-a-number throughout, measured at rest.
 Scan unknown_scan();
@@ -22,4 +22,4 @@ const std::vector<std::string>& plate_columns();
 const std::vector<std::string>& grain_columns();
 const std::vector<std::string>& contact_columns();
 
-}  // namespace mcdem
+}  // namespace mcdem::experiment

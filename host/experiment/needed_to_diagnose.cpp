@@ -2,7 +2,7 @@
 
 #include "experiment/check_experiment.h"
 
-namespace mcdem {
+namespace mcdem::inline experiment {
 
 std::vector<std::string> needed_to_diagnose(const Experiment& experiment) {
     const Recording& recording = experiment.recording;
@@ -26,4 +26,4 @@ std::vector<std::string> needed_to_diagnose(const Experiment& experiment) {
     return needed;
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::experiment

@@ -7,7 +7,7 @@
 #include "experiment/measurements.h"
 #include "scene/packing_fields.h"
 
-namespace mcdem {
+namespace mcdem::inline experiment {
 namespace {
 
 class ContactReader {
@@ -150,4 +150,4 @@ void read_contacts(Table& table, double youngs_modulus, Recording& recording) {
     ContactReader(table, youngs_modulus, recording).read();
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::experiment

@@ -7,7 +7,7 @@
 #include "experiment/measurements.h"
 #include "experiment/settings.h"
 
-namespace mcdem {
+namespace mcdem::inline experiment {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -78,4 +78,4 @@ Experiment read_experiment(const fs::path& folder, std::uintmax_t largest) {
     return experiment;
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::experiment

@@ -5,7 +5,7 @@
 
 #include "experiment/measurements.h"
 
-namespace mcdem {
+namespace mcdem::inline experiment {
 namespace {
 
 constexpr double most_change = 0.25;  // of a diameter between frames; measuring it again changes it less
@@ -141,4 +141,4 @@ void read_grains(Table& table, Recording& recording) {
     frames.end_frame();
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::experiment

@@ -7,7 +7,7 @@
 #include "experiment/measurements.h"
 #include "scene/packing_fields.h"
 
-namespace mcdem {
+namespace mcdem::inline experiment {
 namespace {
 
 constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
@@ -79,4 +79,4 @@ void read_plate(Table& table, double youngs_modulus, Recording& recording) {
     }
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::experiment

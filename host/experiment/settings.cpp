@@ -11,7 +11,7 @@
 #include "core/input_file.h"
 #include "scene/packing_fields.h"
 
-namespace mcdem {
+namespace mcdem::inline experiment {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -234,4 +234,4 @@ std::string settings_text(const Experiment& experiment) {
     return text.str();
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::experiment

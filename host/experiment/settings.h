@@ -3,7 +3,7 @@
 #include "experiment/experiment.h"
 #include "experiment/experiment_problems.h"
 
-namespace mcdem {
+namespace mcdem::inline experiment {
 
 /// Reads name, box, materials, uncertainty, measurement and, where given, plate_start (else not-a-number).
 void read_settings(const std::filesystem::path& file, Experiment& experiment, ExperimentProblems& problems);
@@ -15,4 +15,4 @@ void parse_settings(std::string_view text, const std::string& file, const std::v
 
 std::string settings_text(const Experiment& experiment);
 
-}  // namespace mcdem
+}  // namespace mcdem::experiment

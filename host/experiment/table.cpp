@@ -18,7 +18,7 @@
 #include "core/input_file.h"
 #include "scene/packing_fields.h"
 
-namespace mcdem {
+namespace mcdem::inline experiment {
 namespace {
 
 namespace fs = std::filesystem;
@@ -220,5 +220,5 @@ std::optional<long> Table::whole_number(std::size_t column, long least) {
 
 std::string Table::where(long line) const { return fmt::format("{}:{}", name_, line); }
 
-}  // namespace mcdem
+}  // namespace mcdem::experiment
 #pragma GCC diagnostic pop

@@ -10,10 +10,10 @@
 
 #include "experiment/experiment_problems.h"
 
-namespace mcdem {
+namespace mcdem::inline experiment {
 
-/// `<folder>/<name>` or `<name>.gz`; nothing where neither is there. Problems: both (which counts?), one that is
-/// no ordinary file, one of more than `largest` bytes.
+/// `<folder>/<name>` or `<name>.gz`; nothing where neither is there. Problems: both (which counts?), one that
+/// is no ordinary file, one of more than `largest` bytes.
 std::optional<std::filesystem::path> find_table(const std::filesystem::path& folder, const std::string& name,
                                                 std::uintmax_t largest, ExperimentProblems& problems);
 
@@ -56,4 +56,4 @@ private:
     long line_ = 1, rows_ = 0;
 };
 
-}  // namespace mcdem
+}  // namespace mcdem::experiment

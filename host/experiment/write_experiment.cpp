@@ -13,7 +13,7 @@
 #include "experiment/measurements.h"
 #include "experiment/settings.h"
 
-namespace mcdem {
+namespace mcdem::inline experiment {
 namespace {
 
 // "{}" prints the shortest digits that read back as the same number.
@@ -109,4 +109,4 @@ void write_experiment(const std::filesystem::path& folder, const Experiment& exp
     replace_file(folder / "experiment.toml", files.at("experiment.toml"));
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::experiment

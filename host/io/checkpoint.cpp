@@ -6,7 +6,7 @@
 #include "core/errors.h"
 #include "io/hdf5.h"
 
-namespace mcdem {
+namespace mcdem::inline io {
 namespace {
 
 namespace fs = std::filesystem;
@@ -126,4 +126,4 @@ void remove_checkpoints(const fs::path& folder) {
     fs::remove(previous(folder));
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::io

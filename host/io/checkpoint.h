@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace mcdem {
+namespace mcdem::inline io {
 
 struct Checkpoint {
     std::string scene_text;  ///< scene of the run, overrides applied
@@ -32,4 +32,4 @@ bool has_checkpoint(const std::filesystem::path& folder);
 /// Removes what write_checkpoint wrote: a finished run needs none.
 void remove_checkpoints(const std::filesystem::path& folder);
 
-}  // namespace mcdem
+}  // namespace mcdem::io

@@ -7,7 +7,7 @@
 #include "core/output_file.h"
 #include "core/parameters.h"
 
-namespace mcdem {
+namespace mcdem::inline io {
 namespace {
 
 constexpr const char* header =
@@ -69,7 +69,8 @@ std::string csv_text(const Run& run) {
         const Recording& recording = run.recordings[r];
         const std::string label = quoted(recording.label);
         std::string parameters;
-        for (const auto& key : keys) parameters.append(",").append(value_text(value_of(recording.parameters, key)));
+        for (const auto& key : keys)
+            parameters.append(",").append(value_text(value_of(recording.parameters, key)));
         for (const Scan& scan : recording.scans) {
             // "{}" prints the shortest digits that read back as the same number.
             fmt::format_to(out, "{},{},{},{},{},{},{},{},", r, label, scan.frame, scan.cycle,
@@ -88,4 +89,4 @@ void write_csv(const Run& run, const std::filesystem::path& folder) {
     replace_own(folder / "plate.csv", FileKind::run_table, csv_text(run));
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::io

@@ -5,7 +5,7 @@
 
 #include "core/recording.h"
 
-namespace mcdem {
+namespace mcdem::inline io {
 
 /// The text of `plate.csv`: one row per replica and scan, without positions and contacts.
 /// A column for each scene key that is not the same in all replicas comes last.
@@ -15,4 +15,4 @@ std::string csv_text(const Run& run);
 /// Writes it to `<folder>/plate.csv`.
 void write_csv(const Run& run, const std::filesystem::path& folder);
 
-}  // namespace mcdem
+}  // namespace mcdem::io

@@ -11,7 +11,7 @@
 #include "core/atomic_file.h"
 #include "core/errors.h"
 
-namespace mcdem {
+namespace mcdem::inline io {
 namespace {
 
 enum class Answer { locked, held_by_others, no_locks };  // some network disks have none: ENOLCK, EBADF
@@ -51,4 +51,4 @@ FolderLock::~FolderLock() {
     if (descriptor_ >= 0) ::close(descriptor_);
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::io

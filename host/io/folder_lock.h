@@ -2,7 +2,7 @@
 #pragma once
 #include <filesystem>
 
-namespace mcdem {
+namespace mcdem::inline io {
 
 /// Held as long as this lives, and given back by the system where its process is killed.
 class FolderLock {
@@ -21,4 +21,4 @@ private:
     int descriptor_ = -1;
 };
 
-}  // namespace mcdem
+}  // namespace mcdem::io

@@ -1,6 +1,6 @@
 #include "io/grain_loads.h"
 
-namespace mcdem {
+namespace mcdem::inline io {
 
 std::vector<GrainLoad> grain_loads(const Scan& scan) {
     std::vector<GrainLoad> loads(scan.position.size());
@@ -17,4 +17,4 @@ std::vector<GrainLoad> grain_loads(const Scan& scan) {
     return loads;
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::io

@@ -4,7 +4,7 @@
 
 #include "core/recording.h"
 
-namespace mcdem {
+namespace mcdem::inline io {
 
 struct GrainLoad {
     int contacts = 0;                ///< walls counted
@@ -15,4 +15,4 @@ struct GrainLoad {
 /// By grain; all zero where contacts were not recorded.
 std::vector<GrainLoad> grain_loads(const Scan& scan);
 
-}  // namespace mcdem
+}  // namespace mcdem::io

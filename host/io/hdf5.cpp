@@ -6,7 +6,7 @@
 #include "core/errors.h"
 #include "core/input_file.h"
 
-namespace mcdem::h5 {
+namespace mcdem::inline io::h5 {
 namespace {
 
 constexpr hsize_t chunk_bytes = 32 * 1024;
@@ -386,4 +386,4 @@ void File::expect_whole(const std::string& beginning) const {
         if (object.starts_with(beginning)) dataset(object).expect_whole();
 }
 
-}  // namespace mcdem::h5
+}  // namespace mcdem::io::h5

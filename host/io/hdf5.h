@@ -19,7 +19,7 @@
 #include "io/hdf5_driver.h"
 #include "io/table_digest.h"
 
-namespace mcdem::h5 {
+namespace mcdem::inline io::h5 {
 
 /// An HDF5 identifier, closed with its owner.
 class Handle {
@@ -204,4 +204,4 @@ void File::write(const std::string& object, const std::vector<Number>& values, c
     finish(table);
 }
 
-}  // namespace mcdem::h5
+}  // namespace mcdem::io::h5

@@ -10,7 +10,7 @@
 #include <cerrno>
 #include <cstring>
 
-namespace mcdem::h5 {
+namespace mcdem::inline io::h5 {
 
 void FileBelow::forget_file() {
     if (access_ == Access::read && descriptor_ >= 0) ::close(descriptor_);
@@ -167,4 +167,4 @@ void use_file(hid_t access_properties, FileBelow& file) {
     H5Pset_driver(access_properties, driver(), &info);
 }
 
-}  // namespace mcdem::h5
+}  // namespace mcdem::io::h5

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace mcdem::h5 {
+namespace mcdem::inline io::h5 {
 
 enum class Access { read, write };
 
@@ -49,4 +49,4 @@ private:
 /// Makes the library use `file`, whatever name it is given; `file` must outlive the library's.
 void use_file(hid_t access_properties, FileBelow& file);
 
-}  // namespace mcdem::h5
+}  // namespace mcdem::io::h5

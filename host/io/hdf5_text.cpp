@@ -3,7 +3,7 @@
 
 #include "io/hdf5.h"
 
-namespace mcdem::h5 {
+namespace mcdem::inline io::h5 {
 namespace {
 
 /// Attributes are small; a larger one is damage.
@@ -141,4 +141,4 @@ std::vector<std::string> File::read_texts(const std::string& object) const {
     return texts;
 }
 
-}  // namespace mcdem::h5
+}  // namespace mcdem::io::h5

@@ -3,7 +3,7 @@
 #include "core/output_file.h"
 #include "io/result_folder.h"
 
-namespace mcdem {
+namespace mcdem::inline io {
 
 FolderLock open_output_folder(const std::filesystem::path& folder) {
     expect_no_experiment(folder);
@@ -13,4 +13,4 @@ FolderLock open_output_folder(const std::filesystem::path& folder) {
     return lock;
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::io

@@ -3,7 +3,7 @@
 #include "core/errors.h"
 #include "io/result_file.h"
 
-namespace mcdem {
+namespace mcdem::inline io {
 namespace {
 
 namespace fs = std::filesystem;
@@ -46,4 +46,4 @@ void merge_parts(const std::vector<fs::path>& parts, const fs::path& merged) {
     });
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::io

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace mcdem {
+namespace mcdem::inline io {
 
 /// Where the parts of the run in `folder` lie until they are merged.
 std::filesystem::path parts_folder(const std::filesystem::path& folder);
@@ -21,4 +21,4 @@ struct DamagedPart : std::runtime_error {
 /// `merged` cannot be written.
 void merge_parts(const std::vector<std::filesystem::path>& parts, const std::filesystem::path& merged);
 
-}  // namespace mcdem
+}  // namespace mcdem::io

@@ -1,13 +1,13 @@
 #include "io/result_file.h"
 
-#include <limits>
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "core/errors.h"
 
-namespace mcdem {
+namespace mcdem::inline io {
 
 ResultFile::ResultFile(const std::filesystem::path& file) : file_(h5::File::open(file)) {
     if (!file_.has_attribute("/parameters", "format"))
@@ -174,4 +174,4 @@ void ResultFile::expect_whole(std::size_t replica) const {
     file_.expect_whole(contacts_path(replica) + "/");
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::io

@@ -9,7 +9,7 @@
 #include "io/result_rows.h"
 #include "io/results.h"
 
-namespace mcdem {
+namespace mcdem::inline io {
 
 /// Where the tables of one replica are, e.g. "/observables/replica_00003".
 std::string observables_path(std::size_t replica);
@@ -87,4 +87,4 @@ private:
 /// Provenance and recordings, without scans, of a run that lies in several files one after the other.
 Run read_run_header(const std::vector<std::filesystem::path>& files);
 
-}  // namespace mcdem
+}  // namespace mcdem::io

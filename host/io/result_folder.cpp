@@ -11,7 +11,7 @@
 #include "io/parts.h"
 #include "io/result_file.h"
 
-namespace mcdem {
+namespace mcdem::inline io {
 namespace {
 
 namespace fs = std::filesystem;
@@ -194,4 +194,4 @@ void ResultFolder::finish() {
     remove_segments();
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::io

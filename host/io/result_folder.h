@@ -6,7 +6,7 @@
 #include "core/recording.h"
 #include "io/folder_lock.h"
 
-namespace mcdem {
+namespace mcdem::inline io {
 
 /// `<folder>/run.h5`: the whole run, there once it is done.
 std::filesystem::path run_file(const std::filesystem::path& folder);
@@ -56,4 +56,4 @@ private:
     int segments_ = 0;  ///< the next segment's number
 };
 
-}  // namespace mcdem
+}  // namespace mcdem::io

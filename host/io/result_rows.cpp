@@ -2,7 +2,7 @@
 
 #include "core/errors.h"
 
-namespace mcdem {
+namespace mcdem::inline io {
 namespace {
 
 h5::Handle array_type(hid_t element, std::vector<hsize_t> extent) {
@@ -159,13 +159,20 @@ void expect_fields(const h5::Dataset& table, const h5::Handle& row_type, std::st
 }
 
 std::vector<std::pair<std::string, std::string>> scan_row_units() {
-    return {{"time", "s"},           {"plate_z", "m"},          {"wall_force", "N"},
-            {"kinetic_energy", "J"}, {"elastic_energy", "J"},   {"rate_error", "1"},
-            {"coordination_number", "1"}, {"mean_force", "N"}, {"packing_fraction", "1"}, {"branch_length", "m"}};
+    return {{"time", "s"},
+            {"plate_z", "m"},
+            {"wall_force", "N"},
+            {"kinetic_energy", "J"},
+            {"elastic_energy", "J"},
+            {"rate_error", "1"},
+            {"coordination_number", "1"},
+            {"mean_force", "N"},
+            {"packing_fraction", "1"},
+            {"branch_length", "m"}};
 }
 
 std::vector<std::pair<std::string, std::string>> contact_row_units() {
     return {{"point", "m"}, {"force", "N"}, {"overlap", "m"}};
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::io

@@ -3,7 +3,7 @@
 #include "core/recording.h"
 #include "io/hdf5.h"
 
-namespace mcdem {
+namespace mcdem::inline io {
 
 /// One scan without positions and contacts.
 struct ScanRow {
@@ -36,11 +36,12 @@ template <class Real>
 h5::Handle contact_row_type();
 /// The same fields as a file keeps them: without gaps.
 h5::Handle packed(const h5::Handle& row_type);
-/// Throws unless the table has every field of `row_type` but the optional one: what is missing is left as it was.
+/// Throws unless the table has every field of `row_type` but the optional one: what is missing is left as it
+/// was.
 void expect_fields(const h5::Dataset& table, const h5::Handle& row_type, std::string_view optional = {});
 
 /// Field names and their units, for the attributes of the tables.
 std::vector<std::pair<std::string, std::string>> scan_row_units();
 std::vector<std::pair<std::string, std::string>> contact_row_units();
 
-}  // namespace mcdem
+}  // namespace mcdem::io

@@ -6,7 +6,7 @@
 #include "core/errors.h"
 #include "io/result_file.h"
 
-namespace mcdem {
+namespace mcdem::inline io {
 namespace {
 
 constexpr std::size_t block_grains = 65536;  ///< grains times scans written at once
@@ -196,4 +196,4 @@ void write_run(const std::filesystem::path& file, const Run& run) {
     });
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::io

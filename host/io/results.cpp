@@ -9,7 +9,7 @@
 #include "io/result_file.h"
 #include "io/result_folder.h"
 
-namespace mcdem {
+namespace mcdem::inline io {
 namespace {
 
 template <class Read>
@@ -148,4 +148,4 @@ Scan RunReader::read_scan(std::size_t replica, std::size_t scan) {
     return filled;
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::io

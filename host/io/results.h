@@ -5,7 +5,7 @@
 
 #include "core/recording.h"
 
-namespace mcdem {
+namespace mcdem::inline io {
 
 /// How much of a run to read: the scans' scalars are always read, positions and contacts are the bulk.
 enum class ReadWhat { observables, positions, contacts, everything };
@@ -33,4 +33,4 @@ private:
     std::vector<std::vector<std::size_t>> first_scan_;  ///< by file and replica
 };
 
-}  // namespace mcdem
+}  // namespace mcdem::io

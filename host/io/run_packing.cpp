@@ -5,7 +5,7 @@
 #include "core/errors.h"
 #include "io/results.h"
 
-namespace mcdem {
+namespace mcdem::inline io {
 
 Packing packing_of_run(const std::filesystem::path& file, std::optional<long> frame) {
     RunReader reader(file);
@@ -26,4 +26,4 @@ Packing packing_of_run(const std::filesystem::path& file, std::optional<long> fr
                                  file.string(), frame ? fmt::format("frame {}", *frame) : "a frame"));
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::io

@@ -5,9 +5,9 @@
 
 #include "core/packing.h"
 
-namespace mcdem {
+namespace mcdem::inline io {
 
 /// Of a run of one replica: frame `frame`, or the first with positions. Throws InputError.
 Packing packing_of_run(const std::filesystem::path& file, std::optional<long> frame);
 
-}  // namespace mcdem
+}  // namespace mcdem::io

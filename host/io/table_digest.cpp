@@ -8,7 +8,7 @@
 #include "core/errors.h"
 #include "io/hdf5.h"
 
-namespace mcdem::h5 {
+namespace mcdem::inline io::h5 {
 namespace {
 
 constexpr std::size_t block_bytes = 1 << 20;  ///< looked at for a digest at once
@@ -104,4 +104,4 @@ void Dataset::expect_whole() const {
     if (digest_) read(type(), nullptr, 0, rows());
 }
 
-}  // namespace mcdem::h5
+}  // namespace mcdem::io::h5

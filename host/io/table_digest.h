@@ -9,7 +9,7 @@
 
 #include "core/sha256.h"
 
-namespace mcdem::h5 {
+namespace mcdem::inline io::h5 {
 
 class TableDigest {
 public:
@@ -31,4 +31,4 @@ private:
 /// `values`, `count` of them, from one type to another.
 bool convert(std::vector<std::byte>& values, std::size_t count, hid_t from, hid_t to);
 
-}  // namespace mcdem::h5
+}  // namespace mcdem::io::h5

@@ -10,7 +10,7 @@
 #include "io/hdf5.h"
 #include "io/results.h"
 
-namespace mcdem {
+namespace mcdem::inline io {
 namespace {
 
 // Cell types of VTK.
@@ -187,4 +187,4 @@ int export_vtk(const std::filesystem::path& file_or_folder, const std::filesyste
     return files;
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::io

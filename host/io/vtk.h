@@ -4,7 +4,7 @@
 
 #include "core/recording.h"
 
-namespace mcdem {
+namespace mcdem::inline io {
 
 /// Writes `<folder>/replica_00000/grains_000000.hdf` and `contacts_000000.hdf`, .., one pair for every scan
 /// with positions, and a README.txt that says how to look at them. Returns the number of files.
@@ -20,4 +20,4 @@ void write_vtk_grains(const std::filesystem::path& file, const Recording& record
 /// partner, force (on the grain), force_magnitude, overlap.
 void write_vtk_contacts(const std::filesystem::path& file, const Recording& recording, const Scan& scan);
 
-}  // namespace mcdem
+}  // namespace mcdem::io

@@ -12,7 +12,7 @@
 #include "io/grain_loads.h"
 #include "io/results.h"
 
-namespace mcdem {
+namespace mcdem::inline io {
 namespace {
 
 const char* const how_to_look = R"(replica_*.xyz            grains, one frame a scan, SI units (extended XYZ)
@@ -128,4 +128,4 @@ int export_xyz(const std::filesystem::path& file_or_folder, const std::filesyste
     return files;
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::io

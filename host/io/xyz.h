@@ -5,7 +5,7 @@
 
 #include "core/recording.h"
 
-namespace mcdem {
+namespace mcdem::inline io {
 
 /// Writes `<folder>/replica_00000.xyz` and `replica_00000.contacts.dump`, .., one frame in each for every
 /// scan with positions, and OVITO.txt that says how to look at them; numbers with nine digits. Returns the
@@ -16,4 +16,4 @@ int export_xyz(const Run& run, const std::filesystem::path& folder);
 /// The same from a result file or folder, scan by scan, for runs larger than memory.
 int export_xyz(const std::filesystem::path& file_or_folder, const std::filesystem::path& folder);
 
-}  // namespace mcdem
+}  // namespace mcdem::io

@@ -7,7 +7,7 @@
 #include "metrics/force_distribution.h"
 #include "metrics/top_force.h"
 
-namespace mcdem {
+namespace mcdem::inline metrics {
 namespace {
 
 constexpr double mm = 1e-3;
@@ -122,4 +122,4 @@ Comparison compare(const Setting& simulated, const Replicas& reference, const Co
     return comparison;
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::metrics

@@ -3,7 +3,7 @@
 #include "metrics/contact_forces.h"
 #include "metrics/levels.h"
 
-namespace mcdem {
+namespace mcdem::inline metrics {
 
 struct CompareOptions {
     LevelOptions levels;
@@ -28,4 +28,4 @@ struct Comparison {
 
 Comparison compare(const Setting& simulated, const Replicas& reference, const CompareOptions& options = {});
 
-}  // namespace mcdem
+}  // namespace mcdem::metrics

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace mcdem {
+namespace mcdem::inline metrics {
 
 bool contacts_known(const Scan& scan) { return !scan.contacts.empty() || scan.coordination_number == 0; }
 
@@ -23,4 +23,4 @@ ForceLists contact_forces(const std::vector<const Scan*>& scans, WallContacts wa
     return forces;
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::metrics

@@ -4,7 +4,7 @@
 
 #include "core/recording.h"
 
-namespace mcdem {
+namespace mcdem::inline metrics {
 
 /// Whether a grain's contact with a wall is one of its contacts.
 enum class WallContacts { counted, left_out };
@@ -20,4 +20,4 @@ struct ForceLists {
 };
 ForceLists contact_forces(const std::vector<const Scan*>& scans, WallContacts walls);
 
-}  // namespace mcdem
+}  // namespace mcdem::metrics

@@ -5,7 +5,7 @@
 
 #include "metrics/top_force.h"
 
-namespace mcdem {
+namespace mcdem::inline metrics {
 namespace {
 
 /// Of a sorted list, how many are at least tau.
@@ -168,4 +168,4 @@ CoordinationError coordination_error(const Levels& simulated, const Replicas& si
     return error;
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::metrics

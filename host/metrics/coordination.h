@@ -7,7 +7,7 @@
 #include "metrics/contact_forces.h"
 #include "metrics/levels.h"
 
-namespace mcdem {
+namespace mcdem::inline metrics {
 
 /// Sorted contact forces of every replica at every level: Z at any threshold is two binary searches.
 class Coordination {
@@ -48,4 +48,4 @@ CoordinationError coordination_error(const Levels& simulated, const Replicas& si
                                      const Eigen::ArrayXXd& reference, const std::vector<LevelMatch>& matches,
                                      const Jackknife& jackknife, WallContacts walls);
 
-}  // namespace mcdem
+}  // namespace mcdem::metrics

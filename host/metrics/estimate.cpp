@@ -2,7 +2,7 @@
 
 #include <map>
 
-namespace mcdem {
+namespace mcdem::inline metrics {
 
 Estimate mean_over_replicas(std::span<const double> values) {
     double sum = 0;
@@ -102,4 +102,4 @@ Estimate Jackknife::estimate(std::span<const double> value_by_omission) const {
     return estimate;
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::metrics

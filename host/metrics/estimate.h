@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-namespace mcdem {
+namespace mcdem::inline metrics {
 
 inline constexpr double not_available = std::numeric_limits<double>::quiet_NaN();
 
@@ -60,4 +60,4 @@ private:
     std::vector<std::size_t> group_sizes_;  ///< omissions that belong together, after the first
 };
 
-}  // namespace mcdem
+}  // namespace mcdem::metrics

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace mcdem {
+namespace mcdem::inline metrics {
 namespace {
 
 /// At most about `most` of the forces, taken evenly from the sorted list: enough to place edges.
@@ -158,4 +158,4 @@ ForceDensity force_density(const Level& level, int bins, double largest, WallCon
     return result;
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::metrics

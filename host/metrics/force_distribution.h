@@ -10,7 +10,7 @@
 #include "metrics/contact_forces.h"
 #include "metrics/levels.h"
 
-namespace mcdem {
+namespace mcdem::inline metrics {
 
 /// Number of bins for samples of n and m contacts.
 int bin_count(double n, double m);
@@ -52,4 +52,4 @@ struct ForceDensity {
 };
 ForceDensity force_density(const Level& level, int bins, double largest, WallContacts walls);
 
-}  // namespace mcdem
+}  // namespace mcdem::metrics

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace mcdem {
+namespace mcdem::inline metrics {
 namespace {
 
 struct Placed {
@@ -138,4 +138,4 @@ Eigen::ArrayXd mean_without(const Eigen::ArrayXXd& values, int left_out) {
     return mean;
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::metrics

@@ -7,7 +7,7 @@
 #include "metrics/estimate.h"
 #include "metrics/replicas.h"
 
-namespace mcdem {
+namespace mcdem::inline metrics {
 
 struct LevelOptions {
     std::optional<int> discard =
@@ -60,4 +60,4 @@ Eigen::ArrayXXd at_reference(const Eigen::ArrayXXd& values, const std::vector<Le
 /// Mean over replicas (rows) of what is finite, one of them left out (-1: none).
 Eigen::ArrayXd mean_without(const Eigen::ArrayXXd& values, int left_out);
 
-}  // namespace mcdem
+}  // namespace mcdem::metrics

@@ -8,7 +8,7 @@
 #include "core/errors.h"
 #include "metrics/top_force.h"
 
-namespace mcdem {
+namespace mcdem::inline metrics {
 namespace {
 
 const Setting& reference_of(const std::vector<Setting>& settings, const std::optional<std::string>& label) {
@@ -81,4 +81,4 @@ ModelTable model_table(const std::vector<Setting>& settings, const LevelOptions&
     return table;
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::metrics

@@ -3,7 +3,7 @@
 #pragma once
 #include "metrics/levels.h"
 
-namespace mcdem {
+namespace mcdem::inline metrics {
 
 struct ModelRow {
     std::string setting;
@@ -29,4 +29,4 @@ struct ModelTable {
 ModelTable model_table(const std::vector<Setting>& settings, const LevelOptions& options = {},
                        const std::optional<std::string>& reference = std::nullopt);
 
-}  // namespace mcdem
+}  // namespace mcdem::metrics

@@ -5,7 +5,7 @@
 
 #include "core/parameters.h"
 
-namespace mcdem {
+namespace mcdem::inline metrics {
 namespace {
 
 // The scene keys that metrics know by name.
@@ -111,4 +111,4 @@ int discard_of(const Recording& recording) {
     return error == std::errc{} && discard > 0 ? discard : 0;
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::metrics

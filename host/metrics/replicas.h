@@ -6,7 +6,7 @@
 
 #include "core/recording.h"
 
-namespace mcdem {
+namespace mcdem::inline metrics {
 
 /// Views: they hold as long as the recordings they came from.
 using Replicas = std::vector<const Recording*>;
@@ -31,4 +31,4 @@ std::optional<ContactModel> model_of(const Replicas& replicas);
 /// Parameter `protocol.discard`: the recording's first cycles that metrics leave out; 0 where not known.
 int discard_of(const Recording& recording);
 
-}  // namespace mcdem
+}  // namespace mcdem::metrics

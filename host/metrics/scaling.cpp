@@ -2,7 +2,7 @@
 
 #include <Eigen/Dense>
 
-namespace mcdem {
+namespace mcdem::inline metrics {
 
 std::vector<ScalingPoint> scaling_points(const Levels& levels) {
     const auto force = by_replica(levels, top_force);
@@ -46,4 +46,4 @@ ScalingFit fit_scaling(const std::vector<ScalingPoint>& points, std::optional<Ph
     return fit;
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::metrics

@@ -2,7 +2,7 @@
 #pragma once
 #include "metrics/levels.h"
 
-namespace mcdem {
+namespace mcdem::inline metrics {
 
 /// One level: averages over cycles first, then their product.
 struct ScalingPoint {
@@ -25,4 +25,4 @@ struct ScalingFit {
 };
 ScalingFit fit_scaling(const std::vector<ScalingPoint>& points, std::optional<Phase> phase = std::nullopt);
 
-}  // namespace mcdem
+}  // namespace mcdem::metrics

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace mcdem {
+namespace mcdem::inline metrics {
 namespace {
 
 /// Both phases at one displacement, as levels to match against.
@@ -71,4 +71,4 @@ LevelError top_force_error(const Levels& simulated, const Levels& reference,
     return rms_over_levels(at, measured, omissions);
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::metrics

@@ -2,7 +2,7 @@
 #pragma once
 #include "metrics/levels.h"
 
-namespace mcdem {
+namespace mcdem::inline metrics {
 
 /// Greatest displacement reached by replicas that did not fail [m]; not-a-number where all failed.
 double full_stroke(const Levels& levels, const Replicas& replicas);
@@ -37,4 +37,4 @@ LevelError top_force_error(const Levels& simulated, const Levels& reference,
                            const std::vector<LevelMatch>& matches, const std::vector<Omission>& omissions,
                            std::optional<double> touch_force = std::nullopt);
 
-}  // namespace mcdem
+}  // namespace mcdem::metrics

@@ -1,6 +1,6 @@
 #include "python/arrays.h"
 
-namespace mcdem {
+namespace mcdem::inline python {
 namespace {
 
 namespace py = pybind11;
@@ -98,4 +98,4 @@ py::array contact_array(const Scan& scan, py::handle owner) {
     return rows(scan.contacts, contact_type(), owner);
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::python

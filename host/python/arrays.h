@@ -4,7 +4,7 @@
 
 #include "core/recording.h"
 
-namespace mcdem {
+namespace mcdem::inline python {
 
 /// Each is read-only and has `owner` as its base. Shapes: [S] rows named as in run.h5, [S][6][3], [S], [N],
 /// [N][3], [C] rows.
@@ -15,4 +15,4 @@ pybind11::array diameter_array(const Recording& recording, pybind11::handle owne
 pybind11::array position_array(const Scan& scan, pybind11::handle owner);
 pybind11::array contact_array(const Scan& scan, pybind11::handle owner);
 
-}  // namespace mcdem
+}  // namespace mcdem::python

@@ -6,7 +6,7 @@
 
 #include "core/recording.h"
 
-namespace mcdem {
+namespace mcdem::inline python {
 
 void bind_scene(pybind11::module_& module);
 void bind_results(pybind11::module_& module);
@@ -18,4 +18,4 @@ void bind_comparison(pybind11::module_& module);
 /// A run as Python holds it: arrays and recordings share it, and nobody changes it.
 using SharedRun = std::shared_ptr<Run>;
 
-}  // namespace mcdem
+}  // namespace mcdem::python

@@ -13,7 +13,7 @@
 #include "python/bindings.h"
 #include "python/watch.h"
 
-namespace mcdem {
+namespace mcdem::inline python {
 namespace {
 
 namespace py = pybind11;
@@ -125,4 +125,4 @@ void bind_comparison(py::module_& module) {
                "export` does.\nReturns the number of files.");
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::python

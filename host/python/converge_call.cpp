@@ -11,9 +11,9 @@
 #include "io/result_folder.h"
 #include "python/bindings.h"
 #include "python/watch.h"
-#include "report/convergence_tables.h"
+#include "report/run/convergence_tables.h"
 
-namespace mcdem {
+namespace mcdem::inline python {
 namespace {
 
 namespace py = pybind11;
@@ -48,12 +48,14 @@ py::object converge(const Scene& scene, const std::filesystem::path& folder, int
 }  // namespace
 
 void bind_convergence(py::module_& module) {
-    module.def("converge", &converge, py::arg("scene"), py::arg("folder"), py::kw_only(), py::arg("replicas") = 32,
-               py::arg("force_limit") = ConvergenceLimits{}.force, py::arg("sd_limit") = ConvergenceLimits{}.deviations,
-               py::arg("jitter") = 0.0, py::arg("seed") = 1, py::arg("device") = "",
-               py::arg("progress") = py::none(),
-               "What plate speed, inertia, time step, settling, precision and list margin do to the observables of a\n"
-               "scene's first replica: what convergence.json says, as a dict. `mcdem converge --help` says how.");
+    module.def(
+        "converge", &converge, py::arg("scene"), py::arg("folder"), py::kw_only(), py::arg("replicas") = 32,
+        py::arg("force_limit") = ConvergenceLimits{}.force,
+        py::arg("sd_limit") = ConvergenceLimits{}.deviations, py::arg("jitter") = 0.0, py::arg("seed") = 1,
+        py::arg("device") = "", py::arg("progress") = py::none(),
+        "What plate speed, inertia, time step, settling, precision and list margin do to the observables of "
+        "a\n"
+        "scene's first replica: what convergence.json says, as a dict. `mcdem converge --help` says how.");
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::python

@@ -12,10 +12,10 @@
 #include "io/output_folder.h"
 #include "python/bindings.h"
 #include "python/watch.h"
-#include "report/diagnosis_json.h"
-#include "report/diagnosis_page.h"
+#include "report/diagnosis/diagnosis_json.h"
+#include "report/diagnosis/diagnosis_page.h"
 
-namespace mcdem {
+namespace mcdem::inline python {
 namespace {
 
 namespace py = pybind11;
@@ -98,4 +98,4 @@ void bind_diagnosis(py::module_& module) {
                "it\ngoes. host/report/DIAGNOSIS_OUTPUT.md explains the keys.");
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::python

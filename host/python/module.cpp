@@ -8,7 +8,7 @@
 #include "python/bindings.h"
 #include "scene/read_packing.h"
 
-namespace mcdem {
+namespace mcdem::inline python {
 namespace {
 
 /// Bad input is a ValueError with the text that the program prints; what fails in spite of good input a
@@ -25,7 +25,7 @@ void translate(std::exception_ptr error) {
 }
 
 }  // namespace
-}  // namespace mcdem
+}  // namespace mcdem::python
 
 PYBIND11_MODULE(_engine, module) {
     pybind11::register_exception_translator(mcdem::translate);

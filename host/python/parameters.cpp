@@ -2,7 +2,7 @@
 
 #include <charconv>
 
-namespace mcdem {
+namespace mcdem::inline python {
 namespace {
 
 namespace py = pybind11;
@@ -31,4 +31,4 @@ py::dict typed_parameters(const std::map<std::string, std::string>& parameters) 
     return all;
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::python

@@ -5,9 +5,9 @@
 #include <map>
 #include <string>
 
-namespace mcdem {
+namespace mcdem::inline python {
 
 /// Texts of a scene's values as int, float, bool or str; None for an empty text.
 pybind11::dict typed_parameters(const std::map<std::string, std::string>& parameters);
 
-}  // namespace mcdem
+}  // namespace mcdem::python

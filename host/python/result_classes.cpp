@@ -8,7 +8,7 @@
 #include "python/bindings.h"
 #include "python/parameters.h"
 
-namespace mcdem {
+namespace mcdem::inline python {
 namespace {
 
 namespace py = pybind11;
@@ -130,4 +130,4 @@ void bind_results(py::module_& module) {
         });
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::python

@@ -7,7 +7,7 @@
 #include "python/toml_text.h"
 #include "scene/read_scene.h"
 
-namespace mcdem {
+namespace mcdem::inline python {
 namespace {
 
 namespace py = pybind11;
@@ -67,4 +67,4 @@ void bind_scene(py::module_& module) {
         });
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::python

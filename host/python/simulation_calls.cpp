@@ -15,7 +15,7 @@
 #include "python/watch.h"
 #include "sim/batch_limits.h"
 
-namespace mcdem {
+namespace mcdem::inline python {
 namespace {
 
 namespace py = pybind11;
@@ -131,4 +131,4 @@ void bind_simulation(py::module_& module) {
                "A result folder or file. `what`: everything, positions, contacts or observables (neither).");
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::python

@@ -7,7 +7,7 @@
 
 #include "core/errors.h"
 
-namespace mcdem {
+namespace mcdem::inline python {
 namespace {
 
 namespace py = pybind11;
@@ -122,4 +122,4 @@ std::vector<std::string> overrides_of(const py::dict& values) {
     return overrides;
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::python

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace mcdem {
+namespace mcdem::inline python {
 
 /// A scene's tables, as nested or dotted keys, as a TOML document. Throws InputError for values that TOML has
 /// not.
@@ -14,4 +14,4 @@ std::string toml_text(const pybind11::dict& tables);
 /// "key=value" for each entry: what `--set` takes.
 std::vector<std::string> overrides_of(const pybind11::dict& values);
 
-}  // namespace mcdem
+}  // namespace mcdem::python

@@ -8,7 +8,7 @@
 #include <string>
 #include <thread>
 
-namespace mcdem {
+namespace mcdem::inline python {
 
 class Watch {
 public:
@@ -62,4 +62,4 @@ private:
     std::exception_ptr error_;
 };
 
-}  // namespace mcdem
+}  // namespace mcdem::python

@@ -7,7 +7,7 @@
 
 #include "scene/problems.h"
 
-namespace mcdem {
+namespace mcdem::inline scene {
 namespace {
 
 /// One overload a type of member; true where the value was taken.
@@ -75,4 +75,4 @@ std::string shown(const toml::node& value) {
     return shortened(out.str());
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::scene

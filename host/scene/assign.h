@@ -7,7 +7,7 @@
 
 #include "scene/keys.h"
 
-namespace mcdem {
+namespace mcdem::inline scene {
 
 /// Sets the key's member. Returns "must be .., got .." where the value is not what the key takes.
 std::optional<std::string> assign(const Key& key, const toml::node& value, Settings& settings);
@@ -15,4 +15,4 @@ std::optional<std::string> assign(const Key& key, const toml::node& value, Setti
 /// A TOML value as it may stand in a message: `0.5`, `"abc"`, `a table`.
 std::string shown(const toml::node& value);
 
-}  // namespace mcdem
+}  // namespace mcdem::scene

@@ -7,7 +7,7 @@
 
 #include "core/vec3.h"
 
-namespace mcdem {
+namespace mcdem::inline scene {
 
 /// Grains sorted by the cubic cell that holds their centre.
 class CellList {
@@ -17,9 +17,11 @@ public:
         const double volume = size[0] * size[1] * size[2];
         const double enough = 8.0 * static_cast<double>(position.size()) + 64.0;
         edge = std::max(edge, std::cbrt(volume / enough));
-        for (int axis = 0; axis < 3; ++axis) cells_[axis] = static_cast<int>(std::clamp(size[axis] / edge, 1.0, 1e9));
+        for (int axis = 0; axis < 3; ++axis)
+            cells_[axis] = static_cast<int>(std::clamp(size[axis] / edge, 1.0, 1e9));
         // In a box flatter or thinner than `edge` the volume alone does not keep them few.
-        while (static_cast<double>(cells_[0]) * cells_[1] * cells_[2] > 16 * enough) *std::ranges::max_element(cells_) /= 2;
+        while (static_cast<double>(cells_[0]) * cells_[1] * cells_[2] > 16 * enough)
+            *std::ranges::max_element(cells_) /= 2;
         for (int axis = 0; axis < 3; ++axis) edge_[axis] = size[axis] / cells_[axis];
         sort(position);
     }
@@ -81,4 +83,4 @@ private:
     std::vector<int> first_, sorted_;
 };
 
-}  // namespace mcdem
+}  // namespace mcdem::scene

@@ -7,7 +7,7 @@
 #include "scene/overlap_relaxation.h"
 #include "scene/random.h"
 
-namespace mcdem {
+namespace mcdem::inline scene {
 namespace {
 
 TruncatedNormal size_distribution(const GeneratedPacking& wanted) {
@@ -78,4 +78,4 @@ Packing generate_packing(const GeneratedPacking& wanted, const Box& box, std::ui
     return packing;
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::scene

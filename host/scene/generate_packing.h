@@ -4,7 +4,7 @@
 
 #include "scene/scene.h"
 
-namespace mcdem {
+namespace mcdem::inline scene {
 
 /// Grains drawn at random between the six walls of a closed box, which is as high as the packing fraction
 /// says, and pushed apart until overlaps are gone (below 1 % of the radius) or forces balance. Overlaps go
@@ -21,4 +21,4 @@ Packing generate_packing(const GeneratedPacking& wanted, const Box& box, std::ui
 /// Height of the box that `generate_packing` would fill, for sizes exactly as distributed [m].
 double expected_height(const GeneratedPacking& wanted, const Box& box);
 
-}  // namespace mcdem
+}  // namespace mcdem::scene

@@ -9,7 +9,7 @@
 #include "core/errors.h"
 #include "scene/read_packing.h"
 
-namespace mcdem {
+namespace mcdem::inline scene {
 
 GrainColumns GrainColumns::named(const std::vector<std::string>& names, const std::string& file) {
     const auto first_of = [&](std::initializer_list<std::string_view> words) -> std::optional<std::size_t> {
@@ -62,4 +62,4 @@ Packing GrainRows::packing() const {
     return sorted;
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::scene

@@ -7,7 +7,7 @@
 
 #include "scene/packing_fields.h"
 
-namespace mcdem {
+namespace mcdem::inline scene {
 
 /// Where a row has its grain.
 struct GrainColumns {
@@ -38,4 +38,4 @@ private:
     std::vector<long> lines_;
 };
 
-}  // namespace mcdem
+}  // namespace mcdem::scene

@@ -4,7 +4,7 @@
 
 #include "scene/keys.h"
 
-namespace mcdem {
+namespace mcdem::inline scene {
 
 std::string key_reference() {
     Settings defaults;
@@ -26,4 +26,4 @@ std::string key_reference() {
     return text;
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::scene

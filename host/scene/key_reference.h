@@ -2,9 +2,9 @@
 #pragma once
 #include <string>
 
-namespace mcdem {
+namespace mcdem::inline scene {
 
 /// Every key with what it takes, its default and its meaning: Markdown, one table for each TOML table.
 std::string key_reference();
 
-}  // namespace mcdem
+}  // namespace mcdem::scene

@@ -7,7 +7,7 @@
 
 #include "scene/keys.h"
 
-namespace mcdem {
+namespace mcdem::inline scene {
 namespace {
 
 template <class Value>
@@ -105,4 +105,4 @@ std::string suggestion(std::string_view unknown) {
     return best.empty() ? "" : fmt::format(" (did you mean {}?)", best);
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::scene

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace mcdem {
+namespace mcdem::inline scene {
 namespace {
 
 /// The member at the end of a path of pointers to members, starting from Settings.
@@ -143,4 +143,4 @@ bool is_generator_key(std::string_view name) {
            name.starts_with("packing.diameter_");
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::scene

@@ -10,7 +10,7 @@
 
 #include "scene/scene.h"
 
-namespace mcdem {
+namespace mcdem::inline scene {
 
 /// Everything that keys can set, before copies are made: the run, and one replica of it.
 struct Settings {
@@ -69,4 +69,4 @@ std::string description(const Key& key);
 /// The key's value as text; numbers so that they read back exactly.
 std::string value_text(const Key& key, const Settings& settings);
 
-}  // namespace mcdem
+}  // namespace mcdem::scene

@@ -10,7 +10,7 @@
 #include "scene/random.h"
 #include "scene/read_packing.h"
 
-namespace mcdem {
+namespace mcdem::inline scene {
 namespace {
 
 constexpr std::size_t most_problems = 10;
@@ -106,4 +106,4 @@ Packing make_packing(const Replica& replica) {
     return packing;
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::scene

@@ -7,7 +7,7 @@
 
 #include "scene/plate_face.h"
 
-namespace mcdem {
+namespace mcdem::inline scene {
 
 /// What is known of a packing before it is made.
 struct PackingSize {
@@ -32,4 +32,4 @@ void apply_jitter(Packing& packing, double sd, std::uint64_t seed);
 std::vector<std::string> packing_problems(const Packing& packing, const Box& box, const PlateFace& plate,
                                           const std::string& source);
 
-}  // namespace mcdem
+}  // namespace mcdem::scene

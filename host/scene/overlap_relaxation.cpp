@@ -6,7 +6,7 @@
 
 #include "scene/cell_pairs.h"
 
-namespace mcdem {
+namespace mcdem::inline scene {
 namespace {
 
 double largest(const std::vector<double>& values) { return *std::max_element(values.begin(), values.end()); }
@@ -160,4 +160,4 @@ void OverlapRelaxation::find_pairs() {
     });
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::scene

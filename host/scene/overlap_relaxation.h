@@ -6,7 +6,7 @@
 
 #include "core/packing.h"
 
-namespace mcdem {
+namespace mcdem::inline scene {
 
 /// Largest overlap of any two grains, or of a grain with one of the six walls, over the radius of the
 /// smaller grain.
@@ -49,4 +49,4 @@ private:
     std::vector<Pair> pairs_;
 };
 
-}  // namespace mcdem
+}  // namespace mcdem::scene

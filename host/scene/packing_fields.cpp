@@ -8,7 +8,7 @@
 #include "core/errors.h"
 #include "scene/problems.h"
 
-namespace mcdem {
+namespace mcdem::inline scene {
 namespace {
 
 constexpr std::size_t most_problems = 20;
@@ -69,4 +69,4 @@ void add_grain(Packing& packing, std::string_view x, std::string_view y, std::st
     packing.diameter.push_back(values[3]);
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::scene

@@ -7,7 +7,7 @@
 
 #include "core/packing.h"
 
-namespace mcdem {
+namespace mcdem::inline scene {
 
 /// The whole word as a number; nothing where anything is left over or it is not finite.
 std::optional<double> to_number(std::string_view word);
@@ -38,4 +38,4 @@ private:
 void add_grain(Packing& packing, std::string_view x, std::string_view y, std::string_view z,
                std::string_view diameter, long line, FileProblems& problems);
 
-}  // namespace mcdem
+}  // namespace mcdem::scene

@@ -5,7 +5,7 @@
 
 #include "scene/cell_pairs.h"
 
-namespace mcdem {
+namespace mcdem::inline scene {
 
 PackingState packing_state(const Packing& packing, const Box& box, const PlateFace& plate) {
     PackingState state;
@@ -35,4 +35,4 @@ PackingState packing_state(const Packing& packing, const Box& box, const PlateFa
     return state;
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::scene

@@ -3,7 +3,7 @@
 #include "core/packing.h"
 #include "scene/plate_face.h"
 
-namespace mcdem {
+namespace mcdem::inline scene {
 
 struct PackingState {
     double coordination_number = 0;  ///< contacts a grain, those with walls and plate included
@@ -13,4 +13,4 @@ struct PackingState {
 
 PackingState packing_state(const Packing& packing, const Box& box, const PlateFace& plate);
 
-}  // namespace mcdem
+}  // namespace mcdem::scene

@@ -2,7 +2,7 @@
 #pragma once
 #include "scene/scene.h"
 
-namespace mcdem {
+namespace mcdem::inline scene {
 
 struct PlateFace {
     double z = 0;                       ///< over the middle of the box [m]
@@ -27,4 +27,4 @@ inline PlateFace plate_face(const Replica& replica, double z) {
             replica.box.size_y / 2};
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::scene

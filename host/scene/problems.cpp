@@ -4,7 +4,7 @@
 
 #include "core/errors.h"
 
-namespace mcdem {
+namespace mcdem::inline scene {
 
 void Problems::add(const Place& place, const std::string& what) {
     found_.insert({{place.line, place.column}, place.text + ": " + what});
@@ -27,4 +27,4 @@ std::string shortened(const std::string& text) {
     return text.size() > longest ? shown + ".." : shown;
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::scene

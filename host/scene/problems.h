@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-namespace mcdem {
+namespace mcdem::inline scene {
 
 /// Where something was said: a line of the file, or an override.
 struct Place {
@@ -31,4 +31,4 @@ private:
 /// A user's word as it may stand in a message: short, without control characters.
 std::string shortened(const std::string& text);
 
-}  // namespace mcdem
+}  // namespace mcdem::scene

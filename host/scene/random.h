@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-namespace mcdem {
+namespace mcdem::inline scene {
 
 /// What a stream of random numbers is for: streams of one seed do not repeat one another.
 enum class Stream : std::uint64_t {
@@ -74,8 +74,8 @@ private:
     std::mt19937_64 engine_;
 };
 
-/// Standard normal numbers by key, not by order: what two packings have in common gets the same number, however
-/// much else one of them has.
+/// Standard normal numbers by key, not by order: what two packings have in common gets the same number,
+/// however much else one of them has.
 class KeyedNormal {
 public:
     KeyedNormal(std::uint64_t seed, Stream stream)
@@ -109,4 +109,4 @@ struct TruncatedNormal {
     }
 };
 
-}  // namespace mcdem
+}  // namespace mcdem::scene

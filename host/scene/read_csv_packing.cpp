@@ -10,7 +10,7 @@
 #include "scene/packing_fields.h"
 #include "scene/read_packing.h"
 
-namespace mcdem {
+namespace mcdem::inline scene {
 namespace {
 
 // Words are read as text: the library's own numbers are not rounded to the nearest double.
@@ -103,4 +103,4 @@ Packing read_csv_packing(std::istream& input, const std::string& source, std::op
     return packing;
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::scene

@@ -6,7 +6,7 @@
 #include "scene/read_packing.h"
 #include "scene/text_lines.h"
 
-namespace mcdem {
+namespace mcdem::inline scene {
 namespace {
 
 constexpr std::string_view item = "ITEM: ";
@@ -107,4 +107,4 @@ Packing read_dump_packing(std::string_view text, const std::string& source, std:
     return DumpReader(text, source, step).read();
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::scene

@@ -8,7 +8,7 @@
 #include "scene/read_packing.h"
 #include "scene/text_lines.h"
 
-namespace mcdem {
+namespace mcdem::inline scene {
 namespace {
 
 bool is_letter(char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z'); }
@@ -126,4 +126,4 @@ Packing read_lammps_packing(std::istream& input, const std::string& source) {
     return LammpsReader(input, source).read();
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::scene

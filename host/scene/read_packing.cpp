@@ -7,7 +7,7 @@
 #include "core/errors.h"
 #include "core/input_file.h"
 
-namespace mcdem {
+namespace mcdem::inline scene {
 
 Packing read_packing(const std::filesystem::path& file, std::optional<long> frame) {
     std::error_code error;
@@ -39,4 +39,4 @@ Packing read_packing(const std::filesystem::path& file, std::optional<long> fram
     return read_lammps_packing(input, source);
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::scene

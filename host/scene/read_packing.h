@@ -8,7 +8,7 @@
 
 #include "core/packing.h"
 
-namespace mcdem {
+namespace mcdem::inline scene {
 
 /// The most grains that a file may hold.
 inline constexpr long largest_packing = 10'000'000;
@@ -37,4 +37,4 @@ Packing read_dump_packing(std::string_view text, const std::string& source, std:
 bool looks_like_yade(std::string_view text);
 Packing read_yade_packing(std::string_view text, const std::string& source);
 
-}  // namespace mcdem
+}  // namespace mcdem::scene

@@ -9,7 +9,7 @@
 #include "scene/scene_checks.h"
 #include "scene/scene_document.h"
 
-namespace mcdem {
+namespace mcdem::inline scene {
 namespace {
 
 /// Goes through a document once, collecting settings, variations and every problem.
@@ -186,4 +186,4 @@ Scene read_scene(const std::filesystem::path& file, const std::vector<std::strin
     return parse_scene(read_file(file), file.string(), overrides);
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::scene

@@ -7,7 +7,7 @@
 
 #include "scene/scene.h"
 
-namespace mcdem {
+namespace mcdem::inline scene {
 
 /// Reads, overrides (`key=value`, the value as TOML or a bare word), checks and makes all replicas. Throws
 /// InputError with every problem as `file:line: key must be .., got ..`; for overrides `--set key: ..`.
@@ -17,4 +17,4 @@ Scene read_scene(const std::filesystem::path& file, const std::vector<std::strin
 Scene parse_scene(std::string_view toml_text, std::string source_name,
                   const std::vector<std::string>& overrides = {});
 
-}  // namespace mcdem
+}  // namespace mcdem::scene

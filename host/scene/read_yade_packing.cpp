@@ -7,7 +7,7 @@
 #include "scene/read_packing.h"
 #include "scene/text_lines.h"
 
-namespace mcdem {
+namespace mcdem::inline scene {
 namespace {
 
 constexpr std::string_view mark = "format ";
@@ -75,4 +75,4 @@ Packing read_yade_packing(std::string_view text, const std::string& source) {
     return grains->packing();
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::scene

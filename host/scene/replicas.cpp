@@ -7,7 +7,7 @@
 
 #include "scene/assign.h"
 
-namespace mcdem {
+namespace mcdem::inline scene {
 namespace {
 
 std::string_view last_part(std::string_view name) { return name.substr(name.rfind('.') + 1); }
@@ -86,4 +86,4 @@ std::vector<Replica> make_replicas(const std::vector<Combination>& combinations)
     return replicas;
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::scene

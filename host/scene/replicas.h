@@ -7,7 +7,7 @@
 
 #include "scene/keys.h"
 
-namespace mcdem {
+namespace mcdem::inline scene {
 
 /// The most replicas in a run, and grains in all of them.
 inline constexpr double most_replicas = 10'000;
@@ -35,4 +35,4 @@ std::vector<Combination> combinations(const Settings& base, const std::vector<Va
 /// compared in pairs.
 std::vector<Replica> make_replicas(const std::vector<Combination>& combinations);
 
-}  // namespace mcdem
+}  // namespace mcdem::scene

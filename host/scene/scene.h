@@ -10,7 +10,7 @@
 #include "core/names.h"
 #include "core/packing.h"
 
-namespace mcdem {
+namespace mcdem::inline scene {
 
 struct GrainMaterial {
     double youngs_modulus = 23.3e3;  ///< E [Pa]
@@ -25,8 +25,8 @@ struct GrainMaterial {
 struct WallMaterial {
     double youngs_modulus = 50e6;  ///< [Pa]
     double poisson_ratio = 0.5;
-    double friction = 0.03;    ///< mu, grain on wall
-    double restitution = 0.95; ///< e
+    double friction = 0.03;     ///< mu, grain on wall
+    double restitution = 0.95;  ///< e
 };
 
 struct ContactLaw {
@@ -45,11 +45,11 @@ struct PackingFile {
 /// Drawn at random: truncated normal diameters, grown and relaxed without weight or friction.
 struct GeneratedPacking {
     int count = 514;
-    double diameter_mean = 21.490e-3;     ///< [m]
-    double diameter_sd = 1.199e-3;        ///< [m]
-    double diameter_min = 18.167e-3;      ///< [m]
-    double diameter_max = 24.561e-3;      ///< [m]
-    double packing_fraction = 0.59;  ///< fills the box up to the height that gives this
+    double diameter_mean = 21.490e-3;  ///< [m]
+    double diameter_sd = 1.199e-3;     ///< [m]
+    double diameter_min = 18.167e-3;   ///< [m]
+    double diameter_max = 24.561e-3;   ///< [m]
+    double packing_fraction = 0.59;    ///< fills the box up to the height that gives this
 };
 
 struct PackingSource {
@@ -66,33 +66,37 @@ struct Plate {
 
 struct Protocol {
     int cycles = 1;
-    int discard = 0;             ///< first cycles left out of metrics
-    int scans_per_stroke = 30;   ///< equally spaced; the last of each stroke at its end
-    bool stop_at_scans = true;   ///< false: one continuous stroke, recorded in passing
-    double rate_tolerance = 0;   ///< largest estimated error of forces by the plate's speed; 0: always plate.speed
+    int discard = 0;            ///< first cycles left out of metrics
+    int scans_per_stroke = 30;  ///< equally spaced; the last of each stroke at its end
+    bool stop_at_scans = true;  ///< false: one continuous stroke, recorded in passing
+    double rate_tolerance =
+        0;  ///< largest estimated error of forces by the plate's speed; 0: always plate.speed
     double settle_unbalanced_force = 1e-3;  ///< a scan is taken when the net forces on grains fall below this
     double settle_time = 0.5;               ///< .. or, marked unsettled, after this long [s]
-    double settle_drag = 1e6;  ///< of velocities and spins while the plate stands still, at most half of both a step [1/s]
-    double relax_time = 1.0;                    ///< longest relaxation before the first stroke [s]
-    bool scan_at_start = false;                 ///< a scan, frame 0, of the relaxed packing before the first stroke
-    double force_threshold = 0;                 ///< contacts below it do not count in Z and <f> [N]
+    double settle_drag =
+        1e6;  ///< of velocities and spins while the plate stands still, at most half of both a step [1/s]
+    double relax_time = 1.0;     ///< longest relaxation before the first stroke [s]
+    bool scan_at_start = false;  ///< a scan, frame 0, of the relaxed packing before the first stroke
+    double force_threshold = 0;  ///< contacts below it do not count in Z and <f> [N]
 };
 
 struct Numerics {
-    double time_step = 0.1;      ///< fraction of the Rayleigh time of the smallest grain
-    double skin = 0.2;           ///< neighbour list margin, over the mean radius
-    double probe_gap = 0.15;     ///< gap up to which surfaces are probed, over the mean radius
-    double overlap_limit = 0.5;  ///< corrected overlap over the sum of radii beyond which no static solution is assumed
+    double time_step = 0.1;   ///< fraction of the Rayleigh time of the smallest grain
+    double skin = 0.2;        ///< neighbour list margin, over the mean radius
+    double probe_gap = 0.15;  ///< gap up to which surfaces are probed, over the mean radius
+    double overlap_limit =
+        0.5;  ///< corrected overlap over the sum of radii beyond which no static solution is assumed
 };
 
 /// Effects that the plain model leaves out: each off, and at no cost, at its default.
 struct Effects {
-    double adhesion = 0;            ///< work of adhesion w of two grains [J/m2]
-    double viscoelasticity = 0;     ///< part of the Hertz force that relaxes at constant overlap
-    double relaxation_time = 0.1;   ///< of that part [s]
-    double stiffening = 0;          ///< c: Hertz force times 1 + c overlap / R*, or over 1 - c overlap / R* where c < 0
-    double plasticity = 0;          ///< part of the largest overlap that stays after unloading
-    double bulge_contacts = 1;      ///< part of the bulges that counts where grains do not overlap by themselves
+    double adhesion = 0;           ///< work of adhesion w of two grains [J/m2]
+    double viscoelasticity = 0;    ///< part of the Hertz force that relaxes at constant overlap
+    double relaxation_time = 0.1;  ///< of that part [s]
+    double stiffening =
+        0;  ///< c: Hertz force times 1 + c overlap / R*, or over 1 - c overlap / R* where c < 0
+    double plasticity = 0;      ///< part of the largest overlap that stays after unloading
+    double bulge_contacts = 1;  ///< part of the bulges that counts where grains do not overlap by themselves
     double friction_history = 0;    ///< share of the friction law that contact.friction_law does not name
     double rolling_resistance = 0;  ///< mu_r: resisting torque = mu_r R* F_n
     double modulus_scatter = 0;     ///< sd of ln E from grain to grain
@@ -119,9 +123,9 @@ struct Replica {
 };
 
 struct Output {
-    bool positions = true;           ///< record positions at scans
-    bool contacts = true;            ///< record contacts at scans
-    double checkpoint_minutes = 1;   ///< wall-clock time between checkpoints
+    bool positions = true;          ///< record positions at scans
+    bool contacts = true;           ///< record contacts at scans
+    double checkpoint_minutes = 1;  ///< wall-clock time between checkpoints
 };
 
 struct Scene {
@@ -133,4 +137,4 @@ struct Scene {
     std::vector<Replica> replicas;
 };
 
-}  // namespace mcdem
+}  // namespace mcdem::scene

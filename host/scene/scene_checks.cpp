@@ -10,7 +10,7 @@
 #include "scene/make_packing.h"
 #include "scene/read_packing.h"
 
-namespace mcdem {
+namespace mcdem::inline scene {
 namespace {
 
 using Found = std::optional<std::string>;
@@ -186,4 +186,4 @@ std::size_t grain_count(const Settings& settings, const CheckedFiles& files) {
     return found == files.end() ? 0 : found->second.count;
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::scene

@@ -9,7 +9,7 @@
 
 #include "scene/keys.h"
 
-namespace mcdem {
+namespace mcdem::inline scene {
 
 struct CrossProblem {
     std::string key;   ///< to blame, and begins the message
@@ -35,4 +35,4 @@ std::vector<std::string> packing_file_problems(const Settings& settings, Checked
 /// Grains of one replica.
 std::size_t grain_count(const Settings& settings, const CheckedFiles& files);
 
-}  // namespace mcdem
+}  // namespace mcdem::scene

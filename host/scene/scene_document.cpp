@@ -10,7 +10,7 @@
 #include "core/errors.h"
 #include "scene/keys.h"
 
-namespace mcdem {
+namespace mcdem::inline scene {
 namespace {
 
 constexpr std::size_t largest_text = 1 << 20;
@@ -206,4 +206,4 @@ std::string SceneDocument::text() const {
     return out.str();
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::scene

@@ -10,7 +10,7 @@
 
 #include "scene/problems.h"
 
-namespace mcdem {
+namespace mcdem::inline scene {
 
 /// "batch.vary.contact.model" is the variation of "contact.model".
 inline constexpr std::string_view vary_prefix = "batch.vary.";
@@ -55,4 +55,4 @@ private:
     std::vector<Entry> entries_;
 };
 
-}  // namespace mcdem
+}  // namespace mcdem::scene

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace mcdem {
+namespace mcdem::inline scene {
 
 class TextLines {
 public:
@@ -45,4 +45,4 @@ inline void split_at_blanks(std::string_view line, std::vector<std::string_view>
     }
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::scene

@@ -8,7 +8,7 @@
 #include "core/errors.h"
 #include "scene/random.h"
 
-namespace mcdem {
+namespace mcdem::inline scene {
 
 Packing true_packing(const Replica& replica, Packing stated) {
     const double error = replica.effects.diameter_error, sd = replica.effects.polydispersity;
@@ -33,4 +33,4 @@ std::vector<double> excess_compliance(const Replica& replica, std::size_t grains
     return all;
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::scene

@@ -4,7 +4,7 @@
 
 #include "scene/scene.h"
 
-namespace mcdem {
+namespace mcdem::inline scene {
 
 /// `stated` with true diameters: stated + effects.diameter_error + a normal deviation of
 /// effects.polydispersity, drawn with the packing's seed. Throws InputError where one is not above zero.
@@ -14,4 +14,4 @@ Packing true_packing(const Replica& replica, Packing stated);
 /// the mean of E_i is E), drawn with the packing's seed.
 std::vector<double> excess_compliance(const Replica& replica, std::size_t grains);
 
-}  // namespace mcdem
+}  // namespace mcdem::scene

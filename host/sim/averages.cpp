@@ -5,7 +5,7 @@
 #include <numbers>
 #include <numeric>
 
-namespace mcdem {
+namespace mcdem::inline sim {
 namespace {
 
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
@@ -42,8 +42,8 @@ double part_inside(const Vec3& centre, double radius, const Vec3& low, const Vec
 
 }  // namespace
 
-double packing_fraction(const std::vector<Vec3>& position, const std::vector<double>& diameter, const Box& box,
-                        double plate_z) {
+double packing_fraction(const std::vector<Vec3>& position, const std::vector<double>& diameter,
+                        const Box& box, double plate_z) {
     const double mean = std::accumulate(diameter.begin(), diameter.end(), 0.0) / diameter.size();
     const Vec3 low = Vec3::Constant(mean);
     const Vec3 high = Vec3(box.size_x, box.size_y, plate_z) - low;
@@ -74,4 +74,4 @@ void fill_averages(Scan& scan, const Box& box, const std::vector<double>& diamet
     scan.packing_fraction = packing_fraction(scan.position, diameter, box, scan.plate_z);
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::sim

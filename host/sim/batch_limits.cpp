@@ -10,7 +10,7 @@
 #include "core/errors.h"
 #include "sim/device_replica.h"
 
-namespace mcdem {
+namespace mcdem::inline sim {
 namespace {
 
 constexpr std::uint64_t max_int = std::numeric_limits<int>::max();
@@ -124,4 +124,4 @@ void expect_runnable(const Device& device, const Scene& scene) {
         expect_countable_steps(scene.replicas[r], time_step(scene.replicas[r], sizes[r].smallest / 2));
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::sim

@@ -6,7 +6,7 @@
 #include "scene/make_packing.h"
 #include "sim/fields.h"
 
-namespace mcdem {
+namespace mcdem::inline sim {
 
 /// "3.78 MB"
 std::string memory_text(std::uint64_t bytes);
@@ -33,4 +33,4 @@ void expect_countable_steps(const Replica& replica, double time_step);
 /// Both, as far as can be told before packings are made.
 void expect_runnable(const Device& device, const Scene& scene);
 
-}  // namespace mcdem
+}  // namespace mcdem::sim

@@ -5,7 +5,7 @@
 
 #include "sim/device_replica.h"
 
-namespace mcdem {
+namespace mcdem::inline sim {
 namespace {
 
 // The plate goes after compliance * force as a tracker of second order, so that it does not lag behind while
@@ -56,4 +56,4 @@ bool CompliantPlate::arrived(double farthest) const {
     return std::abs(error()) <= 1e-3 * std::max(std::abs(state_.given), farthest);
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::sim

@@ -4,7 +4,7 @@
 #include "scene/scene.h"
 #include "sim/engine.h"
 
-namespace mcdem {
+namespace mcdem::inline sim {
 
 class CompliantPlate {
 public:
@@ -39,4 +39,4 @@ private:
     double change_ = 0;  ///< of `given` a step, in the interval under way [m]
 };
 
-}  // namespace mcdem
+}  // namespace mcdem::sim

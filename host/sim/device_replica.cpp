@@ -7,10 +7,10 @@
 #include <numbers>
 #include <numeric>
 
-#include "core/surface_displacement.h"
+#include "elasticity/surface_displacement.h"
 #include "scene/true_grains.h"
 
-namespace mcdem {
+namespace mcdem::inline sim {
 namespace {
 
 constexpr double gravity = 9.81;  // [m/s2]
@@ -190,4 +190,4 @@ DeviceReplica device_replica(const Replica& replica, const Packing& packing, con
 template f32::Replica device_replica(const Replica&, const Packing&, const Place&);
 template f64::Replica device_replica(const Replica&, const Packing&, const Place&);
 
-}  // namespace mcdem
+}  // namespace mcdem::sim

@@ -6,7 +6,7 @@
 #include "scene/scene.h"
 #include "sim/device_types.h"
 
-namespace mcdem {
+namespace mcdem::inline sim {
 
 /// Of waves along the surface of the grains' material, sqrt(G / rho) (0.163 nu + 0.8766) [m/s].
 double rayleigh_speed(const GrainMaterial& grains);
@@ -40,4 +40,4 @@ int cell_count(const DeviceReplica& replica) {
     return replica.cells_x * replica.cells_y * replica.cells_z;
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::sim

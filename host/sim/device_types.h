@@ -1,7 +1,7 @@
 // The structs that host and device share, once for each precision of the kernels.
 #pragma once
 
-namespace mcdem {
+namespace mcdem::inline sim {
 namespace f32 {
 using real = float;
 #include "kernels/replica.h"
@@ -14,4 +14,4 @@ using real = double;
 }  // namespace f64
 #include "kernels/partner.h"
 #include "kernels/status.h"
-}  // namespace mcdem
+}  // namespace mcdem::sim

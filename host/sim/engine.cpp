@@ -10,7 +10,7 @@
 #include "sim/batch_limits.h"
 #include "sim/device_replica.h"
 
-namespace mcdem {
+namespace mcdem::inline sim {
 namespace {
 
 /// A list is made anew when a grain or the plate has moved this part of the margin. Half the margin is the
@@ -244,4 +244,4 @@ std::vector<IntervalResult> Engine::read_reports(const std::vector<StepInterval>
     return results;
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::sim

@@ -12,7 +12,7 @@
 #include "sim/device_types.h"
 #include "sim/fields.h"
 
-namespace mcdem {
+namespace mcdem::inline sim {
 
 /// What a replica is to do next.
 struct StepInterval {
@@ -103,4 +103,4 @@ private:
     Kernels kernels_;
 };
 
-}  // namespace mcdem
+}  // namespace mcdem::sim

@@ -8,7 +8,7 @@
 #include "scene/plate_face.h"
 #include "sim/engine.h"
 
-namespace mcdem {
+namespace mcdem::inline sim {
 namespace {
 
 /// One vector of each grain's motion, `first` reals from its beginning.
@@ -192,4 +192,4 @@ void Engine::restore(const std::map<std::string, std::vector<std::byte>>& saved)
             "folder");
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::sim

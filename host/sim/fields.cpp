@@ -4,7 +4,7 @@
 
 #include "sim/device_types.h"
 
-namespace mcdem {
+namespace mcdem::inline sim {
 
 MemoryRows memory_rows(const FieldNeeds& needs) {
     MemoryRows rows;
@@ -83,4 +83,4 @@ Kernels::Kernels(Device& device, const cl::Program& program)
       measure(device, program, "measure"),
       reduce(device, program, "reduce") {}
 
-}  // namespace mcdem
+}  // namespace mcdem::sim

@@ -9,7 +9,7 @@
 #include "cl/program.h"
 #include "sim/layout.h"
 
-namespace mcdem {
+namespace mcdem::inline sim {
 
 // Quantities: names only.
 struct Constants;
@@ -160,4 +160,4 @@ private:
     Kernels(Device& device, const cl::Program& program);
 };
 
-}  // namespace mcdem
+}  // namespace mcdem::sim

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <numeric>
 
-namespace mcdem {
+namespace mcdem::inline sim {
 namespace {
 
 /// The lowest 21 bits of `value`, two zero bits between each.
@@ -53,4 +53,4 @@ Layout make_layout(const std::vector<Packing>& packings, int block) {
     return layout;
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::sim

@@ -5,14 +5,14 @@
 
 #include "core/packing.h"
 
-namespace mcdem {
+namespace mcdem::inline sim {
 
 struct Layout {
-    int block = 16;                          ///< grains a block
-    std::vector<int> first_grain;            ///< of each replica; one more for the end of the last
-    std::vector<int> grain_count;            ///< of each replica
+    int block = 16;                ///< grains a block
+    std::vector<int> first_grain;  ///< of each replica; one more for the end of the last
+    std::vector<int> grain_count;  ///< of each replica
     std::vector<int> replica_of_block;
-    std::vector<std::vector<int>> order;     ///< replica, place -> the user's grain number
+    std::vector<std::vector<int>> order;  ///< replica, place -> the user's grain number
 
     int replicas() const { return static_cast<int>(grain_count.size()); }
     int grains() const { return first_grain.back(); }  ///< padded, all replicas
@@ -23,4 +23,4 @@ struct Layout {
 
 Layout make_layout(const std::vector<Packing>& packings, int block);
 
-}  // namespace mcdem
+}  // namespace mcdem::sim

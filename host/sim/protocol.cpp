@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace mcdem {
+namespace mcdem::inline sim {
 namespace {
 
 using Stage = ProtocolState::Stage;
@@ -147,4 +147,4 @@ double ProtocolRunner::progress() const {
     return (state_.frame + 0.9 * std::max(0.0, moved)) / all;
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::sim

@@ -9,7 +9,7 @@
 #include "sim/engine.h"
 #include "sim/quasi_static.h"
 
-namespace mcdem {
+namespace mcdem::inline sim {
 
 /// The plate's program and how far it has come: plain values, so that a checkpoint can hold them.
 struct ProtocolState {
@@ -82,4 +82,4 @@ private:
     ProtocolState state_;
 };
 
-}  // namespace mcdem
+}  // namespace mcdem::sim

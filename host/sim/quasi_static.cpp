@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace mcdem {
+namespace mcdem::inline sim {
 namespace {
 
 constexpr double gravity = 9.81;
@@ -54,4 +54,4 @@ double QuasiStatic::unbalanced_force(double kinetic_energy, double drag, double 
     return mass * drag * velocity / (pressure * scale_.diameter * scale_.diameter);
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::sim

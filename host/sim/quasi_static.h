@@ -6,7 +6,7 @@
 #include "core/packing.h"
 #include "scene/scene.h"
 
-namespace mcdem {
+namespace mcdem::inline sim {
 
 /// What the rate of a compression is measured against.
 struct PackingScale {
@@ -42,4 +42,4 @@ private:
     double least_pressure_;
 };
 
-}  // namespace mcdem
+}  // namespace mcdem::sim

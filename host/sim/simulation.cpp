@@ -9,7 +9,7 @@
 #include "sim/averages.h"
 #include "sim/batch_limits.h"
 
-namespace mcdem {
+namespace mcdem::inline sim {
 namespace {
 
 /// What a checkpoint may say of a protocol; a plate's numbers are any.
@@ -185,4 +185,4 @@ Recording begin_recording(const Replica& replica, const Packing& packing) {
     return recording;
 }
 
-}  // namespace mcdem
+}  // namespace mcdem::sim

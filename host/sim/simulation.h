@@ -10,7 +10,7 @@
 #include "sim/engine.h"
 #include "sim/protocol.h"
 
-namespace mcdem {
+namespace mcdem::inline sim {
 
 class Simulation {
 public:
@@ -46,4 +46,4 @@ private:
 /// A recording of replica `r` without scans yet.
 Recording begin_recording(const Replica& replica, const Packing& packing);
 
-}  // namespace mcdem
+}  // namespace mcdem::sim

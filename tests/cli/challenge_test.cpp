@@ -4,10 +4,10 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "challenge/outside.h"
 #include "cli/tiny_challenge.h"
 #include "core/sha256.h"
-#include "diagnose/challenge_outside.h"
-#include "diagnose/effects.h"
+#include "diagnose/infer/effects.h"
 #include "experiment/experiment.h"
 
 namespace mcdem {

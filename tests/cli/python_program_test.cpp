@@ -1,6 +1,6 @@
 // Commands written in Python: started with their arguments, interrupted with the program, missing with a
 // reason.
-#include "cli/python_program.h"
+#include "cli/shell/python_program.h"
 
 #include <unistd.h>
 

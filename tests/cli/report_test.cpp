@@ -73,8 +73,7 @@ TEST_F(CliTest, WhatCannotBeReportedIsSaid) {
     std::ofstream(path("wrong.json")) << "{}";
     expect_bad_input(mcdem({"report", "wrong.json", "--out", "x.html"}),
                      "wrong.json: must be a diagnosis.json");
-    expect_bad_input(mcdem({"report", "none.json", "--out", "x.html"}),
-                     "none.json: no such file");
+    expect_bad_input(mcdem({"report", "none.json", "--out", "x.html"}), "none.json: no such file");
     expect_done(mcdem(run_words("a")));
     const auto no_library = mcdem({"report", "a", "--out", "x.html"}, {"MCDEM_SHARE=/nonexistent"});
     EXPECT_EQ(no_library.exit_code, 1);

@@ -4,9 +4,9 @@
 #include <sstream>
 
 #include "cli/cli_test.h"
-#include "cli/shell_word.h"
-#include "cli/slurm.h"
-#include "cli/subprocess.h"
+#include "cli/parts/slurm.h"
+#include "cli/shell/shell_word.h"
+#include "cli/shell/subprocess.h"
 #include "core/errors.h"
 #include "io/result_folder.h"
 

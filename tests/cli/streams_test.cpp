@@ -6,8 +6,8 @@
 #include <csignal>
 
 #include "cli/cli_test.h"
-#include "cli/progress.h"
-#include "cli/subprocess.h"
+#include "cli/shell/progress.h"
+#include "cli/shell/subprocess.h"
 
 namespace mcdem {
 namespace {

@@ -1,6 +1,6 @@
 // Overlaps that forces imply and positions show, against Hertz' formula and published numbers worked out by
 // hand.
-#include "diagnose/contact_residuals.h"
+#include "diagnose/observe/contact_residuals.h"
 
 #include <gtest/gtest.h>
 

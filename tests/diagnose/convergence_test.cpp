@@ -1,5 +1,5 @@
 // Errors of the numerics from paired runs: recovered where they are known, and told from chance.
-#include "diagnose/convergence.h"
+#include "diagnose/infer/convergence.h"
 
 #include <gtest/gtest.h>
 

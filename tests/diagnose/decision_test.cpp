@@ -1,5 +1,5 @@
 // The verdict as a function of a few numbers.
-#include "diagnose/decision.h"
+#include "diagnose/decide/decision.h"
 
 #include <gmock/gmock.h>
 

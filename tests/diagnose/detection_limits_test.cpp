@@ -1,5 +1,5 @@
 // What could be detected: held against experiments drawn with just that amplitude.
-#include "diagnose/detection_limits.h"
+#include "diagnose/infer/detection_limits.h"
 
 #include <gmock/gmock.h>
 

@@ -1,5 +1,5 @@
 // A planted effect from evidence to what the diagnosis says of it.
-#include "diagnose/diagnose.h"
+#include "diagnose/decide/diagnose.h"
 
 #include <gmock/gmock.h>
 

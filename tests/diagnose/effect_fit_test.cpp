@@ -1,5 +1,5 @@
 // Amplitudes recovered from synthetic gaps, and their scores in closed form.
-#include "diagnose/effect_fit.h"
+#include "diagnose/infer/effect_fit.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // The table of effects: each moves what it says and nothing else.
-#include "diagnose/effects.h"
+#include "diagnose/infer/effects.h"
 
 #include <gmock/gmock.h>
 

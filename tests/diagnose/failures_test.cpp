@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "core/errors.h"
-#include "diagnose/diagnose.h"
+#include "diagnose/decide/diagnose.h"
 #include "diagnose/synthetic_evidence.h"
 
 namespace mcdem {

@@ -1,5 +1,5 @@
 // Numbers of one scan's forces, worked out by hand.
-#include "diagnose/force_statistics.h"
+#include "diagnose/observe/force_statistics.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Covariances, whitening and refitted nuisances against formulas written out.
-#include "diagnose/gap_space.h"
+#include "diagnose/infer/gap_space.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // False alarms and power of the two tests, by experiments drawn at random.
-#include "diagnose/gap_tests.h"
+#include "diagnose/infer/gap_tests.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Libraries survive their file; what is no library of this program is refused.
-#include "diagnose/library.h"
+#include "diagnose/infer/library.h"
 
 #include <gmock/gmock.h>
 

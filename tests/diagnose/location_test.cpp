@@ -1,5 +1,5 @@
 // A planted difference is found where it is, and nowhere on replicates.
-#include "diagnose/location.h"
+#include "diagnose/decide/location.h"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
 // What would help most, predicted from the signatures.
-#include "diagnose/next_steps.h"
+#include "diagnose/decide/next_steps.h"
 
 #include <gmock/gmock.h>
 
 #include <cmath>
 
-#include "diagnose/diagnose.h"
+#include "diagnose/decide/diagnose.h"
 #include "diagnose/synthetic_evidence.h"
 
 namespace mcdem {

@@ -1,5 +1,5 @@
 // Recordings as vectors: local lines through the scans near a cell.
-#include "diagnose/observation.h"
+#include "diagnose/observe/observation.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Regressions recover what was put in.
-#include "diagnose/overlap_regression.h"
+#include "diagnose/observe/overlap_regression.h"
 
 #include <gtest/gtest.h>
 

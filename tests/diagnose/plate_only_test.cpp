@@ -2,8 +2,8 @@
 #include <gmock/gmock.h>
 
 #include "core/errors.h"
-#include "diagnose/diagnose.h"
-#include "diagnose/not_measured.h"
+#include "diagnose/decide/diagnose.h"
+#include "diagnose/observe/not_measured.h"
 #include "diagnose/synthetic_evidence.h"
 
 namespace mcdem {

@@ -1,5 +1,5 @@
 // What is proposed for a planted gap, and what real runs make of it.
-#include "diagnose/proposals.h"
+#include "diagnose/infer/proposals.h"
 
 #include <gmock/gmock.h>
 

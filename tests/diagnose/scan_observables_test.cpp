@@ -1,5 +1,5 @@
 // The vector of one scan: which number stands where, and what is missing when data are.
-#include "diagnose/scan_observables.h"
+#include "diagnose/observe/scan_observables.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <set>
 
-#include "diagnose/force_statistics.h"
+#include "diagnose/observe/force_statistics.h"
 #include "diagnose/synthetic_scan.h"
 
 namespace mcdem {

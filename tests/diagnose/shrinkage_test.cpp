@@ -1,5 +1,5 @@
 // A planted effect takes its gap away on data that were not fitted; where there is none, nothing does.
-#include "diagnose/shrinkage.h"
+#include "diagnose/infer/shrinkage.h"
 
 #include <gtest/gtest.h>
 

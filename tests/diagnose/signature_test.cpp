@@ -1,5 +1,5 @@
 // What is learnt from paired runs: parabolas come back, noise does not.
-#include "diagnose/signature.h"
+#include "diagnose/infer/signature.h"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 #pragma once
 #include <utility>
 
-#include "diagnose/evidence.h"
+#include "diagnose/infer/evidence.h"
 #include "metrics/estimate.h"
 #include "scene/random.h"
 

@@ -1,6 +1,6 @@
 // Scans put together by hand: grains where one likes, contacts with the forces one likes.
 #pragma once
-#include "diagnose/contact_residuals.h"
+#include "diagnose/observe/contact_residuals.h"
 
 namespace mcdem {
 

@@ -109,7 +109,8 @@ private:
         text_ += fmt::format("[batch.vary]\n\"contact.model\" = [\"{}\", \"{}\"]\n", name(models[0]),
                              name(models[1]));
         const int fewer = chance(0.5) ? count_ : (4 * count_ + 4) / 5;
-        text_ += fmt::format("\"packing.count\" = [{}{}]\n", count_, fewer < count_ ? fmt::format(", {}", fewer) : "");
+        text_ += fmt::format("\"packing.count\" = [{}{}]\n", count_,
+                             fewer < count_ ? fmt::format(", {}", fewer) : "");
     }
 
     std::mt19937_64 engine_;

@@ -48,8 +48,8 @@ void expect_numbers(const Scan& scan) {
     EXPECT_TRUE(std::isfinite(scan.elastic_energy));
 }
 
-/// What the grains' contacts say of the walls is what the walls say. (Adhesion attracts across gaps, where there is no
-/// contact.)
+/// What the grains' contacts say of the walls is what the walls say. (Adhesion attracts across gaps, where
+/// there is no contact.)
 void expect_action_is_reaction(const Scan& scan, Precision precision) {
     auto from_contacts = no_wall_forces();
     double size = 0;

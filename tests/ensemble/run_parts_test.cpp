@@ -1,11 +1,11 @@
 // A run in parts: the bytes of one program's, whoever computed them, and whatever happened to them.
-#include "ensemble/run_parts.h"
+#include "ensemble/parts/run_parts.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include "core/errors.h"
-#include "ensemble/manifest.h"
+#include "ensemble/parts/manifest.h"
 #include "ensemble/small_scene.h"
 #include "io/parts.h"
 #include "io/result_folder.h"

@@ -2,17 +2,17 @@
 // structure: read or an InputError. The first byte chooses the document, the others what is changed.
 #include <map>
 
+#include "challenge/evidence.h"
+#include "challenge/files.h"
+#include "challenge/truth.h"
 #include "core/errors.h"
 #include "core/sha256.h"
-#include "diagnose/challenge_evidence.h"
-#include "diagnose/challenge_files.h"
-#include "diagnose/challenge_truth.h"
 #include "diagnose/synthetic_evidence.h"
-#include "ensemble/manifest.h"
 #include "ensemble/observation_store.h"
+#include "ensemble/parts/manifest.h"
 #include "fuzz/mutate_json.h"
 #include "fuzz/scratch_folder.h"
-#include "report/diagnosis_json.h"
+#include "report/diagnosis/diagnosis_json.h"
 #include "report/diagnosis_samples.h"
 
 namespace {

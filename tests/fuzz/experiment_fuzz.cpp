@@ -1,5 +1,6 @@
-// Any four files as an experiment's folder: it is read and checked, or refused with an InputError. The files stand one
-// after the other, parted by lines that are "%%%": experiment.toml, plate.csv, grains.csv, contacts.csv.
+// Any four files as an experiment's folder: it is read and checked, or refused with an InputError. The files
+// stand one after the other, parted by lines that are "%%%": experiment.toml, plate.csv, grains.csv,
+// contacts.csv.
 #include <unistd.h>
 
 #include <cstdint>
@@ -16,8 +17,9 @@ namespace {
 const std::filesystem::path& folder() {
     static const std::filesystem::path path = [] {
         const std::filesystem::path memory = "/dev/shm";
-        const auto made = (std::filesystem::is_directory(memory) ? memory : std::filesystem::temp_directory_path()) /
-                          ("mcdem-fuzz-" + std::to_string(getpid()));
+        const auto made =
+            (std::filesystem::is_directory(memory) ? memory : std::filesystem::temp_directory_path()) /
+            ("mcdem-fuzz-" + std::to_string(getpid()));
         std::filesystem::create_directories(made);
         std::atexit([] { std::filesystem::remove_all(folder()); });
         return made;

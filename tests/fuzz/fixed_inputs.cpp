@@ -1,5 +1,5 @@
-// A fuzz target on inputs that are the same every time, without a fuzzer: FIRST and COUNT of them. One that breaks the reader
-// is named, to be tried again alone.
+// A fuzz target on inputs that are the same every time, without a fuzzer: FIRST and COUNT of them. One that
+// breaks the reader is named, to be tried again alone.
 #include <unistd.h>
 
 #include <csignal>

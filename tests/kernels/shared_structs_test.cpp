@@ -19,31 +19,27 @@ kernel void write_offsets(global int* offsets) {
 }
 )";
 
-#define MEMBERS_OF_REPLICA(MEMBER)                                                                           \
-    MEMBER(time_step)                                                                                        \
-    MEMBER(density)                                                                                          \
-    MEMBER(weight_density)                                                                                   \
-    MEMBER(drag) MEMBER(spin_drag) MEMBER(modulus_grain) MEMBER(modulus_wall) MEMBER(shear_grain)            \
-        MEMBER(shear_wall) MEMBER(damping_grain) MEMBER(damping_wall) MEMBER(friction_grain)                 \
-            MEMBER(friction_wall) MEMBER(sliding_velocity) MEMBER(half_space_scale)                          \
-                MEMBER(half_space_normal) MEMBER(half_space_shear) MEMBER(sphere_scale) MEMBER(sphere_point) \
-                    MEMBER(sphere_size) MEMBER(sphere_self) MEMBER(skin) MEMBER(probe_gap)                   \
-                        MEMBER(overlap_limit) MEMBER(cell_size) MEMBER(wall_position) MEMBER(plate_velocity) \
-                            MEMBER(first_grain) MEMBER(grain_count) MEMBER(first_cell) MEMBER(cells_x)       \
-                                MEMBER(cells_y) MEMBER(cells_z) MEMBER(span_x) MEMBER(span_y) MEMBER(span_z) \
-                                    MEMBER(surface) MEMBER(finite_contacts) MEMBER(mindlin)                  \
-                                        MEMBER(memory_rows) MEMBER(deepest_row) MEMBER(relaxed_row)          \
-                                            MEMBER(steps_before) MEMBERS_OF_EFFECTS(MEMBER)
-#define MEMBERS_OF_EFFECTS(MEMBER)                                                             \
-    MEMBER(plate_tilt_x)                                                                       \
-    MEMBER(plate_tilt_y)                                                                       \
-    MEMBER(grain_compliance) MEMBER(shear_compliance) MEMBER(adhesion) MEMBER(viscoelasticity) \
-        MEMBER(relaxing_share) MEMBER(stiffening) MEMBER(plasticity) MEMBER(bulge_contacts)    \
-            MEMBER(mindlin_share) MEMBER(rolling_resistance) MEMBER(effects)
+// clang-format off
+#define MEMBERS_OF_REPLICA(MEMBER) \
+    MEMBER(time_step) MEMBER(density) MEMBER(weight_density) MEMBER(drag) MEMBER(spin_drag) \
+    MEMBER(modulus_grain) MEMBER(modulus_wall) MEMBER(shear_grain) MEMBER(shear_wall) \
+    MEMBER(damping_grain) MEMBER(damping_wall) MEMBER(friction_grain) MEMBER(friction_wall) \
+    MEMBER(sliding_velocity) MEMBER(half_space_scale) MEMBER(half_space_normal) \
+    MEMBER(half_space_shear) MEMBER(sphere_scale) MEMBER(sphere_point) MEMBER(sphere_size) \
+    MEMBER(sphere_self) MEMBER(skin) MEMBER(probe_gap) MEMBER(overlap_limit) MEMBER(cell_size) \
+    MEMBER(wall_position) MEMBER(plate_velocity) MEMBER(first_grain) MEMBER(grain_count) \
+    MEMBER(first_cell) MEMBER(cells_x) MEMBER(cells_y) MEMBER(cells_z) MEMBER(span_x) \
+    MEMBER(span_y) MEMBER(span_z) MEMBER(surface) MEMBER(finite_contacts) MEMBER(mindlin) \
+    MEMBER(memory_rows) MEMBER(deepest_row) MEMBER(relaxed_row) MEMBER(steps_before) MEMBERS_OF_EFFECTS(MEMBER)
+#define MEMBERS_OF_EFFECTS(MEMBER) \
+    MEMBER(plate_tilt_x) MEMBER(plate_tilt_y) MEMBER(grain_compliance) MEMBER(shear_compliance) \
+    MEMBER(adhesion) MEMBER(viscoelasticity) MEMBER(relaxing_share) MEMBER(stiffening) \
+    MEMBER(plasticity) MEMBER(bulge_contacts) MEMBER(mindlin_share) MEMBER(rolling_resistance) \
+    MEMBER(effects)
 #define MEMBERS_OF_REPORT(MEMBER) \
-    MEMBER(kinetic_energy)        \
-    MEMBER(elastic_energy)        \
-    MEMBER(moved_squared) MEMBER(deepest_overlap) MEMBER(wall_force) MEMBER(status) MEMBER(failed_grain)
+    MEMBER(kinetic_energy) MEMBER(elastic_energy) MEMBER(moved_squared) MEMBER(deepest_overlap) \
+    MEMBER(wall_force) MEMBER(status) MEMBER(failed_grain)
+// clang-format on
 
 #define NAME_REPLICA(member) "REPLICA(" #member ")"
 #define NAME_REPORT(member) "REPORT(" #member ")"

@@ -6,8 +6,8 @@
 #include <numbers>
 #include <vector>
 
-#include "core/surface_displacement.h"
 #include "core/vec3.h"
+#include "elasticity/surface_displacement.h"
 #include "reference/sphere_series_reference.h"
 
 namespace reference {

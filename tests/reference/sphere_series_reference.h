@@ -1,4 +1,4 @@
-// A second, slower way to the numbers of host/core/elastic_sphere_series.h, for tests: every mode by
+// A second, slower way to the numbers of host/elasticity/elastic_sphere_series.h, for tests: every mode by
 // solving its 2 x 2 system of tractions, every cap average by Simpson's rule. Radius and Young's modulus 1.
 #pragma once
 #include <Eigen/Dense>

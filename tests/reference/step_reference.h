@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/packing.h"
-#include "core/surface_displacement.h"
+#include "elasticity/surface_displacement.h"
 #include "scene/scene.h"
 
 namespace reference {

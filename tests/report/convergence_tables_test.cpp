@@ -1,5 +1,5 @@
 // What is said of a convergence: table, words and JSON agree with the numbers, and so does the figure.
-#include "report/convergence_tables.h"
+#include "report/run/convergence_tables.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -7,11 +7,11 @@
 #include <regex>
 #include <set>
 
-#include "diagnose/decision.h"
-#include "report/diagnosis_charts.h"
-#include "report/diagnosis_json.h"
-#include "report/diagnosis_text.h"
-#include "report/diagnosis_words.h"
+#include "diagnose/decide/decision.h"
+#include "report/diagnosis/diagnosis_charts.h"
+#include "report/diagnosis/diagnosis_json.h"
+#include "report/diagnosis/diagnosis_text.h"
+#include "report/diagnosis/diagnosis_words.h"
 
 namespace mcdem {
 namespace {

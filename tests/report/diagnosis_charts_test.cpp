@@ -1,11 +1,11 @@
-#include "report/diagnosis_charts.h"
+#include "report/diagnosis/diagnosis_charts.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "report/diagnosis_parts.h"
+#include "report/diagnosis/diagnosis_parts.h"
 #include "report/diagnosis_samples.h"
 
 namespace mcdem {

@@ -1,4 +1,4 @@
-#include "report/diagnosis_json.h"
+#include "report/diagnosis/diagnosis_json.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "report/diagnosis_page.h"
+#include "report/diagnosis/diagnosis_page.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

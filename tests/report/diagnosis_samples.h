@@ -1,6 +1,6 @@
 // Diagnoses as they may come out, one for each verdict: made up, but with the size and spread of real ones.
 #pragma once
-#include "diagnose/diagnosis.h"
+#include "diagnose/decide/diagnosis.h"
 
 namespace mcdem::samples {
 

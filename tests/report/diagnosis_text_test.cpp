@@ -1,4 +1,4 @@
-#include "report/diagnosis_text.h"
+#include "report/diagnosis/diagnosis_text.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

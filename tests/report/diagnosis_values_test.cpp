@@ -1,12 +1,12 @@
 // What the figures of a diagnosis show.
-#include "report/diagnosis_values.h"
+#include "report/diagnosis/diagnosis_values.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "report/diagnosis_parts.h"
+#include "report/diagnosis/diagnosis_parts.h"
 #include "report/diagnosis_samples.h"
 
 namespace mcdem {

@@ -1,4 +1,4 @@
-#include "report/diagnosis_words.h"
+#include "report/diagnosis/diagnosis_words.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "report/labels.h"
+#include "report/page/labels.h"
 
 #include <gtest/gtest.h>
 

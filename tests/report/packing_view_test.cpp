@@ -1,4 +1,4 @@
-#include "report/packing_view.h"
+#include "report/page/packing_view.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

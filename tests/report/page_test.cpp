@@ -1,4 +1,4 @@
-#include "report/page.h"
+#include "report/page/page.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,8 +6,8 @@
 #include "core/errors.h"
 #include "core/sha256.h"
 #include "report/folder.h"
+#include "report/page/plotting_library.h"
 #include "report/page_text.h"
-#include "report/plotting_library.h"
 
 namespace mcdem {
 namespace {

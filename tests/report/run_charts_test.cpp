@@ -1,4 +1,4 @@
-#include "report/run_charts.h"
+#include "report/run/run_charts.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

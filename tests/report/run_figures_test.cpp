@@ -1,5 +1,5 @@
 // What the figures of runs show: levels, densities, thresholds and slopes, once for pages and print.
-#include "report/run_figures.h"
+#include "report/run/run_figures.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 #include <set>
 
 #include "metrics/synthetic.h"
-#include "report/figure_values.h"
+#include "report/run/figure_values.h"
 
 namespace mcdem {
 namespace {

@@ -1,4 +1,4 @@
-#include "report/tables.h"
+#include "report/run/tables.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -54,7 +54,8 @@ std::vector<Curve> load(const StrokeBatch& batch) {
     const auto take = [&](int r, const Scan& scan) {
         if (scan.phase == Phase::unload) return;
         curves[r].push_back(scan.top_force());
-        if (static_cast<int>(curves[r].size()) == batch.scene.replicas[r].protocol.scans_per_stroke) --under_way;
+        if (static_cast<int>(curves[r].size()) == batch.scene.replicas[r].protocol.scans_per_stroke)
+            --under_way;
     };
     const auto fail = [&](int r, const Failure& failure) {
         ADD_FAILURE() << batch.names[r] << " stopped at step " << failure.step << ": " << failure.cause;
@@ -81,7 +82,8 @@ MeanCurve mean_curve(const std::vector<const Curve*>& curves) {
 
 }  // namespace
 
-std::map<std::string, MeanCurve> loading_strokes(const std::map<std::string, Setting>& settings, int replicas) {
+std::map<std::string, MeanCurve> loading_strokes(const std::map<std::string, Setting>& settings,
+                                                 int replicas) {
     std::map<std::string, std::vector<const Curve*>> by_name;
     std::vector<std::vector<Curve>> kept;
     kept.reserve(2);  // the curves stay where they are

@@ -15,8 +15,8 @@ namespace reference {
 
 inline const std::filesystem::path authors_folder = std::filesystem::path(MCDEM_SHARED_DATA) / "hydrogel";
 
-#define SKIP_WITHOUT_AUTHORS_PACKING()                              \
-    if (!std::filesystem::exists(authors_folder / "input.data"))    \
+#define SKIP_WITHOUT_AUTHORS_PACKING()                           \
+    if (!std::filesystem::exists(authors_folder / "input.data")) \
     GTEST_SKIP() << "no authors' packing: " << authors_folder << " is missing"
 
 /// The other code's settings: one continuous stroke of 0.3 s, friction with history, no relaxation before.
@@ -36,8 +36,9 @@ struct Setting {
     mcdem::Precision precision = mcdem::Precision::single_precision;
 };
 
-/// Loading stroke of every setting from `replicas` starts; replica 0 of one replica starts from the packing as it is,
-/// otherwise every start is jittered by 0.1 mm, the same jitters for every setting.
-std::map<std::string, MeanCurve> loading_strokes(const std::map<std::string, Setting>& settings, int replicas);
+/// Loading stroke of every setting from `replicas` starts; replica 0 of one replica starts from the packing
+/// as it is, otherwise every start is jittered by 0.1 mm, the same jitters for every setting.
+std::map<std::string, MeanCurve> loading_strokes(const std::map<std::string, Setting>& settings,
+                                                 int replicas);
 
 }  // namespace reference

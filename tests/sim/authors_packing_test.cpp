@@ -31,8 +31,8 @@ std::vector<std::pair<double, double>> other_code(const char* name) {
     return rows;
 }
 
-/// One run from the very same positions, 300 scans as in the other code's file. Within 10 % from 12 mm and 5 %
-/// from 18 mm: two codes that agree in every formula still differ by a rearrangement here and there.
+/// One run from the very same positions, 300 scans as in the other code's file. Within 10 % from 12 mm and 5
+/// % from 18 mm: two codes that agree in every formula still differ by a rearrangement here and there.
 void expect_agreement(const Curve& ours, const char* name) {
     const auto theirs = other_code(name);
     ASSERT_EQ(theirs.size(), ours.size());
@@ -40,18 +40,20 @@ void expect_agreement(const Curve& ours, const char* name) {
     for (std::size_t k = 0; k < ours.size(); ++k) {
         const auto [displacement, force] = theirs[k];
         if (displacement < 12) continue;
-        EXPECT_NEAR(ours[k] / force, 1, displacement < 18 ? 0.10 : 0.05) << name << " at " << displacement << " mm";
+        EXPECT_NEAR(ours[k] / force, 1, displacement < 18 ? 0.10 : 0.05)
+            << name << " at " << displacement << " mm";
         worst = std::max(worst, std::abs(ours[k] / force - 1));
     }
-    fmt::print("{}: at full stroke {:.3f} N against {:.3f} N; worst from 12 mm on {:.1f} %\n", name, ours.back(),
-               theirs.back().second, 100 * worst);
+    fmt::print("{}: at full stroke {:.3f} N against {:.3f} N; worst from 12 mm on {:.1f} %\n", name,
+               ours.back(), theirs.back().second, 100 * worst);
 }
 
 TEST(AuthorsPacking, FollowsAnotherCode) {
     SKIP_WITHOUT_AUTHORS_PACKING();
-    const auto curves = loading_strokes({{"hertz", {authors_replica(ContactModel::independent, 300)}},
-                                         {"half space", {authors_replica(ContactModel::elastic_half_space, 300)}}},
-                                        1);
+    const auto curves =
+        loading_strokes({{"hertz", {authors_replica(ContactModel::independent, 300)}},
+                         {"half space", {authors_replica(ContactModel::elastic_half_space, 300)}}},
+                        1);
     expect_agreement(curves.at("hertz").mean, "liggghts_hertz.csv");
     expect_agreement(curves.at("half space").mean, "liggghts_half_space_gamma_1.csv");
 }
@@ -64,14 +66,12 @@ struct Ratio {
 
 TEST(AuthorsPacking, ModelsStandAsInThePaper) {
     SKIP_WITHOUT_AUTHORS_PACKING();
-    // Independent: the paper has 0.43 +- 0.02 from one packing's history; single runs here scatter by 0.02, their
-    // mean stands at 0.46, so the upper bound is 0.48.
-    const std::vector<Ratio> ratios{{ContactModel::independent, 0.41, 0.48},
-                                    {ContactModel::point_force_on_sphere, 0.43, 0.54},
-                                    {ContactModel::sphere_to_sphere, 0.70, 0.82},
-                                    {ContactModel::elastic_half_space, 0.80, 0.87},
-                                    {ContactModel::elastic_sphere, 0.65, 0.80},
-                                    {ContactModel::mc_dem, 1, 1}};
+    // Independent: the paper has 0.43 +- 0.02 from one packing's history; single runs here scatter by 0.02,
+    // their mean stands at 0.46, so the upper bound is 0.48.
+    const std::vector<Ratio> ratios{
+        {ContactModel::independent, 0.41, 0.48},      {ContactModel::point_force_on_sphere, 0.43, 0.54},
+        {ContactModel::sphere_to_sphere, 0.70, 0.82}, {ContactModel::elastic_half_space, 0.80, 0.87},
+        {ContactModel::elastic_sphere, 0.65, 0.80},   {ContactModel::mc_dem, 1, 1}};
     std::map<std::string, Setting> settings;
     for (const auto& ratio : ratios)
         settings[std::string(name(ratio.model))] = {authors_replica(ratio.model, 30)};
@@ -83,8 +83,8 @@ TEST(AuthorsPacking, ModelsStandAsInThePaper) {
         const double value = curve.mean.back() / reference.mean.back();
         const double error = value * std::hypot(curve.standard_error.back() / curve.mean.back(),
                                                 reference.standard_error.back() / reference.mean.back());
-        fmt::print("{:22} {:7.3f} +- {:.3f} N   over MC-DEM {:.3f} +- {:.3f}\n", name(ratio.model), curve.mean.back(),
-                   curve.standard_error.back(), value, error);
+        fmt::print("{:22} {:7.3f} +- {:.3f} N   over MC-DEM {:.3f} +- {:.3f}\n", name(ratio.model),
+                   curve.mean.back(), curve.standard_error.back(), value, error);
         // Three standard errors: on another device the same starts take other turns.
         EXPECT_GE(value, ratio.low - 3 * error) << name(ratio.model);
         EXPECT_LE(value, ratio.high + 3 * error) << name(ratio.model);
@@ -94,8 +94,8 @@ TEST(AuthorsPacking, ModelsStandAsInThePaper) {
     }
 }
 
-/// The mean top force, above a tenth of its maximum, moves by less than 1 % beyond three standard errors of the
-/// difference (25 levels are looked at: two standard errors would be passed by chance).
+/// The mean top force, above a tenth of its maximum, moves by less than 1 % beyond three standard errors of
+/// the difference (25 levels are looked at: two standard errors would be passed by chance).
 void expect_same(const MeanCurve& base, const MeanCurve& changed, const char* what) {
     double worst = 0, mean = 0;
     int levels = 0;
@@ -108,9 +108,13 @@ void expect_same(const MeanCurve& base, const MeanCurve& changed, const char* wh
         mean += move;
         ++levels;
     }
-    const double last = std::hypot(base.standard_error.back(), changed.standard_error.back()) / base.mean.back();
-    fmt::print("{:16} moves the mean top force by {:+.2f} % on average, {:.2f} % at most; at full stroke {:+.2f} +- {:.2f} %\n",
-               what, 100 * mean / levels, 100 * worst, 100 * (changed.mean.back() / base.mean.back() - 1), 100 * last);
+    const double last =
+        std::hypot(base.standard_error.back(), changed.standard_error.back()) / base.mean.back();
+    fmt::print(
+        "{:16} moves the mean top force by {:+.2f} % on average, {:.2f} % at most; at full stroke {:+.2f} +- "
+        "{:.2f} %\n",
+        what, 100 * mean / levels, 100 * worst, 100 * (changed.mean.back() / base.mean.back() - 1),
+        100 * last);
 }
 
 TEST(AuthorsPacking, IsQuasiStatic) {

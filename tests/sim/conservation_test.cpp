@@ -126,7 +126,8 @@ TEST(Conservation, MomentumAndAngularMomentumInFloat) {
     expect_momenta_stay(Precision::single_precision, 5e-4);
 }
 
-// Hertz's contacts with any friction, damping and memory only lose energy, but for what the integrator gives and takes.
+// Hertz's contacts with any friction, damping and memory only lose energy, but for what the integrator gives
+// and takes.
 TEST(Conservation, EnergyDoesNotGrow) {
     std::vector<Start> starts;
     for (unsigned seed = 0; seed < 24 * 6; seed += 6) starts.push_back(random_free_cluster(seed));

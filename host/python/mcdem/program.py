@@ -1,4 +1,4 @@
-"""Runs a module as a command of the program: python3 -m mcdem.program MODULE ARGUMENT... (host/cli/python_program.h).
+"""Runs a module as a command of the program: python3 -m mcdem.program MODULE ARGUMENT... (host/cli/shell/python_program.h).
 
 Messages begin with `mcdem: `. Exit codes: 0 done, 1 failed, 2 bad input, 130 interrupted.
 """

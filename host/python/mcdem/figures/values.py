@@ -1,4 +1,4 @@
-"""Reads figures.json, which the commands write (host/report/figure_values.h)."""
+"""Reads figures.json, which the commands write (host/report/run/figure_values.h)."""
 import json
 import pathlib
 

@@ -1,4 +1,4 @@
-"""What `mcdem experiment import` starts (host/cli/experiment_import.cpp): reads and guesses, prints what each table is taken for,
+"""What `mcdem experiment import` starts (host/cli/experiment/experiment_import.cpp): reads and guesses, prints what each table is taken for,
 and leaves the results in the folder --work, from which the program puts them into place: mapping.toml, and either problems or
 plate.csv, grains.csv, contacts.csv, plate_start and notes. Mistakes for which no mapping can be written are bad input."""
 import argparse

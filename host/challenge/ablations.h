@@ -1,0 +1,29 @@
+// Diagnoses that lack a part of the method, and simpler methods in its place: what each part is worth.
+#pragma once
+#include <span>
+
+#include "challenge/answer.h"
+#include "diagnose/infer/evidence.h"
+
+namespace mcdem::inline challenge {
+
+/// The method on changed evidence, without confirming runs.
+struct Ablation {
+    std::string_view name;
+    std::string_view meaning;
+    void (*change)(Evidence&);
+};
+std::span<const Ablation> ablations();
+
+/// Findings of the changed evidence; none where it is not enough for a diagnosis.
+Findings ablated_findings(Evidence evidence, const Ablation& ablation);
+
+/// Another method on the same evidence.
+struct SimplerMethod {
+    std::string_view name;
+    std::string_view meaning;
+    Answer (*answer)(const Evidence&);
+};
+std::span<const SimplerMethod> simpler_methods();
+
+}  // namespace mcdem::challenge

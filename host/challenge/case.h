@@ -1,0 +1,47 @@
+// One reality of the blind challenge: how it differs from the scene that it will be held against.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace mcdem::inline challenge {
+
+enum class CaseKind {
+    none,           ///< nothing but what every reality has: hidden nuisances, other numerics, noise
+    effect,         ///< one effect of the library
+    pair,           ///< two of them
+    unknown,        ///< an effect that the library of its diagnosis does not have
+    outside_prior,  ///< no effect, but a nuisance far outside its prior
+};
+
+/// An effect or a nuisance with its amplitude.
+struct Hidden {
+    std::string name;
+    double amplitude = 0;
+    bool operator==(const Hidden&) const = default;
+};
+
+struct ChallengeCase {
+    std::string folder;  ///< of its experiment, in the challenge's
+    CaseKind kind = CaseKind::none;
+    std::vector<Hidden> effects;      ///< of the library, or where unknown of outside_effects() or struck
+    std::vector<Hidden> nuisances;    ///< shifts, all of them
+    std::vector<std::string> struck;  ///< effects that its diagnosis may not name
+    int packing = 0;                  ///< which of the challenge's
+    std::uint64_t seed = 0;           ///< of its jitter, of what is random in its effects, and of its noise
+    bool operator==(const ChallengeCase&) const = default;
+};
+
+/// The whole secret.
+struct Challenge {
+    std::uint64_t seed = 0;
+    std::string scene;                         ///< SHA-256 of the scene's text
+    std::vector<std::uint64_t> packing_seeds;  ///< by packing
+    std::vector<ChallengeCase> cases;          ///< in the order of their folders
+    bool operator==(const Challenge&) const = default;
+};
+
+/// Limits are set on the cases of the one half of the packings and scored on the other.
+inline bool in_first_half(int packing) { return packing % 2 == 0; }
+
+}  // namespace mcdem::challenge

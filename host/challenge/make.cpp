@@ -1,0 +1,202 @@
+#include "challenge/make.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <random>
+
+#include "challenge/files.h"
+#include "challenge/realities.h"
+#include "challenge/truth.h"
+#include "core/atomic_file.h"
+#include "core/errors.h"
+#include "core/input_file.h"
+#include "core/make_folder.h"
+#include "ensemble/observe_trials.h"
+#include "io/output_folder.h"
+
+namespace mcdem::inline challenge {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double weaker = 0.8;  ///< amplitudes of a reality that ran away, from one try to the next
+constexpr int most_tries = 10;
+constexpr double part_of_tries = 0.3;  ///< of the progress: loading alone, and not all cases
+
+using Cases = std::vector<const ChallengeCase*>;
+
+std::vector<std::string> effects_to_try(const ChallengeOptions& options, const Model& model) {
+    if (!options.effects.empty()) return options.effects;
+    std::vector<std::string> names;
+    for (const std::string_view name : challenged_effects())
+        if (find_effect(name)->hindrance(model).empty()) names.emplace_back(name);
+    return names;
+}
+
+InputError of_another_challenge(const fs::path& file) {
+    return InputError(
+        fmt::format("{}: is of another challenge; choose another folder, or the same scene, seed and numbers",
+                    file.string()));
+}
+
+/// Equal in all but how strong effects are, which trying may have changed.
+bool alike(Challenge a, Challenge b) {
+    for (Challenge* challenge : {&a, &b})
+        for (ChallengeCase& c : challenge->cases)
+            for (Hidden& effect : c.effects) effect.amplitude = 0;
+    return a == b;
+}
+
+/// experiment.toml is written last.
+bool is_complete(const fs::path& folder) { return fs::exists(folder / "experiment.toml"); }
+
+class Making {
+public:
+    Making(Device& device, const Scene& scene, const ChallengeOptions& options)
+        : options_(options), realities_(device, scene, options.measurement) {
+        std::optional<Challenge> sealed;
+        if (fs::exists(options.truth)) sealed = parse_truth(read_file(options.truth), options.truth.string());
+        challenge_ =
+            draw_challenge(options.size, effects_to_try(options, realities_.stated()), realities_.stated(),
+                           realities_.nuisances(), seal_of(scene.text), seed_of(sealed));
+        is_sealed_ = sealed.has_value();
+        if (sealed && !alike(*sealed, challenge_)) throw of_another_challenge(options.truth);
+        if (sealed) challenge_ = *sealed;
+    }
+
+    std::string all() {
+        Cases missing;
+        for (const ChallengeCase& c : challenge_.cases)
+            if (!is_sealed_ || !is_complete(options_.folder / c.folder)) missing.push_back(&c);
+        if (!missing.empty()) realities_.make_packings(challenge_.packing_seeds, options_.stop_wanted);
+        if (!is_sealed_) weaken_what_runs_away();
+        const std::string seal = seal_all();
+        const std::size_t before = challenge_.cases.size() - missing.size();
+        in_batches(missing, [&](const Cases& batch, std::size_t first) {
+            const auto recordings = realities_.simulate(batch, Realities::Part::all, [&](double fraction) {
+                const double done =
+                    static_cast<double>(before + first) + fraction * static_cast<double>(batch.size());
+                show(part_of_tries +
+                     (1 - part_of_tries) * done / static_cast<double>(challenge_.cases.size()));
+            });
+            for (std::size_t k = 0; k < batch.size(); ++k) write(*batch[k], recordings[k]);
+        });
+        return seal;
+    }
+
+private:
+    std::uint64_t seed_of(const std::optional<Challenge>& sealed) const {
+        if (options_.seed) return *options_.seed;
+        if (sealed) return sealed->seed;
+        std::random_device machine;
+        return static_cast<std::uint64_t>(machine()) << 32 | machine();
+    }
+
+    void show(double fraction) const {
+        options_.on_progress(fraction);
+        if (options_.stop_wanted()) throw Interrupted();
+    }
+
+    template <class Work>
+    void in_batches(const Cases& cases, Work work) const {
+        for (std::size_t first = 0; first < cases.size();) {
+            const std::size_t last = std::min(cases.size(), first + realities_.at_once());
+            work(Cases(cases.begin() + static_cast<std::ptrdiff_t>(first),
+                       cases.begin() + static_cast<std::ptrdiff_t>(last)),
+                 first);
+            first = last;
+        }
+    }
+
+    /// Dense packings whose contacts feel one another have no static solution from some amplitude on. Such
+    /// realities are loaded again with weaker effects before anything is sealed.
+    void weaken_what_runs_away() {
+        Cases tried;
+        for (const ChallengeCase& c : challenge_.cases)
+            if (!c.effects.empty()) tried.push_back(&c);
+        const double all = static_cast<double>(tried.size());
+        for (int tries = 0; !tried.empty(); ++tries) {
+            Cases failed;
+            in_batches(tried, [&](const Cases& batch, std::size_t first) {
+                const auto recordings =
+                    realities_.simulate(batch, Realities::Part::loading, [&](double fraction) {
+                        const double part =
+                            (static_cast<double>(first) + fraction * static_cast<double>(batch.size())) / all;
+                        show(part_of_tries * (tries == 0 ? part : 1));
+                    });
+                for (std::size_t k = 0; k < batch.size(); ++k)
+                    if (recordings[k].failure) failed.push_back(batch[k]);
+            });
+            if (!failed.empty() && tries == most_tries)
+                throw RunError(fmt::format(
+                    "{} realities cannot be simulated even with weak effects; compress less", failed.size()));
+            for (const ChallengeCase* c : failed)
+                for (Hidden& effect :
+                     challenge_.cases[static_cast<std::size_t>(c - challenge_.cases.data())].effects)
+                    effect.amplitude *= weaker;
+            tried = failed;
+        }
+    }
+
+    /// The truth first, then what may be known.
+    std::string seal_all() const {
+        const std::string truth = truth_text(challenge_), seal = seal_of(truth);
+        const fs::path open_file = options_.folder / "challenge.json";
+        const std::string open = open_text(seal);
+        if (fs::exists(open_file) && read_file(open_file) != open) throw of_another_challenge(open_file);
+        if (!fs::exists(open_file)) expect_no_cases();
+        if (!is_sealed_ && !create_file(options_.truth, truth)) throw of_another_challenge(options_.truth);
+        if (!fs::exists(open_file)) replace_file(open_file, open);
+        return seal;
+    }
+
+    /// Folders that lie there before the challenge are others'.
+    void expect_no_cases() const {
+        for (const ChallengeCase& c : challenge_.cases)
+            if (fs::exists(options_.folder / c.folder))
+                throw InputError(fmt::format(
+                    "{}: is there without a challenge.json beside it, and is not replaced: give another "
+                    "folder (--out)",
+                    (options_.folder / c.folder).string()));
+    }
+
+    std::string open_text(const std::string& seal) const {
+        OpenChallenge open{challenge_.scene, seal, {}};
+        for (const ChallengeCase& c : challenge_.cases) {
+            open.cases.push_back({c.folder, std::nullopt});
+            if (c.struck.empty()) continue;
+            auto& candidates = open.cases.back().candidates.emplace();
+            for (const Effect& effect : effects())
+                if (std::ranges::find(c.struck, effect.name) == c.struck.end())
+                    candidates.emplace_back(effect.name);
+        }
+        return open_challenge_text(open);
+    }
+
+    void write(const ChallengeCase& c, const Recording& recording) const {
+        if (recording.failure)
+            throw RunError(fmt::format("{}: its simulation failed at step {}: {}", c.folder,
+                                       recording.failure->step, recording.failure->cause));
+        write_experiment(options_.folder / c.folder, realities_.experiment(c, recording), Packed::gzip);
+    }
+
+    const ChallengeOptions& options_;
+    Realities realities_;
+    Challenge challenge_;
+    bool is_sealed_ = false;
+};
+
+}  // namespace
+
+std::string make_challenge(Device& device, const Scene& scene, const ChallengeOptions& options) {
+    if (fs::weakly_canonical(options.truth) == fs::weakly_canonical(options.folder / "challenge.json"))
+        throw InputError(options.truth.string() +
+                         ": is what may be known of the challenge: give another file for the truth");
+    const FolderLock lock = open_output_folder(options.folder);
+    make_folder_of(options.truth);
+    return Making(device, scene, options).all();
+}
+
+}  // namespace mcdem::challenge

@@ -1,0 +1,26 @@
+// Effects that realities of the challenge have and that no library knows: a diagnosis should name none of its
+// own.
+#pragma once
+#include <span>
+#include <string_view>
+
+#include "core/recording.h"
+#include "scene/scene.h"
+
+namespace mcdem::inline challenge {
+
+struct OutsideEffect {
+    std::string_view name;
+    std::string_view unit;     ///< of the amplitude, empty for pure numbers
+    std::string_view formula;  ///< what the amplitude does
+    double low, high;          ///< amplitudes drawn, log-uniform
+    bool both_signs;
+    void (*change_model)(Replica&, double amplitude);  ///< before the simulation; may be null
+    void (*change_reading)(Recording&,
+                           double amplitude);  ///< after it, before the instrument's noise; may be null
+};
+
+std::span<const OutsideEffect> outside_effects();
+const OutsideEffect* find_outside_effect(std::string_view name);
+
+}  // namespace mcdem::challenge

@@ -1,0 +1,107 @@
+#include "challenge/realities.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "challenge/outside.h"
+#include "core/errors.h"
+#include "ensemble/make_packings.h"
+#include "ensemble/observe_trials.h"
+#include "ensemble/simulate.h"
+#include "experiment/from_recording.h"
+#include "scene/make_packing.h"
+
+namespace mcdem::inline challenge {
+namespace {
+
+// What every reality has and no diagnosis is told: other numerics, so that they are not what is recognised.
+constexpr double time_step_factor = 0.7;
+constexpr double restitution_factor = 0.95;
+constexpr double start_jitter = 0.02;  ///< over the mean diameter: packings of one seed are not quite alike
+
+constexpr std::size_t most_grains_at_once = 16'384;  ///< a batch is what an interruption may lose
+
+GeneratedPacking generated(const Scene& scene) {
+    std::vector<std::string> problems;
+    if (scene.replicas.size() != 1)
+        problems.push_back(
+            fmt::format("{}: a challenge needs one replica, got {}", scene.name, scene.replicas.size()));
+    const auto* packing = std::get_if<GeneratedPacking>(&scene.replicas.front().packing.source);
+    if (!packing)
+        problems.push_back(
+            fmt::format("{}: a challenge generates its packings; packing.file must not be set", scene.name));
+    if (!problems.empty()) throw InputError(problems);
+    return *packing;
+}
+
+}  // namespace
+
+Realities::Realities(Device& device, const Scene& scene, const Measurement& measurement)
+    : device_(device),
+      scene_(scene),
+      stated_{scene.replicas.front(), {measurement}, generated(scene).diameter_mean} {
+    stated_.replica.protocol.scan_at_start = true;
+    scene_.output.positions = scene_.output.contacts = true;
+    nuisances_ = mcdem::nuisances(stated_, {});
+}
+
+void Realities::make_packings(const std::vector<std::uint64_t>& seeds,
+                              const std::function<bool()>& stop_wanted) {
+    Scene all = scene_;
+    all.replicas.clear();
+    for (const std::uint64_t seed : seeds) {
+        all.replicas.push_back(stated_.replica);
+        all.replicas.back().packing.seed = seed;
+    }
+    packings_ = mcdem::make_packings(all, stop_wanted);
+    if (packings_.size() < seeds.size()) throw Interrupted();
+}
+
+std::size_t Realities::at_once() const {
+    return std::max<std::size_t>(1, most_grains_at_once / packings_.front().size());
+}
+
+Model Realities::reality_of(const ChallengeCase& c) const {
+    Model model = stated_;
+    for (const Hidden& shift : c.nuisances)
+        std::ranges::find(nuisances_, shift.name, &Nuisance::name)->apply(model, shift.amplitude);
+    for (const Hidden& hidden : c.effects) {
+        const OutsideEffect* outside = find_outside_effect(hidden.name);
+        if (!outside)
+            find_effect(hidden.name)->apply(model, hidden.amplitude);
+        else if (outside->change_model)
+            outside->change_model(model.replica, hidden.amplitude);
+    }
+    model.replica.numerics.time_step *= time_step_factor;
+    model.replica.grains.restitution *= restitution_factor;
+    model.replica.walls.restitution *= restitution_factor;
+    model.replica.packing.seed = c.seed;
+    return model;
+}
+
+std::vector<Recording> Realities::simulate(std::span<const ChallengeCase* const> cases, Part part,
+                                           const std::function<void(double fraction)>& on_progress) const {
+    Scene batch = scene_;
+    batch.replicas.clear();
+    std::vector<Packing> starts;
+    for (const ChallengeCase* c : cases) {
+        batch.replicas.push_back(reality_of(*c).replica);
+        starts.push_back(packings_[static_cast<std::size_t>(c->packing)]);
+        apply_jitter(starts.back(), start_jitter * stated_.mean_diameter, c->seed);
+    }
+    const auto loading = static_cast<std::size_t>(1 + stated_.replica.protocol.scans_per_stroke);
+    return mcdem::simulate(device_, batch, starts, part == Part::loading ? loading : SIZE_MAX, on_progress);
+}
+
+Experiment Realities::experiment(const ChallengeCase& c, Recording recording) const {
+    for (const Hidden& hidden : c.effects)
+        if (const OutsideEffect* outside = find_outside_effect(hidden.name);
+            outside && outside->change_reading)
+            outside->change_reading(recording, hidden.amplitude);
+    recording.box = stated_.replica.box;
+    recording.label = c.folder;
+    return experiment_from(recording, reality_of(c).instrument, c.seed);
+}
+
+}  // namespace mcdem::challenge

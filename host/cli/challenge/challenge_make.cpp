@@ -1,0 +1,95 @@
+// mcdem challenge make
+#include "challenge/make.h"
+#include "cli/challenge/challenge.h"
+#include "cli/run/scene_options.h"
+#include "cli/shell/commands.h"
+#include "cli/shell/interrupt.h"
+#include "cli/shell/messages.h"
+#include "cli/shell/progress.h"
+#include "cli/shell/standard_streams.h"
+#include "ensemble/observe_trials.h"
+
+namespace mcdem::inline cli {
+namespace {
+
+struct MakeCommand {
+    SceneOptions scene;
+    std::string out, truth, device;
+    ChallengeOptions options;
+};
+
+void make(MakeCommand& command, int& exit_code) {
+    const Scene scene = command.scene.read();
+    ChallengeOptions& options = command.options;
+    options.folder = command.out;
+    options.truth =
+        command.truth.empty() ? options.folder / "truth.json" : std::filesystem::path(command.truth);
+    Device device(command.device);
+    const Interrupt interrupt;
+    Progress progress(stderr, progress_style(stderr));
+    options.on_progress = [&](double fraction) { progress.show(fraction); };
+    options.stop_wanted = Interrupt::wanted;
+    try {
+        const std::string seal = make_challenge(device, scene, options);
+        progress.clear();
+        print_out("{}: the challenge is made\ntruth: {}\nits SHA-256: {}\n", command.out,
+                  options.truth.string(), seal);
+    } catch (const Interrupted& interrupted) {
+        progress.clear();
+        spdlog::warn("{}", interrupted.what());
+        exit_code = exit_interrupted;
+    }
+}
+
+void add_sizes(CLI::App& sub, ChallengeSize& size) {
+    const auto add = [&](const char* option, int& value, const char* help) {
+        sub.add_option(option, value, help)->capture_default_str()->type_name("N");
+    };
+    add("--none", size.none, "Realities without an effect");
+    add("--per-effect", size.per_effect, "Realities with each effect of the library");
+    add("--pairs", size.pairs, "Realities with two of them");
+    add("--unknown", size.unknown,
+        "Realities with an effect that the library of their diagnosis does not have");
+    add("--outside", size.outside_prior,
+        "Realities with modulus or strain zero far outside their uncertainty");
+    add("--packings", size.packings, "Different packings; an even number");
+}
+
+void add_measurement(CLI::App& sub, Measurement& measurement) {
+    measurement = {1e-4, 2e-5, 0.05, 0.004};
+    const auto add = [&](const char* option, double& value, const char* help) {
+        sub.add_option(option, value, help)->capture_default_str()->check(CLI::NonNegativeNumber);
+    };
+    add("--position-error", measurement.position_error, "One sigma of measured coordinates [m]");
+    add("--diameter-error", measurement.diameter_error, "One sigma of measured diameters [m]");
+    add("--force-error", measurement.force_error, "One sigma of measured contact forces, relative");
+    add("--force-threshold", measurement.force_threshold, "Weaker contact forces are not seen [N]");
+}
+
+}  // namespace
+
+void add_challenge_make(CLI::App& challenge, int& exit_code) {
+    auto* sub = challenge.add_subcommand(
+        "make", "Simulate realities and write them as experiments; seal the answers");
+    auto command = std::make_shared<MakeCommand>();
+    add_scene_options(*sub, command->scene);
+    sub->add_option("--out", command->out, "Folder for the challenge")->required()->type_name("DIR");
+    sub->add_option("--truth", command->truth, "File for the answers; DIR/truth.json where left out")
+        ->type_name("FILE");
+    sub->add_option("--seed", command->options.seed,
+                    "Everything is drawn from it; where left out it is known to nobody")
+        ->type_name("S");
+    sub->add_option("--effects", command->options.effects, "Effects to try, instead of a dozen of all kinds")
+        ->delimiter(',')
+        ->type_name("NAME,..");
+    add_sizes(*sub, command->options.size);
+    add_measurement(*sub, command->options.measurement);
+    add_device_option(*sub, command->device);
+    sub->footer(
+        "The same command goes on where an interrupted one stopped.\n"
+        "Example:\n"
+        "  mcdem challenge make scenes/challenge.toml --out out/challenge --truth out/truth.json");
+    sub->callback([command, &exit_code] { make(*command, exit_code); });
+}
+
+}  // namespace mcdem::cli

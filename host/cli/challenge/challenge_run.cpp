@@ -1,0 +1,147 @@
+// mcdem challenge run
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "challenge/run.h"
+#include "cli/challenge/challenge.h"
+#include "cli/parts/sharing.h"
+#include "cli/shell/commands.h"
+#include "cli/shell/interrupt.h"
+#include "cli/shell/messages.h"
+#include "cli/shell/progress.h"
+#include "cli/shell/standard_streams.h"
+#include "core/atomic_file.h"
+#include "core/version.h"
+#include "report/diagnosis/diagnosis_json.h"
+#include "scene/read_scene.h"
+
+namespace mcdem::inline cli {
+namespace {
+
+struct RunChallengeCommand {
+    std::string challenge, scene, library, out, device;
+    std::vector<std::string> overrides;
+    ChallengeRunOptions options;
+    SharingOptions sharing;
+};
+
+/// The command line without what says where and how it runs.
+std::vector<std::string> words_of(const RunChallengeCommand& command) {
+    const ChallengeRunOptions& options = command.options;
+    std::vector<std::string> words{"challenge", "run", command.challenge, "--scene", command.scene};
+    for (const auto& setting : command.overrides) words.insert(words.end(), {"--set", setting});
+    const auto add = [&](const char* option, const std::string& value) {
+        words.insert(words.end(), {option, value});
+    };
+    add("--library", command.library);
+    add("--out", command.out);
+    add("--replicates", std::to_string(options.replicates));
+    add("--confirmations", std::to_string(options.confirmations));
+    add("--library-packings", std::to_string(options.library.packings));
+    add("--library-replicates", std::to_string(options.library.replicates));
+    add("--library-pairs", std::to_string(options.library.pairs));
+    if (!options.library.candidates.empty())
+        add("--candidates", fmt::format("{}", fmt::join(options.library.candidates, ",")));
+    add("--seed", std::to_string(options.seed));
+    return words;
+}
+
+void fill_in(RunChallengeCommand& command) {
+    ChallengeRunOptions& options = command.options;
+    options.challenge = command.challenge;
+    options.out = command.out;
+    options.library.file = command.library;
+    options.program = version_text;
+    options.keep = [](const std::filesystem::path& file, const Diagnosis& diagnosis) {
+        replace_file(file, diagnosis_json(diagnosis));
+    };
+    options.on_problem = [](const std::string& message) { spdlog::warn("{}", message); };
+    options.stop_wanted = Interrupt::wanted;
+}
+
+int report(const RunChallengeCommand& command) {
+    print_out("{}: all cases are diagnosed\n", command.out);
+    return exit_done;
+}
+
+int run_alone(RunChallengeCommand& command, const Scene& scene) {
+    Device device(command.device);
+    const Interrupt interrupt;
+    Progress progress(stderr, progress_style(stderr));
+    command.options.on_progress = [&](double fraction) { progress.show(fraction); };
+    command.options.on_problem = [&](const std::string& message) {
+        progress.clear();
+        spdlog::warn("{}", message);
+    };
+    try {
+        run_challenge(device, scene, command.options);
+    } catch (const Interrupted& interrupted) {
+        progress.clear();
+        spdlog::warn("{}", interrupted.what());
+        return exit_interrupted;
+    }
+    progress.clear();
+    return report(command);
+}
+
+SharedWork shared_work(const RunChallengeCommand& command, const Scene& scene) {
+    SharedWork work;
+    work.words = words_of(command);
+    work.out = command.out;
+    work.begin = [&](std::size_t) { return challenge_parts(scene, command.options); };
+    work.report = [&] { return report(command); };
+    return work;
+}
+
+int run(RunChallengeCommand& command) {
+    const Scene scene = read_scene(command.scene, command.overrides);
+    fill_in(command);
+    if (is_shared(command.sharing, command.device))
+        return share(shared_work(command, scene), command.sharing, command.device);
+    return run_alone(command, scene);
+}
+
+void add_numbers(CLI::App& sub, ChallengeRunOptions& options) {
+    const auto add = [&](const char* option, int& value, const char* help) {
+        sub.add_option(option, value, help)->capture_default_str()->type_name("N");
+    };
+    add("--replicates", options.replicates, "Simulations of each experiment as it is");
+    add("--confirmations", options.confirmations, "Simulations of each diagnosis with its cause");
+    add("--library-packings", options.library.packings, "Packings of a new library");
+    add("--library-replicates", options.library.replicates, "Its simulations a packing");
+    add("--library-pairs", options.library.pairs, "Of them, those repeated with every effect");
+    sub.add_option("--candidates", options.library.candidates, "Effects of a new library, instead of all")
+        ->delimiter(',')
+        ->type_name("NAME,..");
+    sub.add_option("--seed", options.seed, "Of everything that is random in the diagnoses")
+        ->capture_default_str();
+}
+
+}  // namespace
+
+void add_challenge_run(CLI::App& challenge, int& exit_code) {
+    auto* sub =
+        challenge.add_subcommand("run", "Diagnose every reality of a challenge from its experiment alone");
+    auto command = std::make_shared<RunChallengeCommand>();
+    sub->add_option("CHALLENGE", command->challenge, "Folder of the challenge")->required();
+    sub->add_option("--scene", command->scene, "Scene that the challenge was made with")->required();
+    sub->add_option("--set", command->overrides, "Overrides a key of the scene; may come several times")
+        ->type_name("KEY=VALUE")
+        ->allow_extra_args(false);
+    sub->add_option("--library", command->library, "Signature library; made where the file is missing")
+        ->required()
+        ->type_name("FILE");
+    sub->add_option("--out", command->out, "Folder for the diagnoses")->required()->type_name("DIR");
+    add_numbers(*sub, command->options);
+    add_sharing_options(*sub, command->sharing, command->device);
+    sub->footer(
+        "The same command goes on where an interrupted one stopped.\n"
+        "Its parts, for many devices or nodes, are the cases, and before them the simulations of the "
+        "library. "
+        "Example:\n"
+        "  mpirun -n 4 mcdem challenge run out/challenge --scene scenes/challenge.toml \\\n"
+        "      --library out/library.json --out out/answers --mpi");
+    sub->callback([command, &exit_code] { exit_code = run(*command); });
+}
+
+}  // namespace mcdem::cli

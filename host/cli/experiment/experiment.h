@@ -1,0 +1,19 @@
+// The commands of `mcdem experiment`.
+#pragma once
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <string>
+
+namespace mcdem::inline cli {
+
+void add_experiment_check(CLI::App& experiment);
+void add_experiment_from_run(CLI::App& experiment);
+void add_experiment_import(CLI::App& experiment, int& exit_code);
+
+/// Refuses a folder that holds another experiment or run.
+void expect_free(const std::filesystem::path& out);
+
+/// Lines of words, those after the first indented under the text.
+std::string wrapped(const std::string& head, const std::string& text);
+
+}  // namespace mcdem::cli

@@ -1,0 +1,221 @@
+// mcdem experiment from-run
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "cli/experiment/experiment.h"
+#include "cli/shell/messages.h"
+#include "cli/shell/standard_streams.h"
+#include "core/atomic_file.h"
+#include "core/errors.h"
+#include "core/input_file.h"
+#include "experiment/experiment_files.h"
+#include "experiment/from_recording.h"
+#include "io/output_folder.h"
+#include "io/results.h"
+#include "scene/packing_fields.h"
+
+namespace mcdem::inline cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct FromRunCommand {
+    std::string run, out, replica, name;
+    Instrument instrument{{1e-4, 5e-5, 0.05, 4e-3}};
+    std::vector<std::string> uncertainty;
+    std::uint64_t seed = 1;
+    bool gzip = false;
+};
+
+const char* const experiment_toml = "experiment.toml";
+
+std::size_t chosen_replica(const Run& run, const FromRunCommand& command) {
+    const auto& all = run.recordings;
+    std::string known;
+    for (std::size_t r = 0; r < all.size(); ++r) {
+        if (all[r].label == command.replica) return r;
+        known += fmt::format("{}{}: {}", r ? ", " : "", r, all[r].label);
+    }
+    const auto index = to_whole_number(command.replica);
+    if (index && *index >= 0 && static_cast<std::size_t>(*index) < all.size())
+        return static_cast<std::size_t>(*index);
+    if (command.replica.empty() && all.size() == 1) return 0;
+    throw InputError(fmt::format("--replica: must be a number or label of {}'s replicas ({}); got {}",
+                                 command.run, known, command.replica.empty() ? "none" : command.replica));
+}
+
+Recording read_replica(const FromRunCommand& command) {
+    if (!fs::exists(command.run))
+        throw InputError(command.run + ": must be a result folder or file, got nothing there");
+    RunReader reader(command.run);
+    const std::size_t replica = chosen_replica(reader.run(), command);
+    Recording recording = reader.run().recordings[replica];
+    for (std::size_t s = 0; s < recording.scans.size(); ++s)
+        recording.scans[s] = reader.read_scan(replica, s);
+    recording.label = fmt::format("{}, {}", reader.run().name, recording.label);
+    if (recording.diameter.empty()) throw InputError(command.run + ": holds no grains of this replica");
+    if (recording.scans.empty()) throw InputError(command.run + ": holds no scan of this replica");
+    for (const Scan& scan : recording.scans)
+        if (!std::isfinite(scan.top_force()) || !std::isfinite(scan.plate_z))
+            throw InputError(
+                fmt::format("{}: frame {} of this replica has a top force or plate position that is no "
+                            "number",
+                            command.run, scan.frame));
+    if (recording.failure) spdlog::warn("{} stopped early: {}", recording.label, recording.failure->cause);
+    return recording;
+}
+
+std::map<std::string, double> read_uncertainty(const std::vector<std::string>& words) {
+    std::map<std::string, double> uncertainty;
+    std::vector<std::string> problems;
+    for (const std::string& word : words) {
+        const auto equals = std::min(word.find('='), word.size());
+        const std::string key = word.substr(0, equals);
+        const auto sigma = to_number(std::string_view(word).substr(std::min(equals + 1, word.size())));
+        const auto& keys = material_keys();
+        if (std::find(keys.begin(), keys.end(), key) == keys.end() || !sigma || *sigma < 0)
+            problems.push_back(fmt::format("--uncertainty: must be KEY=SIGMA with a key such as {}, got {}",
+                                           keys.front(), word));
+        else
+            uncertainty[key] = *sigma;
+    }
+    if (!problems.empty()) throw InputError(problems);
+    return uncertainty;
+}
+
+/// Errors as large as grains leave nothing that could be read back.
+void expect_small_errors(const Measurement& errors, const Recording& truth) {
+    const double limit = *std::min_element(truth.diameter.begin(), truth.diameter.end()) / 8;
+    std::vector<std::string> problems;
+    for (const auto& [option, error] : {std::pair{"--position-error", errors.position_error},
+                                        std::pair{"--diameter-error", errors.diameter_error}})
+        if (error > limit)
+            problems.push_back(
+                fmt::format("{}: must be at most an eighth of the smallest diameter, {:.3g} m, got {}",
+                            option, limit, error));
+    if (!problems.empty()) throw InputError(problems);
+}
+
+void warn_of_start(const Recording& truth) {
+    const Scan& first = truth.scans.front();
+    if (first.position.empty())
+        spdlog::warn(
+            "the run holds no positions of frame 0: grains.csv and contacts.csv are left out. Run with "
+            "output.positions = true");
+    else if (truth.displacement(first) > 0)
+        spdlog::warn(
+            "frame 0 is {:.3g} mm below the plate's start, not the packing at rest that a simulation "
+            "should start from. Run with protocol.scan_at_start = true",
+            1e3 * truth.displacement(first));
+}
+
+/// Another time this command was here: it writes the digests first.
+bool is_begun(const fs::path& out) { return fs::exists(out / sums_file); }
+
+/// Files that an earlier try has written stay; others of their names are not replaced.
+void expect_these_or_none(const fs::path& out, const std::map<std::string, std::string>& files) {
+    for (const auto& [name, bytes] : files)
+        if (fs::exists(out / name) && read_file(out / name) != bytes)
+            throw InputError(
+                fmt::format("--out: {} holds another experiment, or one that was changed: name another "
+                            "folder, or remove it "
+                            "first",
+                            out.string()));
+}
+
+/// The digests come first and experiment.toml last, so that the same command finishes what was cut short at
+/// whatever moment.
+void write_files(const FromRunCommand& command, const Experiment& experiment) {
+    const fs::path out = command.out;
+    auto files = experiment_files(experiment, command.gzip ? Packed::gzip : Packed::plain);
+    const std::string sums = sums_text(files);
+    files[sums_file] = sums;
+    expect_these_or_none(out, files);
+    std::optional<FolderLock> lock;
+    if (!fs::exists(out / experiment_toml)) lock.emplace(open_output_folder(out));
+    replace_file(out / sums_file, sums);  // even where it is there: this forces the folder to the disk
+    std::vector<std::string> names;
+    for (const auto& [name, bytes] : files) names.push_back(name);
+    std::ranges::partition(names, [](const std::string& name) { return name != experiment_toml; });
+    for (const std::string& name : names)
+        if (!fs::exists(out / name)) replace_file(out / name, files.at(name));
+    for (const auto& [name, bytes] : files)
+        if (read_file(out / name) != bytes)
+            throw RunError((out / name).string() + ": what was written is not what is read back");
+}
+
+void make_experiment(const FromRunCommand& command) {
+    if (!is_begun(command.out)) expect_free(command.out);
+    const auto uncertainty = read_uncertainty(command.uncertainty);
+    const Recording truth = read_replica(command);
+    expect_small_errors(command.instrument.stated, truth);
+    warn_of_start(truth);
+    Experiment experiment = experiment_from(truth, command.instrument, command.seed);
+    experiment.uncertainty = uncertainty;
+    if (!command.name.empty()) experiment.name = command.name;
+    write_files(command, experiment);
+    std::size_t real = 0, seen = 0;
+    for (const Scan& scan : truth.scans) real += scan.contacts.size();
+    for (const Scan& scan : experiment.recording.scans) seen += scan.contacts.size();
+    print_out("{}: {} frames, {} grains, {} of {} contacts seen\n", command.out,
+              experiment.recording.scans.size(), experiment.recording.diameter.size(), seen, real);
+}
+
+void add_instrument_options(CLI::App& sub, Instrument& instrument) {
+    const auto add = [&](const std::string& name, double& value, const std::string& unit,
+                         const std::string& help, const CLI::Validator& check) {
+        sub.add_option(name, value, help)->type_name(unit)->capture_default_str()->check(check);
+    };
+    const CLI::Range relative(0.0, 1.0), bias(-0.5, 0.5);
+    Measurement& stated = instrument.stated;
+    add("--position-error", stated.position_error, "M", "Sigma of each coordinate of a centre [m]",
+        CLI::NonNegativeNumber);
+    add("--diameter-error", stated.diameter_error, "M", "Sigma of a diameter [m]", CLI::NonNegativeNumber);
+    add("--force-error", stated.force_error, "PART", "Sigma of a contact force over the force", relative);
+    add("--force-threshold", stated.force_threshold, "N", "Weaker contacts are not seen [N]",
+        CLI::NonNegativeNumber);
+    add("--force-bias", instrument.force_bias, "PART",
+        "Not stated: contact forces are read larger by this part", bias);
+    add("--threshold-shift", instrument.threshold_shift, "N",
+        "Not stated: the true threshold is higher by this [N]", CLI::Range(-1.0, 1.0));
+    add("--position-bias", instrument.position_bias, "PART",
+        "Not stated: lengths are read larger by this part", CLI::Range(-0.05, 0.05));
+    add("--strain-offset", instrument.strain_offset, "M",
+        "Not stated: plate positions are read higher by this [m]", CLI::Range(-1.0, 1.0));
+    add("--gauge-drift", instrument.gauge_drift, "PART",
+        "Not stated: in the end the top force is read larger by this part, before in proportion to the "
+        "plate's path",
+        bias);
+}
+
+}  // namespace
+
+void add_experiment_from_run(CLI::App& experiment) {
+    auto* sub = experiment.add_subcommand("from-run", "Write a simulation as an experiment that measured it");
+    auto command = std::make_shared<FromRunCommand>();
+    sub->add_option("RUN", command->run, "Result folder or file")->required();
+    sub->add_option("--out", command->out, "Folder to be made")->required()->type_name("DIR");
+    sub->add_option("--replica", command->replica,
+                    "Label or number, from 0, of the replica; needed where there are several")
+        ->type_name("REPLICA");
+    sub->add_option("--name", command->name, "Name of the experiment (else the run's and the replica's)")
+        ->type_name("TEXT");
+    add_instrument_options(*sub, command->instrument);
+    sub->add_option("--uncertainty", command->uncertainty,
+                    "What is stated of a material's sigma, such as grains.youngs_modulus=500")
+        ->type_name("KEY=SIGMA")
+        ->allow_extra_args(false);
+    sub->add_option("--seed", command->seed, "Of the noise")->capture_default_str();
+    sub->add_flag("--gzip", command->gzip, "Pack the tables");
+    sub->footer(
+        "Materials are stated as the run has them; the effects that it was simulated with are not.\n"
+        "Examples:\n"
+        "  mcdem run scenes/small.toml --out out/begun --set protocol.scan_at_start=true\n"
+        "  mcdem experiment from-run out/begun --replica mc_dem --out out/reality");
+    sub->callback([command] { make_experiment(*command); });
+}
+
+}  // namespace mcdem::cli

@@ -1,0 +1,251 @@
+// mcdem experiment import
+#include <fmt/format.h>
+#include <stdlib.h>
+
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <optional>
+#include <sstream>
+
+#include "cli/experiment/experiment.h"
+#include "cli/shell/commands.h"
+#include "cli/shell/messages.h"
+#include "cli/shell/python_program.h"
+#include "cli/shell/standard_streams.h"
+#include "core/atomic_file.h"
+#include "core/errors.h"
+#include "core/input_file.h"
+#include "core/make_folder.h"
+#include "experiment/settings.h"
+#include "io/output_folder.h"
+
+namespace mcdem::inline cli {
+namespace {
+
+namespace fs = std::filesystem;
+constexpr double largest_voxel = 1;  // [m]
+
+struct ImportCommand {
+    std::vector<std::string> tables, settings;
+    std::string out, mapping, metadata, name;
+    std::optional<double> voxel_size;  ///< [m]
+    bool gzip = false;
+};
+
+std::string text_of_file(const std::string& file) {
+    std::error_code error;
+    if (!fs::is_regular_file(file, error) || fs::file_size(file, error) > 1'000'000 || error)
+        throw InputError(fmt::format("{}: must be a text of at most 1 MB, got {}", file,
+                                     fs::exists(file, error) ? "something else" : "no such file"));
+    return read_file(file);
+}
+
+/// The folder's path in full, without a slash at its end.
+fs::path whole_path(const std::string& folder) {
+    const fs::path path = fs::absolute(folder).lexically_normal();
+    return path.has_filename() ? path : path.parent_path();
+}
+
+/// What the tables do not tell; its problems are told with all others.
+Experiment known_of(const ImportCommand& command, ExperimentProblems& problems) {
+    Experiment known;
+    known.recording.plate_start = std::nan("");
+    const std::string text = command.metadata.empty() ? "" : text_of_file(command.metadata);
+    parse_settings(text, command.metadata.empty() ? "--set" : command.metadata, command.settings, known,
+                   problems);
+    if (!command.name.empty())
+        known.name = command.name;
+    else if (known.name.empty())
+        known.name = whole_path(command.out).filename().string();
+    return known;
+}
+
+fs::path kept_mapping(const ImportCommand& command) { return fs::path(command.out) / "mapping.toml"; }
+
+/// Of a file that the Python module has left (host/python/mcdem/importing/__main__.py); none where there is
+/// none.
+std::vector<std::string> lines_of(const fs::path& file) {
+    std::vector<std::string> lines;
+    std::istringstream in(fs::exists(file) ? read_file(file) : "");
+    for (std::string line; std::getline(in, line);) lines.push_back(line);
+    return lines;
+}
+
+/// What the Python module is asked to do.
+std::vector<std::string> words_of(const ImportCommand& command, const Experiment& known,
+                                  const ExperimentProblems& settings, const fs::path& work) {
+    std::vector<std::string> words{"--work=" + work.string(), "--kept=" + kept_mapping(command).string()};
+    const auto add = [&](const std::string& option, std::optional<double> value) {
+        if (value && std::isfinite(*value)) words.push_back(fmt::format("{}={}", option, *value));
+    };
+    const auto material = [&](const std::string& key) {
+        const auto found = known.materials.find(key);
+        return found == known.materials.end() ? std::nullopt : std::optional(found->second);
+    };
+    const Recording& recording = known.recording;
+    add("--box-x", recording.box.size_x);
+    add("--box-y", recording.box.size_y);
+    add("--plate-start", recording.plate_start);
+    add("--youngs-modulus", material("grains.youngs_modulus"));
+    add("--poisson-ratio", material("grains.poisson_ratio"));
+    add("--voxel-size", command.voxel_size);
+    if (command.gzip) words.push_back("--gzip");
+    if (!command.mapping.empty()) words.push_back("--mapping=" + command.mapping);
+    for (const std::string& problem : settings.lines()) words.push_back("--settings-problem=" + problem);
+    words.push_back("--");
+    words.insert(words.end(), command.tables.begin(), command.tables.end());
+    return words;
+}
+
+/// The mapping for the user to correct, and every problem.
+[[noreturn]] void refuse(const ImportCommand& command, const fs::path& work,
+                         std::vector<std::string> problems, bool wrong_rows) {
+    const std::string file = kept_mapping(command).string();
+    make_folder(command.out);
+    if (!create_file(file, read_file(work / "mapping.toml")))
+        throw InputError(fmt::format("{}: another program has just written it", file));
+    problems.push_back(
+        wrong_rows
+            ? fmt::format("nothing is imported: repair the tables, remove {0}, and import again; or put what "
+                          "is right into it, where its entries are wrong, and import with --mapping {0}",
+                          file)
+            : fmt::format("nothing is imported: put what is right into {0}, without question marks, and "
+                          "import again with --mapping {0}",
+                          file));
+    throw InputError(problems);
+}
+
+/// A new folder beside another, removed with what is in it at the end.
+class FolderBeside {
+public:
+    explicit FolderBeside(const fs::path& other) {
+        make_folder(other.parent_path());
+        std::string pattern = other.string() + ".importing-XXXXXX";
+        if (!mkdtemp(pattern.data()))
+            throw RunError(fmt::format("{}: cannot be made: {}", pattern, std::strerror(errno)));
+        path_ = pattern;
+    }
+    FolderBeside(const FolderBeside&) = delete;
+    FolderBeside& operator=(const FolderBeside&) = delete;
+    ~FolderBeside() {
+        std::error_code ignored;
+        fs::remove_all(path_, ignored);
+    }
+    const fs::path& path() const { return path_; }
+
+private:
+    fs::path path_;
+};
+
+/// What `out` gets can be read. Files are told as they would be in `out`.
+Experiment read_back(const fs::path& folder, const std::string& out) {
+    try {
+        return read_experiment(folder);
+    } catch (const InputError& error) {
+        std::vector<std::string> problems{
+            "the tables make no experiment that can be read, as they stand in the mapping; it would have:"};
+        for (std::string problem : error.problems()) {
+            if (problem.starts_with(folder.string())) problem.replace(0, folder.string().size(), out);
+            problems.push_back(problem);
+        }
+        throw InputError(problems);
+    }
+}
+
+/// Puts the tables into place, experiment.toml last: with it the folder is an experiment.
+void put_in_place(const fs::path& work, const fs::path& out) {
+    const FolderLock lock = open_output_folder(out);
+    expect_free(out);  // still
+    for (const char* table : {"contacts.csv", "grains.csv", "plate.csv", "experiment.toml"})
+        for (const std::string end : {"", ".gz"})
+            if (fs::exists(work / (table + end))) move_file(work / (table + end), out / (table + end));
+}
+
+void print_summary(const std::string& out, const Recording& recording) {
+    std::size_t contacts = 0, measured = 0;
+    for (const Scan& scan : recording.scans)
+        contacts += scan.contacts.size(), measured += scan.position.empty() ? 0 : 1;
+    print_out("{}: {} frames, {} grains in {} of them, {} contacts\n", out, recording.scans.size(),
+              recording.diameter.size(), measured, contacts);
+}
+
+int run_import(const ImportCommand& command) {
+    expect_free(command.out);
+    if (command.voxel_size && !(*command.voxel_size > 0 && *command.voxel_size <= largest_voxel))
+        throw InputError(fmt::format("--voxel-size: must be > 0 and <= {} [m], got {}", largest_voxel,
+                                     *command.voxel_size));
+    ExperimentProblems settings;
+    Experiment known = known_of(command, settings);
+    const fs::path out = whole_path(command.out);
+    const FolderBeside beside(out);
+    const fs::path& work = beside.path();
+    const int exit_code = run_python_module("mcdem.importing", words_of(command, known, settings, work));
+    if (exit_code != exit_done) return exit_code;
+    if (const auto problems = lines_of(work / "problems"); !problems.empty())
+        refuse(command, work, problems, fs::exists(work / "wrong_rows"));
+    if (std::isnan(known.recording.plate_start))
+        known.recording.plate_start = std::stod(read_file(work / "plate_start"));
+    replace_file(work / "experiment.toml", settings_text(known));
+    try {
+        const Experiment read = read_back(work, fs::path(command.out).lexically_normal().string());
+        put_in_place(work, out);
+        create_file(kept_mapping(command), read_file(work / "mapping.toml"));
+        for (const std::string& note : lines_of(work / "notes")) spdlog::warn("{}", note);
+        print_summary(command.out, read.recording);
+    } catch (const InputError& error) {
+        if (command.mapping.empty()) refuse(command, work, error.problems(), true);
+        throw;
+    }
+    return exit_done;
+}
+
+}  // namespace
+
+void add_experiment_import(CLI::App& experiment, int& exit_code) {
+    auto* sub = experiment.add_subcommand("import",
+                                          "Make an experiment of a laboratory's or another program's tables");
+    auto command = std::make_shared<ImportCommand>();
+    sub->add_option(
+        "TABLE", command->tables,
+        "Tables of the plate, the grains and the contacts: text, dumps of LAMMPS and LIGGGHTS, text "
+        "and VTK of Yade, extended xyz, regions of scikit-image, trackpy's and SPAM's tables; any may be "
+        "packed with gzip");
+    sub->add_option("--out", command->out, "Folder to be made")->required()->type_name("DIR");
+    sub->add_option("--mapping", command->mapping,
+                    "What the columns are: the mapping.toml that an import without it has written, corrected")
+        ->type_name("FILE");
+    sub->add_option("--set", command->settings,
+                    "What the tables do not tell, by the keys of experiment.toml, such as "
+                    "'box.size=[0.165, 0.166]'; may come several times")
+        ->type_name("KEY=VALUE")
+        ->allow_extra_args(false);
+    sub->add_option("--metadata", command->metadata, "The same as a file like experiment.toml")
+        ->type_name("FILE");
+    sub->add_option("--voxel-size", command->voxel_size,
+                    "Edge of a voxel [m], where tables of images count in voxels")
+        ->type_name("LENGTH");
+    sub->add_option("--name", command->name,
+                    "Name of the experiment (else that of the metadata, or of the folder)")
+        ->type_name("TEXT");
+    sub->add_flag("--gzip", command->gzip, "Pack the tables");
+    sub->footer(
+        "Without --mapping it guesses what the columns are and in which units, says so, and writes the guess "
+        "as\n"
+        "DIR/mapping.toml. Where a guess is not safe, nothing is imported (exit code 2): the lines with a "
+        "question mark\n"
+        "are to be corrected, and the import repeated with --mapping. Tables given beside --mapping take the "
+        "place of\n"
+        "those it names: one mapping serves all experiments of a laboratory. The box must be given.\n"
+        "z is upwards: in the mapping a minus before a column's name turns it round, z = \"-depth\".\n"
+        "Examples:\n"
+        "  mcdem experiment import data/plate.csv data/grains.csv data/contacts.csv --set 'box.size=[0.165, "
+        "0.166]' \\\n"
+        "      --set grains.youngs_modulus=23300 --out out/lab\n"
+        "  mcdem experiment import --mapping out/lab/mapping.toml --metadata data/known.toml --out out/lab\n"
+        "  mcdem experiment import data/second/* --mapping out/lab/mapping.toml --metadata data/known.toml "
+        "--out out/second");
+    sub->callback([command, &exit_code] { exit_code = run_import(*command); });
+}
+
+}  // namespace mcdem::cli

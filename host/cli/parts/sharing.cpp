@@ -1,0 +1,271 @@
+#include "cli/parts/sharing.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "cli/parts/deal_to_devices.h"
+#include "cli/parts/ranks.h"
+#include "cli/parts/slurm.h"
+#include "cli/shell/commands.h"
+#include "cli/shell/interrupt.h"
+#include "cli/shell/messages.h"
+#include "cli/shell/progress.h"
+#include "cli/shell/standard_streams.h"
+#include "cli/shell/subprocess.h"
+#include "core/errors.h"
+
+namespace mcdem::inline cli {
+namespace {
+
+using Numbers = std::vector<std::size_t>;
+
+const char* const all_devices = "all";
+const char* const group = "Many devices and nodes";
+constexpr int all_is_merged = -1;  ///< in place of an exit code: what is left is to report
+
+std::string choice_of(const std::string& device) { return device == all_devices ? "" : device; }
+
+int interrupted(const SharedWork& work) {
+    spdlog::warn("interrupted; what was done stays in {}, and the same command goes on", work.out.string());
+    return exit_interrupted;
+}
+
+/// The device or the disk has failed.
+int failed(const SharedWork& work, const std::exception& error) {
+    const int code = report_error(error);
+    spdlog::warn("what was done stays in {}, and the same command goes on", work.out.string());
+    return code;
+}
+
+/// Merges once nothing is missing: none left means that it is merged. A part found to be damaged is missing
+/// again.
+Numbers left_to_compute(PartedWork& parts) {
+    Numbers left = parts.missing();
+    while (left.empty() && !parts.merge()) left = parts.missing();
+    return left;
+}
+
+void expect_progress(const SharedWork& work, const Numbers& before, const Numbers& left) {
+    if (left == before)
+        throw RunError(work.out.string() +
+                       ": no part could be finished: what is said above must be mended first");
+}
+
+/// Lets `compute`, which returns an exit code, have what is left until all is merged.
+int until_merged(const SharedWork& work, PartedWork& parts,
+                 const std::function<int(const Numbers&)>& compute) {
+    for (Numbers before, left; !(left = left_to_compute(parts)).empty(); before = left) {
+        expect_progress(work, before, left);
+        if (const int code = compute(left); code != exit_done) return code;
+    }
+    return all_is_merged;
+}
+
+int compute_one(const SharedWork& work, PartedWork& parts, std::size_t part, const std::string& device) {
+    const Interrupt interrupt;
+    Device chosen(device);
+    return parts.compute(chosen, part) ? exit_done : interrupted(work);
+}
+
+int compute_here(const SharedWork& work, PartedWork& parts, const std::string& device) try {
+    const Interrupt interrupt;
+    Device chosen(device);
+    return until_merged(work, parts, [&](const Numbers& left) {
+        Progress progress(stderr, progress_style(stderr));
+        double done = 0;
+        const auto all = static_cast<double>(left.size());
+        parts.on_progress = [&](double fraction) { progress.show((done + fraction) / all); };
+        for (const std::size_t part : left) {
+            if (!parts.compute(chosen, part)) return interrupted(work);
+            ++done;
+        }
+        return exit_done;
+    });
+} catch (const cl::Error& error) {
+    return failed(work, error);
+}
+
+std::vector<std::string> part_words(const SharedWork& work) {
+    std::vector<std::string> words{this_program().string()};
+    words.insert(words.end(), work.words.begin(), work.words.end());
+    return words;
+}
+
+int compute_on_all_devices(const SharedWork& work, PartedWork& parts, const std::vector<int>& devices) {
+    for (const DeviceInfo& info : list_devices())
+        if (std::ranges::find(devices, info.index) == devices.end())
+            spdlog::info("device {}, {}, is left out: its bits are not those of device {}", info.index,
+                         info.name, devices.front());
+    if (devices.size() == 1) return compute_here(work, parts, std::to_string(devices.front()));
+    spdlog::info("{} devices, a process on each", devices.size());
+    std::vector<int> left_devices = devices;
+    return until_merged(work, parts, [&](const Numbers& left) {
+        const int code = deal_to_devices(part_words(work), left, left_devices);
+        if (code == exit_interrupted) return interrupted(work);
+        if (code == exit_failed)
+            spdlog::error("no device is left; what was done stays in {}, and the same command goes on",
+                          work.out.string());
+        return code;
+    });
+}
+
+int compute_as_rank(const SharedWork& work, const std::string& device) {
+    Ranks ranks;
+    try {
+        const Interrupt interrupt;
+        const auto devices = alike_devices(choice_of(device));
+        Device mine(std::to_string(devices[static_cast<std::size_t>(ranks.on_machine()) % devices.size()]));
+        auto parts = work.begin(static_cast<std::size_t>(ranks.size()));
+        parts->on_progress = [&](double) { ranks.answer(); };
+        const auto left_now = [&] {
+            return ranks.agreed(ranks.rank() == 0 ? left_to_compute(*parts) : Numbers{});
+        };
+        for (Numbers before, left; !(left = left_now()).empty(); before = left) {
+            expect_progress(work, before, left);
+            for (std::size_t next; (next = ranks.next()) < left.size();) {
+                spdlog::info("part {}: rank {}, device {}", left[next], ranks.rank(), mine.info().index);
+                if (!parts->compute(mine, left[next])) ranks.abort(interrupted(work));
+            }
+            ranks.wait();
+        }
+        parts.reset();
+        ranks.wait();
+        return ranks.rank() == 0 ? work.report() : exit_done;
+    } catch (const std::exception& error) {
+        ranks.abort(failed(work, error));
+    }
+}
+
+/// "3, 5-7"
+std::string ranges_text(const Numbers& numbers) {
+    std::vector<std::string> ranges;
+    for (std::size_t k = 0, last = 0; k < numbers.size(); k = last + 1) {
+        for (last = k; last + 1 < numbers.size() && numbers[last + 1] == numbers[last] + 1;) ++last;
+        ranges.push_back(last == k ? std::to_string(numbers[k])
+                                   : fmt::format("{}-{}", numbers[k], numbers[last]));
+    }
+    return fmt::format("{}", fmt::join(ranges, ", "));
+}
+
+int merge_only(const SharedWork& work, PartedWork& parts) {
+    const Numbers left = left_to_compute(parts);
+    if (left.empty()) return all_is_merged;
+    spdlog::error("{}: {} part{} missing: {}; the command without --merge computes what is missing",
+                  work.out.string(), left.size(), left.size() == 1 ? " is" : "s are", ranges_text(left));
+    return exit_failed;
+}
+
+int compute_by_slurm(const SharedWork& work, PartedWork& parts, const SharingOptions& options,
+                     const std::string& device) {
+    SlurmJob job;
+    job.folder = work.out / "slurm";
+    job.words = part_words(work);
+    if (!device.empty() && device != all_devices) job.words.insert(job.words.end(), {"--device", device});
+    job.tasks = options.slurm_tasks;
+    job.partition = options.slurm_partition;
+    job.time = options.slurm_time;
+    job.lines_file = options.slurm_lines;
+    const Interrupt interrupt;
+    const bool is_next = is_next_job(job);
+    for (Numbers left; !(left = left_to_compute(parts)).empty();) {
+        const std::string number = submit(job, left);
+        if (options.no_wait) {
+            print_out("{}: job {}; the same command without --no-wait waits for it\n", work.out.string(),
+                      number);
+            return exit_done;
+        }
+        Progress progress(stderr, progress_style(stderr));
+        const auto all = static_cast<double>(left.size());
+        wait_for_jobs(job, [&] {
+            left = parts.missing();
+            progress.show(std::max(0.0, 1 - static_cast<double>(left.size()) / all));
+            return left.empty() || Interrupt::wanted();
+        });
+        progress.clear();
+        if (left.empty()) continue;
+        if (Interrupt::wanted()) {
+            spdlog::warn("job {} goes on; the same command waits for it again, `scancel {}` ends it", number,
+                         number);
+            return exit_interrupted;
+        }
+        spdlog::error("job {} has ended before the work was done; {} says why; the same command goes on",
+                      number, (job.folder / "*.log").string());
+        return exit_failed;
+    }
+    return is_next ? exit_done : all_is_merged;
+}
+
+}  // namespace
+
+void add_part_options(CLI::App& command, SharingOptions& options, std::string& device) {
+    command
+        .add_option(
+            "--device", device,
+            "Number or part of the name of a device, as `mcdem devices` lists them; all: every device of "
+            "one kind")
+        ->type_name("DEVICE");
+    command.add_option("--part", options.part, "Compute this part of the work alone")
+        ->type_name("K")
+        ->group(group);
+    command.add_flag("--missing", options.missing, "Print the numbers of parts that can be computed now")
+        ->group(group)
+        ->excludes("--part");
+    command.add_flag("--merge", options.merge, "Put the parts together, or say which are missing")
+        ->group(group)
+        ->excludes("--part")
+        ->excludes("--missing");
+    command
+        .add_option("--workers", options.workers, "Processes that the work is cut for, where it is not known")
+        ->check(CLI::Range(1, 100'000))
+        ->type_name("N")
+        ->group(group);
+}
+
+void add_sharing_options(CLI::App& command, SharingOptions& options, std::string& device) {
+    add_part_options(command, options, device);
+    auto* mpi =
+        command.add_flag("--mpi", options.mpi, "This is one of the ranks that mpirun or srun started");
+    auto* slurm = command.add_flag("--slurm", options.slurm,
+                                   "Submit a Slurm job array, a task a part, and wait for it");
+    for (auto* way : {mpi, slurm})
+        way->group(group)->excludes("--part")->excludes("--missing")->excludes("--merge");
+    mpi->excludes(slurm);
+    for (auto* option :
+         {command.add_option("--slurm-tasks", options.slurm_tasks, "Tasks of the array that run at a time")
+              ->capture_default_str()
+              ->check(CLI::Range(1, 100'000))
+              ->type_name("N"),
+          command.add_option("--slurm-partition", options.slurm_partition, "Partition")->type_name("NAME"),
+          command.add_option("--slurm-time", options.slurm_time, "Time limit of a task, as sbatch takes it")
+              ->type_name("TIME"),
+          command.add_option("--slurm-lines", options.slurm_lines, "Lines for the top of the job script")
+              ->type_name("FILE"),
+          command.add_flag("--no-wait", options.no_wait, "Submit, and do not wait")})
+        option->needs(slurm)->group(group);
+}
+
+bool is_shared(const SharingOptions& options, const std::string& device) {
+    return options.part || options.missing || options.merge || options.mpi || options.slurm ||
+           device == all_devices;
+}
+
+int share(const SharedWork& work, const SharingOptions& options, const std::string& device) {
+    if (options.mpi) return compute_as_rank(work, device);
+    const bool on_all = device == all_devices && !options.slurm;
+    const std::vector<int> devices = on_all ? alike_devices("") : std::vector<int>{};
+    const std::size_t known = options.slurm ? static_cast<std::size_t>(options.slurm_tasks) : devices.size();
+    auto parts = work.begin(options.workers > 0 ? options.workers : known);
+    if (options.part) return compute_one(work, *parts, *options.part, choice_of(device));
+    if (options.missing) {
+        for (const std::size_t part : parts->missing()) print_out("{}\n", part);
+        return exit_done;
+    }
+    const int code = options.merge   ? merge_only(work, *parts)
+                     : options.slurm ? compute_by_slurm(work, *parts, options, device)
+                     : on_all        ? compute_on_all_devices(work, *parts, devices)
+                                     : compute_here(work, *parts, device);
+    parts.reset();  // with its lock
+    return code == all_is_merged ? work.report() : code;
+}
+
+}  // namespace mcdem::cli

@@ -1,0 +1,139 @@
+// mcdem calibrate
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/run/results.h"
+#include "cli/run/scene_options.h"
+#include "cli/shell/commands.h"
+#include "cli/shell/messages.h"
+#include "cli/shell/progress.h"
+#include "cli/shell/standard_streams.h"
+#include "core/output_file.h"
+#include "core/version.h"
+#include "ensemble/calibrate_scene.h"
+#include "io/output_folder.h"
+#include "report/run/tables.h"
+
+namespace mcdem::inline cli {
+namespace {
+
+struct CalibrateCommand {
+    SceneOptions scene;
+    ReferenceOptions reference;
+    std::string out, device;
+    CalibrateOptions options;
+};
+
+/// JSON knows no not-a-number.
+nlohmann::json number(double value) {
+    return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json();
+}
+
+nlohmann::json numbers(const std::vector<double>& values) {
+    auto list = nlohmann::json::array();
+    for (const double value : values) list.push_back(number(value));
+    return list;
+}
+
+nlohmann::json json_of(const SceneCalibration& result, const Scene& scene, const LoadedReference& reference) {
+    nlohmann::json json;
+    json["gamma"] = number(result.found.gamma);
+    json["gamma_standard_error"] = number(result.found.standard_error);
+    json["converged"] = result.found.converged;
+    json["runs_away_at_gamma"] = number(result.found.runs_away_at);
+    json["target_top_force_N"] = number(result.target.value);
+    json["target_standard_error_N"] = number(result.target.standard_error);
+    json["displacement_m"] = number(result.displacement);
+    json["replicas"] = result.replicas;
+    json["reference"] = reference.setting.label;
+    json["scene"] = scene.text;
+    json["program"] = version_text;
+    for (const auto& round : result.found.rounds)
+        json["rounds"].push_back({{"gamma", numbers(round.gamma)},
+                                  {"top_force_N", numbers(round.top_force)},
+                                  {"estimate", number(round.root)},
+                                  {"standard_error", number(round.standard_error)}});
+    return json;
+}
+
+void print_calibration(const SceneCalibration& result) {
+    TextTable table;
+    table.columns = {{"round"}, {"gamma"}, {"top force [N]"}};
+    for (std::size_t k = 0; k < result.found.rounds.size(); ++k) {
+        const auto& round = result.found.rounds[k];
+        for (std::size_t i = 0; i < round.gamma.size(); ++i)
+            table.rows.push_back({std::to_string(k + 1), fmt::format("{:.4f}", round.gamma[i]),
+                                  std::isfinite(round.top_force[i])
+                                      ? fmt::format("{:.3f}", round.top_force[i])
+                                      : "runs away"});
+    }
+    print_out("{}\n", to_text(table, TableFormat::terminal));
+    print_out("target: {} N at {:.2f} mm; {} replica{} for each gamma\n", with_error(result.target, 3),
+              result.displacement * 1e3, result.replicas, result.replicas == 1 ? "" : "s");
+    print_out(
+        "gamma = {}{}\n", with_error({result.found.gamma, result.found.standard_error, result.replicas}, 4),
+        result.found.converged ? ""
+                               : " (not yet as sure as asked for: raise --rounds, or use more replicas)");
+}
+
+void calibrate(CalibrateCommand& command) {
+    const auto reference = load_reference(command.reference, ReadWhat::observables);
+    const Scene scene = command.scene.read();
+    const auto file = std::filesystem::path(command.out) / "calibration.json";
+    std::optional<FolderLock> lock;
+    if (!command.out.empty()) {
+        lock.emplace(open_output_folder(command.out));
+        expect_replaceable(file, FileKind::calibration);
+    }
+    Device device(command.device);
+    SceneCalibration result;
+    {
+        Progress progress(stderr, progress_style(stderr));
+        const int rounds = command.options.search.rounds;
+        command.options.on_progress = [&](int round, double fraction) {
+            progress.show((round + fraction) / rounds);
+        };
+        result = calibrate_scene(device, scene, reference.setting.replicas, command.options);
+    }
+    print_calibration(result);
+    if (command.out.empty()) return;
+    replace_own(file, FileKind::calibration, json_of(result, scene, reference).dump(2) + "\n");
+    print_out("wrote {}\n", file.string());
+}
+
+void add_search_options(CLI::App& sub, CalibrateOptions& options) {
+    sub.add_option("--low", options.bracket.low, "Smallest gamma that is tried")->capture_default_str();
+    sub.add_option("--high", options.bracket.high, "Largest gamma that is tried")->capture_default_str();
+    sub.add_option("--tolerance", options.search.tolerance, "Standard error of gamma at which to stop")
+        ->capture_default_str();
+    sub.add_option("--batch", options.search.batch, "Gammas in one round, all simulated together")
+        ->capture_default_str();
+    sub.add_option("--rounds", options.search.rounds, "At most")->capture_default_str();
+}
+
+}  // namespace
+
+void add_calibrate(CLI::App& app, int&) {
+    auto* sub =
+        app.add_subcommand("calibrate", "Find the gamma of MC-DEM that gives an experiment's top force");
+    auto command = std::make_shared<CalibrateCommand>();
+    add_scene_options(*sub, command->scene);
+    add_reference_options(
+        *sub, command->reference, "--experiment",
+        "Experiment folder or run whose mean top force at maximum compression is the target");
+    sub->get_option("--experiment")->required();
+    sub->add_option("--out", command->out, "Folder for calibration.json")->type_name("DIR");
+    add_device_option(*sub, command->device);
+    add_search_options(*sub, command->options);
+    sub->footer(
+        "The scene gives packings, materials and protocol; its contact.model and contact.gamma are left "
+        "aside.\n"
+        "More packings (batch.replicas) make gamma surer: single runs scatter by several per cent.\n"
+        "Examples:\n"
+        "  mcdem calibrate scenes/compression.toml --experiment data/hydrogel --discard 5 --out out/gamma\n"
+        "  mcdem calibrate scenes/small.toml --experiment out/small --setting mc_dem --rounds 2");
+    sub->callback([command] { calibrate(*command); });
+}
+
+}  // namespace mcdem::cli

@@ -1,0 +1,115 @@
+// mcdem compare and mcdem figures: runs against a reference, in numbers and in figures.
+#include "cli/run/figures.h"
+#include "cli/run/report_sources.h"
+#include "cli/shell/commands.h"
+#include "cli/shell/standard_streams.h"
+#include "core/errors.h"
+#include "io/output_folder.h"
+#include "report/diagnosis/diagnosis_values.h"
+#include "report/run/tables.h"
+
+namespace mcdem::inline cli {
+namespace {
+
+struct CompareCommand {
+    std::vector<std::string> runs;
+    ReferenceOptions reference;
+    std::string out;
+    std::optional<double> touch_force;
+    FigureOptions figures;
+    bool markdown = false;
+};
+
+void print_paths(const std::vector<std::filesystem::path>& figures, const std::string& folder) {
+    if (figures.empty()) throw RunError(folder + ": no figures were drawn");
+    for (const auto& figure : figures) print_out("{}\n", figure.string());
+}
+
+void print_comparison(const CompareCommand& command) {
+    const auto reference = load_reference(command.reference, ReadWhat::contacts);
+    const auto loaded = load_runs(command.runs, ReadWhat::contacts);
+    std::optional<FolderLock> lock;
+    if (!command.out.empty()) lock.emplace(open_output_folder(command.out));
+    FigureOptions options = command.figures;
+    options.compare.touch_force = command.touch_force;
+    for (const auto& setting : loaded.settings)
+        options.comparisons.push_back(compare(setting, reference.setting.replicas, options.compare));
+    print_out("against {}\n\n{}", reference.setting.label,
+              to_text(table_of_comparisons(options.comparisons),
+                      command.markdown ? TableFormat::markdown : TableFormat::terminal));
+    if (command.out.empty()) return;
+    print_out("\n");
+    print_paths(draw_runs(command.out, loaded.settings, reference.setting, options), command.out);
+}
+
+void print_figures_of_diagnosis(const CompareCommand& command, const std::filesystem::path& file) {
+    if (command.runs.size() > 1)
+        throw InputError(file.string() + ": must stand alone, got more runs or diagnoses beside this one");
+    const Diagnosis diagnosis = read_diagnosis(file);
+    const FolderLock lock = open_output_folder(command.out);
+    print_paths(draw_figures(command.out, diagnosis_figure_values(diagnosis)), command.out);
+}
+
+void print_figures(const CompareCommand& command) {
+    for (const auto& source : command.runs)
+        if (const auto file = diagnosis_file(source)) return print_figures_of_diagnosis(command, *file);
+    const auto loaded = load_runs(command.runs, ReadWhat::contacts);
+    std::optional<LoadedReference> reference;
+    std::optional<Setting> setting;
+    if (!command.reference.paths.empty()) {
+        reference = load_reference(command.reference, ReadWhat::contacts);
+        setting = reference->setting;
+    }
+    const FolderLock lock = open_output_folder(command.out);
+    print_paths(draw_runs(command.out, loaded.settings, setting, command.figures), command.out);
+}
+
+}  // namespace
+
+void add_compare(CLI::App& app, int&) {
+    auto* sub =
+        app.add_subcommand("compare", "Hold runs against an experiment or another run: the paper's table");
+    auto command = std::make_shared<CompareCommand>();
+    add_runs_option(*sub, command->runs);
+    add_reference_options(*sub, command->reference, "--against",
+                          "Experiment folder or run; several are taken together");
+    sub->get_option("--against")->required();
+    sub->add_option("--out", command->out, "Folder for the four figures; none: no figures")->type_name("DIR");
+    sub->add_option("--touch-force", command->touch_force,
+                    "errf leaves out levels where the reference's top force is not above it [N]")
+        ->type_name("N");
+    add_figure_options(*sub, command->figures);
+    sub->add_flag("--markdown", command->markdown, "Print Markdown");
+    sub->footer(
+        "Rtop: top force at maximum compression over the reference's. errf: RMS error of the top force.\n"
+        "errZ: RMS error of the coordination number, contacts below tau ignored. bhat: distance of the\n"
+        "distributions of contact forces. An experiment folder is described in host/experiment/README.md.\n"
+        "Examples:\n"
+        "  mcdem compare out/first --against data/hydrogel --discard 5 --out out/comparison\n"
+        "  mcdem compare out/small --against out/small --setting mc_dem");
+    sub->callback([command] { print_comparison(*command); });
+}
+
+void add_figures(CLI::App& app, int&) {
+    auto* sub =
+        app.add_subcommand("figures", "Draw the paper's four figures of runs, or the three of a diagnosis");
+    auto command = std::make_shared<CompareCommand>();
+    sub->add_option("RUN|DIAGNOSIS", command->runs,
+                    "Result folders or files, or the folder of a diagnosis or its diagnosis.json")
+        ->required();
+    sub->add_option("--out", command->out, "Folder for the figures")->required()->type_name("DIR");
+    add_reference_options(*sub, command->reference, "--against",
+                          "Experiment folder or run, drawn as points; several are taken together");
+    add_figure_options(*sub, command->figures);
+    sub->footer(
+        "PDF, PNG and SVG of the top force, the force distribution at one level, Z after thresholding and\n"
+        "the scaling law; of a diagnosis where, which and how far. 86 or 178 mm wide, without titles. Their\n"
+        "values are in figures.json, of which the Python package mcdem.figures draws each with one "
+        "function.\n"
+        "Examples:\n"
+        "  mcdem figures out/small --out out/figures\n"
+        "  mcdem figures out/small --out out/figures --against out/small --setting mc_dem");
+    sub->callback([command] { print_figures(*command); });
+}
+
+}  // namespace mcdem::cli

@@ -1,0 +1,115 @@
+// mcdem converge
+#include <fmt/format.h>
+
+#include "cli/run/figures.h"
+#include "cli/run/scene_options.h"
+#include "cli/shell/commands.h"
+#include "cli/shell/interrupt.h"
+#include "cli/shell/messages.h"
+#include "cli/shell/progress.h"
+#include "core/atomic_file.h"
+#include "core/version.h"
+#include "ensemble/converge_scene.h"
+#include "ensemble/observe_trials.h"
+#include "io/folder_lock.h"
+#include "io/result_folder.h"
+#include "report/run/convergence_tables.h"
+
+namespace mcdem::inline cli {
+namespace {
+
+struct ConvergeCommand {
+    SceneOptions scene;
+    std::string out, device;
+    ConvergeOptions options;
+};
+
+Convergence converge(ConvergeCommand& command, const Scene& scene) {
+    Device device(command.device);
+    spdlog::info("{} on {}", scene.name, device.info().name);
+    if (scene.replicas.size() > 1)
+        spdlog::warn("the scene has {} replicas; the first one is looked at: {}", scene.replicas.size(),
+                     scene.replicas.front().label);
+    const Interrupt interrupt;
+    std::optional<Progress> progress;
+    std::string shown;
+    command.options.program = version_text;
+    command.options.folder = command.out;
+    command.options.stop_wanted = Interrupt::wanted;
+    command.options.on_progress = [&](const std::string& cause, double fraction) {
+        if (cause != shown) {
+            progress.reset();
+            shown = cause;
+            spdlog::info("{}", cause);
+            progress.emplace(stderr, progress_style(stderr));
+        }
+        progress->show(fraction);
+    };
+    return converge_scene(device, scene, command.options);
+}
+
+int run(ConvergeCommand& command) {
+    try {
+        const Scene scene = command.scene.read();
+        const std::filesystem::path folder = command.out;
+        make_result_folder(folder);
+        const FolderLock lock(folder, FolderLock::Use::alone);
+        const Convergence convergence = converge(command, scene);
+        replace_file(folder / "convergence.json", convergence_json(convergence));
+        fmt::print("{}\n", to_text(table_of_convergence(convergence), TableFormat::terminal));
+        for (const std::string& line : words_of_convergence(convergence)) fmt::print("{}\n", line);
+        fmt::print("wrote\n  {}\n", (folder / "convergence.json").string());
+        for (const auto& file : draw_if_possible([&] {
+                 return draw_figures(folder, {{"convergence", convergence_figure_values(convergence)}});
+             }))
+            fmt::print("  {}\n", file.string());
+        return exit_done;
+    } catch (const Interrupted& interrupted) {
+        spdlog::warn("{}", interrupted.what());
+        return exit_interrupted;
+    }
+}
+
+}  // namespace
+
+void add_converge(CLI::App& app, int& exit_code) {
+    auto* sub =
+        app.add_subcommand("converge", "What speed, inertia, time step and settling do to a scene's answers");
+    auto command = std::make_shared<ConvergeCommand>();
+    add_scene_options(*sub, command->scene);
+    sub->add_option("--out", command->out,
+                    "Folder for the table, the figure, and every simulation made for them")
+        ->required()
+        ->type_name("DIR");
+    sub->add_option("--replicas", command->options.replicas, "Jittered copies of the packing, paired")
+        ->check(CLI::Range(8, 10000))
+        ->capture_default_str();
+    sub->add_option("--jitter", command->options.jitter,
+                    "Standard deviation of what sets the copies apart; 0: half a per cent of a diameter [m]")
+        ->check(CLI::Range(0.0, 1.0))
+        ->capture_default_str();
+    sub->add_option("--force-limit", command->options.limits.force, "Largest relative error of forces")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
+    sub->add_option("--sd-limit", command->options.limits.deviations,
+                    "Largest error of all else, in standard deviations of the packing's copies")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str();
+    sub->add_option("--seed", command->options.seed, "Of the jitter")->capture_default_str();
+    add_device_option(*sub, command->device);
+    sub->footer(
+        "Runs the scene as it stands and with the plate 2, 4 and 8 times slower, a quarter of the density, "
+        "half\n"
+        "the time step, stricter settling, double precision and wider neighbour lists, all from the same "
+        "jittered\n"
+        "packings, and extrapolates each to its limit: for every observable that diagnosis uses, the error "
+        "with\n"
+        "its standard error, what it is due to and what would bring it below the limit. A scene with\n"
+        "protocol.rate_tolerance is also run with less of it. Simulations are kept in DIR/simulations: an\n"
+        "interrupted command goes on where it stopped.\n"
+        "Example:\n"
+        "  mcdem converge scenes/small.toml --set contact.model=mc_dem --out out/converge --replicas 8");
+    sub->callback([command, &exit_code] { exit_code = run(*command); });
+}
+
+}  // namespace mcdem::cli

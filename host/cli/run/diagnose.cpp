@@ -1,0 +1,203 @@
+// mcdem diagnose
+#include <fmt/ranges.h>
+
+#include "cli/parts/sharing.h"
+#include "cli/run/figures.h"
+#include "cli/run/scene_options.h"
+#include "cli/shell/commands.h"
+#include "cli/shell/interrupt.h"
+#include "cli/shell/messages.h"
+#include "cli/shell/progress.h"
+#include "cli/shell/standard_streams.h"
+#include "core/atomic_file.h"
+#include "core/make_folder.h"
+#include "core/output_file.h"
+#include "core/version.h"
+#include "ensemble/parts/library_parts.h"
+#include "io/output_folder.h"
+#include "io/result_folder.h"
+#include "report/diagnosis/diagnosis_json.h"
+#include "report/diagnosis/diagnosis_page.h"
+#include "report/diagnosis/diagnosis_text.h"
+#include "report/diagnosis/diagnosis_values.h"
+
+namespace mcdem::inline cli {
+namespace {
+
+struct DiagnoseCommand {
+    SceneOptions scene;
+    std::string experiment, out, device, library;
+    std::vector<std::string> candidates;
+    int replicates = 32, pairs = 8, confirmations = 8;
+    double refine = 4;
+    std::uint64_t seed = 1;
+    SharingOptions sharing;
+};
+
+DiagnoseOptions options_of(const DiagnoseCommand& command) {
+    DiagnoseOptions options;
+    options.folder = command.out;
+    options.candidates = command.candidates;
+    options.replicates = command.replicates;
+    options.pairs = std::min(command.pairs, command.replicates);
+    options.confirmations = command.confirmations;
+    options.refine = command.refine;
+    options.seed = command.seed;
+    if (!command.library.empty()) options.library = command.library;
+    options.program = version_text;
+    options.stop_wanted = Interrupt::wanted;
+    return options;
+}
+
+/// Every stage with a bar of its own.
+class Stages {
+public:
+    void show(const std::string& stage, double fraction) {
+        if (stage != stage_) {
+            progress_.reset();
+            stage_ = stage;
+            spdlog::info("{}", stage);
+            progress_.emplace(stderr, progress_style(stderr));
+        }
+        progress_->show(fraction);
+    }
+
+private:
+    std::string stage_;
+    std::optional<Progress> progress_;
+};
+
+Diagnosis diagnose(const DiagnoseCommand& command, const Scene& scene, const Experiment& experiment) {
+    Device device(command.device);
+    spdlog::info("{} against {} on {}", scene.name, experiment.name, device.info().name);
+    if (scene.replicas.size() > 1)
+        spdlog::warn("the scene has {} replicas; the first one is diagnosed: {}", scene.replicas.size(),
+                     scene.replicas.front().label);
+    const Interrupt interrupt;
+    Stages stages;
+    DiagnoseOptions options = options_of(command);
+    options.on_progress = [&](const std::string& stage, double fraction) { stages.show(stage, fraction); };
+    options.on_note = [](const std::string& note) { spdlog::warn("{}", note); };
+    return diagnose_experiment(device, scene, experiment, options);
+}
+
+int run_alone(const DiagnoseCommand& command, const Scene& scene, const Experiment& experiment) {
+    try {
+        const std::filesystem::path folder = command.out;
+        const FolderLock lock = open_output_folder(folder);
+        const std::filesystem::path simulations = folder / "simulations";
+        if (std::filesystem::is_directory(simulations)) remove_temporaries(simulations);
+        if (!command.library.empty()) make_folder_of(command.library);
+        expect_replaceable(folder / "diagnosis.json", FileKind::diagnosis);
+        expect_replaceable(folder / "diagnosis.html", FileKind::page);
+        expect_replaceable_figures(folder, {"where", "which", "how_far"});
+        const Diagnosis diagnosis = diagnose(command, scene, experiment);
+        replace_own(folder / "diagnosis.json", FileKind::diagnosis, diagnosis_json(diagnosis));
+        print_out("{}\nwrote\n  {}\n", diagnosis_text(diagnosis), (folder / "diagnosis.json").string());
+        write_diagnosis_page(diagnosis, folder / "diagnosis.html");
+        print_out("  {}\n", (folder / "diagnosis.html").string());
+        for (const auto& file :
+             draw_if_possible([&] { return draw_figures(folder, diagnosis_figure_values(diagnosis)); }))
+            print_out("  {}\n", file.string());
+        return exit_done;
+    } catch (const Interrupted& interrupted) {
+        spdlog::warn("{}", interrupted.what());
+        return exit_interrupted;
+    }
+}
+
+/// The command line without what says where and how it runs.
+std::vector<std::string> words_of(const DiagnoseCommand& command) {
+    std::vector<std::string> words{"diagnose", command.scene.file};
+    for (const auto& setting : command.scene.overrides) words.insert(words.end(), {"--set", setting});
+    const auto add = [&](const char* option, const std::string& value) {
+        if (!value.empty()) words.insert(words.end(), {option, value});
+    };
+    add("--experiment", command.experiment);
+    add("--out", command.out);
+    add("--candidates", fmt::format("{}", fmt::join(command.candidates, ",")));
+    add("--replicates", std::to_string(command.replicates));
+    add("--pairs", std::to_string(command.pairs));
+    add("--seed", std::to_string(command.seed));
+    add("--library", command.library);
+    return words;
+}
+
+int run(DiagnoseCommand& command) {
+    const Scene scene = command.scene.read();
+    const Experiment experiment = read_experiment(command.experiment);
+    if (!is_shared(command.sharing, command.device)) return run_alone(command, scene, experiment);
+    const DiagnoseOptions options = options_of(command);
+    SharedWork work;
+    work.words = words_of(command);
+    work.out = command.out;
+    work.begin = [&](std::size_t) {
+        expect_no_experiment(command.out);
+        make_result_folder(command.out);
+        return library_parts(scene, experiment, options);
+    };
+    work.report = [&] {
+        if (command.device == "all") command.device.clear();
+        return run_alone(command, scene, experiment);
+    };
+    return share(work, command.sharing, command.device);
+}
+
+}  // namespace
+
+void add_diagnose(CLI::App& app, int& exit_code) {
+    auto* sub =
+        app.add_subcommand("diagnose", "Where a scene and an experiment part, and which effect is to blame");
+    auto command = std::make_shared<DiagnoseCommand>();
+    add_scene_options(*sub, command->scene);
+    sub->add_option("--experiment", command->experiment, "Experiment folder")->required()->type_name("DIR");
+    sub->add_option("--out", command->out,
+                    "Folder for the verdict, the page, and every simulation made for them")
+        ->required()
+        ->type_name("DIR");
+    sub->add_option("--candidates", command->candidates, "Effects that may be to blame; all where left out")
+        ->delimiter(',')
+        ->type_name("A,B,..");
+    sub->add_option("--replicates", command->replicates, "Runs of the scene as it stands: the noise floor")
+        ->check(CLI::Range(8, 10000))
+        ->capture_default_str();
+    sub->add_option("--pairs", command->pairs, "Runs of each effect at each of its two amplitudes")
+        ->check(CLI::Range(2, 10000))
+        ->capture_default_str();
+    sub->add_option("--confirmations", command->confirmations, "Real runs of each proposed cause; 0: none")
+        ->check(CLI::Range(0, 10000))
+        ->capture_default_str();
+    sub->add_option(
+           "--refine", command->refine,
+           "Where the gap is the simulation's own (not_converged), by how many times plate.speed, "
+           "grains.density or numerics.time_step is lowered at most before it is diagnosed again, runs "
+           "getting as much longer; 1: never")
+        ->check(CLI::Range(1.0, 64.0))
+        ->capture_default_str();
+    sub->add_option("--seed", command->seed, "Of everything drawn at random")->capture_default_str();
+    sub->add_option("--library", command->library,
+                    "File of signatures: read where it is there, else made and written")
+        ->type_name("FILE");
+    add_part_options(*sub, command->sharing, command->device);
+    sub->footer(
+        "The scene is the simulation as it stands; box, plate and scans are the experiment's. Prints the "
+        "verdict in\n"
+        "six lines and writes diagnosis.json and diagnosis.html, with its figures, into DIR. Simulations "
+        "are kept\n"
+        "in DIR/simulations: nothing is computed twice, and an interrupted diagnosis goes on with the same "
+        "command.\n"
+        "The simulations of its library are parts that many devices or nodes compute; the rest of the "
+        "diagnosis is "
+        "done by\n"
+        "--merge (`mcdem distribute diagnose ..` does both).\n"
+        "Verdicts: no_gap, effect, group (effects that these data cannot tell apart), unknown_effect (none "
+        "of the\n"
+        "library), not_converged (the simulation's own numerics), calibration_suspect. `mcdem experiment "
+        "check DIR` tells beforehand what the data can "
+        "carry.\n"
+        "Example:\n"
+        "  mcdem diagnose scenes/small.toml --experiment out/reality --out out/diagnosis");
+    sub->callback([command, &exit_code] { exit_code = run(*command); });
+}
+
+}  // namespace mcdem::cli

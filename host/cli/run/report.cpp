@@ -1,0 +1,100 @@
+// mcdem report
+#include <fmt/format.h>
+
+#include <iterator>
+
+#include "cli/run/figures.h"
+#include "cli/run/report_sources.h"
+#include "cli/run/results.h"
+#include "cli/shell/commands.h"
+#include "cli/shell/messages.h"
+#include "cli/shell/standard_streams.h"
+#include "core/errors.h"
+#include "core/make_folder.h"
+#include "core/output_file.h"
+#include "report/diagnosis/diagnosis_page.h"
+#include "report/page/plotting_library.h"
+#include "report/run/run_page.h"
+
+namespace mcdem::inline cli {
+namespace {
+
+struct ReportCommand {
+    std::vector<std::string> sources;
+    std::string out;
+    ReferenceOptions reference;
+    FigureOptions figures;
+    PackingLimits limits;
+};
+
+void add_all_runs(Page& page, const std::vector<std::string>& paths, const ReportCommand& command) {
+    const auto loaded = load_runs(paths, ReadWhat::contacts);
+    std::optional<LoadedReference> reference;
+    if (!command.reference.paths.empty()) reference = load_reference(command.reference, ReadWhat::contacts);
+    RunsOnPage runs{.origins = origins_of(paths, loaded),
+                    .settings = loaded.settings,
+                    .reference = reference ? std::optional(reference->setting) : std::nullopt,
+                    .figures = command.figures,
+                    .packings = {},
+                    .left_out = {},
+                    .limits = command.limits};
+    add_packings(paths, loaded, runs);
+    for (const auto& note : runs.left_out) spdlog::info("{}", note);
+    add_runs(page, runs);
+}
+
+int write_report(const ReportCommand& command) {
+    expect_replaceable(command.out, FileKind::page);
+    make_folder_of(command.out);
+    packed_plotting_library();  // said before minutes of reading where it is missing
+    std::vector<std::string> runs;
+    std::vector<std::pair<std::string, Diagnosis>> diagnoses;
+    for (const auto& source : command.sources)
+        if (const auto file = diagnosis_file(source))
+            diagnoses.emplace_back(source, read_diagnosis(*file));
+        else
+            runs.push_back(source);
+    if (runs.empty() && !command.reference.paths.empty())
+        throw InputError("--against: needs a run to hold against it, got diagnoses only");
+    Page page("mcdem report: " + command.sources.front() +
+              (command.sources.size() > 1 ? fmt::format(" and {} more", command.sources.size() - 1) : ""));
+    if (!runs.empty()) add_all_runs(page, runs, command);
+    for (const auto& [path, diagnosis] : diagnoses) add_diagnosis(page, diagnosis, path);
+    write_page(page, command.out);
+    print_out("{}\n", command.out);
+    return exit_done;
+}
+
+}  // namespace
+
+void add_report(CLI::App& app, int& exit_code) {
+    auto* sub =
+        app.add_subcommand("report", "One page of runs and diagnoses: charts, packing in space, tables");
+    auto command = std::make_shared<ReportCommand>();
+    sub->add_option("RUN|DIAGNOSIS", command->sources,
+                    "Result folders or files, finished or still running, and folders of diagnoses")
+        ->required();
+    sub->add_option("--out", command->out, "The page, an HTML file")->required()->type_name("FILE");
+    add_reference_options(
+        *sub, command->reference, "--against",
+        "Experiment folder or run that the runs are held against; several are taken together");
+    add_figure_options(*sub, command->figures);
+    sub->add_option("--scans", command->limits.scans,
+                    "Most scans of a packing to show in space; as many as fit into about 3 MB where left out")
+        ->type_name("N")
+        ->check(CLI::Range(1, 100000));
+    sub->footer(
+        "The page needs no network and nothing beside it: send it as it is. It holds top force, force "
+        "distribution,\n"
+        "contacts per grain and scaling law with values to point at, the packing with its force chains and a "
+        "slider\n"
+        "over scans, of a diagnosis where, which and how far, the metrics, and the scenes with versions and "
+        "hashes.\n"
+        "The first replica of every setting is shown in space. Charts need a browser of 2023 or later.\n"
+        "Examples:\n"
+        "  mcdem report out/small --out out/small.html\n"
+        "  mcdem report out/small out/diagnosis --out out/both.html --against out/reality");
+    sub->callback([command, &exit_code] { exit_code = write_report(*command); });
+}
+
+}  // namespace mcdem::cli

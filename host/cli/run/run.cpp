@@ -1,0 +1,205 @@
+// mcdem run
+#include <fmt/format.h>
+
+#include "cli/parts/sharing.h"
+#include "cli/run/figures.h"
+#include "cli/run/scene_options.h"
+#include "cli/shell/commands.h"
+#include "cli/shell/interrupt.h"
+#include "cli/shell/messages.h"
+#include "cli/shell/progress.h"
+#include "cli/shell/shell_word.h"
+#include "cli/shell/standard_streams.h"
+#include "core/errors.h"
+#include "core/version.h"
+#include "ensemble/parts/run_parts.h"
+#include "io/checkpoint.h"
+#include "io/result_folder.h"
+#include "io/results.h"
+#include "metrics/model_table.h"
+#include "report/run/tables.h"
+
+namespace mcdem::inline cli {
+namespace {
+
+struct RunCommand {
+    SceneOptions scene;
+    std::string out, device;
+    bool resume = false, no_figures = false;
+    SharingOptions sharing;
+    RunCut cut;
+};
+
+/// The command line without what says where and how it runs.
+std::vector<std::string> words_of(const RunCommand& command) {
+    std::vector<std::string> words{"run", command.scene.file};
+    for (const auto& setting : command.scene.overrides) words.insert(words.end(), {"--set", setting});
+    words.insert(words.end(), {"--out", command.out});
+    return words;
+}
+
+std::string resume_command(const RunCommand& command) {
+    std::string text = "mcdem " + shell_words(words_of(command));
+    if (!command.device.empty()) text += " --device " + shell_word(command.device);
+    return text + " --resume";
+}
+
+void warn_of_failure(const Replica& replica, const Failure& failure) {
+    spdlog::warn("replica {} stopped at step {}{}: {}", replica.label.empty() ? "1" : replica.label,
+                 failure.step, failure.grain < 0 ? "" : fmt::format(", grain {}", failure.grain),
+                 failure.cause);
+}
+
+RunSummary run_with_progress(Device& device, const Scene& scene, const RunCommand& command) {
+    const Interrupt interrupt;
+    Progress progress(stderr, progress_style(stderr));
+    RunOptions options;
+    options.folder = command.out;
+    options.start = command.resume ? Start::resume : Start::fresh;
+    options.program = version_text;
+    options.on_progress = [&](double fraction) { progress.show(fraction); };
+    options.on_failure = [&](const Replica& replica, const Failure& failure) {
+        progress.clear();
+        warn_of_failure(replica, failure);
+    };
+    options.on_warning = [&](const std::string& message) {
+        progress.clear();
+        spdlog::warn("{}", message);
+    };
+    options.stop_wanted = Interrupt::wanted;
+    return run_scene(device, scene, options);
+}
+
+bool models_vary(const ModelTable& table) {
+    for (const auto& row : table.rows)
+        if (row.model != table.rows.front().model) return true;
+    return false;
+}
+
+void print_summary(const Run& run, const RunSummary& summary, std::size_t failed) {
+    const std::size_t replicas = run.recordings.size();
+    print_out("{}: {} of {} replica{} done", run.name, replicas - failed, replicas, replicas == 1 ? "" : "s");
+    if (failed > 0) print_out(", {} stopped early", failed);
+    if (summary.grain_steps > 0)
+        print_out("; {:.1f} million grain-steps in {} ({:.1f} million/s)", summary.grain_steps * 1e-6,
+                  duration_text(summary.seconds), summary.grain_steps * 1e-6 / summary.seconds);
+    print_out("\n");
+    const auto models = model_table(group_by_setting(run));
+    if (models_vary(models)) print_out("\n{}", to_text(table_of_models(models), TableFormat::terminal));
+}
+
+void print_paths(const RunCommand& command, const std::vector<std::filesystem::path>& figures) {
+    const std::filesystem::path folder = command.out;
+    print_out("\nwrote\n");
+    for (const auto& file : {run_file(folder), folder / "plate.csv"}) print_out("  {}\n", file.string());
+    for (const auto& file : figures) print_out("  {}\n", file.string());
+}
+
+/// The exit code of a run whose results lie in the folder.
+int report_run(const RunCommand& command, const RunSummary& summary) {
+    const Run run = read_run(command.out, ReadWhat::observables);
+    std::size_t failed = 0;
+    for (const auto& recording : run.recordings) failed += recording.failure.has_value();
+    print_summary(run, summary, failed);
+    std::vector<std::filesystem::path> figures;
+    if (!command.no_figures) figures = draw_run(command.out);
+    print_paths(command, figures);
+    if (failed < run.recordings.size()) return exit_done;
+    spdlog::error("no replica came to its end");
+    return exit_failed;
+}
+
+/// The run in parts.
+SharedWork shared_work(const RunCommand& command, const Scene& scene) {
+    SharedWork work;
+    work.words = words_of(command);
+    work.out = command.out;
+    work.begin = [&](std::size_t workers) {
+        RunOptions options;
+        options.folder = command.out;
+        options.program = version_text;
+        options.on_failure = warn_of_failure;
+        options.on_warning = [](const std::string& message) { spdlog::warn("{}", message); };
+        options.stop_wanted = Interrupt::wanted;
+        RunCut cut = command.cut;
+        cut.workers = workers;
+        return std::make_unique<RunParts>(scene, options, cut);
+    };
+    work.report = [&] { return report_run(command, {}); };
+    return work;
+}
+
+/// What went wrong, and how to go on from what was recorded before.
+int failed_run(const RunCommand& command, const std::exception& error) {
+    const int code = report_error(error);
+    if (has_checkpoint(command.out))
+        spdlog::warn("what was recorded before is kept; go on with\n  {}", resume_command(command));
+    return code;
+}
+
+int run_alone(const RunCommand& command, const Scene& scene) {
+    Device device(command.device);
+    spdlog::info("{}: {} on {}", scene.name, size_text(scene), device.info().name);
+    RunSummary summary;
+    try {
+        summary = run_with_progress(device, scene, command);
+    } catch (const cl::Error& error) {
+        return failed_run(command, error);
+    } catch (const RunError& error) {
+        return failed_run(command, error);
+    }
+    if (summary.end == RunEnd::interrupted) {
+        spdlog::warn("interrupted; go on with\n  {}", resume_command(command));
+        return exit_interrupted;
+    }
+    if (summary.end == RunEnd::was_done) spdlog::info("{}: this run is done already", command.out);
+    return report_run(command, summary);
+}
+
+int run(const RunCommand& command) {
+    const Scene scene = command.scene.read();
+    if (is_shared(command.sharing, command.device) || (command.resume && is_run_in_parts(command.out)))
+        return share(shared_work(command, scene), command.sharing, command.device);
+    return run_alone(command, scene);
+}
+
+}  // namespace
+
+void add_run(CLI::App& app, int& exit_code) {
+    auto* sub = app.add_subcommand("run", "Run a scene into a result folder");
+    auto command = std::make_shared<RunCommand>();
+    add_scene_options(*sub, command->scene);
+    sub->add_option("--out", command->out, "Folder for the results; made where it is missing")
+        ->required()
+        ->type_name("DIR");
+    sub->add_flag("--resume", command->resume, "Go on with the interrupted run in DIR");
+    sub->add_flag("--no-figures", command->no_figures, "Draw no figures at the end");
+    add_sharing_options(*sub, command->sharing, command->device);
+    sub->add_option("--part-replicas", command->cut.part_replicas,
+                    "Replicas of a part; without it enough to fill a device, and two parts a process")
+        ->check(CLI::Range(1, 10'000))
+        ->type_name("N")
+        ->group("Many devices and nodes");
+    sub->footer(
+        "Writes run.h5 (everything, HDF5), plate.csv (forces and averages) and figures into DIR. A replica "
+        "that\n"
+        "cannot go on is named and recorded; the others go on. The exit code is 1 only where all failed.\n"
+        "Interrupted by Ctrl-C, a crash or a power cut, a run loses no more than the time since its last\n"
+        "checkpoint (output.checkpoint_minutes) and ends, resumed, with the same bits.\n"
+        "Computed in parts by many devices or nodes, the result is the same to the last bit; parts that were "
+        "lost are\n"
+        "computed again, and the same command goes on with what is missing. `mcdem distribute` gives parts "
+        "to "
+        "Dask.\n"
+        "Examples:\n"
+        "  mcdem run scenes/small.toml --out out/small\n"
+        "  mcdem run scenes/compression.toml --out out/soft --set grains.youngs_modulus=10e3\n"
+        "  mcdem run scenes/compression.toml --out out/one --set contact.model=elastic_sphere\n"
+        "  mcdem run scenes/compression.toml --out out/one --set contact.model=elastic_sphere --resume\n"
+        "  mcdem run scenes/replicas.toml --out out/shared --device all\n"
+        "  mpirun -n 4 mcdem run scenes/replicas.toml --out out/shared --mpi\n"
+        "  mcdem run scenes/replicas.toml --out out/shared --slurm --slurm-tasks 8 --slurm-time 2:00:00");
+    sub->callback([command, &exit_code] { exit_code = run(*command); });
+}
+
+}  // namespace mcdem::cli

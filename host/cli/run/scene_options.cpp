@@ -1,0 +1,37 @@
+#include "cli/run/scene_options.h"
+
+#include <fmt/format.h>
+
+#include "scene/read_scene.h"
+
+namespace mcdem::inline cli {
+
+Scene SceneOptions::read() const { return read_scene(file, overrides); }
+
+void add_scene_options(CLI::App& command, SceneOptions& options) {
+    command.add_option("SCENE", options.file, "Scene file (TOML; scenes/README.md explains every key)")
+        ->required();
+    command.add_option("--set", options.overrides, "Overrides a key of the scene; may come several times")
+        ->type_name("KEY=VALUE")
+        ->allow_extra_args(false);
+}
+
+void add_device_option(CLI::App& command, std::string& choice) {
+    command
+        .add_option("--device", choice,
+                    "Number or part of the name of a device, as `mcdem devices` lists them")
+        ->type_name("DEVICE");
+}
+
+std::string size_text(const Scene& scene) {
+    const std::size_t replicas = scene.replicas.size();
+    std::string text = fmt::format("{} replica{}", replicas, replicas == 1 ? "" : "s");
+    const auto* drawn = std::get_if<GeneratedPacking>(&scene.replicas.front().packing.source);
+    for (const auto& replica : scene.replicas) {
+        const auto* other = std::get_if<GeneratedPacking>(&replica.packing.source);
+        if (!other || !drawn || other->count != drawn->count) return text;
+    }
+    return text + fmt::format(" of {} grain{}", drawn->count, drawn->count == 1 ? "" : "s");
+}
+
+}  // namespace mcdem::cli

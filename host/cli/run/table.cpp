@@ -1,0 +1,50 @@
+// mcdem table
+#include "cli/run/results.h"
+#include "cli/shell/commands.h"
+#include "cli/shell/standard_streams.h"
+#include "report/run/tables.h"
+
+namespace mcdem::inline cli {
+namespace {
+
+struct TableCommand {
+    std::vector<std::string> runs;
+    std::string over;
+    bool markdown = false, csv = false;
+};
+
+void print_tables(const TableCommand& command) {
+    const auto loaded = load_runs(command.runs, ReadWhat::observables);
+    const auto format = command.markdown ? TableFormat::markdown : TableFormat::terminal;
+    const auto over = command.over.empty() ? std::nullopt : std::optional(command.over);
+    const auto models = model_table(loaded.settings, {}, over);
+    if (command.csv) return print_out("{}", csv_of_models(models, loaded.settings));
+    print_out("{}\n", to_text(table_of_models(models), format));
+    print_out("{}", to_text(table_of_scaling(loaded.settings), format));
+}
+
+}  // namespace
+
+void add_table(CLI::App& app, int&) {
+    auto* sub =
+        app.add_subcommand("table", "Top forces of a run's settings side by side, and the scaling law");
+    auto command = std::make_shared<TableCommand>();
+    add_runs_option(*sub, command->runs);
+    sub->add_option("--over", command->over, "Label of the setting that ratios are taken over (else mc_dem)")
+        ->type_name("LABEL");
+    sub->add_flag("--markdown", command->markdown, "Print Markdown");
+    sub->add_flag(
+        "--csv", command->csv,
+        "Print CSV: top forces and ratios, a column for each scene key that is not the same in all");
+    sub->footer(
+        "Ratios are over replicas that start from the same packing, where there are; ± is the standard "
+        "error\n"
+        "over replicas. *: no replica reached full stroke; the last scan and its displacement stand there.\n"
+        "Examples:\n"
+        "  mcdem table out/small\n"
+        "  mcdem table out/small --over independent --markdown\n"
+        "  mcdem table out/small --csv > models.csv");
+    sub->callback([command] { print_tables(*command); });
+}
+
+}  // namespace mcdem::cli

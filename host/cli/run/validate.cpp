@@ -1,0 +1,91 @@
+// mcdem validate
+#include <fmt/format.h>
+
+#include <optional>
+#include <set>
+
+#include "cli/run/scene_options.h"
+#include "cli/shell/commands.h"
+#include "cli/shell/standard_streams.h"
+#include "core/errors.h"
+#include "scene/packing_state.h"
+#include "scene/read_packing.h"
+#include "sim/batch_limits.h"
+
+namespace mcdem::inline cli {
+namespace {
+
+constexpr std::size_t most_labels = 12;
+
+/// The device that a run would use, where there is one: a scene can be checked without.
+std::optional<Device> chosen_device(const std::string& choice) {
+    try {
+        return Device(choice);
+    } catch (const RunError&) {
+        return std::nullopt;
+    }
+}
+
+/// `device`: checked whether it can hold the run, where there is one.
+void print_memory(const Scene& scene, const std::optional<Device>& device) {
+    const FieldMemory memory =
+        memory_needed(scene.precision, scene.slots, scene.replicas, packing_sizes(scene.replicas));
+    print_out("needs at most {} of memory on the device", memory_text(memory.all));
+    if (device) print_out(", {} has {}", device->info().name, memory_text(device->info().memory));
+    print_out("\n");
+}
+
+/// What each packing that is read is like.
+void print_packings(const Scene& scene) {
+    std::set<std::pair<std::string, std::optional<long>>> printed;
+    for (const Replica& replica : scene.replicas) {
+        const auto* file = std::get_if<PackingFile>(&replica.packing.source);
+        if (!file || !printed.emplace(file->path, file->step).second) continue;
+        const Packing packing = read_packing(file->path, file->step);
+        const PackingState state =
+            packing_state(packing, replica.box, plate_face(replica, replica.plate.start));
+        print_out("{}: {} grains, Z = {:.2f}, deepest overlap {:.3g} mm ({:.2g} % of a diameter)\n",
+                  file->path, packing.size(), state.coordination_number, 1e3 * state.deepest_overlap,
+                  100 * state.relative_overlap);
+    }
+}
+
+void print_scene(const SceneOptions& options, const std::string& choice) {
+    const Scene scene = options.read();
+    const auto device = chosen_device(choice);
+    if (device) expect_runnable(*device, scene);
+    const Protocol& protocol = scene.replicas.front().protocol;
+    print_out("{}: good\n", options.file);
+    print_out("{}, {} precision; {} cycle{} with {} scans a stroke\n", size_text(scene),
+              name(scene.precision), protocol.cycles, protocol.cycles == 1 ? "" : "s",
+              protocol.scans_per_stroke);
+    print_packings(scene);
+    print_memory(scene, device);
+    std::size_t shown = 0;
+    for (const auto& replica : scene.replicas) {
+        if (++shown > most_labels) {
+            print_out("  .. and {} more\n", scene.replicas.size() - most_labels);
+            break;
+        }
+        print_out("  {}\n", replica.label);
+    }
+}
+
+}  // namespace
+
+void add_validate(CLI::App& app, int&) {
+    auto* command = app.add_subcommand("validate", "Check a scene and say what it would run");
+    auto options = std::make_shared<SceneOptions>();
+    auto choice = std::make_shared<std::string>();
+    add_scene_options(*command, *options);
+    add_device_option(*command, *choice);
+    command->footer(
+        "Checks the scene, and whether the device has the memory for it.\n"
+        "All problems are listed, each as `file:line: key must be .., got ..`; then the exit code is 2.\n"
+        "Examples:\n"
+        "  mcdem validate scenes/compression.toml\n"
+        "  mcdem validate scenes/small.toml --set grains.friction=0.1 --set contact.model=elastic_sphere");
+    command->callback([options, choice] { print_scene(*options, *choice); });
+}
+
+}  // namespace mcdem::cli

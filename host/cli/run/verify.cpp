@@ -1,0 +1,38 @@
+// mcdem verify
+#include "ensemble/verify.h"
+
+#include "cli/shell/commands.h"
+#include "cli/shell/standard_streams.h"
+
+namespace mcdem::inline cli {
+namespace {
+
+int print_verified(const std::vector<std::string>& paths) {
+    bool all_good = true;
+    for (const std::string& path : paths)
+        for (const Verified& file : verify(path)) {
+            print_out("{}: {}{}{}\n", file.file.string(), file.is_good ? "good" : "NOT GOOD",
+                      file.note.empty() ? "" : ": ", file.note);
+            all_good = all_good && file.is_good;
+        }
+    return all_good ? exit_done : exit_failed;
+}
+
+}  // namespace
+
+void add_verify(CLI::App& app, int& exit_code) {
+    auto* sub = app.add_subcommand("verify", "Whether files are still what was written, by their digests");
+    auto paths = std::make_shared<std::vector<std::string>>();
+    sub->add_option(
+           "FOLDER", *paths,
+           "Folder of a run, an experiment of `experiment from-run`, a diagnosis or a library; or one file")
+        ->required();
+    sub->footer(
+        "Every file is read to its end, and told to be good or not, and why. Exit code 1 where one is not "
+        "good.\n"
+        "Examples:\n"
+        "  mcdem verify out/small");
+    sub->callback([paths, &exit_code] { exit_code = print_verified(*paths); });
+}
+
+}  // namespace mcdem::cli

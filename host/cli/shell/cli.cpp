@@ -1,0 +1,101 @@
+#include "cli/shell/cli.h"
+
+#include "cl/kernel_cache.h"
+#include "cli/shell/commands.h"
+#include "cli/shell/crash_hint.h"
+#include "cli/shell/messages.h"
+#include "cli/shell/standard_streams.h"
+#include "core/version.h"
+#include "io/run_packing.h"
+#include "scene/read_packing.h"
+
+namespace mcdem::inline cli {
+namespace {
+
+const char* const about =
+    "Simulates dense packings of soft elastic grains whose contacts feel one another (MC-DEM),\n"
+    "on any OpenCL device.";
+
+const char* const first_steps =
+    "First steps:\n"
+    "  mcdem devices                                      what it can run on\n"
+    "  mcdem run scenes/small.toml --out out/small        a first run, done in seconds\n"
+    "  mcdem run scenes/compression.toml --out out/first  the experiment, six contact models\n"
+    "  mcdem table out/first                              the models side by side, again\n"
+    "  mcdem report out/small --out out/small.html        a page to look at, and to send\n"
+    "  mcdem COMMAND --help                               more on a command, with examples\n"
+    "\n"
+    "Exit codes: 0 done, 1 failed (also where the output cannot be written), 2 bad input, 130 interrupted "
+    "(go on\n"
+    "with --resume).\n"
+    "Environment: MCDEM_DEVICE chooses the device where --device does not.";
+
+/// What is wrong with the command line, and where to read how it should be.
+int report_usage(const CLI::App& app, const CLI::ParseError& error) {
+    std::string command = "mcdem";
+    const CLI::App* last = &app;
+    while (!last->get_subcommands().empty()) {
+        last = last->get_subcommands().front();
+        command += " " + last->get_name();
+    }
+    // "A subcommand is required" does not say that there was one that is not known.
+    const auto unknown =
+        last->get_require_subcommand_min() > 0 ? app.remaining(true) : std::vector<std::string>{};
+    if (unknown.empty())
+        spdlog::error("{}", error.what());
+    else
+        spdlog::error("there is no {} {}", unknown.front().starts_with('-') ? "option" : "command",
+                      unknown.front());
+    spdlog::error("`{} --help` tells more", command);
+    return exit_bad_input;
+}
+
+/// An empty place would be taken for the folder that one is in, or fail only once the work is done.
+void expect_places(CLI::App& app) {
+    const auto is_place = [](const CLI::Option* option) {
+        const std::string name = option->get_single_name();
+        return name == "out" || name == "library" || name == "truth";
+    };
+    for (CLI::Option* option : app.get_options(is_place))
+        option->check([](const std::string& place) {
+            return place.empty() ? std::string("must name a place, got nothing") : std::string();
+        });
+    for (CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+        expect_places(*command);
+}
+
+int command_line(int argc, const char* const* argv) {
+    CLI::App app(about, "mcdem");
+    app.footer(first_steps);
+    app.require_subcommand(1);
+    app.set_version_flag("--version", std::string("mcdem ") + version_text);
+    int exit_code = exit_done;
+    for (const auto add : {add_devices, add_validate, add_run, add_distribute, add_verify, add_table,
+                           add_compare, add_figures, add_report, add_calibrate, add_converge, add_export,
+                           add_experiment, add_diagnose, add_challenge, add_completion, add_manual})
+        add(app, exit_code);
+    expect_places(app);
+    try {
+        app.parse(argc, argv);
+        return exit_code;
+    } catch (const CLI::ParseError& error) {
+        return error.get_exit_code() == 0 ? app.exit(error) : report_usage(app, error);
+    }
+}
+
+}  // namespace
+
+int run_cli(int argc, const char* const* argv) {
+    try {
+        set_up_streams();
+        set_up_messages();
+        hint_at_crashes();
+        opencl_started = hint_at_crashes;
+        read_run_packing = packing_of_run;
+        return exit_code_of_output(command_line(argc, argv));
+    } catch (const std::exception& error) {
+        return report_error(error);
+    }
+}
+
+}  // namespace mcdem::cli

@@ -1,0 +1,31 @@
+// One function a command: adds it to the program's command line, with its help. The command's exit code
+// is put into `exit_code` when the command line asks for it; errors are thrown.
+#pragma once
+#include <CLI/CLI.hpp>
+
+namespace mcdem::inline cli {
+
+inline constexpr int exit_done = 0;
+inline constexpr int exit_failed = 1;
+inline constexpr int exit_bad_input = 2;
+inline constexpr int exit_interrupted = 130;
+
+void add_devices(CLI::App& app, int& exit_code);
+void add_validate(CLI::App& app, int& exit_code);
+void add_run(CLI::App& app, int& exit_code);
+void add_distribute(CLI::App& app, int& exit_code);
+void add_verify(CLI::App& app, int& exit_code);
+void add_table(CLI::App& app, int& exit_code);
+void add_compare(CLI::App& app, int& exit_code);
+void add_figures(CLI::App& app, int& exit_code);
+void add_report(CLI::App& app, int& exit_code);
+void add_calibrate(CLI::App& app, int& exit_code);
+void add_converge(CLI::App& app, int& exit_code);
+void add_export(CLI::App& app, int& exit_code);
+void add_diagnose(CLI::App& app, int& exit_code);
+void add_challenge(CLI::App& app, int& exit_code);
+void add_experiment(CLI::App& app, int& exit_code);
+void add_completion(CLI::App& app, int& exit_code);
+void add_manual(CLI::App& app, int& exit_code);
+
+}  // namespace mcdem::cli

@@ -1,0 +1,281 @@
+#include "cli/shell/completion.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "cli/shell/commands.h"
+#include "cli/shell/standard_streams.h"
+#include "scene/keys.h"
+
+namespace mcdem::inline cli {
+namespace {
+
+/// What may stand where an option's value or a positional is expected.
+enum class Kind { folder, file, scene_key, word, anything };
+
+Kind kind_of(const OptionEntry& option) {
+    if (!option.choices.empty()) return Kind::word;
+    if (option.value == "DIR") return Kind::folder;
+    if (option.value == "FILE") return Kind::file;
+    if (option.value == "KEY=VALUE" && option.names.front() == "--set") return Kind::scene_key;
+    return Kind::anything;
+}
+
+/// In single quotes, for any of the shells.
+std::string in_quotes(const std::string& text) {
+    std::string all = "'";
+    for (const char c : text)
+        if (c == '\'')
+            all += "'\\''";
+        else
+            all += c == '\n' ? ' ' : c;
+    return all + "'";
+}
+
+std::string place_of(const CommandEntry& command) {
+    std::string place = command.path.empty() ? "" : "/" + command.path;
+    std::ranges::replace(place, ' ', '/');
+    return place;
+}
+
+/// All places, as one pattern of `case`.
+std::string places(const std::vector<CommandEntry>& tree) {
+    std::string pattern;
+    for (const CommandEntry& command : tree)
+        if (!command.path.empty()) pattern += (pattern.empty() ? "" : "|") + place_of(command);
+    return pattern;
+}
+
+/// One line a command and option that takes a value: `"PLACE --option") ACTION ;;`.
+template <class Action>
+std::string value_cases(const std::vector<CommandEntry>& tree, Action action) {
+    std::string cases;
+    for (const CommandEntry& command : tree)
+        for (const OptionEntry& option : command.options)
+            if (!option.value.empty())
+                for (const std::string& name : option.names)
+                    cases +=
+                        fmt::format("        \"{} {}\") {} ;;\n", place_of(command), name, action(option));
+    return cases;
+}
+
+std::vector<std::string> all_names(const std::vector<OptionEntry>& options) {
+    std::vector<std::string> names;
+    for (const OptionEntry& option : options)
+        names.insert(names.end(), option.names.begin(), option.names.end());
+    return names;
+}
+
+/// The words that a command takes where it has neither files nor commands.
+std::vector<std::string> choices_of(const CommandEntry& command) {
+    for (const OptionEntry& positional : command.positionals)
+        if (!positional.choices.empty()) return positional.choices;
+    return {};
+}
+
+bool takes_files(const CommandEntry& command) {
+    return !command.positionals.empty() && choices_of(command).empty();
+}
+
+std::string bash_action(const OptionEntry& option) {
+    switch (kind_of(option)) {
+        case Kind::folder:
+            return "compopt -o filenames; COMPREPLY=($(compgen -d -- \"$current\")); return";
+        case Kind::file:
+            return "compopt -o filenames; COMPREPLY=($(compgen -f -- \"$current\")); return";
+        case Kind::scene_key:
+            return "compopt -o nospace; COMPREPLY=($(compgen -S = -W \"$keys\" -- \"$current\")); return";
+        case Kind::word:
+            return fmt::format("COMPREPLY=($(compgen -W '{}' -- \"$current\")); return",
+                               fmt::join(option.choices, " "));
+        case Kind::anything:
+            break;
+    }
+    return "return";
+}
+
+std::string bash_script(const std::vector<CommandEntry>& tree, const std::string& keys) {
+    std::string commands;
+    for (const CommandEntry& command : tree) {
+        auto words = command.commands;
+        for (const std::string& word : choices_of(command)) words.push_back(word);
+        commands += fmt::format("        \"{}\") options='{}' words='{}' files={} ;;\n", place_of(command),
+                                fmt::join(all_names(command.options), " "), fmt::join(words, " "),
+                                takes_files(command) ? "yes" : "");
+    }
+    return fmt::format(R"(# bash completion of mcdem, as `mcdem completion bash` writes it
+_mcdem() {{
+    local current=${{COMP_WORDS[COMP_CWORD]}} previous=${{COMP_WORDS[COMP_CWORD-1]}}
+    local place='' word options='' words='' files=''
+    local keys='{}'
+    COMPREPLY=()
+    for word in "${{COMP_WORDS[@]:1:COMP_CWORD-1}}"; do
+        case "$place/$word" in
+        {}) place+=/$word ;;
+        esac
+    done
+    case "$place $previous" in
+{}    esac
+    case "$place" in
+{}    esac
+    if [[ $current == -* ]]; then
+        COMPREPLY=($(compgen -W "$options" -- "$current"))
+    else
+        COMPREPLY=($(compgen -W "$words" -- "$current"))
+        if [[ -n $files ]]; then
+            compopt -o filenames
+            COMPREPLY+=($(compgen -f -- "$current"))
+        fi
+    fi
+}}
+complete -F _mcdem mcdem
+)",
+                       keys, places(tree), value_cases(tree, bash_action), commands);
+}
+
+std::string zsh_action(const OptionEntry& option) {
+    switch (kind_of(option)) {
+        case Kind::folder:
+            return "_files -/; return";
+        case Kind::file:
+            return "_files; return";
+        case Kind::scene_key:
+            return "compadd -S = -- $keys; return";
+        case Kind::word:
+            return fmt::format("compadd -- {}; return", fmt::join(option.choices, " "));
+        case Kind::anything:
+            break;
+    }
+    return "_message 'value'; return";
+}
+
+/// 'name:what it is', for _describe.
+std::string zsh_entry(const std::string& name, const std::string& help) {
+    std::string entry = name + ":";
+    for (const char c : help) entry += c == ':' ? std::string("\\:") : std::string(1, c);
+    return " " + in_quotes(entry);
+}
+
+std::string zsh_script(const std::vector<CommandEntry>& tree, const std::string& keys) {
+    std::string commands;
+    for (const CommandEntry& command : tree) {
+        std::string options, words;
+        for (const OptionEntry& option : command.options)
+            for (const std::string& name : option.names) options += zsh_entry(name, option.help);
+        for (const std::string& name : command.commands)
+            words += zsh_entry(name, below(tree, command.path, name).about);
+        for (const std::string& word : choices_of(command)) words += " " + word;
+        commands += fmt::format("        \"{}\") options=({}) words_here=({}) files={} ;;\n",
+                                place_of(command), options, words, takes_files(command) ? "yes" : "''");
+    }
+    return fmt::format(R"(#compdef mcdem
+# zsh completion of mcdem, as `mcdem completion zsh` writes it
+_mcdem() {{
+    local place='' word files=''
+    local -a options words_here keys
+    keys=({})
+    for word in ${{words[2,CURRENT-1]}}; do
+        case "$place/$word" in
+        {}) place+=/$word ;;
+        esac
+    done
+    case "$place ${{words[CURRENT-1]}}" in
+{}    esac
+    case "$place" in
+{}    esac
+    if [[ ${{words[CURRENT]}} == -* ]]; then
+        _describe -o option options
+    else
+        if (( $#words_here )); then _describe command words_here; fi
+        if [[ -n $files ]]; then _files; fi
+    fi
+}}
+if [[ $funcstack[1] == _mcdem ]]; then _mcdem "$@"; else compdef _mcdem mcdem; fi
+)",
+                       keys, places(tree), value_cases(tree, zsh_action), commands);
+}
+
+std::string fish_value(const OptionEntry& option) {
+    switch (kind_of(option)) {
+        case Kind::folder:
+            return "-x -a '(__fish_complete_directories (commandline -ct))'";
+        case Kind::file:
+            return "-r -F";
+        case Kind::scene_key:
+            return "-x -a '(__mcdem_keys)'";
+        case Kind::word:
+            return fmt::format("-x -a '{}'", fmt::join(option.choices, " "));
+        case Kind::anything:
+            break;
+    }
+    return option.value.empty() ? "" : "-x";
+}
+
+std::string fish_lines(const std::vector<CommandEntry>& tree, const CommandEntry& command) {
+    const std::string start = fmt::format("complete -c mcdem -n '__mcdem_at \"{}\"'", place_of(command));
+    std::string lines = start + (takes_files(command) ? " -F\n" : " -f\n");
+    for (const OptionEntry& option : command.options) {
+        std::string names;
+        for (const std::string& name : option.names)
+            names += name.starts_with("--") ? " -l " + name.substr(2) : " -s " + name.substr(1);
+        lines += fmt::format("{}{} {} -d {}\n", start, names, fish_value(option), in_quotes(option.help));
+    }
+    for (const std::string& name : command.commands)
+        lines +=
+            fmt::format("{} -a {} -d {}\n", start, name, in_quotes(below(tree, command.path, name).about));
+    if (!choices_of(command).empty())
+        lines += fmt::format("{} -a '{}'\n", start, fmt::join(choices_of(command), " "));
+    return lines;
+}
+
+std::string fish_script(const std::vector<CommandEntry>& tree, const std::string& keys) {
+    std::string commands;
+    for (const CommandEntry& command : tree) commands += fish_lines(tree, command);
+    return fmt::format(R"(# fish completion of mcdem, as `mcdem completion fish` writes it
+function __mcdem_at
+    set -l place ''
+    for word in (commandline -opc)[2..-1]
+        contains -- "$place/$word" {}; and set place "$place/$word"
+    end
+    test "$place" = "$argv[1]"
+end
+function __mcdem_keys
+    string join \n -- {} | string replace -r '$' '='
+end
+{})",
+                       [&] {
+                           std::string list = places(tree);
+                           std::ranges::replace(list, '|', ' ');
+                           return list;
+                       }(),
+                       keys, commands);
+}
+
+}  // namespace
+
+std::string completion_script(const std::vector<CommandEntry>& tree, const std::string& shell,
+                              const std::vector<std::string>& scene_keys) {
+    const std::string keys = fmt::format("{}", fmt::join(scene_keys, " "));
+    if (shell == "zsh") return zsh_script(tree, keys);
+    return shell == "fish" ? fish_script(tree, keys) : bash_script(tree, keys);
+}
+
+void add_completion(CLI::App& app, int&) {
+    auto* sub = app.add_subcommand("completion", "Print the completion script of a shell");
+    auto shell = std::make_shared<std::string>();
+    sub->add_option("SHELL", *shell, "bash, zsh or fish")
+        ->required()
+        ->check(CLI::IsMember({"bash", "zsh", "fish"}));
+    sub->footer(
+        "Installed by `cmake --install`; without installing, for this session:\n"
+        "  source <(mcdem completion bash)");
+    sub->callback([&app, shell] {
+        std::vector<std::string> names;
+        for (const Key& key : keys()) names.emplace_back(key.name);
+        print_out("{}", completion_script(command_tree(app), *shell, names));
+    });
+}
+
+}  // namespace mcdem::cli

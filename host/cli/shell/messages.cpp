@@ -1,0 +1,57 @@
+#include "cli/shell/messages.h"
+
+#include <spdlog/sinks/stdout_sinks.h>
+
+#include <sstream>
+
+#include "cl/opencl.h"
+#include "cli/shell/commands.h"
+#include "core/errors.h"
+
+namespace mcdem::inline cli {
+namespace {
+
+void say_lines(const std::string& text) {
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);) spdlog::error("{}", line);
+}
+
+/// What a user can do about an OpenCL error. Drivers use CL_OUT_OF_RESOURCES for both.
+const char* remedy_of(cl_int code) {
+    switch (code) {
+        case CL_MEM_OBJECT_ALLOCATION_FAILURE:
+            return "the device has not enough memory; run fewer replicas at a time";
+        case CL_OUT_OF_RESOURCES:
+            return "the device has not enough memory (run fewer replicas at a time), or it has failed "
+                   "(`mcdem devices` lists those that answer)";
+        default:
+            return "the device or its driver has failed; `mcdem devices` lists those that answer";
+    }
+}
+
+}  // namespace
+
+void set_up_messages() {
+    auto logger =
+        std::make_shared<spdlog::logger>("mcdem", std::make_shared<spdlog::sinks::stderr_sink_mt>());
+    logger->set_pattern("mcdem: %v");
+    logger->set_error_handler([](const std::string&) {});  // a message that cannot be written ends nothing
+    spdlog::set_default_logger(logger);
+}
+
+int report_error(const std::exception& error) {
+    if (const auto* input = dynamic_cast<const InputError*>(&error)) {
+        for (const auto& problem : input->problems()) say_lines(problem);
+        return exit_bad_input;
+    }
+    if (const auto* opencl = dynamic_cast<const cl::Error*>(&error))
+        spdlog::error("OpenCL: {} failed with code {}: {}", opencl->what(), opencl->err(),
+                      remedy_of(opencl->err()));
+    else if (dynamic_cast<const std::bad_alloc*>(&error))
+        spdlog::error("needs more memory than there is");
+    else
+        say_lines(error.what());
+    return exit_failed;
+}
+
+}  // namespace mcdem::cli

@@ -1,0 +1,50 @@
+// How far a run is, and how long it will take: a bar on a terminal, lines of text elsewhere.
+#pragma once
+#include <chrono>
+#include <cstdio>
+#include <functional>
+#include <optional>
+#include <string>
+
+namespace mcdem::inline cli {
+
+enum class ProgressStyle { bar, lines };
+
+/// A bar where `out` is a terminal that can redraw its line.
+ProgressStyle progress_style(std::FILE* out);
+
+class Progress {
+public:
+    using Clock = std::chrono::steady_clock;
+    Progress(std::FILE* out, ProgressStyle style, std::function<Clock::time_point()> now = Clock::now);
+    ~Progress() { clear(); }
+    Progress(const Progress&) = delete;
+    Progress& operator=(const Progress&) = delete;
+
+    /// `fraction` of the work is done. Draws only when there is something new to see.
+    void show(double fraction);
+    /// Takes the bar away, before something else is written; the next show() brings it back.
+    void clear();
+
+private:
+    struct Moment {
+        Clock::time_point time;
+        double fraction;
+    };
+    double seconds_since(const Moment& moment) const;
+    std::string time_left(double fraction) const;
+    void draw_bar(double fraction);
+    void print_line(double fraction);
+
+    std::FILE* out_;
+    ProgressStyle style_;
+    std::function<Clock::time_point()> now_;
+    std::optional<Moment> first_;  ///< a resumed run does not begin at 0
+    std::optional<Moment> last_;   ///< when something was drawn
+    bool bar_is_there_ = false;
+};
+
+/// "42 s", "3 min 20 s", "2 h 05 min".
+std::string duration_text(double seconds);
+
+}  // namespace mcdem::cli

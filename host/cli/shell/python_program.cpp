@@ -1,0 +1,90 @@
+#include "cli/shell/python_program.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <ranges>
+#include <thread>
+
+#include "cli/shell/commands.h"
+#include "cli/shell/interrupt.h"
+#include "cli/shell/subprocess.h"
+#include "core/errors.h"
+
+namespace mcdem::inline cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int not_started = 127;                     ///< the exit code where exec fails
+constexpr auto look = std::chrono::milliseconds(5);  ///< whether it has ended
+
+std::string variable(const char* name) {
+    const char* value = std::getenv(name);
+    return value ? value : "";
+}
+
+std::string interpreter() {
+    const std::string chosen = variable("MCDEM_PYTHON");
+    if (!chosen.empty()) return chosen;
+    // In a virtual environment the one beside this program, else the system's.
+    for (const fs::path& python : {this_program().parent_path() / "python3", fs::path("/usr/bin/python3")})
+        if (::access(python.c_str(), X_OK) == 0) return python.string();
+    return "python3";
+}
+
+/// The folder that holds the package `mcdem`.
+fs::path package_folder() {
+    const std::string chosen = variable("MCDEM_PYTHON_FOLDER");
+    std::vector<fs::path> folders{chosen};
+    if (chosen.empty())
+        folders = {this_program().parent_path().parent_path() / "share/mcdem/python", MCDEM_SOURCE_PYTHON};
+    for (const fs::path& folder : folders)
+        if (std::error_code ignored; fs::exists(folder / "mcdem/program.py", ignored)) return folder;
+    throw RunError(
+        fmt::format("the Python package of mcdem is not in {}: install mcdem again, or name its folder by "
+                    "MCDEM_PYTHON_FOLDER",
+                    fmt::join(folders | std::views::transform(&fs::path::native), " or ")));
+}
+
+/// Only the package's folder and what the user has set: no module of the folder that one is in comes in
+/// between.
+std::vector<std::string> environment() {
+    const std::string others = variable("PYTHONPATH");
+    return {"PYTHONPATH=" + package_folder().string() + (others.empty() ? "" : ":" + others),
+            "PYTHONSAFEPATH=1", "PYTHONDONTWRITEBYTECODE=1"};
+}
+
+ProgramEnd end_of(Subprocess python) {
+    const Interrupt interrupt;
+    for (bool told = false;;) {
+        if (const auto end = python.ended()) return *end;
+        if (Interrupt::wanted() && !told) {
+            python.send(SIGINT);
+            told = true;
+        }
+        std::this_thread::sleep_for(look);
+    }
+}
+
+}  // namespace
+
+int run_python_module(const std::string& module, const std::vector<std::string>& arguments) {
+    std::vector<std::string> words{interpreter(), "-m", "mcdem.program", module};
+    words.insert(words.end(), arguments.begin(), arguments.end());
+    std::fflush(stdout);  // or its output would come first
+    const ProgramEnd end = end_of(Subprocess(words, environment()));
+    if (end.exit_code == not_started)
+        throw RunError(fmt::format(
+            "{}: cannot be started: install python3, or name a Python 3 by MCDEM_PYTHON", words.front()));
+    if (end.exit_code >= 0) return end.exit_code;
+    if (end.signal == SIGINT || end.signal == SIGTERM) return exit_interrupted;
+    throw RunError(fmt::format("{} -m {}: was ended by signal {}", words.front(), module, end.signal));
+}
+
+}  // namespace mcdem::cli

@@ -1,0 +1,121 @@
+#include "cli/shell/subprocess.h"
+
+#include <fcntl.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include "core/errors.h"
+
+namespace mcdem::inline cli {
+namespace {
+
+constexpr int not_found = 127;
+
+std::vector<char*> pointers(std::vector<std::string>& words) {
+    std::vector<char*> all;
+    for (auto& word : words) all.push_back(word.data());
+    all.push_back(nullptr);
+    return all;
+}
+
+/// This program's environment, with these settings in place of those of the same name.
+std::vector<std::string> environment_with(const std::vector<std::string>& settings) {
+    std::vector<std::string> all = settings;
+    for (char** own = environ; *own; ++own) {
+        const std::string_view setting = *own;
+        const auto name = setting.substr(0, setting.find('=') + 1);
+        if (std::ranges::none_of(settings, [&](const auto& other) { return other.starts_with(name); }))
+            all.emplace_back(setting);
+    }
+    return all;
+}
+
+/// `out`: what becomes its standard output, or -1.
+pid_t start(std::vector<std::string>& words, int out, const std::vector<std::string>& settings = {}) {
+    const auto arguments = pointers(words);
+    auto environment = environment_with(settings);
+    const auto variables = pointers(environment);
+    const pid_t parent = ::getpid();
+    const pid_t process = ::fork();
+    if (process < 0) throw RunError(words.front() + ": cannot be started: " + std::strerror(errno));
+    if (process == 0) {  // only what may be called between fork and exec
+        ::prctl(PR_SET_PDEATHSIG, SIGTERM);
+        if (::getppid() != parent) ::_exit(not_found);
+        if (out < 0 || ::dup2(out, STDOUT_FILENO) >= 0) {
+            ::execvpe(arguments[0], arguments.data(), variables.data());
+        }
+        ::_exit(not_found);
+    }
+    return process;
+}
+
+ProgramEnd end_of(int status) {
+    ProgramEnd end;
+    if (WIFEXITED(status)) end.exit_code = WEXITSTATUS(status);
+    if (WIFSIGNALED(status)) end.signal = WTERMSIG(status);
+    return end;
+}
+
+}  // namespace
+
+Subprocess::Subprocess(std::vector<std::string> words, const std::vector<std::string>& environment)
+    : process_(start(words, -1, environment)) {}
+
+Subprocess::Subprocess(Subprocess&& other) noexcept
+    : process_(std::exchange(other.process_, -1)), end_(std::move(other.end_)) {}
+
+Subprocess::~Subprocess() {
+    if (process_ < 0) return;
+    ::kill(process_, SIGTERM);
+    int status = 0;
+    while (::waitpid(process_, &status, 0) < 0 && errno == EINTR) {
+    }
+}
+
+std::optional<ProgramEnd> Subprocess::ended() {
+    int status = 0;
+    if (process_ >= 0 && ::waitpid(process_, &status, WNOHANG) == process_) {
+        process_ = -1;
+        end_ = end_of(status);
+    }
+    return end_;
+}
+
+void Subprocess::send(int signal) const {
+    if (process_ >= 0) ::kill(process_, signal);
+}
+
+std::optional<ProgramEnd> output_of(std::vector<std::string> words) {
+    int ends[2];
+    if (::pipe2(ends, O_CLOEXEC) != 0) throw RunError("no pipe to " + words.front());
+    const pid_t process = start(words, ends[1]);
+    ::close(ends[1]);
+    std::string out;
+    char block[4096];
+    for (ssize_t size; (size = ::read(ends[0], block, sizeof block)) != 0;)
+        if (size > 0)
+            out.append(block, static_cast<std::size_t>(size));
+        else if (errno != EINTR)
+            break;
+    ::close(ends[0]);
+    int status = 0;
+    while (::waitpid(process, &status, 0) < 0)
+        if (errno != EINTR) throw RunError(words.front() + ": lost: " + std::strerror(errno));
+    ProgramEnd end = end_of(status);
+    if (end.exit_code == not_found) return std::nullopt;
+    end.out = std::move(out);
+    return end;
+}
+
+std::filesystem::path this_program() { return std::filesystem::read_symlink("/proc/self/exe"); }
+
+}  // namespace mcdem::cli

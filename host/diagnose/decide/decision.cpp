@@ -1,0 +1,193 @@
+#include "diagnose/decide/decision.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace mcdem::inline diagnose {
+namespace {
+
+/// Gain by candidate: from real runs where there are some, else as far behind the leader as by signatures.
+std::vector<double> known_gains(const Findings& findings, const Proposal& leader) {
+    std::vector<double> gains = findings.gain;
+    for (double& gain : gains)
+        if (gain > 0) gain += leader.best_gain() - leader.gain;
+    for (const Proposal& proposal : findings.proposals)
+        if (proposal.candidates.size() == 1 && proposal.confirmed_gain)
+            gains[proposal.candidates[0]] = *proposal.confirmed_gain;
+    return gains;
+}
+
+/// Index of the best single effect, -1 where there is none.
+int best_single(const Findings& findings) {
+    int best = -1;
+    for (std::size_t k = 0; k < findings.proposals.size(); ++k) {
+        const Proposal& proposal = findings.proposals[k];
+        if (proposal.candidates.size() != 1) continue;
+        if (best < 0 || proposal.best_gain() > findings.proposals[static_cast<std::size_t>(best)].best_gain())
+            best = static_cast<int>(k);
+    }
+    return best;
+}
+
+/// Index of a pair that is worth its second effect by what it gains, -1 where there is none.
+int gaining_pair(const Findings& findings, double single_gain, const Limits& limits) {
+    for (std::size_t k = 0; k < findings.proposals.size(); ++k) {
+        const Proposal& pair = findings.proposals[k];
+        if (pair.candidates.size() == 2 &&
+            pair.best_gain() - single_gain > std::max(limits.second_gain, limits.second_share * single_gain))
+            return static_cast<int>(k);
+    }
+    return -1;
+}
+
+/// The part of the gap that is to be taken away for a name: most of it, and clearly more than by a placebo.
+double needed_reduction(const Findings& findings, const Limits& limits) {
+    return std::max(limits.reduction, findings.placebo + limits.over_placebo);
+}
+
+bool takes_the_gap_away(const Proposal& proposal, const Findings& findings, const Limits& limits) {
+    return proposal.best_reduction() >= needed_reduction(findings, limits);
+}
+
+/// Two instead of one: where one leaves more than noise, and two leave noise or little of what one does.
+bool is_better(const Proposal& pair, const Proposal& single, const Limits& limits) {
+    return single.best_misfit() < limits.misfit &&
+           (pair.best_misfit() >= limits.pair_misfit ||
+            1 - pair.best_reduction() <= limits.pair_remainder * (1 - single.best_reduction()));
+}
+
+/// Probability that an explanation is right, by the part of the gap that it takes away.
+double trust(const Proposal& proposal, const Findings& findings, const Limits& limits) {
+    const double over = proposal.best_reduction() - needed_reduction(findings, limits);
+    const double above = std::clamp(0.5 + 0.5 * over / limits.reduction_error, 0.0, 1.0);
+    return limits.right_below + above * (limits.right_above - limits.right_below);
+}
+
+/// Each candidate's share of the likelihood, gains that differ by the group's margin weighing as
+/// `limits.group`.
+std::vector<double> shares(const std::vector<double>& gains, double best, double margin,
+                           const Limits& limits) {
+    std::vector<double> parts;
+    double sum = 0;
+    for (const double gain : gains)
+        sum += parts.emplace_back(std::exp(std::min(0.0, gain - best) * limits.group / margin));
+    for (double& part : parts) part /= sum;
+    return parts;
+}
+
+/// The leader, and who is within the margin behind it, by gain.
+std::vector<std::size_t> group_of(std::size_t leader, const std::vector<double>& gains, double best,
+                                  double margin) {
+    std::vector<std::size_t> group{leader};
+    for (std::size_t c = 0; c < gains.size(); ++c)
+        if (c != leader && gains[c] > 0 && best - gains[c] <= margin) group.push_back(c);
+    std::sort(group.begin() + 1, group.end(), [&](auto a, auto b) { return gains[a] > gains[b]; });
+    return group;
+}
+
+/// Index of the proposal of one candidate alone, -1 where there is none.
+int proposal_of(std::size_t candidate, const Findings& findings) {
+    const auto found = std::ranges::find(findings.proposals, std::vector{candidate}, &Proposal::candidates);
+    return found == findings.proposals.end() ? -1 : static_cast<int>(found - findings.proposals.begin());
+}
+
+/// Who was tried and takes too little away does not stand for the leader, however near in likelihood.
+void keep_those_that_do(std::vector<std::size_t>& group, const Findings& findings, const Limits& limits) {
+    const auto fails = [&](std::size_t candidate) {
+        const int k = proposal_of(candidate, findings);
+        return k >= 0 &&
+               !takes_the_gap_away(findings.proposals[static_cast<std::size_t>(k)], findings, limits);
+    };
+    group.erase(std::remove_if(group.begin() + 1, group.end(), fails), group.end());
+}
+
+/// Suspects come before any effect that they cannot be told from: first the simulation's own numerics, then
+/// stated parameters that may be wrong.
+template <class IsSuspect>
+bool suspected(Decision& decision, const Findings& findings, Verdict verdict, IsSuspect is_suspect) {
+    if (std::ranges::none_of(decision.group, is_suspect)) return false;
+    std::stable_partition(decision.group.begin(), decision.group.end(), is_suspect);
+    decision.verdict = verdict;
+    const auto& decided = findings.proposals[static_cast<std::size_t>(decision.proposal)];
+    if (const int proposal = proposal_of(decision.group[0], findings);
+        proposal >= 0 && decided.candidates.size() == 1)
+        decision.proposal = proposal;
+    return true;
+}
+
+void name_it(Decision& decision, const Findings& findings) {
+    const bool pair = findings.proposals[static_cast<std::size_t>(decision.proposal)].candidates.size() == 2;
+    if (suspected(decision, findings, Verdict::not_converged,
+                  [&](std::size_t c) { return findings.is_numerical(c); }))
+        return;
+    if (!pair && suspected(decision, findings, Verdict::calibration_suspect,
+                           [&](std::size_t c) { return findings.is_nuisance(c); }))
+        return;
+    decision.verdict = !pair && decision.group.size() > 1 ? Verdict::group : Verdict::effect;
+}
+
+/// Verdict, proposal and group.
+Decision chosen(const Findings& findings, int single, std::vector<std::size_t> group, const Limits& limits) {
+    Decision decision;
+    decision.proposal = single;
+    decision.group = std::move(group);
+    if (findings.p_value >= limits.false_alarm) return decision;
+    const Proposal& leader = findings.proposals[static_cast<std::size_t>(single)];
+    const int pair = gaining_pair(findings, leader.best_gain(), limits);
+    if (pair >= 0) {
+        const Proposal& two = findings.proposals[static_cast<std::size_t>(pair)];
+        if (takes_the_gap_away(two, findings, limits) && is_better(two, leader, limits)) {
+            decision.proposal = pair;
+            decision.group = two.candidates;
+            name_it(decision, findings);
+            return decision;
+        }
+    }
+    if (!takes_the_gap_away(leader, findings, limits)) {
+        decision.verdict = Verdict::unknown_effect;
+        return decision;
+    }
+    keep_those_that_do(decision.group, findings, limits);
+    name_it(decision, findings);
+    return decision;
+}
+
+}  // namespace
+
+Decision decide(const Findings& findings, const Limits& limits) {
+    const int single = best_single(findings);
+    if (single < 0) return {Verdict::no_gap, -1, {}, std::vector<double>(findings.gain.size(), 0.0)};
+    const Proposal& leader = findings.proposals[static_cast<std::size_t>(single)];
+    const std::vector<double> gains = known_gains(findings, leader);
+    const double best = leader.best_gain(), margin = std::max(limits.group, limits.group_share * best);
+    Decision decision = chosen(findings, single, group_of(leader.candidates[0], gains, best, margin), limits);
+    const Proposal& decided = findings.proposals[static_cast<std::size_t>(decision.proposal)];
+    decision.confidence = shares(gains, best, margin, limits);
+    for (double& p : decision.confidence) p *= trust(decided, findings, limits);
+    return decision;
+}
+
+std::vector<std::size_t> contenders(const Findings& findings, const Limits& limits) {
+    std::vector<std::size_t> list;
+    if (const int single = best_single(findings); single >= 0) {
+        list.push_back(static_cast<std::size_t>(single));
+        const int pair = gaining_pair(findings, findings.proposals[list[0]].best_gain(), limits);
+        if (pair >= 0) list.push_back(static_cast<std::size_t>(pair));
+    }
+    return list;
+}
+
+std::optional<Explanation> explanation_of(const Findings& findings, const Decision& decision,
+                                          const Limits& limits) {
+    if (decision.verdict == Verdict::no_gap || decision.proposal < 0) return std::nullopt;
+    const Proposal& decided = findings.proposals[static_cast<std::size_t>(decision.proposal)];
+    return Explanation{.reduction = decided.best_reduction(),
+                       .simulated = decided.confirmed_reduction.has_value(),
+                       .held_out = findings.held_out,
+                       .placebo = findings.placebo,
+                       .needed = needed_reduction(findings, limits),
+                       .remainder_p = decided.best_misfit(),
+                       .leaves_more_than_noise = decided.best_misfit() < limits.misfit};
+}
+
+}  // namespace mcdem::diagnose

@@ -1,0 +1,288 @@
+#include "diagnose/decide/diagnose.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "core/errors.h"
+#include "diagnose/decide/location.h"
+#include "diagnose/decide/next_steps.h"
+#include "diagnose/infer/detection_limits.h"
+#include "diagnose/infer/effects.h"
+#include "diagnose/observe/not_measured.h"
+
+namespace mcdem::inline diagnose {
+namespace {
+
+constexpr std::size_t fewest_cells = 4;
+constexpr double worth_another_run = 0.01;  ///< p of what a proposal leaves, below
+
+GapData checked_data(const Evidence& evidence) {
+    GapData data = gap_data(evidence);
+    if (data.cells.size() < fewest_cells)
+        throw InputError(fmt::format(
+            "the experiment and the simulations have {} observations in common, and {} are needed: "
+            "the plate must press the packing within its stroke in both",
+            data.cells.size(), fewest_cells));
+    return data;
+}
+
+std::string unit_of(const Evidence& evidence, const std::string& name) {
+    for (const CandidateRange& c : evidence.candidates)
+        if (c.name == name) return c.unit;
+    for (const NuisancePrior& n : evidence.nuisances)
+        if (n.name == name) return n.unit;
+    return "";
+}
+
+std::vector<NuisanceFit> nuisance_fits(const Evidence& evidence, const GapSpace& space,
+                                       const Eigen::VectorXd& gap) {
+    constexpr double far_out = 2.5;  // prior sigmas
+    const Eigen::VectorXd values = space.fit_nuisances(gap), errors = space.nuisance_errors();
+    std::vector<NuisanceFit> fits;
+    for (std::size_t k = 0; k < evidence.nuisances.size(); ++k) {
+        const NuisancePrior& prior = evidence.nuisances[k];
+        const auto i = static_cast<Eigen::Index>(k);
+        fits.push_back({prior.name, values[i], errors[i], prior.sigma, prior.unit,
+                        std::abs(values[i]) > far_out * prior.sigma});
+    }
+    return fits;
+}
+
+/// The candidates as causes, in the words of the output.
+class Causes {
+public:
+    Causes(const Evidence& evidence, const Findings& findings, const Decision& decision,
+           const GapStatistics& statistics)
+        : evidence_(evidence), findings_(findings), decision_(decision), statistics_(statistics) {}
+
+    Cause of(std::size_t candidate) const {
+        Cause cause;
+        cause.effect = findings_.names[candidate];
+        cause.amplitude = statistics_.fits[candidate].amplitude;
+        cause.amplitude_error = statistics_.fits[candidate].error;
+        cause.unit = unit_of(evidence_, cause.effect);
+        cause.confidence = decision_.confidence[candidate];
+        cause.score = findings_.gain[candidate];
+        cause.explained = statistics_.omnibus > 0 ? 2 * cause.score / statistics_.omnibus : 0;
+        cause.group = {cause.effect};
+        for (const Proposal& proposal : findings_.proposals)
+            if (proposal.candidates == std::vector{candidate}) {
+                cause.confirmed_score = proposal.confirmed_gain;
+                if (proposal.confirmed_gain) take_amplitude(cause, candidate, proposal);
+            }
+        // Of an effect that is named there is one amplitude: that of the explanation.
+        if (decision_.verdict != Verdict::no_gap && decision_.proposal >= 0)
+            take_amplitude(cause, candidate,
+                           findings_.proposals[static_cast<std::size_t>(decision_.proposal)]);
+        return cause;
+    }
+
+    std::vector<Cause> ranking() const {
+        std::vector<std::size_t> order(findings_.names.size());
+        std::iota(order.begin(), order.end(), std::size_t{0});
+        std::ranges::stable_sort(order,
+                                 [&](auto a, auto b) { return findings_.gain[a] > findings_.gain[b]; });
+        std::vector<Cause> list;
+        for (const std::size_t candidate : order) list.push_back(of(candidate));
+        return list;
+    }
+
+    /// The leader and its group; or both effects of a pair, each by itself.
+    std::vector<Cause> leading() const {
+        const Proposal& decided = findings_.proposals[static_cast<std::size_t>(decision_.proposal)];
+        std::vector<Cause> list;
+        for (const std::size_t candidate : decision_.group) list.push_back(of(candidate));
+        if (decided.candidates.size() == 1)
+            for (Cause& cause : list) cause.group = names_of(decision_.group);
+        return list;
+    }
+
+private:
+    static void take_amplitude(Cause& cause, std::size_t candidate, const Proposal& proposal) {
+        const auto place = std::ranges::find(proposal.candidates, candidate) - proposal.candidates.begin();
+        if (place == std::ssize(proposal.candidates)) return;
+        cause.amplitude = proposal.amplitudes[static_cast<std::size_t>(place)];
+        cause.amplitude_error = proposal.errors[static_cast<std::size_t>(place)];
+    }
+
+    std::vector<std::string> names_of(const std::vector<std::size_t>& candidates) const {
+        std::vector<std::string> names;
+        for (const std::size_t c : candidates) names.push_back(findings_.names[c]);
+        return names;
+    }
+    const Evidence& evidence_;
+    const Findings& findings_;
+    const Decision& decision_;
+    const GapStatistics& statistics_;
+};
+
+}  // namespace
+
+Draft::Draft(const Evidence& evidence, const Limits& limits)
+    : evidence_(evidence),
+      limits_(limits),
+      data_(checked_data(evidence)),
+      mean_of_(static_cast<int>(evidence.baseline.rows())),
+      space_(data_.noise, mean_of_, data_.cells, data_.free),
+      null_(data_, mean_of_, evidence.seed),
+      statistics_(gap_statistics(space_, data_, data_.gap)),
+      split_(split_cells(data_.cells, evidence.library.grid)) {
+    const double omnibus = null_.p_value(&GapStatistics::omnibus, statistics_.omnibus);
+    const double directed = null_.p_value(&GapStatistics::directed, statistics_.directed);
+    findings_.p_value = std::min(1.0, 2 * std::min(omnibus, directed));
+    findings_.effects = data_.effects;
+    for (std::size_t c = 0; c < data_.candidates.size(); ++c) {
+        findings_.names.push_back(data_.name(c));
+        findings_.gain.push_back(statistics_.fits[c].score);
+        if (!findings_.is_nuisance(c) && is_numerical(data_.name(c))) findings_.numerics.push_back(c);
+    }
+    findings_.proposals = propose(space_, data_, null_, statistics_, mean_of_);
+    for (const Proposal& p : findings_.proposals)
+        whole_.push_back({p.amplitudes, space_.fit_nuisances(data_.gap - explained_by(p, data_))});
+    step_.resize(whole_.size());
+    runs_.resize(whole_.size());
+    held_out_done_.resize(whole_.size());
+    measure_reductions();
+    decision_ = decide(findings_, limits_);
+}
+
+void Draft::measure_reductions() {
+    findings_.held_out = held_out_gap(data_, split_, mean_of_).shows();
+    excess_ =
+        std::max(statistics_.directed, 0.5 * (statistics_.omnibus - null_.mean(&GapStatistics::omnibus)));
+    if (!(excess_ > 0)) return;
+    findings_.placebo = findings_.held_out ? held_out_placebo(data_, split_, mean_of_, evidence_.seed)
+                                           : whole_placebo(space_, data_, excess_, evidence_.seed);
+    for (Proposal& p : findings_.proposals)
+        p.reduction = by_likelihood(p) ? likelihood_reduction(p.gain)
+                                       : held_out_reduction(data_, split_, p.candidates, mean_of_);
+}
+
+bool Draft::by_likelihood(const Proposal& proposal) const {
+    return !findings_.held_out ||
+           std::ranges::any_of(proposal.candidates, [&](std::size_t c) { return findings_.is_nuisance(c); });
+}
+
+double Draft::likelihood_reduction(double gain) const { return std::clamp(gain / excess_, -1.0, 1.0); }
+
+void Draft::confirm(std::size_t proposal, const Eigen::MatrixXd& runs) {
+    Proposal tried = findings_.proposals[proposal];
+    tried.amplitudes = whole_[proposal].amplitudes;
+    step_[proposal] =
+        mcdem::confirm(tried, data_, null_, evidence_.observed, whole_[proposal].nuisances, runs);
+    if (!step_[proposal]) return;
+    const Eigen::MatrixXd whole = whole_runs(runs, data_.cells);
+    const Runs last{whole_[proposal], whole.colwise().mean().transpose(), static_cast<int>(whole.rows())};
+    // The signature's amplitude and the one that the runs ask for enclose the truth where signatures bend.
+    for (std::size_t k = 0; k < tried.amplitudes.size(); ++k) {
+        const double half =
+            0.5 * (*step_[proposal])[whole_[proposal].nuisances.size() + static_cast<Eigen::Index>(k)];
+        tried.amplitudes[k] += half;
+        tried.errors[k] = std::hypot(tried.errors[k], half);
+    }
+    const auto& known = findings_.proposals[proposal].confirmed_gain;
+    if (!known || *tried.confirmed_gain > *known) {
+        if (by_likelihood(tried)) tried.confirmed_reduction = likelihood_reduction(*tried.confirmed_gain);
+        findings_.proposals[proposal] = tried;
+        runs_[proposal] = last;
+    }
+    decision_ = decide(findings_, limits_);
+}
+
+bool Draft::may_gain(std::size_t proposal) const {
+    const Proposal& p = findings_.proposals[proposal];
+    return p.candidates.size() == 1 && findings_.is_nuisance(p.candidates[0]) &&
+           decision_.proposal != static_cast<int>(proposal) &&
+           std::abs((*step_[proposal])[whole_[proposal].nuisances.size()]) > p.errors[0];
+}
+
+bool Draft::refit(std::size_t proposal) {
+    const Proposal& p = findings_.proposals[proposal];
+    if (!step_[proposal] || (p.best_misfit() >= worth_another_run && !may_gain(proposal))) return false;
+    PartialFit& fit = whole_[proposal];
+    const auto nuisances = fit.nuisances.size();
+    const auto before = fit.amplitudes;
+    fit.nuisances += step_[proposal]->head(nuisances);
+    for (std::size_t k = 0; k < p.candidates.size(); ++k) {
+        const Candidate& candidate = data_.candidates[p.candidates[k]];
+        fit.amplitudes[k] =
+            std::clamp(fit.amplitudes[k] + (*step_[proposal])[nuisances + static_cast<Eigen::Index>(k)],
+                       candidate.low, candidate.high);
+    }
+    return fit.amplitudes != before;
+}
+
+std::optional<std::size_t> Draft::wants_held_out() const {
+    if (!has_decided()) return std::nullopt;
+    auto waiting = contenders(findings_, limits_);
+    waiting.push_back(decided());
+    const auto next = std::ranges::find_if(waiting, [&](std::size_t k) { return !held_out_done_[k]; });
+    return next == waiting.end() ? std::nullopt : std::optional(*next);
+}
+
+PartialFit Draft::part_fit(std::size_t proposal) const {
+    const Proposal& p = findings_.proposals[proposal];
+    const CellChoice& cells = split_.fitted.empty() ? data_.cells : split_.fitted;
+    if (!runs_[proposal]) return fit_part(data_, cells, data_.gap, p.candidates, mean_of_);
+    return refit_part(data_, cells, evidence_.observed - runs_[proposal]->mean, p.candidates,
+                      runs_[proposal]->fit, runs_[proposal]->count);
+}
+
+void Draft::confirm_held_out(std::size_t proposal, const Eigen::MatrixXd& runs) {
+    held_out_done_[proposal] = true;
+    Proposal& p = findings_.proposals[proposal];
+    if (!by_likelihood(p))
+        p.confirmed_reduction = reduction_by_runs(data_, split_, evidence_.observed, runs, mean_of_);
+    decision_ = decide(findings_, limits_);
+}
+
+double Draft::refining_factor(std::size_t candidate, double most) const {
+    constexpr double unnoticed = 4;  // log likelihood that what is left gains; chance alone gains as much
+    const Candidate& numerics = data_.candidates[candidate];
+    double reality = statistics_.fits[candidate].amplitude + statistics_.fits[candidate].error;
+    for (const Proposal& p : findings_.proposals)
+        for (std::size_t k = 0; k < p.candidates.size(); ++k)
+            if (p.candidates[k] == candidate && p.confirmed_gain) reality = p.amplitudes[k] + p.errors[k];
+    reality = std::min(reality, numerics.high);
+    for (double factor = 2; factor < most; factor *= 2) {
+        const Eigen::VectorXd left =
+            numerics.signature->at(reality) - numerics.signature->at(std::min(1 - 1 / factor, reality));
+        if (0.5 * space_.whiten(left).squaredNorm() < unnoticed) return factor;
+    }
+    return most;
+}
+
+Diagnosis Draft::diagnosis() const {
+    Diagnosis d;
+    d.verdict = decision_.verdict;
+    d.detected = d.verdict != Verdict::no_gap;
+    d.p_value = findings_.p_value;
+    d.p_omnibus = null_.p_value(&GapStatistics::omnibus, statistics_.omnibus);
+    d.p_directed = null_.p_value(&GapStatistics::directed, statistics_.directed);
+    const Location location = locate(space_, data_, null_, data_.gap, evidence_.library.grid, limits_);
+    d.cells = location.cells;
+    d.where_threshold = location.threshold;
+    if (d.detected) d.where = location.entries;
+    const Causes causes(evidence_, findings_, decision_, statistics_);
+    d.ranking = causes.ranking();
+    d.nuisances = nuisance_fits(evidence_, space_, data_.gap);
+    d.detection_limits = detection_limits(space_, data_, null_, evidence_, limits_);
+    d.not_measured = not_measured(evidence_.observed, evidence_.library.grid);
+    d.next = next_measurements(evidence_, data_, findings_, decision_, limits_);
+    if (!has_decided()) return d;
+    d.causes = causes.leading();
+    d.explanation = explanation_of(findings_, decision_, limits_);
+    const Proposal& explaining = findings_.proposals[decided()];
+    d.shrink = measure_shrink(data_, split_, explaining, mean_of_, evidence_.seed);
+    d.shrink->placebo = findings_.placebo;
+    d.shrink->interval = {d.shrink->interval[0] - limits_.shrink_margin,
+                          std::min(1.0, d.shrink->interval[1] + limits_.shrink_margin)};
+    d.shrink->fitted_displacement = {0, fitted_part * evidence_.library.grid.stroke};
+    if (!by_likelihood(explaining)) d.shrink->confirmed = explaining.confirmed_reduction;
+    return d;
+}
+
+}  // namespace mcdem::diagnose

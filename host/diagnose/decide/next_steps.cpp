@@ -1,0 +1,165 @@
+#include "diagnose/decide/next_steps.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <boost/math/distributions/normal.hpp>
+#include <cmath>
+
+#include "diagnose/observe/not_measured.h"
+
+namespace mcdem::inline diagnose {
+namespace {
+
+constexpr double times_better = 5;  ///< that a parameter is measured
+constexpr int more_packings = 3;
+constexpr double worth_saying = 0.9;  ///< of what errors or limits are now, or less
+constexpr std::size_t most_steps = 4;
+
+/// A measurement, as the space that it would make.
+struct Measurement {
+    std::string what;
+    GapSpace space;
+};
+
+std::string key_of(const std::string& nuisance) {
+    if (nuisance == "modulus") return "grains.youngs_modulus";
+    if (nuisance == "strain_offset") return "the zero of the plate's displacement";
+    if (nuisance == "gamma") return "contact.gamma";
+    return nuisance == "wall_friction" ? "walls.friction" : "grains.friction";
+}
+
+std::vector<Measurement> measurements_of(const Evidence& evidence, const GapData& data) {
+    const int mean_of = static_cast<int>(evidence.baseline.rows());
+    std::vector<Measurement> list;
+    for (std::size_t k = 0; k < data.free.size(); ++k) {
+        std::vector<FreeParameter> free = data.free;
+        free[k].sigma /= times_better;
+        list.push_back(
+            {fmt::format("measure {} {:g} times better", key_of(evidence.nuisances[k].name), times_better),
+             GapSpace(data.noise, mean_of, data.cells, free)});
+    }
+    list.push_back({fmt::format("measure {} more packings and diagnose each", more_packings),
+                    GapSpace(data.noise / std::sqrt(1.0 + more_packings), mean_of, data.cells, data.free)});
+    if (!not_measured(evidence.observed, evidence.library.grid).empty()) {
+        std::vector<const Signature*> used;
+        for (const Candidate& candidate : data.candidates) used.push_back(candidate.signature);
+        const auto all =
+            usable_cells(evidence.library.baseline, used, Eigen::VectorXd::Zero(data.mean.size()));
+        if (all.size() > data.cells.size())
+            list.push_back({"measure contact forces and positions of grains too",
+                            GapSpace(data.noise, mean_of, all, data.free)});
+    }
+    return list;
+}
+
+/// Squared distance, in sigmas, of a signature from the nearest that another candidate can do.
+double distance(const GapSpace& space, const Candidate& a, double amplitude, const Candidate& b) {
+    const Eigen::VectorXd gap = a.signature->at(amplitude);
+    return std::max(0.0, space.whiten(gap).squaredNorm() - 2 * fit_effect(space, b, gap).score);
+}
+
+/// Probability that the likelihoods of two explanations differ by more than the margin of a group.
+double power_to_tell(double squared_distance, double margin) {
+    if (!(squared_distance > 0)) return 0;
+    const double sigma = std::sqrt(squared_distance);
+    return cdf(boost::math::normal(), (0.5 * squared_distance - margin) / sigma);
+}
+
+/// The decided amplitude of a candidate.
+double amplitude_of(const Findings& findings, const Decision& decision, std::size_t candidate) {
+    const Proposal& decided = findings.proposals[static_cast<std::size_t>(decision.proposal)];
+    const auto place = std::ranges::find(decided.candidates, candidate) - decided.candidates.begin();
+    return place < std::ssize(decided.candidates) ? decided.amplitudes[static_cast<std::size_t>(place)] : 0;
+}
+
+/// To tell the leader of a group from the others.
+std::vector<NextStep> telling_apart(const std::vector<Measurement>& measurements, const GapData& data,
+                                    const Findings& findings, const Decision& decision,
+                                    const Limits& limits) {
+    const Proposal& decided = findings.proposals[static_cast<std::size_t>(decision.proposal)];
+    const std::size_t leader = decided.candidates.front();
+    const double amplitude = amplitude_of(findings, decision, leader);
+    const auto rival = std::ranges::find_if(decision.group, [&](std::size_t c) { return c != leader; });
+    std::vector<NextStep> steps;
+    for (const Measurement& m : measurements) {
+        const double squared = distance(m.space, data.candidates[leader], amplitude, data.candidates[*rival]);
+        const double gain =
+            0.5 * m.space.whiten(data.candidates[leader].signature->at(amplitude)).squaredNorm();
+        const double margin = std::max(limits.group, limits.group_share * gain);
+        steps.push_back({fmt::format("{}: tells {} from {}", m.what, data.name(leader), data.name(*rival)),
+                         power_to_tell(squared, margin)});
+    }
+    return steps;
+}
+
+/// Information on the amplitude of a candidate there, over that of now.
+double more_information(const GapSpace& then, const GapSpace& now, const Candidate& candidate,
+                        double amplitude) {
+    const Eigen::VectorXd slope = candidate.signature->slope(amplitude);
+    const double known = now.whiten(slope).squaredNorm();
+    return known > 0 ? then.whiten(slope).squaredNorm() / known : 1;
+}
+
+double median(std::vector<double> values) {
+    std::ranges::sort(values);
+    return values.empty() ? 1 : values[values.size() / 2];
+}
+
+/// Without rivals: what becomes of the amplitude's error, or without a gap of the detection limits.
+std::vector<NextStep> sharpening(const std::vector<Measurement>& measurements, const Evidence& evidence,
+                                 const GapData& data, const Findings& findings, const Decision& decision) {
+    const GapSpace now(data.noise, static_cast<int>(evidence.baseline.rows()), data.cells, data.free);
+    const bool named = decision.verdict == Verdict::effect;
+    std::vector<std::pair<double, std::string>> found;
+    for (const Measurement& m : measurements) {
+        std::vector<double> parts;
+        for (std::size_t c = 0; c < static_cast<std::size_t>(data.effects); ++c) {
+            if (named && c != decision.group.front()) continue;
+            const double amplitude = named ? amplitude_of(findings, decision, c) : 0;
+            parts.push_back(1 / std::sqrt(more_information(m.space, now, data.candidates[c], amplitude)));
+        }
+        if (const double part = median(parts); part <= worth_saying)
+            found.push_back({part, fmt::format("{}: {} to {:.0f} % of now", m.what,
+                                               named ? "the amplitude's error falls"
+                                                     : "the smallest amplitudes that show fall",
+                                               100 * part)});
+    }
+    std::ranges::sort(found);
+    std::vector<NextStep> steps;
+    for (const auto& [part, what] : found) steps.push_back({what, {}});
+    return steps;
+}
+
+/// What sets effects apart that one slow stroke down and up does not.
+void add_other_protocols(const GapData& data, const Decision& decision, std::vector<NextStep>& steps) {
+    const auto named = [&](const char* name) {
+        return std::ranges::any_of(decision.group, [&](std::size_t c) { return data.name(c) == name; });
+    };
+    if (named("viscoelasticity") || named("plate_speed") || named("inertia"))
+        steps.push_back(
+            {"hold the plate at full stroke for some time, or press at another speed: what relaxes or "
+             "depends on speed is no matter of geometry or friction",
+             {}});
+    if (named("plasticity"))
+        steps.push_back({"press a second cycle: what stays after the first is plastic", {}});
+}
+
+}  // namespace
+
+std::vector<NextStep> next_measurements(const Evidence& evidence, const GapData& data,
+                                        const Findings& findings, const Decision& decision,
+                                        const Limits& limits) {
+    const std::vector<Measurement> measurements = measurements_of(evidence, data);
+    const bool rivals =
+        decision.verdict != Verdict::no_gap && decision.proposal >= 0 && decision.group.size() > 1 &&
+        findings.proposals[static_cast<std::size_t>(decision.proposal)].candidates.size() == 1;
+    std::vector<NextStep> steps = rivals ? telling_apart(measurements, data, findings, decision, limits)
+                                         : sharpening(measurements, evidence, data, findings, decision);
+    std::ranges::stable_sort(steps, std::greater(), [](const NextStep& s) { return s.power.value_or(0); });
+    if (steps.size() > most_steps) steps.resize(most_steps);
+    if (decision.verdict != Verdict::no_gap) add_other_protocols(data, decision, steps);
+    return steps;
+}
+
+}  // namespace mcdem::diagnose

@@ -1,0 +1,24 @@
+// The amplitude of one effect that fits a gap best, and what it gains over no effect.
+#pragma once
+#include "diagnose/infer/gap_space.h"
+
+namespace mcdem::inline diagnose {
+
+/// A candidate: its signature and the amplitudes that are plausible.
+struct Candidate {
+    const Signature* signature = nullptr;
+    double low = 0, high = 0;
+};
+
+struct EffectFit {
+    double amplitude = 0;
+    double error =
+        0;  ///< one sigma, from the slope of the signature there; infinite: the data do not show it
+    double score = 0;  ///< gain in log likelihood over amplitude zero, nuisances marginalised in both
+    bool at_bound = false;
+};
+
+/// `gap`: observed less model, all cells.
+EffectFit fit_effect(const GapSpace& space, const Candidate& candidate, const Eigen::VectorXd& gap);
+
+}  // namespace mcdem::diagnose

@@ -1,0 +1,160 @@
+#include "diagnose/infer/effects.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace mcdem::inline diagnose {
+namespace {
+
+bool interacting(const Model& m) { return m.replica.contact.model != ContactModel::independent; }
+
+double reduced_modulus(const Model& m) {
+    const double nu = m.replica.grains.poisson_ratio;
+    return m.replica.grains.youngs_modulus / (2 * (1 - nu * nu));
+}
+
+// Scales: amplitudes that mean the same for soft and stiff, small and large grains.
+double one(const Model&) { return 1; }
+double grain_diameter(const Model& m) { return m.mean_diameter; }
+double adhesive_scale(const Model& m) { return reduced_modulus(m) * m.mean_diameter / 4; }  // E* R*
+double compliance_scale(const Model& m) {
+    return 1 / (m.replica.grains.youngs_modulus * std::max(m.replica.box.size_x, m.replica.box.size_y));
+}
+double excess_density(const Model& m) {
+    return std::max(std::abs(m.replica.grains.excess_density), 0.02 * m.replica.grains.density);
+}
+double friction_scale(const Model& m) { return std::max(m.replica.grains.friction, 0.02); }
+double wall_friction_scale(const Model& m) { return std::max(m.replica.walls.friction, 0.02); }
+double threshold_scale(const Model& m) { return m.instrument.stated.force_threshold; }
+
+/// A part `a` of what `share` leaves of the whole.
+void add_share(double& share, double a) { share += a * (1 - share); }
+
+/// Of numerics: the part that is taken off a setting. Runs get no longer than this many times.
+constexpr double longest_run = 8;
+void take_off(double& setting, double part) { setting *= std::max(1 - part, 1 / longest_run); }
+double& plate_speed(Model& m) { return m.replica.plate.speed; }
+double& density(Model& m) { return m.replica.grains.density; }
+double& time_step(Model& m) { return m.replica.numerics.time_step; }
+
+std::string_view no_slower_plate(const Model& m) {
+    if (m.replica.protocol.rate_tolerance > 0)
+        return "protocol.rate_tolerance bounds what the plate's speed does; `mcdem converge` measures it";
+    return m.experiment_speed && *m.experiment_speed >= m.replica.plate.speed
+               ? "the experiment's plate is stated to move as fast as the scene's"
+               : "";
+}
+std::string_view nothing(const Model&) { return ""; }
+std::string_view interacting_already(const Model& m) {
+    return interacting(m)
+               ? "the contacts of the scene feel one another already; gamma is refitted with every candidate"
+               : "";
+}
+std::string_view independent_contacts(const Model& m) {
+    return interacting(m) ? "" : "independent contacts make no bulges";
+}
+std::string_view no_friction(const Model& m) {
+    return m.replica.grains.friction > 0 ? "" : "the scene has no friction";
+}
+std::string_view no_threshold(const Model& m) {
+    return m.instrument.stated.force_threshold > 0 ? "" : "the experiment states no force threshold";
+}
+
+// clang-format off
+const Effect table[] = {
+    {"cross_contact", "", "gamma of the paper's Eq. 1: each contact moves the whole surface of its grains", "Brodu, Dijksman & Behringer 2015",
+     0, 1.8, 0.5, 1.0, one, [](Model& m, double a) { m.replica.contact.model = ContactModel::mc_dem; m.replica.contact.gamma = a; }, interacting_already},
+    {"bulge_contacts", "", "part of the bulges that makes no contact where spheres do not overlap by themselves", "Brodu, Dijksman & Behringer 2015",
+     0, 1, 0.5, 1.0, one, [](Model& m, double a) { m.replica.effects.bulge_contacts *= 1 - a; }, independent_contacts},
+    {"friction", "", "change of mu between grains", "Coulomb",
+     -1, 8, -0.7, 2.5, friction_scale, [](Model& m, double a) { m.replica.grains.friction = std::max(0.0, m.replica.grains.friction + a); }, nothing},
+    {"wall_friction", "", "change of mu at walls", "Coulomb",
+     -1, 8, -0.7, 2.5, wall_friction_scale, [](Model& m, double a) { m.replica.walls.friction = std::max(0.0, m.replica.walls.friction + a); }, nothing},
+    {"friction_history", "", "share of the other law of friction (saturated or Mindlin's)", "Mindlin & Deresiewicz 1953",
+     0, 1, 0.5, 1.0, one, [](Model& m, double a) { add_share(m.replica.effects.friction_history, a); }, no_friction},
+    {"adhesion", "J/m2", "work of adhesion w: touching grains attract by 2 pi w R*", "Derjaguin, Muller & Toporov 1975",
+     0, 0.03, 0.003, 0.01, adhesive_scale, [](Model& m, double a) { m.replica.effects.adhesion += a; }, nothing},
+    {"viscoelasticity", "", "part of the Hertz force that relaxes while a contact is held", "standard linear solid",
+     0, 0.8, 0.1, 0.3, one, [](Model& m, double a) { add_share(m.replica.effects.viscoelasticity, a); }, nothing},
+    {"stiffening", "", "c in F = F_Hertz (1 + c overlap/R*)", "first correction to Hertz at large strain",
+     -1.5, 4, -0.7, 1.2, one, [](Model& m, double a) { m.replica.effects.stiffening += a; }, nothing},
+    {"plasticity", "", "part of the largest overlap that stays after unloading", "Walton & Braun 1986",
+     0, 0.5, 0.05, 0.15, one, [](Model& m, double a) { add_share(m.replica.effects.plasticity, a); }, nothing},
+    {"buoyancy", "kg/m3", "change of the grains' density over the fluid's", "Archimedes",
+     -8, 30, -2.5, 2.5, excess_density, [](Model& m, double a) { m.replica.grains.excess_density += a; }, nothing},
+    {"diameter_error", "m", "true less stated diameter, all grains alike", "measurement",
+     -0.03, 0.03, -0.006, 0.006, grain_diameter, [](Model& m, double a) { m.replica.effects.diameter_error += a; }, nothing},
+    {"polydispersity", "m", "standard deviation of true less stated diameter", "measurement",
+     0, 0.05, 0.008, 0.02, grain_diameter, [](Model& m, double a) { m.replica.effects.polydispersity += a; }, nothing},
+    {"modulus_scatter", "", "standard deviation of ln E from grain to grain", "log-normal scatter",
+     0, 0.8, 0.15, 0.4, one, [](Model& m, double a) { m.replica.effects.modulus_scatter += a; }, nothing},
+    {"rolling_resistance", "", "mu_r: a torque mu_r R* F_n resists rolling", "Ai, Chen, Rotter & Ooi 2011",
+     0, 0.5, 0.05, 0.15, one, [](Model& m, double a) { m.replica.effects.rolling_resistance += a; }, nothing},
+    {"plate_tilt", "", "slope of the plate along x", "geometry",
+     -0.08, 0.08, -0.015, 0.015, one, [](Model& m, double a) { m.replica.effects.plate_tilt_x += a; }, nothing},
+    {"plate_tilt_y", "", "slope of the plate along y", "geometry",
+     -0.08, 0.08, -0.015, 0.015, one, [](Model& m, double a) { m.replica.effects.plate_tilt_y += a; }, nothing},
+    {"plate_compliance", "m/N", "how far the plate gives way per newton", "linear spring",
+     0, 1, 0.1, 0.3, compliance_scale, [](Model& m, double a) { m.replica.effects.plate_compliance += a; }, nothing},
+    {"force_bias", "relative", "contact forces read too large by this part", "measurement",
+     -0.5, 0.8, -0.1, 0.1, one, [](Model& m, double a) { m.instrument.force_bias += a; }, nothing},
+    {"gauge_drift", "relative", "top force read too large in the end by this part, before in proportion to the plate's path", "measurement",
+     -0.5, 0.8, -0.1, 0.1, one, [](Model& m, double a) { m.instrument.gauge_drift += a; }, nothing},
+    {"force_threshold", "N", "true less stated threshold of contact forces", "measurement",
+     -1, 8, -0.5, 1.5, threshold_scale, [](Model& m, double a) { m.instrument.threshold_shift += a; }, no_threshold},
+    {"position_bias", "relative", "lengths read too large by this part", "measurement",
+     -0.02, 0.02, -0.003, 0.003, one, [](Model& m, double a) { m.instrument.position_bias += a; }, nothing},
+    {"plate_speed", "", "part by which the real plate is slower than the scene's", "numerics",
+     0, 1, 0.5, 0.75, one, [](Model& m, double a) { take_off(plate_speed(m), a); }, no_slower_plate, "plate.speed", plate_speed},
+    {"inertia", "", "part by which real inertia is smaller than the scene's, weight alike", "numerics",
+     0, 1, 0.5, 0.75, one, [](Model& m, double a) { take_off(density(m), a); }, nothing, "grains.density", density},
+    {"time_step", "", "part by which the time step is too long", "numerics",
+     0, 1, 0.3, 0.6, one, [](Model& m, double a) { take_off(time_step(m), a); }, nothing, "numerics.time_step", time_step},
+};
+// clang-format on
+
+// What is assumed of a parameter where the experiment does not state its uncertainty.
+constexpr double modulus_sigma = 0.05;
+constexpr double gamma_sigma = 0.05;
+constexpr double strain_zero_sigma = 0.01;  // over the mean diameter
+
+}  // namespace
+
+std::span<const Effect> effects() { return table; }
+
+const Effect* find_effect(std::string_view name) {
+    const auto found = std::ranges::find(table, name, &Effect::name);
+    return found == std::end(table) ? nullptr : found;
+}
+
+bool is_numerical(std::string_view name) {
+    const Effect* effect = find_effect(name);
+    return effect && !effect->key.empty();
+}
+
+std::vector<Nuisance> nuisances(const Model& model, const Experiment& experiment) {
+    const auto stated = [&](const char* key) {
+        const auto found = experiment.uncertainty.find(key);
+        return found == experiment.uncertainty.end() ? 0.0 : found->second;
+    };
+    std::vector<Nuisance> list;
+    const double modulus = stated("grains.youngs_modulus") / model.replica.grains.youngs_modulus;
+    list.push_back({"modulus", "relative", modulus > 0 ? modulus : modulus_sigma,
+                    [](Model& m, double shift) { m.replica.grains.youngs_modulus *= std::exp(shift); }});
+    list.push_back({"strain_offset", "m", strain_zero_sigma * model.mean_diameter,
+                    [](Model& m, double shift) { m.instrument.strain_offset += shift; }});
+    if (model.replica.contact.model == ContactModel::mc_dem)
+        list.push_back(
+            {"gamma", "", gamma_sigma, [](Model& m, double shift) { m.replica.contact.gamma += shift; }});
+    if (const double sigma = stated("grains.friction"); sigma > 0)
+        list.push_back({"friction", "", sigma, [](Model& m, double shift) {
+                            m.replica.grains.friction = std::max(0.0, m.replica.grains.friction + shift);
+                        }});
+    if (const double sigma = stated("walls.friction"); sigma > 0)
+        list.push_back({"wall_friction", "", sigma, [](Model& m, double shift) {
+                            m.replica.walls.friction = std::max(0.0, m.replica.walls.friction + shift);
+                        }});
+    return list;
+}
+
+}  // namespace mcdem::diagnose

@@ -1,0 +1,127 @@
+#include "diagnose/infer/evidence.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "core/errors.h"
+
+namespace mcdem::inline diagnose {
+namespace {
+
+const Signature& find(const std::vector<Signature>& list, const std::string& name) {
+    const auto found = std::ranges::find(list, name, &Signature::name);
+    if (found == list.end()) throw std::logic_error("no signature of " + name);
+    return *found;
+}
+
+/// How far beyond its prior a parameter is followed, in sigmas.
+constexpr double farthest = 12;
+
+/// Mean over the rows that are finite.
+Eigen::VectorXd column_means(const Eigen::MatrixXd& rows) {
+    Eigen::VectorXd mean(rows.cols());
+    for (Eigen::Index cell = 0; cell < rows.cols(); ++cell) {
+        const auto column = rows.col(cell).array();
+        mean[cell] =
+            column.isFinite().select(column, 0).sum() / static_cast<double>(column.isFinite().count());
+    }
+    return mean;
+}
+
+/// Replicates of one packing know of one another through their mean: they are left out together where there
+/// are packings enough.
+std::vector<int> folds_of(const std::vector<int>& packing) {
+    constexpr int most = 8;
+    const int packings = 1 + *std::ranges::max_element(packing);
+    std::vector<int> fold;
+    for (std::size_t r = 0; r < packing.size(); ++r)
+        fold.push_back((packings >= most ? packing[r] : static_cast<int>(r)) % most);
+    return fold;
+}
+
+/// Part of the known cells that a signature must have. Fewer: its runs failed, and it would take the cells
+/// with it.
+constexpr double enough_cells = 0.5;
+constexpr std::size_t fewest_replicates = 8;
+
+std::vector<Eigen::Index> rows_with_numbers(const Eigen::MatrixXd& rows) {
+    std::vector<Eigen::Index> list;
+    for (Eigen::Index r = 0; r < rows.rows(); ++r)
+        if (rows.row(r).array().isFinite().any()) list.push_back(r);
+    return list;
+}
+
+void leave_out_replicates(Evidence& evidence, std::vector<std::string>& notes) {
+    Library& library = evidence.library;
+    const auto kept = rows_with_numbers(library.baseline), own = rows_with_numbers(evidence.baseline);
+    const auto failed = std::max(static_cast<std::size_t>(library.baseline.rows()) - kept.size(),
+                                 static_cast<std::size_t>(evidence.baseline.rows()) - own.size());
+    if (failed == 0) return;
+    const std::string what = fmt::format("{} of {} runs of the scene as it stands failed", failed,
+                                         std::max(library.baseline.rows(), evidence.baseline.rows()));
+    if (kept.size() < fewest_replicates || own.empty())
+        throw InputError(what +
+                         ": the packing runs away, or the scene cannot follow the experiment's plate; try "
+                         "`mcdem run` of the scene with plate.start and plate.end of the experiment");
+    notes.push_back("replicates: " + what + " and are left out");
+    library.baseline = Eigen::MatrixXd(library.baseline(kept, Eigen::all));
+    std::vector<int> packing;
+    for (const auto r : kept) packing.push_back(library.packing[static_cast<std::size_t>(r)]);
+    library.packing = packing;
+    evidence.baseline = Eigen::MatrixXd(evidence.baseline(own, Eigen::all));
+}
+
+/// Removes those of `wanted` whose signature lacks most of the cells that everything else has.
+template <class Wanted>
+void leave_out_signatures(const Evidence& evidence, const std::vector<Signature>& signatures,
+                          std::vector<Wanted>& wanted, std::vector<std::string>& notes) {
+    const Eigen::Array<bool, Eigen::Dynamic, 1> known =
+        evidence.library.baseline.array().isFinite().colwise().all().transpose() &&
+        evidence.observed.array().isFinite();
+    std::erase_if(wanted, [&](const Wanted& w) {
+        const Signature& s = find(signatures, w.name);
+        const auto has = (known && s.linear.array().isFinite() && s.curvature.array().isFinite()).count();
+        if (static_cast<double>(has) >= enough_cells * static_cast<double>(known.count())) return false;
+        notes.push_back(w.name +
+                        ": its runs failed (the packing runs away with it), so nothing is said of it");
+        return true;
+    });
+}
+
+}  // namespace
+
+std::vector<std::string> leave_out_failures(Evidence& evidence) {
+    std::vector<std::string> notes;
+    leave_out_replicates(evidence, notes);
+    leave_out_signatures(evidence, evidence.library.effects, evidence.candidates, notes);
+    leave_out_signatures(evidence, evidence.library.nuisances, evidence.nuisances, notes);
+    return notes;
+}
+
+GapData gap_data(const Evidence& evidence) {
+    GapData s;
+    s.mean = column_means(evidence.baseline);
+    s.gap = evidence.observed - s.mean;
+    s.noise = scatter(evidence.library);
+    s.group = mean_groups(evidence.library);
+    s.fold = folds_of(evidence.library.packing);
+    for (const NuisancePrior& prior : evidence.nuisances)
+        s.free.push_back({find(evidence.library.nuisances, prior.name).linear, prior.sigma});
+    for (const CandidateRange& range : evidence.candidates)
+        s.candidates.push_back({&find(evidence.library.effects, range.name), range.low, range.high});
+    s.effects = static_cast<int>(s.candidates.size());
+    std::vector<const Signature*> used;
+    for (const Candidate& effect : s.candidates) used.push_back(effect.signature);
+    for (const NuisancePrior& prior : evidence.nuisances)
+        used.push_back(&find(evidence.library.nuisances, prior.name));
+    s.cells = usable_cells(evidence.library.baseline, used, s.gap);
+    for (const NuisancePrior& prior : evidence.nuisances)
+        if (prior.name == "modulus" || prior.name == "strain_offset" || prior.name == "gamma")
+            s.candidates.push_back({&find(evidence.library.nuisances, prior.name), -farthest * prior.sigma,
+                                    farthest * prior.sigma});
+    return s;
+}
+
+}  // namespace mcdem::diagnose

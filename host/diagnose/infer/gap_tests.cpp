@@ -1,0 +1,200 @@
+#include "diagnose/infer/gap_tests.h"
+
+#include <algorithm>
+#include <boost/math/distributions/students_t.hpp>
+#include <cmath>
+#include <set>
+
+#include "scene/random.h"
+
+namespace mcdem::inline diagnose {
+namespace {
+
+constexpr int draws_a_replicate = 3;
+
+/// The null's replicates without one fold, and that fold as if it had been observed: what is left out has no
+/// part in the mean either. Kept in it, few replicates would all lie in the directions of the others'
+/// scatter, where an experiment does not.
+class LeftOut {
+public:
+    LeftOut(const GapData& data, int fold) : data_(data) {
+        for (std::size_t r = 0; r < data.fold.size(); ++r)
+            (data.fold[r] == fold ? out_ : kept_).push_back(static_cast<Eigen::Index>(r));
+    }
+
+    Eigen::MatrixXd noise() const {
+        std::vector<Eigen::Index> rows;
+        std::vector<int> group;
+        for (const auto r : kept_) {
+            const auto alike = [&](Eigen::Index other) { return group_of(other) == group_of(r); };
+            if (std::ranges::count_if(kept_, alike) < 2) continue;  // its own mean
+            rows.push_back(r);
+            group.push_back(group_of(r));
+        }
+        return apart_from_mean(unscaled(rows), group);
+    }
+    const std::vector<Eigen::Index>& rows() const { return out_; }
+
+    /// A row less the mean of those that were kept, scaled to the variance of one.
+    Eigen::VectorXd row(Eigen::Index r) const {
+        Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(data_.noise.cols());
+        int kept = 0;
+        for (const auto other : kept_)
+            if (group_of(other) == group_of(r)) sum += data_.noise.row(other), ++kept;
+        if (kept == 0) return data_.noise.row(r).transpose();
+        return unscaling(r) / std::sqrt(1 + 1.0 / kept) * (data_.noise.row(r) - sum / kept).transpose();
+    }
+
+private:
+    /// Rows as they were before they were scaled to the variance of one.
+    Eigen::MatrixXd unscaled(const std::vector<Eigen::Index>& rows) const {
+        Eigen::MatrixXd some = data_.noise(rows, Eigen::all);
+        for (std::size_t k = 0; k < rows.size(); ++k)
+            some.row(static_cast<Eigen::Index>(k)) *= unscaling(rows[k]);
+        return some;
+    }
+    double unscaling(Eigen::Index r) const {
+        const double n = static_cast<double>(std::ranges::count(data_.group, group_of(r)));
+        return std::sqrt(std::max(1.0, n - 1) / n);
+    }
+    int group_of(Eigen::Index r) const { return data_.group[static_cast<std::size_t>(r)]; }
+    const GapData& data_;
+    std::vector<Eigen::Index> kept_, out_;
+};
+
+/// A statistic's cube root is nearly normal (Wilson & Hilferty 1931). Its mean and variance are known from
+/// few replicates: what one more gives follows Student's t.
+struct Predicted {
+    double mean = 0, sigma = 0;
+    boost::math::students_t_distribution<> t;
+
+    double complement_at(double value) const { return cdf(complement(t, (std::cbrt(value) - mean) / sigma)); }
+    double quantile(double p) const {
+        return std::pow(std::max(0.0, mean + sigma * boost::math::quantile(complement(t, p))), 3);
+    }
+};
+
+Predicted predicted(const std::vector<GapStatistics>& draws, double GapStatistics::*statistic,
+                    int replicates) {
+    const double count = static_cast<double>(draws.size()), n = replicates;
+    double mean = 0, square = 0;
+    for (const GapStatistics& draw : draws) mean += std::cbrt(draw.*statistic) / count;
+    for (const GapStatistics& draw : draws) square += std::pow(std::cbrt(draw.*statistic) - mean, 2) / count;
+    const double variance = std::max(square * n / (n - 1), 1e-12 * mean * mean);
+    return {mean, std::sqrt(variance * (1 + 1 / n)), boost::math::students_t_distribution<>(n - 1)};
+}
+
+/// Statistics are larger where fewer replicates make the covariance: those of the draws by as much as the
+/// observed gap's are with a fold left out.
+void take_to_scale(std::vector<GapStatistics>& draws, const std::vector<GapStatistics>& left_out,
+                   const GapStatistics& whole) {
+    for (double GapStatistics::*statistic :
+         {&GapStatistics::omnibus, &GapStatistics::directed, &GapStatistics::remainder,
+          &GapStatistics::highest_refitted, &GapStatistics::pattern_left}) {
+        double mean = 0;
+        for (const GapStatistics& one : left_out)
+            mean += one.*statistic / static_cast<double>(left_out.size());
+        if (!(mean > 0) || !(whole.*statistic > 0)) continue;
+        for (GapStatistics& draw : draws) draw.*statistic *= whole.*statistic / mean;
+    }
+}
+
+/// When the plate passes a cell, by its place among those of its observable: loading, then unloading back.
+double passage(Eigen::Index place, Eigen::Index places) {
+    return static_cast<double>(2 * place < places ? place : places - 1 - (place - places / 2));
+}
+
+/// Mean and trend of every observable with three cells or more, as weights of the chosen cells, which lie
+/// observable by observable, loading before unloading, each by displacement (cells_of). Cells weigh by what
+/// is known of them, 1/sigma^2.
+std::vector<Eigen::VectorXd> observable_patterns(const GapSpace& space, Eigen::Index all) {
+    constexpr std::size_t fewest = 3;
+    const CellChoice& cells = space.cells();
+    const Eigen::Index each = all / static_cast<Eigen::Index>(observables().size());
+    std::vector<Eigen::VectorXd> patterns;
+    for (std::size_t first = 0, end = 0; first < cells.size(); first = end) {
+        while (end < cells.size() && cells[end] / each == cells[first] / each) ++end;
+        if (end - first < fewest) continue;
+        Eigen::VectorXd mean = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(cells.size())), trend = mean;
+        for (std::size_t k = first; k < end; ++k) {
+            const auto cell = static_cast<Eigen::Index>(k);
+            mean[cell] = 1 / (space.sigma()[cell] * space.sigma()[cell]);
+            trend[cell] = mean[cell] * passage(cells[k] % each, each);
+        }
+        trend -= trend.sum() / mean.sum() * mean;
+        patterns.push_back(mean);
+        patterns.push_back(trend);
+    }
+    return patterns;
+}
+
+}  // namespace
+
+GapStatistics gap_statistics(const GapSpace& space, const GapData& data, const Eigen::VectorXd& gap) {
+    GapStatistics s;
+    s.omnibus = space.whiten(gap).squaredNorm();
+    for (const Candidate& candidate : data.candidates) {
+        s.fits.push_back(fit_effect(space, candidate, gap));
+        if (s.fits.back().score > s.fits[s.best].score) s.best = s.fits.size() - 1;
+    }
+    if (!s.fits.empty()) s.directed = s.fits[s.best].score;
+    s.remainder = s.omnibus - 2 * s.directed;
+    s.highest_refitted = (space.refitted(gap).array() / space.sigma()).abs().maxCoeff();
+    Eigen::VectorXd left = gap;
+    if (s.directed > 0) left -= data.candidates[s.best].signature->at(s.fits[s.best].amplitude);
+    s.pattern_left = highest_pattern(space, left);
+    return s;
+}
+
+double highest_pattern(const GapSpace& space, const Eigen::VectorXd& gap) {
+    const Eigen::VectorXd left = space.refitted(gap);
+    double highest = (left.array() / space.sigma()).abs().maxCoeff();
+    for (const Eigen::VectorXd& weights : observable_patterns(space, gap.size()))
+        highest = std::max(highest, std::abs(weights.dot(left)) / space.sigma_of(weights));
+    return highest;
+}
+
+NullDistribution::NullDistribution(const GapData& data, int mean_of, std::uint64_t seed) {
+    Random random(seed, Stream::null_draws);
+    const double both = std::sqrt(1 + (mean_of > 0 ? 1.0 / mean_of : 0));
+    const std::set<int> folds(data.fold.begin(), data.fold.end());
+    std::vector<GapStatistics> observed;
+    for (const int fold : folds) {
+        const LeftOut left_out(data, fold);
+        const GapSpace space(left_out.noise(), mean_of, data.cells, data.free);
+        observed.push_back(gap_statistics(space, data, data.gap));
+        for (const Eigen::Index r : left_out.rows())
+            for (int draw = 0; draw < draws_a_replicate; ++draw) {
+                Eigen::VectorXd gap = both * left_out.row(r);
+                for (const FreeParameter& parameter : data.free)
+                    gap += parameter.sigma * random.normal() * parameter.direction;
+                draws_.push_back(gap_statistics(space, data, gap));
+            }
+    }
+    const GapSpace whole(data.noise, mean_of, data.cells, data.free);
+    take_to_scale(draws_, observed, gap_statistics(whole, data, data.gap));
+}
+
+double NullDistribution::p_value(double GapStatistics::*statistic, double value) const {
+    return value > 0 ? predicted(draws_, statistic, replicates()).complement_at(value) : 1;
+}
+
+double NullDistribution::mean(double GapStatistics::*statistic) const {
+    double sum = 0;
+    for (const GapStatistics& draw : draws_) sum += draw.*statistic;
+    return sum / static_cast<double>(draws_.size());
+}
+
+int NullDistribution::replicates() const { return static_cast<int>(draws_.size()) / draws_a_replicate; }
+
+double NullDistribution::misfit_p(const GapSpace& space, const Eigen::VectorXd& left) const {
+    const double together = p_value(&GapStatistics::remainder, space.whiten(left).squaredNorm());
+    const double pattern = p_value(&GapStatistics::pattern_left, highest_pattern(space, left));
+    return std::min(1.0, 2 * std::min(together, pattern));
+}
+
+double NullDistribution::quantile(double GapStatistics::*statistic, double p) const {
+    return predicted(draws_, statistic, replicates()).quantile(p);
+}
+
+}  // namespace mcdem::diagnose

@@ -1,0 +1,152 @@
+#include "diagnose/infer/library.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "core/atomic_file.h"
+#include "core/errors.h"
+#include "core/input_file.h"
+#include "core/sha256.h"
+#include "diagnose/infer/json_numbers.h"
+
+namespace mcdem::inline diagnose {
+namespace {
+
+using nlohmann::json;
+constexpr int library_format = 2;
+
+json signature_json(const Signature& s) {
+    return {{"name", s.name},
+            {"reach", s.reach},
+            {"linear", numbers_json(s.linear)},
+            {"curvature", numbers_json(s.curvature)},
+            {"variance", numbers_json(s.variance)},
+            {"spread", numbers_json(s.spread)},
+            {"pairs", s.pairs}};
+}
+
+Signature signature_of(const json& j, Eigen::Index cells) {
+    Signature s{j.at("name"),
+                j.at("reach"),
+                numbers_of(j.at("linear")),
+                numbers_of(j.at("curvature")),
+                numbers_of(j.at("variance")),
+                numbers_of(j.at("spread")),
+                j.at("pairs")};
+    if (s.linear.size() != cells || s.curvature.size() != cells || s.variance.size() != cells ||
+        s.spread.size() != cells)
+        throw json::other_error::create(501, "signature " + s.name + " is of another length than the cells",
+                                        &j);
+    return s;
+}
+
+std::string digest_of(const std::map<std::string, std::string>& origin) {
+    Sha256 digest;
+    for (const auto& [name, value] : origin) digest.add(name).add("=").add(value).add("\n");
+    return digest.hex();
+}
+
+/// Of all but the digest itself.
+std::string digest_of_content(json j) {
+    j.erase("sha256");
+    return Sha256().add(j.dump()).hex();
+}
+
+Library library_of(const json& j) {
+    if (j.at("format") != library_format)
+        throw json::other_error::create(501, "it is of another version", &j);
+    Library library;
+    library.grid = {j.at("displacement"), j.at("width"), j.at("stroke")};
+    library.packing = j.at("packing").get<std::vector<int>>();
+    if (library.packing.empty()) throw json::other_error::create(501, "it has no replicates", &j);
+    const auto cells = static_cast<Eigen::Index>(cells_of(library.grid).size());
+    library.baseline.resize(static_cast<Eigen::Index>(library.packing.size()), cells);
+    const json& rows = j.at("baseline");
+    for (std::size_t r = 0; r < library.packing.size(); ++r) {
+        const Eigen::VectorXd row = numbers_of(rows.at(r));
+        if (row.size() != cells)
+            throw json::other_error::create(501, "it has other observables than this program", &j);
+        library.baseline.row(static_cast<Eigen::Index>(r)) = row;
+    }
+    for (const json& s : j.at("effects")) library.effects.push_back(signature_of(s, cells));
+    for (const json& s : j.at("nuisances")) library.nuisances.push_back(signature_of(s, cells));
+    library.provenance = j.at("provenance").get<std::map<std::string, std::string>>();
+    library.origin = j.at("origin").get<std::map<std::string, std::string>>();
+    if (j.at("origin_sha256") != digest_of(library.origin))
+        throw json::other_error::create(501, "what it says of its origin was changed", &j);
+    if (j.contains("sha256") && j.at("sha256") != digest_of_content(j))
+        throw json::other_error::create(501, "it was changed since it was written", &j);
+    return library;
+}
+
+}  // namespace
+
+std::vector<int> mean_groups(const Library& library) {
+    std::map<int, int> rows;
+    for (const int packing : library.packing) ++rows[packing];
+    const bool repeated = std::ranges::all_of(rows, [](const auto& of) { return of.second > 1; });
+    return repeated ? library.packing : std::vector<int>(library.packing.size(), 0);
+}
+
+Eigen::MatrixXd apart_from_mean(Eigen::MatrixXd rows, const std::vector<int>& group) {
+    std::map<int, std::vector<Eigen::Index>> of;
+    for (std::size_t r = 0; r < group.size(); ++r) of[group[r]].push_back(static_cast<Eigen::Index>(r));
+    for (const auto& [_, members] : of) {
+        const double n = static_cast<double>(members.size());
+        const Eigen::RowVectorXd mean = rows(members, Eigen::all).colwise().sum() / n;
+        for (const auto row : members)
+            rows.row(row) = (rows.row(row) - mean) * std::sqrt(n / std::max(1.0, n - 1));
+    }
+    return rows;
+}
+
+Eigen::MatrixXd scatter(const Library& library) {
+    return apart_from_mean(library.baseline, mean_groups(library));
+}
+
+std::string library_text(const Library& library) {
+    json rows = json::array(), effects = json::array(), nuisances = json::array();
+    for (Eigen::Index r = 0; r < library.baseline.rows(); ++r)
+        rows.push_back(numbers_json(library.baseline.row(r)));
+    for (const Signature& s : library.effects) effects.push_back(signature_json(s));
+    for (const Signature& s : library.nuisances) nuisances.push_back(signature_json(s));
+    json text{{"format", library_format},
+              {"provenance", library.provenance},
+              {"origin", library.origin},
+              {"origin_sha256", digest_of(library.origin)},
+              {"displacement", library.grid.displacement},
+              {"width", library.grid.width},
+              {"stroke", library.grid.stroke},
+              {"packing", library.packing},
+              {"effects", effects},
+              {"nuisances", nuisances},
+              {"baseline", rows}};
+    text["sha256"] = digest_of_content(text);
+    return text.dump();
+}
+
+void write_library(const std::filesystem::path& file, const Library& library) {
+    if (!create_file(file, library_text(library)))
+        throw InputError(
+            fmt::format("{}: is there already, and is not replaced: give another file", file.string()));
+}
+
+Library read_library(const std::filesystem::path& file) {
+    if (!std::filesystem::exists(file))
+        throw InputError(fmt::format("{}: there is no signature library", file.string()));
+    if (!std::filesystem::is_regular_file(file))
+        throw InputError(fmt::format("{}: must be a file, the signature library", file.string()));
+    const std::string text = read_file(file);
+    try {
+        return library_of(json::parse(text));
+    } catch (const json::exception& error) {
+        throw InputError(fmt::format(
+            "{}: not a signature library ({}): give another file, which is made where it is missing",
+            file.string(), error.what()));
+    }
+}
+
+}  // namespace mcdem::diagnose

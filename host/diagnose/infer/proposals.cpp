@@ -1,0 +1,155 @@
+#include "diagnose/infer/proposals.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "diagnose/infer/effects.h"
+
+namespace mcdem::inline diagnose {
+namespace {
+
+/// .. and the best nuisance however far behind, so that no effect is named for what a wrong parameter does:
+/// signatures are least right for parameters far off. Of the simulation's own numerics the best, where it is
+/// near.
+constexpr std::size_t most_singles = 3;
+/// Effects this much behind the leader, in log likelihood or as a part of its gain, are not tried.
+constexpr double far_behind = 8, far_behind_share = 0.25;
+constexpr double pair_gain = 4;
+/// Part by which a signature may be wrong, cell by cell.
+constexpr double signature_error = 0.1;
+constexpr int rounds = 6;
+constexpr Eigen::Index fewest_runs = 2;
+
+Eigen::VectorXd without(const Eigen::VectorXd& gap, const GapData& data, const Proposal& proposal,
+                        std::size_t but = SIZE_MAX) {
+    Eigen::VectorXd left = gap;
+    for (std::size_t k = 0; k < proposal.candidates.size(); ++k)
+        if (k != but) left -= data.candidates[proposal.candidates[k]].signature->at(proposal.amplitudes[k]);
+    return left;
+}
+
+/// How much more packings scatter with the effect than without: they differ in it, and its random draws do.
+Eigen::VectorXd effect_scatter(const GapData& data, const Proposal& proposal) {
+    const Eigen::VectorXd chaos =
+        2 * data.noise.colwise().squaredNorm().transpose() / static_cast<double>(data.noise.rows());
+    Eigen::VectorXd extra = Eigen::VectorXd::Zero(data.mean.size());
+    for (std::size_t k = 0; k < proposal.candidates.size(); ++k) {
+        const Signature& signature = *data.candidates[proposal.candidates[k]].signature;
+        const double a = proposal.amplitudes[k], part = std::min(1.0, std::abs(a) / signature.reach);
+        extra += (a * a * signature.spread - part * part * chaos).cwiseMax(0);
+    }
+    return extra;
+}
+
+double signature_misfit(const GapData& data, const NullDistribution& null, const Eigen::VectorXd& gap,
+                        const Proposal& proposal, int mean_of) {
+    Eigen::VectorXd extra = effect_scatter(data, proposal);
+    for (std::size_t k = 0; k < proposal.candidates.size(); ++k)
+        extra +=
+            (signature_error * data.candidates[proposal.candidates[k]].signature->at(proposal.amplitudes[k]))
+                .cwiseAbs2();
+    const GapSpace space(data.noise, mean_of, data.cells, data.free, extra);
+    return null.misfit_p(space, without(gap, data, proposal));
+}
+
+/// Both amplitudes, one after the other until neither moves.
+Proposal fit_pair(const GapSpace& space, const GapData& data, const Eigen::VectorXd& gap, double omnibus,
+                  std::size_t first, std::size_t second, double first_amplitude) {
+    Proposal pair;
+    pair.candidates = {first, second};
+    pair.amplitudes = {first_amplitude, 0};
+    pair.errors = {0, 0};
+    for (int round = 0; round < rounds; ++round)
+        for (const std::size_t k : {1, 0}) {
+            const EffectFit fit =
+                fit_effect(space, data.candidates[pair.candidates[k]], without(gap, data, pair, k));
+            pair.amplitudes[k] = fit.amplitude;
+            pair.errors[k] = fit.error;
+        }
+    pair.gain = 0.5 * (omnibus - space.whiten(without(gap, data, pair)).squaredNorm());
+    return pair;
+}
+
+/// Of nuisances that the runs were made with, in log likelihood.
+double prior_cost(const Eigen::VectorXd& nuisances, const std::vector<FreeParameter>& free) {
+    double cost = 0;
+    for (std::size_t k = 0; k < free.size(); ++k)
+        cost += 0.5 * std::pow(nuisances[static_cast<Eigen::Index>(k)] / free[k].sigma, 2);
+    return cost;
+}
+
+}  // namespace
+
+Eigen::MatrixXd whole_runs(const Eigen::MatrixXd& runs, const CellChoice& cells) {
+    std::vector<Eigen::Index> whole;
+    for (Eigen::Index r = 0; r < runs.rows(); ++r)
+        if (pick(runs.row(r).transpose(), cells).allFinite()) whole.push_back(r);
+    return runs(whole, Eigen::all);
+}
+
+Eigen::VectorXd explained_by(const Proposal& proposal, const GapData& data) {
+    return -without(Eigen::VectorXd::Zero(data.mean.size()), data, proposal);
+}
+
+std::vector<Proposal> propose(const GapSpace& space, const GapData& data, const NullDistribution& null,
+                              const GapStatistics& statistics, int mean_of) {
+    std::vector<std::size_t> order(statistics.fits.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::ranges::stable_sort(
+        order, [&](auto a, auto b) { return statistics.fits[a].score > statistics.fits[b].score; });
+    const double best = statistics.directed;
+    std::vector<Proposal> proposals;
+    bool nuisance_tried = false, numerics_tried = false;
+    for (const std::size_t c : order) {
+        const EffectFit& fit = statistics.fits[c];
+        if (!(fit.score > 0)) break;
+        const bool nuisance = static_cast<int>(c) >= data.effects;
+        const bool numerics = !nuisance && is_numerical(data.name(c));
+        const bool near = best - fit.score <= std::max(far_behind, far_behind_share * best);
+        if (!(near && proposals.size() < most_singles) && !(nuisance && !nuisance_tried) &&
+            !(numerics && near && !numerics_tried))
+            continue;
+        nuisance_tried = nuisance_tried || nuisance;
+        numerics_tried = numerics_tried || numerics;
+        Proposal& proposal = proposals.emplace_back();
+        proposal.candidates = {c};
+        proposal.amplitudes = {fit.amplitude};
+        proposal.errors = {fit.error};
+        proposal.gain = fit.score;
+    }
+    if (proposals.empty()) return proposals;
+    Proposal pair;
+    for (const std::size_t second : order)
+        if (second != order[0]) {
+            const Proposal tried = fit_pair(space, data, data.gap, statistics.omnibus, order[0], second,
+                                            statistics.fits[order[0]].amplitude);
+            if (tried.gain > pair.gain) pair = tried;
+        }
+    if (pair.gain > best + pair_gain) proposals.push_back(pair);
+    for (Proposal& proposal : proposals)
+        proposal.misfit_p = signature_misfit(data, null, data.gap, proposal, mean_of);
+    return proposals;
+}
+
+std::optional<Eigen::VectorXd> confirm(Proposal& proposal, const GapData& data, const NullDistribution& null,
+                                       const Eigen::VectorXd& observed, const Eigen::VectorXd& nuisances,
+                                       const Eigen::MatrixXd& all_runs) {
+    constexpr double still_free = 0.25;  // part of an amplitude
+    const Eigen::MatrixXd runs = whole_runs(all_runs, data.cells);
+    if (runs.rows() < fewest_runs) return std::nullopt;
+    const Eigen::VectorXd left = observed - runs.colwise().mean().transpose();
+    std::vector<FreeParameter> free = data.free;
+    for (std::size_t k = 0; k < proposal.candidates.size(); ++k)
+        free.push_back({data.candidates[proposal.candidates[k]].signature->slope(proposal.amplitudes[k]),
+                        2 * proposal.errors[k] + still_free * std::abs(proposal.amplitudes[k])});
+    const int mean_of = static_cast<int>(runs.rows());
+    const GapSpace plain(data.noise, mean_of, data.cells, data.free);
+    const GapSpace space(data.noise, mean_of, data.cells, free, effect_scatter(data, proposal));
+    proposal.confirmed_gain =
+        space.log_likelihood(left) - prior_cost(nuisances, data.free) - plain.log_likelihood(data.gap);
+    proposal.confirmed_misfit_p = null.misfit_p(space, left);
+    return space.fit_nuisances(left);
+}
+
+}  // namespace mcdem::diagnose

@@ -1,0 +1,219 @@
+#include "diagnose/infer/shrinkage.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "scene/random.h"
+
+namespace mcdem::inline diagnose {
+namespace {
+
+constexpr int bootstrap_draws = 200;
+constexpr int placebo_signatures = 20;
+
+/// Both arms of the space, with the whitening of the fitted cells made once.
+class Arms {
+public:
+    Arms(const GapData& data, const Split& split, int mean_of)
+        : data_(data),
+          held_out_(split.held_out),
+          mean_of_(mean_of),
+          space_(data.noise, mean_of, split.fitted, data.free) {}
+
+    /// What refitted nuisances leave.
+    Eigen::VectorXd refitted(Eigen::VectorXd gap) const {
+        const Eigen::VectorXd shifts = space_.fit_nuisances(gap);
+        for (Eigen::Index k = 0; k < shifts.size(); ++k)
+            gap -= shifts[k] * data_.free[static_cast<std::size_t>(k)].direction;
+        return gap;
+    }
+
+    PartialFit fit(const Eigen::VectorXd& gap, const std::vector<Candidate>& candidates) const {
+        std::vector<double> amplitudes(candidates.size(), 0);
+        Eigen::VectorXd left = gap;
+        for (int round = 0; round < (candidates.size() > 1 ? 6 : 1); ++round)
+            for (std::size_t k = 0; k < candidates.size(); ++k) {
+                left += candidates[k].signature->at(amplitudes[k]);
+                amplitudes[k] = fit_effect(space_, candidates[k], left).amplitude;
+                left -= candidates[k].signature->at(amplitudes[k]);
+            }
+        return {amplitudes, space_.fit_nuisances(left)};
+    }
+
+    Eigen::VectorXd explained(const PartialFit& fit, const std::vector<Candidate>& candidates) const {
+        Eigen::VectorXd sum = Eigen::VectorXd::Zero(data_.mean.size());
+        for (std::size_t k = 0; k < candidates.size(); ++k)
+            sum += candidates[k].signature->at(fit.amplitudes[k]);
+        for (Eigen::Index k = 0; k < fit.nuisances.size(); ++k)
+            sum += fit.nuisances[k] * data_.free[static_cast<std::size_t>(k)].direction;
+        return sum;
+    }
+
+    /// Sizes of the gap on the held-out cells, without and with the candidates.
+    std::array<double, 2> sizes(const Eigen::VectorXd& gap, const std::vector<Candidate>& candidates,
+                                int extra = 0) const {
+        return {
+            gap_size(data_, held_out_, refitted(gap), mean_of_, extra),
+            gap_size(data_, held_out_, gap - explained(fit(gap, candidates), candidates), mean_of_, extra)};
+    }
+
+private:
+    const GapData& data_;
+    const CellChoice& held_out_;
+    int mean_of_;
+    GapSpace space_;
+};
+
+double part_gone(const std::array<double, 2>& sizes) {
+    return sizes[0] > 0 ? std::clamp(1 - sizes[1] / sizes[0], -1.0, 1.0) : 0;
+}
+
+/// A signature of the same size that nothing stands behind: a random mixture of the replicates' scatter.
+Signature random_signature(const GapData& data, Random& random) {
+    Signature s;
+    s.reach = 1;
+    s.linear = Eigen::VectorXd::Zero(data.mean.size());
+    for (Eigen::Index r = 0; r < data.noise.rows(); ++r)
+        s.linear += random.normal() * data.noise.row(r).transpose();
+    s.curvature = Eigen::VectorXd::Zero(s.linear.size());
+    return s;
+}
+
+/// The largest of what `part` says of random signatures.
+template <class Part>
+double best_placebo(const GapData& data, std::uint64_t seed, Part part) {
+    Random random(seed, Stream::placebo);
+    double best = 0;
+    for (int k = 0; k < placebo_signatures; ++k) {
+        const Signature signature = random_signature(data, random);
+        best = std::max(best, part(Candidate{&signature, -50, 50}));
+    }
+    return best;
+}
+
+std::vector<Candidate> chosen_candidates(const GapData& data, const std::vector<std::size_t>& chosen) {
+    std::vector<Candidate> candidates;
+    for (const auto c : chosen) candidates.push_back(data.candidates[c]);
+    return candidates;
+}
+
+}  // namespace
+
+Split split_cells(const CellChoice& cells, const Grid& grid) {
+    const auto all = cells_of(grid);
+    Split split;
+    for (const auto cell : cells) {
+        const Cell& c = all[static_cast<std::size_t>(cell)];
+        const bool fitted = c.phase == Phase::load && c.displacement < fitted_part * grid.stroke;
+        (fitted ? split.fitted : split.held_out).push_back(cell);
+    }
+    return split;
+}
+
+double gap_size(const GapData& data, const CellChoice& cells, const Eigen::VectorXd& gap, int mean_of,
+                int extra) {
+    const double both = 1 + extra + (mean_of > 0 ? 1.0 / mean_of : 0);
+    const Eigen::ArrayXd finest = resolutions(cells, gap.size()).square();
+    double size = 0;
+    for (std::size_t k = 0; k < cells.size(); ++k) {
+        const double scatter =
+            data.noise.col(cells[k]).squaredNorm() / static_cast<double>(data.noise.rows());
+        const double variance = scatter + finest[static_cast<Eigen::Index>(k)];
+        size += (gap[cells[k]] * gap[cells[k]] - both * scatter) / variance;
+    }
+    return size;
+}
+
+PartialFit fit_part(const GapData& data, const CellChoice& cells, const Eigen::VectorXd& gap,
+                    const std::vector<std::size_t>& chosen, int mean_of) {
+    return Arms(data, {cells, {}}, mean_of).fit(gap, chosen_candidates(data, chosen));
+}
+
+PartialFit refit_part(const GapData& data, const CellChoice& cells, const Eigen::VectorXd& left,
+                      const std::vector<std::size_t>& candidates, const PartialFit& at, int mean_of) {
+    std::vector<FreeParameter> free = data.free;
+    Eigen::VectorXd without_nuisances = left;
+    for (std::size_t k = 0; k < data.free.size(); ++k)
+        without_nuisances += at.nuisances[static_cast<Eigen::Index>(k)] * data.free[k].direction;
+    for (std::size_t k = 0; k < candidates.size(); ++k) {
+        const Candidate& candidate = data.candidates[candidates[k]];
+        free.push_back({candidate.signature->slope(at.amplitudes[k]), candidate.high - candidate.low});
+    }
+    const Eigen::VectorXd step = GapSpace(data.noise, mean_of, cells, free).fit_nuisances(without_nuisances);
+    PartialFit fit{at.amplitudes, step.head(at.nuisances.size())};
+    for (std::size_t k = 0; k < candidates.size(); ++k) {
+        const Candidate& candidate = data.candidates[candidates[k]];
+        fit.amplitudes[k] =
+            std::clamp(fit.amplitudes[k] + step[at.nuisances.size() + static_cast<Eigen::Index>(k)],
+                       candidate.low, candidate.high);
+    }
+    return fit;
+}
+
+HeldOutGap held_out_gap(const GapData& data, const Split& split, int mean_of) {
+    if (split.fitted.empty() || split.held_out.empty()) return {};
+    const Arms arms(data, split, mean_of);
+    const double both = std::sqrt(1 + (mean_of > 0 ? 1.0 / mean_of : 0));
+    const auto size = [&](const Eigen::VectorXd& gap) {
+        return gap_size(data, split.held_out, arms.refitted(gap), mean_of);
+    };
+    double square = 0;
+    for (const auto& row : data.noise.rowwise()) square += std::pow(size(both * row.transpose()), 2);
+    return {size(data.gap), std::sqrt(square / static_cast<double>(data.noise.rows()))};
+}
+
+double held_out_reduction(const GapData& data, const Split& split, const std::vector<std::size_t>& candidates,
+                          int mean_of) {
+    if (split.fitted.empty() || split.held_out.empty()) return 0;
+    return part_gone(Arms(data, split, mean_of).sizes(data.gap, chosen_candidates(data, candidates)));
+}
+
+std::optional<double> reduction_by_runs(const GapData& data, const Split& split,
+                                        const Eigen::VectorXd& observed, const Eigen::MatrixXd& all_runs,
+                                        int mean_of) {
+    const Eigen::MatrixXd runs = whole_runs(all_runs, split.held_out);
+    const double before = held_out_gap(data, split, mean_of).size;
+    if (runs.rows() == 0 || !(before > 0)) return std::nullopt;
+    const Eigen::VectorXd left = observed - runs.colwise().mean().transpose();
+    const double after = gap_size(data, split.held_out, left, static_cast<int>(runs.rows()));
+    return std::clamp(1 - after / before, -1.0, 1.0);
+}
+
+double held_out_placebo(const GapData& data, const Split& split, int mean_of, std::uint64_t seed) {
+    if (split.fitted.empty() || split.held_out.empty()) return 0;
+    const Arms arms(data, split, mean_of);
+    return best_placebo(data, seed,
+                        [&](const Candidate& random) { return part_gone(arms.sizes(data.gap, {random})); });
+}
+
+double whole_placebo(const GapSpace& space, const GapData& data, double excess, std::uint64_t seed) {
+    return best_placebo(data, seed, [&](const Candidate& random) {
+        return std::min(1.0, fit_effect(space, random, data.gap).score / excess);
+    });
+}
+
+Shrink measure_shrink(const GapData& data, const Split& split, const Proposal& proposal, int mean_of,
+                      std::uint64_t seed) {
+    Shrink shrink;
+    shrink.held_out = "unloading, and loading beyond 85 % of the stroke";
+    if (split.fitted.empty() || split.held_out.empty()) return shrink;
+    const std::vector<Candidate> candidates = chosen_candidates(data, proposal.candidates);
+    const Arms arms(data, split, mean_of);
+    const auto sizes = arms.sizes(data.gap, candidates);
+    shrink.before = sizes[0];
+    shrink.after = sizes[1];
+    shrink.fraction = part_gone(sizes);
+    Random random(seed, Stream::bootstrap);
+    std::vector<double> drawn;
+    for (int draw = 0; draw < bootstrap_draws; ++draw) {
+        const auto row = static_cast<Eigen::Index>(random.uniform() * static_cast<double>(data.noise.rows()));
+        const double sign = random.uniform() < 0.5 ? -1 : 1;
+        drawn.push_back(
+            part_gone(arms.sizes(data.gap + sign * data.noise.row(row).transpose(), candidates, 1)));
+    }
+    std::ranges::sort(drawn);
+    shrink.interval = {drawn[bootstrap_draws / 20], drawn[bootstrap_draws - 1 - bootstrap_draws / 20]};
+    return shrink;
+}
+
+}  // namespace mcdem::diagnose

@@ -1,0 +1,118 @@
+#include "diagnose/infer/signature.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <vector>
+
+#include "metrics/estimate.h"
+
+namespace mcdem::inline diagnose {
+namespace {
+
+/// Mean over rows and its variance, column by column.
+struct Moments {
+    Eigen::ArrayXd mean, variance;
+};
+Moments moments(const Eigen::MatrixXd& rows) {
+    const Eigen::VectorXd mean = rows.colwise().mean();
+    const double n = static_cast<double>(rows.rows());
+    const Eigen::MatrixXd apart = rows.rowwise() - mean.transpose();
+    return {mean.array(), apart.array().square().colwise().sum().transpose() / (n * std::max(1.0, n - 1))};
+}
+
+/// Rows that came to their end: a run that failed has no number at all.
+std::vector<Eigen::Index> whole(const Eigen::MatrixXd& rows) {
+    std::vector<Eigen::Index> list;
+    for (Eigen::Index r = 0; r < rows.rows(); ++r)
+        if (rows.row(r).array().isFinite().any()) list.push_back(r);
+    return list;
+}
+
+/// Part of each mean that is kept.
+Eigen::ArrayXd kept(const Moments& m) { return (1 - m.variance / m.mean.square().max(1e-300)).max(0.0); }
+
+}  // namespace
+
+Eigen::VectorXd Signature::at(double amplitude) const {
+    const double inside = std::clamp(amplitude, -reach, reach);
+    return inside * linear + inside * inside * curvature + (amplitude - inside) * slope(inside);
+}
+
+Eigen::VectorXd Signature::slope(double amplitude) const {
+    return linear + 2 * std::clamp(amplitude, -reach, reach) * curvature;
+}
+
+namespace {
+
+/// Through the pairs of one amplitude.
+Signature straight_signature(const std::string& name, double amplitude, const Eigen::MatrixXd& at) {
+    const Moments line = moments(at / amplitude);
+    Signature s;
+    s.name = name;
+    s.reach = std::abs(amplitude);
+    s.linear = kept(line) * line.mean;
+    s.curvature = Eigen::VectorXd::Zero(at.cols());
+    s.variance = line.variance;
+    s.spread = line.variance * static_cast<double>(at.rows());
+    s.pairs = static_cast<int>(at.rows());
+    return s;
+}
+
+Signature parabola_signature(const std::string& name, double first, double second,
+                             const Eigen::MatrixXd& at_first, const Eigen::MatrixXd& at_second) {
+    // The parabola through zero and both differences, pair by pair.
+    const double a = first, b = second, determinant = a * b * (b - a);
+    const Moments curvature = moments((at_second * a - at_first * b) / determinant);
+    const Moments parabola = moments((at_first * b * b - at_second * a * a) / determinant);
+    const Moments straight = moments((at_first * a + at_second * b) / (a * a + b * b));
+    const Eigen::ArrayXd bent = kept(curvature);
+    const Moments linear{bent * parabola.mean + (1 - bent) * straight.mean,
+                         bent * parabola.variance + (1 - bent) * straight.variance};
+    const Eigen::ArrayXd seen = kept(linear).max(bent);
+    Signature s;
+    s.name = name;
+    s.reach = std::max(std::abs(first), std::abs(second));
+    s.linear = seen * linear.mean;
+    s.curvature = bent * curvature.mean;
+    s.variance = linear.variance;
+    s.spread = moments(at_second / second).variance * static_cast<double>(at_second.rows());
+    s.pairs = static_cast<int>(at_first.rows());
+    return s;
+}
+
+}  // namespace
+
+Signature continued_from(const Signature& signature, double done) {
+    const double left = 1 - done;
+    Signature s = signature;
+    s.linear = left * signature.slope(done);
+    s.variance *= left * left;
+    s.spread *= left * left;
+    if (done < signature.reach) {
+        s.curvature *= left * left;
+        s.reach = (signature.reach - done) / left;
+    } else {
+        s.curvature.setZero();
+    }
+    return s;
+}
+
+Signature learn_signature(const std::string& name, double first, double second,
+                          const Eigen::MatrixXd& at_first, const Eigen::MatrixXd& at_second) {
+    const auto needed = std::min<std::size_t>(2, static_cast<std::size_t>(at_first.rows()));
+    const auto holds_first = whole(at_first), holds_second = whole(at_second);
+    std::vector<Eigen::Index> both;
+    std::ranges::set_intersection(holds_first, holds_second, std::back_inserter(both));
+    if (both.size() >= needed)
+        return parabola_signature(name, first, second, at_first(both, Eigen::all),
+                                  at_second(both, Eigen::all));
+    if (holds_second.size() >= needed)
+        return straight_signature(name, second, at_second(holds_second, Eigen::all));
+    if (holds_first.size() >= needed)
+        return straight_signature(name, first, at_first(holds_first, Eigen::all));
+    const Eigen::VectorXd none = Eigen::VectorXd::Constant(at_first.cols(), not_available);
+    return {name, std::max(std::abs(first), std::abs(second)), none, none, none, none, 0};
+}
+
+}  // namespace mcdem::diagnose

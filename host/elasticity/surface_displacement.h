@@ -1,0 +1,38 @@
+// delta_kc of the six contact models: how a force at one contact moves the surface of a grain elsewhere.
+#pragma once
+#include <array>
+
+#include "core/names.h"
+
+namespace mcdem::inline elasticity {
+
+/// Terms of the polynomials in s = sin(theta / 2) and in a/R (the same constants in kernels/replica.h).
+inline constexpr int point_terms = 9;
+inline constexpr int size_terms = 7;
+inline constexpr int self_terms = 5;
+
+/// Which of the kernels' three families a model belongs to (SURFACE_* of kernels/replica.h).
+enum class SurfaceShape { rigid = 0, half_space = 1, sphere = 2 };
+
+/// A contact model for one Poisson ratio, as the kernels evaluate it. Sphere: with s = sin(theta / 2) and
+/// contact radii a, the force F_k moves the surface at c outward by F_k/(E R) times
+///   P(s)/s + m T(s)/s^3,  m = 2/5 (a_k/R)^2 + 2/3 (a_c/R)^2   (k other than c)
+///   S0 + S1 ln(a_c/R) + S2 (a_c/R) + S3 (a_c/R)^2 + S4 (a_c/R)^3   (k = c)
+struct SurfaceLaw {
+    SurfaceShape shape = SurfaceShape::rigid;
+    double gamma = 0;                         ///< half space: prefactor of Eq. 1
+    std::array<double, point_terms> point{};  ///< P, lowest order first
+    std::array<double, size_terms> size{};    ///< T, zero where contacts count as points
+    std::array<double, self_terms>
+        self{};  ///< S0..S4, zero where a contact does not move itself beyond Hertz
+};
+
+/// `gamma` is used by mc_dem only.
+SurfaceLaw surface_law(ContactModel model, double poisson_ratio, double gamma);
+
+/// Outward radial displacement, in F/(E R), of a free elastic sphere under a point force, at angle theta
+/// [rad] from it; the load is balanced by a uniform body force and the centre is held. By the Legendre
+/// series with its two slowest parts summed in closed form.
+double point_force_on_sphere(double poisson_ratio, double theta);
+
+}  // namespace mcdem::elasticity

@@ -1,0 +1,26 @@
+// The simulations of a diagnosis' library: which they are, and in parts for many processes.
+#pragma once
+#include <memory>
+
+#include "ensemble/diagnose_experiment.h"
+#include "ensemble/parts/parted_work.h"
+
+namespace mcdem::inline ensemble {
+
+/// Trials of a baseline whose recordings are kept whole: the paper's metrics are taken from them.
+constexpr std::size_t trials_recorded = 4;
+void keep_recordings(std::vector<Trial>& trials);
+
+Question question_of(const Scene& scene, const Experiment& experiment, const DiagnoseOptions& options,
+                     const Model& model);
+
+LibraryPlan plan_of(const Experiment& experiment, const DiagnoseOptions& options, const Model& model,
+                    const CandidateChoice& choice);
+
+/// Nothing is left where the library's file is there; with all parts there, diagnose_experiment makes the
+/// library without simulating. Holds the folder's lock with others. The arguments must live as long. Throws
+/// InputError where the experiment cannot be diagnosed.
+std::unique_ptr<PartedWork> library_parts(const Scene& scene, const Experiment& experiment,
+                                          const DiagnoseOptions& options);
+
+}  // namespace mcdem::ensemble

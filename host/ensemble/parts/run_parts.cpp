@@ -1,0 +1,292 @@
+#include "ensemble/parts/run_parts.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <random>
+
+#include "core/atomic_file.h"
+#include "core/errors.h"
+#include "core/make_folder.h"
+#include "ensemble/parts/manifest.h"
+#include "ensemble/run_state.h"
+#include "io/checkpoint.h"
+#include "io/csv.h"
+#include "io/parts.h"
+#include "io/result_file.h"
+#include "io/result_folder.h"
+#include "io/results.h"
+
+namespace mcdem::inline ensemble {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double grains_that_fill_a_device = 32'768;
+const char* const size_of_part = "replicas of a part";
+
+std::string part_name(std::size_t part) { return fmt::format("{:05}", part); }
+fs::path part_file(const fs::path& folder, std::size_t part) {
+    return parts_folder(folder) / (part_name(part) + ".h5");
+}
+std::string work_prefix(std::size_t part) { return part_name(part) + ".work-"; }
+
+/// Parts no longer wanted, on their way out: the folder of the parts goes in one step.
+fs::path old_parts(const fs::path& folder) { return folder / "parts.merged"; }
+
+bool is_merged(const fs::path& folder) {
+    return fs::exists(run_file(folder)) && !fs::exists(parts_folder(folder));
+}
+
+/// Grains of a replica, as far as a scene tells without its packing.
+double grains_of(const Replica& replica) {
+    if (const auto* drawn = std::get_if<GeneratedPacking>(&replica.packing.source)) return drawn->count;
+    constexpr double bytes_of_a_grain = 50;  // about, in a packing file
+    std::error_code missing;
+    const auto bytes = fs::file_size(std::get<PackingFile>(replica.packing.source).path, missing);
+    return missing ? 1 : std::max(1.0, static_cast<double>(bytes) / bytes_of_a_grain);
+}
+
+/// As many replicas as fill a device, but so few that every worker has two parts: the last to end is waited
+/// for.
+std::size_t fitting_size(const Scene& scene, const RunCut& cut) {
+    if (cut.part_replicas > 0) return cut.part_replicas;
+    double most = 1;
+    for (const Replica& replica : scene.replicas) most = std::max(most, grains_of(replica));
+    const auto filling = static_cast<std::size_t>(std::max(1.0, grains_that_fill_a_device / most));
+    const std::size_t shares = 2 * std::max<std::size_t>(1, cut.workers);
+    return std::clamp<std::size_t>((scene.replicas.size() + shares - 1) / shares, 1, filling);
+}
+
+/// The size of parts that a manifest states.
+std::size_t size_in(const Manifest& kept, const fs::path& file) {
+    const auto found = kept.find(size_of_part);
+    const std::string text = found == kept.end() ? "" : found->second;
+    const bool digits =
+        !text.empty() && text.size() < 10 && text.find_first_not_of("0123456789") == text.npos;
+    if (const std::size_t number = digits ? std::stoul(text) : 0; number > 0) return number;
+    throw InputError(
+        fmt::format("{}: '{}' must be a number of replicas above 0, got '{}': restore it from a copy, or "
+                    "give another folder",
+                    file.string(), size_of_part, text));
+}
+
+/// A run of one program in the folder is not touched: it is its own.
+void expect_no_run_of_one(const fs::path& folder) {
+    if (fs::exists(parts_folder(folder))) return;
+    if (has_checkpoint(folder) || !segment_files(folder).empty())
+        throw InputError(
+            folder.string() +
+            ": holds an interrupted run of one program: go on with it by --resume alone, or give "
+            "another folder");
+}
+
+/// Keeps those away that write alone. What lies in the folder is looked at once they cannot come any more.
+FolderLock lock_for_sharing(const fs::path& folder, const Scene& scene) {
+    make_result_folder(folder);
+    FolderLock lock(folder, FolderLock::Use::shared);
+    expect_room_for_run(folder);
+    expect_no_run_of_one(folder);
+    if (is_merged(folder)) expect_scene_of(folder, scene);
+    return lock;
+}
+
+}  // namespace
+
+bool is_run_in_parts(const fs::path& folder) { return fs::exists(parts_folder(folder)); }
+
+RunParts::RunParts(const Scene& scene, const RunOptions& options, const RunCut& cut)
+    : scene_(scene), options_(options), lock_(lock_for_sharing(options.folder, scene)) {
+    if (is_merged(options.folder)) {
+        fs::remove_all(old_parts(options.folder));
+        remove_temporaries(options.folder);
+        return;
+    }
+    part_replicas_ = begin(cut);
+    count_ = (scene.replicas.size() + part_replicas_ - 1) / part_replicas_;
+}
+
+/// The size of parts, as it was when the folder was begun.
+std::size_t RunParts::begin(const RunCut& cut) {
+    const fs::path folder = parts_folder(options_.folder), file = manifest_file(folder);
+    make_folder(folder);
+    Manifest wanted = manifest_of(scene_, options_.program);
+    wanted["number of replicas"] = std::to_string(scene_.replicas.size());
+    std::size_t size = fitting_size(scene_, cut);
+    if (fs::exists(file) && !read_manifest(file)) {
+        size = size_of_finished_parts(size);
+        options_.on_warning(fmt::format("{}: is damaged, and made anew from what is there", file.string()));
+    }
+    wanted[size_of_part] = std::to_string(size);
+    return size_in(keep_manifest(file, wanted, size_of_part), file);
+}
+
+/// Where the manifest is damaged, the finished parts tell how large parts are. Throws InputError where they
+/// are another run's.
+std::size_t RunParts::size_of_finished_parts(std::size_t fitting) const {
+    std::size_t size = 0;
+    for (const auto& entry : fs::directory_iterator(parts_folder(options_.folder))) {
+        if (entry.path().extension() != ".h5") continue;
+        Run part;
+        try {
+            part = read_run_header({entry.path()});
+        } catch (const InputError&) {
+            continue;  // found when it is merged
+        }
+        if (part.scene != scene_.text || part.program != options_.program)
+            throw InputError(
+                fmt::format("{}: is damaged, and the finished parts beside it are of another scene or "
+                            "program: give that one, or another folder",
+                            manifest_file(parts_folder(options_.folder)).string()));
+        size = std::max(size, part.recordings.size());  // the last part may be smaller
+    }
+    return size > 0 ? size : fitting;
+}
+
+std::vector<std::size_t> RunParts::missing() {
+    std::vector<std::size_t> parts;
+    if (fs::exists(run_file(options_.folder))) return parts;
+    for (std::size_t part = 0; part < count_; ++part)
+        if (!fs::exists(part_file(options_.folder, part))) parts.push_back(part);
+    // .. unless all went between two looks, merged by another process.
+    if (fs::exists(run_file(options_.folder))) parts.clear();
+    return parts;
+}
+
+Scene RunParts::scene_of(std::size_t part) const {
+    Scene some = scene_;
+    const auto first = static_cast<std::ptrdiff_t>(part * part_replicas_);
+    const auto last =
+        static_cast<std::ptrdiff_t>(std::min(scene_.replicas.size(), (part + 1) * part_replicas_));
+    some.replicas.assign(scene_.replicas.begin() + first, scene_.replicas.begin() + last);
+    return some;
+}
+
+/// Throws DamagedPart where the finished part cannot be read, or is another one.
+void RunParts::expect_own(std::size_t part) const try {
+    const fs::path file = part_file(options_.folder, part);
+    const Run found = read_run_header({file});
+    if (found.scene != scene_.text || !std::ranges::equal(found.recordings, scene_of(part).replicas, {},
+                                                          &Recording::label, &Replica::label))
+        throw DamagedPart(part, file.string() + ": holds other replicas than part " + part_name(part));
+} catch (const InputError& error) {
+    throw DamagedPart(part, error.what());
+}
+
+bool RunParts::is_whole(std::size_t part) const try {
+    if (!fs::exists(part_file(options_.folder, part))) return false;
+    expect_own(part);
+    ResultFile(part_file(options_.folder, part)).expect_whole();
+    return true;
+} catch (const DamagedPart& damaged) {
+    options_.on_warning(fmt::format("part {} is computed again: {}", part_name(part), damaged.what()));
+    return false;
+} catch (const InputError& error) {
+    options_.on_warning(fmt::format("part {} is computed again: {}", part_name(part), error.what()));
+    return false;
+}
+
+/// A folder of this process for its work on the part, with the checkpoint that an interrupted process has
+/// left, if any. One of another machine whose lock does not reach this one finds its folder gone, and does no
+/// harm.
+fs::path RunParts::take_work_folder(std::size_t part) const {
+    std::random_device random;
+    const fs::path mine =
+        parts_folder(options_.folder) / fmt::format("{}{:08x}{:08x}", work_prefix(part), random(), random());
+    for (const auto& entry : fs::directory_iterator(parts_folder(options_.folder))) {
+        if (!entry.path().filename().string().starts_with(work_prefix(part))) continue;
+        try {
+            const FolderLock free(entry.path(), FolderLock::Use::alone);
+            std::error_code gone;
+            fs::rename(entry.path(), mine, gone);
+            if (!gone) break;
+        } catch (const InputError&) {  // another process is at it
+        } catch (const RunError&) {    // it is gone
+        }
+    }
+    return mine;
+}
+
+RunEnd RunParts::run_part(Device& device, std::size_t part, const fs::path& work) {
+    RunOptions run = options_;
+    run.folder = work;
+    run.on_progress = [this](double fraction) { on_progress(fraction); };
+    const Scene scene = scene_of(part);
+    if (fs::exists(work)) try {
+            run.start = Start::resume;
+            return run_scene(device, scene, run).end;
+        } catch (const InputError& error) {
+            options_.on_warning(fmt::format("part {} is computed anew: what was there of it is of no use: {}",
+                                            part_name(part), error.what()));
+            fs::remove_all(work);
+        }
+    run.start = Start::fresh;
+    return run_scene(device, scene, run).end;
+}
+
+bool RunParts::compute(Device& device, std::size_t part) try {
+    if (is_merged(options_.folder)) return true;
+    if (part >= count_)
+        throw InputError(fmt::format("--part: must be below {}, the number of parts of {}, got {}", count_,
+                                     options_.folder.string(), part));
+    keep_manifest(device_file(parts_folder(options_.folder)), manifest_of(device, scene_));
+    if (is_whole(part)) return true;
+    const fs::path work = take_work_folder(part);
+    if (run_part(device, part, work) == RunEnd::interrupted) return false;
+    move_file(run_file(work), part_file(options_.folder, part));
+    fs::remove_all(work);
+    // Others may have merged while this process computed what was done already.
+    if (fs::exists(run_file(options_.folder))) merge();
+    return true;
+} catch (const std::exception&) {
+    // The folder of the parts goes when others have merged them, whatever this process was about to do there.
+    if (!is_merged(options_.folder)) throw;
+    expect_scene_of(options_.folder, scene_);
+    return true;
+}
+
+/// Locks keep others away, but not on every network disk.
+void RunParts::expect_own_merge() const {
+    if (read_run_header({run_file(options_.folder)}).scene != scene_.text)
+        throw InputError(options_.folder.string() +
+                         ": holds the run.h5 of another run beside the parts of this one: move one of them "
+                         "(run.h5 and plate.csv; parts/) elsewhere");
+}
+
+/// False where a part is damaged, which is removed then.
+bool RunParts::merge_files() try {
+    std::vector<fs::path> files;
+    for (std::size_t part = 0; part < count_; ++part) {
+        files.push_back(part_file(options_.folder, part));
+        expect_own(part);
+    }
+    merge_parts(files, run_file(options_.folder));
+    return true;
+} catch (const DamagedPart& damaged) {
+    options_.on_warning(
+        fmt::format("part {} is computed again: {}", part_name(damaged.part), damaged.what()));
+    fs::remove(part_file(options_.folder, damaged.part));
+    return false;
+}
+
+/// Safe to do twice, by two processes at a time, and after it was cut short anywhere.
+bool RunParts::merge() try {
+    if (is_merged(options_.folder)) return true;
+    if (fs::exists(run_file(options_.folder)))
+        expect_own_merge();
+    else if (!missing().empty() || !merge_files())
+        return is_merged(options_.folder);
+    write_csv(read_run(options_.folder, ReadWhat::observables), options_.folder);
+    fs::remove_all(old_parts(options_.folder));
+    fs::rename(parts_folder(options_.folder), old_parts(options_.folder));
+    fs::remove_all(old_parts(options_.folder));
+    // Another that merges at the same time may still write: what it would write is there.
+    remove_temporaries(options_.folder);
+    return true;
+} catch (const std::exception&) {
+    if (!is_merged(options_.folder)) throw;
+    expect_scene_of(options_.folder, scene_);
+    return true;
+}
+
+}  // namespace mcdem::ensemble

@@ -1,0 +1,108 @@
+#include "report/diagnosis/diagnosis_page.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "diagnose/infer/effects.h"
+#include "diagnose/observe/scan_observables.h"
+#include "report/diagnosis/diagnosis_charts.h"
+#include "report/diagnosis/diagnosis_tables.h"
+#include "report/diagnosis/diagnosis_text.h"
+#include "report/diagnosis/diagnosis_words.h"
+
+namespace mcdem::inline report {
+namespace {
+
+void add_gap(Page& page, const Diagnosis& diagnosis) {
+    page.section("Gap");
+    page.paragraph(
+        fmt::format("Two tests, each ranked against simulated experiments without any gap: one of all "
+                    "differences together ({}), one along the known effects ({}). Corrected for there "
+                    "being two: {}.",
+                    p_words(diagnosis.p_omnibus), p_words(diagnosis.p_directed), p_words(diagnosis.p_value)));
+}
+
+/// What the rows of the picture mean, of those in it.
+TextTable table_of_observables(const Diagnosis& diagnosis) {
+    TextTable table;
+    table.columns = {{"observable", Align::left}, {"what it is", Align::left}};
+    for (const auto& observable : observables()) {
+        const auto is_it = [&](const WhereCell& cell) { return cell.observable == observable.name; };
+        if (std::any_of(diagnosis.cells.begin(), diagnosis.cells.end(), is_it))
+            table.rows.push_back({words_of(std::string(observable.name)), std::string(observable.meaning)});
+    }
+    return table;
+}
+
+/// What the amplitudes of the candidates mean.
+TextTable table_of_effects(const Diagnosis& diagnosis) {
+    TextTable table;
+    table.columns = {{"effect", Align::left}, {"amplitude", Align::left}, {"source", Align::left}};
+    for (const auto& cause : diagnosis.ranking)
+        if (const auto* effect = find_effect(cause.effect))
+            table.rows.push_back(
+                {words_of(cause.effect), std::string(effect->formula), std::string(effect->source)});
+    return table;
+}
+
+void add_chart(Page& page, const std::optional<Chart>& chart) {
+    if (chart) page.chart(*chart);
+}
+
+void add_how_far(Page& page, const Diagnosis& diagnosis) {
+    page.section("How far");
+    if (!diagnosis.shrink) page.paragraph(verdict_lines(diagnosis)[3].says);
+    for (const auto& chart : how_far_charts(diagnosis)) page.chart(chart);
+    page.table("Before and after", table_of_shrink(diagnosis));
+}
+
+void add_table(Page& page, const std::string& heading, const TextTable& table) {
+    if (table.rows.empty()) return;
+    page.section(heading);
+    page.table("", table);
+}
+
+void add_list(Page& page, const std::string& heading, const std::vector<std::string>& texts) {
+    if (texts.empty()) return;
+    page.section(heading);
+    page.list(texts);
+}
+
+}  // namespace
+
+void add_diagnosis(Page& page, const Diagnosis& diagnosis, const std::string& name) {
+    page.lead("Diagnosis of the gap between simulation and experiment" + (name.empty() ? "" : ": " + name),
+              verdict_headline(diagnosis), verdict_sentence(diagnosis));
+    std::vector<std::pair<std::string, std::string>> lines;
+    for (const auto& [about, says] : verdict_lines(diagnosis)) lines.emplace_back(about, says);
+    page.definitions(lines);
+    add_gap(page, diagnosis);
+    page.section("Where");
+    add_chart(page, where_chart(diagnosis));
+    page.table("What stands out", table_of_where(diagnosis));
+    page.section("Which");
+    add_chart(page, which_chart(diagnosis));
+    page.table(diagnosis.verdict == Verdict::unknown_effect ? "What comes nearest"
+                                                            : "Effects consistent with the gap",
+               table_of_causes(diagnosis));
+    page.table("What these data can show", table_of_detection_limits(diagnosis));
+    add_how_far(page, diagnosis);
+    std::vector<std::string> steps;
+    for (const auto& step : diagnosis.next) steps.push_back(next_words(step));
+    add_list(page, "What to do next", steps);
+    add_table(page, "Parameters known only roughly", table_of_nuisances(diagnosis));
+    add_list(page, "What was not measured", diagnosis.not_measured);
+    add_list(page, "What cannot be tested", diagnosis.not_testable);
+    add_table(page, "What the effects are", table_of_effects(diagnosis));
+    add_table(page, "What the observables are", table_of_observables(diagnosis));
+    add_table(page, "Where this comes from", table_of_provenance(diagnosis));
+}
+
+void write_diagnosis_page(const Diagnosis& diagnosis, const std::filesystem::path& file) {
+    Page page("Diagnosis: " + verdict_headline(diagnosis));
+    add_diagnosis(page, diagnosis, "");
+    write_page(page, file);
+}
+
+}  // namespace mcdem::report

@@ -1,0 +1,372 @@
+#include "report/diagnosis/diagnosis_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "report/diagnosis/diagnosis_parts.h"
+#include "report/diagnosis/diagnosis_words.h"
+#include "report/page/labels.h"
+
+namespace mcdem::inline report {
+namespace {
+
+constexpr std::size_t most_entries = 2;  // of "where"
+constexpr std::size_t most_limits = 5;
+constexpr std::size_t longest_remark = 160;
+
+std::vector<std::string> words_of_all(const std::vector<std::string>& names) {
+    std::vector<std::string> words;
+    for (const auto& name : names) words.push_back(words_of(name));
+    return words;
+}
+
+const Cause* leader_of(const Diagnosis& diagnosis) {
+    if (!diagnosis.causes.empty()) return &diagnosis.causes.front();
+    return diagnosis.ranking.empty() ? nullptr : &diagnosis.ranking.front();
+}
+
+/// The members of the leader's group with their amplitudes, where those are known.
+std::vector<std::string> members_of(const Diagnosis& diagnosis, const Cause& leader) {
+    std::vector<std::string> members;
+    for (const auto& name : leader.group) {
+        const auto is_it = [&](const Cause& cause) { return cause.effect == name; };
+        const auto cause = std::find_if(diagnosis.causes.begin(), diagnosis.causes.end(), is_it);
+        const auto ranked = std::find_if(diagnosis.ranking.begin(), diagnosis.ranking.end(), is_it);
+        if (cause != diagnosis.causes.end())
+            members.push_back(cause_words(*cause));
+        else
+            members.push_back(ranked != diagnosis.ranking.end() ? cause_words(*ranked) : words_of(name));
+    }
+    return members;
+}
+
+/// A second effect that acts together with the leader, in words that follow it; empty where there is none.
+std::string together_with(const Diagnosis& diagnosis) {
+    std::vector<std::string> parts;
+    for (std::size_t i = 1; i < diagnosis.causes.size(); ++i) {
+        const auto& group = diagnosis.causes.front().group;
+        if (std::find(group.begin(), group.end(), diagnosis.causes[i].effect) == group.end())
+            parts.push_back(cause_words(diagnosis.causes[i]));
+    }
+    return parts.empty() ? "" : " together with " + listed(parts);
+}
+
+/// What cannot be told from the leader, in words that follow it; empty where it stands alone.
+std::string not_told_from(const Cause& leader) {
+    std::vector<std::string> parts;
+    for (const auto& name : leader.group)
+        if (name != leader.effect) parts.push_back(words_of(name));
+    return parts.empty() ? "" : ", which these data cannot tell from " + listed(parts);
+}
+
+/// What the diagnosis refined by itself, in words that follow a statement; empty where nothing was.
+std::string refined(const Diagnosis& diagnosis) {
+    std::string text;
+    for (const auto& refinement : diagnosis.refinements)
+        if (refinement.done) text += ", with " + refinement_words(refinement);
+    return text;
+}
+
+/// What is still to be refined; empty where nothing is known of it.
+std::string to_refine(const Diagnosis& diagnosis) {
+    for (const auto& refinement : diagnosis.refinements)
+        if (!refinement.done) return ": set " + refinement_words(refinement);
+    return "";
+}
+
+std::string gap_line(const Diagnosis& diagnosis) {
+    if (!diagnosis.detected)
+        return fmt::format("none that these data show{}: noise alone gives differences like these ({}).",
+                           refined(diagnosis), p_words(diagnosis.p_value));
+    return fmt::format(
+        "yes: simulation and experiment differ by more than noise and calibration account for{} ({}).",
+        refined(diagnosis), p_words(diagnosis.p_value));
+}
+
+/// The strongest of the cells that are framed in the picture, and how many there are.
+struct Framed {
+    const WhereCell* strongest = nullptr;
+    int count = 0;
+};
+Framed framed_cells(const Diagnosis& diagnosis, bool refitted) {
+    const auto size = [&](const WhereCell& cell) {
+        return std::fabs(refitted ? cell.z_score_refitted : cell.z_score);
+    };
+    Framed framed;
+    for (const auto& cell : diagnosis.cells) {
+        if (!std::isfinite(size(cell)) || !stands_out(diagnosis, cell, refitted)) continue;
+        ++framed.count;
+        if (!framed.strongest || size(cell) > size(*framed.strongest)) framed.strongest = &cell;
+    }
+    return framed;
+}
+
+/// Where no entry stands for them: single cells beyond the threshold, so that the words say what the picture
+/// shows.
+std::string framed_line(const Diagnosis& diagnosis) {
+    const Framed refitted = framed_cells(diagnosis, true), stated = framed_cells(diagnosis, false);
+    if (refitted.count + stated.count == 0) return "no single part of the data stands out of the noise.";
+    const bool after = refitted.count > 0;
+    const Framed& shown = after ? refitted : stated;
+    auto text = fmt::format(
+        "{} of {} parts of the data {} beyond {:.1f} sigma {} (the strongest: {}, {:.1f} sigma)", shown.count,
+        diagnosis.cells.size(), shown.count == 1 ? "is" : "are", diagnosis.where_threshold,
+        after ? "after recalibration" : "as stated", words_of(shown.strongest->observable),
+        after ? shown.strongest->z_score_refitted : shown.strongest->z_score);
+    if (!after)
+        text += ", and none after recalibration";
+    else if (!diagnosis.detected)
+        text += "; all tests together, that is no more than chance allows";
+    return text + ".";
+}
+
+/// The strongest entry of each observable first.
+std::string where_line(const Diagnosis& diagnosis) {
+    if (diagnosis.where.empty()) return framed_line(diagnosis);
+    auto entries = diagnosis.where;
+    std::stable_sort(entries.begin(), entries.end(), [](const WhereEntry& a, const WhereEntry& b) {
+        return std::fabs(a.z_score) > std::fabs(b.z_score);
+    });
+    std::vector<std::string> parts, observables;
+    for (const auto& entry : entries) {
+        if (std::find(observables.begin(), observables.end(), entry.observable) != observables.end())
+            continue;
+        observables.push_back(entry.observable);
+        if (parts.size() < most_entries) parts.push_back(where_words(entry));
+    }
+    auto text = parts.front();
+    for (std::size_t i = 1; i < parts.size(); ++i) text += "; " + parts[i];
+    if (observables.size() > parts.size())
+        text += fmt::format("; and {} more observable{}", observables.size() - parts.size(),
+                            observables.size() - parts.size() == 1 ? "" : "s");
+    return text + ".";
+}
+
+/// "97 % of the gap": the number that the verdict hangs on.
+std::string reduction_words(const Diagnosis& diagnosis) {
+    return diagnosis.explanation ? percent(diagnosis.explanation->reduction) + " of the gap" : "the gap";
+}
+
+/// What it lacks to be named, in words that follow its reduction.
+std::string needed_words(const Explanation& explanation) {
+    const auto needed = percent(explanation.needed);
+    return needed == percent(explanation.reduction) ? "a little less than is needed to name it"
+                                                    : "and " + needed + " would be needed to name it";
+}
+
+std::string unknown_line(const Diagnosis& diagnosis) {
+    auto text = "none of " + library_words(diagnosis) + " explains it";
+    if (const auto* best = leader_of(diagnosis); best && diagnosis.explanation)
+        text += fmt::format("; the best of them, {}{}, takes away {}, {}", cause_words(*best),
+                            together_with(diagnosis), reduction_words(diagnosis),
+                            needed_words(*diagnosis.explanation));
+    return text + ".";
+}
+
+std::string calibration_line(const Diagnosis& diagnosis) {
+    std::vector<std::string> parts;
+    for (const auto& suspect : suspects_of(diagnosis)) parts.push_back(suspect_words(suspect));
+    auto text = std::string("consistent with a wrong stated parameter, before any effect");
+    if (!parts.empty()) text += ": " + listed(parts);
+    if (!diagnosis.causes.empty()) text += not_told_from(diagnosis.causes.front());
+    return text + ".";
+}
+
+std::string which_line(const Diagnosis& diagnosis) {
+    const auto* leader = leader_of(diagnosis);
+    switch (diagnosis.verdict) {
+        case Verdict::no_gap:
+            return "no effect is called for.";
+        case Verdict::unknown_effect:
+            return unknown_line(diagnosis);
+        case Verdict::not_converged:
+            return fmt::format("consistent with the simulation's own numerics, before any effect: {}{}{}.",
+                               leader ? words_of(leader->effect) : "a setting", together_with(diagnosis),
+                               to_refine(diagnosis));
+        case Verdict::calibration_suspect:
+            return calibration_line(diagnosis);
+        case Verdict::effect:
+            if (!leader) break;
+            return fmt::format("consistent with {}{}, {} of the probability among {}.", cause_words(*leader),
+                               together_with(diagnosis), percent(leader->confidence),
+                               library_words(diagnosis));
+        case Verdict::group:
+            if (!leader) break;
+            return fmt::format("consistent with any of {}{}; these data cannot tell them apart.",
+                               listed(members_of(diagnosis, *leader)), together_with(diagnosis));
+    }
+    return "no effect is named.";
+}
+
+std::string what_is_added(const Diagnosis& diagnosis) {
+    const auto* leader = leader_of(diagnosis);
+    if (diagnosis.verdict == Verdict::calibration_suspect) return "correcting it";
+    if (diagnosis.verdict == Verdict::not_converged) return "refining it";
+    return leader ? "adding " + words_of(leader->effect) : "adding it";
+}
+
+std::string data_words(const Diagnosis& diagnosis) {
+    if (!diagnosis.explanation->held_out) return " (the data held out show none by themselves)";
+    const auto held_out =
+        diagnosis.shrink ? shortened(one_line(diagnosis.shrink->held_out), longest_remark) : "";
+    return " on data held out" + (held_out.empty() ? "" : " (" + held_out + ")");
+}
+
+std::string remainder_words(const Explanation& explanation) {
+    if (!explanation.leaves_more_than_noise) return "what remains is noise as far as these data tell";
+    const double left = std::max(0.0, explanation.remainder());
+    return fmt::format("{} remain{} that no effect of the library explains ({})", percent(left),
+                       left < 0.015 ? "s" : "", p_words(explanation.remainder_p));
+}
+
+std::string how_far_line(const Diagnosis& diagnosis) {
+    if (!diagnosis.explanation)
+        return diagnosis.verdict == Verdict::no_gap ? "there is nothing to explain."
+                                                    : "not known: nothing was tried.";
+    const auto& explanation = *diagnosis.explanation;
+    auto text = fmt::format("{} takes away {}{}, {}; a placebo takes away {}; {}", what_is_added(diagnosis),
+                            reduction_words(diagnosis), data_words(diagnosis),
+                            explanation.simulated ? "simulated in full" : "by the signatures",
+                            percent(explanation.placebo), remainder_words(explanation));
+    if (const auto& shrink = diagnosis.shrink; shrink && shrink->before > 0 && explanation.held_out)
+        text += fmt::format("; predicted was {} (90 % interval: {:.0f} to {})", percent(shrink->fraction),
+                            shrink->interval[0] * 100, percent(shrink->interval[1]));
+    return text + ".";
+}
+
+/// Finite limits of the candidates that were nearest to being called for; in the order given without a
+/// ranking.
+std::vector<std::string> limits_that_matter(const Diagnosis& diagnosis) {
+    auto limits = diagnosis.detection_limits;
+    const auto rank = [&](const DetectionLimit& limit) {
+        return std::find_if(diagnosis.ranking.begin(), diagnosis.ranking.end(),
+                            [&](const Cause& cause) { return cause.effect == limit.effect; }) -
+               diagnosis.ranking.begin();
+    };
+    std::stable_sort(limits.begin(), limits.end(),
+                     [&](const DetectionLimit& a, const DetectionLimit& b) { return rank(a) < rank(b); });
+    std::vector<std::string> words;
+    for (const auto& limit : limits)
+        if (std::isfinite(limit.minimum_amplitude))
+            words.push_back(words_of(limit.effect) + " from " + amount(limit.minimum_amplitude, limit.unit));
+    return words;
+}
+
+std::vector<std::string> never_shown(const Diagnosis& diagnosis) {
+    std::vector<std::string> words;
+    for (const auto& limit : diagnosis.detection_limits)
+        if (!std::isfinite(limit.minimum_amplitude)) words.push_back(words_of(limit.effect));
+    return words;
+}
+
+std::string no_gap_limits(const Diagnosis& diagnosis) {
+    const auto limits = limits_that_matter(diagnosis);
+    if (limits.empty()) return "smaller effects than these data can show may be there.";
+    return "smaller ones may be there: these data would show " + listed(limits, most_limits);
+}
+
+std::string limits_line(const Diagnosis& diagnosis) {
+    std::string text;
+    if (diagnosis.verdict == Verdict::no_gap)
+        text = no_gap_limits(diagnosis);
+    else if (diagnosis.verdict == Verdict::unknown_effect)
+        text = "an effect that nobody thought of, or several at once, may be behind it";
+    else if (diagnosis.verdict == Verdict::not_converged)
+        text =
+            "an effect that looks like this setting would give the same data, and is to be told from it "
+            "first";
+    else if (diagnosis.verdict == Verdict::calibration_suspect)
+        text = "an effect that looks like this parameter would give the same data";
+    else
+        text = "consistent is not proven: an effect outside the library may look the same";
+    while (text.ends_with('.')) text.pop_back();
+    const auto never = never_shown(diagnosis);
+    if (!never.empty()) text += "; these data can never show " + listed(never, most_limits);
+    if (!diagnosis.not_measured.empty())
+        text += "; not measured: " + shortened(one_line(diagnosis.not_measured.front()), longest_remark);
+    while (text.ends_with('.')) text.pop_back();
+    return text + ".";
+}
+
+std::string next_line(const Diagnosis& diagnosis) {
+    if (diagnosis.next.empty()) return "nothing that the signatures tell would help.";
+    std::string text;
+    for (const auto& step : diagnosis.next) text += (text.empty() ? "" : "; ") + one_line(next_words(step));
+    while (text.ends_with('.')) text.pop_back();
+    return text + ".";
+}
+
+/// In words that follow what is named.
+std::string taken_away(const Diagnosis& diagnosis) {
+    return diagnosis.explanation ? ", and " + reduction_words(diagnosis) + " goes away with it" : "";
+}
+
+}  // namespace
+
+std::string verdict_headline(const Diagnosis& diagnosis) {
+    const bool pair = !together_with(diagnosis).empty();
+    switch (diagnosis.verdict) {
+        case Verdict::no_gap:
+            return "No detectable gap";
+        case Verdict::effect:
+            return fmt::format("A gap; {} takes away {}", pair ? "two effects together" : "one effect",
+                               reduction_words(diagnosis));
+        case Verdict::group:
+            return fmt::format("A gap; any of a group of effects takes away {}", reduction_words(diagnosis));
+        case Verdict::unknown_effect:
+            return "A gap that no known effect explains";
+        case Verdict::not_converged:
+            return "The simulation is not converged";
+        case Verdict::calibration_suspect:
+            break;
+    }
+    return "A stated parameter is suspect";
+}
+
+std::string verdict_sentence(const Diagnosis& diagnosis) {
+    const auto* leader = leader_of(diagnosis);
+    switch (diagnosis.verdict) {
+        case Verdict::no_gap:
+            return fmt::format("No gap is detectable{} ({}).", refined(diagnosis),
+                               p_words(diagnosis.p_value));
+        case Verdict::effect:
+            return "The gap is consistent with " + (leader ? cause_words(*leader) : "one effect") +
+                   together_with(diagnosis) + taken_away(diagnosis) + ".";
+        case Verdict::group:
+            return "The gap is consistent with any of " +
+                   (leader ? listed(words_of_all(leader->group)) : "several effects") +
+                   ", which these data cannot tell apart" + taken_away(diagnosis) + ".";
+        case Verdict::unknown_effect:
+            return "There is a gap that none of " + library_words(diagnosis) + " explains" +
+                   (diagnosis.explanation ? ": the best takes away " + reduction_words(diagnosis) : "") + ".";
+        case Verdict::not_converged:
+            return "The gap is consistent with a simulation that is not converged" + to_refine(diagnosis) +
+                   ".";
+        case Verdict::calibration_suspect:
+            break;
+    }
+    std::vector<std::string> parts;
+    for (const auto& suspect : suspects_of(diagnosis)) parts.push_back(suspect_words(suspect));
+    return parts.empty() ? "The gap is consistent with a wrong stated parameter."
+                         : "The gap is consistent with calibration alone: " + listed(parts) + ".";
+}
+
+std::array<VerdictLine, 6> verdict_lines(const Diagnosis& diagnosis) {
+    return {{{"Gap", gap_line(diagnosis)},
+             {"Where", where_line(diagnosis)},
+             {"Which", which_line(diagnosis)},
+             {"How far", how_far_line(diagnosis)},
+             {"Limits", limits_line(diagnosis)},
+             {"Next", next_line(diagnosis)}}};
+}
+
+std::string diagnosis_text(const Diagnosis& diagnosis) {
+    std::string text;
+    for (const auto& [about, says] : verdict_lines(diagnosis))
+        text += fmt::format("{:<9}{}\n", about + ":", says);
+    return text;
+}
+
+}  // namespace mcdem::report

@@ -1,0 +1,196 @@
+#include "report/diagnosis/diagnosis_words.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "report/page/labels.h"
+
+namespace mcdem::inline report {
+namespace {
+
+const std::string dash = "–";
+
+const std::map<std::string, std::string>& special_words() {
+    static const std::map<std::string, std::string> words{
+        {"cross_contact", "cross-contact deformation"},
+        {"bulge_contacts", "contacts made by bulges"},
+        {"friction", "friction between grains"},
+        {"wall_friction", "friction at the walls"},
+        {"friction_history", "friction with memory"},
+        {"stiffening", "stiffening at large strain"},
+        {"buoyancy", "weight under buoyancy"},
+        {"diameter_error", "error of all diameters"},
+        {"polydispersity", "scatter of diameters"},
+        {"modulus_scatter", "scatter of moduli"},
+        {"plate_tilt", "tilt of the plate along x"},
+        {"plate_tilt_y", "tilt of the plate along y"},
+        {"plate_compliance", "compliance of the plate"},
+        {"force_bias", "bias of contact forces"},
+        {"gauge_drift", "drift of the plate's gauge"},
+        {"force_threshold", "shifted force threshold"},
+        {"position_bias", "bias of positions"},
+        {"strain_offset", "zero of the displacement"},
+        {"non_affine", "non-affine displacement"},
+        {"plate_speed", "speed of the plate"},
+        {"inertia", "inertia of the grains"},
+    };
+    return words;
+}
+
+/// Unit in files, what its number is multiplied with, unit for people.
+struct ShownUnit {
+    std::string unit;
+    double factor;
+    std::string shown;
+};
+
+ShownUnit shown_unit(const std::string& unit) {
+    static const std::vector<ShownUnit> units{
+        {"m", 1e3, "mm"},       {"N", 1e3, "mN"}, {"J/m2", 1e3, "mJ/m²"},
+        {"Pa", 1e-3, "kPa"},    {"s", 1e3, "ms"}, {"m/N", 1e3, "mm/N"},
+        {"relative", 100, "%"}, {"1", 1, ""},     {"kg/m3", 1, "kg/m³"},
+    };
+    for (const auto& known : units)
+        if (known.unit == unit) return known;
+    return {unit, 1, one_line(unit)};
+}
+
+std::string with_unit(const std::string& number, const std::string& unit) {
+    return unit.empty() ? number : number + " " + unit;
+}
+
+/// Decimals that show the first two digits of `error`.
+int decimals_for(double error) {
+    return std::clamp(1 - static_cast<int>(std::floor(std::log10(error))), 0, 12);
+}
+
+double pull(const NuisanceFit& fit) { return fit.prior > 0 ? std::fabs(fit.value) / fit.prior : 0; }
+
+}  // namespace
+
+std::string words_of(const std::string& name) {
+    const auto found = special_words().find(name);
+    if (found != special_words().end()) return found->second;
+    auto words = one_line(name);
+    std::replace(words.begin(), words.end(), '_', ' ');
+    return words;
+}
+
+std::string listed(const std::vector<std::string>& parts, std::size_t most) {
+    const std::size_t shown = std::min(parts.size(), most);
+    std::string text;
+    for (std::size_t i = 0; i < shown; ++i) {
+        const bool last = i + 1 == parts.size();
+        text += (i == 0 ? "" : last ? " and " : ", ") + parts[i];
+    }
+    return shown < parts.size() ? fmt::format("{} and {} more", text, parts.size() - shown) : text;
+}
+
+std::string amount(double value, const std::string& unit) {
+    if (!std::isfinite(value)) return dash;
+    const auto& [_, factor, shown] = shown_unit(unit);
+    return with_unit(fmt::format("{:.3g}", value * factor), shown);
+}
+
+std::string amount(double value, double error, const std::string& unit, Sign sign) {
+    if (!std::isfinite(value) || std::isinf(error)) return dash;
+    const auto& [_, factor, shown] = shown_unit(unit);
+    const auto plus = sign == Sign::always && value > 0 ? "+" : "";
+    if (!(error > 0) || !std::isfinite(error)) return fmt::format("{}{}", plus, amount(value, unit));
+    const int decimals = decimals_for(error * factor);
+    return with_unit(
+        fmt::format("{}{:.{}f} ± {:.{}f}", plus, value * factor, decimals, error * factor, decimals), shown);
+}
+
+std::string percent(double fraction) {
+    if (!std::isfinite(fraction)) return dash;
+    if (fraction > 0 && fraction < 0.005) return "< 1 %";
+    return fmt::format("{:.0f} %", std::round(fraction * 100) + 0.0);  // no minus before a zero
+}
+
+std::string p_words(double p) {
+    if (!std::isfinite(p)) return "p = " + dash;
+    return p < 1e-4 ? "p < 0.0001" : fmt::format("p = {:.2g}", p);
+}
+
+std::string displacement_words(const std::array<double, 2>& displacement) {
+    const auto [from, to] = displacement;
+    if (from == 0 && to == 0) return "";
+    if (from == to) return fmt::format("{:.3g} mm", from * 1e3);
+    return fmt::format("{:.3g} to {:.3g} mm", from * 1e3, to * 1e3);
+}
+
+std::string phase_words(const std::string& phase) {
+    return phase.empty() ? "both phases" : one_line(phase) + "ing";
+}
+
+std::string where_words(const WhereEntry& entry) {
+    auto text = words_of(entry.observable);
+    if (!entry.phase.empty()) text += " while " + phase_words(entry.phase);
+    for (const auto& part : {entry.region, entry.force_class})
+        if (part && !part->empty()) text += ", " + words_of(*part);
+    const auto displacement = displacement_words(entry.displacement);
+    if (!displacement.empty()) text += ", " + displacement;
+    return text +
+           fmt::format(" ({:.1f} sigma, {:.1f} after recalibration)", entry.z_score, entry.z_score_refitted);
+}
+
+std::string cause_words(const Cause& cause) {
+    return words_of(cause.effect) + " (" + amount(cause.amplitude, cause.amplitude_error, cause.unit) + ")";
+}
+
+std::vector<std::pair<std::string, std::array<double, 2>>> metrics_in_order(const Shrink& shrink) {
+    std::vector<std::pair<std::string, std::array<double, 2>>> metrics(shrink.metrics.begin(),
+                                                                       shrink.metrics.end());
+    const auto place = [](const auto& metric) {
+        static constexpr std::array<std::string_view, 4> order{"Rtop", "errf", "errZ", "bhat"};
+        return std::find(order.begin(), order.end(), metric.first) - order.begin();
+    };
+    std::stable_sort(metrics.begin(), metrics.end(),
+                     [&](const auto& a, const auto& b) { return place(a) < place(b); });
+    return metrics;
+}
+
+std::string library_words(const Diagnosis& diagnosis) {
+    const auto count = diagnosis.detection_limits.size();
+    return count > 0 ? fmt::format("the {} known effects", count) : "the known effects";
+}
+
+std::string refinement_words(const Refinement& refinement) {
+    return one_line(fmt::format("{} = {:.3g}{} instead of {:.3g}", refinement.key, refinement.to,
+                                refinement.unit.empty() ? "" : " " + refinement.unit, refinement.from));
+}
+
+std::string next_words(const NextStep& step) {
+    return step.power
+               ? step.what + fmt::format(" (predicted in {} of such experiments)", percent(*step.power))
+               : step.what;
+}
+
+std::vector<NuisanceFit> suspects_of(const Diagnosis& diagnosis) {
+    std::vector<NuisanceFit> suspects;
+    if (!diagnosis.causes.empty()) {
+        const auto& leader = diagnosis.causes.front();
+        for (const auto& fit : diagnosis.nuisances)
+            if (fit.name == leader.effect)
+                suspects.push_back(
+                    {fit.name, leader.amplitude, leader.amplitude_error, fit.prior, fit.unit, true});
+    }
+    if (!suspects.empty()) return suspects;
+    for (const auto& fit : diagnosis.nuisances)
+        if (fit.at_bound) suspects.push_back(fit);
+    std::stable_sort(suspects.begin(), suspects.end(),
+                     [](const NuisanceFit& a, const NuisanceFit& b) { return pull(a) > pull(b); });
+    return suspects;
+}
+
+std::string suspect_words(const NuisanceFit& suspect) {
+    auto text = fmt::format("the stated {} is off by {}", words_of(suspect.name),
+                            amount(suspect.value, suspect.error, suspect.unit, Sign::always));
+    if (suspect.prior > 0) text += fmt::format(" ({:.1f} times its stated error)", pull(suspect));
+    return text;
+}
+
+}  // namespace mcdem::report

@@ -1,0 +1,18 @@
+// Text and tables for an HTML page.
+#pragma once
+#include <string>
+
+#include "report/page/text_table.h"
+
+namespace mcdem::inline report {
+
+/// The text as it stands, whatever it holds, in an element or in a quoted attribute.
+std::string html_text(const std::string& text);
+
+/// A <table>, its notes below it; empty where it has no rows.
+std::string html_table(const TextTable& table);
+
+/// A <ul> of texts; empty where there are none.
+std::string html_list(const std::vector<std::string>& texts);
+
+}  // namespace mcdem::report

@@ -1,0 +1,17 @@
+// How settings are called where people read them.
+#pragma once
+#include <string>
+
+namespace mcdem::inline report {
+
+/// Contact models in words ("mc_dem, gamma = 1" becomes "MC-DEM, gamma = 1"); other labels as they are.
+std::string words_for(const std::string& label);
+
+/// One line without control characters: what a label from a file may hold must not steer a terminal,
+/// break a table or end a script's line.
+std::string one_line(const std::string& text);
+
+/// The text cut to `most` characters of UTF-8, with an ellipsis where something is missing.
+std::string shortened(const std::string& text, std::size_t most);
+
+}  // namespace mcdem::report

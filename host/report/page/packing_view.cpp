@@ -1,0 +1,157 @@
+#include "report/page/packing_view.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "report/page/labels.h"
+
+namespace mcdem::inline report {
+namespace {
+
+constexpr double mm = 1e-3, mN = 1e-3;
+
+/// Five digits: less than a pixel, and half the size of the page.
+double rounded(double value) {
+    if (value == 0 || !std::isfinite(value)) return value;
+    const double unit = std::pow(10, std::floor(std::log10(std::fabs(value))) - 4);
+    const double scaled = std::round(value / unit);
+    return unit < 1 ? scaled / std::round(1 / unit) : scaled * unit;
+}
+
+/// The grains that are shown, and where each grain stands among them (-1: not at all).
+struct Shown {
+    std::vector<int> grains, place;
+};
+
+Shown shown_grains(const Recording& recording, int most) {
+    const auto count = recording.diameter.size();
+    Shown shown{std::vector<int>(count), std::vector<int>(count, -1)};
+    std::iota(shown.grains.begin(), shown.grains.end(), 0);
+    if (count > static_cast<std::size_t>(most)) {
+        const auto& position = recording.scans.front().position;
+        const double middle = recording.box.size_y / 2;
+        const auto away = [&](int grain) {
+            return std::fabs(position[static_cast<std::size_t>(grain)].y() - middle);
+        };
+        std::nth_element(shown.grains.begin(), shown.grains.begin() + most, shown.grains.end(),
+                         [&](int a, int b) { return away(a) < away(b); });
+        shown.grains.resize(static_cast<std::size_t>(most));
+        std::sort(shown.grains.begin(), shown.grains.end());
+    }
+    for (std::size_t g = 0; g < shown.grains.size(); ++g)
+        shown.place[static_cast<std::size_t>(shown.grains[g])] = static_cast<int>(g);
+    return shown;
+}
+
+std::string title_of(const Recording& recording, const Scan& scan) {
+    return fmt::format("scan {}: {:.2f} mm, {}ing, cycle {}, top force {:.4g} N", scan.frame,
+                       recording.displacement(scan) / mm, name(scan.phase), scan.cycle + 1, scan.top_force());
+}
+
+Json scan_json(const Recording& recording, const Scan& scan, const Shown& shown) {
+    Json json{{"frame", scan.frame},
+              {"title", title_of(recording, scan)},
+              {"displacement_mm", rounded(recording.displacement(scan) / mm)},
+              {"plate_mm", rounded(scan.plate_z / mm)}};
+    const char* axes[]{"x_mm", "y_mm", "z_mm"};
+    for (int a = 0; a < 3; ++a) {
+        auto& list = json[axes[a]] = Json::array();
+        for (const int grain : shown.grains)
+            list.push_back(rounded(scan.position[static_cast<std::size_t>(grain)][a] / mm));
+    }
+    Json grain = Json::array(), partner = Json::array(), force = Json::array();
+    for (const auto& contact : scan.contacts) {
+        const int from = shown.place[static_cast<std::size_t>(contact.grain)];
+        const int to = is_wall(contact.partner) ? contact.partner
+                                                : shown.place[static_cast<std::size_t>(contact.partner)];
+        if (from < 0 || (to < 0 && !is_wall(contact.partner))) continue;
+        grain.push_back(from), partner.push_back(to), force.push_back(rounded(contact.force.norm() / mN));
+    }
+    json["grain"] = grain, json["partner"] = partner, json["force_mN"] = force;
+    return json;
+}
+
+Json setting_json(const ShownPacking& packing, const PackingLimits& limits) {
+    const auto& recording = packing.recording;
+    const auto shown = shown_grains(recording, limits.most_grains);
+    Json diameters = Json::array(), scans = Json::array();
+    for (const int grain : shown.grains)
+        diameters.push_back(rounded(recording.diameter[static_cast<std::size_t>(grain)] / mm));
+    for (const auto& scan : recording.scans) scans.push_back(scan_json(recording, scan, shown));
+    double top = 0;
+    for (const auto& scan : recording.scans) top = std::fmax(top, scan.plate_z);
+    return {{"label", one_line(packing.label)},
+            {"box_mm", {rounded(recording.box.size_x / mm), rounded(recording.box.size_y / mm)}},
+            {"top_mm", rounded(top / mm)},
+            {"number", shown.grains},
+            {"diameter_mm", diameters},
+            {"scans", scans}};
+}
+
+/// The value that all but one in two hundred stay below; 1 where there is none.
+double colour_end(std::vector<double> values) {
+    if (values.empty()) return 1;
+    const auto place = values.end() - 1 - static_cast<std::ptrdiff_t>(values.size() / 200);
+    std::nth_element(values.begin(), place, values.end());
+    return *place > 0 ? rounded(*place) : 1;
+}
+
+/// Forces of contacts, and on grains, of all scans [mN].
+struct Forces {
+    std::vector<double> contact, grain;
+};
+
+void add_forces(const Scan& scan, Forces& forces) {
+    std::vector<double> load(scan.position.size(), 0);
+    for (const auto& contact : scan.contacts) {
+        const double force = contact.force.norm() / mN;
+        forces.contact.push_back(force);
+        load[static_cast<std::size_t>(contact.grain)] += force;
+        if (!is_wall(contact.partner)) load[static_cast<std::size_t>(contact.partner)] += force;
+    }
+    forces.grain.insert(forces.grain.end(), load.begin(), load.end());
+}
+
+}  // namespace
+
+long numbers_of_scan(long grains, long contacts) { return 3 * (grains + contacts); }
+
+std::vector<std::size_t> scans_shown(const Recording& recording, long numbers, const PackingLimits& limits) {
+    const auto count = recording.scans.size();
+    const auto room = limits.scans ? static_cast<long>(*limits.scans)
+                                   : std::max(3L, limits.most_numbers / std::max(1L, numbers));
+    const auto most = std::min(count, static_cast<std::size_t>(room));
+    std::vector<std::size_t> shown;
+    for (std::size_t s = 0; s < most; ++s)
+        shown.push_back(most == 1 ? count - 1 : (s * (count - 1) + (most - 1) / 2) / (most - 1));
+    if (most < 3) return shown;
+    const auto lower = [](const Scan& a, const Scan& b) { return a.plate_z < b.plate_z; };
+    const auto lowest = static_cast<std::size_t>(
+        std::min_element(recording.scans.begin(), recording.scans.end(), lower) - recording.scans.begin());
+    const auto away = [&](std::size_t scan) { return scan > lowest ? scan - lowest : lowest - scan; };
+    if (lowest > 0 && lowest + 1 < count)
+        *std::min_element(shown.begin() + 1, shown.end() - 1,
+                          [&](std::size_t a, std::size_t b) { return away(a) < away(b); }) = lowest;
+    return shown;
+}
+
+std::optional<Json> packing_view(const std::vector<ShownPacking>& packings, const PackingLimits& limits) {
+    Json settings = Json::array();
+    Forces forces;
+    for (auto packing : packings) {
+        auto& recording = packing.recording;
+        std::erase_if(recording.scans, [](const Scan& scan) { return scan.position.empty(); });
+        if (recording.scans.empty()) continue;
+        for (const auto& scan : recording.scans) add_forces(scan, forces);
+        settings.push_back(setting_json(packing, limits));
+    }
+    if (settings.empty()) return std::nullopt;
+    return Json{{"settings", settings},
+                {"force_mN", colour_end(std::move(forces.contact))},
+                {"load_mN", colour_end(std::move(forces.grain))}};
+}
+
+}  // namespace mcdem::report

@@ -1,0 +1,179 @@
+#include "report/page/page.h"
+
+#include <fmt/format.h>
+#include <openssl/evp.h>
+
+#include <algorithm>
+
+#include "core/output_file.h"
+#include "core/sha256.h"
+#include "report/page/html.h"
+#include "report/page/labels.h"
+#include "report/page/page_parts.h"
+#include "report/page/plotting_library.h"
+
+namespace mcdem::inline report {
+namespace {
+
+std::string base64(std::string_view bytes) {
+    std::string text(4 * ((bytes.size() + 2) / 3) + 1, '\0');  // and the library's closing zero
+    const int length =
+        EVP_EncodeBlock(reinterpret_cast<unsigned char*>(text.data()),
+                        reinterpret_cast<const unsigned char*>(bytes.data()), static_cast<int>(bytes.size()));
+    text.resize(static_cast<std::size_t>(length));
+    return text;
+}
+
+/// The digest of a script as a page's policy names it.
+std::string script_hash(const std::string& script) {
+    const auto hex = Sha256().add(script).hex();
+    std::string bytes;
+    for (std::size_t i = 0; i < hex.size(); i += 2)
+        bytes += static_cast<char>(std::stoi(hex.substr(i, 2), nullptr, 16));
+    return "'sha256-" + base64(bytes) + "'";
+}
+
+/// Nothing in it can end the element that it stands in.
+std::string json_for_page(const Json& json) {
+    std::string safe;
+    for (const char c : json.dump(-1, ' ', false, Json::error_handler_t::replace)) switch (c) {
+            case '<':
+                safe += "\\u003c";
+                break;
+            case '>':
+                safe += "\\u003e";
+                break;
+            case '&':
+                safe += "\\u0026";
+                break;
+            default:
+                safe += c;
+        }
+    return safe;
+}
+
+/// Scripts: the page's own one, and what that unpacks (plotly.js, which makes functions of text). Pictures:
+/// those that the page makes itself. Anything else, and every address, is refused.
+std::string policy(const std::string& script) {
+    return "default-src 'none'; script-src " + script_hash(script) +
+           " 'unsafe-eval'; style-src 'unsafe-inline'; img-src data: blob:";
+}
+
+std::string page_script() {
+    std::string script;
+    for (const char* name : {"page_theme.js", "page_packing.js", "page.js"}) script += page_parts().at(name);
+    return "'use strict';\n" + script;
+}
+
+std::string head(const std::string& title, const std::string& script) {
+    return "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+           "<meta name=\"generator\" content=\"mcdem\">\n"
+           "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+           "<meta http-equiv=\"Content-Security-Policy\" content=\"" +
+           policy(script) + "\">\n<title>" + html_text(title) + "</title>\n<style>\n" +
+           page_parts().at("page.css") + "</style>\n</head>\n";
+}
+
+}  // namespace
+
+std::string plot_text(const std::string& text) {
+    std::string safe;
+    for (const char c : one_line(text))
+        safe += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '>' ? "&gt;" : std::string(1, c);
+    return safe;
+}
+
+void Page::lead(const std::string& kicker, const std::string& heading, const std::string& sentence) {
+    body_ += "<header><p class=\"kicker\">" + html_text(kicker) + "</p>\n<h1>" + html_text(heading) +
+             "</h1>\n<p class=\"lead\">" + html_text(sentence) + "</p></header>\n";
+}
+
+void Page::section(const std::string& heading) { body_ += "<h2>" + html_text(heading) + "</h2>\n"; }
+
+void Page::subheading(const std::string& text) { body_ += "<h3>" + html_text(text) + "</h3>\n"; }
+
+void Page::paragraph(const std::string& text) { body_ += "<p>" + html_text(text) + "</p>\n"; }
+
+void Page::table(const std::string& heading, const TextTable& table) {
+    if (table.rows.empty()) return;
+    if (!heading.empty()) subheading(heading);
+    body_ += html_table(table);
+}
+
+void Page::list(const std::vector<std::string>& texts) { body_ += html_list(texts); }
+
+void Page::definitions(const std::vector<std::pair<std::string, std::string>>& lines) {
+    body_ += "<dl>\n";
+    for (const auto& [about, says] : lines)
+        body_ += "<dt>" + html_text(about) + "</dt><dd>" + html_text(says) + "</dd>\n";
+    body_ += "</dl>\n";
+}
+
+void Page::folded(const std::string& heading, const std::string& text) {
+    std::string lines, line;
+    for (const char c : text + "\n") {
+        if (c != '\n') {
+            line += c;
+            continue;
+        }
+        lines += html_text(line) + "\n";
+        line.clear();
+    }
+    body_ += "<details><summary>" + html_text(heading) + "</summary><pre>" + lines + "</pre></details>\n";
+}
+
+std::string Page::new_id(const std::string& name) {
+    const auto taken = std::ranges::count(ids_, name);
+    ids_.push_back(name);
+    return taken == 0 ? name : fmt::format("{}_{}", name, taken + 1);
+}
+
+void Page::chart(const Chart& chart) {
+    const auto id = new_id(chart.name);
+    charts_.push_back({{"id", id},
+                       {"data", chart.data},
+                       {"layout", chart.layout},
+                       {"log", chart.log_axes},
+                       {"height", chart.height}});
+    body_ += "<figure><div class=\"bar\"><h3>" + html_text(chart.title) + "</h3>";
+    if (!chart.log_axes.empty())
+        body_ += "<button type=\"button\" data-log=\"" + id + "\" aria-pressed=\"false\">log axes</button>";
+    body_ += fmt::format("</div>\n<div class=\"chart\" id=\"{}\" style=\"height:{}px\"></div>\n", id,
+                         chart.height);
+    body_ += "<figcaption>" + html_text(chart.caption) + "</figcaption></figure>\n";
+}
+
+void Page::packing(const Json& view, const std::string& caption) {
+    const auto id = new_id("packing");
+    packings_.push_back({{"id", id}, {"view", view}});
+    body_ +=
+        "<figure class=\"packing\" data-packing=\"" + id +
+        "\"><div class=\"bar\"><h3>The packing</h3>"
+        "<label>of <select class=\"setting\"></select></label>"
+        "<label>showing <select class=\"what\"><option value=\"both\">force chains and small grains</option>"
+        "<option value=\"grains\">grains</option><option value=\"chains\">force chains</option></select>"
+        "</label></div>\n<div class=\"chart\" id=\"" +
+        id +
+        "\"></div>\n"
+        "<div class=\"bar\"><button type=\"button\" class=\"play\">play</button>"
+        "<input type=\"range\" min=\"0\" value=\"0\" aria-label=\"scan\"><output></output></div>\n"
+        "<figcaption>" +
+        html_text(caption) + "</figcaption></figure>\n";
+}
+
+std::string Page::html(const std::string& packed_library) const {
+    const auto script = page_script();
+    return head(title_, script) +
+           "<body>\n<button type=\"button\" id=\"theme\">dark</button>\n"
+           "<p id=\"trouble\" hidden></p>\n<main>\n" +
+           body_ + "</main>\n<script type=\"application/json\" id=\"content\">" +
+           json_for_page({{"charts", charts_}, {"packings", packings_}}) +
+           "</script>\n<script type=\"text/plain\" id=\"library\">" + base64(packed_library) +
+           "</script>\n<script>" + script + "</script>\n</body>\n</html>\n";
+}
+
+void write_page(const Page& page, const std::filesystem::path& file) {
+    replace_own(file, FileKind::page, page.html(packed_plotting_library()));
+}
+
+}  // namespace mcdem::report

@@ -1,0 +1,26 @@
+// Tables of text: aligned for a terminal, or Markdown.
+#pragma once
+#include <string>
+#include <vector>
+
+namespace mcdem::inline report {
+
+enum class TableFormat { terminal, markdown };
+enum class Align { left, right };
+
+struct TextTable {
+    struct Column {
+        std::string title;
+        Align align = Align::right;
+    };
+    std::vector<Column> columns;
+    std::vector<std::vector<std::string>> rows;  ///< as many cells as columns
+    std::vector<std::string> notes;              ///< printed below
+};
+
+std::string to_text(const TextTable& table, TableFormat format);
+
+/// Characters of UTF-8 text, each taken to be one column wide.
+std::size_t width_of(const std::string& text);
+
+}  // namespace mcdem::report

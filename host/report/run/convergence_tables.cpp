@@ -1,0 +1,168 @@
+#include "report/run/convergence_tables.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "report/diagnosis/diagnosis_words.h"
+#include "report/page/series_style.h"
+
+namespace mcdem::inline report {
+namespace {
+
+/// In per cent for forces, in standard deviations of one packing's replicates for all else.
+double shown(const Convergence& convergence, std::size_t cell, double value) {
+    return convergence.is_relative(cell) ? 100 * value : value / convergence.scale(cell);
+}
+
+std::string unit(const Convergence& convergence, std::size_t cell) {
+    return convergence.is_relative(cell) ? "%" : "sd";
+}
+
+std::string name_of(const Convergence& convergence, std::size_t cell) {
+    return std::string(observables()[static_cast<std::size_t>(convergence.cells[cell].observable)].name);
+}
+
+/// "0.55 +- 0.08", ".. *" beyond the limit.
+std::string error_text(const Convergence& convergence, const CauseErrors& cause, int cell) {
+    if (cell < 0) return "-";
+    const auto c = static_cast<std::size_t>(cell);
+    return fmt::format("{:+.2f} +- {:.2f} {}{}", shown(convergence, c, cause.cells[c].value),
+                       shown(convergence, c, cause.cells[c].standard_error), unit(convergence, c),
+                       convergence.is_beyond(cause, c) ? " *" : "  ");
+}
+
+bool has_any(const Convergence& convergence, int observable) {
+    for (const CauseErrors& cause : convergence.causes)
+        if (convergence.worst_cell(cause, observable) >= 0) return true;
+    return false;
+}
+
+/// By how much the error at this cell must go down.
+double factor_of(const Convergence& convergence, const CauseErrors& cause, std::size_t cell) {
+    return std::abs(cause.cells[cell].value) / convergence.limit(cell);
+}
+
+std::string remedy_of(const Convergence& convergence, const CauseErrors& cause, std::size_t cell) {
+    if (cause.remedy.empty()) return "";
+    const double factor = factor_of(convergence, cause, cell);
+    return fmt::format("; within the limit with {}",
+                       fmt::format(fmt::runtime(cause.remedy), factor, factor * factor));
+}
+
+std::string words_of(const Convergence& convergence, const CauseErrors& cause) {
+    const int worst = convergence.worst_beyond(cause);
+    if (worst < 0) return fmt::format("{}: nothing beyond the limits", cause.cause);
+    const auto cell = static_cast<std::size_t>(worst);
+    int beyond = 0;
+    for (std::size_t c = 0; c < convergence.cells.size(); ++c)
+        beyond += convergence.is_beyond(cause, c) ? 1 : 0;
+    const CellError& error = cause.cells[cell];
+    return fmt::format("{}: {} is {}{:.2g} +- {:.1g} {} too {} at {:.1f} mm of {}{}{}", cause.cause,
+                       name_of(convergence, cell), error.follows_order ? "" : "at least ",
+                       std::abs(shown(convergence, cell, error.value)),
+                       shown(convergence, cell, error.standard_error), unit(convergence, cell),
+                       error.value > 0 ? "high" : "low", 1e3 * convergence.cells[cell].displacement,
+                       convergence.cells[cell].phase == Phase::load ? "loading" : "unloading",
+                       beyond > 1 ? fmt::format(", {} cells beyond their limits", beyond) : "",
+                       remedy_of(convergence, cause, cell));
+}
+
+nlohmann::ordered_json json_of(const Convergence& convergence, const CauseErrors& cause, std::size_t cell) {
+    const CellError& error = cause.cells[cell];
+    const auto c = static_cast<Eigen::Index>(cell);
+    return {{"observable", name_of(convergence, cell)},
+            {"phase", name(convergence.cells[cell].phase)},
+            {"displacement_mm", 1e3 * convergence.cells[cell].displacement},
+            {"mean", convergence.mean[c]},
+            {"standard_deviation", convergence.deviation[c]},
+            {"error", error.value},
+            {"standard_error", error.standard_error},
+            {"follows_order", error.follows_order},
+            {"limit", convergence.limit(cell)},
+            {"beyond", convergence.is_beyond(cause, cell)}};
+}
+
+}  // namespace
+
+TextTable table_of_convergence(const Convergence& convergence) {
+    TextTable table;
+    table.columns = {{"observable", Align::left}};
+    for (const CauseErrors& cause : convergence.causes) table.columns.push_back({cause.cause});
+    for (int q = 0; q < static_cast<int>(observables().size()); ++q) {
+        if (!has_any(convergence, q)) continue;
+        std::vector<std::string> row{std::string(observables()[static_cast<std::size_t>(q)].name)};
+        for (const CauseErrors& cause : convergence.causes)
+            row.push_back(error_text(convergence, cause, convergence.worst_cell(cause, q)));
+        table.rows.push_back(std::move(row));
+    }
+    table.notes = {
+        fmt::format("largest error over phases and displacements, {} replicas of one packing; sd: standard "
+                    "deviation of these, or twice what the observable resolves",
+                    convergence.replicas),
+        fmt::format("*: beyond {:.2g} % (forces) or {:.2g} sd (all else), and by four standard errors",
+                    100 * convergence.limits.force, convergence.limits.deviations)};
+    return table;
+}
+
+std::vector<std::string> words_of_convergence(const Convergence& convergence) {
+    std::vector<std::string> words;
+    bool converged = true;
+    for (const CauseErrors& cause : convergence.causes) {
+        words.push_back(words_of(convergence, cause));
+        converged = converged && convergence.worst_beyond(cause) < 0;
+    }
+    words.insert(words.begin(),
+                 converged ? "Converged: no error is beyond its limit as far as these replicas can tell."
+                           : "Not converged.");
+    return words;
+}
+
+std::string convergence_json(const Convergence& convergence) {
+    nlohmann::ordered_json json;
+    json["scene"] = convergence.scene;
+    json["replicas"] = convergence.replicas;
+    json["words"] = words_of_convergence(convergence);
+    json["limits"] = {{"force", convergence.limits.force}, {"deviations", convergence.limits.deviations}};
+    json["causes"] = nlohmann::ordered_json::array();
+    for (const CauseErrors& cause : convergence.causes) {
+        nlohmann::ordered_json entry{{"cause", cause.cause}, {"errors", nlohmann::ordered_json::array()}};
+        for (std::size_t c = 0; c < convergence.cells.size(); ++c)
+            if (std::isfinite(cause.cells[c].value))
+                entry["errors"].push_back(json_of(convergence, cause, c));
+        json["causes"].push_back(std::move(entry));
+    }
+    json["seconds"] = convergence.seconds;
+    return json.dump(2) + "\n";
+}
+
+nlohmann::ordered_json convergence_figure_values(const Convergence& convergence) {
+    using Json = nlohmann::ordered_json;
+    Json causes = Json::array(), rows = Json::array();
+    for (std::size_t k = 0; k < convergence.causes.size(); ++k) {
+        const auto style = style_number(k);
+        causes.push_back(
+            {{"words", convergence.causes[k].cause}, {"colour", style.colour}, {"marker", style.marker}});
+    }
+    for (int q = 0; q < static_cast<int>(observables().size()); ++q) {
+        if (!has_any(convergence, q)) continue;
+        const std::string name(observables()[static_cast<std::size_t>(q)].name);
+        Json row{{"observable", name}, {"words", words_of(name)}, {"errors", Json::array()}};
+        for (const CauseErrors& cause : convergence.causes) {
+            const int cell = convergence.worst_cell(cause, q);
+            const auto c = static_cast<std::size_t>(cell);
+            row["errors"].push_back(
+                cell < 0 ? Json()
+                         : Json{{"over_limit", cause.cells[c].value / convergence.limit(c)},
+                                {"standard_error", cause.cells[c].standard_error / convergence.limit(c)}});
+        }
+        rows.push_back(row);
+    }
+    return {{"x_label", "largest error over phases and displacements / limit, ± two standard errors"},
+            {"causes", causes},
+            {"rows", rows}};
+}
+
+}  // namespace mcdem::report

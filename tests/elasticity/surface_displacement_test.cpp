@@ -1,0 +1,166 @@
+#include "elasticity/surface_displacement.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "reference/grain_reference.h"
+
+namespace mcdem {
+namespace {
+
+using reference::Grain;
+using reference::Slot;
+using std::numbers::pi;
+
+constexpr double degree = pi / 180;
+constexpr double rounding = 1e-13;
+
+Vec3 at(double theta) { return {std::sin(theta), 0, std::cos(theta)}; }
+
+/// R = E = 1, a unit force at the pole, one probed point on the undeformed sphere at `theta` from it.
+Grain probed_at(double theta, double poisson_ratio) {
+    return {1, 1, poisson_ratio, {{at(0), 1, 1, 0}, {at(theta), 1, 0, 0}}};
+}
+
+double displacement(ContactModel model, double poisson_ratio, double theta, double gamma = 1) {
+    return surface_displacement(surface_law(model, poisson_ratio, gamma), probed_at(theta, poisson_ratio))[1];
+}
+
+TEST(SurfaceDisplacement, PointForceOnIncompressibleSphere) {
+    EXPECT_NEAR(point_force_on_sphere(0.5, 60 * degree), 0.1420, 5e-5);
+    EXPECT_NEAR(point_force_on_sphere(0.5, 90 * degree), 0.1036, 5e-5);
+    EXPECT_NEAR(point_force_on_sphere(0.5, 120 * degree), -0.0171, 5e-5);
+    EXPECT_NEAR(point_force_on_sphere(0.5, 180 * degree), -0.1765, 5e-5);
+}
+
+TEST(SurfaceDisplacement, PointForceAtRightAnglesByPoissonRatio) {
+    EXPECT_NEAR(point_force_on_sphere(0.49, pi / 2), 0.1025, 5e-5);
+    EXPECT_NEAR(point_force_on_sphere(0.45, pi / 2), 0.0980, 5e-5);
+    EXPECT_NEAR(point_force_on_sphere(0.30, pi / 2), 0.0808, 5e-5);
+}
+
+// Averages of u P_n over the sphere. That of u alone is the change of volume, which any elastic body under
+// forces f at x has without solving for a field: (1 - 2 nu)/E sum(f . x), here -(1 - 2 nu) over 4 pi.
+TEST(SurfaceDisplacement, PointForceHasTheMomentsOfItsSeries) {
+    for (double nu : {0.0, 0.2, 0.3, 0.45, 0.5}) {
+        double mean = 0, first = 0, second = 0;
+        constexpr int intervals = 2000;  // midpoint rule in s; dOmega/(4 pi) = 2 s ds, and s u is finite
+        for (int i = 0; i < intervals; ++i) {
+            const double s = (i + 0.5) / intervals, x = 1 - 2 * s * s;
+            const double u = point_force_on_sphere(nu, 2 * std::asin(s)) * 2 * s / intervals;
+            mean += u;
+            first += u * x;
+            second += u * (3 * x * x - 1) / 2;
+        }
+        EXPECT_NEAR(mean, -(1 - 2 * nu) / (4 * pi), 2e-6) << nu;
+        EXPECT_NEAR(first, -(1 - 2 * nu) / (8 * pi), 2e-6) << nu;
+        EXPECT_NEAR(second, -(1 + nu) / (4 * pi) * (7 - 4 * nu) / (7 + 5 * nu), 2e-6) << nu;
+    }
+}
+
+TEST(SurfaceDisplacement, PointForceModelFollowsTheSeries) {
+    for (double nu : {0.0, 0.1, 0.25, 0.3, 0.4, 0.45, 0.49, 0.5})
+        for (double theta = 18 * degree; theta <= pi; theta += degree)
+            EXPECT_NEAR(displacement(ContactModel::point_force_on_sphere, nu, theta),
+                        point_force_on_sphere(nu, theta), 1.1e-4)
+                << "nu " << nu << " theta " << theta / degree;
+}
+
+TEST(SurfaceDisplacement, SphereToSphereOfIncompressibleGrains) {
+    const auto model = ContactModel::sphere_to_sphere;
+    EXPECT_NEAR(displacement(model, 0.5, 60 * degree), -0.0597, 5e-5);
+    EXPECT_NEAR(displacement(model, 0.5, 90 * degree), 0.0844, 5e-5);
+    EXPECT_NEAR(displacement(model, 0.5, 120 * degree), 0.1723, 5e-5);
+    EXPECT_NEAR(displacement(model, 0.5, 180 * degree), 0.2387, 5e-5);
+    for (double s : {0.2, 0.5, 0.9})
+        EXPECT_NEAR(displacement(model, 0.5, 2 * std::asin(s)), 3 / (8 * pi) * (3 * s * s - 1) / s, rounding);
+}
+
+TEST(SurfaceDisplacement, HalfSpaceAtRightAnglesByPoissonRatio) {
+    const auto model = ContactModel::elastic_half_space;
+    EXPECT_NEAR(displacement(model, 0.49, pi / 2), 0.0825, 5e-5);
+    EXPECT_NEAR(displacement(model, 0.45, pi / 2), 0.0748, 5e-5);
+    EXPECT_NEAR(displacement(model, 0.30, pi / 2), 0.0489, 5e-5);
+}
+
+// The paper says so for nu = 1/2; it holds for all.
+TEST(SurfaceDisplacement, HalfSpaceWithPointsOnTheSphereIsSphereToSphere) {
+    for (double nu : {0.5, 0.49, 0.3, 0.0})
+        for (double theta = 18 * degree; theta <= pi; theta += degree)
+            EXPECT_NEAR(displacement(ContactModel::elastic_half_space, nu, theta),
+                        displacement(ContactModel::sphere_to_sphere, nu, theta), rounding)
+                << "nu " << nu << " theta " << theta / degree;
+}
+
+TEST(SurfaceDisplacement, McDemIsTheHalfSpaceTimesGamma) {
+    for (double gamma : {0.0, 1.0, 1.125})
+        EXPECT_NEAR(displacement(ContactModel::mc_dem, 0.4, 1.0, gamma),
+                    gamma * displacement(ContactModel::elastic_half_space, 0.4, 1.0), rounding);
+    EXPECT_EQ(surface_law(ContactModel::elastic_half_space, 0.4, 7.0).gamma, 1.0)
+        << "gamma is mc_dem's alone";
+}
+
+TEST(SurfaceDisplacement, IndependentContactsDoNotMove) {
+    const SurfaceLaw law = surface_law(ContactModel::independent, 0.5, 1.125);
+    EXPECT_EQ(law.shape, SurfaceShape::rigid);
+    EXPECT_EQ(surface_displacement(law, probed_at(1.0, 0.5)), (std::vector<double>{0, 0}));
+}
+
+TEST(SurfaceDisplacement, OnlyTheElasticSphereMovesItsOwnContacts) {
+    for (auto model : {ContactModel::point_force_on_sphere, ContactModel::sphere_to_sphere,
+                       ContactModel::elastic_half_space, ContactModel::mc_dem})
+        EXPECT_EQ(surface_displacement(surface_law(model, 0.4, 1), probed_at(1, 0.4))[0], 0) << name(model);
+    Grain grain = probed_at(1, 0.5);
+    grain.slots[0].contact_radius = 1e-3;
+    const SurfaceLaw law = surface_law(ContactModel::elastic_sphere, 0.5, 1);
+    EXPECT_NEAR(surface_displacement(law, grain)[0], 0.3170, 1e-4);
+}
+
+/// Unequal forces, radii, arms and directions: nothing cancels.
+Grain crowded_grain(double poisson_ratio, unsigned seed) {
+    std::mt19937 random(seed);
+    std::normal_distribution<double> normal;
+    std::uniform_real_distribution<double> uniform;
+    Grain grain{0.01, 2e4, poisson_ratio, {}};
+    while (grain.slots.size() < 7) {
+        const Vec3 direction = Vec3(normal(random), normal(random), normal(random)).normalized();
+        bool near = false;
+        for (const Slot& slot : grain.slots) near |= (slot.direction - direction).norm() < 0.6;
+        if (near) continue;
+        const bool contact = grain.slots.size() < 5;
+        const double overlap = 0.001 * uniform(random);
+        grain.slots.push_back({direction, 0.01 - overlap, contact ? 0.3 * uniform(random) : 0,
+                               contact ? std::sqrt(0.01 * overlap) : 0});
+    }
+    return grain;
+}
+
+TEST(SurfaceDisplacement, LawsFollowTheirModels) {
+    for (double nu : {0.1, 0.3, 0.5})
+        for (std::size_t m = 0; m < Names<ContactModel>::list.size(); ++m) {
+            const auto model = static_cast<ContactModel>(m);
+            const Grain grain = crowded_grain(nu, 5);
+            const auto by_law = surface_displacement(surface_law(model, nu, 1.125), grain);
+            const auto by_series = surface_displacement_by_series(model, 1.125, grain);
+            for (std::size_t c = 0; c < by_law.size(); ++c)  // up to 1 N/(E R) = 5 mm, and five contacts
+                EXPECT_NEAR(by_law[c], by_series[c], 5e-4 * 5 * 0.3 * 0.005) << name(model) << " slot " << c;
+        }
+}
+
+TEST(SurfaceDisplacement, TurnsWithTheGrain) {
+    const Eigen::Matrix3d turn = Eigen::AngleAxisd(1.1, Vec3(1, 2, -3).normalized()).toRotationMatrix();
+    for (auto model : {ContactModel::elastic_half_space, ContactModel::elastic_sphere}) {
+        const SurfaceLaw law = surface_law(model, 0.35, 1);
+        Grain grain = crowded_grain(0.35, 9);
+        const auto before = surface_displacement(law, grain);
+        for (Slot& slot : grain.slots) slot.direction = turn * slot.direction;
+        const auto after = surface_displacement(law, grain);
+        for (std::size_t c = 0; c < before.size(); ++c) EXPECT_NEAR(before[c], after[c], 1e-14);
+    }
+}
+
+}  // namespace
+}  // namespace mcdem
