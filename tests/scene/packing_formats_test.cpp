@@ -11,6 +11,7 @@ namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::StartsWith;
 
 const std::string two_frames =
     "ITEM: UNITS\nsi\nITEM: TIMESTEP\n100\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS ff ff ff\n0 1\n0 1\n0 "
@@ -92,6 +93,14 @@ TEST(PackingOfYade, MayHaveOtherColumnsToo) {
         1);
     EXPECT_THAT(problems_of([] { read_yade_packing("#format x_y_z_r\n1 2 3 0.5\n1 2 3\n", "t"); }),
                 ElementsAre("t:3: must have 4 columns, as the first row or the #format line, got 3"));
+}
+
+TEST(PackingOfYade, AFormatLineBetweenRowsSaysNothing) {
+    const Packing packing = read_yade_packing("#format x_y_z_r\n1 2 3 0.5\n#format 0.0\n4 5 6 0.5\n", "t");
+    ASSERT_EQ(packing.size(), 2u);
+    EXPECT_EQ(packing.position[1], Vec3(4, 5, 6));
+    EXPECT_THAT(problems_of([] { read_yade_packing("1\n#format 0.0\n0\n", "t"); }),
+                ElementsAre(StartsWith("t:1: must have 4 columns"), StartsWith("t:3: must have 4 columns")));
 }
 
 TEST(PackingOfGrainsCsv, IsOneFrame) {

@@ -139,7 +139,8 @@ void write_files(const FromRunCommand& command, const Experiment& experiment) {
     replace_file(out / sums_file, sums);  // even where it is there: this forces the folder to the disk
     std::vector<std::string> names;
     for (const auto& [name, bytes] : files) names.push_back(name);
-    std::ranges::partition(names, [](const std::string& name) { return name != experiment_toml; });
+    std::partition(names.begin(), names.end(),
+                   [](const std::string& name) { return name != experiment_toml; });
     for (const std::string& name : names)
         if (!fs::exists(out / name)) replace_file(out / name, files.at(name));
     for (const auto& [name, bytes] : files)

@@ -1,14 +1,12 @@
 #include "cli/shell/python_program.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
-#include <ranges>
 #include <thread>
 
 #include "cli/shell/commands.h"
@@ -46,10 +44,12 @@ fs::path package_folder() {
         folders = {this_program().parent_path().parent_path() / "share/mcdem/python", MCDEM_SOURCE_PYTHON};
     for (const fs::path& folder : folders)
         if (std::error_code ignored; fs::exists(folder / "mcdem/program.py", ignored)) return folder;
+    std::string looked;
+    for (const fs::path& folder : folders) looked += (looked.empty() ? "" : " or ") + folder.string();
     throw RunError(
         fmt::format("the Python package of mcdem is not in {}: install mcdem again, or name its folder by "
                     "MCDEM_PYTHON_FOLDER",
-                    fmt::join(folders | std::views::transform(&fs::path::native), " or ")));
+                    looked));
 }
 
 /// Only the package's folder and what the user has set: no module of the folder that one is in comes in
