@@ -56,7 +56,8 @@ Packing read_yade_packing(std::string_view text, const std::string& source) {
     std::size_t width = 0;
     for (auto line = lines.next(); line && !problems.full(); line = lines.next()) {
         const std::string_view comment = comment_of(*line);
-        if (!grains && comment.starts_with(mark)) names = columns_of(without_blanks(comment.substr(mark.size())));
+        if (!grains && comment.starts_with(mark))
+            names = columns_of(without_blanks(comment.substr(mark.size())));
         if (!is_row(*line)) continue;
         split_at_blanks(*line, words);
         if (!grains) {
