@@ -17,7 +17,7 @@
 namespace mcdem::inline cli {
 namespace {
 
-constexpr int most_kills = 3;  ///< of a part's processes
+constexpr int max_kills = 3;  ///< of a part's processes
 
 struct Running {
     std::size_t part;
@@ -82,7 +82,7 @@ private:
             spdlog::warn("part {}: its process on device {} was ended by signal {}", one.part, one.device,
                          end.signal);
             free_.push_back(one.device);
-            if (++kills_[one.part] >= most_kills) return;
+            if (++kills_[one.part] >= max_kills) return;
         } else {
             spdlog::warn("part {}: has failed on device {}, which is left out from here on", one.part,
                          one.device);

@@ -7,7 +7,6 @@
 #include <chrono>
 #include <cstdlib>
 #include <fstream>
-#include <iterator>
 #include <thread>
 
 #include "cli/shell/messages.h"
@@ -15,6 +14,7 @@
 #include "cli/shell/subprocess.h"
 #include "core/atomic_file.h"
 #include "core/errors.h"
+#include "core/input_file.h"
 #include "core/make_folder.h"
 #include "core/output_file.h"
 
@@ -28,8 +28,8 @@ constexpr auto look = std::chrono::milliseconds(200);  ///< at the folder
 constexpr auto ask = std::chrono::seconds(5);          ///< Slurm
 constexpr auto settle = std::chrono::seconds(10);      ///< for files of a job that ended to be seen here
 
-constexpr std::size_t most_tasks =
-    1000;  ///< of an array: what a Slurm takes where nothing is said (MaxArraySize)
+/// Of an array: what a Slurm takes where nothing is said (MaxArraySize).
+constexpr std::size_t max_tasks = 1000;
 
 fs::path jobs_file(const SlurmJob& job) { return job.folder / "jobs"; }
 
@@ -38,12 +38,6 @@ struct Jobs {
     std::string array, next;  ///< numbers; empty: nothing was submitted
     std::string parts;
 };
-
-std::string text_of(const fs::path& file) {
-    std::ifstream in(file);
-    if (!in) throw InputError(file.string() + ": cannot be read");
-    return {std::istreambuf_iterator<char>(in), {}};
-}
 
 /// In the pattern of a log's name, % begins a replacement.
 std::string log_pattern(const SlurmJob& job, const std::string& name) {
@@ -121,7 +115,7 @@ std::string submit_script(const SlurmJob& job, const std::vector<std::string>& o
 }  // namespace
 
 std::string job_script(const SlurmJob& job, const std::vector<std::size_t>& parts) {
-    std::string lines = job.lines_file.empty() ? "" : text_of(job.lines_file);
+    std::string lines = job.lines_file.empty() ? "" : read_file(job.lines_file);
     if (!lines.empty() && lines.back() != '\n') lines += '\n';
     return fmt::format(
         "#!/bin/bash\n"
@@ -143,7 +137,7 @@ bool is_next_job(const SlurmJob& job) {
 std::string submit(const SlurmJob& job, const std::vector<std::size_t>& all_parts) {
     const std::vector<std::size_t> parts(
         all_parts.begin(),
-        all_parts.begin() + static_cast<std::ptrdiff_t>(std::min(most_tasks, all_parts.size())));
+        all_parts.begin() + static_cast<std::ptrdiff_t>(std::min(max_tasks, all_parts.size())));
     const std::string list = fmt::format("{}", fmt::join(parts, " "));
     const Jobs before = submitted_last(job);
     if (is_next_job(job)) {

@@ -179,11 +179,15 @@ bool RunParts::is_whole(std::size_t part) const try {
     ResultFile(part_file(options_.folder, part)).expect_whole();
     return true;
 } catch (const DamagedPart& damaged) {
-    options_.on_warning(fmt::format("part {} is computed again: {}", part_name(part), damaged.what()));
+    warn_of_damage(part, damaged.what());
     return false;
 } catch (const InputError& error) {
-    options_.on_warning(fmt::format("part {} is computed again: {}", part_name(part), error.what()));
+    warn_of_damage(part, error.what());
     return false;
+}
+
+void RunParts::warn_of_damage(std::size_t part, const std::string& why) const {
+    options_.on_warning(fmt::format("part {} is computed again: {}", part_name(part), why));
 }
 
 /// A folder of this process for its work on the part, with the checkpoint that an interrupted process has
@@ -263,8 +267,7 @@ bool RunParts::merge_files() try {
     merge_parts(files, run_file(options_.folder));
     return true;
 } catch (const DamagedPart& damaged) {
-    options_.on_warning(
-        fmt::format("part {} is computed again: {}", part_name(damaged.part), damaged.what()));
+    warn_of_damage(damaged.part, damaged.what());
     fs::remove(part_file(options_.folder, damaged.part));
     return false;
 }

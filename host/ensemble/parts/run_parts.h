@@ -32,6 +32,7 @@ private:
     Scene scene_of(std::size_t part) const;
     void expect_own(std::size_t part) const;
     bool is_whole(std::size_t part) const;
+    void warn_of_damage(std::size_t part, const std::string& why) const;
     std::filesystem::path take_work_folder(std::size_t part) const;
     RunEnd run_part(Device& device, std::size_t part, const std::filesystem::path& work);
     void expect_own_merge() const;
