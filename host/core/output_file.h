@@ -16,6 +16,7 @@ enum class FileKind {
     run_table,
     page,
     diagnosis,
+    convergence,
     calibration,
     score,
     score_page,

@@ -3,12 +3,12 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
-#include "core/atomic_file.h"
 #include "core/errors.h"
+#include "core/output_file.h"
 #include "core/version.h"
 #include "ensemble/converge_scene.h"
 #include "ensemble/observe_trials.h"
-#include "io/result_folder.h"
+#include "io/output_folder.h"
 #include "python/bindings.h"
 #include "python/watch.h"
 #include "report/run/convergence_tables.h"
@@ -35,10 +35,10 @@ py::object converge(const Scene& scene, const std::filesystem::path& folder, int
     std::string text;
     try {
         const py::gil_scoped_release others_go_on;
-        make_result_folder(folder);
+        const FolderLock lock = open_output_folder(folder);
         Device device(choice);
         text = convergence_json(converge_scene(device, scene, options));
-        replace_file(folder / "convergence.json", text);
+        replace_own(folder / "convergence.json", FileKind::convergence, text);
     } catch (const Interrupted&) {
     }
     watch.raise();

@@ -51,6 +51,7 @@ TEST_F(OutputTest, NothingIsWrittenIntoAnExperimentHoweverItsPathIsSpelled) {
                                 "elastic_sphere", "--out", out}),
                          "of an experiment");
         expect_bad_input(mcdem({"manual", "--out", out}), "of an experiment");
+        expect_bad_input(mcdem({"converge", "small.toml", "--out", out}), "of an experiment");
         expect_bad_input(mcdem({"experiment", "from-run", "begun", "--replica", "0", "--out", out}),
                          "holds another");
     }
@@ -120,6 +121,8 @@ TEST_F(OutputTest, FilesOfOthersAreKept) {
     expect_kept("8/mcdem-run.1", {"manual", "--out", "8"});
     expect_kept("9/calibration.json", {"calibrate", "small.toml", "--experiment", "a", "--setting",
                                        "elastic_sphere", "--out", "9"});
+    expect_kept("10/convergence.json", {"converge", "small.toml", "--out", "10"});
+    expect_kept("11/convergence.png", {"converge", "small.toml", "--out", "11"});
 }
 
 TEST_F(OutputTest, ADiagnosisReplacesItsOwnFilesOnly) {

@@ -7,12 +7,12 @@
 #include "cli/shell/interrupt.h"
 #include "cli/shell/messages.h"
 #include "cli/shell/progress.h"
-#include "core/atomic_file.h"
+#include "cli/shell/standard_streams.h"
+#include "core/output_file.h"
 #include "core/version.h"
 #include "ensemble/converge_scene.h"
 #include "ensemble/observe_trials.h"
-#include "io/folder_lock.h"
-#include "io/result_folder.h"
+#include "io/output_folder.h"
 #include "report/run/convergence_tables.h"
 
 namespace mcdem::inline cli {
@@ -31,19 +31,12 @@ Convergence converge(ConvergeCommand& command, const Scene& scene) {
         spdlog::warn("the scene has {} replicas; the first one is looked at: {}", scene.replicas.size(),
                      scene.replicas.front().label);
     const Interrupt interrupt;
-    std::optional<Progress> progress;
-    std::string shown;
+    StageProgress stages;
     command.options.program = version_text;
     command.options.folder = command.out;
     command.options.stop_wanted = Interrupt::wanted;
     command.options.on_progress = [&](const std::string& cause, double fraction) {
-        if (cause != shown) {
-            progress.reset();
-            shown = cause;
-            spdlog::info("{}", cause);
-            progress.emplace(stderr, progress_style(stderr));
-        }
-        progress->show(fraction);
+        stages.show(cause, fraction);
     };
     return converge_scene(device, scene, command.options);
 }
@@ -52,17 +45,18 @@ int run(ConvergeCommand& command) {
     try {
         const Scene scene = command.scene.read();
         const std::filesystem::path folder = command.out;
-        make_result_folder(folder);
-        const FolderLock lock(folder, FolderLock::Use::alone);
+        const FolderLock lock = open_output_folder(folder);
+        expect_replaceable(folder / "convergence.json", FileKind::convergence);
+        expect_replaceable_figures(folder, {"convergence"});
         const Convergence convergence = converge(command, scene);
-        replace_file(folder / "convergence.json", convergence_json(convergence));
-        fmt::print("{}\n", to_text(table_of_convergence(convergence), TableFormat::terminal));
-        for (const std::string& line : words_of_convergence(convergence)) fmt::print("{}\n", line);
-        fmt::print("wrote\n  {}\n", (folder / "convergence.json").string());
+        replace_own(folder / "convergence.json", FileKind::convergence, convergence_json(convergence));
+        print_out("{}\n", to_text(table_of_convergence(convergence), TableFormat::terminal));
+        for (const std::string& line : words_of_convergence(convergence)) print_out("{}\n", line);
+        print_out("wrote\n  {}\n", (folder / "convergence.json").string());
         for (const auto& file : draw_if_possible([&] {
                  return draw_figures(folder, {{"convergence", convergence_figure_values(convergence)}});
              }))
-            fmt::print("  {}\n", file.string());
+            print_out("  {}\n", file.string());
         return exit_done;
     } catch (const Interrupted& interrupted) {
         spdlog::warn("{}", interrupted.what());

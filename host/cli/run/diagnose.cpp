@@ -49,24 +49,6 @@ DiagnoseOptions options_of(const DiagnoseCommand& command) {
     return options;
 }
 
-/// Every stage with a bar of its own.
-class Stages {
-public:
-    void show(const std::string& stage, double fraction) {
-        if (stage != stage_) {
-            progress_.reset();
-            stage_ = stage;
-            spdlog::info("{}", stage);
-            progress_.emplace(stderr, progress_style(stderr));
-        }
-        progress_->show(fraction);
-    }
-
-private:
-    std::string stage_;
-    std::optional<Progress> progress_;
-};
-
 Diagnosis diagnose(const DiagnoseCommand& command, const Scene& scene, const Experiment& experiment) {
     Device device(command.device);
     spdlog::info("{} against {} on {}", scene.name, experiment.name, device.info().name);
@@ -74,7 +56,7 @@ Diagnosis diagnose(const DiagnoseCommand& command, const Scene& scene, const Exp
         spdlog::warn("the scene has {} replicas; the first one is diagnosed: {}", scene.replicas.size(),
                      scene.replicas.front().label);
     const Interrupt interrupt;
-    Stages stages;
+    StageProgress stages;
     DiagnoseOptions options = options_of(command);
     options.on_progress = [&](const std::string& stage, double fraction) { stages.show(stage, fraction); };
     options.on_note = [](const std::string& note) { spdlog::warn("{}", note); };

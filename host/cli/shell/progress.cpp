@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "cli/shell/messages.h"
 #include "cli/shell/standard_streams.h"
 
 namespace mcdem::inline cli {
@@ -24,6 +25,16 @@ int columns(std::FILE* out) {
 }
 
 }  // namespace
+
+void StageProgress::show(const std::string& stage, double fraction) {
+    if (stage != stage_) {
+        progress_.reset();
+        stage_ = stage;
+        spdlog::info("{}", stage);
+        progress_.emplace(stderr, progress_style(stderr));
+    }
+    progress_->show(fraction);
+}
 
 std::string duration_text(double seconds) {
     const long s = std::lround(seconds);
