@@ -13,7 +13,7 @@ from .values import read
 # Blue: the experiment lies below the simulation, orange: above.
 BELOW_ABOVE = matplotlib.colors.LinearSegmentedColormap.from_list("below_above", [
     (0, "#053B78"), (0.2, "#3F86BF"), (0.375, "#B9D5EA"), (0.5, "#F4F4F2"), (0.625, "#F9D3AE"), (0.8, "#E08530"), (1, "#8F3A04")])
-MOST_NUMBERS = 12  # columns in which numbers find room
+MAX_NUMBERS = 12  # columns in which numbers find room
 EXPERIMENT = {"color": INK, "linestyle": "", "marker": "o", "markersize": 2.2}
 
 
@@ -42,7 +42,7 @@ def draw_cell(axes, values, cell, scale):
     if not cell["stands_out"]:
         return
     axes.add_patch(matplotlib.patches.Rectangle((x - 0.45, row - 0.45), 0.9, 0.9, fill=False, edgecolor="#111111", linewidth=0.7))
-    if len(values["columns"]) <= MOST_NUMBERS:
+    if len(values["columns"]) <= MAX_NUMBERS:
         is_dark = abs(score) > 0.6 * values["colour_range"]
         axes.text(x, row, f"{score:.1f}", fontsize=5, ha="center", va="center_baseline", color="white" if is_dark else "#111111")
 

@@ -11,7 +11,7 @@ from .mapping import WALLS
 from .plate import PlateRows, import_plate
 from .problems import Problems, number_text
 
-MOST_APART, WEAK = 0.5, 0.01  # of a contact's two sides: of the larger force, of the largest of the frame
+MAX_APART, WEAK = 0.5, 0.01  # of a contact's two sides: of the larger force, of the largest of the frame
 
 
 @dataclass
@@ -139,7 +139,7 @@ class _Assembly:
         """Weak forces may differ more: their errors are those of the strong ones."""
         a, b = first[["fx", "fy", "fz"]].values, other[["fx", "fy", "fz"]].values
         sizes, apart = (np.linalg.norm(a, axis=1), np.linalg.norm(b, axis=1)), np.linalg.norm(a - b, axis=1)
-        wrong = np.flatnonzero(apart > np.maximum(MOST_APART * np.maximum(*sizes), WEAK * largest))
+        wrong = np.flatnonzero(apart > np.maximum(MAX_APART * np.maximum(*sizes), WEAK * largest))
         if len(wrong):
             i = wrong[0]
             frames.rows.problem_once("sides", other.row.iloc[i], f"the forces of a contact's two sides must be opposite, got sizes of "

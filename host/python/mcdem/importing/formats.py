@@ -10,7 +10,7 @@ from .problems import quoted, to_number
 from .text import Form
 
 ITEM = "ITEM: "
-MOST_NUMBERS = 100_000_000
+MAX_NUMBERS = 100_000_000
 
 
 def _whole(word):
@@ -208,9 +208,9 @@ class _Vtk:
 
     def size(self, words, place):
         count = _whole(words[place]) if place < len(words) else None
-        if count is not None and 0 <= count <= MOST_NUMBERS:
+        if count is not None and 0 <= count <= MAX_NUMBERS:
             return count
-        self.wrong(f"a section must say how many there are, up to {MOST_NUMBERS}, got "
+        self.wrong(f"a section must say how many there are, up to {MAX_NUMBERS}, got "
                    f"{quoted(words[place]) if place < len(words) else 'nothing'}")
         return 0
 

@@ -8,7 +8,7 @@ from .mapping import UNCLEAR, guess, turned
 from .names import FORCES, VOXEL
 from .problems import Problems
 
-MOST_ROWS = 200_000  # of a file that a guess looks at
+MAX_ROWS = 200_000  # of a file that a guess looks at
 NEAR = 1.2  # of the sum of radii: touching, measurement errors included
 FORCE_FACTORS = {unit: FORCES[unit] for unit in "N mN uN kN gf kgf".split()}  # the others are too near to these
 
@@ -28,7 +28,7 @@ class _Places:
     """The contacts in frames in which the grains' places are known."""
 
     def __init__(self, table, grains):
-        frames = import_contacts(table, grains, Problems(), MOST_ROWS)
+        frames = import_contacts(table, grains, Problems(), MAX_ROWS)
         self.all = frames
         at = grains.frames_of(table.map.word("frames_by", "plate"), frames.keys)[frames.frame] if len(frames) else np.zeros(0, int)
         kept = np.flatnonzero(at >= 0)
@@ -64,7 +64,7 @@ def _guess_offset(table, grains):
     most, best = -1.0, 0
     for offset in (0, 1, -1, -2, -3, -4, -5, -6):  # Yade's walls may count before its grains
         trial = table.changed(id_offset=guess(str(offset), "stated", ""))
-        others = unknown_partners(trial, grains, offset, MOST_ROWS)
+        others = unknown_partners(trial, grains, offset, MAX_ROWS)
         if len(others) > 12:  # walls are few
             continue
         set_walls(trial.map, others, grains)

@@ -4,11 +4,11 @@ import numpy as np
 from .guess_lengths import nearest_over_radii
 from .mapping import UNCLEAR, guess
 
-MOST_ROWS, MOST_COLUMNS = 20_000, 50  # that are looked at
+MAX_ROWS, MAX_COLUMNS = 20_000, 50  # that are looked at
 
 
-def _numbers_of(part, most=MOST_COLUMNS):
-    return [part.numbers(c)[:MOST_ROWS] for c in range(min(len(part.columns), most))]
+def _numbers_of(part, most=MAX_COLUMNS):
+    return [part.numbers(c)[:MAX_ROWS] for c in range(min(len(part.columns), most))]
 
 
 def _has_numbers(column):

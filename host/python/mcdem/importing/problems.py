@@ -4,7 +4,7 @@ import re
 
 from ..errors import InputError
 
-MOST_TOLD = 20  # further ones are only counted
+MAX_TOLD = 20  # further ones are only counted
 NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
 
 
@@ -14,7 +14,7 @@ class Problems:
 
     def add(self, where, what):
         """`where` is a file, or file:line, or a function that finds it."""
-        if len(self.first) < MOST_TOLD:
+        if len(self.first) < MAX_TOLD:
             self.first.append(f"{where() if callable(where) else where}: {what}")
         self.count += 1
 
@@ -26,7 +26,7 @@ class Problems:
 
     @property
     def full(self):
-        return self.count >= MOST_TOLD
+        return self.count >= MAX_TOLD
 
     def lines(self):
         more = self.count - len(self.first)

@@ -10,7 +10,7 @@ from typing import NamedTuple
 from .problems import quoted, to_number
 
 SAMPLED_LINES = 100
-MOST_COLUMNS = 10_000
+MAX_COLUMNS = 10_000
 NOTHING = {"", "-", "--", "nan", "NaN", "NAN", "na", "NA", "N/A", "n/a", "null", "NULL", "inf"}
 UNITS = {"", "-", "m", "cm", "mm", "um", "µm", "N", "mN", "kN", "uN", "µN", "g", "gf", "s", "ms", "%", "1", "min", "voxel"}
 THOUSANDS = {",": re.compile(r"[+-]?[1-9]\d{0,2}(\.\d{3})+(,.*)?", re.ASCII | re.DOTALL),  # 12.345,6 where the decimal is a comma
@@ -211,8 +211,8 @@ def parse_text(table, lines, form, problems):
             above -= 1
             continue
         if not is_row:
-            if len(cells) > MOST_COLUMNS:
-                problems.add(f"{table.file}:{number}", f"must have at most {MOST_COLUMNS} columns, got {len(cells)}")
+            if len(cells) > MAX_COLUMNS:
+                problems.add(f"{table.file}:{number}", f"must have at most {MAX_COLUMNS} columns, got {len(cells)}")
             table.name_columns(_names_of(headings, comment, format_, len(cells)), len(cells))
         if form.decimal == ",":
             for cell in cells:
