@@ -111,9 +111,10 @@ def check_report(reader, program, run):
 
 
 def shown_threshold(reader, setting):
-    """[N], from the name of the setting's curve of contacts per grain."""
-    names = {trace["name"] for trace in reader.traces("coordination") if trace["name"].startswith(setting)}
-    return float(re.fullmatch(r".*, tau (\S+) mN", names.pop())[1]) * 1e-3
+    """[N], from the name of the setting's curve of contacts per grain; the curve's band has a name of its own."""
+    curve, = {trace["name"] for trace in reader.traces("coordination")
+              if trace["name"].startswith(setting) and not trace["name"].endswith("standard error")}
+    return float(re.fullmatch(r".*, tau (\S+) mN", curve)[1]) * 1e-3
 
 
 def check_against(reader, program, run):
