@@ -76,6 +76,7 @@ INLINE void expect_listed(Grain at, Motion after, int bits, real3 listed_positio
         atomic_min(stop_at, step + 1);
 }
 
+WORK_GROUP(STEP_ITEMS)
 kernel void advance(const int step, const int slot_count, global const Replica* restrict replicas,
                     global const int* restrict blocks, global const int* restrict replica_of_block,
                     global volatile int* restrict stop_at, global const Motion* restrict motion,

@@ -11,19 +11,29 @@ INLINE int cell_index(global const Replica* restrict replica, int x, int y, int 
            x % replica->cells_x;
 }
 
+/* The grain of a work-item of the kernels that list: blocks one after another, whatever a work-group's size;
+   -1 past the last. */
+INLINE int listed_grain(global const int* restrict blocks, int block_count) {
+    const int item = get_global_id(0);
+    return item < block_count * BLOCK ? blocks[item / BLOCK] * BLOCK + item % BLOCK : -1;
+}
+
+WORK_GROUP(LIST_ITEMS)
 kernel void empty_cells(global const Replica* restrict replicas, global const int* restrict chosen,
                         global int* restrict cell_head) {
     global const Replica* restrict replica = replicas + chosen[get_group_id(0)];
     const int cells = replica->cells_x * replica->cells_y * replica->cells_z;
-    for (int c = get_local_id(0); c < cells; c += get_local_size(0)) cell_head[replica->first_cell + c] = -1;
+    for (int c = get_local_id(0); c < cells; c += LIST_ITEMS) cell_head[replica->first_cell + c] = -1;
 }
 
-kernel void fill_cells(global const Replica* restrict replicas, global const int* restrict blocks,
-                       global const int* restrict replica_of_block, global const Motion* restrict motion,
-                       global volatile int* restrict cell_head, global int* restrict cell_next) {
-    const int block = blocks[get_group_id(0)];
-    const int grain = block * BLOCK + get_local_id(0);
-    global const Replica* restrict replica = replicas + replica_of_block[block];
+WORK_GROUP(LIST_ITEMS)
+kernel void fill_cells(const int block_count, global const Replica* restrict replicas,
+                       global const int* restrict blocks, global const int* restrict replica_of_block,
+                       global const Motion* restrict motion, global volatile int* restrict cell_head,
+                       global int* restrict cell_next) {
+    const int grain = listed_grain(blocks, block_count);
+    if (grain < 0) return;
+    global const Replica* restrict replica = replicas + replica_of_block[grain / BLOCK];
     const real4 own = motion[grain].position;
     if (!(own.w > R(0))) return;
     const int cell = cell_index(replica, cell_along(own.x, replica->cell_size, replica->span_x),

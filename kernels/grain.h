@@ -2,6 +2,7 @@
    every kernel that treats contacts side by side; declares block, index, table and scratch. */
 #if LANES == 16
 #define IS_LEADER true
+#define STEP_ITEMS BLOCK /* of a work-group */
 #define GRAIN_OF_WORK_ITEM                                  \
     const int block = blocks[get_group_id(0)];              \
     const int index = block * BLOCK + (int)get_local_id(0); \
@@ -11,6 +12,7 @@ private                                                     \
     real scratch[1];                                        \
     EXCHANGE ContactTable* table = &own_table;
 #else
+#define STEP_ITEMS (BLOCK * SLOTS)
 #define IS_LEADER (get_local_id(0) % SLOTS == 0)
 #define GRAIN_OF_WORK_ITEM                                            \
     const int block = blocks[get_group_id(0)];                        \

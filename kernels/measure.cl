@@ -16,6 +16,7 @@ INLINE real kinetic_energy(Grain at) {
            (dot(velocity, velocity) + R(0.4) * radius * radius * dot(spin, spin));
 }
 
+WORK_GROUP(STEP_ITEMS)
 kernel void measure(global const Replica* restrict replicas, global const int* restrict blocks,
                     global const int* restrict replica_of_block, global const int* restrict steps,
                     global const Motion* restrict motion, global const int* restrict partner,
@@ -69,6 +70,7 @@ INLINE void add_wall_forces(global const int* partner, global const real* x, glo
         }
 }
 
+WORK_GROUP(REDUCERS)
 kernel void reduce(global const Replica* restrict replicas, global const int* restrict chosen,
                    global const int* restrict partner, global const real* restrict force_x,
                    global const real* restrict force_y, global const real* restrict force_z,

@@ -65,16 +65,17 @@ INLINE void carry(const int* before, const int* after, global real* restrict val
     }
 }
 
-kernel void list_neighbours(const int slot_count, global const Replica* restrict replicas,
-                            global const int* restrict blocks, global const int* restrict replica_of_block,
-                            global const Motion* restrict motion, global const int* restrict cell_head,
-                            global const int* restrict cell_next, global int* restrict partner,
-                            global real* restrict displacement, global real* restrict history,
-                            global real* restrict memory, global real4* restrict listed_position,
-                            global int* restrict status) {
-    const int block = blocks[get_group_id(0)];
-    const int grain = block * BLOCK + get_local_id(0);
-    global const Replica* restrict replica = replicas + replica_of_block[block];
+WORK_GROUP(LIST_ITEMS)
+kernel void list_neighbours(const int block_count, const int slot_count,
+                            global const Replica* restrict replicas, global const int* restrict blocks,
+                            global const int* restrict replica_of_block, global const Motion* restrict motion,
+                            global const int* restrict cell_head, global const int* restrict cell_next,
+                            global int* restrict partner, global real* restrict displacement,
+                            global real* restrict history, global real* restrict memory,
+                            global real4* restrict listed_position, global int* restrict status) {
+    const int grain = listed_grain(blocks, block_count);
+    if (grain < 0) return;
+    global const Replica* restrict replica = replicas + replica_of_block[grain / BLOCK];
     const size_t row = (size_t)grain * SLOTS;
     const real4 own = motion[grain].position;
     listed_position[grain] = own;
@@ -103,9 +104,11 @@ kernel void list_neighbours(const int slot_count, global const Replica* restrict
 
 /* partner_slot: where the same contact stands in the neighbour's row. For walls and empty slots, the one
    place past all rows, where displacements are always zero. */
-kernel void link_partner_slots(const int slot_count, global const int* restrict blocks,
+WORK_GROUP(LIST_ITEMS)
+kernel void link_partner_slots(const int block_count, const int slot_count, global const int* restrict blocks,
                                global const int* restrict partner, global int* restrict partner_slot) {
-    const int grain = blocks[get_group_id(0)] * BLOCK + get_local_id(0);
+    const int grain = listed_grain(blocks, block_count);
+    if (grain < 0) return;
     const size_t row = (size_t)grain * SLOTS;
     for (int c = 0; c < SLOTS; ++c) {
         const int other = partner[row + c];

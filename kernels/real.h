@@ -17,6 +17,8 @@ typedef float8 real8;
 #endif
 /* Every function is put in place: a call would pass vectors through memory. */
 #define INLINE static inline __attribute__((always_inline))
+/* Work-items of a work-group: compilers give a kernel no more registers than so many can have. */
+#define WORK_GROUP(items) __attribute__((reqd_work_group_size(items, 1, 1)))
 /* Keeps what is hardly ever needed out of the way of what always is. */
 #ifdef __has_builtin
 #if __has_builtin(__builtin_expect)

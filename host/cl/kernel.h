@@ -16,13 +16,18 @@ struct Next {
     Field<Quantity>& field;
 };
 
+/// Throws InputError where the device cannot run work-groups of that many work-items of this kernel.
+void expect_launchable(const Device& device, const cl::Kernel& kernel, int work_items);
+
 /// `Arguments`: int, Field<..>, Now<..> or Next<..>, in the kernel's order.
 template <class... Arguments>
 class Kernel {
 public:
     Kernel() = default;
-    Kernel(Device& device, const cl::Program& program, const char* name)
-        : queue_(device.queue()), kernel_(program, name) {
+    /// `work_items`: of a work-group.
+    Kernel(Device& device, const cl::Program& program, const char* name, int work_items)
+        : queue_(device.queue()), kernel_(program, name), work_items_(work_items) {
+        expect_launchable(device, kernel_, work_items);
         const auto wanted = kernel_.getInfo<CL_KERNEL_NUM_ARGS>();
         if (wanted != sizeof...(Arguments))
             throw RunError(fmt::format(
@@ -30,13 +35,13 @@ public:
                 wanted, sizeof...(Arguments)));
     }
 
-    /// Enqueues `groups` work-groups of `work_items` each; does not wait.
-    void operator()(std::size_t groups, std::size_t work_items, const Arguments&... arguments) {
+    /// Enqueues `groups` work-groups; does not wait.
+    void operator()(std::size_t groups, const Arguments&... arguments) {
         if (groups == 0) return;
         cl_uint index = 0;
         (set(index++, arguments), ...);
-        queue_.enqueueNDRangeKernel(kernel_, cl::NullRange, cl::NDRange(groups * work_items),
-                                    cl::NDRange(work_items));
+        queue_.enqueueNDRangeKernel(kernel_, cl::NullRange, cl::NDRange(groups * work_items_),
+                                    cl::NDRange(work_items_));
     }
 
 private:
@@ -55,6 +60,7 @@ private:
     }
     cl::CommandQueue queue_;
     cl::Kernel kernel_;
+    std::size_t work_items_ = 1;
 };
 
 }  // namespace mcdem::opencl

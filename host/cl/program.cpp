@@ -52,6 +52,7 @@ KernelBuild kernel_build(const Device& device, Precision precision, int slots) {
     build.precision = precision;
     build.slots = slots;
     build.lanes = device.info().gpu ? 1 : 16;
+    build.group = std::min(build.group, device.info().largest_work_group);
     if (const char* lanes = std::getenv("MCDEM_LANES")) {
         build.lanes = std::atoi(lanes);
         if (build.lanes != 1 && build.lanes != 16)
@@ -73,9 +74,11 @@ std::string program_text() {
 cl::Program build_program(const Device& device, const KernelBuild& build) {
     expect_room_for_kernels();
     // -w: what the compiler finds odd about a device's own headers and vector widths is no user's concern.
-    const auto options = fmt::format("-w -cl-std=CL1.2 -DMCDEM_DOUBLE={} -DLANES={} -DSLOTS={} -DBLOCK={}",
-                                     build.precision == Precision::double_precision ? 1 : 0, build.lanes,
-                                     build.slots, build.block);
+    const auto options = fmt::format(
+        "-w -cl-std=CL1.2 -DMCDEM_DOUBLE={} -DLANES={} -DSLOTS={} -DBLOCK={} "
+        "-DLIST_ITEMS={}",
+        build.precision == Precision::double_precision ? 1 : 0, build.lanes, build.slots, build.block(),
+        build.list_items());
     cl::Program program(device.context(), program_text());
     try {
         program.build({device.handle()}, options.c_str());

@@ -63,8 +63,8 @@ FieldExtents field_extents(const KernelBuild& build, const std::vector<Replica>&
                            const std::vector<PackingSize>& sizes, std::uint64_t cells) {
     FieldExtents extents;
     extents.replicas = replicas.size();
-    for (const PackingSize& size : sizes) extents.blocks += (size.grains + build.block - 1) / build.block;
-    extents.grains = extents.blocks * build.block;
+    for (const PackingSize& size : sizes) extents.blocks += (size.grains + build.block() - 1) / build.block();
+    extents.grains = extents.blocks * build.block();
     extents.cells = cells;
     extents.slots = build.slots;
     extents.precision = build.precision;
@@ -84,7 +84,7 @@ void expect_within_limits(const DeviceInfo& device, const KernelBuild& build,
                           const std::vector<Replica>& replicas, const std::vector<PackingSize>& sizes) {
     if (build.work_items() > device.largest_work_group)
         throw InputError(fmt::format("numerics.slots must be at most {} on {}, got {}",
-                                     device.largest_work_group / build.block, device.name, build.slots));
+                                     device.largest_work_group / 16 * 16, device.name, build.slots));
     std::uint64_t cells = 0;
     for (const PackingSize& size : sizes) cells += max_cells(size.grains);
     const FieldExtents extents = field_extents(build, replicas, sizes, cells);

@@ -62,7 +62,7 @@ Engine::Engine(Device& device, const KernelBuild& build, std::vector<Replica> re
     : build_(build),
       replicas_(std::move(replicas)),
       layout_((expect_within_limits(device.info(), build, replicas_, sizes_of(packings)),
-               make_layout(packings, build.block))),
+               make_layout(packings, build.block()))),
       rebuild_(replicas_.size(), 1),
       plate_moved_(replicas_.size(), 0),
       plate_z_(replicas_.size(), 0),
@@ -154,19 +154,21 @@ void Engine::find_neighbours(const std::vector<char>& active) {
     for (int r = 0; r < layout_.replicas(); ++r) wanted[r] = active[r] && rebuild_[r];
     const Part stale = part(wanted);
     if (stale.replicas.empty()) return;
-    const std::size_t blocks = stale.blocks.size();
-    const std::size_t block = build_.block;
+    const int blocks = static_cast<int>(stale.blocks.size());
+    const int items = build_.list_items();
+    const std::size_t groups = (stale.blocks.size() * build_.block() + items - 1) / items;
     auto& f = fields_;
     f.rebuilt.write(stale.replicas.data(), 0, stale.replicas.size() * sizeof(int));
     f.rebuilt_blocks.write(stale.blocks.data(), 0, blocks * sizeof(int));
-    kernels_.empty_cells(stale.replicas.size(), 64, f.replicas, f.rebuilt, f.cell_head);
-    kernels_.fill_cells(blocks, block, f.replicas, f.rebuilt_blocks, f.replica_of_block, f.motion.now(0),
+    kernels_.empty_cells(stale.replicas.size(), f.replicas, f.rebuilt, f.cell_head);
+    kernels_.fill_cells(groups, blocks, f.replicas, f.rebuilt_blocks, f.replica_of_block, f.motion.now(0),
                         f.cell_head, f.cell_next);
-    kernels_.list_neighbours(blocks, block, f.slot_count, f.replicas, f.rebuilt_blocks, f.replica_of_block,
+    kernels_.list_neighbours(groups, blocks, f.slot_count, f.replicas, f.rebuilt_blocks, f.replica_of_block,
                              f.motion.now(0), f.cell_head, f.cell_next, f.partner, f.displacement.now(0),
                              f.displacement_history, f.memory_of_contacts, f.listed_position, f.status);
     if (f.has_displacements())
-        kernels_.link_partner_slots(blocks, block, f.slot_count, f.rebuilt_blocks, f.partner, f.partner_slot);
+        kernels_.link_partner_slots(groups, blocks, f.slot_count, f.rebuilt_blocks, f.partner,
+                                    f.partner_slot);
     for (int r : stale.replicas) {
         rebuild_[r] = 0;
         plate_moved_[r] = 0;
@@ -179,22 +181,21 @@ void Engine::make_steps(int steps, std::size_t blocks) {
     auto& f = fields_;
     for (int s = 0; s < steps + steps % 2; ++s) {
         const int p = s % 2;
-        kernels_.advance(blocks, build_.work_items(), s, f.slot_count, f.replicas, f.blocks,
-                         f.replica_of_block, f.stop_at, f.motion.now(p), f.motion.next(p), f.partner,
-                         f.partner_slot, f.displacement.now(p), f.displacement.next(p),
-                         f.displacement_history, f.memory_of_contacts, f.listed_position, f.status);
+        kernels_.advance(blocks, s, f.slot_count, f.replicas, f.blocks, f.replica_of_block, f.stop_at,
+                         f.motion.now(p), f.motion.next(p), f.partner, f.partner_slot, f.displacement.now(p),
+                         f.displacement.next(p), f.displacement_history, f.memory_of_contacts,
+                         f.listed_position, f.status);
     }
 }
 
 void Engine::measure(const Part& working) {
     auto& f = fields_;
-    kernels_.measure(working.blocks.size(), build_.work_items(), f.replicas, f.blocks, f.replica_of_block,
-                     f.stop_at, f.motion.now(0), f.partner, f.partner_slot, f.displacement.now(0),
-                     f.memory_of_contacts, f.listed_position, f.force_x, f.force_y, f.force_z, f.overlap,
-                     f.arm, f.energy);
+    kernels_.measure(working.blocks.size(), f.replicas, f.blocks, f.replica_of_block, f.stop_at,
+                     f.motion.now(0), f.partner, f.partner_slot, f.displacement.now(0), f.memory_of_contacts,
+                     f.listed_position, f.force_x, f.force_y, f.force_z, f.overlap, f.arm, f.energy);
     f.chosen.write(working.replicas.data(), 0, working.replicas.size() * sizeof(int));
-    kernels_.reduce(working.replicas.size(), 64, f.replicas, f.chosen, f.partner, f.force_x, f.force_y,
-                    f.force_z, f.energy, f.status, f.reports);
+    kernels_.reduce(working.replicas.size(), f.replicas, f.chosen, f.partner, f.force_x, f.force_y, f.force_z,
+                    f.energy, f.status, f.reports);
 }
 
 namespace {

@@ -72,15 +72,16 @@ Fields::Fields(Device& device, const FieldExtents& extents, const Layout& layout
     partner_slot.write(std::vector<int>(static_cast<std::size_t>(slot_count), slot_count).data());
 }
 
-Kernels::Kernels(Device& device, const KernelBuild& build) : Kernels(device, build_program(device, build)) {}
+Kernels::Kernels(Device& device, const KernelBuild& build)
+    : Kernels(device, build, build_program(device, build)) {}
 
-Kernels::Kernels(Device& device, const cl::Program& program)
-    : empty_cells(device, program, "empty_cells"),
-      fill_cells(device, program, "fill_cells"),
-      list_neighbours(device, program, "list_neighbours"),
-      link_partner_slots(device, program, "link_partner_slots"),
-      advance(device, program, "advance"),
-      measure(device, program, "measure"),
-      reduce(device, program, "reduce") {}
+Kernels::Kernels(Device& device, const KernelBuild& build, const cl::Program& program)
+    : empty_cells(device, program, "empty_cells", build.list_items()),
+      fill_cells(device, program, "fill_cells", build.list_items()),
+      list_neighbours(device, program, "list_neighbours", build.list_items()),
+      link_partner_slots(device, program, "link_partner_slots", build.list_items()),
+      advance(device, program, "advance", build.work_items()),
+      measure(device, program, "measure", build.work_items()),
+      reduce(device, program, "reduce", 64) {}
 
 }  // namespace mcdem::sim

@@ -135,14 +135,14 @@ struct Kernels {
     Kernels(Device& device, const KernelBuild& build);
 
     Kernel<Field<Constants>, Field<Chosen>, Field<CellHead>> empty_cells;
-    Kernel<Field<Constants>, Field<Blocks>, Field<ReplicaOfBlock>, Now<Motion>, Field<CellHead>,
+    Kernel<int, Field<Constants>, Field<Blocks>, Field<ReplicaOfBlock>, Now<Motion>, Field<CellHead>,
            Field<CellNext>>
         fill_cells;
-    Kernel<int, Field<Constants>, Field<Blocks>, Field<ReplicaOfBlock>, Now<Motion>, Field<CellHead>,
+    Kernel<int, int, Field<Constants>, Field<Blocks>, Field<ReplicaOfBlock>, Now<Motion>, Field<CellHead>,
            Field<CellNext>, Field<Partner>, Now<SurfaceDisplacement>, Field<DisplacementHistory>,
            Field<ContactMemory>, Field<ListedPosition>, Field<Status>>
         list_neighbours;
-    Kernel<int, Field<Blocks>, Field<Partner>, Field<PartnerSlot>> link_partner_slots;
+    Kernel<int, int, Field<Blocks>, Field<Partner>, Field<PartnerSlot>> link_partner_slots;
     Kernel<int, int, Field<Constants>, Field<Blocks>, Field<ReplicaOfBlock>, Field<StopAt>, Now<Motion>,
            Next<Motion>, Field<Partner>, Field<PartnerSlot>, Now<SurfaceDisplacement>,
            Next<SurfaceDisplacement>, Field<DisplacementHistory>, Field<ContactMemory>, Field<ListedPosition>,
@@ -157,7 +157,7 @@ struct Kernels {
         reduce;
 
 private:
-    Kernels(Device& device, const cl::Program& program);
+    Kernels(Device& device, const KernelBuild& build, const cl::Program& program);
 };
 
 }  // namespace mcdem::sim

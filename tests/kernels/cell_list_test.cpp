@@ -11,7 +11,7 @@ namespace {
 struct CellScene {
     explicit CellScene(const std::vector<Start>& starts)
         : kernels(build(Precision::single_precision)),
-          layout(mcdem::make_layout(packings(starts), kernels.block)) {
+          layout(mcdem::make_layout(packings(starts), kernels.block())) {
         int cells = 0;
         for (int r = 0; r < layout.replicas(); ++r) {
             replicas.push_back(mcdem::device_replica<mcdem::f32::Replica>(
@@ -49,9 +49,10 @@ struct CellScene {
             for (int b = layout.first_block(r); b < layout.first_block(r + 1); ++b) blocks.push_back(b);
         fields.rebuilt.write(chosen.data(), 0, chosen.size() * sizeof(int));
         fields.rebuilt_blocks.write(blocks.data(), 0, blocks.size() * sizeof(int));
-        program.empty_cells(chosen.size(), 64, fields.replicas, fields.rebuilt, fields.cell_head);
-        program.fill_cells(blocks.size(), kernels.block, fields.replicas, fields.rebuilt_blocks,
-                           fields.replica_of_block, fields.motion.now(0), fields.cell_head, fields.cell_next);
+        program.empty_cells(chosen.size(), fields.replicas, fields.rebuilt, fields.cell_head);
+        program.fill_cells(blocks.size(), static_cast<int>(blocks.size()), fields.replicas,
+                           fields.rebuilt_blocks, fields.replica_of_block, fields.motion.now(0),
+                           fields.cell_head, fields.cell_next);
         fields.cell_head.read(cell_head.data());
         fields.cell_next.read(cell_next.data());
     }

@@ -33,7 +33,7 @@ public:
     SavedRows(Batch& batch, const KernelBuild& build, const std::vector<Start>& starts)
         : build_(build),
           saved_(batch.engine().save()),
-          layout_(mcdem::make_layout(packings(starts), build.block)) {
+          layout_(mcdem::make_layout(packings(starts), build.block())) {
         partner_ = saved_values<int>(saved_, "partner");
     }
 

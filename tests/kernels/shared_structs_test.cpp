@@ -58,13 +58,13 @@ std::vector<int> device_offsets(Precision precision, std::size_t count) {
     const std::string members = MEMBERS_OF_REPLICA(NAME_REPLICA) MEMBERS_OF_REPORT(NAME_REPORT);
     source.replace(source.rfind("MEMBERS"), 7, members);
     cl::Program program(device().context(), source);
-    const std::string options =
-        "-cl-std=CL1.2 -DLANES=" + std::to_string(kernels.lanes) +
-        " -DSLOTS=16 -DBLOCK=16 -DMCDEM_DOUBLE=" + (precision == Precision::double_precision ? "1" : "0");
+    const std::string options = "-cl-std=CL1.2 -DLANES=" + std::to_string(kernels.lanes) +
+                                " -DSLOTS=16 -DBLOCK=16 -DLIST_ITEMS=16 -DMCDEM_DOUBLE=" +
+                                (precision == Precision::double_precision ? "1" : "0");
     program.build({device().handle()}, options.c_str());
     struct Offsets;
     mcdem::Field<Offsets> field(device(), count, sizeof(int));
-    mcdem::Kernel<mcdem::Field<Offsets>>(device(), program, "write_offsets")(1, 1, field);
+    mcdem::Kernel<mcdem::Field<Offsets>>(device(), program, "write_offsets", 1)(1, field);
     std::vector<int> offsets(count);
     field.read(offsets.data());
     return offsets;

@@ -94,11 +94,13 @@ TEST(BatchLimits, NumbersThatWouldOverflowAreRefused) {
         refusal(large_device(), kernels, four, std::vector<PackingSize>(4, {std::size_t{1} << 31, 0.02})),
         testing::HasSubstr("slots"));
     mcdem::DeviceInfo small_groups = large_device();
-    small_groups.largest_work_group = 256;
-    EXPECT_THAT(refusal(small_groups, {.lanes = 1}, four, std::vector<PackingSize>(4, {8, 0.02})), "");
-    EXPECT_THAT(
-        refusal(small_groups, {.slots = 32, .lanes = 1}, four, std::vector<PackingSize>(4, {8, 0.02})),
-        testing::HasSubstr("numerics.slots must be at most 16 on abacus"));
+    small_groups.largest_work_group = 40;
+    const auto refused = [&](int slots) {
+        return refusal(small_groups, {.slots = slots, .lanes = 1, .group = 40}, four,
+                       std::vector<PackingSize>(4, {8, 0.02}));
+    };
+    EXPECT_THAT(refused(32), "");
+    EXPECT_THAT(refused(48), testing::HasSubstr("numerics.slots must be at most 32 on abacus"));
 }
 
 TEST(BatchLimits, StepsThatCannotBeCountedAreRefused) {

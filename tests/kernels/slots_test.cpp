@@ -1,0 +1,26 @@
+// Whole steps with every number of slots that a grain can have, as the device at hand treats them, against
+// the double-precision reference.
+#include "kernels/steps_as_reference.h"
+
+namespace reference {
+namespace {
+
+class Slots : public testing::TestWithParam<int> {};
+
+TEST_P(Slots, FollowTheReference) {
+    for (Precision precision : precisions()) {
+        std::vector<Start> starts;
+        for (ContactModel model : {ContactModel::mc_dem, ContactModel::elastic_sphere})
+            for (int count : {1, 17, 64}) {
+                starts.push_back(start_of(model, FrictionLaw::mindlin, count, 31));
+                // A far probed gap gives a grain 18 neighbours and more.
+                if (GetParam() > 16) starts.back().replica.numerics.probe_gap = 0.85;
+            }
+        expect_steps_as_reference(build(precision, GetParam()), starts, 17);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(, Slots, testing::Values(16, 32, 48, 64));
+
+}  // namespace
+}  // namespace reference
