@@ -9,8 +9,7 @@ typedef struct {
 
 /* See the neighbours, then the forces of their contacts; tabulates them for the surfaces. `effects` are the
    replica's, or a plain 0 that leaves them out when this is compiled. */
-INLINE RowSums row_forces(Grain at, const int effects, Batch batch, bool is_done,
-                          EXCHANGE ContactTable* table) {
+INLINE RowSums row_forces(Grain at, const int effects, Batch batch, EXCHANGE ContactTable* table) {
     global const Replica* restrict replica = at.replica;
     global real* memory_rows = memory_of(replica, batch.memory, at.row);
     RowSums sums = {ZERO3, ZERO3, 0, 0};
@@ -20,7 +19,7 @@ INLINE RowSums row_forces(Grain at, const int effects, Batch batch, bool is_done
         const Displaced b = load_displacements(at, batch, v);
         Memory memory = load_memory(replica, effects, memory_rows, v);
         const Contacts c = contact_forces(at, effects, seen, b, replica->time_step, &memory);
-        if (!is_done) store_memory(replica, effects, memory, memory_rows, v);
+        store_memory(replica, effects, memory, memory_rows, v);
         add_contacts(c, seen.normal, &sums.force, &sums.torque);
         if (effects & EFFECT_ROLLING_RESISTANCE) sums.torque = add3(sums.torque, c.couple);
         /* Asked this way round, a displacement that is not a number counts as too deep as well. */
@@ -51,10 +50,11 @@ INLINE void displace_surfaces(Grain at, EXCHANGE const ContactTable* table, int 
     }
 }
 
-/* A replica that has made its steps keeps its state in both copies of every field. */
+/* A replica that has made its steps keeps its state in both copies of every field, whichever is read at last.
+ */
 INLINE void keep_state(Grain at, Batch batch, global Motion* restrict motion_next,
                        global real* restrict displacement_next) {
-    motion_next[at.index] = at.now;
+    if (IS_LEADER) motion_next[at.index] = at.now;
     if (at.replica->surface == SURFACE_RIGID) return;
     for (int v = 0; v < VECTORS; ++v)
         STORE_LANES(LOAD_LANES(batch.displacement + at.row, v), displacement_next + at.row, v);
@@ -90,27 +90,30 @@ kernel void advance(const int step, const int slot_count, global const Replica* 
     global const Replica* restrict replica = replicas + r;
     const Batch batch = {motion, partner, partner_slot, displacement, memory};
     const Grain at = {replica, index, (size_t)index * SLOTS, plate_position(replica, step), motion[index]};
-    const bool is_done = step >= stop_at[r];
-    if (is_done) keep_state(at, batch, motion_next, displacement_next);
-    /* Where barriers follow, the work-items of a replica that is done go through them and write nothing. */
-    if (is_done && LANES == 16) return;
+    /* One answer for a work-group, so that no barrier is missed: what lowers stop_at in this step sets step
+     * + 1. */
+    const int last = stop_at[r];
+    if (step >= last) {
+        if (step == last) keep_state(at, batch, motion_next, displacement_next);
+        return;
+    }
 
     prefetch_next_displacements(at, batch);
     /* Put in place twice: where there are no effects they cost nothing. */
-    const RowSums sums = RARELY(replica->effects) ? row_forces(at, replica->effects, batch, is_done, table)
-                                                  : row_forces(at, 0, batch, is_done, table);
+    const RowSums sums = RARELY(replica->effects) ? row_forces(at, replica->effects, batch, table)
+                                                  : row_forces(at, 0, batch, table);
+    const lanes trouble = WHERE(sums.too_deep, R(1), R(0)) + WHERE(sums.unprobed, R(DEEP_SLOTS), R(0));
+    share_sums(sums.force, sums.torque, trouble, scratch);
     SYNCHRONISE();
-    if (replica->surface != SURFACE_RIGID && !is_done)
+    if (replica->surface != SURFACE_RIGID)
         displace_surfaces(at, table, replica->steps_before + step, slot_count, displacement_next, history);
 
-    const lanes trouble = WHERE(sums.too_deep, R(1), R(0)) + WHERE(sums.unprobed, R(DEEP_SLOTS), R(0));
-    const real4 force = sum_lanes(sums.force.x, sums.force.y, sums.force.z, trouble, scratch);
-    const real4 torque = sum_lanes(sums.torque.x, sums.torque.y, sums.torque.z, (lanes)(R(0)), scratch);
-    if (is_done || !IS_LEADER || !(at.now.position.w > R(0))) return;
+    const GrainSums total = add_up(sums.force, sums.torque, trouble, scratch);
+    if (!IS_LEADER || !(at.now.position.w > R(0))) return;
 
-    const Motion after = integrate(replica, at.now, force.xyz, torque.xyz);
+    const Motion after = integrate(replica, at.now, total.force.xyz, total.torque.xyz);
     motion_next[index] = after;
-    const int bits = trouble_status(force.w) | motion_status(at, after);
+    const int bits = trouble_status(total.force.w) | motion_status(at, after);
     if (bits) status[index] |= bits;
     expect_listed(at, after, bits, listed_position[index].xyz, step, stop_at + r);
 }

@@ -47,11 +47,13 @@ kernel void measure(global const Replica* restrict replicas, global const int* r
         STORE_LANES(c.overlap, overlap + at.row, v);
         STORE_LANES(c.arm, arm + at.row, v);
     }
-    const real elastic = sum_lanes(stored, stored, stored, stored, scratch).x;
-    const real deepest_slot = max_lanes(deepest, scratch);
+    share(stored, 0, scratch);
+    share(deepest, 1, scratch);
+    SYNCHRONISE();
     if (IS_LEADER && at.now.position.w > R(0)) {
         const real3 moved = at.now.position.xyz - listed_position[index].xyz;
-        energy[index] = (real4)(kinetic_energy(at), elastic, dot(moved, moved), deepest_slot);
+        energy[index] = (real4)(kinetic_energy(at), sum_slots(stored, 0, scratch), dot(moved, moved),
+                                max_slots(deepest, 1, scratch));
     }
 }
 

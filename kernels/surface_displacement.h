@@ -7,6 +7,9 @@ typedef struct {
     real arm[SLOTS];                   /* distance of the contact or probed point [m] */
     real elastic[SLOTS];               /* force, zero where there is no contact [N] */
     real radius[SLOTS];                /* of the contact [m] */
+#if LANES == 1
+    real padding[16]; /* grains side by side in a work-group begin in different banks of local memory */
+#endif
 } ContactTable;
 
 /* Paper, Eq. 1, from contact k with unit force and unit prefactor, at the deformed contact points. With

@@ -1,0 +1,77 @@
+// Sums over the slots of a grain have one order: the CPU's way and the GPU's give the same bits.
+#include <fmt/format.h>
+
+#include "cl/kernel.h"
+#include "reference/test_scene.h"
+
+namespace reference {
+namespace {
+
+constexpr int quantities = 7, sums = quantities + 2, slots = 16;
+
+const char* const sum_kernel = R"(
+WORK_GROUP(STEP_ITEMS) kernel void sum_rows(global const int* blocks, global const real* values, global real* out) {
+    GRAIN_OF_WORK_ITEM
+    (void)table;
+    global const real* row = values + index * 7 * SLOTS;
+    lanes v[7];
+    for (int q = 0; q < 7; ++q) v[q] = LOAD_LANES(row + q * SLOTS, 0);
+    const lanes3 force = {v[0], v[1], v[2]}, torque = {v[3], v[4], v[5]};
+    share_sums(force, torque, v[6], scratch);
+    SYNCHRONISE();
+    const GrainSums total = add_up(force, torque, v[6], scratch);
+    SYNCHRONISE();
+    share(v[0], 0, scratch);
+    share(v[1], 1, scratch);
+    SYNCHRONISE();
+    if (!IS_LEADER) return;
+    global real* sum = out + index * 9;
+    sum[0] = total.force.x, sum[1] = total.force.y, sum[2] = total.force.z;
+    sum[3] = total.torque.x, sum[4] = total.torque.y, sum[5] = total.torque.z, sum[6] = total.force.w;
+    sum[7] = sum_slots(v[0], 0, scratch), sum[8] = max_slots(v[1], 1, scratch);
+})";
+
+std::vector<float> summed(const std::vector<float>& values, KernelBuild kernels) {
+    const int grains = static_cast<int>(values.size()) / (quantities * slots);
+    cl::Program program(device().context(), mcdem::program_text() + sum_kernel);
+    program.build(
+        {device().handle()},
+        fmt::format("-w -cl-std=CL1.2 -DMCDEM_DOUBLE=0 -DLANES={} -DSLOTS={} -DBLOCK={} -DLIST_ITEMS=16",
+                    kernels.lanes, slots, kernels.block())
+            .c_str());
+    struct Numbers;
+    struct Values;
+    struct Sums;
+    std::vector<int> numbers(grains / kernels.block());
+    std::iota(numbers.begin(), numbers.end(), 0);
+    mcdem::Field<Numbers> blocks(device(), numbers.size(), sizeof(int));
+    mcdem::Field<Values> in(device(), values.size(), sizeof(float));
+    mcdem::Field<Sums> out(device(), std::size_t(grains) * sums, sizeof(float));
+    blocks.write(numbers.data());
+    in.write(values.data());
+    mcdem::Kernel<mcdem::Field<Numbers>, mcdem::Field<Values>, mcdem::Field<Sums>>(
+        device(), program, "sum_rows", kernels.work_items())(numbers.size(), blocks, in, out);
+    std::vector<float> found(std::size_t(grains) * sums);
+    out.read(found.data());
+    return found;
+}
+
+TEST(SlotSums, HaveTheSameBitsBothWays) {
+    Uniform uniform(3);
+    std::vector<float> values;
+    for (int i = 0; i < 64 * quantities * slots; ++i)
+        values.push_back(static_cast<float>(uniform(-1, 1) * std::exp(uniform(-9, 9))));
+    const KernelBuild kernels = build(Precision::single_precision);
+    const auto one = summed(values, kernels), other = summed(values, other_way(kernels));
+    EXPECT_EQ(one, other);
+    for (int grain = 0; grain < 64; ++grain) {
+        const float* row = &values[std::size_t(grain) * quantities * slots];
+        double sum = 0, size = 0;
+        for (int slot = 0; slot < slots; ++slot) sum += row[slot], size += std::abs(row[slot]);
+        EXPECT_NEAR(one[grain * sums], sum, 1e-6 * size);
+        EXPECT_EQ(one[grain * sums + 8], *std::max_element(row + slots, row + 2 * slots));
+    }
+}
+
+}  // namespace
+}  // namespace reference
