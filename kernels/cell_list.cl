@@ -19,11 +19,15 @@ INLINE int listed_grain(global const int* restrict blocks, int block_count) {
 }
 
 WORK_GROUP(LIST_ITEMS)
-kernel void empty_cells(global const Replica* restrict replicas, global const int* restrict chosen,
+kernel void empty_cells(global const Replica* restrict replicas, global const Portion* restrict portions,
                         global int* restrict cell_head) {
-    global const Replica* restrict replica = replicas + chosen[get_group_id(0)];
+    const Portion portion = portions[get_group_id(0)];
+    global const Replica* restrict replica = replicas + portion.replica;
+    const int groups = (replica->grain_count + PORTION_GRAINS - 1) / PORTION_GRAINS;
     const int cells = replica->cells_x * replica->cells_y * replica->cells_z;
-    for (int c = get_local_id(0); c < cells; c += LIST_ITEMS) cell_head[replica->first_cell + c] = -1;
+    for (int c = portion.first / PORTION_GRAINS * LIST_ITEMS + get_local_id(0); c < cells;
+         c += groups * LIST_ITEMS)
+        cell_head[replica->first_cell + c] = -1;
 }
 
 WORK_GROUP(LIST_ITEMS)

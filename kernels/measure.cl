@@ -57,7 +57,8 @@ kernel void measure(global const Replica* restrict replicas, global const int* r
     }
 }
 
-/* One work-group a replica: each work-item sums every 64th grain, then a fixed tree. */
+/* One work-group a portion of a replica: each work-item sums every 64th grain, then a fixed tree. The host
+   adds portions in their order. */
 #define REDUCERS 64
 #define SUMS 20 /* kinetic, elastic, 18 wall force components */
 
@@ -73,7 +74,7 @@ INLINE void add_wall_forces(global const int* partner, global const real* x, glo
 }
 
 WORK_GROUP(REDUCERS)
-kernel void reduce(global const Replica* restrict replicas, global const int* restrict chosen,
+kernel void reduce(global const Replica* restrict replicas, global const Portion* restrict portions,
                    global const int* restrict partner, global const real* restrict force_x,
                    global const real* restrict force_y, global const real* restrict force_z,
                    global const real4* restrict energy, global const int* restrict status,
@@ -81,14 +82,15 @@ kernel void reduce(global const Replica* restrict replicas, global const int* re
     local real shared_sums[REDUCERS][SUMS];
     local real shared_most[REDUCERS][2];
     local int shared_status[REDUCERS][2];
-    const int r = chosen[get_group_id(0)];
+    const Portion portion = portions[get_group_id(0)];
     const int lane = get_local_id(0);
-    global const Replica* restrict replica = replicas + r;
+    global const Replica* restrict replica = replicas + portion.replica;
+    const int end = min(portion.first + PORTION_GRAINS, replica->grain_count);
     real sums[SUMS];
     for (int q = 0; q < SUMS; ++q) sums[q] = R(0);
     real moved = R(0), deepest = R(0);
     int bits = 0, failed = INT_MAX;
-    for (int k = lane; k < replica->grain_count; k += REDUCERS) {
+    for (int k = portion.first + lane; k < end; k += REDUCERS) {
         const int grain = replica->first_grain + k;
         const size_t row = (size_t)grain * SLOTS;
         sums[0] += energy[grain].x;
@@ -115,7 +117,7 @@ kernel void reduce(global const Replica* restrict replicas, global const int* re
         }
     }
     if (lane > 0) return;
-    global Report* restrict report = reports + r;
+    global Report* restrict report = reports + get_group_id(0);
     report->kinetic_energy = shared_sums[0][0];
     report->elastic_energy = shared_sums[0][1];
     for (int q = 0; q < 18; ++q) report->wall_force[q] = shared_sums[0][2 + q];

@@ -1,5 +1,12 @@
-/* What the host learns of a replica at the end of every interval of steps. Shared by host and device;
-   scalars and arrays of scalars only, widest first. */
+/* What the host learns of a replica at the end of every interval of steps, a report for each portion of its
+   grains. Shared by host and device; scalars and arrays of scalars only, widest first. */
+#define PORTION_GRAINS 4096
+
+typedef struct {
+    int replica;
+    int first; /* grain in the replica */
+} Portion;
+
 typedef struct {
     real kinetic_energy;  /* [J] */
     real elastic_energy;  /* [J] */

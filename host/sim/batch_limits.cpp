@@ -63,7 +63,10 @@ FieldExtents field_extents(const KernelBuild& build, const std::vector<Replica>&
                            const std::vector<PackingSize>& sizes, std::uint64_t cells) {
     FieldExtents extents;
     extents.replicas = replicas.size();
-    for (const PackingSize& size : sizes) extents.blocks += (size.grains + build.block() - 1) / build.block();
+    for (const PackingSize& size : sizes) {
+        extents.blocks += (size.grains + build.block() - 1) / build.block();
+        extents.portions += portion_count(size.grains);
+    }
     extents.grains = extents.blocks * build.block();
     extents.cells = cells;
     extents.slots = build.slots;

@@ -109,8 +109,19 @@ Engine::Part Engine::part(const std::vector<char>& wanted) const {
         part.replicas.push_back(r);
         for (int block = layout_.first_block(r); block < layout_.first_block(r + 1); ++block)
             part.blocks.push_back(block);
+        const auto portions = layout_.portions(r);
+        part.portions.insert(part.portions.end(), portions.begin(), portions.end());
     }
     return part;
+}
+
+/// The device's lists are written where they change.
+void Engine::choose(const std::vector<char>& active) {
+    if (active == active_) return;
+    active_ = active;
+    working_ = part(active);
+    fields_.blocks.write(working_.blocks.data(), 0, working_.blocks.size() * sizeof(int));
+    fields_.portions.write(working_.portions.data(), 0, working_.portions.size() * sizeof(Portion));
 }
 
 std::vector<IntervalResult> Engine::advance(const std::vector<StepInterval>& intervals) {
@@ -121,12 +132,11 @@ std::vector<IntervalResult> Engine::advance(const std::vector<StepInterval>& int
         most = std::max(most, intervals[r].steps);
     }
     if (most == 0) return std::vector<IntervalResult>(intervals.size());
-    const Part working = part(active);
+    choose(active);
     upload_intervals(intervals);
     find_neighbours(active);
-    fields_.blocks.write(working.blocks.data(), 0, working.blocks.size() * sizeof(int));
-    make_steps(most, working.blocks.size());
-    measure(working);
+    make_steps(most);
+    measure();
     return read_reports(intervals);
 }
 
@@ -158,9 +168,9 @@ void Engine::find_neighbours(const std::vector<char>& active) {
     const int items = build_.list_items();
     const std::size_t groups = (stale.blocks.size() * build_.block() + items - 1) / items;
     auto& f = fields_;
-    f.rebuilt.write(stale.replicas.data(), 0, stale.replicas.size() * sizeof(int));
+    f.rebuilt.write(stale.portions.data(), 0, stale.portions.size() * sizeof(Portion));
     f.rebuilt_blocks.write(stale.blocks.data(), 0, blocks * sizeof(int));
-    kernels_.empty_cells(stale.replicas.size(), f.replicas, f.rebuilt, f.cell_head);
+    kernels_.empty_cells(stale.portions.size(), f.replicas, f.rebuilt, f.cell_head);
     kernels_.fill_cells(groups, blocks, f.replicas, f.rebuilt_blocks, f.replica_of_block, f.motion.now(0),
                         f.cell_head, f.cell_next);
     kernels_.list_neighbours(groups, blocks, f.slot_count, f.replicas, f.rebuilt_blocks, f.replica_of_block,
@@ -177,25 +187,24 @@ void Engine::find_neighbours(const std::vector<char>& active) {
 
 /// An even number of launches, so that every field ends in the copy in which it began; a replica that has
 /// made its steps waits.
-void Engine::make_steps(int steps, std::size_t blocks) {
+void Engine::make_steps(int steps) {
     auto& f = fields_;
     for (int s = 0; s < steps + steps % 2; ++s) {
         const int p = s % 2;
-        kernels_.advance(blocks, s, f.slot_count, f.replicas, f.blocks, f.replica_of_block, f.stop_at,
-                         f.motion.now(p), f.motion.next(p), f.partner, f.partner_slot, f.displacement.now(p),
-                         f.displacement.next(p), f.displacement_history, f.memory_of_contacts,
-                         f.listed_position, f.status);
+        kernels_.advance(working_.blocks.size(), s, f.slot_count, f.replicas, f.blocks, f.replica_of_block,
+                         f.stop_at, f.motion.now(p), f.motion.next(p), f.partner, f.partner_slot,
+                         f.displacement.now(p), f.displacement.next(p), f.displacement_history,
+                         f.memory_of_contacts, f.listed_position, f.status);
     }
 }
 
-void Engine::measure(const Part& working) {
+void Engine::measure() {
     auto& f = fields_;
-    kernels_.measure(working.blocks.size(), f.replicas, f.blocks, f.replica_of_block, f.stop_at,
+    kernels_.measure(working_.blocks.size(), f.replicas, f.blocks, f.replica_of_block, f.stop_at,
                      f.motion.now(0), f.partner, f.partner_slot, f.displacement.now(0), f.memory_of_contacts,
                      f.listed_position, f.force_x, f.force_y, f.force_z, f.overlap, f.arm, f.energy);
-    f.chosen.write(working.replicas.data(), 0, working.replicas.size() * sizeof(int));
-    kernels_.reduce(working.replicas.size(), f.replicas, f.chosen, f.partner, f.force_x, f.force_y, f.force_z,
-                    f.energy, f.status, f.reports);
+    kernels_.reduce(working_.portions.size(), f.replicas, f.portions, f.partner, f.force_x, f.force_y,
+                    f.force_z, f.energy, f.status, f.reports);
 }
 
 namespace {
@@ -214,6 +223,32 @@ IntervalResult to_result(const Report& report) {
     return result;
 }
 
+template <class Report>
+void add(Report& sum, const Report& portion) {
+    sum.kinetic_energy += portion.kinetic_energy;
+    sum.elastic_energy += portion.elastic_energy;
+    sum.moved_squared = std::max(sum.moved_squared, portion.moved_squared);
+    sum.deepest_overlap = std::max(sum.deepest_overlap, portion.deepest_overlap);
+    for (int q = 0; q < 3 * wall_count; ++q) sum.wall_force[q] += portion.wall_force[q];
+    sum.status |= portion.status;
+    if (sum.failed_grain < 0) sum.failed_grain = portion.failed_grain;
+}
+
+/// A replica's report is the sum of its portions', which stand in the order of its grains.
+template <class Report>
+std::vector<Report> by_replica(const std::vector<Portion>& portions, const std::vector<Report>& found,
+                               int replicas) {
+    std::vector<Report> reports(replicas);
+    for (std::size_t p = 0; p < portions.size(); ++p) {
+        Report& report = reports[portions[p].replica];
+        if (portions[p].first == 0)
+            report = found[p];
+        else
+            add(report, found[p]);
+    }
+    return reports;
+}
+
 }  // namespace
 
 std::vector<IntervalResult> Engine::read_reports(const std::vector<StepInterval>& intervals) {
@@ -224,8 +259,9 @@ std::vector<IntervalResult> Engine::read_reports(const std::vector<StepInterval>
         [&]<class DeviceReplica>(const std::vector<DeviceReplica>& all) {
             using Report =
                 std::conditional_t<std::is_same_v<DeviceReplica, f64::Replica>, f64::Report, f32::Report>;
-            std::vector<Report> reports(all.size());
-            fields_.reports.read(reports.data());
+            std::vector<Report> found(working_.portions.size());
+            fields_.reports.read(found.data(), 0, found.size() * sizeof(Report));
+            const auto reports = by_replica(working_.portions, found, layout_.replicas());
             for (int r = 0; r < layout_.replicas(); ++r) {
                 if (intervals[r].steps == 0) continue;
                 auto& result = results[r] = to_result(reports[r]);

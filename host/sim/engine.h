@@ -73,13 +73,15 @@ private:
     /// Some replicas of the batch and the blocks that hold their grains.
     struct Part {
         std::vector<int> replicas, blocks;
+        std::vector<Portion> portions;
     };
     Part part(const std::vector<char>& wanted) const;
     void upload_packings(const std::vector<Packing>& packings);
+    void choose(const std::vector<char>& active);
     void upload_intervals(const std::vector<StepInterval>& intervals);
     void find_neighbours(const std::vector<char>& active);
-    void make_steps(int steps, std::size_t blocks);
-    void measure(const Part& active);
+    void make_steps(int steps);
+    void measure();
     std::vector<IntervalResult> read_reports(const std::vector<StepInterval>& intervals);
     IntervalResult result_of(int replica, const double* reals, int status, int failed_place) const;
     template <class Quantity>
@@ -98,6 +100,8 @@ private:
     std::vector<double> plate_moved_;                     ///< since the list was made [m]
     std::vector<double> plate_z_;                         ///< where the last interval left it [m]
     std::vector<long> steps_made_;
+    std::vector<char> active_;  ///< the replicas of working_
+    Part working_;              ///< in work, as the device's lists have it
     std::variant<std::vector<f32::Replica>, std::vector<f64::Replica>> device_replicas_;
     Fields fields_;
     Kernels kernels_;

@@ -24,9 +24,9 @@ void Fields::visit_extents(const FieldExtents& extents, Make make) {
     };
     make(replicas, extents.replicas, is_double ? sizeof(f64::Replica) : sizeof(f32::Replica));
     make(stop_at, extents.replicas, sizeof(int));
-    make(reports, extents.replicas, is_double ? sizeof(f64::Report) : sizeof(f32::Report));
-    make(chosen, extents.replicas, sizeof(int));
-    make(rebuilt, extents.replicas, sizeof(int));
+    make(reports, extents.portions, is_double ? sizeof(f64::Report) : sizeof(f32::Report));
+    make(portions, extents.portions, sizeof(Portion));
+    make(rebuilt, extents.portions, sizeof(Portion));
     make(blocks, extents.blocks, sizeof(int));
     make(rebuilt_blocks, extents.blocks, sizeof(int));
     make(replica_of_block, extents.blocks, sizeof(int));

@@ -15,7 +15,7 @@ namespace mcdem::inline sim {
 struct Constants;
 struct Blocks;
 struct ReplicaOfBlock;
-struct Chosen;
+struct Portions;
 struct StopAt;
 struct Motion;
 struct Partner;
@@ -63,8 +63,8 @@ MemoryRows memory_rows(const FieldNeeds& needs);
 
 /// How many there are of what fields have one value of, in a batch.
 struct FieldExtents {
-    std::uint64_t replicas = 0, blocks = 0, grains = 0, cells = 0;  ///< grains: padded
-    std::uint64_t slots = 0;                                        ///< of one grain
+    std::uint64_t replicas = 0, blocks = 0, portions = 0, grains = 0, cells = 0;  ///< grains: padded
+    std::uint64_t slots = 0;                                                      ///< of one grain
     Precision precision = Precision::single_precision;
     FieldNeeds needs;
 };
@@ -83,8 +83,8 @@ struct Fields {
 
     Field<Constants> replicas;             ///< a replica
     Field<StopAt> stop_at;                 ///< a replica: steps it makes in this interval
-    Field<Reports> reports;                ///< a replica
-    Field<Chosen> chosen, rebuilt;         ///< replicas in work
+    Field<Reports> reports;                ///< a portion in work
+    Field<Portions> portions, rebuilt;     ///< portions in work
     Field<Blocks> blocks, rebuilt_blocks;  ///< blocks in work
     Field<ReplicaOfBlock> replica_of_block;
     Pair<Motion> motion;
@@ -134,7 +134,7 @@ private:
 struct Kernels {
     Kernels(Device& device, const KernelBuild& build);
 
-    Kernel<Field<Constants>, Field<Chosen>, Field<CellHead>> empty_cells;
+    Kernel<Field<Constants>, Field<Portions>, Field<CellHead>> empty_cells;
     Kernel<int, Field<Constants>, Field<Blocks>, Field<ReplicaOfBlock>, Now<Motion>, Field<CellHead>,
            Field<CellNext>>
         fill_cells;
@@ -152,7 +152,7 @@ struct Kernels {
            Field<PartnerSlot>, Now<SurfaceDisplacement>, Field<ContactMemory>, Field<ListedPosition>,
            Field<ForceX>, Field<ForceY>, Field<ForceZ>, Field<Overlap>, Field<Arm>, Field<Energy>>
         measure;
-    Kernel<Field<Constants>, Field<Chosen>, Field<Partner>, Field<ForceX>, Field<ForceY>, Field<ForceZ>,
+    Kernel<Field<Constants>, Field<Portions>, Field<Partner>, Field<ForceX>, Field<ForceY>, Field<ForceZ>,
            Field<Energy>, Field<Status>, Field<Reports>>
         reduce;
 

@@ -38,6 +38,15 @@ std::vector<int> Layout::places(int replica) const {
     return place;
 }
 
+std::vector<Portion> Layout::portions(int replica) const {
+    std::vector<Portion> all;
+    for (int first = 0; first < grain_count[replica]; first += PORTION_GRAINS)
+        all.push_back({replica, first});
+    return all;
+}
+
+std::uint64_t portion_count(std::uint64_t grains) { return (grains + PORTION_GRAINS - 1) / PORTION_GRAINS; }
+
 Layout make_layout(const std::vector<Packing>& packings, int block) {
     Layout layout;
     layout.block = block;

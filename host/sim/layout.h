@@ -1,9 +1,11 @@
 // Where the grains of all replicas lie in the device's arrays: replica after replica, each padded to whole
 // blocks, neighbours in space close in memory.
 #pragma once
+#include <cstdint>
 #include <vector>
 
 #include "core/packing.h"
+#include "sim/device_types.h"
 
 namespace mcdem::inline sim {
 
@@ -17,9 +19,14 @@ struct Layout {
     int replicas() const { return static_cast<int>(grain_count.size()); }
     int grains() const { return first_grain.back(); }  ///< padded, all replicas
     int first_block(int replica) const { return first_grain[replica] / block; }
+    /// What the grains of a replica are divided into where work-groups sum them up.
+    std::vector<Portion> portions(int replica) const;
     /// Where each of the user's grains is within its replica: the inverse of order.
     std::vector<int> places(int replica) const;
 };
+
+/// Portions of so many grains.
+std::uint64_t portion_count(std::uint64_t grains);
 
 Layout make_layout(const std::vector<Packing>& packings, int block);
 

@@ -35,6 +35,7 @@ struct CellScene {
         mcdem::FieldExtents extents;
         extents.replicas = replicas.size();
         extents.blocks = layout.replica_of_block.size();
+        for (int count : layout.grain_count) extents.portions += mcdem::portion_count(count);
         extents.grains = layout.grains();
         extents.cells = cell_head.size();
         extents.slots = kernels.slots;
@@ -47,9 +48,12 @@ struct CellScene {
         std::vector<int> blocks;
         for (int r : chosen)
             for (int b = layout.first_block(r); b < layout.first_block(r + 1); ++b) blocks.push_back(b);
-        fields.rebuilt.write(chosen.data(), 0, chosen.size() * sizeof(int));
+        std::vector<mcdem::Portion> portions;
+        for (int r : chosen)
+            for (const mcdem::Portion& portion : layout.portions(r)) portions.push_back(portion);
+        fields.rebuilt.write(portions.data(), 0, portions.size() * sizeof(mcdem::Portion));
         fields.rebuilt_blocks.write(blocks.data(), 0, blocks.size() * sizeof(int));
-        program.empty_cells(chosen.size(), fields.replicas, fields.rebuilt, fields.cell_head);
+        program.empty_cells(portions.size(), fields.replicas, fields.rebuilt, fields.cell_head);
         program.fill_cells(blocks.size(), static_cast<int>(blocks.size()), fields.replicas,
                            fields.rebuilt_blocks, fields.replica_of_block, fields.motion.now(0),
                            fields.cell_head, fields.cell_next);
@@ -96,12 +100,13 @@ void expect_cells(const CellScene& scene, int r) {
 
 TEST(CellList, HoldsEveryGrainOnceInItsCell) {
     std::vector<Start> starts;
-    for (int count : {1, 63, 64, 65, 1000}) starts.push_back(jittered_lattice(test_replica(), count, count));
+    for (int count : {1, 63, 64, 65, 4096, 9000})
+        starts.push_back(jittered_lattice(test_replica(), count, count));
     starts[1].packing.position[5].x() = -0.001;  // outside the box: the nearest cell
     starts[1].packing.position[6].z() = 0.5;
     CellScene scene(starts);
-    scene.fill({0, 1, 2, 3, 4});
-    for (int r = 0; r < 5; ++r) expect_cells(scene, r);
+    scene.fill({0, 1, 2, 3, 4, 5});
+    for (int r = 0; r < 6; ++r) expect_cells(scene, r);
 }
 
 TEST(CellList, LeavesOtherReplicasAlone) {

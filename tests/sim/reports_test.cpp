@@ -1,0 +1,70 @@
+// Reports of replicas that several work-groups sum up, against sums over the state that is read back.
+#include <cmath>
+
+#include "reference/test_scene.h"
+
+namespace reference {
+namespace {
+
+constexpr int grains = 2 * PORTION_GRAINS + 808;
+
+struct Sums {
+    std::array<Vec3, mcdem::wall_count> wall_force = mcdem::no_wall_forces();
+    double deepest = 0, kinetic = 0;
+};
+
+Sums sums_of(const Start& start, const mcdem::ReplicaState& state) {
+    Sums sums;
+    for (const auto& contact : state.contacts) {
+        double radii = start.packing.diameter[contact.grain] / 2;
+        if (mcdem::is_wall(contact.partner)) {
+            for (int w = 0; w < mcdem::wall_count; ++w)
+                if (contact.partner == mcdem::wall_partner(static_cast<mcdem::Wall>(w)))
+                    sums.wall_force[w] -= contact.force;
+        } else {
+            radii += start.packing.diameter[contact.partner] / 2;
+        }
+        sums.deepest = std::max(sums.deepest, contact.overlap / radii);
+    }
+    for (std::size_t i = 0; i < state.velocity.size(); ++i) {
+        const double radius = start.packing.diameter[i] / 2;
+        const double mass = start.replica.grains.density * 4 / 3 * M_PI * std::pow(radius, 3);
+        sums.kinetic += mass / 2 *
+                        (state.velocity[i].squaredNorm() +
+                         0.4 * radius * radius * state.angular_velocity[i].squaredNorm());
+    }
+    return sums;
+}
+
+TEST(Reports, OfManyPortionsAreTheirSums) {
+    const std::vector<Start> starts{jittered_lattice(test_replica(), 65, 1),
+                                    jittered_lattice(test_replica(), grains, 2)};
+    Batch batch(build(Precision::single_precision), starts);
+    const auto results = batch.advance(20);
+    for (int r = 0; r < 2; ++r) {
+        const Sums sums = sums_of(starts[r], batch.engine().state(r));
+        EXPECT_EQ(results[r].status, 0);
+        EXPECT_NEAR(results[r].deepest_overlap, sums.deepest, 1e-5 * sums.deepest);
+        EXPECT_NEAR(results[r].kinetic_energy, sums.kinetic, 1e-5 * sums.kinetic);
+        double largest = 0;
+        for (const Vec3& force : sums.wall_force) largest = std::max(largest, force.norm());
+        EXPECT_GT(largest, 0);
+        for (int w = 0; w < mcdem::wall_count; ++w)
+            EXPECT_LT((results[r].wall_force[w] - sums.wall_force[w]).norm(), 1e-5 * largest) << "wall " << w;
+    }
+}
+
+TEST(Reports, NameAGrainOfTheLastPortion) {
+    Start start = jittered_lattice(test_replica(), grains, 2);
+    int highest = 0;  // last along the curve on which grains lie in memory
+    for (int i = 0; i < grains; ++i)
+        if (start.packing.position[i].sum() > start.packing.position[highest].sum()) highest = i;
+    start.packing.position[highest].z() = 2 * start.replica.plate.start;
+    Batch batch(build(Precision::single_precision), start);
+    const auto result = batch.engine().advance({{1, start.replica.plate.start, 0, 0}}).front();
+    EXPECT_NE(result.status & STATUS_LOST, 0);
+    EXPECT_EQ(result.failed_grain, highest);
+}
+
+}  // namespace
+}  // namespace reference
