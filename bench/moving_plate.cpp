@@ -18,7 +18,7 @@ constexpr double position_error = 1e-4;  // [m], of the experiment
 constexpr int relax_steps = 60;
 constexpr double relax_drag = 100;  // [1/s]
 /// Six contacts a grain, give or take what the models' surfaces move.
-constexpr double least_contacts = 5, most_contacts = 8;
+constexpr double min_contacts = 5, max_contacts = 8;
 /// Of the top force, float against double, after a round.
 constexpr double precision_tolerance = 1e-3;
 
@@ -103,8 +103,8 @@ double MovingPlate::bytes_per_grain() const {
 void check_before_timing(Device& device, MovingPlate& subject, const std::filesystem::path& cache) {
     subject.round();
     const double z = subject.coordination_number();
-    if (!(z > least_contacts && z < most_contacts))
-        throw RunError(fmt::format("Z must be between {} and {}, got {}", least_contacts, most_contacts, z));
+    if (!(z > min_contacts && z < max_contacts))
+        throw RunError(fmt::format("Z must be between {} and {}, got {}", min_contacts, max_contacts, z));
     if (!device.info().double_precision) return;
     StepCase small = subject.what();
     small.grains = 514;

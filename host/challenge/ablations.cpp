@@ -117,7 +117,7 @@ std::span<const SimplerMethod> simpler_methods() { return method_table; }
 
 Findings ablated_findings(Evidence evidence, const Ablation& ablation) try {
     ablation.change(evidence);
-    return Draft(evidence, Limits{}).findings();
+    return DiagnosisBuilder(evidence, Limits{}).findings();
 } catch (const InputError&) {
     return {};
 }

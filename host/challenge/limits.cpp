@@ -27,7 +27,7 @@ const std::vector<Choice> choices{
     {"right_above",  &Limits::right_above,  {0.9, 0.94, 0.97, 0.99}},
 };
 // clang-format on
-constexpr int most_rounds = 5;
+constexpr int max_rounds = 5;
 
 double above(double value, double bar) { return std::max(0.0, value - bar); }
 double below(const Share& share, double bar) { return share.of > 0 ? std::max(0.0, bar - share.value()) : 0; }
@@ -54,7 +54,7 @@ Merits merits_with(std::span<const LimitCase> cases, const Limits& limits) {
 Limits choose_limits(std::span<const LimitCase> cases) {
     Limits best;
     double highest = objective(merits_with(cases, best));
-    for (int round = 0; round < most_rounds; ++round) {
+    for (int round = 0; round < max_rounds; ++round) {
         const double before = highest;
         for (const Choice& choice : choices)
             for (const double value : choice.values) {

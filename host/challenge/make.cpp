@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double weaker = 0.8;  ///< amplitudes of a reality that ran away, from one try to the next
-constexpr int most_tries = 10;
+constexpr int max_tries = 10;
 constexpr double part_of_tries = 0.3;  ///< of the progress: loading alone, and not all cases
 
 using Cases = std::vector<const ChallengeCase*>;
@@ -129,7 +129,7 @@ private:
                 for (std::size_t k = 0; k < batch.size(); ++k)
                     if (recordings[k].failure) failed.push_back(batch[k]);
             });
-            if (!failed.empty() && tries == most_tries)
+            if (!failed.empty() && tries == max_tries)
                 throw RunError(fmt::format(
                     "{} realities cannot be simulated even with weak effects; compress less", failed.size()));
             for (const ChallengeCase* c : failed)

@@ -20,7 +20,7 @@ constexpr double time_step_factor = 0.7;
 constexpr double restitution_factor = 0.95;
 constexpr double start_jitter = 0.02;  ///< over the mean diameter: packings of one seed are not quite alike
 
-constexpr std::size_t most_grains_at_once = 16'384;  ///< a batch is what an interruption may lose
+constexpr std::size_t max_grains_at_once = 16'384;  ///< a batch is what an interruption may lose
 
 GeneratedPacking generated(const Scene& scene) {
     std::vector<std::string> problems;
@@ -59,7 +59,7 @@ void Realities::make_packings(const std::vector<std::uint64_t>& seeds,
 }
 
 std::size_t Realities::at_once() const {
-    return std::max<std::size_t>(1, most_grains_at_once / packings_.front().size());
+    return std::max<std::size_t>(1, max_grains_at_once / packings_.front().size());
 }
 
 Model Realities::reality_of(const ChallengeCase& c) const {

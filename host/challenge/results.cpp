@@ -20,9 +20,10 @@ void read_diagnosis(const json& diagnosis, CaseResult& result) {
     for (const json& limit : diagnosis.at("detection_limits"))
         result.detection_limits[limit.at("effect")] =
             limit.at("minimum_amplitude").is_null() ? INFINITY : limit.at("minimum_amplitude").get<double>();
-    const json& shrink = diagnosis.at("shrink");
-    if (shrink.is_null() || shrink.at("confirmed").is_null()) return;
-    result.shrink = {shrink.at("fraction"), shrink.at("interval"), shrink.at("confirmed")};
+    const json& gap_reduction = diagnosis.at("shrink");
+    if (gap_reduction.is_null() || gap_reduction.at("confirmed").is_null()) return;
+    result.gap_reduction = {gap_reduction.at("fraction"), gap_reduction.at("interval"),
+                            gap_reduction.at("confirmed")};
 }
 
 CaseResult read_case(const fs::path& folder, const OpenCase& open_case) {

@@ -10,7 +10,7 @@
 namespace mcdem::inline challenge {
 
 /// What was said about the gap on held-out data, and what real runs said of it.
-struct PredictedShrink {
+struct PredictedReduction {
     double fraction = 0;
     std::array<double, 2> interval{0, 0};
     double confirmed = 0;
@@ -19,8 +19,8 @@ struct PredictedShrink {
 struct CaseResult {
     std::string problem;  ///< why it was not diagnosed, empty where it was
     Findings findings;
-    std::map<std::string, double> detection_limits;  ///< smallest amplitude by effect
-    std::optional<PredictedShrink> shrink;           ///< where there were confirming runs
+    std::map<std::string, double> detection_limits;   ///< smallest amplitude by effect
+    std::optional<PredictedReduction> gap_reduction;  ///< where there were confirming runs
 };
 
 struct ChallengeResults {

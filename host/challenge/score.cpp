@@ -27,14 +27,15 @@ double median(std::vector<double> values) {
     return values.empty() ? 0 : values.size() % 2 ? values[half] : 0.5 * (values[half - 1] + values[half]);
 }
 
-ShrinkScore score_shrink(const std::vector<CaseResult>& results) {
-    ShrinkScore score;
+GapReductionScore score_gap_reduction(const std::vector<CaseResult>& results) {
+    GapReductionScore score;
     std::vector<double> errors;
     for (const CaseResult& result : results) {
-        if (!result.shrink) continue;
-        const PredictedShrink& shrink = *result.shrink;
-        errors.push_back(std::abs(shrink.fraction - shrink.confirmed));
-        score.covered.add(shrink.interval[0] <= shrink.confirmed && shrink.confirmed <= shrink.interval[1]);
+        if (!result.gap_reduction) continue;
+        const PredictedReduction& gap_reduction = *result.gap_reduction;
+        errors.push_back(std::abs(gap_reduction.fraction - gap_reduction.confirmed));
+        score.covered.add(gap_reduction.interval[0] <= gap_reduction.confirmed &&
+                          gap_reduction.confirmed <= gap_reduction.interval[1]);
     }
     score.cases = static_cast<int>(errors.size());
     score.median_error = median(errors);
@@ -160,7 +161,7 @@ ChallengeScore score_challenge(const Challenge& truth, const OpenChallenge& open
             scoring.with_limits(ablations()[a].name, ablations()[a].meaning, others.findings[a]));
     for (std::size_t a = 0; a < others.answers.size(); ++a)
         score.arms.push_back(scoring.without_limits(simpler_methods()[a], others.answers[a]));
-    score.shrink = score_shrink(results.cases);
+    score.gap_reduction = score_gap_reduction(results.cases);
     std::vector<Answer> answers;
     for (const Findings& findings : whole) answers.push_back(answer_of(findings, score.arms.front().limits));
     score.scored = half_of(scoring.scored(answers), false);

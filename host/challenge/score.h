@@ -16,8 +16,8 @@ struct ArmScore {
     Merits first, second;  ///< on the half that limits were set on, and on the other
 };
 
-/// Predicted against realised shrink, over all cases with confirming runs: no limit enters them.
-struct ShrinkScore {
+/// Predicted against realised gap_reduction, over all cases with confirming runs: no limit enters them.
+struct GapReductionScore {
     int cases = 0;
     double median_error = 0;  ///< median |predicted - confirmed|
     Share covered;            ///< the 90 % interval holds what was confirmed
@@ -27,7 +27,7 @@ struct ChallengeScore {
     int cases = 0;
     std::vector<std::string> not_diagnosed;  ///< folder and reason
     std::vector<ArmScore> arms;              ///< the whole method first
-    ShrinkScore shrink;
+    GapReductionScore gap_reduction;
     std::vector<ScoredCase> scored;  ///< second half, by the whole method
 };
 

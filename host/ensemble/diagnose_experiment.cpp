@@ -63,16 +63,16 @@ std::vector<std::string> differing_keys(const Replica& before, const Replica& af
 }
 
 /// Real runs of a proposal, and again with what they taught.
-constexpr int most_rounds = 3;
+constexpr int max_rounds = 3;
 
 /// By how many times a setting of the numerics is advised to be refined at most.
-constexpr double most_refinement = 64;
+constexpr double max_refinement = 64;
 
 /// The work of one diagnosis, in the order of its steps.
-class Diagnosing {
+class DiagnosisRunner {
 public:
-    Diagnosing(Device& device, const Scene& scene, const Experiment& experiment,
-               const DiagnoseOptions& options)
+    DiagnosisRunner(Device& device, const Scene& scene, const Experiment& experiment,
+                    const DiagnoseOptions& options)
         : device_(device),
           experiment_(experiment),
           options_(options),
@@ -85,15 +85,15 @@ public:
 
     Diagnosis all() {
         Evidence evidence = gather();
-        auto draft = std::make_unique<Draft>(confirmed(evidence));
+        auto draft = std::make_unique<DiagnosisBuilder>(confirmed(evidence));
         if (draft->decision().verdict == Verdict::not_converged && options_.refine > 1) {
             const Refinement refinement = refinement_of(*draft, options_.refine);
             draft.reset();
             refine(evidence, refinement);
-            draft = std::make_unique<Draft>(confirmed(evidence));
+            draft = std::make_unique<DiagnosisBuilder>(confirmed(evidence));
         }
         if (draft->decision().verdict == Verdict::not_converged)
-            refinements_.push_back(refinement_of(*draft, most_refinement));
+            refinements_.push_back(refinement_of(*draft, max_refinement));
         options_.on_evidence(evidence);
         options_.on_findings(draft->findings());
         Diagnosis diagnosis = draft->diagnosis();
@@ -101,8 +101,8 @@ public:
         diagnosis.refinements = refinements_;
         if (auto first = change_of_the_scene(diagnosis))
             diagnosis.next.insert(diagnosis.next.begin(), *first);
-        if (diagnosis.shrink && options_.paper_metrics && options_.confirmations > 0)
-            add_paper_metrics(*diagnosis.shrink, experiment_.recording, before_after(*draft));
+        if (diagnosis.gap_reduction && options_.paper_metrics && options_.confirmations > 0)
+            add_paper_metrics(*diagnosis.gap_reduction, experiment_.recording, before_after(*draft));
         return diagnosis;
     }
 
@@ -146,13 +146,13 @@ private:
         return evidence;
     }
 
-    Draft confirmed(const Evidence& evidence) {
-        Draft draft(evidence, options_.limits);
+    DiagnosisBuilder confirmed(const Evidence& evidence) {
+        DiagnosisBuilder draft(evidence, options_.limits);
         if (options_.confirmations > 0 && draft.decision().verdict != Verdict::no_gap) confirm(draft);
         return draft;
     }
 
-    Refinement refinement_of(const Draft& draft, double most) {
+    Refinement refinement_of(const DiagnosisBuilder& draft, double most) {
         const std::size_t candidate = draft.decision().group.front();
         const Effect& effect = *find_effect(draft.findings().names[candidate]);
         Model model = model_;
@@ -233,10 +233,10 @@ private:
 
     /// Real runs of every proposal, again where they miss; then of the one decided on with what the fitted
     /// part of the data says of it.
-    void confirm(Draft& draft) {
+    void confirm(DiagnosisBuilder& draft) {
         std::vector<std::size_t> tried(draft.findings().proposals.size());
         std::iota(tried.begin(), tried.end(), std::size_t{0});
-        for (int round = 0; round < most_rounds && !tried.empty(); ++round) {
+        for (int round = 0; round < max_rounds && !tried.empty(); ++round) {
             run(draft, tried);
             std::erase_if(tried, [&](std::size_t k) { return !draft.refit(k); });
         }
@@ -248,7 +248,7 @@ private:
         }
     }
 
-    void run(Draft& draft, const std::vector<std::size_t>& proposals) {
+    void run(DiagnosisBuilder& draft, const std::vector<std::size_t>& proposals) {
         std::vector<Trial> trials;
         for (const std::size_t k : proposals)
             append(trials, trials_of(draft, draft.findings().proposals[k], draft.whole_fit(k)));
@@ -259,7 +259,7 @@ private:
                                                         options_.confirmations));
     }
 
-    BeforeAfter before_after(const Draft& draft) {
+    BeforeAfter before_after(const DiagnosisBuilder& draft) {
         LibraryPlan plan = plan_;
         plan.replicates = std::min(options_.replicates, options_.confirmations);
         return {
@@ -279,13 +279,14 @@ private:
         all.insert(all.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
     }
 
-    std::vector<Trial> trials_of(const Draft& draft, const Proposal& proposal, const PartialFit& fit) const {
+    std::vector<Trial> trials_of(const DiagnosisBuilder& draft, const Proposal& proposal,
+                                 const PartialFit& fit) const {
         LibraryPlan plan = plan_;
         plan.replicates = options_.confirmations;
         return baseline_trials(fitted(draft.data(), proposal, fit), plan);
     }
 
-    std::vector<Trial> held_out_trials(const Draft& draft, std::size_t proposal) const {
+    std::vector<Trial> held_out_trials(const DiagnosisBuilder& draft, std::size_t proposal) const {
         return trials_of(draft, draft.findings().proposals[proposal], draft.part_fit(proposal));
     }
 
@@ -364,7 +365,7 @@ Diagnosis diagnose_experiment(Device& device, const Scene& scene, const Experime
                               const DiagnoseOptions& options) {
     if (const auto needed = needed_to_diagnose(experiment); !needed.empty()) throw InputError(needed);
     const auto begin = std::chrono::steady_clock::now();
-    Diagnosis diagnosis = Diagnosing(device, scene, experiment, options).all();
+    Diagnosis diagnosis = DiagnosisRunner(device, scene, experiment, options).all();
     diagnosis.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     diagnosis.provenance = {{"scene", scene.name},
                             {"experiment", experiment.name},

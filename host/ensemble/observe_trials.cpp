@@ -16,8 +16,8 @@
 namespace mcdem::inline ensemble {
 namespace {
 
-constexpr std::size_t most_grains_at_once = 32'768;
-constexpr std::size_t most_grains_of_a_part = 8'192;  // less, so that every process gets some
+constexpr std::size_t max_grains_at_once = 32'768;
+constexpr std::size_t max_grains_of_a_part = 8'192;  // less, so that every process gets some
 
 /// What the simulation of a trial is made of.
 std::string simulation_name(const std::string& device, const Question& question, const Trial& trial) {
@@ -84,11 +84,11 @@ std::vector<Job> jobs_of(const std::vector<std::size_t>& trials,
 
 /// Jobs that a device does at a time.
 std::vector<std::vector<Job>> batches_of(const std::vector<Job>& jobs, const std::vector<Trial>& trials,
-                                         std::size_t most_grains) {
+                                         std::size_t max_grains) {
     std::vector<std::vector<Job>> batches;
-    std::size_t grains = most_grains;
+    std::size_t grains = max_grains;
     for (const Job& job : jobs) {
-        if (grains >= most_grains) {
+        if (grains >= max_grains) {
             batches.emplace_back();
             grains = 0;
         }
@@ -146,7 +146,7 @@ private:
     void simulate_missing() {
         const std::vector<Job> jobs = jobs_of(take_from_store(numbers_of(trials_)), simulations_);
         double done = 0;
-        for (const auto& batch : batches_of(jobs, trials_, most_grains_at_once)) {
+        for (const auto& batch : batches_of(jobs, trials_, max_grains_at_once)) {
             const double part = static_cast<double>(batch.size()) / static_cast<double>(jobs.size());
             run(batch, done, done + part);
             done += part;
@@ -227,7 +227,7 @@ std::vector<std::vector<Trial>> parts_of_trials(const Question& question, const 
     for (const Trial& trial : trials) simulations.push_back(simulation_name("", question, trial));
     std::vector<std::vector<Trial>> parts;
     for (const auto& batch :
-         batches_of(jobs_of(numbers_of(trials), simulations), trials, most_grains_of_a_part)) {
+         batches_of(jobs_of(numbers_of(trials), simulations), trials, max_grains_of_a_part)) {
         parts.emplace_back();
         for (const Job& job : batch)
             for (const std::size_t t : job.trials) parts.back().push_back(trials[t]);

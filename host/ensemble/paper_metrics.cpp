@@ -5,21 +5,22 @@
 namespace mcdem::inline ensemble {
 namespace {
 
-void add(Shrink& shrink, const char* metric, const Estimate& before, const Estimate& after) {
-    if (before.available() && after.available()) shrink.metrics[metric] = {before.value, after.value};
+void add(GapReduction& gap_reduction, const char* metric, const Estimate& before, const Estimate& after) {
+    if (before.available() && after.available()) gap_reduction.metrics[metric] = {before.value, after.value};
 }
 
 }  // namespace
 
-void add_paper_metrics(Shrink& shrink, const Recording& experiment, const BeforeAfter& simulated) {
+void add_paper_metrics(GapReduction& gap_reduction, const Recording& experiment,
+                       const BeforeAfter& simulated) {
     const Replicas reference{&experiment};
     const Setting settings[] = {{"before", replicas_of(simulated.before)},
                                 {"after", replicas_of(simulated.after)}};
     const Comparison before = compare(settings[0], reference), after = compare(settings[1], reference);
-    add(shrink, "Rtop", before.Rtop, after.Rtop);
-    add(shrink, "errf", before.errf, after.errf);
-    add(shrink, "errZ", before.errZ, after.errZ);
-    add(shrink, "bhat", before.bhat, after.bhat);
+    add(gap_reduction, "Rtop", before.Rtop, after.Rtop);
+    add(gap_reduction, "errf", before.errf, after.errf);
+    add(gap_reduction, "errZ", before.errZ, after.errZ);
+    add(gap_reduction, "bhat", before.bhat, after.bhat);
 
     const LevelOptions options;
     const Levels measured = group_levels(reference, options);
@@ -33,7 +34,7 @@ void add_paper_metrics(Shrink& shrink, const Recording& experiment, const Before
     for (std::size_t level = 0; level < measured.size(); ++level) {
         const auto i = static_cast<Eigen::Index>(level);
         if (measured[level].phase == Phase::load)
-            shrink.top_force.push_back(
+            gap_reduction.top_force.push_back(
                 {measured[level].displacement, experiment_force[i], forces[0][i], forces[1][i]});
     }
 }

@@ -12,7 +12,8 @@ struct BeforeAfter {
     std::vector<Recording> before, after;  ///< replicates, as measured
 };
 
-/// Fills in Shrink::metrics (Rtop, errf [N], errZ, bhat) and Shrink::top_force.
-void add_paper_metrics(Shrink& shrink, const Recording& experiment, const BeforeAfter& simulated);
+/// Fills in GapReduction::metrics (Rtop, errf [N], errZ, bhat) and GapReduction::top_force.
+void add_paper_metrics(GapReduction& gap_reduction, const Recording& experiment,
+                       const BeforeAfter& simulated);
 
 }  // namespace mcdem::ensemble

@@ -20,17 +20,17 @@ double seconds_since(Clock::time_point start) {
 }
 
 /// Scans held in memory at most; past it they go to the disk, whatever the clock says.
-constexpr std::size_t most_bytes_held = std::size_t{256} << 20;
+constexpr std::size_t max_bytes_held = std::size_t{256} << 20;
 
 std::size_t bytes_of(const Scan& scan) {
     return sizeof(Scan) + scan.position.size() * sizeof(Vec3) + scan.contacts.size() * sizeof(Contact);
 }
 
 /// A run under way: the simulation, its folder, and what was recorded since the last segment.
-class RunUnderWay {
+class RunSession {
 public:
-    RunUnderWay(Device& device, const Scene& scene, const std::vector<Packing>& packings,
-                const RunOptions& options, ResultFolder folder)
+    RunSession(Device& device, const Scene& scene, const std::vector<Packing>& packings,
+               const RunOptions& options, ResultFolder folder)
         : scene_(scene),
           options_(options),
           identity_(identity_of(device, scene, options.program, packings)),
@@ -103,7 +103,7 @@ private:
     bool checkpoint_due() const {
         const double rest = checkpoint_seconds_ > 1 ? 20 * checkpoint_seconds_ : 0;
         const double interval = std::max(60 * scene_.output.checkpoint_minutes, rest);
-        return seconds_since(last_checkpoint_) >= interval || bytes_held_ >= most_bytes_held;
+        return seconds_since(last_checkpoint_) >= interval || bytes_held_ >= max_bytes_held;
     }
 
     /// The segment first, then the checkpoint that names it: a crash in between leaves a segment too many,
@@ -162,7 +162,7 @@ RunSummary run_scene(Device& device, const Scene& scene, const RunOptions& optio
     }
     const auto packings = make_packings(scene, options.stop_wanted);
     if (options.stop_wanted()) return {RunEnd::interrupted};
-    RunUnderWay run(device, scene, packings, options, std::move(folder));
+    RunSession run(device, scene, packings, options, std::move(folder));
     if (options.start == Start::resume) run.resume();
     const auto summary = run.go_on();
     if (summary.end == RunEnd::done) close_folder(options.folder);

@@ -12,10 +12,10 @@ namespace {
 
 constexpr double gravity = 9.81;       // [m/s2]
 constexpr double near_wall = 1.25;     // centres nearer than this many radii may touch a wall
-constexpr double least_error = 0.02;   // of a force, where none is stated
+constexpr double min_error = 0.02;     // of a force, where none is stated
 constexpr double unseen_contacts = 2;  // of a grain, each up to the threshold
-constexpr double most_unbalanced = 3;  // times what the errors explain
-constexpr std::size_t fewest_grains = 5;
+constexpr double max_unbalanced = 3;   // times what the errors explain
+constexpr std::size_t min_grains = 5;
 
 struct Load {
     Vec3 sum = Vec3::Zero();  ///< of its contacts [N]
@@ -54,7 +54,7 @@ struct Imbalance {
 Imbalance imbalance(const Experiment& experiment, const Scan& scan) {
     const Recording& recording = experiment.recording;
     const double specific_weight = gravity * material(experiment, "grains.excess_density").value_or(0);
-    const double force_error = std::max(experiment.measurement.force_error, least_error);
+    const double force_error = std::max(experiment.measurement.force_error, min_error);
     const double unseen = unseen_contacts * std::pow(experiment.measurement.force_threshold, 2);
     const auto all = loads(recording, scan);
     Imbalance found;
@@ -78,9 +78,9 @@ void check_balance(const Experiment& experiment, Findings& findings) {
     for (const Scan& scan : recording.scans) {
         if (scan.position.empty() || scan.contacts.empty()) continue;
         const Imbalance found = imbalance(experiment, scan);
-        if (found.relative.size() < fewest_grains) continue;
+        if (found.relative.size() < min_grains) continue;
         typical.push_back(median(found.relative));
-        if (const double errors = median(found.in_errors); errors > most_unbalanced)
+        if (const double errors = median(found.in_errors); errors > max_unbalanced)
             unbalanced.add(scan, [&] {
                 return fmt::format("{:.2g} times what the errors explain, {:.0f} % of the forces", errors,
                                    100 * typical.back());

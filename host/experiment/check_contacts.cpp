@@ -10,14 +10,14 @@
 namespace mcdem::inline experiment {
 namespace {
 
-constexpr double most_apart = 0.15;   // gap over the mean diameter: as far as simulations look for contacts
-constexpr double most_pulling = 0.2;  // of the contacts that are not weak
-constexpr double gauge_range = 1.5;   // plate contacts over the gauge's force, either way
-constexpr double clear_load = 4;      // over the threshold times the plate's contacts
-constexpr std::size_t fewest_pairs = 20;  // for a typical force
-constexpr double clear_overlap = 0.02;    // over R*
-constexpr double hertz_range = 5;         // force over Hertz's, either way: a modulus or unit, no effect
-constexpr double gap_in_forces = 1.5;     // weakest force over the threshold
+constexpr double max_apart = 0.15;      // gap over the mean diameter: as far as simulations look for contacts
+constexpr double max_pulling = 0.2;     // of the contacts that are not weak
+constexpr double gauge_range = 1.5;     // plate contacts over the gauge's force, either way
+constexpr double clear_load = 4;        // over the threshold times the plate's contacts
+constexpr std::size_t min_pairs = 20;   // for a typical force
+constexpr double clear_overlap = 0.02;  // over R*
+constexpr double hertz_range = 5;       // force over Hertz's, either way: a modulus or unit, no effect
+constexpr double gap_in_forces = 1.5;   // weakest force over the threshold
 constexpr std::size_t many_contacts = 1000;
 
 /// Distance of the surfaces [m].
@@ -43,7 +43,7 @@ void check_places(const Recording& recording, Findings& findings) {
         if (scan.position.empty()) continue;
         for (const Contact& contact : scan.contacts) {
             const double distance = gap(recording, scan, contact);
-            if (distance > most_apart * diameter)
+            if (distance > max_apart * diameter)
                 apart.add(scan, [&] { return fmt::format("{}, {:.3g} mm", names(contact), 1e3 * distance); });
             const double away = (contact.point - at(scan.position, contact.grain)).norm();
             if (away > 1.5 * radius_of(recording, contact.grain))
@@ -80,7 +80,7 @@ void check_signs(const Recording& recording, double force_threshold, Findings& f
                 pulls.add(scan,
                           [&] { return fmt::format("{}, {:.3g} N", names(contact), contact.force.norm()); });
         }
-    if (pulls.count() > most_pulling * static_cast<double>(all))
+    if (pulls.count() > max_pulling * static_cast<double>(all))
         findings.odd(contacts_file,
                      fmt::format("of {} contacts above three thresholds many pull their grain: the "
                                  "force must be that on `grain`, by `partner`: {}",
@@ -149,7 +149,7 @@ double force_over_hertz(const Recording& recording, const Scan& scan, double mod
         radii.push_back(pairs[k].reduced_radius);
     }
     const double overlap = median(overlaps);
-    if (forces.size() < fewest_pairs || overlap < clear_overlap * median(radii)) return 1;
+    if (forces.size() < min_pairs || overlap < clear_overlap * median(radii)) return 1;
     return median(forces) /
            (4.0 / 3 * modulus / (2 * (1 - nu * nu)) * std::sqrt(median(radii)) * std::pow(overlap, 1.5));
 }

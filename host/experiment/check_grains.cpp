@@ -11,22 +11,22 @@
 namespace mcdem::inline experiment {
 namespace {
 
-constexpr double least_fraction = 0.3, most_fraction = 0.95;  // of a packing that carries load
-constexpr double most_overlap = 0.3;  // over the sum of radii; simulations lose their static solution at 0.5
-constexpr double most_jump = 0.75;    // over the diameter, beyond the plate's own way
-constexpr double most_in_wall = 0.5;  // over the radius
+constexpr double min_fraction = 0.3, max_fraction = 0.95;  // of a packing that carries load
+constexpr double max_overlap = 0.3;  // over the sum of radii; simulations lose their static solution at 0.5
+constexpr double max_jump = 0.75;    // over the diameter, beyond the plate's own way
+constexpr double max_in_wall = 0.5;  // over the radius
 
 void check_volume(const Recording& recording, Findings& findings) {
     double volume = 0;
     for (const double diameter : recording.diameter) volume += std::numbers::pi / 6 * std::pow(diameter, 3);
     const double fraction =
         volume / (recording.box.size_x * recording.box.size_y * recording.scans.front().plate_z);
-    if (fraction < least_fraction)
+    if (fraction < min_fraction)
         findings.odd(grains_file,
                      fmt::format("the grains fill {:.2g} of the box below the plate: are diameters "
                                  "radii, or grains left out?",
                                  fraction));
-    if (fraction > most_fraction)
+    if (fraction > max_fraction)
         findings.odd(grains_file,
                      fmt::format("the grains have {:.3g} times the volume of the box below the plate: "
                                  "are diameters too large, or is the box too small?",
@@ -41,7 +41,7 @@ void check_walls(const Recording& recording, Findings& findings) {
                 const double radius = radius_of(recording, i);
                 const double inside = radius - distance_to(static_cast<Wall>(wall), at(scan.position, i),
                                                            recording.box, scan.plate_z);
-                if (inside > most_in_wall * radius)
+                if (inside > max_in_wall * radius)
                     tally.add(scan, [&] {
                         return fmt::format("grain {} by {:.3g} mm in {}", i, 1e3 * inside,
                                            name(static_cast<Wall>(wall)));
@@ -61,7 +61,7 @@ void check_overlaps(const Recording& recording, Findings& findings) {
         cells.for_each_pair([&](int i, int j) {
             const double sum = radius_of(recording, i) + radius_of(recording, j);
             const double overlap = sum - (at(scan.position, i) - at(scan.position, j)).norm();
-            if (overlap > most_overlap * sum)
+            if (overlap > max_overlap * sum)
                 tally.add(scan, [&] {
                     return fmt::format("grains {} and {} by {:.3g} mm", std::min(i, j), std::max(i, j),
                                        1e3 * overlap);
@@ -70,7 +70,7 @@ void check_overlaps(const Recording& recording, Findings& findings) {
     }
     if (tally.count())
         findings.odd(grains_file, fmt::format("grains overlap by more than {} of their radii together: {}",
-                                              most_overlap, tally.text()));
+                                              max_overlap, tally.text()));
 }
 
 /// Loose grains slip by half a diameter; to a neighbour's place goes only a number.
@@ -81,7 +81,7 @@ void check_jumps(const Recording& recording, Findings& findings) {
         if (scan.position.empty()) continue;
         for (int i = 0; before && i < static_cast<int>(scan.position.size()); ++i) {
             const double jump = (at(scan.position, i) - at(before->position, i)).norm();
-            if (jump > 2 * most_jump * radius_of(recording, i) + std::abs(scan.plate_z - before->plate_z))
+            if (jump > 2 * max_jump * radius_of(recording, i) + std::abs(scan.plate_z - before->plate_z))
                 tally.add(scan, [&] {
                     return fmt::format("grain {} by {:.3g} mm since frame {}", i, 1e3 * jump, before->frame);
                 });

@@ -11,10 +11,9 @@
 namespace mcdem::inline experiment {
 namespace {
 
-constexpr double rest = 0.005;    // of the stroke: a frame 0 below that is under load
-constexpr int fewest_frames = 4;  // of a stroke
-constexpr double least_tilt =
-    1e-3;  // of forces against the line of centres, where they have tangential parts
+constexpr double rest = 0.005;     // of the stroke: a frame 0 below that is under load
+constexpr int min_frames = 4;      // of a stroke
+constexpr double min_tilt = 1e-3;  // of forces against the line of centres, where they have tangential parts
 
 void missing_frames(const Recording& recording, Findings& findings) {
     long of_phase[2] = {0, 0};
@@ -28,7 +27,7 @@ void missing_frames(const Recording& recording, Findings& findings) {
             plate_file,
             "unloading: viscoelasticity, plasticity and friction show in the loop that it closes");
     for (const Phase phase : {Phase::load, Phase::unload})
-        if (const long frames = of_phase[static_cast<int>(phase)]; frames > 0 && frames < fewest_frames)
+        if (const long frames = of_phase[static_cast<int>(phase)]; frames > 0 && frames < min_frames)
             findings.missing(
                 plate_file,
                 fmt::format("frames of {}ing, there are only {}: at which displacement a gap opens "
@@ -116,13 +115,13 @@ void missing_tangential(const Experiment& experiment, Findings& findings) {
                 between_grains.push_back(sine(
                     contact.force, at(scan.position, contact.partner) - at(scan.position, contact.grain)));
         }
-    if (median(at_walls) < least_tilt)
+    if (median(at_walls) < min_tilt)
         findings.missing(contacts_file, "tangential forces at walls: friction of walls");
     if (between_grains.empty()) return;
     // Median of the angle that errors of both ends make, with a fifth to spare.
     const double by_error =
         1.2 * 1.18 * std::numbers::sqrt2 * experiment.measurement.position_error / mean_diameter(recording);
-    if (median(between_grains) < std::max(least_tilt, by_error))
+    if (median(between_grains) < std::max(min_tilt, by_error))
         findings.missing(contacts_file,
                          "tangential forces between grains, all point along the line of centres as "
                          "well as that is known: friction, rolling resistance");

@@ -4,10 +4,10 @@
 
 namespace mcdem::inline experiment {
 namespace {
-constexpr std::size_t most_told = 20;
+constexpr std::size_t max_reported = 20;
 }
 
-bool ExperimentProblems::full() const { return first_.size() >= most_told; }
+bool ExperimentProblems::full() const { return first_.size() >= max_reported; }
 
 void ExperimentProblems::add(const std::string& where, const std::string& what) {
     if (!full()) first_.push_back(where + ": " + what);

@@ -8,7 +8,7 @@
 namespace mcdem::inline experiment {
 namespace {
 
-constexpr double most_change = 0.25;  // of a diameter between frames; measuring it again changes it less
+constexpr double max_change = 0.25;  // of a diameter between frames; measuring it again changes it less
 
 struct GrainRow {
     long grain;
@@ -79,7 +79,7 @@ private:
                 "diameter", fmt::format("diameter_m must be in metres: {} is more than the box's width of {} "
                                         "m; divide by 1000 if it is in millimetres",
                                         row.diameter, width));
-        else if (std::abs(row.diameter - first) > most_change * first)
+        else if (std::abs(row.diameter - first) > max_change * first)
             table_.problem_once(
                 "change",
                 fmt::format("grain {} must be as large as in frame 0, {} m, got {}: number the grains "

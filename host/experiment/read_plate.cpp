@@ -11,8 +11,8 @@ namespace mcdem::inline experiment {
 namespace {
 
 constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
-constexpr int most_frames = 1'000'000;  // as of a scene
-constexpr double largest_height = 20;   // plate height over the box's width; beyond it is not in metres
+constexpr int max_frames = 1'000'000;  // as of a scene
+constexpr double largest_height = 20;  // plate height over the box's width; beyond it is not in metres
 
 }  // namespace
 
@@ -36,8 +36,8 @@ void read_plate(Table& table, double youngs_modulus, Recording& recording) {
     const double largest_force = youngs_modulus * recording.box.size_x * recording.box.size_y;
     int cycle_before = 0;
     for (int row = 0; table.next(); ++row) {
-        if (row == most_frames) {
-            table.problem(fmt::format("must have at most {} frames", most_frames));
+        if (row == max_frames) {
+            table.problem(fmt::format("must have at most {} frames", max_frames));
             break;
         }
         Scan scan = unknown_scan();

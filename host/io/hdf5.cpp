@@ -13,7 +13,7 @@ constexpr hsize_t chunk_bytes = 32 * 1024;
 constexpr unsigned deflate_level = 1;  // a higher one costs five times the time for a few per cent
 // Deflate packs at most 1032:1. A table that claims more than its file can hold is damaged, and is not
 // worth the memory.
-constexpr double most_bytes_per_byte = 1100;
+constexpr double max_bytes_per_byte = 1100;
 constexpr double small_table = 1 << 20;
 constexpr const char* digests_object = "/digests";
 constexpr const char* elsewhere =
@@ -348,7 +348,7 @@ Dataset File::dataset(const std::string& object) const {
     Dataset found(std::move(id), *below_, where(object));
     double bytes = static_cast<double>(H5Tget_size(found.type()));
     for (hsize_t n : found.extent()) bytes *= static_cast<double>(n);
-    if (bytes > small_table + most_bytes_per_byte * static_cast<double>(below_->size()))
+    if (bytes > small_table + max_bytes_per_byte * static_cast<double>(below_->size()))
         fail(where(object), "claims to hold more than the file can");
     if (object != digests_object)
         if (const auto digest = digests().find(object); digest != digests().end())

@@ -7,8 +7,8 @@ namespace mcdem::inline io::h5 {
 namespace {
 
 /// Attributes are small; a larger one is damage.
-constexpr hssize_t most_numbers = 1000;
-constexpr std::size_t most_text = 1 << 20;
+constexpr hssize_t max_numbers = 1000;
+constexpr std::size_t max_text_size = 1 << 20;
 
 Handle scalar() { return {H5Screate(H5S_SCALAR), H5Sclose}; }
 
@@ -84,7 +84,7 @@ std::string File::text_attribute(const std::string& object, const std::string& n
     const Handle found = attribute(object, name);
     const Handle type(H5Aget_type(found), H5Tclose), space(H5Aget_space(found), H5Sclose);
     const std::size_t size = H5Tget_size(type);
-    if (!is_fixed_text(type) || H5Sget_simple_extent_npoints(space) != 1 || size > most_text)
+    if (!is_fixed_text(type) || H5Sget_simple_extent_npoints(space) != 1 || size > max_text_size)
         fail(where(object), "attribute '" + name + "' must be a text");
     std::string text(size, '\0');
     if (H5Aread(found, memory_text(type), text.data()) < 0)
@@ -96,7 +96,7 @@ std::vector<double> File::numbers_attribute(const std::string& object, const std
     const Handle found = attribute(object, name);
     const Handle space(H5Aget_space(found), H5Sclose);
     const hssize_t count = H5Sget_simple_extent_npoints(space);
-    if (count < 0 || count > most_numbers) fail(where(object), "attribute '" + name + "' is too long");
+    if (count < 0 || count > max_numbers) fail(where(object), "attribute '" + name + "' is too long");
     std::vector<double> values(static_cast<std::size_t>(count));
     if (count > 0 && H5Aread(found, number_type<double>(), values.data()) < 0)
         fail(where(object), "attribute '" + name + "' must hold numbers");

@@ -42,13 +42,13 @@ public:
     std::size_t size() const { return files_.size(); }
     template <class Use>
     void with(std::size_t index, Use use) {
-        if (files_.size() > most_open) return use(ResultFile(files_[index]));
+        if (files_.size() > max_open_files) return use(ResultFile(files_[index]));
         if (!open_[index]) open_[index].emplace(files_[index]);
         use(*open_[index]);
     }
 
 private:
-    static constexpr std::size_t most_open = 200;
+    static constexpr std::size_t max_open_files = 200;
     std::vector<fs::path> files_;
     std::vector<std::optional<ResultFile>> open_;
 };

@@ -63,14 +63,14 @@ bool has_moved(const std::filesystem::path& file_or_folder, const std::vector<st
 /// to file: what is not found then is looked for again.
 template <class Read>
 auto read_settled(const std::filesystem::path& file_or_folder, Read read) {
-    constexpr int most_tries = 20;
+    constexpr int max_tries = 20;
     std::vector<std::filesystem::path> files;
     for (int tries = 1;; ++tries) try {
             files.clear();
             files = result_files(file_or_folder);
             return read(files);
         } catch (const InputError&) {
-            if (tries == most_tries || !has_moved(file_or_folder, files)) throw;
+            if (tries == max_tries || !has_moved(file_or_folder, files)) throw;
         }
 }
 
@@ -100,7 +100,7 @@ public:
 
     const ResultFile& open(std::size_t index) {
         if (open_[index]) return *open_[index];
-        if (paths_.size() > most_open)
+        if (paths_.size() > max_open_files)
             for (auto& file : open_) file.reset();
         return open_[index].emplace(paths_[index]);
     }
@@ -112,7 +112,7 @@ public:
     }
 
 private:
-    static constexpr std::size_t most_open = 100;
+    static constexpr std::size_t max_open_files = 100;
     std::vector<std::filesystem::path> paths_;
     std::vector<std::optional<ResultFile>> open_;
     std::vector<std::set<std::size_t>> looked_at_;  ///< by file: replicas

@@ -13,7 +13,7 @@
 namespace mcdem::inline scene {
 namespace {
 
-constexpr std::size_t most_problems = 10;
+constexpr std::size_t max_problems = 10;
 
 double median(std::vector<double> values) {
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -56,15 +56,15 @@ std::vector<std::string> packing_problems(const Packing& packing, const Box& box
         const Vec3& p = packing.position[i];
         const bool inside = p.x() >= 0 && p.x() <= box.size_x && p.y() >= 0 && p.y() <= box.size_y &&
                             p.z() >= 0 && p.z() <= plate.height(p);
-        if (inside || ++outside > most_problems) continue;
+        if (inside || ++outside > max_problems) continue;
         problems.push_back(
             fmt::format("{}: the centre of grain {} must be in the box of {} x {} m below the plate at {} m, "
                         "got {}, {}, {}",
                         source, i, box.size_x, box.size_y, plate.height(p), p.x(), p.y(), p.z()));
     }
-    if (outside > most_problems)
+    if (outside > max_problems)
         problems.push_back(
-            fmt::format("{}: .. and {} more grains out of the box", source, outside - most_problems));
+            fmt::format("{}: .. and {} more grains out of the box", source, outside - max_problems));
     return problems;
 }
 

@@ -14,7 +14,7 @@ double largest(const std::vector<double>& values) { return *std::max_element(val
 /// FIRE (Bitzek et al. 2006) with its published constants. Stiffness and mass are 1, so times are in units
 /// of their ratio; 0.4 is below the stability limit of a grain with a dozen contacts.
 struct Fire {
-    static constexpr double longest_step = 0.4, start_step = 0.1, start_mixing = 0.1;
+    static constexpr double max_time_step = 0.4, start_step = 0.1, start_mixing = 0.1;
     static constexpr double faster = 1.1, slower = 0.5, less_mixing = 0.99;
     static constexpr int patience = 5;
 
@@ -30,7 +30,7 @@ struct Fire {
             return true;
         }
         if (++downhill > patience) {
-            time_step = std::min(time_step * faster, longest_step);
+            time_step = std::min(time_step * faster, max_time_step);
             mixing *= less_mixing;
         }
         return false;

@@ -11,7 +11,7 @@
 namespace mcdem::inline scene {
 namespace {
 
-constexpr std::size_t most_problems = 20;
+constexpr std::size_t max_problems = 20;
 
 template <class Number>
 std::optional<Number> whole_word(std::string_view word) {
@@ -45,7 +45,7 @@ void FileProblems::add_at(const std::string& where, const std::string& what) {
     if (!full()) problems_.push_back(where + ": " + what);
 }
 
-bool FileProblems::full() const { return problems_.size() >= most_problems; }
+bool FileProblems::full() const { return problems_.size() >= max_problems; }
 
 void FileProblems::report() const {
     if (!empty()) throw InputError(problems_);

@@ -24,7 +24,7 @@ public:
         for (const Entry& entry : document_.entries()) read_entry(entry);
         check_packing_source();
         check_size(1);
-        if (problems_.empty() || combination_count(variations_) <= most_replicas) check_combinations();
+        if (problems_.empty() || combination_count(variations_) <= max_replicas) check_combinations();
         problems_.report();
         Scene scene = settings_.run;
         scene.text = document_.text();
@@ -124,14 +124,14 @@ private:
     void check_size(double grains) {
         const double replicas = combination_count(variations_) * settings_.copies;
         const Place place = document_.place_of("batch.replicas");
-        if (replicas > most_replicas)
+        if (replicas > max_replicas)
             problems_.add(place,
                           fmt::format("batch.replicas must leave at most {:.9g} replicas in all, got {:.9g}",
-                                      most_replicas, replicas));
-        else if (replicas * grains > most_grains)
+                                      max_replicas, replicas));
+        else if (replicas * grains > max_grains)
             problems_.add(place, fmt::format("batch.replicas must leave at most {:.9g} grains in all, got "
                                              "{:.9g} replicas of up to {:.9g}",
-                                             most_grains, replicas, grains));
+                                             max_grains, replicas, grains));
     }
 
     void check_combinations() {
@@ -153,7 +153,7 @@ private:
                     "batch.replicas must be 1 where packing.file is given without packing.position_jitter: "
                     "copies would be alike");
             grains = std::max(grains, grain_count(settings, files));
-            if (static_cast<double>(grains * combinations_.size()) > most_grains) break;
+            if (static_cast<double>(grains * combinations_.size()) > max_grains) break;
         }
         check_size(static_cast<double>(grains));
     }

@@ -10,8 +10,8 @@
 namespace mcdem::inline scene {
 
 /// The most replicas in a run, and grains in all of them.
-inline constexpr double most_replicas = 10'000;
-inline constexpr double most_grains = 10'000'000;
+inline constexpr double max_replicas = 10'000;
+inline constexpr double max_grains = 10'000'000;
 
 /// One line of [batch.vary], its values checked.
 struct Variation {

@@ -66,10 +66,10 @@ void SceneDocument::parse(std::string_view text) {
     if (text.size() > largest_text)
         throw InputError(fmt::format("{}: a scene must be at most {} bytes long, got {}", source_,
                                      largest_text, text.size()));
-    constexpr std::size_t most_dots = 5000;
-    if (const std::size_t dots = dots_of_names(text); dots > most_dots)
+    constexpr std::size_t max_dots = 5000;
+    if (const std::size_t dots = dots_of_names(text); dots > max_dots)
         throw InputError(fmt::format("{}: a scene must have at most {} dots besides those of numbers, got {}",
-                                     source_, most_dots, dots));
+                                     source_, max_dots, dots));
     try {
         tables_.push_back(toml::parse(text, source_));
     } catch (const toml::parse_error& error) {

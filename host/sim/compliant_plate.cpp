@@ -28,14 +28,14 @@ double gain(const Replica& replica) {
 CompliantPlate::CompliantPlate(const Replica& replica)
     : compliance_(replica.effects.plate_compliance),
       follow_time_(replica.plate.start / rayleigh_speed(replica.grains) * std::max(1.0, gain(replica))),
-      most_catch_up_(1 / (1 + gain(replica))) {}
+      max_catch_up_(1 / (1 + gain(replica))) {}
 
-void CompliantPlate::give_way(StepInterval& interval, double time_step, double farthest) {
+void CompliantPlate::deflect(StepInterval& interval, double time_step, double farthest) {
     change_ = 0;
     if (compliance_ == 0 || interval.steps == 0) return;
     const double duration = time_step * interval.steps;
     const double commanded = interval.plate_velocity * duration;
-    const double catch_up = std::min(most_catch_up_, -std::expm1(-duration / follow_time_));
+    const double catch_up = std::min(max_catch_up_, -std::expm1(-duration / follow_time_));
     if (commanded != 0)
         state_.slope =
             std::clamp(state_.slope + learn * catch_up * catch_up * error() / commanded, -1.0, 0.0);

@@ -19,7 +19,7 @@ public:
 
     /// Turns the commanded interval into the true one. The plate moves at most `farthest` [m] or as far as
     /// commanded.
-    void give_way(StepInterval& interval, double time_step, double farthest);
+    void deflect(StepInterval& interval, double time_step, double farthest);
     /// Takes note of the force at the interval's end.
     void made(const IntervalResult& result);
 
@@ -32,9 +32,9 @@ public:
 private:
     double error() const { return compliance_ * state_.force - state_.given; }
 
-    double compliance_;     ///< [m/N]
-    double follow_time_;    ///< in which an error shrinks to 1/e [s]
-    double most_catch_up_;  ///< part of an error that an interval makes good
+    double compliance_;    ///< [m/N]
+    double follow_time_;   ///< in which an error shrinks to 1/e [s]
+    double max_catch_up_;  ///< part of an error that an interval makes good
     State state_;
     double change_ = 0;  ///< of `given` a step, in the interval under way [m]
 };

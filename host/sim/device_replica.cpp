@@ -120,8 +120,8 @@ void set_cells(DeviceReplica& d, const std::array<double, 3>& size, double reach
     // No neighbour is lost to rounding: the margin is 0.001 of a cell, the places of two grains along the box
     // are known to a ten-thousandth of a cell each.
     using Real = decltype(d.cell_size);
-    const double most_along = std::min(0.0002 / std::numeric_limits<Real>::epsilon(), 1e9);
-    const double cell = std::max(1.001 * reach, *std::ranges::max_element(size) / most_along);
+    const double max_along = std::min(0.0002 / std::numeric_limits<Real>::epsilon(), 1e9);
+    const double cell = std::max(1.001 * reach, *std::ranges::max_element(size) / max_along);
     std::array<int, 3> span;
     for (int axis = 0; axis < 3; ++axis) span[axis] = std::max(1, static_cast<int>(size[axis] / cell));
     d.cell_size = cell;

@@ -45,7 +45,7 @@ double ProtocolRunner::level_z(int level) const {
 
 double ProtocolRunner::distance_left() const { return level_z(state_.level + 1) - state_.plate_z; }
 
-long ProtocolRunner::longest_wait() const {
+long ProtocolRunner::max_settling_steps() const {
     const double time = state_.stage == Stage::relax ? protocol_.relax_time : protocol_.settle_time;
     return std::lround(time / time_step_);
 }
@@ -55,7 +55,7 @@ long ProtocolRunner::longest_wait() const {
 StepInterval ProtocolRunner::planned() const {
     constexpr double max_steps = 1e6;
     if (state_.stage != Stage::move) {
-        const long left = std::max(1L, longest_wait() - state_.stage_step);
+        const long left = std::max(1L, max_settling_steps() - state_.stage_step);
         return {static_cast<int>(std::min<double>(left, max_steps)), state_.plate_z, 0, drag()};
     }
     const double left = distance_left();
@@ -101,7 +101,7 @@ std::optional<ProtocolRunner::ScanTag> ProtocolRunner::made(const IntervalResult
     state_.stage_step += result.steps;
     take_pressure(result);
     const bool still = settled(result, plate_arrived);
-    if (!still && state_.stage_step < longest_wait()) return std::nullopt;
+    if (!still && state_.stage_step < max_settling_steps()) return std::nullopt;
     if (state_.stage == Stage::settle) return arrive(still);
     begin(Stage::move);
     if (!protocol_.scan_at_start) return std::nullopt;

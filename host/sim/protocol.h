@@ -65,7 +65,7 @@ private:
     double stroke_end() const;
     double level_z(int level) const;
     double distance_left() const;
-    long longest_wait() const;
+    long max_settling_steps() const;
     StepInterval planned() const;
     double drag() const;  ///< while the plate stands still [1/s]
     void take_pressure(const IntervalResult& result);

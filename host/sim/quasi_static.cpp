@@ -8,7 +8,7 @@ namespace mcdem::inline sim {
 namespace {
 
 constexpr double gravity = 9.81;
-constexpr double least_pressure_over_modulus = 1e-5;
+constexpr double min_pressure_over_modulus = 1e-5;
 
 double sphere_volume(double diameter) { return std::numbers::pi / 6 * std::pow(diameter, 3); }
 
@@ -32,11 +32,11 @@ QuasiStatic::QuasiStatic(const Replica& replica, const PackingScale& scale)
       area_(replica.box.size_x * replica.box.size_y),
       density_(replica.grains.density),
       scale_(scale),
-      least_pressure_(
-          std::max(scale.weight / area_, least_pressure_over_modulus * replica.grains.youngs_modulus)) {}
+      min_pressure_(
+          std::max(scale.weight / area_, min_pressure_over_modulus * replica.grains.youngs_modulus)) {}
 
 double QuasiStatic::pressure(double plate_force, double floor_force) const {
-    return std::max(0.5 * (std::abs(plate_force) + std::abs(floor_force)) / area_, least_pressure_);
+    return std::max(0.5 * (std::abs(plate_force) + std::abs(floor_force)) / area_, min_pressure_);
 }
 
 double QuasiStatic::rate_error(double speed, double plate_z, double pressure) const {

@@ -39,7 +39,7 @@ public:
 private:
     double plate_speed_, tolerance_, area_, density_;
     PackingScale scale_;
-    double least_pressure_;
+    double min_pressure_;
 };
 
 }  // namespace mcdem::sim

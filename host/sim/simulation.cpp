@@ -90,7 +90,7 @@ bool Simulation::advance(const ScanSink& on_scan, const FailureSink& on_failure)
     for (int r = 0; r < engine_.replicas(); ++r) {
         intervals.push_back(
             runners_[r].next([&](double plate_velocity) { return engine_.max_interval(r, plate_velocity); }));
-        plates_[r].give_way(intervals[r], engine_.time_step(r), engine_.max_plate_move(r));
+        plates_[r].deflect(intervals[r], engine_.time_step(r), engine_.max_plate_move(r));
         any |= intervals.back().steps > 0;
     }
     if (!any) return false;

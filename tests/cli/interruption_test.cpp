@@ -55,7 +55,7 @@ TEST_F(InterruptionTest, KilledAtAnyMomentAndResumedGivesTheSameBits) {
     expect_done(mcdem(words("whole", false)));
     std::mt19937 random(1);
     std::uniform_int_distribution<int> launches(1, some_launches), microseconds(0, 5000);
-    const int most_kills = 100,
+    const int max_kills = 100,
               kills_while_held = 3;  // within half of the launches, so that there are as many at any speed
     int kills = 0;
     for (bool resume = false;; resume = true) {
@@ -67,7 +67,7 @@ TEST_F(InterruptionTest, KilledAtAnyMomentAndResumedGivesTheSameBits) {
             let_go_on(child);
             std::this_thread::sleep_for(std::chrono::microseconds(microseconds(random)));
         }
-        if (kills < most_kills) child.send(SIGKILL);
+        if (kills < max_kills) child.send(SIGKILL);
         const auto finished = child.wait();
         if (finished.signal != SIGKILL) {
             expect_done(finished);
@@ -76,7 +76,7 @@ TEST_F(InterruptionTest, KilledAtAnyMomentAndResumedGivesTheSameBits) {
         ++kills;
     }
     EXPECT_GT(kills, 2);
-    EXPECT_LT(kills, most_kills) << "resumed runs do not get on";
+    EXPECT_LT(kills, max_kills) << "resumed runs do not get on";
     EXPECT_FALSE(result("whole").empty());
     EXPECT_TRUE(result("killed") == result("whole"));
     EXPECT_EQ(bytes_of_file(path("killed/plate.csv")), bytes_of_file(path("whole/plate.csv")));

@@ -11,7 +11,7 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-TEST(Draft, FindsAndMeasuresAPlantedEffect) {
+TEST(DiagnosisBuilder, FindsAndMeasuresAPlantedEffect) {
     SyntheticWorld world(6, 3);
     Evidence evidence = world.evidence(1, 32);
     world.add_effect(evidence, "adhesion", world.pattern(1));
@@ -19,7 +19,7 @@ TEST(Draft, FindsAndMeasuresAPlantedEffect) {
     world.add_nuisance(evidence, "modulus", world.pattern(0.5), 1);
     evidence.candidates[0].unit = "J/m2";
     evidence.observed += 4 * evidence.library.effects[0].linear;
-    const Draft draft(evidence, {});
+    const DiagnosisBuilder draft(evidence, {});
     const Diagnosis d = draft.diagnosis();
     EXPECT_EQ(d.verdict, Verdict::effect);
     ASSERT_EQ(d.causes.size(), 1u);
@@ -32,18 +32,18 @@ TEST(Draft, FindsAndMeasuresAPlantedEffect) {
     ASSERT_EQ(d.ranking.size(), 3u);
     EXPECT_EQ(d.ranking[0].effect, "adhesion");
     ASSERT_EQ(d.nuisances.size(), 1u);
-    ASSERT_TRUE(d.shrink);
-    EXPECT_GT(d.shrink->fraction, 0.9);
+    ASSERT_TRUE(d.gap_reduction);
+    EXPECT_GT(d.gap_reduction->fraction, 0.9);
     EXPECT_THAT(d.not_measured, ElementsAre(HasSubstr("grains.csv")));
 }
 
-TEST(Draft, AParameterPulledFarOutIsASymptom) {
+TEST(DiagnosisBuilder, AParameterPulledFarOutIsASymptom) {
     SyntheticWorld world(6, 4);
     Evidence evidence = world.evidence(1, 32);
     world.add_effect(evidence, "adhesion", world.pattern(1));
     world.add_nuisance(evidence, "modulus", world.pattern(2), 1);
     evidence.observed += 9 * evidence.library.nuisances[0].linear;
-    const Diagnosis d = Draft(evidence, {}).diagnosis();
+    const Diagnosis d = DiagnosisBuilder(evidence, {}).diagnosis();
     EXPECT_EQ(d.verdict, Verdict::calibration_suspect);
     EXPECT_TRUE(d.nuisances[0].at_bound);
     EXPECT_EQ(d.causes.at(0).effect, "modulus");
@@ -59,14 +59,14 @@ Eigen::MatrixXd runs_at(SyntheticWorld& world, const Evidence& evidence, const E
 
 // Effect and parameter act alike; the effect's runs meet the data, the parameter's stop short and leave a
 // little more.
-TEST(Draft, AParameterThatTrailsIsRunAgainWhereItsRunsAskForMore) {
+TEST(DiagnosisBuilder, AParameterThatTrailsIsRunAgainWhereItsRunsAskForMore) {
     SyntheticWorld world(6, 4);
     Evidence evidence = world.evidence(1, 32);
     const Eigen::VectorXd pattern = world.pattern(2);
     world.add_effect(evidence, "adhesion", pattern);
     world.add_nuisance(evidence, "modulus", pattern, 1);
     evidence.observed += 9 * pattern;
-    Draft draft(evidence, {});
+    DiagnosisBuilder draft(evidence, {});
     const auto& proposals = draft.findings().proposals;
     ASSERT_GE(proposals.size(), 2u);
     ASSERT_THAT(proposals[0].candidates, ElementsAre(0u));

@@ -34,10 +34,10 @@ TEST(Failures, NothingIsLeftOutOfWhatIsWhole) {
 TEST(Failures, ACandidateThatRunsAwayCostsItselfAlone) {
     World w;
     w.evidence.library.effects[1].linear.setConstant(not_available);
-    EXPECT_THAT([&] { Draft(w.evidence, {}); },
+    EXPECT_THAT([&] { DiagnosisBuilder(w.evidence, {}); },
                 ThrowsMessage<InputError>(HasSubstr("0 observations in common")));
     EXPECT_THAT(leave_out_failures(w.evidence), ElementsAre(HasSubstr("friction: its runs failed")));
-    const Diagnosis d = Draft(w.evidence, {}).diagnosis();
+    const Diagnosis d = DiagnosisBuilder(w.evidence, {}).diagnosis();
     EXPECT_EQ(d.verdict, Verdict::effect);
     EXPECT_EQ(d.causes.at(0).effect, "adhesion");
 }
@@ -47,7 +47,7 @@ TEST(Failures, ANuisanceToo) {
     w.evidence.library.nuisances[0].curvature.setConstant(not_available);
     EXPECT_THAT(leave_out_failures(w.evidence), ElementsAre(HasSubstr("modulus: its runs failed")));
     EXPECT_THAT(w.evidence.nuisances, IsEmpty());
-    EXPECT_NO_THROW(Draft(w.evidence, {}));
+    EXPECT_NO_THROW(DiagnosisBuilder(w.evidence, {}));
 }
 
 TEST(Failures, AFewCellsThatACandidateLacksAreNotCompared) {
@@ -68,7 +68,7 @@ TEST(Failures, ReplicatesWithoutNumbersAreLeftOut) {
     EXPECT_EQ(w.evidence.library.baseline.rows(), 14);
     EXPECT_EQ(w.evidence.library.packing.size(), 14u);
     EXPECT_EQ(w.evidence.baseline.rows(), 14);
-    EXPECT_EQ(Draft(w.evidence, {}).diagnosis().verdict, Verdict::effect);
+    EXPECT_EQ(DiagnosisBuilder(w.evidence, {}).diagnosis().verdict, Verdict::effect);
     w.evidence.library.baseline.topRows(7).setConstant(not_available);
     EXPECT_THAT([&] { leave_out_failures(w.evidence); },
                 ThrowsMessage<InputError>(HasSubstr("runs of the scene")));
@@ -78,7 +78,7 @@ TEST(Failures, ReplicatesWithoutNumbersAreLeftOut) {
 TEST(Failures, WhatTheDataDoNotShowHasNoAmplitude) {
     World w;
     w.synthetic.add_effect(w.evidence, "force_bias", Eigen::VectorXd::Zero(w.evidence.observed.size()));
-    const Diagnosis d = Draft(w.evidence, {}).diagnosis();
+    const Diagnosis d = DiagnosisBuilder(w.evidence, {}).diagnosis();
     const auto of = std::ranges::find(d.ranking, "force_bias", &Cause::effect);
     ASSERT_NE(of, d.ranking.end());
     EXPECT_EQ(of->amplitude, 0);

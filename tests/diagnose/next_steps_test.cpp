@@ -32,7 +32,7 @@ Evidence two_alike(SyntheticWorld& world, double apart, double amplitude) {
 TEST(NextSteps, OfAGroupTellItsMembersApart) {
     SyntheticWorld world(6, 3);
     const Evidence evidence = two_alike(world, 0.05, 4);
-    const Draft draft(evidence, {});
+    const DiagnosisBuilder draft(evidence, {});
     ASSERT_EQ(draft.decision().verdict, Verdict::group);
     const auto steps = draft.diagnosis().next;
     EXPECT_THAT(steps,
@@ -45,7 +45,7 @@ TEST(NextSteps, OfAGroupTellItsMembersApart) {
     // Twice as far apart, more of such experiments would tell.
     SyntheticWorld again(6, 3);
     const Evidence farther = two_alike(again, 0.1, 4);
-    const Draft other(farther, {});
+    const DiagnosisBuilder other(farther, {});
     if (other.decision().verdict == Verdict::group) {
         EXPECT_GT(other.diagnosis().next[0].power.value(), steps[0].power.value());
     }
@@ -59,7 +59,7 @@ TEST(NextSteps, PredictedPowerIsMet) {
     for (int k = 0; k < drawn; ++k) {
         SyntheticWorld world(6, 900 + static_cast<std::uint64_t>(k));
         Evidence evidence = two_alike(world, 0.12, 4);
-        const Draft draft(evidence, {});
+        const DiagnosisBuilder draft(evidence, {});
         if (draft.decision().verdict != Verdict::group) continue;
         for (const NextStep& step : draft.diagnosis().next)
             if (step.what.find("3 more packings") != std::string::npos) {
@@ -73,7 +73,7 @@ TEST(NextSteps, PredictedPowerIsMet) {
                 four.baseline = four.library.baseline;
                 four.observed += four.baseline.colwise().mean().transpose() -
                                  evidence.baseline.colwise().mean().transpose();
-                const std::vector<double> gain = Draft(four, {}).findings().gain;
+                const std::vector<double> gain = DiagnosisBuilder(four, {}).findings().gain;
                 told += gain[0] - gain[1] > std::max(Limits{}.group, Limits{}.group_share * gain[0]);
             }
     }
@@ -87,7 +87,7 @@ TEST(NextSteps, WithoutAGapTheLimitsFall) {
     const Eigen::VectorXd modulus = world.pattern(2);
     world.add_effect(evidence, "diameter_error", modulus + world.pattern(0.1));
     world.add_nuisance(evidence, "modulus", modulus, 1);
-    const Draft draft(evidence, {});
+    const DiagnosisBuilder draft(evidence, {});
     ASSERT_EQ(draft.decision().verdict, Verdict::no_gap);
     const auto steps = draft.diagnosis().next;
     ASSERT_FALSE(steps.empty());

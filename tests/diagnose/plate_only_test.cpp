@@ -41,7 +41,7 @@ TEST(PlateOnly, WithinThePriorThereIsNoGap) {
     int alarms = 0;
     for (std::uint64_t seed = 1; seed <= 20; ++seed) {
         const Evidence evidence = plate_evidence(1, seed);
-        alarms += Draft(evidence, {}).diagnosis().detected;
+        alarms += DiagnosisBuilder(evidence, {}).diagnosis().detected;
     }
     EXPECT_LE(alarms, 4);
 }
@@ -49,7 +49,7 @@ TEST(PlateOnly, WithinThePriorThereIsNoGap) {
 TEST(PlateOnly, FarBeyondItNothingIsBlamedAlone) {
     for (std::uint64_t seed = 1; seed <= 10; ++seed) {
         const Evidence evidence = plate_evidence(9, seed);
-        const Diagnosis d = Draft(evidence, {}).diagnosis();
+        const Diagnosis d = DiagnosisBuilder(evidence, {}).diagnosis();
         ASSERT_TRUE(d.detected) << seed;
         // With eight cells a placebo may do as well.
         EXPECT_NE(d.verdict, Verdict::effect) << seed;
@@ -63,7 +63,7 @@ TEST(PlateOnly, FarBeyondItNothingIsBlamedAlone) {
 
 TEST(PlateOnly, LimitsSayThatTheEffectHidesInTheModulus) {
     const Evidence evidence = plate_evidence(0, 1);
-    const Diagnosis d = Draft(evidence, {}).diagnosis();
+    const Diagnosis d = DiagnosisBuilder(evidence, {}).diagnosis();
     ASSERT_EQ(d.detection_limits.size(), 1u);
     EXPECT_GT(d.detection_limits[0].absorbed_by_calibration, 0.5);
     EXPECT_THAT(d.detection_limits[0].group, Contains("modulus"));
@@ -72,9 +72,9 @@ TEST(PlateOnly, LimitsSayThatTheEffectHidesInTheModulus) {
 TEST(PlateOnly, NeedsAFewCells) {
     Evidence evidence = plate_evidence(0, 1);
     evidence.observed.head(5).setConstant(not_available);
-    EXPECT_THROW(Draft(evidence, {}), InputError);
+    EXPECT_THROW(DiagnosisBuilder(evidence, {}), InputError);
     evidence.observed[0] = 0;
-    EXPECT_NO_THROW(Draft(evidence, {}));
+    EXPECT_NO_THROW(DiagnosisBuilder(evidence, {}));
 }
 
 }  // namespace

@@ -94,9 +94,9 @@ TEST(ScanObservables, WithoutPositions) {
 TEST(ScanObservables, WithTooFewContacts) {
     Lattice lattice = rubbed_lattice();
     const auto full = lattice.scan.contacts;
-    lattice.scan.contacts.assign(full.end() - fewest_contacts + 1, full.end());
+    lattice.scan.contacts.assign(full.end() - min_contacts + 1, full.end());
     expect_known(scan_observables(lattice.recording, lattice.scan, soft_material()), {Needs::plate});
-    lattice.scan.contacts.assign(full.end() - fewest_contacts, full.end());
+    lattice.scan.contacts.assign(full.end() - min_contacts, full.end());
     EXPECT_TRUE(std::isfinite(
         value_of(scan_observables(lattice.recording, lattice.scan, soft_material()), "mean_force")));
 }

@@ -27,21 +27,21 @@ Recording stroke(double stiffness) {
 }
 
 TEST(PaperMetrics, BeforeAndAfter) {
-    Shrink shrink;
+    GapReduction gap_reduction;
     const double stiffness = 1e4;  // 1 N at 10 mm
-    add_paper_metrics(shrink, stroke(stiffness),
+    add_paper_metrics(gap_reduction, stroke(stiffness),
                       {{stroke(0.5 * stiffness), stroke(0.7 * stiffness)}, {stroke(1.1 * stiffness)}});
-    EXPECT_NEAR(shrink.metrics.at("Rtop")[0], 0.6, 1e-12);
-    EXPECT_NEAR(shrink.metrics.at("Rtop")[1], 1.1, 1e-12);
+    EXPECT_NEAR(gap_reduction.metrics.at("Rtop")[0], 0.6, 1e-12);
+    EXPECT_NEAR(gap_reduction.metrics.at("Rtop")[1], 1.1, 1e-12);
     // Root mean square over the levels, of which loading and unloading have the same: 0.04 k^2 N.
     const double mean_square = 0.04 * 0.04 * (1 + 16 + 81 + 256 + 625) / 5;
-    EXPECT_NEAR(shrink.metrics.at("errf")[0], 0.4 * std::sqrt(mean_square), 1e-12);
-    EXPECT_NEAR(shrink.metrics.at("errf")[1], 0.1 * std::sqrt(mean_square), 1e-12);
-    EXPECT_FALSE(shrink.metrics.contains("errZ"));  // no contacts
-    EXPECT_FALSE(shrink.metrics.contains("bhat"));
-    ASSERT_EQ(shrink.top_force.size(), 5u);
+    EXPECT_NEAR(gap_reduction.metrics.at("errf")[0], 0.4 * std::sqrt(mean_square), 1e-12);
+    EXPECT_NEAR(gap_reduction.metrics.at("errf")[1], 0.1 * std::sqrt(mean_square), 1e-12);
+    EXPECT_FALSE(gap_reduction.metrics.contains("errZ"));  // no contacts
+    EXPECT_FALSE(gap_reduction.metrics.contains("bhat"));
+    ASSERT_EQ(gap_reduction.top_force.size(), 5u);
     for (int k = 1; k <= 5; ++k) {
-        const auto& row = shrink.top_force[static_cast<std::size_t>(k - 1)];
+        const auto& row = gap_reduction.top_force[static_cast<std::size_t>(k - 1)];
         EXPECT_NEAR(row[0], 0.002 * k, 1e-12);
         EXPECT_NEAR(row[1], 0.04 * k * k, 1e-12);
         EXPECT_NEAR(row[2], 0.6 * 0.04 * k * k, 1e-12);

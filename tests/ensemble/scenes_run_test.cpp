@@ -9,12 +9,12 @@ namespace mcdem {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr std::size_t most_replicas = 6;
+constexpr std::size_t max_replicas = 6;
 
 /// The scene, cut short.
 Scene beginning_of(const std::string& name) {
     Scene scene = read_scene(fs::path(MCDEM_SOURCE_DIR) / "scenes" / (name + ".toml"));
-    if (scene.replicas.size() > most_replicas) scene.replicas.resize(most_replicas);
+    if (scene.replicas.size() > max_replicas) scene.replicas.resize(max_replicas);
     for (Replica& replica : scene.replicas) {
         replica.plate.end = std::max(replica.plate.end, replica.plate.start - 1e-3);
         replica.protocol.cycles = replica.protocol.scans_per_stroke = 1;

@@ -42,7 +42,7 @@ class Errors(ImportCase):
         self.expect_one(self.mapping_problems("[[table]\n"), "m:1: must be TOML, got")
         self.assertEqual(self.mapping_problems('x = 1\n[[table]]\nrole = "sand"\nseparator = "|"\n'),
                          ['m:1: "x" must be a list of tables, [[table]], got something else',
-                          'm:3: role must be one of plate, grains, contacts, aside, got "sand"',
+                          'm:3: role must be one of plate, grains, contacts, unused, got "sand"',
                           "m:2: files must name at least one file, got none",
                           'm:4: separator must be one of ",", ";", tab, blanks, got "|"'])
         problems = self.mapping_problems('[[table]]\nrole = "grains"\nfiles = ["a"]\nx = 3\nlength_unit = "ft"\norigin_x = "left"\n'
@@ -129,7 +129,7 @@ class Errors(ImportCase):
     def test_columns_of_text_are_not_taken_for_numbers_by_their_place(self):
         plate = self.of(self.guess([self.write("a.csv", "load;60,5;start;0\nload;59,5;;0,3\nunload;60;ende;0,1\n")]), "plate")
         self.assertEqual([plate.word("plate_z"), plate.word("top_force")], ["column 2", "column 4"])
-        self.assertEqual(self.guess([self.write("b.csv", "load;a;1,5\nload;b;2,5\n")])[0].role, "aside")
+        self.assertEqual(self.guess([self.write("b.csv", "load;a;1,5\nload;b;2,5\n")])[0].role, "unused")
 
     def test_commas_that_may_part_thousands_must_be_confirmed(self):
         files = self.write_lab()
@@ -144,7 +144,7 @@ class Errors(ImportCase):
 
     def test_a_table_of_nothing_known_must_be_named(self):
         files = self.write_lab() + [self.write("wetter.csv", "Tag;Regen;Wind\n1;2,5;3\n2;0;1\n")]
-        self.expect_one(self.unclear(guess_tables(files, self.known)), 'role must be confirmed, got "?aside": its columns say nothing')
+        self.expect_one(self.unclear(guess_tables(files, self.known)), 'role must be confirmed, got "?unused": its columns say nothing')
 
 
 if __name__ == "__main__":

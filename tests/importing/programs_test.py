@@ -160,9 +160,9 @@ class Images(ImportCase):
         pairs = [(i, i + 1, 0.5, 0.5, 0.7, 12) for i in range(1, 30)]
         contacts = self.write("contacts.csv", Style(",", ".").table(["label1", "label2", "orientZ", "orientY", "orientX", "voxels"], pairs))
         tables = self.guess(self.spam_labels() + [contacts])
-        aside = next(table.map for table in tables if table.map.files == [contacts])
-        self.assertEqual((aside.role, aside.role_sure), ("aside", "likely"))
-        self.assertIn("without forces", aside.role_why)
+        unused = next(table.map for table in tables if table.map.files == [contacts])
+        self.assertEqual((unused.role, unused.role_sure), ("unused", "likely"))
+        self.assertIn("without forces", unused.role_why)
         self.assertEqual(self.unclear(tables), [])
         self.expect_truth(tables)
 

@@ -35,7 +35,7 @@ class Upwards(ImportCase):
         self.assertEqual(self.of(tables, "grains").word("z"), "-z [mm]")
         self.assertEqual(self.of(tables, "contacts").word("z"), "-z [mm]")
         self.assertEqual(self.of(tables, "contacts").word("fz"), "-fz [mN]")
-        self.assertEqual(self.of(tables, "grains").aside, [])
+        self.assertEqual(self.of(tables, "grains").unused, [])
         self.expect_truth(tables)
         self.expect_truth(self.by_mapping(mapping_text(mapping_of(tables))))
 

@@ -54,10 +54,10 @@ public:
         d.ranking = d.causes;
         add_cells(d);
         if (d.explanation) {
-            d.shrink = Shrink{};
-            d.shrink->before = uniform(-10, 100);
-            d.shrink->fraction = uniform(-1, 1);
-            d.shrink->placebo = d.explanation->placebo;
+            d.gap_reduction = GapReduction{};
+            d.gap_reduction->before = uniform(-10, 100);
+            d.gap_reduction->fraction = uniform(-1, 1);
+            d.gap_reduction->placebo = d.explanation->placebo;
         }
         return d;
     }

@@ -69,11 +69,11 @@ TEST(HowFarCharts, are_forces_and_the_gap_left) {
     const auto d = samples::diagnosis(Verdict::effect);
     const auto charts = how_far_charts(d);
     ASSERT_EQ(charts.size(), 2u);
-    EXPECT_EQ(charts[0].data[2]["y"][20], d.shrink->top_force[20][1]);
+    EXPECT_EQ(charts[0].data[2]["y"][20], d.gap_reduction->top_force[20][1]);
     EXPECT_EQ(charts[0].layout["shapes"][0]["x1"], 18.0);
-    EXPECT_NEAR(charts[1].data[0]["x"][1].get<double>(), 100 * (1 - d.shrink->fraction), 1e-9);
+    EXPECT_NEAR(charts[1].data[0]["x"][1].get<double>(), 100 * (1 - d.gap_reduction->fraction), 1e-9);
     auto no_forces = d;
-    no_forces.shrink->top_force.clear();
+    no_forces.gap_reduction->top_force.clear();
     EXPECT_EQ(how_far_charts(no_forces).size(), 1u);
     EXPECT_TRUE(how_far_charts({}).empty());
 }

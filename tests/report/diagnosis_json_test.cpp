@@ -88,13 +88,14 @@ TEST(DiagnosisJson, carries_the_values) {
     EXPECT_EQ(json["where"][0]["z_score"], d.where[0].z_score);
     EXPECT_EQ(json["causes"][0]["amplitude"], d.causes[0].amplitude);
     EXPECT_EQ(json["causes"][0]["confirmed_score"], *d.causes[0].confirmed_score);
-    for (const auto& [key, value] : std::map<std::string, double>{{"before", d.shrink->before},
-                                                                  {"after", d.shrink->after},
-                                                                  {"fraction", 0.81},
-                                                                  {"placebo", 0.12},
-                                                                  {"confirmed", d.shrink->confirmed.value()}})
+    for (const auto& [key, value] :
+         std::map<std::string, double>{{"before", d.gap_reduction->before},
+                                       {"after", d.gap_reduction->after},
+                                       {"fraction", 0.81},
+                                       {"placebo", 0.12},
+                                       {"confirmed", d.gap_reduction->confirmed.value()}})
         EXPECT_EQ(json["shrink"][key], value) << key;
-    EXPECT_EQ(json["shrink"]["interval"], Json(d.shrink->interval));
+    EXPECT_EQ(json["shrink"]["interval"], Json(d.gap_reduction->interval));
     EXPECT_EQ(json["shrink"]["fitted_displacement_mm"], Json::parse("[0.0, 18.0]"));
     EXPECT_EQ(json["shrink"]["metrics"]["Rtop"], Json::parse("[0.874, 0.991]"));
     EXPECT_EQ(json["shrink"]["top_force"][20]["displacement_mm"], 30.0);
@@ -117,7 +118,7 @@ TEST(DiagnosisJson, what_is_not_there_is_null_or_empty) {
 TEST(DiagnosisJson, numbers_that_are_not_finite_become_null) {
     auto d = samples::diagnosis(Verdict::effect);
     d.causes[0].amplitude = std::nan("");
-    d.shrink->metrics["Rtop"] = {INFINITY, 1};
+    d.gap_reduction->metrics["Rtop"] = {INFINITY, 1};
     const auto json = parsed(d);
     EXPECT_TRUE(json["detection_limits"][12]["minimum_amplitude"].is_null());  // infinite: never shows
     EXPECT_TRUE(json["causes"][0]["amplitude"].is_null());

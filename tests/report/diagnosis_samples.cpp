@@ -99,27 +99,27 @@ void add_calibration(Diagnosis& d) {
                    {"strain_offset", 1.2e-4, 0.6e-4, 3e-4, "m", false}};
 }
 
-void add_shrink(Diagnosis& d, double fraction) {
-    Shrink shrink{.held_out = "unloading, and loading above 18 mm",
-                  .before = 412.6,
-                  .after = 412.6 * (1 - fraction),
-                  .fraction = fraction,
-                  .interval = {fraction - 0.15, fraction + 0.12},
-                  .placebo = 0.12,
-                  .confirmed = fraction - 0.02,
-                  .metrics = {{"Rtop", {0.874, 0.991}},
-                              {"errf", {0.812, 0.143}},
-                              {"errZ", {0.421, 0.187}},
-                              {"bhat", {0.0312, 0.0089}}},
-                  .top_force = {},
-                  .fitted_displacement = {0, 18e-3}};
+void add_gap_reduction(Diagnosis& d, double fraction) {
+    GapReduction gap_reduction{.held_out = "unloading, and loading above 18 mm",
+                               .before = 412.6,
+                               .after = 412.6 * (1 - fraction),
+                               .fraction = fraction,
+                               .interval = {fraction - 0.15, fraction + 0.12},
+                               .placebo = 0.12,
+                               .confirmed = fraction - 0.02,
+                               .metrics = {{"Rtop", {0.874, 0.991}},
+                                           {"errf", {0.812, 0.143}},
+                                           {"errZ", {0.421, 0.187}},
+                                           {"bhat", {0.0312, 0.0089}}},
+                               .top_force = {},
+                               .fitted_displacement = {0, 18e-3}};
     for (int i = 0; i <= 20; ++i) {
         const double s = i * 1.5e-3, strain = std::max(0.0, s - 4e-3) / 26e-3;
         const double measured = 15 * std::pow(strain, 1.5) - 0.35 * strain;
         const double before = 13.1 * std::pow(strain, 1.5);
-        shrink.top_force.push_back({s, measured, before, before + fraction * (measured - before)});
+        gap_reduction.top_force.push_back({s, measured, before, before + fraction * (measured - before)});
     }
-    d.shrink = shrink;
+    d.gap_reduction = gap_reduction;
 }
 
 void explain(Diagnosis& d, double reduction) {
@@ -130,7 +130,7 @@ void explain(Diagnosis& d, double reduction) {
                                 .needed = 0.6,
                                 .remainder_p = 2e-6,
                                 .leaves_more_than_noise = true};
-    add_shrink(d, reduction + 0.02);
+    add_gap_reduction(d, reduction + 0.02);
 }
 
 Diagnosis common() {
@@ -220,7 +220,7 @@ Diagnosis with_texts(Diagnosis d, const std::string& text) {
     for (auto& step : d.next) step.what = text;
     for (auto& refinement : d.refinements) refinement.effect = refinement.key = refinement.unit = text;
     for (auto* list : {&d.not_measured, &d.not_testable}) *list = {text};
-    if (d.shrink) d.shrink->held_out = text, d.shrink->metrics[text] = {1, 2};
+    if (d.gap_reduction) d.gap_reduction->held_out = text, d.gap_reduction->metrics[text] = {1, 2};
     d.provenance[text] = text;
     return d;
 }

@@ -147,7 +147,7 @@ TEST(DiagnosisText, ends_with_what_to_do_next) {
 
 TEST(DiagnosisText, a_gap_that_the_held_out_data_do_not_show) {
     auto d = samples::diagnosis(Verdict::effect);
-    d.shrink->before = -0.3;
+    d.gap_reduction->before = -0.3;
     d.explanation->held_out = false;
     EXPECT_THAT(line(d, "How far"), AllOf(HasSubstr("the data held out show none by themselves"),
                                           Not(HasSubstr("predicted was"))));

@@ -140,10 +140,10 @@ TEST(HowFarValues, are_forces_and_what_is_left_of_the_gap) {
 
 TEST(DiagnosisValues, do_without_what_is_not_known) {
     auto d = samples::diagnosis(Verdict::effect);
-    d.shrink->top_force = {{0.01, std::nan(""), 1, 1}};
-    d.shrink->fitted_displacement = {0, 0};
+    d.gap_reduction->top_force = {{0.01, std::nan(""), 1, 1}};
+    d.gap_reduction->fitted_displacement = {0, 0};
     EXPECT_TRUE(diagnosis_figure_values(d)["how_far"]["forces"].is_null());
-    d.shrink->before = 0;
+    d.gap_reduction->before = 0;
     EXPECT_FALSE(diagnosis_figure_values(d).contains("how_far"));
     d.cells = {{"top_force", "load", 0.01, std::nan(""), std::nan("")}};
     EXPECT_FALSE(diagnosis_figure_values(d).contains("where"));

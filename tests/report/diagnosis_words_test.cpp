@@ -62,11 +62,11 @@ TEST(DiagnosisWords, places) {
 }
 
 TEST(DiagnosisWords, metrics_come_in_the_papers_order) {
-    Shrink shrink;
-    shrink.metrics = {
+    GapReduction gap_reduction;
+    gap_reduction.metrics = {
         {"another", {0, 0}}, {"bhat", {0, 0}}, {"Rtop", {0, 0}}, {"errZ", {0, 0}}, {"errf", {0, 0}}};
     std::string order;
-    for (const auto& [name, values] : metrics_in_order(shrink)) order += name + " ";
+    for (const auto& [name, values] : metrics_in_order(gap_reduction)) order += name + " ";
     EXPECT_EQ(order, "Rtop errf errZ bhat another ");
 }
 

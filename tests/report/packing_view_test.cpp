@@ -58,7 +58,7 @@ TEST(PackingView, needs_positions) {
 
 TEST(PackingView, of_large_packings_shows_the_grains_nearest_to_the_middle_plane) {
     PackingLimits limits;
-    limits.most_grains = 4;
+    limits.max_grains = 4;
     const auto view = *packing_view({{"large", row_of_grains(100, 1)}}, limits);
     const auto& setting = view["settings"][0];
     EXPECT_EQ(setting["number"], (Json{48, 49, 50, 51}));

@@ -133,18 +133,18 @@ TEST(Conservation, EnergyDoesNotGrow) {
     for (unsigned seed = 0; seed < 24 * 6; seed += 6) starts.push_back(random_free_cluster(seed));
     Batch batch(build(finest()), starts);
     set_random_velocities(batch, starts.size());
-    std::vector<double> least(starts.size(), 1e300), most_growth(starts.size(), 0);
+    std::vector<double> least(starts.size(), 1e300), max_growth(starts.size(), 0);
     for (int step = 0; step < 150; ++step) {
         const auto results = batch.advance(1);
         for (std::size_t r = 0; r < starts.size(); ++r) {
             const double energy = results[r].kinetic_energy + results[r].elastic_energy;
             least[r] = std::min(least[r], energy);
-            most_growth[r] = std::max(most_growth[r], energy / least[r] - 1);
+            max_growth[r] = std::max(max_growth[r], energy / least[r] - 1);
         }
     }
     for (std::size_t r = 0; r < starts.size(); ++r) {
         ASSERT_EQ(starts[r].replica.contact.model, ContactModel::independent);
-        EXPECT_LT(most_growth[r], 0.01) << "seed " << 6 * r;
+        EXPECT_LT(max_growth[r], 0.01) << "seed " << 6 * r;
     }
 }
 

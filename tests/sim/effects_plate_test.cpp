@@ -137,7 +137,7 @@ public:
     /// zero.
     void interval(double move, int steps) {
         mcdem::StepInterval interval{steps, commanded_, move / (steps * time_step), 0};
-        plate_.give_way(interval, time_step, farthest);
+        plate_.deflect(interval, time_step, farthest);
         EXPECT_NEAR(interval.plate_z, true_z_, 1e-13) << "the plate does not jump";
         const double went = interval.plate_velocity * steps * time_step;
         EXPECT_LE(std::abs(went), std::max(farthest, std::abs(move)) * (1 + 1e-12));
@@ -210,7 +210,7 @@ TEST(PlateCompliance, ARigidPlateIsLeftAlone) {
     result.steps = 17;
     result.wall_force[plate_wall] = {0, 0, 5};
     plate.made(result);
-    plate.give_way(interval, 1e-4, 1e-4);
+    plate.deflect(interval, 1e-4, 1e-4);
     EXPECT_EQ(interval.plate_z, 0.1);
     EXPECT_EQ(interval.plate_velocity, -0.03);
 }

@@ -166,11 +166,10 @@ TEST(Protocol, WithoutAToleranceTheSpeedIsTheScenes) {
     ProtocolRunner runner(replica, time_step, scale);
     while (runner.state().stage == ProtocolState::Stage::relax) runner.made(answer(10, 0));
     EXPECT_NEAR(runner.next([](double) { return 5; }).plate_velocity, -0.5, 1e-9);
-    const double strain_rate = 0.5 / replica.plate.start,
-                 least_pressure = 1e-5 * replica.grains.youngs_modulus;
+    const double strain_rate = 0.5 / replica.plate.start, min_pressure = 1e-5 * replica.grains.youngs_modulus;
     ASSERT_FALSE(runner.made(answer(5, 0)));
     EXPECT_NEAR(runner.state().rate_error,
-                10 * strain_rate * 0.02 * std::sqrt(replica.grains.density / least_pressure), 1e-6 * 10)
+                10 * strain_rate * 0.02 * std::sqrt(replica.grains.density / min_pressure), 1e-6 * 10)
         << "the estimate is there all the same";
 }
 

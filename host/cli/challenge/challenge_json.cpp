@@ -62,9 +62,9 @@ std::string score_json(const ChallengeScore& score) {
     return Json{{"cases", score.cases},
                 {"not_diagnosed", score.not_diagnosed},
                 {"shrink",
-                 {{"cases", score.shrink.cases},
-                  {"median_error", score.shrink.median_error},
-                  {"covered", share_json(score.shrink.covered)}}},
+                 {{"cases", score.gap_reduction.cases},
+                  {"median_error", score.gap_reduction.median_error},
+                  {"covered", share_json(score.gap_reduction.covered)}}},
                 {"methods", arms}}
                .dump(1) +
            "\n";

@@ -53,13 +53,14 @@ private:
     TextTable& table_;
 };
 
-void add_shrink(const ShrinkScore& shrink, TextTable& table) {
-    if (shrink.cases == 0) return;
-    table.rows.push_back({"shrink: median |predicted - realised|", fmt::format("{:.2f}", shrink.median_error),
-                          "at most 0.10", met(shrink.median_error <= 0.10),
-                          fmt::format("{} cases, all", shrink.cases)});
-    table.rows.push_back({"shrink: realised within the 90 % interval", with_interval(shrink.covered),
-                          "at least 80 %", met(shrink.covered.value() >= 0.80), "all"});
+void add_gap_reduction(const GapReductionScore& gap_reduction, TextTable& table) {
+    if (gap_reduction.cases == 0) return;
+    table.rows.push_back({"shrink: median |predicted - realised|",
+                          fmt::format("{:.2f}", gap_reduction.median_error), "at most 0.10",
+                          met(gap_reduction.median_error <= 0.10),
+                          fmt::format("{} cases, all", gap_reduction.cases)});
+    table.rows.push_back({"shrink: realised within the 90 % interval", with_interval(gap_reduction.covered),
+                          "at least 80 %", met(gap_reduction.covered.value() >= 0.80), "all"});
 }
 
 /// Mean square error of saying the share of the other half every time.
@@ -96,7 +97,7 @@ TextTable table_of_merits(const ChallengeScore& score) {
     const double base = base_rate_brier(arm.second, arm.first.right_where_named.value());
     rows.number("Brier score of the confidence", arm.first.brier, arm.second.brier,
                 fmt::format("less than the base rate's {:.2f}", base), met(arm.second.brier < base));
-    add_shrink(score.shrink, table);
+    add_gap_reduction(score.gap_reduction, table);
     table.notes.push_back(
         "95 % intervals after Wilson (1927). Limits were set on one half of the packings, the score is the "
         "other's.");

@@ -42,7 +42,7 @@ std::vector<Chosen> chosen_replicas(const LoadedRuns& loaded, const PackingLimit
         std::size_t contacts = 0;
         for (const auto& scan : one.recording->scans) contacts = std::max(contacts, scan.contacts.size());
         const auto grains = static_cast<long>(one.recording->diameter.size());
-        const auto shown = std::min(grains, static_cast<long>(limits.most_grains));
+        const auto shown = std::min(grains, static_cast<long>(limits.max_grains));
         one.numbers = numbers_of_scan(shown, static_cast<long>(contacts) * shown / std::max(1L, grains));
         chosen.push_back(std::move(one));
     }
@@ -50,14 +50,14 @@ std::vector<Chosen> chosen_replicas(const LoadedRuns& loaded, const PackingLimit
 }
 
 /// What of the packing is not shown, in words; empty where all is.
-std::string words_left_out(const Chosen& chosen, std::size_t scans, int most_grains) {
+std::string words_left_out(const Chosen& chosen, std::size_t scans, int max_grains) {
     const auto all_scans = chosen.recording->scans.size(), all_grains = chosen.recording->diameter.size();
     std::string words;
     if (scans < all_scans)
         words = fmt::format("{} of {} scans, evenly spread (--scans shows more)", scans, all_scans);
-    if (all_grains > static_cast<std::size_t>(most_grains))
+    if (all_grains > static_cast<std::size_t>(max_grains))
         words += fmt::format("{}the {} grains of {} nearest to the middle plane", words.empty() ? "" : ", ",
-                             most_grains, all_grains);
+                             max_grains, all_grains);
     return words;
 }
 
@@ -115,7 +115,7 @@ void add_packings(const std::vector<std::string>& paths, const LoadedRuns& loade
             !packing.recording.scans.empty() && !packing.recording.scans.front().position.empty();
         if (seen)
             left_out.emplace_back(
-                one.label, words_left_out(one, packing.recording.scans.size(), runs.limits.most_grains));
+                one.label, words_left_out(one, packing.recording.scans.size(), runs.limits.max_grains));
         runs.packings.push_back(std::move(packing));
     }
     runs.left_out = notes_of(left_out);

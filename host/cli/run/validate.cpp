@@ -15,7 +15,7 @@
 namespace mcdem::inline cli {
 namespace {
 
-constexpr std::size_t most_labels = 12;
+constexpr std::size_t max_labels = 12;
 
 /// The device that a run would use, where there is one: a scene can be checked without.
 std::optional<Device> chosen_device(const std::string& choice) {
@@ -63,8 +63,8 @@ void print_scene(const SceneOptions& options, const std::string& choice) {
     print_memory(scene, device);
     std::size_t shown = 0;
     for (const auto& replica : scene.replicas) {
-        if (++shown > most_labels) {
-            print_out("  .. and {} more\n", scene.replicas.size() - most_labels);
+        if (++shown > max_labels) {
+            print_out("  .. and {} more\n", scene.replicas.size() - max_labels);
             break;
         }
         print_out("  {}\n", replica.label);

@@ -27,7 +27,8 @@ struct Limits {
     double right_below = 0.1;      ///< probability that a leader is right that takes away clearly less ..
     double right_above = 0.97;     ///< .. and clearly more than `reduction`
     double reduction_error = 0.1;  ///< what "clearly" is: the probability goes from one to the other
-    double shrink_margin = 0.1;  ///< what signatures get wrong in the shrink, on either side of its interval
+    double reduction_margin =
+        0.1;  ///< what signatures get wrong in the gap_reduction, on either side of its interval
 };
 
 /// One effect, or two together, and how well they do.

@@ -16,16 +16,16 @@
 namespace mcdem::inline diagnose {
 namespace {
 
-constexpr std::size_t fewest_cells = 4;
+constexpr std::size_t min_cells = 4;
 constexpr double worth_another_run = 0.01;  ///< p of what a proposal leaves, below
 
 GapData checked_data(const Evidence& evidence) {
     GapData data = gap_data(evidence);
-    if (data.cells.size() < fewest_cells)
+    if (data.cells.size() < min_cells)
         throw InputError(fmt::format(
             "the experiment and the simulations have {} observations in common, and {} are needed: "
             "the plate must press the packing within its stroke in both",
-            data.cells.size(), fewest_cells));
+            data.cells.size(), min_cells));
     return data;
 }
 
@@ -121,7 +121,7 @@ private:
 
 }  // namespace
 
-Draft::Draft(const Evidence& evidence, const Limits& limits)
+DiagnosisBuilder::DiagnosisBuilder(const Evidence& evidence, const Limits& limits)
     : evidence_(evidence),
       limits_(limits),
       data_(checked_data(evidence)),
@@ -149,7 +149,7 @@ Draft::Draft(const Evidence& evidence, const Limits& limits)
     decision_ = decide(findings_, limits_);
 }
 
-void Draft::measure_reductions() {
+void DiagnosisBuilder::measure_reductions() {
     findings_.held_out = held_out_gap(data_, split_, mean_of_).shows();
     excess_ =
         std::max(statistics_.directed, 0.5 * (statistics_.omnibus - null_.mean(&GapStatistics::omnibus)));
@@ -161,14 +161,16 @@ void Draft::measure_reductions() {
                                        : held_out_reduction(data_, split_, p.candidates, mean_of_);
 }
 
-bool Draft::by_likelihood(const Proposal& proposal) const {
+bool DiagnosisBuilder::by_likelihood(const Proposal& proposal) const {
     return !findings_.held_out ||
            std::ranges::any_of(proposal.candidates, [&](std::size_t c) { return findings_.is_nuisance(c); });
 }
 
-double Draft::likelihood_reduction(double gain) const { return std::clamp(gain / excess_, -1.0, 1.0); }
+double DiagnosisBuilder::likelihood_reduction(double gain) const {
+    return std::clamp(gain / excess_, -1.0, 1.0);
+}
 
-void Draft::confirm(std::size_t proposal, const Eigen::MatrixXd& runs) {
+void DiagnosisBuilder::confirm(std::size_t proposal, const Eigen::MatrixXd& runs) {
     Proposal tried = findings_.proposals[proposal];
     tried.amplitudes = whole_[proposal].amplitudes;
     step_[proposal] =
@@ -192,14 +194,14 @@ void Draft::confirm(std::size_t proposal, const Eigen::MatrixXd& runs) {
     decision_ = decide(findings_, limits_);
 }
 
-bool Draft::may_gain(std::size_t proposal) const {
+bool DiagnosisBuilder::may_gain(std::size_t proposal) const {
     const Proposal& p = findings_.proposals[proposal];
     return p.candidates.size() == 1 && findings_.is_nuisance(p.candidates[0]) &&
            decision_.proposal != static_cast<int>(proposal) &&
            std::abs((*step_[proposal])[whole_[proposal].nuisances.size()]) > p.errors[0];
 }
 
-bool Draft::refit(std::size_t proposal) {
+bool DiagnosisBuilder::refit(std::size_t proposal) {
     const Proposal& p = findings_.proposals[proposal];
     if (!step_[proposal] || (p.best_misfit() >= worth_another_run && !may_gain(proposal))) return false;
     PartialFit& fit = whole_[proposal];
@@ -215,7 +217,7 @@ bool Draft::refit(std::size_t proposal) {
     return fit.amplitudes != before;
 }
 
-std::optional<std::size_t> Draft::wants_held_out() const {
+std::optional<std::size_t> DiagnosisBuilder::wants_held_out() const {
     if (!has_decided()) return std::nullopt;
     auto waiting = contenders(findings_, limits_);
     waiting.push_back(decided());
@@ -223,7 +225,7 @@ std::optional<std::size_t> Draft::wants_held_out() const {
     return next == waiting.end() ? std::nullopt : std::optional(*next);
 }
 
-PartialFit Draft::part_fit(std::size_t proposal) const {
+PartialFit DiagnosisBuilder::part_fit(std::size_t proposal) const {
     const Proposal& p = findings_.proposals[proposal];
     const CellChoice& cells = split_.fitted.empty() ? data_.cells : split_.fitted;
     if (!runs_[proposal]) return fit_part(data_, cells, data_.gap, p.candidates, mean_of_);
@@ -231,7 +233,7 @@ PartialFit Draft::part_fit(std::size_t proposal) const {
                       runs_[proposal]->fit, runs_[proposal]->count);
 }
 
-void Draft::confirm_held_out(std::size_t proposal, const Eigen::MatrixXd& runs) {
+void DiagnosisBuilder::confirm_held_out(std::size_t proposal, const Eigen::MatrixXd& runs) {
     held_out_done_[proposal] = true;
     Proposal& p = findings_.proposals[proposal];
     if (!by_likelihood(p))
@@ -239,7 +241,7 @@ void Draft::confirm_held_out(std::size_t proposal, const Eigen::MatrixXd& runs) 
     decision_ = decide(findings_, limits_);
 }
 
-double Draft::refining_factor(std::size_t candidate, double most) const {
+double DiagnosisBuilder::refining_factor(std::size_t candidate, double most) const {
     constexpr double unnoticed = 4;  // log likelihood that what is left gains; chance alone gains as much
     const Candidate& numerics = data_.candidates[candidate];
     double reality = statistics_.fits[candidate].amplitude + statistics_.fits[candidate].error;
@@ -255,7 +257,7 @@ double Draft::refining_factor(std::size_t candidate, double most) const {
     return most;
 }
 
-Diagnosis Draft::diagnosis() const {
+Diagnosis DiagnosisBuilder::diagnosis() const {
     Diagnosis d;
     d.verdict = decision_.verdict;
     d.detected = d.verdict != Verdict::no_gap;
@@ -276,12 +278,12 @@ Diagnosis Draft::diagnosis() const {
     d.causes = causes.leading();
     d.explanation = explanation_of(findings_, decision_, limits_);
     const Proposal& explaining = findings_.proposals[decided()];
-    d.shrink = measure_shrink(data_, split_, explaining, mean_of_, evidence_.seed);
-    d.shrink->placebo = findings_.placebo;
-    d.shrink->interval = {d.shrink->interval[0] - limits_.shrink_margin,
-                          std::min(1.0, d.shrink->interval[1] + limits_.shrink_margin)};
-    d.shrink->fitted_displacement = {0, fitted_part * evidence_.library.grid.stroke};
-    if (!by_likelihood(explaining)) d.shrink->confirmed = explaining.confirmed_reduction;
+    d.gap_reduction = measure_reduction(data_, split_, explaining, mean_of_, evidence_.seed);
+    d.gap_reduction->placebo = findings_.placebo;
+    d.gap_reduction->interval = {d.gap_reduction->interval[0] - limits_.reduction_margin,
+                                 std::min(1.0, d.gap_reduction->interval[1] + limits_.reduction_margin)};
+    d.gap_reduction->fitted_displacement = {0, fitted_part * evidence_.library.grid.stroke};
+    if (!by_likelihood(explaining)) d.gap_reduction->confirmed = explaining.confirmed_reduction;
     return d;
 }
 

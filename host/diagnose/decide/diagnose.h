@@ -4,20 +4,20 @@
 #include <memory>
 
 #include "diagnose/decide/decision.h"
-#include "diagnose/infer/shrinkage.h"
+#include "diagnose/infer/gap_reduction.h"
 
 namespace mcdem::inline diagnose {
 
 /// A diagnosis in the making. The evidence must outlive it.
-///     Draft draft(evidence, limits);
+///     DiagnosisBuilder draft(evidence, limits);
 ///     for (k ..) draft.confirm(k, runs of draft.whole_fit(k));   // real runs of the proposals, or none
 ///     while (draft.refit(..)) ..                                 // again, where the runs say how they miss
 ///     while (k = draft.wants_held_out()) draft.confirm_held_out(k, runs of draft.part_fit(k));
 ///     draft.diagnosis()
-class Draft {
+class DiagnosisBuilder {
 public:
     /// Throws InputError where the observation shares too few cells with the library.
-    Draft(const Evidence& evidence, const Limits& limits);
+    DiagnosisBuilder(const Evidence& evidence, const Limits& limits);
 
     const GapData& data() const { return data_; }
     const Findings& findings() const { return findings_; }

@@ -57,7 +57,7 @@ struct NuisanceFit {
     bool at_bound = false;  ///< pulled further than its prior allows: a symptom
 };
 
-struct Shrink {
+struct GapReduction {
     std::string held_out;          ///< which part of the data
     double before = 0, after = 0;  ///< gap without noise: sum over cells of squared differences in sigmas
     double fraction = 0;           ///< 1 - after/before
@@ -116,7 +116,7 @@ struct Diagnosis {
     std::vector<Cause> ranking;  ///< all candidates by score, for the picture
     std::vector<NuisanceFit> nuisances;
     std::optional<Explanation> explanation;  ///< nothing where there is no gap
-    std::optional<Shrink> shrink;
+    std::optional<GapReduction> gap_reduction;
     std::vector<DetectionLimit> detection_limits;
     std::vector<Refinement> refinements;
     std::vector<NextStep> next;             ///< the most useful first

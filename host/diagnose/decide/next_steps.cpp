@@ -14,7 +14,7 @@ namespace {
 constexpr double times_better = 5;  ///< that a parameter is measured
 constexpr int more_packings = 3;
 constexpr double worth_saying = 0.9;  ///< of what errors or limits are now, or less
-constexpr std::size_t most_steps = 4;
+constexpr std::size_t max_steps = 4;
 
 /// A measurement, as the space that it would make.
 struct Measurement {
@@ -157,7 +157,7 @@ std::vector<NextStep> next_measurements(const Evidence& evidence, const GapData&
     std::vector<NextStep> steps = rivals ? telling_apart(measurements, data, findings, decision, limits)
                                          : sharpening(measurements, evidence, data, findings, decision);
     std::ranges::stable_sort(steps, std::greater(), [](const NextStep& s) { return s.power.value_or(0); });
-    if (steps.size() > most_steps) steps.resize(most_steps);
+    if (steps.size() > max_steps) steps.resize(max_steps);
     if (decision.verdict != Verdict::no_gap) add_other_protocols(data, decision, steps);
     return steps;
 }

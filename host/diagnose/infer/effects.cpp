@@ -31,8 +31,8 @@ double threshold_scale(const Model& m) { return m.instrument.stated.force_thresh
 void add_share(double& share, double a) { share += a * (1 - share); }
 
 /// Of numerics: the part that is taken off a setting. Runs get no longer than this many times.
-constexpr double longest_run = 8;
-void take_off(double& setting, double part) { setting *= std::max(1 - part, 1 / longest_run); }
+constexpr double max_slowdown = 8;
+void take_off(double& setting, double part) { setting *= std::max(1 - part, 1 / max_slowdown); }
 double& plate_speed(Model& m) { return m.replica.plate.speed; }
 double& density(Model& m) { return m.replica.grains.density; }
 double& time_step(Model& m) { return m.replica.numerics.time_step; }

@@ -44,7 +44,7 @@ std::vector<int> folds_of(const std::vector<int>& packing) {
 /// Part of the known cells that a signature must have. Fewer: its runs failed, and it would take the cells
 /// with it.
 constexpr double enough_cells = 0.5;
-constexpr std::size_t fewest_replicates = 8;
+constexpr std::size_t min_replicates = 8;
 
 std::vector<Eigen::Index> rows_with_numbers(const Eigen::MatrixXd& rows) {
     std::vector<Eigen::Index> list;
@@ -61,7 +61,7 @@ void leave_out_replicates(Evidence& evidence, std::vector<std::string>& notes) {
     if (failed == 0) return;
     const std::string what = fmt::format("{} of {} runs of the scene as it stands failed", failed,
                                          std::max(library.baseline.rows(), evidence.baseline.rows()));
-    if (kept.size() < fewest_replicates || own.empty())
+    if (kept.size() < min_replicates || own.empty())
         throw InputError(what +
                          ": the packing runs away, or the scene cannot follow the experiment's plate; try "
                          "`mcdem run` of the scene with plate.start and plate.end of the experiment");

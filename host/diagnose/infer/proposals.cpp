@@ -12,14 +12,14 @@ namespace {
 /// .. and the best nuisance however far behind, so that no effect is named for what a wrong parameter does:
 /// signatures are least right for parameters far off. Of the simulation's own numerics the best, where it is
 /// near.
-constexpr std::size_t most_singles = 3;
+constexpr std::size_t max_singles = 3;
 /// Effects this much behind the leader, in log likelihood or as a part of its gain, are not tried.
 constexpr double far_behind = 8, far_behind_share = 0.25;
 constexpr double pair_gain = 4;
 /// Part by which a signature may be wrong, cell by cell.
 constexpr double signature_error = 0.1;
 constexpr int rounds = 6;
-constexpr Eigen::Index fewest_runs = 2;
+constexpr Eigen::Index min_runs = 2;
 
 Eigen::VectorXd without(const Eigen::VectorXd& gap, const GapData& data, const Proposal& proposal,
                         std::size_t but = SIZE_MAX) {
@@ -107,7 +107,7 @@ std::vector<Proposal> propose(const GapSpace& space, const GapData& data, const 
         const bool nuisance = static_cast<int>(c) >= data.effects;
         const bool numerics = !nuisance && is_numerical(data.name(c));
         const bool near = best - fit.score <= std::max(far_behind, far_behind_share * best);
-        if (!(near && proposals.size() < most_singles) && !(nuisance && !nuisance_tried) &&
+        if (!(near && proposals.size() < max_singles) && !(nuisance && !nuisance_tried) &&
             !(numerics && near && !numerics_tried))
             continue;
         nuisance_tried = nuisance_tried || nuisance;
@@ -137,7 +137,7 @@ std::optional<Eigen::VectorXd> confirm(Proposal& proposal, const GapData& data, 
                                        const Eigen::MatrixXd& all_runs) {
     constexpr double still_free = 0.25;  // part of an amplitude
     const Eigen::MatrixXd runs = whole_runs(all_runs, data.cells);
-    if (runs.rows() < fewest_runs) return std::nullopt;
+    if (runs.rows() < min_runs) return std::nullopt;
     const Eigen::VectorXd left = observed - runs.colwise().mean().transpose();
     std::vector<FreeParameter> free = data.free;
     for (std::size_t k = 0; k < proposal.candidates.size(); ++k)

@@ -8,7 +8,7 @@
 namespace mcdem::inline diagnose {
 
 /// Fewer contacts in a scan say nothing.
-inline constexpr std::size_t fewest_contacts = 60;
+inline constexpr std::size_t min_contacts = 60;
 
 // Each in the order of the table of scan_observables.cpp, not-a-number where the scan does not tell.
 

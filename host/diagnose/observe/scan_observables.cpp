@@ -80,7 +80,7 @@ Eigen::VectorXd scan_observables(const Recording& recording, const Scan& scan,
     Row row;
     const double top = scan.top_force();
     row.add(std::array{top > 0 ? std::log(top) : not_available});
-    if (scan.contacts.size() < fewest_contacts) return row.done();
+    if (scan.contacts.size() < min_contacts) return row.done();
     row.add(wall_loads(recording, scan));
     row.add(force_distribution_numbers(recording, scan, material));
     if (scan.position.empty()) return row.done();

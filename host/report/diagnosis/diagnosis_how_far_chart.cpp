@@ -36,7 +36,7 @@ Chart force_chart(const Diagnosis& diagnosis, const std::vector<std::array<doubl
     chart.layout = {{"xaxis", {{"title", title("plate displacement [mm]")}}},
                     {"yaxis", {{"title", title("top force [N]")}, {"rangemode", "tozero"}}},
                     {"legend", {{"x", 0.02}, {"y", 0.98}}}};
-    if (const auto [from, to] = diagnosis.shrink->fitted_displacement; from != to)
+    if (const auto [from, to] = diagnosis.gap_reduction->fitted_displacement; from != to)
         chart.layout["shapes"] = {{{"type", "rect"},
                                    {"xref", "x"},
                                    {"yref", "paper"},
@@ -50,11 +50,11 @@ Chart force_chart(const Diagnosis& diagnosis, const std::vector<std::array<doubl
     return chart;
 }
 
-Chart gap_chart(const Shrink& shrink) {
-    const auto bars = gap_bars(shrink);
+Chart gap_chart(const GapReduction& gap_reduction) {
+    const auto bars = gap_bars(gap_reduction);
     Chart chart{.name = "gap_left",
                 .title = "Gap that is left",
-                .caption = "On data held out (" + shrink.held_out +
+                .caption = "On data held out (" + gap_reduction.held_out +
                            "), with its 90 % interval; placebo: the best of many made-up effects.",
                 .height = 110 + 36 * static_cast<int>(bars.size())};
     Json x = Json::array(), y = Json::array(), colours = Json::array(), above = Json::array(),
@@ -94,11 +94,11 @@ Chart gap_chart(const Shrink& shrink) {
 }  // namespace
 
 std::vector<Chart> how_far_charts(const Diagnosis& diagnosis) {
-    if (!diagnosis.shrink || !(diagnosis.shrink->before > 0)) return {};
+    if (!diagnosis.gap_reduction || !(diagnosis.gap_reduction->before > 0)) return {};
     std::vector<Chart> charts;
-    if (const auto rows = known_forces(*diagnosis.shrink); rows.size() > 1)
+    if (const auto rows = known_forces(*diagnosis.gap_reduction); rows.size() > 1)
         charts.push_back(force_chart(diagnosis, rows));
-    charts.push_back(gap_chart(*diagnosis.shrink));
+    charts.push_back(gap_chart(*diagnosis.gap_reduction));
     return charts;
 }
 

@@ -71,20 +71,20 @@ Json top_force_json(const std::array<double, 4>& row) {
             {"after_N", row[3]}};
 }
 
-Json shrink_json(const std::optional<Shrink>& shrink) {
-    if (!shrink) return {};
+Json gap_reduction_json(const std::optional<GapReduction>& gap_reduction) {
+    if (!gap_reduction) return {};
     Json metrics = Json::object();
-    for (const auto& [name, values] : metrics_in_order(*shrink)) metrics[name] = values;
-    return {{"held_out", shrink->held_out},
-            {"before", shrink->before},
-            {"after", shrink->after},
-            {"fraction", shrink->fraction},
-            {"interval", shrink->interval},
-            {"placebo", shrink->placebo},
+    for (const auto& [name, values] : metrics_in_order(*gap_reduction)) metrics[name] = values;
+    return {{"held_out", gap_reduction->held_out},
+            {"before", gap_reduction->before},
+            {"after", gap_reduction->after},
+            {"fraction", gap_reduction->fraction},
+            {"interval", gap_reduction->interval},
+            {"placebo", gap_reduction->placebo},
             {"metrics", metrics},
-            {"confirmed", or_null(shrink->confirmed)},
-            {"fitted_displacement_mm", millimetres(shrink->fitted_displacement)},
-            {"top_force", list(shrink->top_force, top_force_json)}};
+            {"confirmed", or_null(gap_reduction->confirmed)},
+            {"fitted_displacement_mm", millimetres(gap_reduction->fitted_displacement)},
+            {"top_force", list(gap_reduction->top_force, top_force_json)}};
 }
 
 Json explanation_json(const std::optional<Explanation>& explanation) {
@@ -149,7 +149,7 @@ std::string diagnosis_json(const Diagnosis& diagnosis) {
                     {"where", list(diagnosis.where, where_json)},
                     {"causes", list(diagnosis.causes, cause_json)},
                     {"explanation", explanation_json(diagnosis.explanation)},
-                    {"shrink", shrink_json(diagnosis.shrink)},
+                    {"shrink", gap_reduction_json(diagnosis.gap_reduction)},
                     {"detection_limits", list(diagnosis.detection_limits, limit_json)},
                     {"not_measured", diagnosis.not_measured},
                     {"seconds", diagnosis.seconds},

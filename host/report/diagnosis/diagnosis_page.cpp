@@ -52,9 +52,9 @@ void add_chart(Page& page, const std::optional<Chart>& chart) {
 
 void add_how_far(Page& page, const Diagnosis& diagnosis) {
     page.section("How far");
-    if (!diagnosis.shrink) page.paragraph(verdict_lines(diagnosis)[3].says);
+    if (!diagnosis.gap_reduction) page.paragraph(verdict_lines(diagnosis)[3].says);
     for (const auto& chart : how_far_charts(diagnosis)) page.chart(chart);
-    page.table("Before and after", table_of_shrink(diagnosis));
+    page.table("Before and after", table_of_gap_reduction(diagnosis));
 }
 
 void add_table(Page& page, const std::string& heading, const TextTable& table) {

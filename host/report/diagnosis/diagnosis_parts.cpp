@@ -130,8 +130,8 @@ std::vector<std::string> group_letters(const std::vector<Cause>& ranking) {
     return letters;
 }
 
-std::vector<std::array<double, 4>> known_forces(const Shrink& shrink) {
-    auto rows = shrink.top_force;
+std::vector<std::array<double, 4>> known_forces(const GapReduction& gap_reduction) {
+    auto rows = gap_reduction.top_force;
     std::erase_if(rows, [](const auto& row) {
         return !std::all_of(row.begin(), row.end(), [](double value) { return std::isfinite(value); });
     });
@@ -145,15 +145,15 @@ std::string words_after(const Diagnosis& diagnosis) {
     return shortened("simulated with " + added, 40);
 }
 
-std::vector<GapBar> gap_bars(const Shrink& shrink) {
+std::vector<GapBar> gap_bars(const GapReduction& gap_reduction) {
     std::vector<GapBar> bars{{"before", diagnosis_colour::before, 1, {}},
-                             {shrink.confirmed ? "after, predicted" : "after",
+                             {gap_reduction.confirmed ? "after, predicted" : "after",
                               diagnosis_colour::after,
-                              1 - shrink.fraction,
-                              {{1 - shrink.interval[1], 1 - shrink.interval[0]}}}};
-    if (shrink.confirmed)
-        bars.push_back({"after, simulated", diagnosis_colour::after, 1 - *shrink.confirmed, {}});
-    bars.push_back({"placebo", diagnosis_colour::faint, 1 - shrink.placebo, {}});
+                              1 - gap_reduction.fraction,
+                              {{1 - gap_reduction.interval[1], 1 - gap_reduction.interval[0]}}}};
+    if (gap_reduction.confirmed)
+        bars.push_back({"after, simulated", diagnosis_colour::after, 1 - *gap_reduction.confirmed, {}});
+    bars.push_back({"placebo", diagnosis_colour::faint, 1 - gap_reduction.placebo, {}});
     return bars;
 }
 

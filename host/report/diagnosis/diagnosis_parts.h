@@ -59,7 +59,7 @@ struct ShownAmplitude {
 std::vector<ShownAmplitude> shown_amplitudes(const Diagnosis& diagnosis);
 
 /// Displacement [m], experiment, before and after [N]: those that are known in full.
-std::vector<std::array<double, 4>> known_forces(const Shrink& shrink);
+std::vector<std::array<double, 4>> known_forces(const GapReduction& gap_reduction);
 
 /// What the simulated force after the change is called.
 std::string words_after(const Diagnosis& diagnosis);
@@ -70,6 +70,6 @@ struct GapBar {
     double value;  ///< over the gap before
     std::optional<std::array<double, 2>> interval;
 };
-std::vector<GapBar> gap_bars(const Shrink& shrink);
+std::vector<GapBar> gap_bars(const GapReduction& gap_reduction);
 
 }  // namespace mcdem::report

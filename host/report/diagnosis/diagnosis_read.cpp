@@ -93,22 +93,24 @@ Refinement refinement_of(const Json& json) {
 
 NextStep step_of(const Json& json) { return {json.at("what"), optional_of<double>(json.at("power"))}; }
 
-Shrink shrink_of(const Json& json) {
-    Shrink shrink{.held_out = json.at("held_out"),
-                  .before = number(json.at("before")),
-                  .after = number(json.at("after")),
-                  .fraction = number(json.at("fraction")),
-                  .interval = pair_of(json.at("interval")),
-                  .placebo = number(json.at("placebo")),
-                  .confirmed = optional_of<double>(json.at("confirmed")),
-                  .metrics = {},
-                  .top_force = {},
-                  .fitted_displacement = pair_of(json.at("fitted_displacement_mm"), mm)};
-    for (const auto& [name, values] : json.at("metrics").items()) shrink.metrics[name] = pair_of(values);
+GapReduction gap_reduction_of(const Json& json) {
+    GapReduction gap_reduction{.held_out = json.at("held_out"),
+                               .before = number(json.at("before")),
+                               .after = number(json.at("after")),
+                               .fraction = number(json.at("fraction")),
+                               .interval = pair_of(json.at("interval")),
+                               .placebo = number(json.at("placebo")),
+                               .confirmed = optional_of<double>(json.at("confirmed")),
+                               .metrics = {},
+                               .top_force = {},
+                               .fitted_displacement = pair_of(json.at("fitted_displacement_mm"), mm)};
+    for (const auto& [name, values] : json.at("metrics").items())
+        gap_reduction.metrics[name] = pair_of(values);
     for (const auto& row : json.at("top_force"))
-        shrink.top_force.push_back({number(row.at("displacement_mm")) * mm, number(row.at("experiment_N")),
-                                    number(row.at("before_N")), number(row.at("after_N"))});
-    return shrink;
+        gap_reduction.top_force.push_back({number(row.at("displacement_mm")) * mm,
+                                           number(row.at("experiment_N")), number(row.at("before_N")),
+                                           number(row.at("after_N"))});
+    return gap_reduction;
 }
 
 Verdict verdict_of(const std::string& word) {
@@ -133,7 +135,7 @@ Diagnosis read(const Json& json) {
     d.nuisances = list_of(json.at("nuisances"), nuisance_of);
     if (const auto found = json.find("explanation"); found != json.end() && !found->is_null())
         d.explanation = explanation_of(*found);  // files of earlier versions have none
-    if (!json.at("shrink").is_null()) d.shrink = shrink_of(json.at("shrink"));
+    if (!json.at("shrink").is_null()) d.gap_reduction = gap_reduction_of(json.at("shrink"));
     d.detection_limits = list_of(json.at("detection_limits"), limit_of);
     d.not_measured = json.at("not_measured");
     d.not_testable = json.at("not_testable");

@@ -12,7 +12,7 @@ namespace mcdem::inline report {
 namespace {
 
 const std::string dash = "–";
-constexpr std::size_t most_entries = 20;  // of "where"
+constexpr std::size_t max_entries = 20;  // of "where"
 
 std::string number(double value, const char* format = "{:.3g}") {
     return std::isfinite(value) ? fmt::format(fmt::runtime(format), value) : dash;
@@ -75,12 +75,12 @@ TextTable table_of_where(const Diagnosis& diagnosis) {
     std::stable_sort(entries.begin(), entries.end(), [](const WhereEntry& a, const WhereEntry& b) {
         return std::fabs(a.z_score) > std::fabs(b.z_score);
     });
-    for (const auto& entry : std::span(entries).first(std::min(entries.size(), most_entries)))
+    for (const auto& entry : std::span(entries).first(std::min(entries.size(), max_entries)))
         table.rows.push_back({words_of(entry.observable), part_words(entry), phase_words(entry.phase),
                               displacement_words(entry.displacement), number(entry.z_score, "{:.1f}"),
                               number(entry.z_score_refitted, "{:.1f}")});
-    if (entries.size() > most_entries)
-        table.notes.push_back(fmt::format("and {} more, in diagnosis.json", entries.size() - most_entries));
+    if (entries.size() > max_entries)
+        table.notes.push_back(fmt::format("and {} more, in diagnosis.json", entries.size() - max_entries));
     return table;
 }
 
@@ -114,13 +114,13 @@ TextTable table_of_nuisances(const Diagnosis& diagnosis) {
     return table;
 }
 
-TextTable table_of_shrink(const Diagnosis& diagnosis) {
+TextTable table_of_gap_reduction(const Diagnosis& diagnosis) {
     TextTable table;
-    if (!diagnosis.shrink) return table;
-    const auto& shrink = *diagnosis.shrink;
+    if (!diagnosis.gap_reduction) return table;
+    const auto& gap_reduction = *diagnosis.gap_reduction;
     table.columns = {{"", Align::left}, {"before"}, {"after"}, {"perfect"}};
-    add_change(table, "gap, noise taken off", {shrink.before, shrink.after}, "0");
-    for (const auto& [name, values] : metrics_in_order(shrink))
+    add_change(table, "gap, noise taken off", {gap_reduction.before, gap_reduction.after}, "0");
+    for (const auto& [name, values] : metrics_in_order(gap_reduction))
         add_change(table, name == "errf" ? "errf [N]" : name, values, perfect(name));
     return table;
 }

@@ -15,8 +15,8 @@ TextTable table_of_detection_limits(const Diagnosis& diagnosis);
 /// How far the fit moved the parameters that are known only roughly.
 TextTable table_of_nuisances(const Diagnosis& diagnosis);
 
-/// Gap and metrics before and after; empty without a shrink.
-TextTable table_of_shrink(const Diagnosis& diagnosis);
+/// Gap and metrics before and after; empty without a gap_reduction.
+TextTable table_of_gap_reduction(const Diagnosis& diagnosis);
 
 TextTable table_of_provenance(const Diagnosis& diagnosis);
 

@@ -12,9 +12,9 @@
 namespace mcdem::inline report {
 namespace {
 
-constexpr std::size_t most_entries = 2;  // of "where"
-constexpr std::size_t most_limits = 5;
-constexpr std::size_t longest_remark = 160;
+constexpr std::size_t max_entries = 2;  // of "where"
+constexpr std::size_t max_limits = 5;
+constexpr std::size_t max_remark_length = 160;
 
 std::vector<std::string> words_of_all(const std::vector<std::string>& names) {
     std::vector<std::string> words;
@@ -134,7 +134,7 @@ std::string where_line(const Diagnosis& diagnosis) {
         if (std::find(observables.begin(), observables.end(), entry.observable) != observables.end())
             continue;
         observables.push_back(entry.observable);
-        if (parts.size() < most_entries) parts.push_back(where_words(entry));
+        if (parts.size() < max_entries) parts.push_back(where_words(entry));
     }
     auto text = parts.front();
     for (std::size_t i = 1; i < parts.size(); ++i) text += "; " + parts[i];
@@ -209,8 +209,9 @@ std::string what_is_added(const Diagnosis& diagnosis) {
 
 std::string data_words(const Diagnosis& diagnosis) {
     if (!diagnosis.explanation->held_out) return " (the data held out show none by themselves)";
-    const auto held_out =
-        diagnosis.shrink ? shortened(one_line(diagnosis.shrink->held_out), longest_remark) : "";
+    const auto held_out = diagnosis.gap_reduction
+                              ? shortened(one_line(diagnosis.gap_reduction->held_out), max_remark_length)
+                              : "";
     return " on data held out" + (held_out.empty() ? "" : " (" + held_out + ")");
 }
 
@@ -230,9 +231,11 @@ std::string how_far_line(const Diagnosis& diagnosis) {
                             reduction_words(diagnosis), data_words(diagnosis),
                             explanation.simulated ? "simulated in full" : "by the signatures",
                             percent(explanation.placebo), remainder_words(explanation));
-    if (const auto& shrink = diagnosis.shrink; shrink && shrink->before > 0 && explanation.held_out)
-        text += fmt::format("; predicted was {} (90 % interval: {:.0f} to {})", percent(shrink->fraction),
-                            shrink->interval[0] * 100, percent(shrink->interval[1]));
+    if (const auto& gap_reduction = diagnosis.gap_reduction;
+        gap_reduction && gap_reduction->before > 0 && explanation.held_out)
+        text +=
+            fmt::format("; predicted was {} (90 % interval: {:.0f} to {})", percent(gap_reduction->fraction),
+                        gap_reduction->interval[0] * 100, percent(gap_reduction->interval[1]));
     return text + ".";
 }
 
@@ -264,7 +267,7 @@ std::vector<std::string> never_shown(const Diagnosis& diagnosis) {
 std::string no_gap_limits(const Diagnosis& diagnosis) {
     const auto limits = limits_that_matter(diagnosis);
     if (limits.empty()) return "smaller effects than these data can show may be there.";
-    return "smaller ones may be there: these data would show " + listed(limits, most_limits);
+    return "smaller ones may be there: these data would show " + listed(limits, max_limits);
 }
 
 std::string limits_line(const Diagnosis& diagnosis) {
@@ -283,9 +286,9 @@ std::string limits_line(const Diagnosis& diagnosis) {
         text = "consistent is not proven: an effect outside the library may look the same";
     while (text.ends_with('.')) text.pop_back();
     const auto never = never_shown(diagnosis);
-    if (!never.empty()) text += "; these data can never show " + listed(never, most_limits);
+    if (!never.empty()) text += "; these data can never show " + listed(never, max_limits);
     if (!diagnosis.not_measured.empty())
-        text += "; not measured: " + shortened(one_line(diagnosis.not_measured.front()), longest_remark);
+        text += "; not measured: " + shortened(one_line(diagnosis.not_measured.front()), max_remark_length);
     while (text.ends_with('.')) text.pop_back();
     return text + ".";
 }

@@ -66,7 +66,7 @@ Json which_json(const Diagnosis& diagnosis) {
 }
 
 Json forces_json(const Diagnosis& diagnosis) {
-    const auto rows = known_forces(*diagnosis.shrink);
+    const auto rows = known_forces(*diagnosis.gap_reduction);
     if (rows.size() < 2) return {};
     Json displacement = Json::array(), experiment = Json::array(), before = Json::array(),
          after = Json::array();
@@ -84,14 +84,14 @@ Json forces_json(const Diagnosis& diagnosis) {
               {"words_after", words_after(diagnosis)},
               {"colour_before", diagnosis_colour::before},
               {"colour_after", diagnosis_colour::after}};
-    if (const auto [from, to] = diagnosis.shrink->fitted_displacement; from != to)
+    if (const auto [from, to] = diagnosis.gap_reduction->fitted_displacement; from != to)
         json["fitted"] = {from * 1e3, to * 1e3};
     return json;
 }
 
 Json how_far_json(const Diagnosis& diagnosis) {
     Json bars = Json::array();
-    for (const auto& [words, colour, value, interval] : gap_bars(*diagnosis.shrink)) {
+    for (const auto& [words, colour, value, interval] : gap_bars(*diagnosis.gap_reduction)) {
         Json bar{{"words", words}, {"colour", colour}, {"gap_left", value * 100}};
         if (interval && std::isfinite((*interval)[0]) && std::isfinite((*interval)[1]))
             bar["interval"] = {(*interval)[0] * 100, (*interval)[1] * 100};
@@ -107,7 +107,8 @@ Json diagnosis_figure_values(const Diagnosis& diagnosis) {
     Json values = Json::object();
     if (has_cells(diagnosis)) values["where"] = where_json(diagnosis);
     if (!diagnosis.ranking.empty()) values["which"] = which_json(diagnosis);
-    if (diagnosis.shrink && diagnosis.shrink->before > 0) values["how_far"] = how_far_json(diagnosis);
+    if (diagnosis.gap_reduction && diagnosis.gap_reduction->before > 0)
+        values["how_far"] = how_far_json(diagnosis);
     return values;
 }
 

@@ -10,7 +10,7 @@ namespace mcdem::inline report {
 namespace {
 
 constexpr int row_height = 22, above_rows = 64, below_rows = 56;  // [pixels]
-constexpr std::size_t most_numbers = 16;                          // columns in which numbers find room
+constexpr std::size_t max_numbers = 16;                           // columns in which numbers find room
 
 /// Columns of the trace: those of the map, and an empty one where the phase changes.
 struct Grid {
@@ -106,7 +106,7 @@ void add_frames(const Diagnosis& diagnosis, const HeatMap& map, bool refitted, c
         x.push_back(middle), y.push_back(row), text.push_back(fmt::format("{:.1f}", z));
         ink.push_back(std::fabs(z) > 0.6 * range ? "var(--on-strong)" : "#111111");
     }
-    if (x.empty() || map.columns.size() > most_numbers) return;
+    if (x.empty() || map.columns.size() > max_numbers) return;
     chart.data.push_back({{"type", "scatter"},
                           {"mode", "text"},
                           {"x", x},

@@ -141,9 +141,10 @@ std::string cause_words(const Cause& cause) {
     return words_of(cause.effect) + " (" + amount(cause.amplitude, cause.amplitude_error, cause.unit) + ")";
 }
 
-std::vector<std::pair<std::string, std::array<double, 2>>> metrics_in_order(const Shrink& shrink) {
-    std::vector<std::pair<std::string, std::array<double, 2>>> metrics(shrink.metrics.begin(),
-                                                                       shrink.metrics.end());
+std::vector<std::pair<std::string, std::array<double, 2>>> metrics_in_order(
+    const GapReduction& gap_reduction) {
+    std::vector<std::pair<std::string, std::array<double, 2>>> metrics(gap_reduction.metrics.begin(),
+                                                                       gap_reduction.metrics.end());
     const auto place = [](const auto& metric) {
         static constexpr std::array<std::string_view, 4> order{"Rtop", "errf", "errZ", "bhat"};
         return std::find(order.begin(), order.end(), metric.first) - order.begin();

@@ -40,7 +40,8 @@ std::string where_words(const WhereEntry& entry);
 std::string cause_words(const Cause& cause);
 
 /// The paper's metrics in its order, then others: name, before and after.
-std::vector<std::pair<std::string, std::array<double, 2>>> metrics_in_order(const Shrink& shrink);
+std::vector<std::pair<std::string, std::array<double, 2>>> metrics_in_order(
+    const GapReduction& gap_reduction);
 
 /// The effects that were tried: "the 18 known effects".
 std::string library_words(const Diagnosis& diagnosis);

@@ -76,7 +76,7 @@ Json scan_json(const Recording& recording, const Scan& scan, const Shown& shown)
 
 Json setting_json(const ShownPacking& packing, const PackingLimits& limits) {
     const auto& recording = packing.recording;
-    const auto shown = shown_grains(recording, limits.most_grains);
+    const auto shown = shown_grains(recording, limits.max_grains);
     Json diameters = Json::array(), scans = Json::array();
     for (const int grain : shown.grains)
         diameters.push_back(rounded(recording.diameter[static_cast<std::size_t>(grain)] / mm));
@@ -122,7 +122,7 @@ long numbers_of_scan(long grains, long contacts) { return 3 * (grains + contacts
 std::vector<std::size_t> scans_shown(const Recording& recording, long numbers, const PackingLimits& limits) {
     const auto count = recording.scans.size();
     const auto room = limits.scans ? static_cast<long>(*limits.scans)
-                                   : std::max(3L, limits.most_numbers / std::max(1L, numbers));
+                                   : std::max(3L, limits.max_numbers / std::max(1L, numbers));
     const auto most = std::min(count, static_cast<std::size_t>(room));
     std::vector<std::size_t> shown;
     for (std::size_t s = 0; s < most; ++s)

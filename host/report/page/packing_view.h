@@ -18,8 +18,8 @@ struct ShownPacking {
 /// How much of a packing a page carries.
 struct PackingLimits {
     std::optional<int> scans = std::nullopt;  ///< at most so many of each packing; none: as many as find room
-    long most_numbers = 600'000;              ///< in all packings together, about 3 MB
-    int most_grains = 20'000;                 ///< of a packing: those nearest to its middle plane
+    long max_numbers = 600'000;               ///< in all packings together, about 3 MB
+    int max_grains = 20'000;                  ///< of a packing: those nearest to its middle plane
 };
 
 /// Which of a recording's scans are shown: evenly spread, the first, the last and the most compressed one

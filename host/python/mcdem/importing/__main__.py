@@ -50,8 +50,8 @@ def print_mapping(mapping):
                 print_entry(key.name, table[key.name])
         for word, of in sorted(table.walls.items()):
             print_entry("wall " + word, of)
-        if table.aside:
-            print(textwrap.fill(", ".join(table.aside), LINE, initial_indent="  left aside   ", subsequent_indent=" " * 15,
+        if table.unused:
+            print(textwrap.fill(", ".join(table.unused), LINE, initial_indent="  not used     ", subsequent_indent=" " * 15,
                                 break_long_words=False, break_on_hyphens=False))
     sys.stdout.flush()
 

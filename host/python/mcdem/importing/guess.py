@@ -13,7 +13,7 @@ from .guess_lengths import guess_grain_lengths, guess_grains_upwards
 from .guess_names import guess_by_names
 from .guess_plate import guess_plate_units
 from .guess_values import guess_contacts_by_values, guess_grains_by_values, guess_plate_by_values
-from .mapping import UNCLEAR, Guess, MappedTable, columns_of, find_key, left_aside, must_be_stated, signed_column
+from .mapping import UNCLEAR, Guess, MappedTable, columns_of, find_key, unused_columns, must_be_stated, signed_column
 from .names import VOXEL
 from .plate import import_plate
 from .problems import Problems
@@ -64,7 +64,7 @@ def guess_tables(files, known):
     tables = _group(read_tables(files))
     for table in tables:
         guess_by_names(table)
-        if table.role == "aside":
+        if table.role == "unused":
             guess_grains_by_values(table)
     guess_grains_upwards(tables)
     for table in tables:
@@ -72,12 +72,12 @@ def guess_tables(files, known):
             guess_grain_lengths(table, known)
     guess_frames(tables)
     grains = _grains_so_far(tables)
-    open_ = [table for table in tables if table.role == "aside" and table.map.role_sure == UNCLEAR]
+    open_ = [table for table in tables if table.role == "unused" and table.map.role_sure == UNCLEAR]
     for table in open_:
         guess_contacts_by_values(table, grains)
     has_plate = any(table.role == "plate" for table in tables)
     for table in open_:
-        if table.role == "aside" and not has_plate:
+        if table.role == "unused" and not has_plate:
             guess_plate_by_values(table)
     guess_frames(tables)
     grains = grains if has_plate else _grains_so_far(tables)
@@ -89,7 +89,7 @@ def guess_tables(files, known):
     for table in tables:
         if table.role == "plate":
             guess_plate_units(table, tables, grains, known, voxel_size)
-        table.map.aside = left_aside(table.map, table.parts[0].columns)
+        table.map.unused = unused_columns(table.map, table.parts[0].columns)
     return tables
 
 
@@ -130,7 +130,7 @@ def _distribute(files, tables, problems):
     for file in files:
         best, most, why = None, 0, f"{file}: must have the columns of a table of the mapping, got others"
         for table in tables:
-            if table.role == "aside":
+            if table.role == "unused":
                 continue
             try:
                 part = read_table(file, table.map.form)
@@ -156,14 +156,14 @@ def read_import_tables(mapping, files=(), file="mapping"):
     for mapped in mapping:
         tables.append(ImportTable(mapped.changed(), []))
         try:
-            tables[-1].parts = read_tables([] if files or mapped.role == "aside" else mapped.files, mapped.form)
+            tables[-1].parts = read_tables([] if files or mapped.role == "unused" else mapped.files, mapped.form)
         except InputError as error:
             problems += error.problems
         tables[-1].map.files = [] if files else mapped.files
     if files:
         _distribute(files, tables, problems)
         for table, mapped in zip(tables, mapping):
-            if not problems and table.role != "aside" and not table.map.files:
+            if not problems and table.role != "unused" and not table.map.files:
                 problems.append(f"{file}:{mapped.line}: the table of {mapped.role}, {mapped.files[0]} there, must have a file too, got none "
                                 "among those given: give it, or remove the table from the mapping")
         tables = [table for table in tables if table.map.files]

@@ -4,7 +4,7 @@ import numpy as np
 from .contacts import import_contacts
 from .guess_lengths import fitting_units, length_factors, state_voxel_size
 from .guess_walls import guess_walls, set_walls, unknown_partners
-from .mapping import UNCLEAR, guess, turned
+from .mapping import UNCLEAR, guess, negated
 from .names import FORCES, VOXEL
 from .problems import Problems
 
@@ -82,13 +82,13 @@ def _guess_offset(table, grains):
 def _guess_force_upwards(table, grains, box):
     """Forces lie along the lines of centres where fz counts the way that it should."""
     fz = table.map["fz"]
-    as_it_is, other_way = (abs(_Places(trial, grains).outward(box)) for trial in (table, table.changed(fz=turned(fz))))
+    as_it_is, other_way = (abs(_Places(trial, grains).outward(box)) for trial in (table, table.changed(fz=negated(fz))))
     if abs(as_it_is - other_way) < 0.2:
         if grains.sign[2] < 0:
-            table.map["fz"] = turned(fz)
+            table.map["fz"] = negated(fz)
             table.map["fz"].sure, table.map["fz"].why = UNCLEAR, "z of the grains is downwards: are the forces too? If not, remove the -"
     elif other_way > as_it_is:
-        table.map["fz"] = turned(fz)
+        table.map["fz"] = negated(fz)
         table.map["fz"].sure = UNCLEAR if fz.sure == UNCLEAR else "sure"
         table.map["fz"].why += (f"; the other way, for so forces lie along the lines of centres (mean cosine {other_way:.2f}, else "
                                 f"{as_it_is:.2f})")
@@ -134,7 +134,7 @@ def _guess_point_unit(table, grains, known, voxel_size):
         return
     named, fits = mapped.get("length_unit"), _point_units(table, grains, voxel_size)
     if not fits:
-        other = turned(mapped["z"])
+        other = negated(mapped["z"])
         fits = _point_units(table.changed(z=other), grains, voxel_size)
         if fits:
             mapped["z"] = other

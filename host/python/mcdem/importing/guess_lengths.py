@@ -140,21 +140,21 @@ def _end_that_gives(ends, diameter):
 
 
 def _upwards(column, now, ends, diameter):
-    """What the ends and the column's name say of a table whose z is not turned yet."""
+    """What the ends and the column's name say of a table whose z is not negated yet."""
     gives, margin, (low, high) = _end_that_gives(ends, diameter), 0.12 * diameter, ends[0]
-    turned, reach = "-" + column, f"grains reach from {low:.4g} to {high:.4g}"
+    negated, reach = "-" + column, f"grains reach from {low:.4g} to {high:.4g}"
     if is_among(column_name(column).base, DOWNWARDS):
         if gives in ("high", "both"):
-            return guess(turned, UNCLEAR, "its name says downwards, but the packing gives way at its upper end: remove the - if z is upwards")
-        return guess(turned, "sure", "its name says downwards")
+            return guess(negated, UNCLEAR, "its name says downwards, but the packing gives way at its upper end: remove the - if z is upwards")
+        return guess(negated, "sure", "its name says downwards")
     if gives == "low" and abs(high) < margin:
-        return guess(turned, "sure", reach + ", and the packing gives way at its lower end: z is downwards")
+        return guess(negated, "sure", reach + ", and the packing gives way at its lower end: z is downwards")
     if gives == "low":
-        return guess(turned, UNCLEAR, reach + ", and the packing gives way at its lower end: is z downwards? If not, remove the -")
+        return guess(negated, UNCLEAR, reach + ", and the packing gives way at its lower end: is z downwards? If not, remove the -")
     if gives == "both":
         return guess(now.word, UNCLEAR, "the packing gives way at both ends: is z upwards, and does the floor stand still?")
     if gives == "none" and high < margin and low < -margin:
-        return guess(turned, UNCLEAR, reach + ": is z downwards? If not, remove the -")
+        return guess(negated, UNCLEAR, reach + ": is z downwards? If not, remove the -")
     if gives == "high" and now.sure != UNCLEAR:
         now.why += "; upwards, for the packing gives way there"
     return now

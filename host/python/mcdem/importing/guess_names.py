@@ -57,7 +57,7 @@ def _note_tangential(mapped, columns):
         base = column_name(column).base
         if base.startswith(("ft", "fs")) or any(word in base for word in ("tang", "shear", "scher")):
             mapped["force"].sure = UNCLEAR
-            mapped["force"].why = f"{column} would be left aside: give fx, fy, fz, or confirm that the normal part is enough"
+            mapped["force"].why = f"{column} would not be used: give fx, fy, fz, or confirm that the normal part is enough"
 
 
 def _note_programs(mapped, columns):
@@ -75,13 +75,13 @@ def _note_programs(mapped, columns):
 
 def guess_by_names(table):
     mapped, columns = table.map, table.parts[0].columns
-    mapped.role = role = _role_of(columns) or "aside"
-    mapped.role_sure, mapped.role_why = ("sure", "its columns are named so") if role != "aside" else (
+    mapped.role = role = _role_of(columns) or "unused"
+    mapped.role_sure, mapped.role_why = ("sure", "its columns are named so") if role != "unused" else (
         UNCLEAR, "its columns say nothing that is known")
     found = columns_by_key("contacts", columns)
-    if role == "aside" and "grain" in found and "partner" in found and _only_touching(columns):
+    if role == "unused" and "grain" in found and "partner" in found and _only_touching(columns):
         mapped.role_sure, mapped.role_why = "likely", "pairs of grains that touch, without forces: an experiment's contacts have forces"
-    if role == "aside":
+    if role == "unused":
         return
     found = columns_by_key(role, columns)
     if "plate_z" in found:

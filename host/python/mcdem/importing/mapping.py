@@ -32,7 +32,7 @@ def signed_column(word):
     return (-1, word[1:]) if word.startswith("-") else (1, word)
 
 
-def turned(of):
+def negated(of):
     """The entry with every column counting the other way."""
     return Guess([word[1:] if word.startswith("-") else "-" + word for word in of.words], of.sure, of.why)
 
@@ -101,7 +101,7 @@ KEYS = {
         *_LENGTH_KEYS,
         Key("force_unit", "word", "", _FORCES),
     ],
-    "aside": [],
+    "unused": [],
 }
 COLUMN_KINDS = ("column", "quantity", "quantities")
 
@@ -112,12 +112,12 @@ def find_key(role, name):
 
 @dataclass
 class MappedTable:
-    role: str = "aside"
+    role: str = "unused"
     role_sure: str = "stated"
     role_why: str = ""
     line: int = 0  # in the mapping
     files: list = field(default_factory=list)  # alike, in the order of the frames
-    aside: list = field(default_factory=list)  # columns that were seen and are not used
+    unused: list = field(default_factory=list)  # columns that were seen and are not used
     form: Form = None  # of text
     decimal_unclear: str = ""  # why; empty: it is clear
     entries: dict = field(default_factory=dict)
@@ -184,7 +184,7 @@ def columns_of(table):
             yield key.name, words
 
 
-def left_aside(table, columns):
+def unused_columns(table, columns):
     used = {signed_column(word)[1] for entry in table.entries.values() for word in entry.words}
     return [column for column in columns if column not in used]
 
@@ -228,15 +228,15 @@ def _meaning(key):
 
 def _table_text(table):
     text = "\n[[table]]\n" + _line_text("role", guess(table.role, table.role_sure, table.role_why),
-                                        "one of plate, grains, contacts, aside")
+                                        "one of plate, grains, contacts, unused")
     text += f"files = [{', '.join(map(toml_text, table.files))}]\n"
     if table.form:
         separator = {"\t": "tab", " ": "blanks"}.get(table.form.separator, table.form.separator)
         text += f'separator = "{separator}"\n'
         text += _line_text("decimal", guess(table.form.decimal, UNCLEAR if table.decimal_unclear else "stated", table.decimal_unclear),
                            "a comma or a point")
-    if table.aside:
-        text += f"# columns left aside: {_one_line(', '.join(table.aside))}\n"
+    if table.unused:
+        text += f"# columns not used: {_one_line(', '.join(table.unused))}\n"
     for key in KEYS[table.role]:
         text += _line_text(key.name, table[key.name], _meaning(key)) if key.name in table else f"# {key.name} =  # {_meaning(key)}\n"
     if table.walls:

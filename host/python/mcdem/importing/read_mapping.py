@@ -127,7 +127,7 @@ class _Reader:
                 self.wrong(line, f"{name} {problem}")
             elif words:
                 table[name] = Guess(words)
-        elif table.role != "aside":
+        elif table.role != "unused":
             self.wrong(line, f"{quoted(name)} must be a key of a table of {table.role}, got another: remove it, or choose from "
                        + ", ".join(key.name for key in KEYS[table.role]))
 

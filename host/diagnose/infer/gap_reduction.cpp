@@ -1,4 +1,4 @@
-#include "diagnose/infer/shrinkage.h"
+#include "diagnose/infer/gap_reduction.h"
 
 #include <algorithm>
 #include <cmath>
@@ -192,17 +192,17 @@ double whole_placebo(const GapSpace& space, const GapData& data, double excess, 
     });
 }
 
-Shrink measure_shrink(const GapData& data, const Split& split, const Proposal& proposal, int mean_of,
-                      std::uint64_t seed) {
-    Shrink shrink;
-    shrink.held_out = "unloading, and loading beyond 85 % of the stroke";
-    if (split.fitted.empty() || split.held_out.empty()) return shrink;
+GapReduction measure_reduction(const GapData& data, const Split& split, const Proposal& proposal, int mean_of,
+                               std::uint64_t seed) {
+    GapReduction gap_reduction;
+    gap_reduction.held_out = "unloading, and loading beyond 85 % of the stroke";
+    if (split.fitted.empty() || split.held_out.empty()) return gap_reduction;
     const std::vector<Candidate> candidates = chosen_candidates(data, proposal.candidates);
     const Arms arms(data, split, mean_of);
     const auto sizes = arms.sizes(data.gap, candidates);
-    shrink.before = sizes[0];
-    shrink.after = sizes[1];
-    shrink.fraction = part_gone(sizes);
+    gap_reduction.before = sizes[0];
+    gap_reduction.after = sizes[1];
+    gap_reduction.fraction = part_gone(sizes);
     Random random(seed, Stream::bootstrap);
     std::vector<double> drawn;
     for (int draw = 0; draw < bootstrap_draws; ++draw) {
@@ -212,8 +212,8 @@ Shrink measure_shrink(const GapData& data, const Split& split, const Proposal& p
             part_gone(arms.sizes(data.gap + sign * data.noise.row(row).transpose(), candidates, 1)));
     }
     std::ranges::sort(drawn);
-    shrink.interval = {drawn[bootstrap_draws / 20], drawn[bootstrap_draws - 1 - bootstrap_draws / 20]};
-    return shrink;
+    gap_reduction.interval = {drawn[bootstrap_draws / 20], drawn[bootstrap_draws - 1 - bootstrap_draws / 20]};
+    return gap_reduction;
 }
 
 }  // namespace mcdem::diagnose

@@ -1,6 +1,6 @@
-// How far does the gap shrink? The effect's amplitude and the nuisances are fitted on loading up to 85 %
-// of the stroke; the gap is measured on the rest, once with the nuisances refitted alone and once with
-// the effect too.
+// How far does the gap gap_reduction? The effect's amplitude and the nuisances are fitted on loading up to 85
+// % of the stroke; the gap is measured on the rest, once with the nuisances refitted alone and once with the
+// effect too.
 #pragma once
 #include "diagnose/decide/diagnosis.h"
 #include "diagnose/infer/proposals.h"
@@ -43,8 +43,8 @@ double whole_placebo(const GapSpace& space, const GapData& data, double excess, 
 
 /// Fit on `split.fitted` of the candidates named (one or two), measured on `split.held_out`. Interval by
 /// bootstrap: the replicates' scatter is added once more, and its size taken off again.
-Shrink measure_shrink(const GapData& data, const Split& split, const Proposal& proposal, int mean_of,
-                      std::uint64_t seed);
+GapReduction measure_reduction(const GapData& data, const Split& split, const Proposal& proposal, int mean_of,
+                               std::uint64_t seed);
 
 /// Amplitudes fitted on the split's first part, and the nuisances' shifts with them: what a confirming run is
 /// made with.

@@ -1,5 +1,5 @@
 // A planted effect takes its gap away on data that were not fitted; where there is none, nothing does.
-#include "diagnose/infer/shrinkage.h"
+#include "diagnose/infer/gap_reduction.h"
 
 #include <gtest/gtest.h>
 
@@ -23,10 +23,10 @@ struct Case {
         e.observed += amplitude * e.library.effects[0].linear;
         return e;
     }
-    Shrink shrink(std::vector<std::size_t> candidates) const {
+    GapReduction gap_reduction(std::vector<std::size_t> candidates) const {
         Proposal p;
         p.candidates = std::move(candidates);
-        return measure_shrink(data, split, p, replicates, 1);
+        return measure_reduction(data, split, p, replicates, 1);
     }
 
     SyntheticWorld world;
@@ -76,9 +76,9 @@ TEST(GapSize, OfWhatIsThereIsItsSquareInSigmas) {
     EXPECT_NEAR(mean, expected, 0.03 * expected);
 }
 
-TEST(Shrink, APlantedEffectTakesItsGapAway) {
+TEST(GapReduction, APlantedEffectTakesItsGapAway) {
     const Case c(4);
-    const Shrink s = c.shrink({0});
+    const GapReduction s = c.gap_reduction({0});
     EXPECT_GT(s.fraction, 0.9);
     EXPECT_LE(s.fraction, 1);
     EXPECT_NEAR(s.fraction, std::min(1.0, 1 - s.after / s.before), 1e-12);
@@ -92,7 +92,7 @@ TEST(Shrink, APlantedEffectTakesItsGapAway) {
     EXPECT_TRUE(held_out_gap(c.data, c.split, replicates).shows());
 }
 
-TEST(Shrink, WhereThereIsNoGapTheHeldOutDataShowNone) {
+TEST(GapReduction, WhereThereIsNoGapTheHeldOutDataShowNone) {
     int shown = 0;
     for (std::uint64_t seed = 50; seed < 90; ++seed) {
         const Case c(0, seed);
@@ -102,7 +102,7 @@ TEST(Shrink, WhereThereIsNoGapTheHeldOutDataShowNone) {
 }
 
 // Runs that meet the data take the gap away, whatever the signature says; failed ones do not count.
-TEST(Shrink, RealRunsSayWhatTheyTakeAway) {
+TEST(GapReduction, RealRunsSayWhatTheyTakeAway) {
     Case c(4);
     const Eigen::VectorXd centre = c.evidence.baseline.colwise().mean().transpose();
     Eigen::MatrixXd runs(9, centre.size());
@@ -121,7 +121,7 @@ TEST(Shrink, RealRunsSayWhatTheyTakeAway) {
 }
 
 // The signature says half of what the effect does: fitted again from runs, the amplitude is right.
-TEST(Shrink, RunsMendTheFitOfAPart) {
+TEST(GapReduction, RunsMendTheFitOfAPart) {
     Case c(4);
     const Eigen::VectorXd shape = c.evidence.library.effects[0].linear;
     c.evidence.library.effects[0].linear *= 0.5;
@@ -137,34 +137,34 @@ TEST(Shrink, RunsMendTheFitOfAPart) {
                 1e-9);
 }
 
-TEST(Shrink, AnotherEffectDoesNot) { EXPECT_LT(Case(4).shrink({1}).fraction, 0.3); }
+TEST(GapReduction, AnotherEffectDoesNot) { EXPECT_LT(Case(4).gap_reduction({1}).fraction, 0.3); }
 
-TEST(Shrink, TwoEffectsAreFittedTogether) {
+TEST(GapReduction, TwoEffectsAreFittedTogether) {
     Case c(4);
     c.data.gap -= 3 * c.evidence.library.effects[1].linear;
-    EXPECT_GT(c.shrink({0, 1}).fraction, 0.9);
-    EXPECT_LT(c.shrink({0}).fraction, 0.8);
+    EXPECT_GT(c.gap_reduction({0, 1}).fraction, 0.9);
+    EXPECT_LT(c.gap_reduction({0}).fraction, 0.8);
     const PartialFit fit = fit_part(c.data, c.split.fitted, c.data.gap, {0, 1}, replicates);
     EXPECT_NEAR(fit.amplitudes[0], 4, 1.2);  // 18 correlated cells of noise one: 0.3 each
     EXPECT_NEAR(fit.amplitudes[1], -3, 1.2);
     EXPECT_EQ(fit.nuisances.size(), 1);
 }
 
-TEST(Shrink, OfNoiseIsNothingForSure) {
+TEST(GapReduction, OfNoiseIsNothingForSure) {
     int covered = 0;
     constexpr int cases = 20;
     for (int k = 0; k < cases; ++k) {
-        const Shrink s = Case(0, 50 + static_cast<std::uint64_t>(k)).shrink({0});
+        const GapReduction s = Case(0, 50 + static_cast<std::uint64_t>(k)).gap_reduction({0});
         covered += s.interval[0] <= 0.1;
     }
     EXPECT_GE(covered, 16);  // a 90 % interval of the part, whose true value is none
 }
 
-TEST(Shrink, OnePartMissing) {
+TEST(GapReduction, OnePartMissing) {
     const Case c(4);
     Proposal p;
     p.candidates = {0};
-    const Shrink s = measure_shrink(c.data, {c.split.fitted, {}}, p, replicates, 1);
+    const GapReduction s = measure_reduction(c.data, {c.split.fitted, {}}, p, replicates, 1);
     EXPECT_EQ(s.fraction, 0);
     EXPECT_EQ(s.before, 0);
 }
