@@ -53,6 +53,14 @@ class Diagnoses(unittest.TestCase):
             del said[varying], other[varying]
         self.assertEqual(said, other)
 
+    def test_reports_runs_and_diagnoses(self):
+        os.environ["MCDEM_PROGRAM"] = PROGRAM
+        page = mcdem.report(self.folder / "run", self.folder / "page.html", against=[self.folder / "measured"])
+        self.assertIn("errf", page.read_text())  # of the table that only a comparison has
+        with self.assertRaisesRegex(ValueError, "nowhere"):
+            mcdem.report([self.folder / "nowhere"], self.folder / "none.html")
+        self.assertFalse((self.folder / "none.html").exists())
+
     def test_interrupted_by_its_callback_it_goes_on_from_what_is_kept(self):
         def refuse(stage, fraction):
             raise InterruptedError(stage)

@@ -4,6 +4,7 @@ against itself and against the examples of the README.
 stub_test.py SOURCE; exit code 77: all is well, but mypy is not installed
 """
 import ast
+import inspect
 import pathlib
 import re
 import subprocess
@@ -26,7 +27,11 @@ def arguments(function):
 
 
 def documented_arguments(function):
-    """The same of the module: the first line of its documentation is its signature."""
+    """The same of the module: of a compiled function the first line of its documentation is the signature."""
+    if inspect.isfunction(function):
+        parameters = inspect.signature(function).parameters.values()
+        keywords = [one.name for one in parameters if one.kind == one.KEYWORD_ONLY]
+        return [one.name for one in parameters if one.kind != one.KEYWORD_ONLY] + (["*"] + keywords if keywords else [])
     inside = re.search(r"\((.*)\) ->", function.__doc__.splitlines()[0])[1]
     names = re.findall(r"(?:^|, )(\*|\w+)(?=:|,|$| =)", re.sub(r"\[[^\[\]]*\]|\([^()]*\)|'[^']*'", "", inside))
     return [name for name in names if name != "self"]

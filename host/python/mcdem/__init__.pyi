@@ -1,4 +1,5 @@
 from collections.abc import Callable, Iterator, Mapping, Sequence
+import pathlib
 from os import PathLike
 from typing import Any, Literal, TypedDict, overload
 
@@ -229,6 +230,14 @@ def calibrate(
     progress: Callable[[float], object] | None = None,
 ) -> dict[str, Any]: ...
 def export(path: Path, folder: Path, *, vtk: bool = False, xyz: bool = False) -> int: ...
+def report(
+    sources: Path | Sequence[Path],
+    out: Path,
+    *,
+    against: Path | Sequence[Path] = (),
+    setting: str = "",
+    scans: int | None = None,
+) -> pathlib.Path: ...
 def converge(
     scene: Scene,
     folder: Path,

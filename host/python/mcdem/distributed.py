@@ -10,23 +10,14 @@ worker was at is computed again by another: parts are the same bits wherever the
 import argparse
 import contextlib
 import os
-import pathlib
-import shutil
 import subprocess
 import sys
 from typing import Any, Callable
 
+from .command import ask, problems_of, program_path
 from .errors import InputError, RunError
 
 TRIES = 3  # of a part, beside those that end with a lost worker
-
-
-def program_path():
-    """MCDEM_PROGRAM, else mcdem of the search path."""
-    found = os.environ.get("MCDEM_PROGRAM") or shutil.which("mcdem")
-    if not found:
-        raise RunError("the program mcdem is not in the search path: name it by MCDEM_PROGRAM")
-    return str(pathlib.Path(found).resolve())
 
 
 def run(scene: str | os.PathLike[str], out: str | os.PathLike[str], *, settings: dict[str, Any] | None = None,
@@ -68,21 +59,11 @@ class Work:
     def __init__(self, command, folder, tries, report):
         self.command, self.folder, self.tries, self.report = command, folder, tries, report
 
-    def ask(self, *words):
-        """What the program prints."""
-        done = subprocess.run([self.command[0], *words], cwd=self.folder, capture_output=True, text=True, errors="replace")
-        if done.returncode == 2:
-            raise InputError(problems_of(done.stderr))
-        if done.returncode != 0:
-            raise RunError(f"exit code {done.returncode}: {done.stderr.strip()}")
-        print(done.stderr, end="", file=sys.stderr, flush=True)
-        return done.stdout
-
     def devices(self):
-        return self.ask("devices", "--alike").split()
+        return ask(["devices", "--alike"], self.folder).split()
 
     def missing(self, workers):
-        return [int(part) for part in self.ask(*self.command[1:], "--missing", "--workers", str(workers)).split()]
+        return [int(part) for part in ask([*self.command[1:], "--missing", "--workers", str(workers)], self.folder).split()]
 
     def compute(self, client):
         before = None
@@ -116,10 +97,6 @@ class Work:
                     self.report(f"part {part}: {done} of {len(parts)}")
         finally:
             client.cancel(list(futures))
-
-
-def problems_of(messages):
-    return [line.removeprefix("mcdem: ") for line in messages.splitlines()]
 
 
 def compute_part(command, folder, part):
