@@ -1,5 +1,6 @@
 #include "io/output_folder.h"
 
+#include "core/atomic_file.h"
 #include "core/output_file.h"
 #include "io/result_folder.h"
 
@@ -10,6 +11,8 @@ FolderLock open_output_folder(const std::filesystem::path& folder) {
     make_result_folder(folder);
     FolderLock lock(folder, FolderLock::Use::alone);
     expect_no_experiment(folder);  // made by another program meanwhile
+    if (const auto kept = folder / "simulations"; std::filesystem::is_directory(kept))
+        remove_temporaries(kept);
     return lock;
 }
 

@@ -6,11 +6,13 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <fstream>
 #include <random>
 
 #include "core/atomic_file.h"
 #include "core/errors.h"
 #include "io/hdf5.h"
+#include "io/output_folder.h"
 #include "io/result_file.h"
 #include "io/results.h"
 #include "io/synthetic_run.h"
@@ -285,6 +287,19 @@ TEST(damaged_files, killed_while_writing_leaves_the_old_file) {
     EXPECT_EQ(files_in(folder.path()), 1);
     write_run(file, synthetic_run({.replicas = 1}));  // the left-over does not stand in the way
     EXPECT_EQ(read_run(file).recordings.size(), 1u);
+}
+
+TEST(damaged_files, a_folder_opened_again_keeps_nothing_of_killed_programs) {
+    TemporaryFolder folder;
+    std::filesystem::create_directory(folder / "simulations");
+    for (const auto* name : {"run.h5", "run.h5.0123456789abcdef.tmp", "simulations/a.obs",
+                             "simulations/a.obs.0123456789abcdef.tmp"})
+        std::ofstream(folder / name) << "content";
+    open_output_folder(folder.path());
+    EXPECT_EQ(files_in(folder.path()), 2);
+    EXPECT_TRUE(std::filesystem::exists(folder / "run.h5"));
+    EXPECT_EQ(files_in(folder / "simulations"), 1);
+    EXPECT_TRUE(std::filesystem::exists(folder / "simulations/a.obs"));
 }
 
 TEST(damaged_files, full_disk_is_an_error_and_leaves_the_old_file) {

@@ -9,7 +9,6 @@
 #include "cli/shell/messages.h"
 #include "cli/shell/progress.h"
 #include "cli/shell/standard_streams.h"
-#include "core/atomic_file.h"
 #include "core/make_folder.h"
 #include "core/output_file.h"
 #include "core/version.h"
@@ -67,8 +66,6 @@ int run_alone(const DiagnoseCommand& command, const Scene& scene, const Experime
     try {
         const std::filesystem::path folder = command.out;
         const FolderLock lock = open_output_folder(folder);
-        const std::filesystem::path simulations = folder / "simulations";
-        if (std::filesystem::is_directory(simulations)) remove_temporaries(simulations);
         if (!command.library.empty()) make_folder_of(command.library);
         expect_replaceable(folder / "diagnosis.json", FileKind::diagnosis);
         expect_replaceable(folder / "diagnosis.html", FileKind::page);
