@@ -26,7 +26,7 @@ typedef struct {
 
 INLINE Reduced reduced(global const Replica* restrict replica, real radius, lanes radius_there, mask wall) {
     const lanes sum = radius + radius_there, product = radius * radius_there;
-    const lanes cubes = radius * radius * radius + radius_there * radius_there * radius_there;
+    const lanes cubes = add_alike(radius * radius * radius, radius_there * radius_there * radius_there);
     const lanes part = product / (sum * cubes);
     const real density = replica->density * (R(4) / R(3)) * PI;
     Reduced r;

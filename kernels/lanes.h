@@ -57,6 +57,12 @@ INLINE lanes3 scale3(lanes factor, lanes3 a) { return (lanes3){factor * a.x, fac
 INLINE lanes3 add_scaled3(lanes3 a, lanes factor, lanes3 b) {
     return (lanes3){a.x + factor * b.x, a.y + factor * b.y, a.z + factor * b.z};
 }
+/* a + b, never fused with the product that one of them is: where a and b belong to the two sides of a
+   contact, both sides must get the same bits. */
+INLINE lanes add_alike(lanes a, lanes b) {
+#pragma OPENCL FP_CONTRACT OFF
+    return a + b;
+}
 INLINE lanes dot3(lanes3 a, lanes3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 INLINE lanes3 cross3(lanes3 a, lanes3 b) {
     return (lanes3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};

@@ -53,7 +53,7 @@ INLINE SelfConsistent self_consistent(global const Replica* restrict replica, Co
     for (int step = 0; step < 3; ++step) {
         const lanes a = sqrt(reduced_radius * s.overlap);
         s.compliance = self_compliance(replica, ratio, a, inverse_radius, inverse_there);
-        const lanes slope = (s.compliance.here + s.compliance.there) * R(2) * modulus * a;
+        const lanes slope = add_alike(s.compliance.here, s.compliance.there) * R(2) * modulus * a;
         const lanes excess = given + (R(2) / R(3)) * slope * s.overlap - s.overlap;
         s.overlap += fmax(excess / fmax(R(1) - slope, (lanes)(R(0.25))), R(-0.5) * s.overlap);
     }

@@ -1,8 +1,5 @@
 // Sums over the slots of a grain have one order: the CPU's way and the GPU's give the same bits.
-#include <fmt/format.h>
-
-#include "cl/kernel.h"
-#include "reference/test_scene.h"
+#include "kernels/test_kernel.h"
 
 namespace reference {
 namespace {
@@ -33,12 +30,7 @@ WORK_GROUP(STEP_ITEMS) kernel void sum_rows(global const int* blocks, global con
 
 std::vector<float> summed(const std::vector<float>& values, KernelBuild kernels) {
     const int grains = static_cast<int>(values.size()) / (quantities * slots);
-    cl::Program program(device().context(), mcdem::program_text() + sum_kernel);
-    program.build(
-        {device().handle()},
-        fmt::format("-w -cl-std=CL1.2 -DMCDEM_DOUBLE=0 -DLANES={} -DSLOTS={} -DBLOCK={} -DLIST_ITEMS=16",
-                    kernels.lanes, slots, kernels.block())
-            .c_str());
+    const cl::Program program = with_kernel(sum_kernel, kernels);
     struct Numbers;
     struct Values;
     struct Sums;
