@@ -109,11 +109,14 @@ kernel void advance(const int step, const int slot_count, global const Replica* 
         displace_surfaces(at, table, replica->steps_before + step, slot_count, displacement_next, history);
 
     const GrainSums total = add_up(sums.force, sums.torque, trouble, scratch);
-    if (!IS_LEADER || !(at.now.position.w > R(0))) return;
-
-    const Motion after = integrate(replica, at.now, total.force.xyz, total.torque.xyz);
-    motion_next[index] = after;
-    const int bits = trouble_status(total.force.w) | motion_status(at, after);
-    if (bits) status[index] |= bits;
-    expect_listed(at, after, bits, listed_position[index].xyz, step, stop_at + r);
+    if (IS_LEADER && at.now.position.w > R(0)) {
+        const Motion after = integrate(replica, at.now, total.force.xyz, total.torque.xyz);
+        motion_next[index] = after;
+        const int bits = trouble_status(total.force.w) | motion_status(at, after);
+        if (bits) status[index] |= bits;
+        expect_listed(at, after, bits, listed_position[index].xyz, step, stop_at + r);
+    }
+    /* Without it PoCL lets padding grains into the block above, where work-groups that are done have left
+     * before barriers. */
+    SYNCHRONISE();
 }

@@ -52,8 +52,14 @@ TEST(BatchLimits, TheEstimateIsWhatTheEngineTakes) {
                     replicas.push_back(start.replica);
                     sizes.push_back(size_of(start.packing));
                 }
-                Batch batch(build(precision, slots), starts);
-                const auto estimate = mcdem::memory_needed(precision, slots, replicas, sizes);
+                const KernelBuild kernels = build(precision, slots);
+                Batch batch(kernels, starts);
+                std::uint64_t cells = 0;
+                for (const PackingSize& size : sizes) cells += mcdem::max_cells(size.grains);
+                const auto estimate =
+                    mcdem::Fields::memory_of(mcdem::field_extents(kernels, replicas, sizes, cells));
+                EXPECT_GE(mcdem::memory_needed(precision, slots, replicas, sizes).all,
+                          batch.engine().memory().all);
                 const auto taken = batch.engine().memory();
                 const std::size_t grid = 4 * 9 * (65 + 1000 + 1 + 64);  // cells may be fewer than allowed
                 EXPECT_GE(estimate.all, taken.all);
