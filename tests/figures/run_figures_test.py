@@ -205,6 +205,14 @@ class WithoutMatplotlib(unittest.TestCase):
         done = mcdem.run("figures", "run", "--out", "figures_bare", **environment)
         self.assertEqual(done.returncode, 1, done.stderr)
 
+    def test_a_python_that_fails_without_a_word(self):
+        environment = {**os.environ, "MCDEM_PYTHON": "/bin/false"}
+        done = mcdem.run("run", "scene.toml", "--out", "run_failing", **environment)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("no figures: run_failing/figures.json could not be drawn", done.stderr)
+        done = mcdem.run("figures", "run", "--out", "figures_failing", **environment)
+        self.assertEqual(done.returncode, 1, done.stderr)
+
 
 if __name__ == "__main__":
     drawn.main()

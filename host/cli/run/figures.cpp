@@ -5,6 +5,7 @@
 #include "cli/shell/commands.h"
 #include "cli/shell/messages.h"
 #include "cli/shell/python_program.h"
+#include "core/errors.h"
 #include "core/make_folder.h"
 #include "core/output_file.h"
 #include "io/result_folder.h"
@@ -39,8 +40,11 @@ std::vector<fs::path> draw_figures(const fs::path& folder, const nlohmann::order
     }
     expect_replaceable_figures(folder, names);
     replace_own(folder / values_file, FileKind::figure_values, figure_file(values));
-    const int code = run_python_module("mcdem.figures", {(folder / values_file).string()});
-    return code == exit_done ? figures : std::vector<fs::path>{};
+    if (const int code = run_python_module("mcdem.figures", {(folder / values_file).string()});
+        code != exit_done)
+        throw RunError(fmt::format("{} could not be drawn: Python ended with exit code {}",
+                                   (folder / values_file).string(), code));
+    return figures;
 }
 
 std::vector<fs::path> draw_runs(const fs::path& folder, const std::vector<Setting>& settings,
