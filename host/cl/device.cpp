@@ -8,6 +8,7 @@
 
 #include "cl/kernel_cache.h"
 #include "cl/process_limits.h"
+#include "cl/profile.h"
 
 namespace mcdem::inline opencl {
 namespace {
@@ -123,7 +124,7 @@ Device::Device(const std::string& choice) {
     info_ = found.info;
     handle_ = found.handle;
     context_ = cl::Context(handle_);
-    queue_ = cl::CommandQueue(context_, handle_);
+    queue_ = cl::CommandQueue(context_, handle_, is_profiling() ? CL_QUEUE_PROFILING_ENABLE : 0);
 }
 
 std::string Device::description() const {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "cl/field.h"
+#include "cl/profile.h"
 
 namespace mcdem::inline opencl {
 
@@ -24,9 +25,9 @@ template <class... Arguments>
 class Kernel {
 public:
     Kernel() = default;
-    /// `work_items`: of a work-group.
+    /// `name` must outlive the kernel; `work_items`: of a work-group.
     Kernel(Device& device, const cl::Program& program, const char* name, int work_items)
-        : queue_(device.queue()), kernel_(program, name), work_items_(work_items) {
+        : queue_(device.queue()), kernel_(program, name), name_(name), work_items_(work_items) {
         expect_launchable(device, kernel_, work_items);
         const auto wanted = kernel_.getInfo<CL_KERNEL_NUM_ARGS>();
         if (wanted != sizeof...(Arguments))
@@ -40,8 +41,14 @@ public:
         if (groups == 0) return;
         cl_uint index = 0;
         (set(index++, arguments), ...);
-        queue_.enqueueNDRangeKernel(kernel_, cl::NullRange, cl::NDRange(groups * work_items_),
-                                    cl::NDRange(work_items_));
+        const cl::NDRange all(groups * work_items_), group(work_items_);
+        if (!is_profiling()) {
+            queue_.enqueueNDRangeKernel(kernel_, cl::NullRange, all, group);
+            return;
+        }
+        cl::Event event;
+        queue_.enqueueNDRangeKernel(kernel_, cl::NullRange, all, group, nullptr, &event);
+        profile_launch(name_, event);
     }
 
 private:
@@ -60,6 +67,7 @@ private:
     }
     cl::CommandQueue queue_;
     cl::Kernel kernel_;
+    const char* name_ = "";
     std::size_t work_items_ = 1;
 };
 

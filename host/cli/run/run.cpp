@@ -1,6 +1,7 @@
 // mcdem run
 #include <fmt/format.h>
 
+#include "cl/profile.h"
 #include "cli/parts/sharing.h"
 #include "cli/run/figures.h"
 #include "cli/run/scene_options.h"
@@ -148,6 +149,7 @@ int run_alone(const RunCommand& command, const Scene& scene) {
     } catch (const RunError& error) {
         return failed_run(command, error);
     }
+    if (is_profiling()) fmt::print(stderr, "{}", profile_text());
     if (summary.end == RunEnd::interrupted) {
         spdlog::warn("interrupted; go on with\n  {}", resume_command(command));
         return exit_interrupted;
