@@ -59,7 +59,7 @@ std::vector<StepCase> cases() {
     using enum ContactModel;
     using enum FrictionLaw;
     std::vector<StepCase> all;
-    for (const auto model : {mc_dem, independent, elastic_sphere}) {
+    for (const auto model : {mc_dem, independent, elastic_sphere, hyperelastic_sphere}) {
         for (const auto& [grains, replicas] : {std::pair{514, 1}, {514, 64}, {514, 256}, {50'000, 1}})
             all.push_back({model, saturated, grains, replicas});
         all.push_back({model, mindlin, 50'000, 1});

@@ -37,6 +37,7 @@ double surface_term(ContactModel model) {
         case ContactModel::mc_dem:
             return half_space_term;
         case ContactModel::elastic_sphere:
+        case ContactModel::hyperelastic_sphere:
             return sphere_term + finite_size_term;
         default:
             return sphere_term;
@@ -58,7 +59,8 @@ StepCost step_cost(ContactModel model, FrictionLaw friction, Precision precision
     const double integers = slots * (bulging ? 2 : 1);
 
     const double friction_flops = springs ? mindlin : saturated;
-    const double self = model == ContactModel::elastic_sphere ? self_term : 0;
+    const bool sphere = model == ContactModel::elastic_sphere || model == ContactModel::hyperelastic_sphere;
+    const double self = sphere ? self_term : 0;
     const double slot = see_neighbours + hertz + reduced + damping + own_displacement + contact_point +
                         sliding + friction_flops + force_and_torque + checks + self +
                         (bulging ? extrapolation : 0);

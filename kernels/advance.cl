@@ -31,18 +31,35 @@ INLINE RowSums row_forces(Grain at, const int effects, Batch batch, EXCHANGE Con
     return sums;
 }
 
+/* Where the contacts of this step push the surface at every slot. */
+INLINE void surface_displacements(Grain at, EXCHANGE ContactTable* table, lanes* restrict displacement) {
+    global const Replica* restrict replica = at.replica;
+    const real radius = at.now.position.w, compliance_ratio = R(1) + at.now.velocity.w;
+    for (int v = 0; v < VECTORS; ++v) {
+        const SurfaceDisplacement b = surface_displacement(replica, table, radius, compliance_ratio, v);
+        displacement[v] = b.point + b.size;
+        if (replica->confinement) tabulate_work(b, v, table);
+    }
+    if (!replica->confinement) return;
+    SYNCHRONISE();
+    const Confined grain = confined(table, radius, replica->sphere_scale * compliance_ratio);
+    for (int v = 0; v < VECTORS; ++v)
+        displacement[v] = confined_displacement(replica, grain, radius, displacement[v]);
+}
+
 /* Where the contacts of this step push the surface at every slot, extrapolated to the next step:
      b(t + dt) = (10 b(t) - 5 b(t - 2 dt) + b(t - 4 dt)) / 6.
    Its phase error is 8/3 sin^5(omega dt), so that the delay neither pumps nor drains energy that matters, and
    it is stable wherever the plain delayed iteration is, for gains from -1 to 1 (ARCHITECTURE.md). `history`
    is a ring of the last four steps, each `slot_count` long; `step` counts this replica's steps. */
-INLINE void displace_surfaces(Grain at, EXCHANGE const ContactTable* table, int step, size_t slot_count,
+INLINE void displace_surfaces(Grain at, EXCHANGE ContactTable* table, int step, size_t slot_count,
                               global real* restrict displacement_next, global real* restrict history) {
     global real* two_before = history + ((step + 2) & 3) * slot_count + at.row;
     global real* four_before = history + (step & 3) * slot_count + at.row;
-    const real compliance_ratio = R(1) + at.now.velocity.w;
+    lanes displacement[VECTORS];
+    surface_displacements(at, table, displacement);
     for (int v = 0; v < VECTORS; ++v) {
-        const lanes now = surface_displacement(at.replica, table, at.now.position.w, compliance_ratio, v);
+        const lanes now = displacement[v];
         const lanes next = (R(10) / R(6)) * now - (R(5) / R(6)) * LOAD_LANES(two_before, v) +
                            (R(1) / R(6)) * LOAD_LANES(four_before, v);
         STORE_LANES(next, displacement_next + at.row, v);

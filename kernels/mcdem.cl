@@ -15,6 +15,7 @@
 #include "friction.h"
 #include "contact_forces.h"
 #include "surface_displacement.h"
+#include "confinement.h"
 #include "integrate.h"
 #include "grain.h"
 #include "cell_list.cl"

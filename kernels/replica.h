@@ -26,21 +26,23 @@ typedef struct {
     real sphere_point[POINT_TERMS]; /* P: a point force moves the surface by P(s)/s, s = sin(theta/2) */
     real sphere_size[SIZE_TERMS];   /* T: contact radii add (2/5 a_k^2 + 2/3 a_c^2)/R^2 T(s)/s^3 */
     real sphere_self[SELF_TERMS];   /* S0 + S1 ln(a/R) + S2 a/R + ..: the loaded contact itself */
-    real skin;                      /* neighbour list margin [m] */
-    real probe_gap;                 /* gap up to which surfaces are probed [m] */
-    real overlap_limit;             /* over the sum of radii */
-    real cell_size;                 /* [m] */
-    real wall_position[6];          /* x_min x_max y_min y_max floor plate, at the chunk's start [m] */
-    real plate_velocity;            /* along z [m/s] */
-    real plate_tilt_x;              /* slope of the plate's face along x, about the middle of the box */
-    real plate_tilt_y;              /* .. along y */
-    real grain_compliance;          /* (1 - nu^2) / E of a grain [1/Pa] */
-    real shear_compliance;          /* (2 - nu) / G of a grain [1/Pa] */
-    real adhesion;                  /* 2 pi w, pull-off force over R* [N/m] */
-    real viscoelasticity;           /* part of the force that relaxes */
-    real relaxing_share;            /* 1 - exp(-dt / T): of what is left to relax, in a step */
-    real stiffening;                /* c, per overlap over R*; below zero it softens */
-    real plasticity;                /* part of the deepest overlap that stays */
+    real confinement_coupling;      /* finite strain of the grain as a whole (confinement.h) */
+    real confinement_volume;
+    real skin;               /* neighbour list margin [m] */
+    real probe_gap;          /* gap up to which surfaces are probed [m] */
+    real overlap_limit;      /* over the sum of radii */
+    real cell_size;          /* [m] */
+    real wall_position[6];   /* x_min x_max y_min y_max floor plate, at the chunk's start [m] */
+    real plate_velocity;     /* along z [m/s] */
+    real plate_tilt_x;       /* slope of the plate's face along x, about the middle of the box */
+    real plate_tilt_y;       /* .. along y */
+    real grain_compliance;   /* (1 - nu^2) / E of a grain [1/Pa] */
+    real shear_compliance;   /* (2 - nu) / G of a grain [1/Pa] */
+    real adhesion;           /* 2 pi w, pull-off force over R* [N/m] */
+    real viscoelasticity;    /* part of the force that relaxes */
+    real relaxing_share;     /* 1 - exp(-dt / T): of what is left to relax, in a step */
+    real stiffening;         /* c, per overlap over R*; below zero it softens */
+    real plasticity;         /* part of the deepest overlap that stays */
     real bulge_contacts;     /* part of the surface displacements that counts without geometric overlap */
     real mindlin_share;      /* of the friction force, the rest is saturated */
     real rolling_resistance; /* mu_r */
@@ -56,6 +58,7 @@ typedef struct {
     int steps_before;    /* this interval, modulo 4: turns the ring of surface displacements */
     int surface;         /* SURFACE_* below */
     int finite_contacts; /* 1: the sphere's size and self terms are not zero */
+    int confinement;     /* 1: its coupling and volume are not zero */
     int mindlin;         /* 1: friction with history, all or a share */
     int memory_rows;     /* of a grain's contacts (contact_memory.h); springs take the first three */
     int deepest_row;     /* among them, of plasticity */

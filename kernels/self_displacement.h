@@ -3,13 +3,17 @@
 
 #define SMALLEST_RADIUS R(1e-3)
 #define LARGEST_RADIUS R(0.64)
+#define SATURATED_RADIUS R(1) /* with confinement, larger contacts move themselves no further */
 
 /* In F/(E R); `relative` is a/R. */
 INLINE lanes self_displacement(global const Replica* restrict replica, lanes relative) {
     const lanes x = clamp(relative, (lanes)(SMALLEST_RADIUS), (lanes)(LARGEST_RADIUS));
     global const real* s = replica->sphere_self;
     const lanes value = s[0] + x * (s[2] + x * (s[3] + x * s[4]));
-    return s[1] != R(0) ? value + s[1] * log(x) : value;
+    const lanes whole = s[1] != R(0) ? value + s[1] * log(x) : value;
+    if (!replica->confinement) return whole;
+    const lanes share = SATURATED_RADIUS / fmax(relative, (lanes)(SATURATED_RADIUS));
+    return whole * share * share * share; /* the force goes with the cube */
 }
 
 /* What a force moves the contact by on this side and on the other, per newton [m/N]. */

@@ -7,6 +7,7 @@ typedef struct {
     real arm[SLOTS];                   /* distance of the contact or probed point [m] */
     real elastic[SLOTS];               /* force, zero where there is no contact [N] */
     real radius[SLOTS];                /* of the contact [m] */
+    real work[SLOTS];                  /* of the pairs with it, where confinement asks for it [N m] */
 #if LANES == 1
     real padding[16]; /* grains side by side in a work-group begin in different banks of local memory */
 #endif
@@ -42,16 +43,22 @@ INLINE lanes size_polynomial(global const real* t, lanes s) {
     return even + s * odd;
 }
 
+/* Outward, of contacts as points and what their finite size adds. */
+typedef struct {
+    lanes point, size;
+} SurfaceDisplacement;
+
 /* Displacement of an elastic sphere, in F/(E R), at the angle whose cosine is given; `spread` is
    (2/5 a_k^2 + 2/3 a_c^2)/R^2 of the two contact radii. */
-INLINE lanes sphere_displacement(global const Replica* restrict replica, lanes cosine, lanes spread) {
+INLINE SurfaceDisplacement sphere_displacement(global const Replica* restrict replica, lanes cosine,
+                                               lanes spread) {
     const lanes squared = fmax(R(0.5) - R(0.5) * cosine, (lanes)(SMALLEST_SINE * SMALLEST_SINE));
     const lanes inverse = inverse_root(squared);
     const lanes s = squared * inverse;
-    lanes value = point_polynomial(replica->sphere_point, s);
+    SurfaceDisplacement b = {point_polynomial(replica->sphere_point, s) * inverse, R(0)};
     if (replica->finite_contacts)
-        value += spread * inverse * inverse * size_polynomial(replica->sphere_size, s);
-    return value * inverse;
+        b.size = spread * inverse * inverse * size_polynomial(replica->sphere_size, s) * inverse;
+    return b;
 }
 
 INLINE void tabulate(Contacts c, lanes3 normal, int v, EXCHANGE ContactTable* table) {
@@ -79,28 +86,37 @@ INLINE lanes half_space_sum(global const Replica* restrict replica, EXCHANGE con
     return sum * (replica->half_space_scale * compliance_ratio);
 }
 
-INLINE lanes sphere_sum(global const Replica* restrict replica, EXCHANGE const ContactTable* table,
-                        real radius, real compliance_ratio, lanes3 direction, int v) {
+INLINE SurfaceDisplacement sphere_sum(global const Replica* restrict replica,
+                                      EXCHANGE const ContactTable* table, real radius, real compliance_ratio,
+                                      lanes3 direction, int v) {
     const lanes relative = LOAD_LANES(table->radius, v) / radius;
     const lanes receiving = (R(2) / R(3)) * relative * relative;
-    lanes sum = R(0);
+    SurfaceDisplacement sum = {R(0), R(0)};
     for (int k = 0; k < SLOTS; ++k) {
         const real force = table->elastic[k];
         if (!(force > R(0))) continue;
         const lanes cosine =
             direction.x * table->x[k] + direction.y * table->y[k] + direction.z * table->z[k];
         const real source = table->radius[k] / radius;
-        const lanes term = sphere_displacement(replica, cosine, receiving + R(0.4) * source * source) * force;
-        sum += WHERE(AS_MASK(SLOT_NUMBERS(v) == k), R(0), term);
+        const SurfaceDisplacement b =
+            sphere_displacement(replica, cosine, receiving + R(0.4) * source * source);
+        const mask itself = AS_MASK(SLOT_NUMBERS(v) == k);
+        sum.point += WHERE(itself, R(0), b.point * force);
+        sum.size += WHERE(itself, R(0), b.size * force);
     }
-    return sum * (replica->sphere_scale / radius * compliance_ratio);
+    const real scale = replica->sphere_scale / radius * compliance_ratio;
+    sum.point *= scale;
+    sum.size *= scale;
+    return sum;
 }
 
 /* `compliance_ratio` is E over the grain's own Young's modulus. */
-INLINE lanes surface_displacement(global const Replica* restrict replica, EXCHANGE const ContactTable* table,
-                                  real radius, real compliance_ratio, int v) {
+INLINE SurfaceDisplacement surface_displacement(global const Replica* restrict replica,
+                                                EXCHANGE const ContactTable* table, real radius,
+                                                real compliance_ratio, int v) {
     const lanes3 direction = {LOAD_LANES(table->x, v), LOAD_LANES(table->y, v), LOAD_LANES(table->z, v)};
-    return replica->surface == SURFACE_HALF_SPACE
-               ? half_space_sum(replica, table, compliance_ratio, direction, v)
-               : sphere_sum(replica, table, radius, compliance_ratio, direction, v);
+    if (replica->surface == SURFACE_SPHERE)
+        return sphere_sum(replica, table, radius, compliance_ratio, direction, v);
+    const SurfaceDisplacement b = {half_space_sum(replica, table, compliance_ratio, direction, v), R(0)};
+    return b;
 }

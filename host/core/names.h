@@ -16,6 +16,7 @@ enum class ContactModel {
     elastic_half_space,     ///< paper, Eq. 1 with gamma = 1
     mc_dem,                 ///< paper, Eq. 1 with fitted gamma
     elastic_sphere,         ///< exact elastic sphere with self term and finite contacts; nothing fitted
+    hyperelastic_sphere,    ///< elastic sphere and finite strain, by finite elements of one sphere
 };
 
 enum class FrictionLaw {
@@ -34,9 +35,9 @@ template <class Enum>
 struct Names;
 template <>
 struct Names<ContactModel> {
-    static constexpr std::array<std::string_view, 6> list{"independent",      "point_force_on_sphere",
-                                                          "sphere_to_sphere", "elastic_half_space",
-                                                          "mc_dem",           "elastic_sphere"};
+    static constexpr std::array<std::string_view, 7> list{
+        "independent", "point_force_on_sphere", "sphere_to_sphere",   "elastic_half_space",
+        "mc_dem",      "elastic_sphere",        "hyperelastic_sphere"};
 };
 template <>
 struct Names<FrictionLaw> {

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "elasticity/elastic_sphere.h"
+#include "elasticity/hyperelastic_sphere.h"
 
 namespace mcdem::inline elasticity {
 namespace {
@@ -47,6 +48,10 @@ SurfaceLaw surface_law(ContactModel model, double poisson_ratio, double gamma) {
             law.self = sphere.self;
             break;
         }
+        case ContactModel::hyperelastic_sphere:
+            law = surface_law(ContactModel::elastic_sphere, poisson_ratio, gamma);
+            add_finite_strain(law, poisson_ratio);
+            break;
     }
     return law;
 }

@@ -1,4 +1,4 @@
-// delta_kc of the six contact models: how a force at one contact moves the surface of a grain elsewhere.
+// delta_kc of the contact models: how a force at one contact moves the surface of a grain elsewhere.
 #pragma once
 #include <array>
 
@@ -14,6 +14,13 @@ inline constexpr int self_terms = 5;
 /// Which of the kernels' three families a model belongs to (SURFACE_* of kernels/replica.h).
 enum class SurfaceShape { rigid = 0, half_space = 1, sphere = 2 };
 
+/// What a grain's mean pressure P = sum F/(4 pi E R^2) changes at finite strain: W, the energy of all pairs
+/// of contacts over E R^3, goes over into g W - 4 pi volume P^3 g^2 with g = 1/(1 + coupling P).
+struct Confinement {
+    double coupling = 0;  ///< zero at small strain, as is `volume`
+    double volume = 0;
+};
+
 /// A contact model for one Poisson ratio, as the kernels evaluate it. Sphere: with s = sin(theta / 2) and
 /// contact radii a, the force F_k moves the surface at c outward by F_k/(E R) times
 ///   P(s)/s + m T(s)/s^3,  m = 2/5 (a_k/R)^2 + 2/3 (a_c/R)^2   (k other than c)
@@ -25,6 +32,7 @@ struct SurfaceLaw {
     std::array<double, size_terms> size{};    ///< T, zero where contacts count as points
     std::array<double, self_terms>
         self{};  ///< S0..S4, zero where a contact does not move itself beyond Hertz
+    Confinement confinement;
 };
 
 /// `gamma` is used by mc_dem only.

@@ -101,6 +101,10 @@ void set_surface(DeviceReplica& d, const Replica& replica) {
     std::copy(surface.size.begin(), surface.size.end(), d.sphere_size);
     std::copy(surface.self.begin(), surface.self.end(), d.sphere_self);
     d.finite_contacts = surface.self[0] != 0;
+    const Confinement& c = surface.confinement;
+    d.confinement_coupling = c.coupling;
+    d.confinement_volume = c.volume;
+    d.confinement = c.coupling != 0 || c.volume != 0;
 }
 
 /// A grid that covers `span` cells by repeating itself where they are too many. Three cells a side are enough

@@ -142,6 +142,7 @@ TEST(SurfaceDisplacement, LawsFollowTheirModels) {
     for (double nu : {0.1, 0.3, 0.5})
         for (std::size_t m = 0; m < Names<ContactModel>::list.size(); ++m) {
             const auto model = static_cast<ContactModel>(m);
+            if (model == ContactModel::hyperelastic_sphere) continue;  // has no series, but finite elements
             const Grain grain = crowded_grain(nu, 5);
             const auto by_law = surface_displacement(surface_law(model, nu, 1.125), grain);
             const auto by_series = surface_displacement_by_series(model, 1.125, grain);

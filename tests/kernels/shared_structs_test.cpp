@@ -26,7 +26,8 @@ kernel void write_offsets(global int* offsets) {
     MEMBER(damping_grain) MEMBER(damping_wall) MEMBER(friction_grain) MEMBER(friction_wall) \
     MEMBER(sliding_velocity) MEMBER(half_space_scale) MEMBER(half_space_normal) \
     MEMBER(half_space_shear) MEMBER(sphere_scale) MEMBER(sphere_point) MEMBER(sphere_size) \
-    MEMBER(sphere_self) MEMBER(skin) MEMBER(probe_gap) MEMBER(overlap_limit) MEMBER(cell_size) \
+    MEMBER(sphere_self) MEMBER(confinement_coupling) MEMBER(confinement_volume) \
+    MEMBER(confinement) MEMBER(skin) MEMBER(probe_gap) MEMBER(overlap_limit) MEMBER(cell_size) \
     MEMBER(wall_position) MEMBER(plate_velocity) MEMBER(first_grain) MEMBER(grain_count) \
     MEMBER(first_cell) MEMBER(cells_x) MEMBER(cells_y) MEMBER(cells_z) MEMBER(span_x) \
     MEMBER(span_y) MEMBER(span_z) MEMBER(surface) MEMBER(finite_contacts) MEMBER(mindlin) \

@@ -74,29 +74,72 @@ inline double sphere_displacement(const SurfaceLaw& law, const Grain& grain, con
     return power_sum(law.point, s) / s + spread(grain, k, c) * power_sum(law.size, s) / (s * s * s);
 }
 
+inline bool is_confined(const SurfaceLaw& law) {
+    return law.confinement.coupling != 0 || law.confinement.volume != 0;
+}
+
+/// With confinement it grows no further once the contact radius is R.
 inline double self_displacement(const SurfaceLaw& law, const Grain& grain, const Slot& c) {
     const double x = relative_radius(grain, c);
     const auto& S = law.self;
-    return S[0] + S[1] * std::log(x) + S[2] * x + S[3] * x * x + S[4] * x * x * x;
+    const double whole = S[0] + S[1] * std::log(x) + S[2] * x + S[3] * x * x + S[4] * x * x * x;
+    return is_confined(law) ? whole * std::min(1.0, std::pow(grain.radius / c.contact_radius, 3)) : whole;
+}
+
+/// Energy of all pairs of contacts at small strain over E R^3: less than zero where they push surfaces out.
+/// The part of finite contacts is of the power 8/3 in the forces, so that their derivative has the spread
+/// above.
+inline double pair_energy(const SurfaceLaw& law, const Grain& grain) {
+    double energy = 0;
+    for (const Slot& c : grain.slots)
+        for (const Slot& k : grain.slots) {
+            if (&c == &k) continue;
+            const double s = sine_of_half_angle(k, c), relative = k.contact_radius / grain.radius;
+            energy -= c.force * k.force *
+                      (power_sum(law.point, s) / s / 2 +
+                       2.0 / 5 * relative * relative * power_sum(law.size, s) / (s * s * s));
+        }
+    return energy / std::pow(grain.youngs_modulus * grain.radius * grain.radius, 2);
+}
+
+/// What confinement makes of the energy W of all pairs at the mean pressure P.
+inline double confined_energy(const mcdem::Confinement& c, double W, double P) {
+    const double g = 1 / (1 + c.coupling * P);
+    return g * W - 4 * std::numbers::pi * c.volume * std::pow(P, 3) * g * g;
+}
+
+/// Outward displacement of every slot [m] from that of small strain: less the derivative of the energy by the
+/// slot's force, by W exactly, by P as a central difference.
+inline void confine(const SurfaceLaw& law, const Grain& grain, std::vector<double>& displacement) {
+    constexpr double step = 1e-4;
+    double P = 0;
+    for (const Slot& slot : grain.slots)
+        P += slot.force / (4 * std::numbers::pi * grain.youngs_modulus * grain.radius * grain.radius);
+    const double W = pair_energy(law, grain);
+    const auto at = [&](double change) { return confined_energy(law.confinement, W, P + change); };
+    const double by_pressure = (8 * (at(step) - at(-step)) - (at(2 * step) - at(-2 * step))) / (12 * step);
+    for (double& b : displacement)
+        b = b / (1 + law.confinement.coupling * P) - grain.radius * by_pressure / (4 * std::numbers::pi);
 }
 
 /// Displacement of every slot outward [m], as the kernels should have it: with the law's polynomials.
 inline std::vector<double> surface_displacement(const SurfaceLaw& law, const Grain& grain) {
-    std::vector<double> result;
+    std::vector<double> result, own;
     const double per_force = 1 / (grain.youngs_modulus * grain.radius);
     for (const Slot& c : grain.slots) {
         double sum = 0;
         for (const Slot& k : grain.slots) {
-            if (k.force == 0 || law.shape == SurfaceShape::rigid) continue;
-            if (law.shape == SurfaceShape::half_space)
-                sum += &k == &c ? 0 : half_space_displacement(grain, law.gamma, k, c);
-            else if (&k == &c)
-                sum += per_force * k.force * self_displacement(law, grain, c);
-            else
-                sum += per_force * k.force * sphere_displacement(law, grain, k, c);
+            if (&k == &c || k.force == 0 || law.shape == SurfaceShape::rigid) continue;
+            sum += law.shape == SurfaceShape::half_space
+                       ? half_space_displacement(grain, law.gamma, k, c)
+                       : per_force * k.force * sphere_displacement(law, grain, k, c);
         }
         result.push_back(sum);
+        const bool moves_itself = c.force != 0 && law.shape == SurfaceShape::sphere;
+        own.push_back(moves_itself ? per_force * c.force * self_displacement(law, grain, c) : 0);
     }
+    if (is_confined(law)) confine(law, grain, result);
+    for (std::size_t c = 0; c < own.size(); ++c) result[c] += own[c];
     return result;
 }
 

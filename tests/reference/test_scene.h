@@ -23,10 +23,13 @@ using mcdem::Packing;
 using mcdem::Precision;
 using mcdem::Replica;
 
-inline constexpr ContactModel all_models[] = {
-    ContactModel::independent,      ContactModel::point_force_on_sphere,
-    ContactModel::sphere_to_sphere, ContactModel::elastic_half_space,
-    ContactModel::mc_dem,           ContactModel::elastic_sphere};
+inline constexpr ContactModel all_models[] = {ContactModel::independent,
+                                              ContactModel::point_force_on_sphere,
+                                              ContactModel::sphere_to_sphere,
+                                              ContactModel::elastic_half_space,
+                                              ContactModel::mc_dem,
+                                              ContactModel::elastic_sphere,
+                                              ContactModel::hyperelastic_sphere};
 
 /// The device that MCDEM_DEVICE names; one for the whole program.
 inline mcdem::Device& device() {

@@ -9,6 +9,7 @@ TEST(WordsFor, models_in_words_others_as_they_are) {
     EXPECT_EQ(words_for("mc_dem"), "MC-DEM");
     EXPECT_EQ(words_for("mc_dem, gamma = 1.2"), "MC-DEM, gamma = 1.2");
     EXPECT_EQ(words_for("elastic_sphere"), "Elastic sphere");
+    EXPECT_EQ(words_for("hyperelastic_sphere"), "Hyperelastic sphere");
     EXPECT_EQ(words_for("gamma = 1"), "gamma = 1");
     EXPECT_EQ(words_for("mc_demented"), "mc_demented");
     EXPECT_EQ(words_for(""), "");

@@ -85,7 +85,7 @@ friction = 0.1
             "bad.toml:6: grains.fricton must be a key of a scene, got an unknown one (did you mean "
             "grains.friction?)",
             "bad.toml:8: contact.model must be one of independent, point_force_on_sphere, sphere_to_sphere, "
-            "elastic_half_space, mc_dem, elastic_sphere, got \"mcdem\"",
+            "elastic_half_space, mc_dem, elastic_sphere, hyperelastic_sphere, got \"mcdem\"",
             "bad.toml:11: plate.end must be below plate.start = 0.1, got 0.2",
             "bad.toml:13: protocol.cycles must be a whole number between 1 and 10000, got 2.5",
             "bad.toml:14: protocol.stop_at_scans must be true or false, got 1",

@@ -20,7 +20,7 @@ const char* const first_steps =
     "First steps:\n"
     "  mcdem devices                                      what it can run on\n"
     "  mcdem run scenes/small.toml --out out/small        a first run, done in seconds\n"
-    "  mcdem run scenes/compression.toml --out out/first  the experiment, six contact models\n"
+    "  mcdem run scenes/compression.toml --out out/first  the experiment, seven contact models\n"
     "  mcdem table out/first                              the models side by side, again\n"
     "  mcdem report out/small --out out/small.html        a page to look at, and to send\n"
     "  mcdem COMMAND --help                               more on a command, with examples\n"

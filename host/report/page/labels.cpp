@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::array<const char*, Names<ContactModel>::list.size()> model_words{
     "Independent contacts", "Point force on sphere", "Sphere to sphere", "Elastic half space", "MC-DEM",
-    "Elastic sphere"};
+    "Elastic sphere",       "Hyperelastic sphere"};
 
 }  // namespace
 

@@ -6,8 +6,8 @@
 namespace mcdem::inline report {
 namespace {
 
-// Okabe & Ito 2008, less yellow (too faint on white) and black (the reference). The first six are in
-// the order of ContactModel.
+// Okabe & Ito 2008, less yellow (too faint on white) and black (the reference), in the order of
+// ContactModel.
 constexpr std::array<const char*, 7> palette{"#0072B2", "#56B4E9", "#009E73", "#E69F00",
                                              "#D55E00", "#CC79A7", "#666666"};
 constexpr std::array<const char*, 7> markers{"s", "^", "v", "D", "o", "p", "h"};

@@ -1,0 +1,124 @@
+#!/usr/bin/env python3
+"""Writes neo_hookean_plates.csv, rows of one neo-Hookean sphere between plates: neo_hookean_plates.py > neo_hookean_plates.csv."""
+import argparse
+import csv
+import itertools
+import sys
+
+import numpy as np
+
+from neo_hookean_sphere import Mesh, Sphere
+
+Z, X, Y = [0, 0, 1], [1, 0, 0], [0, 1, 0]
+FCC = [[1, 1, 0], [1, 0, 1], [0, 1, 1]]
+GOLDEN = (1 + 5**.5) / 2
+# One of each plate's mirror images about the coordinate planes, and its overlap over that of the first.
+SYMMETRIC = {
+    'two_plates': ([Z], [1]),
+    'four_square': ([X, Y], [1, 1]),
+    'six_plates': ([X, Y, Z], [1, 1, 1]),
+    'eight_cube': ([[1, 1, 1]], [1]),
+    'twelve_fcc': (FCC, [1, 1, 1]),
+    'twelve_icosahedral': ([[0, 1, GOLDEN], [1, GOLDEN, 0], [GOLDEN, 0, 1]], [1, 1, 1]),
+    'fourteen': ([[1, 1, 1], X, Y, Z], [1, 1, 1, 1]),
+    'two_plus_four': ([Z, X, Y], [1, .5, .5]),
+    'unequal_pairs': ([Z, X, Y], [1, .75, .4]),
+}
+# Drawn at random, symmetric about x = 0 and y = 0 alone: how many plates stand on the z axis, in either plane, elsewhere.
+RANDOM = {
+    'random_five': ((1, 2, 0), 1),
+    'random_six': ((0, 3, 0), 2),
+    'random_seven': ((1, 1, 1), 3),
+    'random_eight': ((0, 2, 1), 4),
+    'random_nine': ((1, 0, 2), 5),
+}
+OVERLAPS = (.025, .05, .075, .1, .125, .15, .175, .2)
+POISSON_RATIOS = (.3, .4, .49)
+
+
+def random_plates(kinds, seed):
+    """Plates more than 45 degrees apart that hold a sphere from all sides, and their overlaps over the largest."""
+    random = np.random.default_rng(seed)
+    on_axis, in_planes, elsewhere = kinds
+    masks = [[0, 0, 1]] * on_axis + [[1, 0, 1], [0, 1, 1]] * in_planes + [[1, 1, 1]] * elsewhere
+    masks = masks[:on_axis + in_planes] + [[1, 1, 1]] * elsewhere
+    while True:
+        normals = random.normal(size=(len(masks), 3)) * masks
+        normals[:, :2] = np.abs(normals[:, :2])  # where the modelled quarter of the ball is
+        normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+        every = np.array([image for n in normals for image in images(n, (0, 1))])
+        ways = random.normal(size=(400, 3))
+        ways /= np.linalg.norm(ways, axis=1, keepdims=True)
+        if (every @ every.T - 2 * np.eye(len(every))).max() < np.cos(np.pi / 4) and (ways @ every.T).max(1).min() > .35:
+            overlaps = random.uniform(.5, 1, len(masks))
+            return normals, overlaps / overlaps.max()
+
+
+def images(normal, mirrors):
+    """All plates that the mirrors make of one."""
+    signs = itertools.product(*((1, -1) if axis in mirrors else (1,) for axis in range(3)))
+    return sorted({tuple(np.array(s) * normal + 0.) for s in signs})
+
+
+def cases():
+    for name, (normals, shares) in SYMMETRIC.items():
+        yield name, (0, 1, 2), np.array(normals, float) / np.linalg.norm(normals, axis=1, keepdims=True), np.array(shares)
+    for name, of in RANDOM.items():
+        yield name, (0, 1), *random_plates(*of)
+
+
+def load(sphere, normals, shares, start, overlap):
+    """Presses from one overlap to the next, in smaller steps where Newton's method asks for them."""
+    step = overlap - start
+    while start < overlap - 1e-9:
+        before = sphere.u
+        to = min(start + step, overlap)
+        if sphere.solve([(n, 1 - to * s) for n, s in zip(normals, shares)]):
+            start = to
+            continue
+        sphere.u = before
+        step /= 2
+        if step < 1e-3:
+            return False
+    return True
+
+
+def rows_of(mesh, name, normals, shares, nu, linear, overlaps):
+    sphere, start = Sphere(mesh, nu, linear), 0
+    for overlap in overlaps:
+        if not load(sphere, normals, shares, start, overlap):
+            print(f'{name} nu {nu}: no solution found at {overlap}', file=sys.stderr)
+            return
+        start = overlap
+        plates = [(n, 1 - overlap * s) for n, s in zip(normals, shares)]
+        forces, yields = sphere.contacts(plates)
+        centre = sphere.centre()
+        for number, (normal, force, give) in enumerate(zip(normals, forces, yields)):
+            own = 1 - plates[number][1] + centre @ normal - give
+            count = len(images(normal, mesh.mirrors))
+            yield [name, nu, overlap, number, count, *np.round(normal, 7), f'{own:.6g}', f'{force:.6g}']
+        if name == 'two_plates':  # a plate at the bulging equator that would just touch
+            yield [name, nu, overlap, 'equator', 2, 1, 0, 0, f'{-sphere.reach(np.array(X)):.6g}', 0]
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument('case', nargs='*', help='all by default')
+    parser.add_argument('--bricks', type=int, default=4, help='along the edge of an octant; with 6 the forces change by less than 1 %%')
+    parser.add_argument('--linear', action='store_true', help="small strain, Hooke's law, instead")
+    parser.add_argument('--nu', type=float, nargs='*', default=POISSON_RATIOS)
+    parser.add_argument('--overlaps', type=float, nargs='*', default=OVERLAPS)
+    arguments = parser.parse_args()
+    table = csv.writer(sys.stdout, lineterminator='\n')
+    table.writerow(['case', 'poisson_ratio', 'load', 'plate', 'count', 'x', 'y', 'z', 'overlap', 'force'])
+    for name, mirrors, normals, shares in cases():
+        if arguments.case and name not in arguments.case:
+            continue
+        mesh = Mesh(arguments.bricks, arguments.bricks, mirrors)
+        for nu in arguments.nu:
+            table.writerows(rows_of(mesh, name, normals, shares, nu, arguments.linear, arguments.overlaps))
+            sys.stdout.flush()
+
+
+if __name__ == '__main__':
+    main()
