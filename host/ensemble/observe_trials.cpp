@@ -173,7 +173,9 @@ private:
             recordings.push_back(begin_recording(batch.replicas[r], packings[r]));
         Simulation simulation(device_, batch, packings);
         const auto keep = [&](int r, Scan scan) {
-            recordings[static_cast<std::size_t>(r)].scans.push_back(std::move(scan));
+            const auto j = static_cast<std::size_t>(r);
+            recordings[j].scans.push_back(std::move(scan));
+            if (has_left_cells(jobs[j], batch.replicas[j], recordings[j])) simulation.end(r);
         };
         const auto note = [&](int r, const Failure& failure) {
             recordings[static_cast<std::size_t>(r)].failure = failure;
@@ -183,6 +185,18 @@ private:
             if (options_.stop_wanted()) throw Interrupted();
         }
         look(jobs, recordings);
+    }
+
+    /// Whether the plate has left the cells on its last way back: no later scan counts, and a plate that
+    /// follows the load is slowest there. Recordings that are kept are whole.
+    bool has_left_cells(const Job& job, const Replica& replica, const Recording& recording) const {
+        const Scan& last = recording.scans.back();
+        if (last.phase != Phase::unload || last.cycle + 1 < replica.protocol.cycles) return false;
+        const double left = std::ranges::min(question_.grid.displacement) - question_.grid.width;
+        return std::ranges::all_of(job.trials, [&](std::size_t t) {
+            const double offset = trials_[t].model.instrument.strain_offset;
+            return !trials_[t].keep_recording && recording.displacement(last) + std::abs(offset) < left;
+        });
     }
 
     /// Measures and observes on all cores; files are written by one thread, where errors can be reported.

@@ -23,6 +23,9 @@ public:
     /// One interval of every replica that is not finished. Returns false when none is left.
     bool advance(const ScanSink& on_scan, const FailureSink& on_failure);
 
+    /// Ends a replica: nothing more is asked of it. `on_scan` may call it.
+    void end(int replica) { runners_[static_cast<std::size_t>(replica)].stop(); }
+
     double progress() const;                           ///< mean over the replicas, 0 to 1
     long grain_steps() const { return grain_steps_; }  ///< made by this object
     const Engine& engine() const { return engine_; }

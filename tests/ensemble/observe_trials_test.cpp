@@ -116,6 +116,21 @@ TEST(ObserveTrials, KeptRecordings) {
     EXPECT_EQ(again.calls, 0);
 }
 
+TEST(ObserveTrials, EndOnceThePlateHasLeftTheCells) {
+    SmallTrials small;
+    small.question.grid.width = 0.003;  // the scan at 3.3 mm on the way back is the first that no cell needs
+    Device device;
+    Trial kept = small.trial(1);
+    kept.keep_recording = true;
+    Watched ended, whole;
+    const auto row = observe_trials(device, small.question, {small.trial(1)}, small.store, ended.options());
+    const SmallTrials fresh;
+    const auto row_of_whole = observe_trials(device, small.question, {kept}, fresh.store, whole.options());
+    EXPECT_EQ(kept_recordings(device, small.question, {kept}, fresh.store)[0].scans.size(), 6u);
+    EXPECT_LT(ended.calls, 0.95 * whole.calls);
+    EXPECT_TRUE(same(row.row(0), row_of_whole.row(0)));
+}
+
 /// Whether a trial's observation is found where only that of small.trial(1) is kept.
 class Names {
 public:
