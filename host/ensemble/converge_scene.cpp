@@ -4,8 +4,10 @@
 
 #include <chrono>
 #include <cmath>
+#include <variant>
 
 #include "core/errors.h"
+#include "ensemble/make_packings.h"
 #include "ensemble/observe_trials.h"
 #include "scene/make_packing.h"
 
@@ -34,11 +36,17 @@ Step slower(double factor) {
 
 std::string speed_remedy(const Replica& replica) {
     if (replica.protocol.rate_tolerance > 0)
-        return fmt::format("protocol.rate_tolerance = {:.2g} / {{0:.2g}}", replica.protocol.rate_tolerance);
+        return fmt::format("protocol.rate_tolerance = {:.2g} / {{0:.2g}}, runs {{0:.2g}} times as long",
+                           replica.protocol.rate_tolerance);
     return fmt::format(
-        "plate.speed = {:.2g} / {{0:.2g}}, or protocol.rate_tolerance, which is slow only where it must be",
+        "plate.speed = {:.2g} / {{0:.2g}}, runs {{0:.2g}} times as long, or protocol.rate_tolerance, which "
+        "is "
+        "slow only where it must be",
         replica.plate.speed);
 }
+
+constexpr const char* without_stops =
+    "protocol.stop_at_scans = false, with a slow plate: runs are shorter by the stops";
 
 /// Forces feel inertia through the square root of the density, and Verlet steps through the square of the
 /// time step; damping makes that of first order, which is assumed.
@@ -46,25 +54,27 @@ std::vector<Plan> plans_of(const Scene& scene, const Replica& replica) {
     std::vector<Plan> plans;
     plans.push_back({"plate speed", speed_remedy(replica), {slower(0.5), slower(0.25), slower(0.125)}});
     plans.push_back({"inertia",
-                     fmt::format("grains.density = {:.3g} / {{1:.2g}}", replica.grains.density),
+                     fmt::format("grains.density = {:.3g} / {{1:.2g}}, runs {{0:.2g}} times as long",
+                                 replica.grains.density),
                      {{0.5, [](Scene&, Replica& r) { r.grains.density /= 4; }}}});
     plans.push_back({"time step",
-                     fmt::format("numerics.time_step = {:.2g} / {{0:.2g}}", replica.numerics.time_step),
+                     fmt::format("numerics.time_step = {:.2g} / {{0:.2g}}, runs {{0:.2g}} times as long",
+                                 replica.numerics.time_step),
                      {{0.5, [](Scene&, Replica& r) { r.numerics.time_step /= 2; }}}});
     if (replica.protocol.stop_at_scans)
         plans.push_back({"settling",
-                         "protocol.stop_at_scans = false, with a slow plate",
+                         without_stops,
                          {{0,
                            [](Scene&, Replica& r) {
                                r.protocol.settle_unbalanced_force /= 10;
                                r.protocol.settle_time *= 4;
                            }}}}),
-            plans.push_back({"stops at scans",
-                             "protocol.stop_at_scans = false, with a slow plate",
-                             {{0, [](Scene&, Replica& r) { r.protocol.stop_at_scans = false; }}}});
+            plans.push_back({"stops at scans", without_stops, {{0, [](Scene&, Replica& r) {
+                                                                    r.protocol.stop_at_scans = false;
+                                                                }}}});
     if (scene.precision == Precision::single_precision)
         plans.push_back({"precision",
-                         "numerics.precision = double",
+                         "numerics.precision = double, runs twice as long",
                          {{0, [](Scene& s, Replica&) { s.precision = Precision::double_precision; }}}});
     plans.push_back({"list margin", "", {{0, [](Scene&, Replica& r) { r.numerics.skin *= 1.25; }}}});
     return plans;
@@ -75,16 +85,28 @@ public:
     Converging(Device& device, const Scene& scene, const ConvergeOptions& options)
         : device_(device), scene_(scene), options_(options), store_(options.folder / "simulations") {
         const Replica& replica = scene.replicas.front();
-        packing_ = make_packing(replica);
-        for (const double diameter : packing_.diameter)
-            mean_diameter_ += diameter / static_cast<double>(packing_.size());
+        packings_.assign(static_cast<std::size_t>(options.replicas), make_packing(replica));
+        for (const double diameter : packings_[0].diameter)
+            mean_diameter_ += diameter / static_cast<double>(packings_[0].size());
         grid_ = grid_of_stroke(replica);
     }
 
     Convergence all() {
         const auto start = std::chrono::steady_clock::now();
-        const Eigen::MatrixXd base = observe("the scene as it stands", scene_, scene_.replicas.front());
+        std::string copies = "jittered copies of one packing";
+        Eigen::MatrixXd base = observe("the scene as it stands", scene_, scene_.replicas.front());
         expect_enough(base);
+        if (hardly_differ(base) && options_.jitter == 0) {
+            if (can_draw_anew()) {
+                draw_anew();
+                copies = "packings drawn anew, for jittered copies of one hardly differ";
+                base = observe("packings drawn anew", scene_, scene_.replicas.front());
+                expect_enough(base);
+            } else {
+                copies +=
+                    ", which hardly differ; packing.file cannot be drawn anew: a larger --jitter makes them";
+            }
+        }
         std::vector<RefinedRuns> refinements;
         for (const Plan& plan : plans_of(scene_, scene_.replicas.front())) {
             RefinedRuns refinement{plan.cause, plan.remedy, {}, {}};
@@ -99,6 +121,7 @@ public:
         }
         Convergence result = convergence_of(grid_, base, refinements, options_.limits);
         result.scene = scene_.name;
+        result.copies = copies;
         result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         return result;
     }
@@ -123,13 +146,39 @@ private:
         const double jitter = options_.jitter > 0 ? options_.jitter : jitter_of_diameter * mean_diameter_;
         std::vector<Trial> trials;
         for (int r = 0; r < options_.replicas; ++r)
-            trials.push_back({model, packing_, jitter, 0, options_.seed + static_cast<std::uint64_t>(r)});
+            trials.push_back({model, packings_[static_cast<std::size_t>(r)], jitter, 0,
+                              options_.seed + static_cast<std::uint64_t>(r)});
         TrialOptions trial_options;
         trial_options.on_progress = [&](double fraction) { options_.on_progress(cause, fraction); };
         trial_options.stop_wanted = options_.stop_wanted;
         const Question question{scene, grid_, reference_material(model), replica.protocol.discard,
                                 options_.program};
         return observe_trials(device_, question, trials, store_, trial_options);
+    }
+
+    /// Copies that do not rearrange scatter less than their observables resolve, and are one packing over and
+    /// over again.
+    bool hardly_differ(const Eigen::MatrixXd& base) const {
+        const Convergence scatter = convergence_of(grid_, base, {}, options_.limits);
+        int known = 0, differ = 0;
+        for (std::size_t c = 0; c < scatter.cells.size(); ++c) {
+            const double deviation = scatter.deviation[static_cast<Eigen::Index>(c)];
+            known += std::isfinite(deviation) ? 1 : 0;
+            differ += deviation >= scatter.scale(c) ? 1 : 0;
+        }
+        return 2 * differ < known;
+    }
+
+    bool can_draw_anew() const {
+        return std::holds_alternative<GeneratedPacking>(scene_.replicas.front().packing.source);
+    }
+
+    void draw_anew() {
+        Scene all = scene_;
+        all.replicas.assign(packings_.size(), scene_.replicas.front());
+        for (std::size_t r = 0; r < packings_.size(); ++r) all.replicas[r].packing.seed += r;
+        packings_ = make_packings(all, options_.stop_wanted);
+        if (packings_.size() < all.replicas.size()) throw Interrupted();
     }
 
     void expect_enough(const Eigen::MatrixXd& base) const {
@@ -145,7 +194,7 @@ private:
     const Scene& scene_;
     const ConvergeOptions& options_;
     ObservationStore store_;
-    Packing packing_;
+    std::vector<Packing> packings_;  ///< by replica
     double mean_diameter_ = 0;
     Grid grid_;
 };

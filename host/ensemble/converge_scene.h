@@ -24,8 +24,8 @@ struct ConvergeOptions {
     std::function<bool()> stop_wanted = [] { return false; };
 };
 
-/// Of the scene's first replica, with one packing. Throws InputError where its runs stop, Interrupted when
-/// stop_wanted says so.
+/// Of the scene's first replica: jittered copies of its packing or, where those hardly differ, packings drawn
+/// anew. Throws InputError where its runs stop, Interrupted when stop_wanted says so.
 Convergence converge_scene(Device& device, const Scene& scene, const ConvergeOptions& options);
 
 }  // namespace mcdem::ensemble

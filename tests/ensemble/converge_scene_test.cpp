@@ -54,6 +54,26 @@ TEST_F(ConvergeScene, BlamesAFastPlate) {
     EXPECT_THAT(of(fast, "plate speed").remedy, HasSubstr("plate.speed = 2"));
 }
 
+// One grain between floor and plate: whatever its place, the force is the same, and copies tell nothing.
+TEST_F(ConvergeScene, DrawsPackingsAnewWhereCopiesHardlyDiffer) {
+    const std::vector<std::string> one_grain{"packing.count=1",
+                                             "packing.packing_fraction=0.382",
+                                             "box.size_x=0.025",
+                                             "box.size_y=0.025",
+                                             "packing.diameter_mean=0.0215",
+                                             "packing.diameter_sd=1e-4",
+                                             "packing.diameter_min=0.0213",
+                                             "packing.diameter_max=0.0217",
+                                             "plate.start=0.022",
+                                             "plate.end=0.0195",
+                                             "plate.speed=0.5"};
+    const Convergence drawn = converge(pressed(one_grain), "drawn");
+    EXPECT_THAT(drawn.copies, HasSubstr("packings drawn anew"));
+    EXPECT_GT(drawn.deviation[0], 0.01) << "diameters differ";
+    EXPECT_TRUE(causes.contains("packings drawn anew"));
+    EXPECT_THAT(of(drawn, "plate speed").remedy, HasSubstr("times as long"));
+}
+
 // A simulation that is kept is not made again, and gives the same.
 TEST_F(ConvergeScene, GoesOnWithWhatIsKept) {
     const Scene scene = pressed({"plate.speed=0.5"});

@@ -17,6 +17,7 @@ Convergence example() {
     const Grid grid{{0.01, 0.02}, 0.002, 0.02};
     Convergence c;
     c.scene = "example";
+    c.copies = "jittered copies of one packing";
     c.cells = cells_of(grid);
     c.replicas = 32;
     const auto count = static_cast<Eigen::Index>(c.cells.size());
@@ -50,6 +51,7 @@ TEST(ConvergenceTables, TheTableMarksWhatIsBeyond) {
     const std::string text = to_text(table_of_convergence(example()), TableFormat::terminal);
     EXPECT_THAT(text, HasSubstr("+2.00 +- 0.20 % *"));
     EXPECT_THAT(text, HasSubstr("+0.01 +- 0.01 sd"));
+    EXPECT_THAT(text, HasSubstr("32 jittered copies of one packing"));
 }
 
 TEST(ConvergenceTables, JsonHoldsEveryError) {

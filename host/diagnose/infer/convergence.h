@@ -36,7 +36,7 @@ struct ConvergenceLimits {
 };
 
 struct Convergence {
-    std::string scene;
+    std::string scene, copies;  ///< `copies`: what the replicas are
     std::vector<Cell> cells;
     int replicas = 0;
     Eigen::VectorXd mean, deviation;  ///< of the scene's replicas, by cell

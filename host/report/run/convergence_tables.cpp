@@ -99,9 +99,9 @@ TextTable table_of_convergence(const Convergence& convergence) {
         table.rows.push_back(std::move(row));
     }
     table.notes = {
-        fmt::format("largest error over phases and displacements, {} replicas of one packing; sd: standard "
-                    "deviation of these, or twice what the observable resolves",
-                    convergence.replicas),
+        fmt::format("largest error over phases and displacements, {} {}", convergence.replicas,
+                    convergence.copies),
+        "sd: standard deviation of these, or twice what the observable resolves",
         fmt::format("*: beyond {:.2g} % (forces) or {:.2g} sd (all else), and by four standard errors",
                     100 * convergence.limits.force, convergence.limits.deviations)};
     return table;
@@ -124,6 +124,7 @@ std::string convergence_json(const Convergence& convergence) {
     nlohmann::ordered_json json;
     json["scene"] = convergence.scene;
     json["replicas"] = convergence.replicas;
+    json["copies"] = convergence.copies;
     json["words"] = words_of_convergence(convergence);
     json["limits"] = {{"force", convergence.limits.force}, {"deviations", convergence.limits.deviations}};
     json["causes"] = nlohmann::ordered_json::array();
