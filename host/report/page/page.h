@@ -24,6 +24,7 @@ struct Chart {
     Json layout = Json::object();
     std::string log_axes = "";  ///< those that a button turns logarithmic: "y", "xy", none
     int height = 440;           ///< [pixels]
+    int min_width = 0;          ///< a narrower screen scrolls it [pixels]
 };
 
 /// Collects the parts of a page from top to bottom. Every text may come from anywhere.
