@@ -222,7 +222,8 @@ private:
         const Experiment& experiment = first_experiment();
         const Model model = library_model();
         LibraryPlan plan;
-        plan.packings = other_packings(model.replica);
+        for (Packing& packing : other_packings(model.replica))
+            plan.specimens.push_back({model, std::move(packing)});
         plan.replicates = options_.library.replicates;
         plan.pairs = options_.library.pairs;
         plan.jitter = experiment.measurement.position_error;
@@ -234,8 +235,7 @@ private:
     }
 
     const std::vector<std::vector<Trial>>& library_parts() {
-        if (!library_parts_)
-            library_parts_ = parts_of_trials(question(), library_trials(library_model(), library_plan()));
+        if (!library_parts_) library_parts_ = parts_of_trials(question(), library_trials(library_plan()));
         return *library_parts_;
     }
 
@@ -255,8 +255,8 @@ private:
         const fs::path& file = options_.library.file;
         const Experiment& experiment = first_experiment();
         if (!fs::exists(file))  // or another process is quicker, with the same library
-            create_file(file, library_text(build_library(device, question(), library_model(), library_plan(),
-                                                         store(), trial_options())));
+            create_file(file, library_text(build_library(device, question(), library_plan(), store(),
+                                                         trial_options())));
         Library library = read_library(file);
         expect_origin(library,
                       library_origin(question(), model_of(scene_, experiment), grains_of(experiment)), file);
@@ -298,7 +298,7 @@ private:
             replace_file(file_of(c, findings_folder), findings_text(findings));
         };
         try {
-            const Experiment experiment = read_experiment(options_.challenge / c.folder);
+            const std::vector<Experiment> experiment{read_experiment(options_.challenge / c.folder)};
             options_.keep(file_of(c, ""), diagnose_experiment(device, scene_, experiment, how));
         } catch (const InputError& error) {
             replace_file(file_of(c, ""), nlohmann::json{{"problem", error.what()}}.dump(1) + "\n");

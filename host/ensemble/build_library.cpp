@@ -21,7 +21,9 @@ struct Probe {
     void (*apply)(Model&, double);
 };
 
-std::vector<Probe> probes_of(const Model& model, const LibraryPlan& plan) {
+/// Amplitudes are on the first specimen's scale.
+std::vector<Probe> probes_of(const LibraryPlan& plan) {
+    const Model& model = plan.specimens.front().model;
     std::vector<Probe> probes;
     for (const std::string& name : plan.candidates) {
         const Effect& effect = *find_effect(name);
@@ -37,12 +39,12 @@ std::vector<Probe> probes_of(const Model& model, const LibraryPlan& plan) {
 
 }  // namespace
 
-std::vector<Trial> baseline_trials(const Model& model, const LibraryPlan& plan) {
+std::vector<Trial> baseline_trials(const LibraryPlan& plan) {
     std::vector<Trial> trials;
-    for (std::size_t p = 0; p < plan.packings.size(); ++p)
+    for (std::size_t p = 0; p < plan.specimens.size(); ++p)
         for (int r = 0; r < plan.replicates; ++r)
-            trials.push_back({model, plan.packings[p], plan.jitter, plan.diameter_jitter,
-                              plan.seed + 1000 * p + static_cast<std::uint64_t>(r)});
+            trials.push_back({plan.specimens[p].model, plan.specimens[p].packing, plan.jitter,
+                              plan.diameter_jitter, plan.seed + 1000 * p + static_cast<std::uint64_t>(r)});
     return trials;
 }
 
@@ -51,17 +53,17 @@ namespace {
 /// Baseline trials that are repeated with every probe.
 std::vector<std::size_t> paired_trials(const LibraryPlan& plan) {
     std::vector<std::size_t> paired;
-    for (std::size_t t = 0; t < plan.packings.size() * static_cast<std::size_t>(plan.replicates); ++t)
+    for (std::size_t t = 0; t < plan.specimens.size() * static_cast<std::size_t>(plan.replicates); ++t)
         if (static_cast<int>(t) % plan.replicates < plan.pairs) paired.push_back(t);
     return paired;
 }
 
 }  // namespace
 
-std::vector<Trial> library_trials(const Model& model, const LibraryPlan& plan) {
-    std::vector<Trial> trials = baseline_trials(model, plan);
+std::vector<Trial> library_trials(const LibraryPlan& plan) {
+    std::vector<Trial> trials = baseline_trials(plan);
     const std::vector<std::size_t> paired = paired_trials(plan);
-    for (const Probe& probe : probes_of(model, plan))
+    for (const Probe& probe : probes_of(plan))
         for (const double amplitude : probe.amplitudes)
             for (const std::size_t t : paired) {
                 trials.push_back(trials[t]);
@@ -70,19 +72,18 @@ std::vector<Trial> library_trials(const Model& model, const LibraryPlan& plan) {
     return trials;
 }
 
-Library build_library(Device& device, const Question& question, const Model& model, const LibraryPlan& plan,
+Library build_library(Device& device, const Question& question, const LibraryPlan& plan,
                       const ObservationStore& store, const TrialOptions& options) {
     Library library;
     library.grid = question.grid;
-    const std::size_t baseline_count = plan.packings.size() * static_cast<std::size_t>(plan.replicates);
+    const std::size_t baseline_count = plan.specimens.size() * static_cast<std::size_t>(plan.replicates);
     for (std::size_t t = 0; t < baseline_count; ++t)
         library.packing.push_back(static_cast<int>(t) / plan.replicates);
-    const Eigen::MatrixXd observed =
-        observe_trials(device, question, library_trials(model, plan), store, options);
+    const Eigen::MatrixXd observed = observe_trials(device, question, library_trials(plan), store, options);
     library.baseline = observed.topRows(static_cast<Eigen::Index>(baseline_count));
     const Eigen::MatrixXd before = library.baseline(paired_trials(plan), Eigen::all);
     auto next = static_cast<Eigen::Index>(baseline_count);
-    for (const Probe& probe : probes_of(model, plan)) {
+    for (const Probe& probe : probes_of(plan)) {
         Eigen::MatrixXd differences[2];
         for (Eigen::MatrixXd& difference : differences) {
             difference = observed.middleRows(next, before.rows()) - before;
@@ -94,7 +95,8 @@ Library build_library(Device& device, const Question& question, const Model& mod
         list.push_back(learn_signature(probe.name, probe.amplitudes[0], probe.amplitudes[1], differences[0],
                                        differences[1]));
     }
-    library.origin = library_origin(question, model, plan.packings.front().size());
+    const Specimen& first = plan.specimens.front();
+    library.origin = library_origin(question, first.model, first.packing.size());
     library.provenance = {{"program", question.program}, {"device", device.description()}};
     return library;
 }

@@ -13,7 +13,6 @@
 #include "ensemble/library_origin.h"
 #include "ensemble/paper_metrics.h"
 #include "ensemble/parts/library_parts.h"
-#include "experiment/check_experiment.h"
 #include "scene/keys.h"
 
 namespace mcdem::inline ensemble {
@@ -71,17 +70,15 @@ constexpr double max_refinement = 64;
 /// The work of one diagnosis, in the order of its steps.
 class DiagnosisRunner {
 public:
-    DiagnosisRunner(Device& device, const Scene& scene, const Experiment& experiment,
+    DiagnosisRunner(Device& device, DiagnosisPlan plan, const std::vector<Experiment>& experiments,
                     const DiagnoseOptions& options)
         : device_(device),
-          experiment_(experiment),
+          experiments_(experiments),
           options_(options),
           store_(options.folder / "simulations"),
-          model_(model_of(scene, experiment)),
-          choice_(choose_candidates(model_, options.candidates)) {
-        question_ = question_of(scene, experiment, options, model_);
-        plan_ = plan_of(experiment, options, model_, choice_);
-    }
+          choice_(std::move(plan.choice)),
+          question_(std::move(plan.question)),
+          plan_(std::move(plan.library)) {}
 
     Diagnosis all() {
         Evidence evidence = gather();
@@ -102,7 +99,7 @@ public:
         if (auto first = change_of_the_scene(diagnosis))
             diagnosis.next.insert(diagnosis.next.begin(), *first);
         if (diagnosis.gap_reduction && options_.paper_metrics && options_.confirmations > 0)
-            add_paper_metrics(*diagnosis.gap_reduction, experiment_.recording, before_after(*draft));
+            add_paper_metrics(*diagnosis.gap_reduction, experiments_.front().recording, before_after(*draft));
         return diagnosis;
     }
 
@@ -113,37 +110,51 @@ private:
         const bool ready = options_.library && std::filesystem::exists(*options_.library);
         if (ready) {  // before any work
             evidence.library = read_library(*options_.library);
-            expect_origin(evidence.library, library_origin(question_, model_, plan_.packings.front().size()),
+            expect_origin(evidence.library,
+                          library_origin(question_, model(), plan_.specimens.front().packing.size()),
                           *options_.library);
             expect_library_of(evidence.library, question_.grid, plan_, *options_.library);
         }
-        if (options_.paper_metrics)
-            recorded(baseline_trials(model_, plan_));  // first: what is kept whole is not simulated again
+        if (options_.paper_metrics)  // first: what is kept whole is not simulated again
+            recorded(baseline_trials(plan_), options_.replicates);
         if (ready) {
             question_.grid = evidence.library.grid;
-            evidence.baseline = observe_trials(device_, question_, baseline_trials(model_, plan_), store_,
-                                               stage(options_, "baseline"));
+            take_baseline(evidence, simulated_baseline("baseline"));
         } else {
-            evidence.library =
-                build_library(device_, question_, model_, plan_, store_, stage(options_, "library"));
-            evidence.baseline = evidence.library.baseline;
+            evidence.library = build_library(device_, question_, plan_, store_, stage(options_, "library"));
             library_is_own_ = true;
+            take_baseline(evidence, evidence.library.baseline);
             if (options_.library) write_library(*options_.library, evidence.library);
         }
-        evidence.observed =
-            observe(experiment_.recording, question_.grid, question_.material, question_.discard);
         for (const std::string& name : choice_.chosen) {
             const Effect& effect = *find_effect(name);
-            const double scale = effect.scale(model_);
+            const double scale = effect.scale(model());
             evidence.candidates.push_back(
                 {name, std::string(effect.unit), effect.low * scale, effect.high * scale});
-            if (name == "plate_speed" && model_.experiment_speed)
-                evidence.candidates.back().high = 1 - *model_.experiment_speed / model_.replica.plate.speed;
+            if (name == "plate_speed" && model().experiment_speed)
+                evidence.candidates.back().high = 1 - *model().experiment_speed / model().replica.plate.speed;
         }
         for (const Nuisance& nuisance : plan_.nuisances)
             evidence.nuisances.push_back({nuisance.name, nuisance.unit, nuisance.sigma});
         note_failures(evidence);
         return evidence;
+    }
+
+    Eigen::MatrixXd simulated_baseline(const std::string& name) {
+        return observe_trials(device_, question_, baseline_trials(plan_), store_, stage(options_, name));
+    }
+
+    /// Runs of the scene as it stands, one packing after the other.
+    void take_baseline(Evidence& evidence, const Eigen::MatrixXd& runs) {
+        if (library_is_own_) evidence.library.baseline = runs;
+        evidence.packings.clear();
+        for (std::size_t p = 0; p < experiments_.size(); ++p)
+            evidence.packings.push_back(
+                {experiments_[p].name,
+                 observe(experiments_[p].recording, question_.grid, question_.material, question_.discard),
+                 runs.middleRows(static_cast<Eigen::Index>(p) * plan_.replicates, plan_.replicates)});
+        take_means(evidence);
+        if (experiments_.size() == 1) evidence.packings.clear();
     }
 
     DiagnosisBuilder confirmed(const Evidence& evidence) {
@@ -155,13 +166,12 @@ private:
     Refinement refinement_of(const DiagnosisBuilder& draft, double most) {
         const std::size_t candidate = draft.decision().group.front();
         const Effect& effect = *find_effect(draft.findings().names[candidate]);
-        Model model = model_;
-        const double from = effect.setting(model);
+        const NumericalSetting setting = effect.settings(plan_.specimens.front().model).front();
         return {std::string(effect.name),
-                std::string(effect.key),
-                std::string(find_key(effect.key)->unit),
-                from,
-                from / draft.refining_factor(candidate, most),
+                std::string(setting.key),
+                std::string(find_key(setting.key)->unit),
+                *setting.value,
+                *setting.value / draft.refining_factor(candidate, most),
                 false};
     }
 
@@ -169,19 +179,16 @@ private:
     /// baseline is simulated again.
     void refine(Evidence& evidence, Refinement refinement) {
         const Effect& effect = *find_effect(refinement.effect);
-        effect.setting(model_) = refinement.to;
+        for (Specimen& specimen : plan_.specimens)
+            for (const NumericalSetting& setting : effect.settings(specimen.model))
+                *setting.value *= refinement.to / refinement.from;
         refinement.done = true;
         refinements_.push_back(refinement);
         options_.on_note(
             fmt::format("{} is {} instead of {} from here on: the gap is consistent with a simulation "
                         "that is not converged",
                         refinement.key, refinement.to, refinement.from));
-        evidence.baseline = observe_trials(device_, question_, baseline_trials(model_, plan_), store_,
-                                           stage(options_, "refined baseline"));
-        if (library_is_own_) {
-            evidence.library.baseline = evidence.baseline;
-            evidence.library.packing.assign(static_cast<std::size_t>(evidence.baseline.rows()), 0);
-        }
+        take_baseline(evidence, simulated_baseline("refined baseline"));
         for (Signature& signature : evidence.library.effects)
             if (signature.name == refinement.effect)
                 signature = continued_from(signature, 1 - refinement.to / refinement.from);
@@ -199,7 +206,7 @@ private:
                 {}};
         }
         if (diagnosis.verdict == Verdict::unknown_effect || diagnosis.causes.empty()) return std::nullopt;
-        Model changed = model_;
+        Model changed = model();
         std::vector<std::string> names;
         for (const Cause& cause : diagnosis.causes) {
             const bool together = diagnosis.causes.front().group.size() == 1;
@@ -207,7 +214,7 @@ private:
             apply_cause(changed, cause);
             names.push_back(cause.effect);
         }
-        std::vector<std::string> settings = differing_keys(model_.replica, changed.replica);
+        std::vector<std::string> settings = differing_keys(model().replica, changed.replica);
         if (settings.empty())
             return NextStep{fmt::format("check the instrument for {}: no key of the scene changes it",
                                         fmt::join(names, " and ")),
@@ -242,9 +249,10 @@ private:
         }
         while (const auto k = draft.wants_held_out()) {
             const std::vector<Trial> trials = held_out_trials(draft, *k);
-            if (options_.paper_metrics) recorded(trials);
-            draft.confirm_held_out(*k, observe_trials(device_, question_, trials, store_,
-                                                      stage(options_, "held-out confirmation")));
+            if (options_.paper_metrics) recorded(trials, options_.confirmations);
+            const Eigen::MatrixXd runs =
+                observe_trials(device_, question_, trials, store_, stage(options_, "held-out confirmation"));
+            draft.confirm_held_out(*k, mean_over_packings(runs, packings()));
         }
     }
 
@@ -254,22 +262,25 @@ private:
             append(trials, trials_of(draft, draft.findings().proposals[k], draft.whole_fit(k)));
         const Eigen::MatrixXd runs =
             observe_trials(device_, question_, trials, store_, stage(options_, "confirmation"));
+        const Eigen::Index each = options_.confirmations * packings();
         for (std::size_t k = 0; k < proposals.size(); ++k)
-            draft.confirm(proposals[k], runs.middleRows(static_cast<Eigen::Index>(k) * options_.confirmations,
-                                                        options_.confirmations));
+            draft.confirm(
+                proposals[k],
+                mean_over_packings(runs.middleRows(static_cast<Eigen::Index>(k) * each, each), packings()));
     }
 
+    /// Of the first packing.
     BeforeAfter before_after(const DiagnosisBuilder& draft) {
-        LibraryPlan plan = plan_;
-        plan.replicates = std::min(options_.replicates, options_.confirmations);
-        return {
-            kept_recordings(device_, question_, recorded(baseline_trials(model_, plan)), store_),
-            kept_recordings(device_, question_, recorded(held_out_trials(draft, draft.decided())), store_)};
+        const int few = std::min(options_.replicates, options_.confirmations);
+        return {kept_recordings(device_, question_, recorded(baseline_trials(plan_), few), store_),
+                kept_recordings(device_, question_,
+                                recorded(held_out_trials(draft, draft.decided()), options_.confirmations),
+                                store_)};
     }
 
-    /// The first few trials, with their whole recordings kept.
-    std::vector<Trial> recorded(std::vector<Trial> trials) const {
-        trials.resize(std::min<std::size_t>(trials.size(), trials_recorded));
+    /// The first few trials, of those `of_a_packing`, with their whole recordings kept.
+    std::vector<Trial> recorded(std::vector<Trial> trials, int of_a_packing) const {
+        trials.resize(std::min(static_cast<std::size_t>(of_a_packing), trials_recorded));
         keep_recordings(trials);
         observe_trials(device_, question_, trials, store_, stage(options_, "recordings"));
         return trials;
@@ -283,16 +294,17 @@ private:
                                  const PartialFit& fit) const {
         LibraryPlan plan = plan_;
         plan.replicates = options_.confirmations;
-        return baseline_trials(fitted(draft.data(), proposal, fit), plan);
+        for (Specimen& specimen : plan.specimens)
+            specimen.model = fitted(specimen.model, draft.data(), proposal, fit);
+        return baseline_trials(plan);
     }
 
     std::vector<Trial> held_out_trials(const DiagnosisBuilder& draft, std::size_t proposal) const {
         return trials_of(draft, draft.findings().proposals[proposal], draft.part_fit(proposal));
     }
 
-    /// The model with the fitted effects and nuisances.
-    Model fitted(const GapData& data, const Proposal& proposal, const PartialFit& fit) const {
-        Model model = model_;
+    /// A model with the fitted effects and nuisances.
+    Model fitted(Model model, const GapData& data, const Proposal& proposal, const PartialFit& fit) const {
         Eigen::VectorXd shifts = fit.nuisances;
         for (std::size_t k = 0; k < proposal.candidates.size(); ++k) {
             const std::string& name = data.name(proposal.candidates[k]);
@@ -307,15 +319,18 @@ private:
         return model;
     }
 
+    /// The first packing's.
+    const Model& model() const { return plan_.specimens.front().model; }
+    int packings() const { return static_cast<int>(experiments_.size()); }
+
     Device& device_;
-    const Experiment& experiment_;
+    const std::vector<Experiment>& experiments_;
     const DiagnoseOptions& options_;
     ObservationStore store_;
-    Model model_;
     CandidateChoice choice_;
     Question question_;
     LibraryPlan plan_;
-    bool library_is_own_ = false;  ///< made on the experiment's own packing
+    bool library_is_own_ = false;  ///< made on the experiment's own packings
     std::vector<Refinement> refinements_;
 };
 
@@ -361,14 +376,16 @@ Model model_of(const Scene& scene, const Experiment& experiment) {
     return model;
 }
 
-Diagnosis diagnose_experiment(Device& device, const Scene& scene, const Experiment& experiment,
+Diagnosis diagnose_experiment(Device& device, const Scene& scene, const std::vector<Experiment>& experiments,
                               const DiagnoseOptions& options) {
-    if (const auto needed = needed_to_diagnose(experiment); !needed.empty()) throw InputError(needed);
     const auto begin = std::chrono::steady_clock::now();
-    Diagnosis diagnosis = DiagnosisRunner(device, scene, experiment, options).all();
+    Diagnosis diagnosis =
+        DiagnosisRunner(device, plan_of(scene, experiments, options), experiments, options).all();
     diagnosis.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    std::vector<std::string> names;
+    for (const Experiment& experiment : experiments) names.push_back(experiment.name);
     diagnosis.provenance = {{"scene", scene.name},
-                            {"experiment", experiment.name},
+                            {"experiment", fmt::format("{}", fmt::join(names, ", "))},
                             {"program", options.program},
                             {"device", device.description()},
                             {"seed", std::to_string(options.seed)}};

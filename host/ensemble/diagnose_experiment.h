@@ -41,8 +41,9 @@ Model model_of(const Scene& scene, const Experiment& experiment);
 /// Where the experiment's grains were at its first frame.
 Packing start_packing(const Experiment& experiment);
 
-/// Throws InputError, RunError or Interrupted.
-Diagnosis diagnose_experiment(Device& device, const Scene& scene, const Experiment& experiment,
+/// One experiment, or several packings of one: a verdict for all of them together. Throws InputError,
+/// RunError or Interrupted.
+Diagnosis diagnose_experiment(Device& device, const Scene& scene, const std::vector<Experiment>& experiments,
                               const DiagnoseOptions& options);
 
 }  // namespace mcdem::ensemble

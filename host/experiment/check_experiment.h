@@ -28,8 +28,4 @@ struct ExperimentCheck {
 /// diameters and moduli true. What an experiment lacks (severity missing) limits every conclusion from it.
 ExperimentCheck check_experiment(const Experiment& experiment);
 
-/// What `mcdem diagnose` needs and the experiment lacks, each with what to add; empty where it can be
-/// diagnosed.
-std::vector<std::string> needed_to_diagnose(const Experiment& experiment);
-
 }  // namespace mcdem::experiment

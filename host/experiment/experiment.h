@@ -17,6 +17,7 @@ struct Measurement {
     double diameter_error = 0;   ///< sigma [m]
     double force_error = 0;      ///< relative sigma of a contact force
     double force_threshold = 0;  ///< contact forces below it are not seen [N]
+    bool operator==(const Measurement&) const = default;
 };
 
 struct Experiment {

@@ -4,6 +4,7 @@
 #include <pybind11/stl/filesystem.h>
 
 #include <algorithm>
+#include <variant>
 
 #include "core/errors.h"
 #include "core/output_file.h"
@@ -36,11 +37,25 @@ void check(const Numbers& numbers) {
     if (!problems.empty()) throw InputError(problems);
 }
 
+using Path = std::filesystem::path;
+using OneOrSeveral = std::variant<Path, std::vector<Path>>;
+
+/// Several packings are told apart by their folders.
+std::vector<Experiment> read_experiments(const OneOrSeveral& folders) {
+    if (const Path* one = std::get_if<Path>(&folders)) return {read_experiment(*one)};
+    std::vector<Experiment> experiments;
+    for (const Path& folder : std::get<std::vector<Path>>(folders)) {
+        experiments.push_back(read_experiment(folder));
+        experiments.back().name = folder.string();
+    }
+    if (experiments.empty()) throw InputError("experiment: must be a folder or a list of some, got none");
+    return experiments;
+}
+
 /// The text of diagnosis.json, written beside the simulations like it and the page.
-std::string diagnose_into(const Scene& scene, const std::filesystem::path& folder,
-                          const DiagnoseOptions& options, const std::filesystem::path& experiment,
-                          const std::string& choice, bool page) {
-    const Experiment measured = read_experiment(experiment);
+std::string diagnose_into(const Scene& scene, const Path& folder, const DiagnoseOptions& options,
+                          const OneOrSeveral& experiment, const std::string& choice, bool page) {
+    const std::vector<Experiment> measured = read_experiments(experiment);
     const FolderLock lock = open_output_folder(folder);
     Device device(choice);
     const Diagnosis diagnosis = diagnose_experiment(device, scene, measured, options);
@@ -50,10 +65,9 @@ std::string diagnose_into(const Scene& scene, const std::filesystem::path& folde
     return text;
 }
 
-py::object diagnose(const Scene& scene, const std::filesystem::path& experiment,
-                    const std::filesystem::path& folder, const std::vector<std::string>& candidates,
-                    int replicates, int pairs, int confirmations, std::uint64_t seed,
-                    std::optional<std::filesystem::path> library, const std::string& choice, bool page,
+py::object diagnose(const Scene& scene, const OneOrSeveral& experiment, const Path& folder,
+                    const std::vector<std::string>& candidates, int replicates, int pairs, int confirmations,
+                    std::uint64_t seed, std::optional<Path> library, const std::string& choice, bool page,
                     py::object progress) {
     check({replicates, pairs, confirmations});
     Watch watch(std::move(progress));
@@ -90,7 +104,8 @@ void bind_diagnosis(py::module_& module) {
                py::arg("library") = py::none(), py::arg("device") = "", py::arg("page") = true,
                py::arg("progress") = py::none(),
                "Where a scene and an experiment part, and which effect is to blame: what diagnosis.json "
-               "says, as a dict.\n\n"
+               "says, as a dict.\n`experiment`: a folder, or a list of those of several packings, which "
+               "are diagnosed together.\n\n"
                "Writes diagnosis.json and, with `page`, diagnosis.html into `folder`, as `mcdem diagnose` "
                "does; simulations "
                "are\nkept there, so that the same call goes on where Ctrl-C ended it. `progress(stage, "

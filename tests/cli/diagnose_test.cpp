@@ -15,17 +15,24 @@ protected:
     DiagnoseTest() { write_tiny_scene(folder_.path); }
 
     /// An experiment of another packing, the scene but for `changes`.
-    void experiment(const Words& changes) {
-        Words run{
-            "run",   "tiny.toml",     "--out", "run", "--no-figures", "--set", "protocol.scan_at_start=true",
-            "--set", "packing.seed=5"};
+    void experiment(const Words& changes, const std::string& folder = "e", int seed = 5) {
+        Words run{"run",
+                  "tiny.toml",
+                  "--out",
+                  "run-" + folder,
+                  "--no-figures",
+                  "--set",
+                  "protocol.scan_at_start=true",
+                  "--set",
+                  "packing.seed=" + std::to_string(seed)};
         for (const std::string& change : changes) run.insert(run.end(), {"--set", change});
         expect_done(mcdem(run));
-        expect_done(mcdem({"experiment", "from-run", "run", "--out", "e"}));
+        expect_done(mcdem({"experiment", "from-run", "run-" + folder, "--out", folder}));
     }
 
-    nlohmann::json diagnosis(const Words& more) {
-        Words words{"diagnose", "tiny.toml", "--experiment", "e", "--out", "d"};
+    nlohmann::json diagnosis(const Words& more, const Words& experiments = {"e"}) {
+        Words words{"diagnose", "tiny.toml", "--out", "d"};
+        for (const std::string& folder : experiments) words.insert(words.end(), {"--experiment", folder});
         words.insert(words.end(), more.begin(), more.end());
         expect_done(mcdem(words));
         return nlohmann::json::parse(std::ifstream(path("d/diagnosis.json")));
@@ -54,6 +61,51 @@ TEST_F(DiagnoseTest, ASlowRealityWithoutEffectIsGivenNone) {
     ASSERT_EQ(slow["refinements"].size(), 1u);
     EXPECT_EQ(slow["refinements"][0]["done"], true);
     EXPECT_THAT(std::string(slow["sentence"]), HasSubstr("with plate.speed = "));
+}
+
+// A plate that follows the load is slow already: nothing has to be refined.
+TEST_F(DiagnoseTest, WithAToleranceASlowRealityIsLikeTheScene) {
+    const Words scene{"protocol.rate_tolerance=0.01"};
+    experiment({"plate.speed=0.01"});
+    Words words = few;
+    for (const std::string& change : scene) words.insert(words.end(), {"--set", change});
+    const auto told = diagnosis(words);
+    EXPECT_EQ(told["verdict"], "no_gap") << told["sentence"];
+    EXPECT_TRUE(told["refinements"].empty());
+    EXPECT_THAT(told["not_testable"].dump(), HasSubstr("plate_speed: protocol.rate_tolerance keeps"));
+}
+
+TEST_F(DiagnoseTest, SeveralPackingsGetOneVerdict) {
+    const Words packings{"a", "b"};
+    for (int p = 0; p < 2; ++p) experiment({}, packings[static_cast<std::size_t>(p)], 5 + p);
+    const auto none = diagnosis(few, packings);
+    EXPECT_EQ(none["verdict"], "no_gap") << none["sentence"];
+    ASSERT_EQ(none["packings"].size(), 2u);
+    EXPECT_EQ(none["packings"][1]["experiment"], "b");
+    EXPECT_EQ(none["provenance"]["experiment"], "a, b");
+    for (int p = 0; p < 2; ++p)
+        experiment({"grains.friction=0.15"}, "rough-" + packings[static_cast<std::size_t>(p)], 5 + p);
+    const auto rough = diagnosis(few, {"rough-a", "rough-b"});
+    EXPECT_EQ(rough["verdict"], "effect") << rough["sentence"];
+    EXPECT_EQ(rough["causes"][0]["effect"], "friction");
+    EXPECT_NEAR(rough["causes"][0]["amplitude"].get<double>(), 0.12,
+                4 * rough["causes"][0]["amplitude_error"].get<double>());
+    for (const auto& packing : rough["packings"]) EXPECT_EQ(packing["differs"], false) << packing;
+    const auto mixed = diagnosis(few, {"a", "rough-b"});
+    for (const auto& packing : mixed["packings"]) EXPECT_EQ(packing["differs"], true) << packing;
+    Words twice{"diagnose", "tiny.toml", "--out", "d", "--experiment", "a", "--experiment", "a"};
+    expect_bad_input(mcdem(twice), "--experiment: a is given twice");
+}
+
+// Plate, positions and no contacts: what the force on the plate tells, and what it does not.
+TEST_F(DiagnoseTest, PlateAndPositionsAreEnough) {
+    experiment({});
+    std::filesystem::remove(path("e/contacts.csv"));
+    EXPECT_THAT(mcdem({"experiment", "check", "e"}).out, HasSubstr("needs beside it: nothing"));
+    const auto told = diagnosis(few);
+    EXPECT_EQ(told["verdict"], "no_gap") << told["sentence"];
+    EXPECT_THAT(told["not_measured"].dump(), HasSubstr("contacts.csv"));
+    for (const auto& cell : told["cells"]) EXPECT_EQ(cell["observable"], "top_force");
 }
 
 // With all bulges gone free surfaces move out too far, and the runs stop. The least numbers that are accepted

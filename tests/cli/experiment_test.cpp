@@ -181,6 +181,7 @@ TEST_F(ExperimentCommandTest, WhatADiagnosisNeedsIsToldByCheckAndDiagnoseAlike) 
         EXPECT_FALSE(fs::exists(path("out/simulations")));
     };
     told("a line such as `position_error = 1e-4 # [m]`");
+    told("a line such as `force_error = 0.05 # relative`");
     fs::remove(path("e/contacts.csv"));
     fs::remove(path("e/grains.csv"));
     told("grains.csv must have the positions of frame 0");

@@ -225,15 +225,16 @@ TEST(Effects, SharesStayShares) {
 
 TEST(Effects, OfNumericsNameTheirKey) {
     for (const Effect& e : effects()) {
-        EXPECT_EQ(is_numerical(e.name), e.setting != nullptr) << e.name;
-        if (!e.setting) continue;
+        EXPECT_EQ(is_numerical(e.name), e.settings != nullptr) << e.name;
+        if (!e.settings) continue;
         Model model = plain_model();
-        const double before = numbers_of(model).at(std::string(e.key));
-        EXPECT_EQ(e.setting(model), before) << e.name;
+        const NumericalSetting setting = e.settings(model).front();
+        const double before = numbers_of(model).at(std::string(setting.key));
+        EXPECT_EQ(*setting.value, before) << e.name;
         e.apply(model, 0.5);
-        EXPECT_NEAR(e.setting(model), 0.5 * before, 1e-12 * before) << e.name;
+        EXPECT_NEAR(*setting.value, 0.5 * before, 1e-12 * before) << e.name;
         e.apply(model, 1);
-        EXPECT_GT(e.setting(model), 0) << "a run that ends";
+        EXPECT_GT(*setting.value, 0) << "a run that ends";
     }
     EXPECT_FALSE(is_numerical("modulus"));
 }
@@ -268,6 +269,26 @@ TEST(Effects, HindrancesSayWhy) {
     EXPECT_THAT(hindered(stated), ElementsAre("bulge_contacts"));
     stated.experiment_speed = stated.replica.plate.speed;
     EXPECT_THAT(hindered(stated), ElementsAre("bulge_contacts", "plate_speed"));
+    Model slow = independent;
+    slow.replica.protocol.rate_tolerance = 0.01;
+    EXPECT_THAT(hindered(slow), ElementsAre("bulge_contacts", "plate_speed"));
+    slow.replica.protocol.rate_tolerance = 0.02;
+    EXPECT_THAT(hindered(slow), ElementsAre("bulge_contacts"));
+}
+
+// A plate that keeps an inertial number is slowed down by that; plate.speed, its highest, goes along.
+TEST(Effects, ThePlatesSpeedIsItsToleranceWhereThereIsOne) {
+    const Effect& effect = *find_effect("plate_speed");
+    Model model = plain_model();
+    model.replica.plate.speed = 0.1;
+    EXPECT_EQ(effect.settings(model).front().key, "plate.speed");
+    model.replica.protocol.rate_tolerance = 0.04;
+    const auto settings = effect.settings(model);
+    EXPECT_EQ(settings.front().key, "protocol.rate_tolerance");
+    EXPECT_EQ(*settings.front().value, 0.04);
+    effect.apply(model, 0.5);
+    EXPECT_DOUBLE_EQ(model.replica.protocol.rate_tolerance, 0.02);
+    EXPECT_DOUBLE_EQ(model.replica.plate.speed, 0.05);
 }
 
 TEST(Nuisances, MoveTheirParameter) {

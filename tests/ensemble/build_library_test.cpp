@@ -19,12 +19,12 @@ using ::testing::ThrowsMessage;
 TEST(BaselineTrials, HaveSeedsOfTheirOwn) {
     const SmallTrials small;
     LibraryPlan plan;
-    plan.packings = {small.packing, small.packing};
+    plan.specimens = {{small.model, small.packing}, {small.model, small.packing}};
     plan.replicates = 3;
     plan.jitter = 1e-5;
     plan.diameter_jitter = 2e-5;
     plan.seed = 7;
-    const auto trials = baseline_trials(small.model, plan);
+    const auto trials = baseline_trials(plan);
     ASSERT_EQ(trials.size(), 6u);
     for (std::size_t t = 0; t < 6; ++t) {
         EXPECT_EQ(trials[t].seed, 7 + 1000 * (t / 3) + t % 3);
@@ -38,13 +38,13 @@ TEST(BuildLibrary, BaselineEffectsAndNuisances) {
     const SmallTrials small;
     Device device;
     LibraryPlan plan;
-    plan.packings = {small.packing};
+    plan.specimens = {{small.model, small.packing}};
     plan.replicates = 3;
     plan.pairs = 2;
     plan.jitter = plan.diameter_jitter = 1e-5;
     plan.candidates = {"force_bias", "plate_tilt"};
     plan.nuisances = nuisances(small.model, {});
-    const Library library = build_library(device, small.question, small.model, plan, small.store, {});
+    const Library library = build_library(device, small.question, plan, small.store, {});
     const auto cells = static_cast<Eigen::Index>(cells_of(small.question.grid).size());
     EXPECT_EQ(library.grid.displacement, small.question.grid.displacement);
     EXPECT_EQ(library.packing, (std::vector{0, 0, 0}));
@@ -64,7 +64,7 @@ TEST(BuildLibrary, BaselineEffectsAndNuisances) {
     EXPECT_EQ(library.effects[0].linear[0], 0);
     EXPECT_GT(library.nuisances[0].linear[1], 0.3);  // ln F grows by one with ln E, less what rearranges
     // The same from trials made by hand.
-    std::vector<Trial> trials = baseline_trials(small.model, plan);
+    std::vector<Trial> trials = baseline_trials(plan);
     const Eigen::MatrixXd before = observe_trials(device, small.question, trials, small.store, {});
     EXPECT_TRUE(same(before.row(2), library.baseline.row(2)));
     trials.resize(2);
@@ -84,11 +84,11 @@ TEST(BuildLibrary, SeveralPackings) {
     LibraryPlan plan;
     Packing mirrored = small.packing;
     for (Vec3& position : mirrored.position) position.x() = small.model.replica.box.size_x - position.x();
-    plan.packings = {small.packing, mirrored};
+    plan.specimens = {{small.model, small.packing}, {small.model, mirrored}};
     plan.replicates = 2;
     plan.pairs = 1;
     plan.candidates = {"force_bias"};
-    const Library library = build_library(device, small.question, small.model, plan, small.store, {});
+    const Library library = build_library(device, small.question, plan, small.store, {});
     EXPECT_EQ(library.packing, (std::vector{0, 0, 1, 1}));
     EXPECT_EQ(library.effects[0].pairs, 2);  // one of each packing
     EXPECT_TRUE(library.nuisances.empty());

@@ -38,15 +38,18 @@ TEST(DiagnosisJson, has_the_documented_keys_in_their_order) {
     EXPECT_THAT(keys_of(json),
                 ElementsAre("verdict", "gap", "where", "causes", "explanation", "shrink", "detection_limits",
                             "not_measured", "seconds", "sentence", "where_threshold", "cells", "ranking",
-                            "nuisances", "not_testable", "refinements", "next", "provenance"));
+                            "nuisances", "not_testable", "refinements", "next", "packings", "provenance"));
     EXPECT_THAT(keys_of(json["gap"]), ElementsAre("detected", "p_value", "p_omnibus", "p_directed"));
-    EXPECT_THAT(keys_of(json["where"][0]), ElementsAre("observable", "phase", "displacement_mm", "region",
-                                                       "z_score", "z_score_refitted", "force_class"));
+    EXPECT_THAT(keys_of(json["where"][0]),
+                ElementsAre("observable", "phase", "displacement_mm", "region", "z_score", "z_score_refitted",
+                            "force_class", "difference"));
     const auto cause = ElementsAre("effect", "amplitude", "unit", "confidence", "group", "amplitude_error",
                                    "explained", "score", "confirmed_score");
     EXPECT_THAT(keys_of(json["causes"][0]), cause);
     EXPECT_THAT(keys_of(json["ranking"][17]), cause);
     EXPECT_THAT(keys_of(json["next"][0]), ElementsAre("what", "power"));
+    EXPECT_THAT(keys_of(json["packings"][0]),
+                ElementsAre("experiment", "gap_p", "amplitude", "amplitude_error", "agreement_p", "differs"));
     EXPECT_THAT(keys_of(parsed(samples::diagnosis(Verdict::not_converged))["refinements"][0]),
                 ElementsAre("effect", "key", "was", "to", "unit", "done"));
     EXPECT_THAT(keys_of(json["explanation"]),
@@ -60,8 +63,8 @@ TEST(DiagnosisJson, has_the_documented_keys_in_their_order) {
                 ElementsAre("effect", "minimum_amplitude", "absorbed_by_calibration", "unit", "group"));
     EXPECT_THAT(keys_of(json["nuisances"][0]),
                 ElementsAre("name", "shift", "error", "prior", "unit", "at_bound"));
-    EXPECT_THAT(keys_of(json["cells"][0]),
-                ElementsAre("observable", "phase", "displacement_mm", "z_score", "z_score_refitted"));
+    EXPECT_THAT(keys_of(json["cells"][0]), ElementsAre("observable", "phase", "displacement_mm", "z_score",
+                                                       "z_score_refitted", "difference"));
 }
 
 TEST(DiagnosisJson, has_the_documented_types) {

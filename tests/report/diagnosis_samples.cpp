@@ -171,6 +171,8 @@ Diagnosis diagnosis(Verdict verdict) {
             add_cells(d, 1, 0.8);
             add_ranking(d, 46.3, 0.87, 0.78);
             d.ranking.front().confirmed_score = 44.1;
+            d.packings = {{"packing_1", 0.003, 2.6e-4, 3e-5, 0.31, false},
+                          {"packing_2", 0.02, 2.2e-4, 3e-5, 0.31, false}};
             explain(d, 0.79);
             break;
         case Verdict::group:
@@ -218,6 +220,7 @@ Diagnosis with_texts(Diagnosis d, const std::string& text) {
     for (auto& fit : d.nuisances) fit.name = fit.unit = text;
     for (auto& limit : d.detection_limits) limit.effect = limit.unit = text, limit.group = {text, text};
     for (auto& step : d.next) step.what = text;
+    for (auto& packing : d.packings) packing.experiment = text;
     for (auto& refinement : d.refinements) refinement.effect = refinement.key = refinement.unit = text;
     for (auto* list : {&d.not_measured, &d.not_testable}) *list = {text};
     if (d.gap_reduction) d.gap_reduction->held_out = text, d.gap_reduction->metrics[text] = {1, 2};

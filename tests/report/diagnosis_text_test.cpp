@@ -91,8 +91,22 @@ TEST(DiagnosisText, two_effects_together) {
     auto d = samples::diagnosis(Verdict::effect);
     d.causes.push_back(d.ranking[2]);
     EXPECT_THAT(line(d, "Which"),
-                HasSubstr("mJ/m²) together with friction between grains (0.0182 ± 0.0048)"));
+                HasSubstr("mJ/m²) together with friction between grains (0.0182 ± 0.0048 higher than in the "
+                          "scene)"));
     EXPECT_THAT(verdict_sentence(d), HasSubstr("together with friction between grains"));
+}
+
+TEST(DiagnosisText, several_packings_agree_or_one_is_named) {
+    auto d = samples::diagnosis(Verdict::group);
+    EXPECT_THAT(line(d, "Gap"), Not(HasSubstr("packings")));
+    d.packings = {{"out/A", 0.001, 2e-4, 1e-5, 0.3, false}, {"out/B", 0.2, 1e-4, 1e-5, 0.3, false}};
+    EXPECT_THAT(line(d, "Gap"), HasSubstr("; 2 packings together, which agree."));
+    EXPECT_THAT(line(d, "Limits"), Not(HasSubstr("do not share")));
+    d.packings[1].differs = true;
+    EXPECT_THAT(line(d, "Gap"), HasSubstr("of which out/B differs from the others by more than noise"));
+    EXPECT_THAT(line(d, "Limits"), HasSubstr("what the packings do not share is no effect"));
+    d.packings[0].differs = true;
+    EXPECT_THAT(line(d, "Gap"), HasSubstr("which differ from one another by more than noise"));
 }
 
 TEST(DiagnosisText, a_group_names_all_with_their_amplitudes) {
@@ -116,7 +130,8 @@ TEST(DiagnosisText, unknown_effect_tells_how_little_the_best_explains) {
 
 TEST(DiagnosisText, calibration_suspect_names_the_parameter) {
     auto d = samples::diagnosis(Verdict::calibration_suspect);
-    EXPECT_THAT(line(d, "Which"), HasSubstr("stated modulus is off by +2.30 ± 0.20 kPa (4.6 times"));
+    EXPECT_THAT(line(d, "Which"),
+                HasSubstr("modulus of the grains: 2.30 ± 0.20 kPa higher than stated (4.6 times"));
     EXPECT_THAT(line(d, "How far"), StartsWith("correcting it"));
     d.causes.push_back(d.ranking[6]);
     d.causes[0].effect = "modulus";

@@ -52,11 +52,13 @@ TEST(DiagnosisWords, percentages_and_probabilities) {
 }
 
 TEST(DiagnosisWords, places) {
-    WhereEntry entry{"top_force", "load", {18e-3, 24e-3}, {}, {}, 6.13, 0.4};
+    WhereEntry entry{"top_force", "load", {18e-3, 24e-3}, {}, {}, 6.13, 0.4, 0.1};
     EXPECT_EQ(where_words(entry),
-              "top force while loading, 18 to 24 mm (6.1 sigma, 0.4 after recalibration)");
+              "top force while loading, 18 to 24 mm: 11 % higher than simulated (6.1 sigma, 0.4 after "
+              "recalibration)");
     entry = {"mean_force", "", {0, 0}, "floor", "weak", -4, -4};
-    EXPECT_EQ(where_words(entry), "mean force, floor, weak (-4.0 sigma, -4.0 after recalibration)");
+    EXPECT_EQ(where_words(entry),
+              "mean force, floor, weak: lower than simulated (-4.0 sigma, -4.0 after recalibration)");
     EXPECT_EQ(displacement_words({18e-3, 18e-3}), "18 mm");
     EXPECT_EQ(phase_words(""), "both phases");
 }
@@ -70,6 +72,16 @@ TEST(DiagnosisWords, metrics_come_in_the_papers_order) {
     EXPECT_EQ(order, "Rtop errf errZ bhat another ");
 }
 
+TEST(DiagnosisWords, amplitudes_have_directions_where_their_sign_means_one) {
+    EXPECT_EQ(directed_amount("modulus", std::log(0.95), 0.01, "relative"),
+              "5.00 ± 0.95 % lower than stated");
+    EXPECT_EQ(directed_amount("diameter_error", 2e-4, 1e-5, "m"), "0.200 ± 0.010 mm larger than stated");
+    EXPECT_EQ(directed_amount("force_bias", -0.1, 0.01, "relative"), "10.0 ± 1.0 % read too small");
+    EXPECT_EQ(directed_amount("adhesion", 4e-4, 5e-5, "J/m2"), "0.400 ± 0.050 mJ/m²");
+    EXPECT_EQ(directed_amount("friction", 0, 0.01, ""), "0.000 ± 0.010");
+    EXPECT_EQ(directed_amount("friction", 0.1, INFINITY, ""), "–");
+}
+
 TEST(DiagnosisWords, suspects_are_the_leading_parameter_or_those_at_their_bounds) {
     Diagnosis d;
     d.nuisances = {{"gamma", 0.2, 0.01, 0.05, "", true},
@@ -79,7 +91,7 @@ TEST(DiagnosisWords, suspects_are_the_leading_parameter_or_those_at_their_bounds
     ASSERT_EQ(suspects.size(), 2u);
     EXPECT_EQ(suspects[0].name, "modulus");  // 6 sigma, before 4
     EXPECT_EQ(suspect_words(suspects[0]),
-              "the stated modulus is off by +30.0 ± 2.0 % (6.0 times its stated error)");
+              "modulus of the grains: 35.0 ± 2.7 % higher than stated (6.0 times its stated error)");
     d.causes.push_back({.effect = "friction",
                         .amplitude = 0.08,
                         .amplitude_error = 0.01,
@@ -89,7 +101,7 @@ TEST(DiagnosisWords, suspects_are_the_leading_parameter_or_those_at_their_bounds
     suspects = suspects_of(d);
     ASSERT_EQ(suspects.size(), 1u);
     EXPECT_EQ(suspect_words(suspects[0]),
-              "the stated friction between grains is off by +0.080 ± 0.010 (8.0 times its stated error)");
+              "friction between grains: 0.080 ± 0.010 higher than in the scene (8.0 times its stated error)");
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include "cli/experiment/experiment.h"
 #include "cli/shell/standard_streams.h"
+#include "diagnose/observe/needed_to_diagnose.h"
 #include "experiment/check_experiment.h"
 
 namespace mcdem::inline cli {

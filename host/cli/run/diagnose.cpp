@@ -1,6 +1,8 @@
 // mcdem diagnose
 #include <fmt/ranges.h>
 
+#include <algorithm>
+
 #include "cli/parts/sharing.h"
 #include "cli/run/figures.h"
 #include "cli/run/scene_options.h"
@@ -9,6 +11,7 @@
 #include "cli/shell/messages.h"
 #include "cli/shell/progress.h"
 #include "cli/shell/standard_streams.h"
+#include "core/errors.h"
 #include "core/make_folder.h"
 #include "core/output_file.h"
 #include "core/version.h"
@@ -25,8 +28,8 @@ namespace {
 
 struct DiagnoseCommand {
     SceneOptions scene;
-    std::string experiment, out, device, library;
-    std::vector<std::string> candidates;
+    std::string out, device, library;
+    std::vector<std::string> experiments, candidates;
     int replicates = 32, pairs = 8, confirmations = 8;
     double refine = 4;
     std::uint64_t seed = 1;
@@ -48,9 +51,24 @@ DiagnoseOptions options_of(const DiagnoseCommand& command) {
     return options;
 }
 
-Diagnosis diagnose(const DiagnoseCommand& command, const Scene& scene, const Experiment& experiment) {
+/// Several packings are told apart by their folders.
+std::vector<Experiment> read_experiments(const std::vector<std::string>& folders) {
+    std::vector<Experiment> experiments;
+    for (const std::string& folder : folders) {
+        if (std::ranges::count(folders, folder) > 1)
+            throw InputError(fmt::format("--experiment: {} is given twice", folder));
+        experiments.push_back(read_experiment(folder));
+        if (folders.size() > 1) experiments.back().name = folder;
+    }
+    return experiments;
+}
+
+Diagnosis diagnose(const DiagnoseCommand& command, const Scene& scene,
+                   const std::vector<Experiment>& experiments) {
     Device device(command.device);
-    spdlog::info("{} against {} on {}", scene.name, experiment.name, device.info().name);
+    std::vector<std::string> names;
+    for (const Experiment& experiment : experiments) names.push_back(experiment.name);
+    spdlog::info("{} against {} on {}", scene.name, fmt::join(names, ", "), device.info().name);
     if (scene.replicas.size() > 1)
         spdlog::warn("the scene has {} replicas; the first one is diagnosed: {}", scene.replicas.size(),
                      scene.replicas.front().label);
@@ -59,10 +77,11 @@ Diagnosis diagnose(const DiagnoseCommand& command, const Scene& scene, const Exp
     DiagnoseOptions options = options_of(command);
     options.on_progress = [&](const std::string& stage, double fraction) { stages.show(stage, fraction); };
     options.on_note = [](const std::string& note) { spdlog::warn("{}", note); };
-    return diagnose_experiment(device, scene, experiment, options);
+    return diagnose_experiment(device, scene, experiments, options);
 }
 
-int run_alone(const DiagnoseCommand& command, const Scene& scene, const Experiment& experiment) {
+int run_alone(const DiagnoseCommand& command, const Scene& scene,
+              const std::vector<Experiment>& experiments) {
     try {
         const std::filesystem::path folder = command.out;
         const FolderLock lock = open_output_folder(folder);
@@ -70,7 +89,7 @@ int run_alone(const DiagnoseCommand& command, const Scene& scene, const Experime
         expect_replaceable(folder / "diagnosis.json", FileKind::diagnosis);
         expect_replaceable(folder / "diagnosis.html", FileKind::page);
         expect_replaceable_figures(folder, {"where", "which", "how_far"});
-        const Diagnosis diagnosis = diagnose(command, scene, experiment);
+        const Diagnosis diagnosis = diagnose(command, scene, experiments);
         replace_own(folder / "diagnosis.json", FileKind::diagnosis, diagnosis_json(diagnosis));
         print_out("{}\nwrote\n  {}\n", diagnosis_text(diagnosis), (folder / "diagnosis.json").string());
         write_diagnosis_page(diagnosis, folder / "diagnosis.html");
@@ -92,7 +111,7 @@ std::vector<std::string> words_of(const DiagnoseCommand& command) {
     const auto add = [&](const char* option, const std::string& value) {
         if (!value.empty()) words.insert(words.end(), {option, value});
     };
-    add("--experiment", command.experiment);
+    for (const auto& experiment : command.experiments) add("--experiment", experiment);
     add("--out", command.out);
     add("--candidates", fmt::format("{}", fmt::join(command.candidates, ",")));
     add("--replicates", std::to_string(command.replicates));
@@ -104,8 +123,8 @@ std::vector<std::string> words_of(const DiagnoseCommand& command) {
 
 int run(DiagnoseCommand& command) {
     const Scene scene = command.scene.read();
-    const Experiment experiment = read_experiment(command.experiment);
-    if (!is_shared(command.sharing, command.device)) return run_alone(command, scene, experiment);
+    const std::vector<Experiment> experiments = read_experiments(command.experiments);
+    if (!is_shared(command.sharing, command.device)) return run_alone(command, scene, experiments);
     const DiagnoseOptions options = options_of(command);
     SharedWork work;
     work.words = words_of(command);
@@ -113,11 +132,11 @@ int run(DiagnoseCommand& command) {
     work.begin = [&](std::size_t) {
         expect_no_experiment(command.out);
         make_result_folder(command.out);
-        return library_parts(scene, experiment, options);
+        return library_parts(scene, experiments, options);
     };
     work.report = [&] {
         if (command.device == "all") command.device.clear();
-        return run_alone(command, scene, experiment);
+        return run_alone(command, scene, experiments);
     };
     return share(work, command.sharing, command.device);
 }
@@ -129,7 +148,11 @@ void add_diagnose(CLI::App& app, int& exit_code) {
         app.add_subcommand("diagnose", "Where a scene and an experiment part, and which effect is to blame");
     auto command = std::make_shared<DiagnoseCommand>();
     add_scene_options(*sub, command->scene);
-    sub->add_option("--experiment", command->experiment, "Experiment folder")->required()->type_name("DIR");
+    sub->add_option("--experiment", command->experiments,
+                    "Experiment folder; may come several times, for packings that are diagnosed together")
+        ->required()
+        ->allow_extra_args(false)
+        ->type_name("DIR");
     sub->add_option("--out", command->out,
                     "Folder for the verdict, the page, and every simulation made for them")
         ->required()
@@ -169,6 +192,8 @@ void add_diagnose(CLI::App& app, int& exit_code) {
         "diagnosis is "
         "done by\n"
         "--merge (`mcdem distribute diagnose ..` does both).\n"
+        "Several packings of one experiment (--experiment A --experiment B) get one verdict, one amplitude, "
+        "and how\nwell each agrees with the others; each takes as long as a diagnosis of its own.\n"
         "Verdicts: no_gap, effect, group (effects that these data cannot tell apart), unknown_effect (none "
         "of the\n"
         "library), not_converged (the simulation's own numerics), calibration_suspect. `mcdem experiment "

@@ -9,14 +9,15 @@
 #include "core/errors.h"
 #include "diagnose/decide/location.h"
 #include "diagnose/decide/next_steps.h"
+#include "diagnose/decide/packings.h"
 #include "diagnose/infer/detection_limits.h"
 #include "diagnose/infer/effects.h"
+#include "diagnose/observe/needed_to_diagnose.h"
 #include "diagnose/observe/not_measured.h"
 
 namespace mcdem::inline diagnose {
 namespace {
 
-constexpr std::size_t min_cells = 4;
 constexpr double worth_another_run = 0.01;  ///< p of what a proposal leaves, below
 
 GapData checked_data(const Evidence& evidence) {
@@ -274,6 +275,8 @@ Diagnosis DiagnosisBuilder::diagnosis() const {
     d.detection_limits = detection_limits(space_, data_, null_, evidence_, limits_);
     d.not_measured = not_measured(evidence_.observed, evidence_.library.grid);
     d.next = next_measurements(evidence_, data_, findings_, decision_, limits_);
+    d.packings = packing_agreements(evidence_, data_, null_,
+                                    has_decided() ? &findings_.proposals[decided()] : nullptr, limits_);
     if (!has_decided()) return d;
     d.causes = causes.leading();
     d.explanation = explanation_of(findings_, decision_, limits_);

@@ -27,6 +27,7 @@ struct WhereEntry {
     std::optional<std::string> force_class;
     double z_score = 0;           ///< of the gap, over its noise
     double z_score_refitted = 0;  ///< .. after the nuisances were refitted
+    double difference = 0;        ///< measured less simulated where it stands out most, in its own unit
 };
 
 /// One cell of the picture "where": every observable, significant or not.
@@ -35,6 +36,7 @@ struct WhereCell {
     std::string phase;
     double displacement = 0;  ///< [m]
     double z_score = 0, z_score_refitted = 0;
+    double difference = 0;  ///< measured less simulated, in the observable's unit
 };
 
 struct Cause {
@@ -97,6 +99,15 @@ struct NextStep {
     std::optional<double> power;  ///< probability that it decides, predicted from the signatures
 };
 
+/// One of several packings that were diagnosed together.
+struct PackingAgreement {
+    std::string experiment;
+    double gap_p = 1;                           ///< of its gap alone being noise
+    double amplitude = 0, amplitude_error = 0;  ///< of the leading cause, by this packing alone
+    double agreement_p = 1;                     ///< of what sets it apart from the others being noise
+    bool differs = false;                       ///< it does so by more than noise, for one of so many
+};
+
 struct DetectionLimit {
     std::string effect, unit;
     double minimum_amplitude =
@@ -118,6 +129,7 @@ struct Diagnosis {
     std::optional<Explanation> explanation;  ///< nothing where there is no gap
     std::optional<GapReduction> gap_reduction;
     std::vector<DetectionLimit> detection_limits;
+    std::vector<PackingAgreement> packings;  ///< empty: only one
     std::vector<Refinement> refinements;
     std::vector<NextStep> next;             ///< the most useful first
     std::vector<std::string> not_measured;  ///< what is missing and what could have been told with it

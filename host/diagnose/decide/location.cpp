@@ -25,6 +25,7 @@ void gather_ranges(const std::vector<WhereCell>& row, double threshold, double h
         if (!observable.force_class.empty()) entry.force_class = observable.force_class;
         entry.z_score = strongest->z_score;
         entry.z_score_refitted = strongest->z_score_refitted;
+        entry.difference = strongest->difference;
         entries.push_back(entry);
         first = last;
     }
@@ -44,8 +45,11 @@ Location locate(const GapSpace& space, const GapData& data, const NullDistributi
         const auto i = static_cast<Eigen::Index>(k);
         const double sigma = space.sigma()[i];
         WhereCell where{std::string(observables()[static_cast<std::size_t>(cell.observable)].name),
-                        std::string(name(cell.phase)), cell.displacement, gap[data.cells[k]] / sigma,
-                        refitted[i] / sigma};
+                        std::string(name(cell.phase)),
+                        cell.displacement,
+                        gap[data.cells[k]] / sigma,
+                        refitted[i] / sigma,
+                        gap[data.cells[k]]};
         location.cells.push_back(where);
         rows[2 * static_cast<std::size_t>(cell.observable) + (cell.phase == Phase::load ? 0 : 1)].push_back(
             where);

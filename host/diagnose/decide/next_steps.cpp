@@ -39,8 +39,10 @@ std::vector<Measurement> measurements_of(const Evidence& evidence, const GapData
             {fmt::format("measure {} {:g} times better", key_of(evidence.nuisances[k].name), times_better),
              GapSpace(data.noise, mean_of, data.cells, free)});
     }
-    list.push_back({fmt::format("measure {} more packings and diagnose each", more_packings),
-                    GapSpace(data.noise / std::sqrt(1.0 + more_packings), mean_of, data.cells, data.free)});
+    const double times_more = 1 + static_cast<double>(more_packings) / data.packings;
+    list.push_back({fmt::format("measure {} more packings and diagnose them together (--experiment for each)",
+                                more_packings),
+                    GapSpace(data.noise / std::sqrt(times_more), mean_of, data.cells, data.free)});
     if (!not_measured(evidence.observed, evidence.library.grid).empty()) {
         std::vector<const Signature*> used;
         for (const Candidate& candidate : data.candidates) used.push_back(candidate.signature);

@@ -32,14 +32,27 @@ void add_share(double& share, double a) { share += a * (1 - share); }
 
 /// Of numerics: the part that is taken off a setting. Runs get no longer than this many times.
 constexpr double max_slowdown = 8;
-void take_off(double& setting, double part) { setting *= std::max(1 - part, 1 / max_slowdown); }
-double& plate_speed(Model& m) { return m.replica.plate.speed; }
-double& density(Model& m) { return m.replica.grains.density; }
-double& time_step(Model& m) { return m.replica.numerics.time_step; }
+void take_off(const std::vector<NumericalSetting>& settings, double part) {
+    for (const NumericalSetting& setting : settings) *setting.value *= std::max(1 - part, 1 / max_slowdown);
+}
+std::vector<NumericalSetting> plate_speed(Model& m) {
+    const NumericalSetting speed{"plate.speed", &m.replica.plate.speed};
+    if (m.replica.protocol.rate_tolerance == 0) return {speed};
+    return {{"protocol.rate_tolerance", &m.replica.protocol.rate_tolerance}, speed};
+}
+std::vector<NumericalSetting> density(Model& m) { return {{"grains.density", &m.replica.grains.density}}; }
+std::vector<NumericalSetting> time_step(Model& m) {
+    return {{"numerics.time_step", &m.replica.numerics.time_step}};
+}
+
+/// A tolerance up to which the plate's speed needs no runs of its own.
+constexpr double slow_tolerance = 0.01;
 
 std::string_view no_slower_plate(const Model& m) {
-    if (m.replica.protocol.rate_tolerance > 0)
-        return "protocol.rate_tolerance bounds what the plate's speed does; `mcdem converge` measures it";
+    const double tolerance = m.replica.protocol.rate_tolerance;
+    if (tolerance > 0 && tolerance <= slow_tolerance)
+        return "protocol.rate_tolerance keeps what the plate's speed adds below 1 % of any force; `mcdem "
+               "converge` measures it";
     return m.experiment_speed && *m.experiment_speed >= m.replica.plate.speed
                ? "the experiment's plate is stated to move as fast as the scene's"
                : "";
@@ -105,11 +118,11 @@ const Effect table[] = {
     {"position_bias", "relative", "lengths read too large by this part", "measurement",
      -0.02, 0.02, -0.003, 0.003, one, [](Model& m, double a) { m.instrument.position_bias += a; }, nothing},
     {"plate_speed", "", "part by which the real plate is slower than the scene's", "numerics",
-     0, 1, 0.5, 0.75, one, [](Model& m, double a) { take_off(plate_speed(m), a); }, no_slower_plate, "plate.speed", plate_speed},
+     0, 1, 0.5, 0.75, one, [](Model& m, double a) { take_off(plate_speed(m), a); }, no_slower_plate, plate_speed},
     {"inertia", "", "part by which real inertia is smaller than the scene's, weight alike", "numerics",
-     0, 1, 0.5, 0.75, one, [](Model& m, double a) { take_off(density(m), a); }, nothing, "grains.density", density},
+     0, 1, 0.5, 0.75, one, [](Model& m, double a) { take_off(density(m), a); }, nothing, density},
     {"time_step", "", "part by which the time step is too long", "numerics",
-     0, 1, 0.3, 0.6, one, [](Model& m, double a) { take_off(time_step(m), a); }, nothing, "numerics.time_step", time_step},
+     0, 1, 0.3, 0.6, one, [](Model& m, double a) { take_off(time_step(m), a); }, nothing, time_step},
 };
 // clang-format on
 
@@ -129,7 +142,7 @@ const Effect* find_effect(std::string_view name) {
 
 bool is_numerical(std::string_view name) {
     const Effect* effect = find_effect(name);
-    return effect && !effect->key.empty();
+    return effect && effect->settings;
 }
 
 std::vector<Nuisance> nuisances(const Model& model, const Experiment& experiment) {

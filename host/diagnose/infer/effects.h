@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "experiment/instrument.h"
 #include "scene/scene.h"
@@ -19,6 +20,12 @@ struct Model {
     std::optional<double> experiment_speed = {};  ///< of the experiment's plate [m/s]; nothing: slow
 };
 
+/// A key of the scene and its value in a model.
+struct NumericalSetting {
+    std::string_view key;
+    double* value;
+};
+
 /// One way in which reality may differ from the model, with an amplitude that is zero for the model as it is.
 struct Effect {
     std::string_view name;
@@ -31,10 +38,9 @@ struct Effect {
     void (*apply)(Model&, double amplitude);
     /// Why this model cannot have it; empty where it can.
     std::string_view (*hindrance)(const Model&);
-    /// Of the simulation's own numerics: the scene's key, and its value. Nothing for what the world or the
-    /// instrument does.
-    std::string_view key = {};
-    double& (*setting)(Model&) = nullptr;
+    /// Of the simulation's own numerics: the settings that are lowered together; the first one is advised.
+    /// Nothing for what the world or the instrument does.
+    std::vector<NumericalSetting> (*settings)(Model&) = nullptr;
 };
 
 /// All candidates, in the order of the documentation.

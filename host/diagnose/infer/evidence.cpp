@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "core/errors.h"
@@ -92,6 +93,26 @@ void leave_out_signatures(const Evidence& evidence, const std::vector<Signature>
 
 }  // namespace
 
+Eigen::VectorXd PackingEvidence::gap() const { return observed - column_means(baseline); }
+
+Eigen::MatrixXd mean_over_packings(const Eigen::MatrixXd& rows, int packings) {
+    const Eigen::Index each = rows.rows() / packings;
+    Eigen::MatrixXd sum = rows.topRows(each);
+    for (int p = 1; p < packings; ++p) sum += rows.middleRows(p * each, each);
+    return sum / packings;
+}
+
+void take_means(Evidence& evidence) {
+    const double count = evidence.packing_count();
+    evidence.observed = Eigen::VectorXd::Zero(evidence.packings.front().observed.size());
+    evidence.baseline =
+        Eigen::MatrixXd::Zero(evidence.packings.front().baseline.rows(), evidence.observed.size());
+    for (const PackingEvidence& packing : evidence.packings) {
+        evidence.observed += packing.observed / count;
+        evidence.baseline += packing.baseline / count;
+    }
+}
+
 std::vector<std::string> leave_out_failures(Evidence& evidence) {
     std::vector<std::string> notes;
     leave_out_replicates(evidence, notes);
@@ -104,7 +125,8 @@ GapData gap_data(const Evidence& evidence) {
     GapData s;
     s.mean = column_means(evidence.baseline);
     s.gap = evidence.observed - s.mean;
-    s.noise = scatter(evidence.library);
+    s.packings = evidence.packing_count();
+    s.noise = scatter(evidence.library) / std::sqrt(s.packings);
     s.group = mean_groups(evidence.library);
     s.fold = folds_of(evidence.library.packing);
     for (const NuisancePrior& prior : evidence.nuisances)

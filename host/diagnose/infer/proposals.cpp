@@ -30,9 +30,10 @@ Eigen::VectorXd without(const Eigen::VectorXd& gap, const GapData& data, const P
 }
 
 /// How much more packings scatter with the effect than without: they differ in it, and its random draws do.
+/// Of one packing.
 Eigen::VectorXd effect_scatter(const GapData& data, const Proposal& proposal) {
-    const Eigen::VectorXd chaos =
-        2 * data.noise.colwise().squaredNorm().transpose() / static_cast<double>(data.noise.rows());
+    const Eigen::VectorXd chaos = 2.0 * data.packings * data.noise.colwise().squaredNorm().transpose() /
+                                  static_cast<double>(data.noise.rows());
     Eigen::VectorXd extra = Eigen::VectorXd::Zero(data.mean.size());
     for (std::size_t k = 0; k < proposal.candidates.size(); ++k) {
         const Signature& signature = *data.candidates[proposal.candidates[k]].signature;
@@ -42,13 +43,19 @@ Eigen::VectorXd effect_scatter(const GapData& data, const Proposal& proposal) {
     return extra;
 }
 
-double signature_misfit(const GapData& data, const NullDistribution& null, const Eigen::VectorXd& gap,
-                        const Proposal& proposal, int mean_of) {
-    Eigen::VectorXd extra = effect_scatter(data, proposal);
+Eigen::VectorXd signature_error_variance(const GapData& data, const Proposal& proposal) {
+    Eigen::VectorXd variance = Eigen::VectorXd::Zero(data.mean.size());
     for (std::size_t k = 0; k < proposal.candidates.size(); ++k)
-        extra +=
+        variance +=
             (signature_error * data.candidates[proposal.candidates[k]].signature->at(proposal.amplitudes[k]))
                 .cwiseAbs2();
+    return variance;
+}
+
+double signature_misfit(const GapData& data, const NullDistribution& null, const Eigen::VectorXd& gap,
+                        const Proposal& proposal, int mean_of) {
+    const Eigen::VectorXd extra =
+        effect_scatter(data, proposal) / data.packings + signature_error_variance(data, proposal);
     const GapSpace space(data.noise, mean_of, data.cells, data.free, extra);
     return null.misfit_p(space, without(gap, data, proposal));
 }
@@ -86,6 +93,10 @@ Eigen::MatrixXd whole_runs(const Eigen::MatrixXd& runs, const CellChoice& cells)
     for (Eigen::Index r = 0; r < runs.rows(); ++r)
         if (pick(runs.row(r).transpose(), cells).allFinite()) whole.push_back(r);
     return runs(whole, Eigen::all);
+}
+
+Eigen::VectorXd signature_variance(const GapData& data, const Proposal& proposal) {
+    return effect_scatter(data, proposal) + signature_error_variance(data, proposal);
 }
 
 Eigen::VectorXd explained_by(const Proposal& proposal, const GapData& data) {
@@ -145,7 +156,8 @@ std::optional<Eigen::VectorXd> confirm(Proposal& proposal, const GapData& data, 
                         2 * proposal.errors[k] + still_free * std::abs(proposal.amplitudes[k])});
     const int mean_of = static_cast<int>(runs.rows());
     const GapSpace plain(data.noise, mean_of, data.cells, data.free);
-    const GapSpace space(data.noise, mean_of, data.cells, free, effect_scatter(data, proposal));
+    const GapSpace space(data.noise, mean_of, data.cells, free,
+                         effect_scatter(data, proposal) / data.packings);
     proposal.confirmed_gain =
         space.log_likelihood(left) - prior_cost(nuisances, data.free) - plain.log_likelihood(data.gap);
     proposal.confirmed_misfit_p = null.misfit_p(space, left);

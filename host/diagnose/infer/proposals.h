@@ -21,6 +21,10 @@ std::optional<Eigen::VectorXd> confirm(Proposal& proposal, const GapData& data, 
 /// The runs that came to their end: packings may run away at amplitudes at which others hold.
 Eigen::MatrixXd whole_runs(const Eigen::MatrixXd& runs, const CellChoice& cells);
 
+/// Variance by which a proposal's signatures may be wrong for one packing: packings differ in an effect, and
+/// a tenth of a signature is not known.
+Eigen::VectorXd signature_variance(const GapData& data, const Proposal& proposal);
+
 /// The sum of a proposal's signatures, or its best fit on other cells.
 Eigen::VectorXd explained_by(const Proposal& proposal, const GapData& data);
 

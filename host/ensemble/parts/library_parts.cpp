@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "core/errors.h"
+#include "diagnose/observe/needed_to_diagnose.h"
 #include "ensemble/parts/manifest.h"
-#include "experiment/check_experiment.h"
 #include "io/folder_lock.h"
 
 namespace mcdem::inline ensemble {
@@ -12,15 +12,13 @@ namespace {
 
 class LibraryParts : public PartedWork {
 public:
-    LibraryParts(const Scene& scene, const Experiment& experiment, const DiagnoseOptions& options)
+    LibraryParts(DiagnosisPlan plan, const DiagnoseOptions& options)
         : options_(options),
           lock_(options.folder, FolderLock::Use::shared),
-          store_(options.folder / "simulations") {
-        const Model model = model_of(scene, experiment);
-        question_ = question_of(scene, experiment, options, model);
+          store_(options.folder / "simulations"),
+          question_(std::move(plan.question)) {
         if (options.library && std::filesystem::exists(*options.library)) return;
-        auto trials = library_trials(
-            model, plan_of(experiment, options, model, choose_candidates(model, options.candidates)));
+        auto trials = library_trials(plan.library);
         if (options.paper_metrics) keep_recordings(trials);
         parts_ = parts_of_trials(question_, trials);
     }
@@ -60,22 +58,62 @@ private:
 
 }  // namespace
 
-Question question_of(const Scene& scene, const Experiment& experiment, const DiagnoseOptions& options,
-                     const Model& model) {
-    return {scene, grid_of(experiment.recording), reference_material(model), model.replica.protocol.discard,
-            options.program};
+namespace {
+
+/// All cells lie within the shortest stroke.
+Grid common_grid(const std::vector<Experiment>& experiments) {
+    Grid grid;
+    for (const Experiment& experiment : experiments)
+        if (Grid own = grid_of(experiment.recording); grid.stroke == 0 || own.stroke < grid.stroke)
+            grid = std::move(own);
+    return grid;
 }
 
-LibraryPlan plan_of(const Experiment& experiment, const DiagnoseOptions& options, const Model& model,
-                    const CandidateChoice& choice) {
-    return {{start_packing(experiment)},
-            options.replicates,
-            options.pairs,
-            experiment.measurement.position_error,
-            experiment.measurement.diameter_error,
-            options.seed,
-            choice.chosen,
-            nuisances(model, experiment)};
+/// Packings of one experiment are pressed and measured alike.
+void expect_alike(const std::vector<Experiment>& experiments, const Grid& grid) {
+    constexpr double alike = 0.1;
+    const Experiment& first = experiments.front();
+    std::vector<std::string> problems;
+    for (const Experiment& other : experiments) {
+        if (other.measurement != first.measurement || other.uncertainty != first.uncertainty)
+            problems.push_back(
+                fmt::format("{}: experiment.toml must state the same [measurement] and "
+                            "[uncertainty] as that of {}, to be diagnosed with it",
+                            other.name, first.name));
+        if (const double stroke = grid_of(other.recording).stroke; stroke > (1 + alike) * grid.stroke)
+            problems.push_back(
+                fmt::format("{}: its stroke of {:.4g} mm must be within a tenth of the shortest, "
+                            "{:.4g} mm, to be diagnosed with it",
+                            other.name, 1e3 * stroke, 1e3 * grid.stroke));
+    }
+    if (!problems.empty()) throw InputError(problems);
+}
+
+}  // namespace
+
+DiagnosisPlan plan_of(const Scene& scene, const std::vector<Experiment>& experiments,
+                      const DiagnoseOptions& options) {
+    std::vector<std::string> problems;
+    for (const Experiment& experiment : experiments)
+        for (const std::string& needed : needed_to_diagnose(experiment)) problems.push_back(needed);
+    if (!problems.empty()) throw InputError(problems);
+    DiagnosisPlan plan;
+    const Grid grid = common_grid(experiments);
+    expect_alike(experiments, grid);
+    for (const Experiment& experiment : experiments)
+        plan.library.specimens.push_back({model_of(scene, experiment), start_packing(experiment)});
+    const Experiment& first = experiments.front();
+    const Model& model = plan.library.specimens.front().model;
+    plan.question = {scene, grid, reference_material(model), model.replica.protocol.discard, options.program};
+    plan.choice = choose_candidates(model, options.candidates);
+    plan.library.replicates = options.replicates;
+    plan.library.pairs = options.pairs;
+    plan.library.jitter = first.measurement.position_error;
+    plan.library.diameter_jitter = first.measurement.diameter_error;
+    plan.library.seed = options.seed;
+    plan.library.candidates = plan.choice.chosen;
+    plan.library.nuisances = nuisances(model, first);
+    return plan;
 }
 
 void keep_recordings(std::vector<Trial>& trials) {
@@ -83,10 +121,9 @@ void keep_recordings(std::vector<Trial>& trials) {
         trials[t].keep_recording = true;
 }
 
-std::unique_ptr<PartedWork> library_parts(const Scene& scene, const Experiment& experiment,
+std::unique_ptr<PartedWork> library_parts(const Scene& scene, const std::vector<Experiment>& experiments,
                                           const DiagnoseOptions& options) {
-    if (const auto needed = needed_to_diagnose(experiment); !needed.empty()) throw InputError(needed);
-    return std::make_unique<LibraryParts>(scene, experiment, options);
+    return std::make_unique<LibraryParts>(plan_of(scene, experiments, options), options);
 }
 
 }  // namespace mcdem::ensemble

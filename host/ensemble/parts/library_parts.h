@@ -11,16 +11,20 @@ namespace mcdem::inline ensemble {
 constexpr std::size_t trials_recorded = 4;
 void keep_recordings(std::vector<Trial>& trials);
 
-Question question_of(const Scene& scene, const Experiment& experiment, const DiagnoseOptions& options,
-                     const Model& model);
-
-LibraryPlan plan_of(const Experiment& experiment, const DiagnoseOptions& options, const Model& model,
-                    const CandidateChoice& choice);
+/// The work of a diagnosis before it begins: what is simulated, and how it is looked at. Throws InputError
+/// where an experiment does not say enough, or the packings of one are not measured alike.
+struct DiagnosisPlan {
+    LibraryPlan library;
+    Question question;
+    CandidateChoice choice;
+};
+DiagnosisPlan plan_of(const Scene& scene, const std::vector<Experiment>& experiments,
+                      const DiagnoseOptions& options);
 
 /// Nothing is left where the library's file is there; with all parts there, diagnose_experiment makes the
 /// library without simulating. Holds the folder's lock with others. The arguments must live as long. Throws
 /// InputError where the experiment cannot be diagnosed.
-std::unique_ptr<PartedWork> library_parts(const Scene& scene, const Experiment& experiment,
+std::unique_ptr<PartedWork> library_parts(const Scene& scene, const std::vector<Experiment>& experiments,
                                           const DiagnoseOptions& options);
 
 }  // namespace mcdem::ensemble

@@ -33,6 +33,7 @@ class Where(TypedDict):
     z_score: float | None
     z_score_refitted: float | None
     force_class: str | None
+    difference: float | None
 
 class Cell(TypedDict):
     observable: str
@@ -40,6 +41,8 @@ class Cell(TypedDict):
     displacement_mm: float | None
     z_score: float | None
     z_score_refitted: float | None
+    difference: float | None
+
 
 class Cause(TypedDict):
     effect: str
@@ -107,6 +110,14 @@ class NextStep(TypedDict):
     what: str
     power: float | None
 
+class PackingAgreement(TypedDict):
+    experiment: str
+    gap_p: float | None
+    amplitude: float | None
+    amplitude_error: float | None
+    agreement_p: float | None
+    differs: bool
+
 class Diagnosis(TypedDict):
     """diagnosis.json; host/report/DIAGNOSIS_OUTPUT.md explains the keys."""
 
@@ -127,6 +138,7 @@ class Diagnosis(TypedDict):
     not_testable: list[str]
     refinements: list[Refinement]
     next: list[NextStep]
+    packings: list[PackingAgreement]
     provenance: dict[str, str]
 
 class Scene:
@@ -252,7 +264,7 @@ def converge(
 ) -> dict[str, Any]: ...
 def diagnose(
     scene: Scene,
-    experiment: Path,
+    experiment: Path | Sequence[Path],
     folder: Path,
     *,
     candidates: Sequence[str] = ...,

@@ -41,7 +41,8 @@ Json where_json(const WhereEntry& entry) {
             {"region", or_null(entry.region)},
             {"z_score", entry.z_score},
             {"z_score_refitted", entry.z_score_refitted},
-            {"force_class", or_null(entry.force_class)}};
+            {"force_class", or_null(entry.force_class)},
+            {"difference", entry.difference}};
 }
 
 Json cell_json(const WhereCell& cell) {
@@ -49,7 +50,8 @@ Json cell_json(const WhereCell& cell) {
             {"phase", phase(cell.phase)},
             {"displacement_mm", millimetres(cell.displacement)},
             {"z_score", cell.z_score},
-            {"z_score_refitted", cell.z_score_refitted}};
+            {"z_score_refitted", cell.z_score_refitted},
+            {"difference", cell.difference}};
 }
 
 Json cause_json(const Cause& cause) {
@@ -97,6 +99,12 @@ Json explanation_json(const std::optional<Explanation>& explanation) {
             {"remainder", explanation->remainder()},
             {"remainder_p", explanation->remainder_p},
             {"leaves_more_than_noise", explanation->leaves_more_than_noise}};
+}
+
+Json packing_json(const PackingAgreement& packing) {
+    return {{"experiment", packing.experiment},   {"gap_p", packing.gap_p},
+            {"amplitude", packing.amplitude},     {"amplitude_error", packing.amplitude_error},
+            {"agreement_p", packing.agreement_p}, {"differs", packing.differs}};
 }
 
 Json refinement_json(const Refinement& refinement) {
@@ -161,6 +169,7 @@ std::string diagnosis_json(const Diagnosis& diagnosis) {
                     {"not_testable", diagnosis.not_testable},
                     {"refinements", list(diagnosis.refinements, refinement_json)},
                     {"next", list(diagnosis.next, step_json)},
+                    {"packings", list(diagnosis.packings, packing_json)},
                     {"provenance", diagnosis.provenance}};
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

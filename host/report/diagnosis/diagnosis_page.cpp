@@ -21,6 +21,7 @@ void add_gap(Page& page, const Diagnosis& diagnosis) {
                     "differences together ({}), one along the known effects ({}). Corrected for there "
                     "being two: {}.",
                     p_words(diagnosis.p_omnibus), p_words(diagnosis.p_directed), p_words(diagnosis.p_value)));
+    page.table("Packing by packing", table_of_packings(diagnosis));
 }
 
 /// What the rows of the picture mean, of those in it.

@@ -35,6 +35,11 @@ auto list_of(const Json& json, Read read) {
     return list;
 }
 
+/// Files of earlier versions have none.
+double difference_of(const Json& json) {
+    return json.contains("difference") ? number(json["difference"]) : 0;
+}
+
 WhereEntry where_of(const Json& json) {
     return {.observable = json.at("observable"),
             .phase = text_or_empty(json.at("phase")),
@@ -42,12 +47,17 @@ WhereEntry where_of(const Json& json) {
             .region = optional_of<std::string>(json.at("region")),
             .force_class = optional_of<std::string>(json.at("force_class")),
             .z_score = number(json.at("z_score")),
-            .z_score_refitted = number(json.at("z_score_refitted"))};
+            .z_score_refitted = number(json.at("z_score_refitted")),
+            .difference = difference_of(json)};
 }
 
 WhereCell cell_of(const Json& json) {
-    return {json.at("observable"), text_or_empty(json.at("phase")), number(json.at("displacement_mm")) * mm,
-            number(json.at("z_score")), number(json.at("z_score_refitted"))};
+    return {json.at("observable"),
+            text_or_empty(json.at("phase")),
+            number(json.at("displacement_mm")) * mm,
+            number(json.at("z_score")),
+            number(json.at("z_score_refitted")),
+            difference_of(json)};
 }
 
 Cause cause_of(const Json& json) {
@@ -84,6 +94,15 @@ Explanation explanation_of(const Json& json) {
             .needed = number(json.at("needed")),
             .remainder_p = number(json.at("remainder_p")),
             .leaves_more_than_noise = json.at("leaves_more_than_noise")};
+}
+
+PackingAgreement packing_of(const Json& json) {
+    return {json.at("experiment"),
+            number(json.at("gap_p")),
+            number(json.at("amplitude")),
+            number(json.at("amplitude_error"), std::numeric_limits<double>::infinity()),
+            number(json.at("agreement_p")),
+            json.at("differs")};
 }
 
 Refinement refinement_of(const Json& json) {
@@ -141,6 +160,7 @@ Diagnosis read(const Json& json) {
     d.not_testable = json.at("not_testable");
     if (json.contains("refinements")) d.refinements = list_of(json.at("refinements"), refinement_of);
     if (json.contains("next")) d.next = list_of(json.at("next"), step_of);
+    if (json.contains("packings")) d.packings = list_of(json.at("packings"), packing_of);
     d.seconds = number(json.at("seconds"));
     d.provenance = json.at("provenance");
     d.where_threshold = number(json.at("where_threshold"), 0);

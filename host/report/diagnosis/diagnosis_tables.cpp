@@ -38,6 +38,20 @@ std::string part_words(const WhereEntry& entry) {
 /// The best value of a metric, beside which the others are read.
 std::string perfect(const std::string& metric) { return metric == "Rtop" ? "1" : "0"; }
 
+/// What a metric of the paper is; empty for others.
+std::string meaning_of(const std::string& metric) {
+    if (metric == "Rtop") return "force on the plate at full stroke, simulated over measured";
+    if (metric == "errf") return "root mean square error of the force on the plate over the cycle";
+    if (metric == "errZ")
+        return "root mean square error of the coordination number over the cycle, contacts below a force "
+               "left "
+               "out that makes it smallest";
+    if (metric == "bhat")
+        return "how far the distributions of contact forces lie apart: -ln of the mean of Bhattacharyya's "
+               "coefficient";
+    return "";
+}
+
 void add_change(TextTable& table, const std::string& words, const std::array<double, 2>& values,
                 const std::string& best) {
     table.rows.push_back({words, number(values[0]), number(values[1]), best});
@@ -120,8 +134,35 @@ TextTable table_of_gap_reduction(const Diagnosis& diagnosis) {
     const auto& gap_reduction = *diagnosis.gap_reduction;
     table.columns = {{"", Align::left}, {"before"}, {"after"}, {"perfect"}};
     add_change(table, "gap, noise taken off", {gap_reduction.before, gap_reduction.after}, "0");
-    for (const auto& [name, values] : metrics_in_order(gap_reduction))
+    table.notes = {"gap: squared differences on data held out, in standard deviations of the noise, summed"};
+    for (const auto& [name, values] : metrics_in_order(gap_reduction)) {
         add_change(table, name == "errf" ? "errf [N]" : name, values, perfect(name));
+        if (const auto meaning = meaning_of(name); !meaning.empty())
+            table.notes.push_back(name + ": " + meaning);
+    }
+    return table;
+}
+
+namespace {
+
+/// "0.31", "< 0.0001".
+std::string p_number(double p) { return p < 1e-4 ? "< 0.0001" : number(p, "{:.2g}"); }
+
+}  // namespace
+
+TextTable table_of_packings(const Diagnosis& diagnosis) {
+    TextTable table;
+    const Cause* leader = diagnosis.causes.empty() ? nullptr : &diagnosis.causes.front();
+    table.columns = {{"packing", Align::left}, {"p of its gap alone"}};
+    if (leader) table.columns.push_back({words_of(leader->effect) + " alone"});
+    table.columns.push_back({"p of what sets it apart"});
+    for (const auto& packing : diagnosis.packings) {
+        auto& row = table.rows.emplace_back();
+        row = {packing.experiment, p_number(packing.gap_p)};
+        if (leader) row.push_back(amount(packing.amplitude, packing.amplitude_error, leader->unit));
+        row.push_back(p_number(packing.agreement_p) + (packing.differs ? " *" : ""));
+    }
+    table.notes = {"*: differs from the others by more than noise"};
     return table;
 }
 

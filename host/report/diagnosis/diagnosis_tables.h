@@ -12,6 +12,9 @@ TextTable table_of_where(const Diagnosis& diagnosis);
 
 TextTable table_of_detection_limits(const Diagnosis& diagnosis);
 
+/// Each of several packings by itself; no rows where there is one.
+TextTable table_of_packings(const Diagnosis& diagnosis);
+
 /// How far the fit moved the parameters that are known only roughly.
 TextTable table_of_nuisances(const Diagnosis& diagnosis);
 

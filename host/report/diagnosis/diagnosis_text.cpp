@@ -76,13 +76,34 @@ std::string to_refine(const Diagnosis& diagnosis) {
     return "";
 }
 
+/// Packings that differ from the others by more than noise.
+std::vector<std::string> differing_packings(const Diagnosis& diagnosis) {
+    std::vector<std::string> names;
+    for (const auto& packing : diagnosis.packings)
+        if (packing.differs) names.push_back(one_line(packing.experiment));
+    return names;
+}
+
+/// In words that follow a statement; empty where there is one packing.
+std::string packings_words(const Diagnosis& diagnosis) {
+    if (diagnosis.packings.empty()) return "";
+    const auto differing = differing_packings(diagnosis);
+    const bool all = differing.size() == diagnosis.packings.size();
+    return fmt::format("; {} packings together, {}", diagnosis.packings.size(),
+                       differing.empty() ? "which agree"
+                       : all
+                           ? "which differ from one another by more than noise"
+                           : "of which " + listed(differing) + " differs from the others by more than noise");
+}
+
 std::string gap_line(const Diagnosis& diagnosis) {
+    const auto packings = packings_words(diagnosis);
     if (!diagnosis.detected)
-        return fmt::format("none that these data show{}: noise alone gives differences like these ({}).",
-                           refined(diagnosis), p_words(diagnosis.p_value));
+        return fmt::format("none that these data show{}: noise alone gives differences like these ({}){}.",
+                           refined(diagnosis), p_words(diagnosis.p_value), packings);
     return fmt::format(
-        "yes: simulation and experiment differ by more than noise and calibration account for{} ({}).",
-        refined(diagnosis), p_words(diagnosis.p_value));
+        "yes: simulation and experiment differ by more than noise and calibration account for{} ({}){}.",
+        refined(diagnosis), p_words(diagnosis.p_value), packings);
 }
 
 /// The strongest of the cells that are framed in the picture, and how many there are.
@@ -285,6 +306,8 @@ std::string limits_line(const Diagnosis& diagnosis) {
     else
         text = "consistent is not proven: an effect outside the library may look the same";
     while (text.ends_with('.')) text.pop_back();
+    if (!differing_packings(diagnosis).empty())
+        text += "; what the packings do not share is no effect that acts on all alike";
     const auto never = never_shown(diagnosis);
     if (!never.empty()) text += "; these data can never show " + listed(never, max_limits);
     if (!diagnosis.not_measured.empty())

@@ -10,6 +10,7 @@ namespace mcdem::inline report {
 namespace {
 
 constexpr int row_height = 22, above_rows = 64, below_rows = 56;  // [pixels]
+constexpr int beside_columns = 300, min_column = 30;              // [pixels]
 constexpr std::size_t max_numbers = 16;                           // columns in which numbers find room
 
 /// Columns of the trace: those of the map, and an empty one where the phase changes.
@@ -103,7 +104,8 @@ void add_frames(const Diagnosis& diagnosis, const HeatMap& map, bool refitted, c
                                           {"y0", row - 0.45},
                                           {"y1", row + 0.45},
                                           {"line", {{"width", 1.3}, {"color", "var(--ink)"}}}});
-        x.push_back(middle), y.push_back(row), text.push_back(fmt::format("{:.1f}", z));
+        x.push_back(middle), y.push_back(row),
+            text.push_back(fmt::format("{:.{}f}", z, std::fabs(z) < 10 ? 1 : 0));
         ink.push_back(std::fabs(z) > 0.6 * range ? "var(--on-strong)" : "#111111");
     }
     if (x.empty() || map.columns.size() > max_numbers) return;
@@ -176,7 +178,8 @@ std::optional<Chart> where_chart(const Diagnosis& diagnosis) {
                     "Orange: the experiment lies above the simulation, blue: below. Time runs from left to "
                     "right. Left: parameters as stated; right: after they were fitted within their "
                     "uncertainty.",
-                .height = above_rows + below_rows + row_height * rows};
+                .height = above_rows + below_rows + row_height * rows,
+                .min_width = beside_columns + 2 * min_column * static_cast<int>(map.columns.size())};
     if (diagnosis.where_threshold > 0)
         chart.caption +=
             fmt::format(" Framed: beyond {:.1f} sigma, which noise alone seldom reaches in any cell.",

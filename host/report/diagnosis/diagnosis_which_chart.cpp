@@ -139,7 +139,8 @@ std::optional<Chart> which_chart(const Diagnosis& diagnosis) {
             "cannot be told apart by these data. Middle: amplitudes with 90 % intervals, over the smallest "
             "that these data can detect (dashed line); without a dot: never shows. Right: amplitude with one "
             "standard error, probability among the candidates.",
-        .height = above_rows + below_rows + row_height * rows};
+        .height = above_rows + below_rows + row_height * rows,
+        .min_width = 760};
     Json names = Json::array(), places = Json::array();
     for (int i = 0; i < rows; ++i) {
         names.push_back(plot_text(words_of(ranking[static_cast<std::size_t>(i)].effect)) + "        ");

@@ -35,6 +35,7 @@ const std::map<std::string, std::string>& special_words() {
         {"non_affine", "non-affine displacement"},
         {"plate_speed", "speed of the plate"},
         {"inertia", "inertia of the grains"},
+        {"modulus", "modulus of the grains"},
     };
     return words;
 }
@@ -64,6 +65,32 @@ std::string with_unit(const std::string& number, const std::string& unit) {
 /// Decimals that show the first two digits of `error`.
 int decimals_for(double error) {
     return std::clamp(1 - static_cast<int>(std::floor(std::log10(error))), 0, 12);
+}
+
+/// What the two signs of an amplitude mean, in words that follow its size.
+struct Directions {
+    std::string above, below;
+};
+const std::map<std::string, Directions>& directions() {
+    static const Directions of_the_scene{"higher than in the scene", "lower than in the scene"},
+        stated{"higher than stated", "lower than stated"}, read{"read too large", "read too small"};
+    static const std::map<std::string, Directions> all{
+        {"friction", of_the_scene},
+        {"wall_friction", of_the_scene},
+        {"gamma", of_the_scene},
+        {"modulus", stated},
+        {"strain_offset", stated},
+        {"force_threshold", stated},
+        {"buoyancy", {"denser than stated", "lighter than stated"}},
+        {"diameter_error", {"larger than stated", "smaller than stated"}},
+        {"stiffening", {"stiffer than Hertz's law", "softer than Hertz's law"}},
+        {"plate_tilt", {"rising along x", "falling along x"}},
+        {"plate_tilt_y", {"rising along y", "falling along y"}},
+        {"force_bias", read},
+        {"gauge_drift", read},
+        {"position_bias", read},
+    };
+    return all;
 }
 
 double pull(const NuisanceFit& fit) { return fit.prior > 0 ? std::fabs(fit.value) / fit.prior : 0; }
@@ -126,6 +153,18 @@ std::string phase_words(const std::string& phase) {
     return phase.empty() ? "both phases" : one_line(phase) + "ing";
 }
 
+namespace {
+
+/// "12 % higher than simulated"; the size of forces only, whose observables are logarithms.
+std::string difference_words(const WhereEntry& entry) {
+    const bool is_force = entry.observable == "top_force" || entry.observable == "mean_force";
+    const std::string size =
+        is_force && entry.difference != 0 ? percent(std::fabs(std::expm1(entry.difference))) + " " : "";
+    return size + (entry.z_score > 0 ? "higher" : "lower") + " than simulated";
+}
+
+}  // namespace
+
 std::string where_words(const WhereEntry& entry) {
     auto text = words_of(entry.observable);
     if (!entry.phase.empty()) text += " while " + phase_words(entry.phase);
@@ -133,12 +172,25 @@ std::string where_words(const WhereEntry& entry) {
         if (part && !part->empty()) text += ", " + words_of(*part);
     const auto displacement = displacement_words(entry.displacement);
     if (!displacement.empty()) text += ", " + displacement;
-    return text +
+    return text + ": " + difference_words(entry) +
            fmt::format(" ({:.1f} sigma, {:.1f} after recalibration)", entry.z_score, entry.z_score_refitted);
 }
 
+std::string directed_amount(const std::string& name, double value, double error, const std::string& unit) {
+    if (name == "modulus" && unit == "relative") {  // of the logarithm
+        error *= std::exp(value);
+        value = std::expm1(value);
+    }
+    const auto found = directions().find(name);
+    if (found == directions().end() || value == 0 || !std::isfinite(value) || std::isinf(error))
+        return amount(value, error, unit);
+    return amount(std::fabs(value), error, unit) + " " +
+           (value > 0 ? found->second.above : found->second.below);
+}
+
 std::string cause_words(const Cause& cause) {
-    return words_of(cause.effect) + " (" + amount(cause.amplitude, cause.amplitude_error, cause.unit) + ")";
+    return words_of(cause.effect) + " (" +
+           directed_amount(cause.effect, cause.amplitude, cause.amplitude_error, cause.unit) + ")";
 }
 
 std::vector<std::pair<std::string, std::array<double, 2>>> metrics_in_order(
@@ -188,8 +240,8 @@ std::vector<NuisanceFit> suspects_of(const Diagnosis& diagnosis) {
 }
 
 std::string suspect_words(const NuisanceFit& suspect) {
-    auto text = fmt::format("the stated {} is off by {}", words_of(suspect.name),
-                            amount(suspect.value, suspect.error, suspect.unit, Sign::always));
+    auto text = words_of(suspect.name) + ": " +
+                directed_amount(suspect.name, suspect.value, suspect.error, suspect.unit);
     if (suspect.prior > 0) text += fmt::format(" ({:.1f} times its stated error)", pull(suspect));
     return text;
 }

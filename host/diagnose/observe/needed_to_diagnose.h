@@ -1,0 +1,17 @@
+// Whether an experiment can be diagnosed, before anything is simulated.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "experiment/experiment.h"
+
+namespace mcdem::inline diagnose {
+
+/// Cells that an experiment and its simulations must have in common.
+inline constexpr std::size_t min_cells = 4;
+
+/// What `mcdem diagnose` needs and the experiment lacks, each with what to add; empty where it can be
+/// diagnosed.
+std::vector<std::string> needed_to_diagnose(const Experiment& experiment);
+
+}  // namespace mcdem::diagnose
