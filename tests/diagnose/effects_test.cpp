@@ -271,7 +271,7 @@ TEST(Effects, HindrancesSayWhy) {
     EXPECT_THAT(hindered(stated), ElementsAre("bulge_contacts", "plate_speed"));
     Model slow = independent;
     slow.replica.protocol.rate_tolerance = 0.01;
-    EXPECT_THAT(hindered(slow), ElementsAre("bulge_contacts", "plate_speed"));
+    EXPECT_THAT(hindered(slow), ElementsAre("bulge_contacts", "plate_speed", "inertia"));
     slow.replica.protocol.rate_tolerance = 0.02;
     EXPECT_THAT(hindered(slow), ElementsAre("bulge_contacts"));
 }

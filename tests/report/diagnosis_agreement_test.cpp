@@ -52,6 +52,10 @@ public:
             d.causes.back().group = {names[c]};
         }
         d.ranking = d.causes;
+        if (coin())
+            for (const char* name : {"out/A", "out/B", "out/C"})
+                d.packings.push_back(
+                    {name, uniform(0, 1), uniform(-1, 1), 0.1, uniform(0, 1), coin() && coin()});
         add_cells(d);
         if (d.explanation) {
             d.gap_reduction = GapReduction{};
@@ -156,6 +160,12 @@ TEST(DiagnosisAgreement, OfTitleFiguresPictureAndFile) {
         } else {
             EXPECT_TRUE(parts_of_the_gap(all).empty());
         }
+        const auto differs = [](const PackingAgreement& packing) { return packing.differs; };
+        const bool some_differ = std::ranges::any_of(d.packings, differs);
+        EXPECT_EQ(says(line(d, "Gap"), "which agree"), !d.packings.empty() && !some_differ);
+        EXPECT_EQ(says(line(d, "Gap"), "by more than noise;") || says(line(d, "Gap"), "by more than noise."),
+                  some_differ);
+        EXPECT_EQ(says(line(d, "Limits"), "the packings do not share"), some_differ);
         const bool framed = !where_chart(d)->layout["shapes"].empty();
         EXPECT_NE(says(line(d, "Where"), "no single part"), framed);
         const auto json = nlohmann::json::parse(diagnosis_json(d));

@@ -48,11 +48,17 @@ std::vector<NumericalSetting> time_step(Model& m) {
 /// A tolerance up to which the plate's speed needs no runs of its own.
 constexpr double slow_tolerance = 0.01;
 
-std::string_view no_slower_plate(const Model& m) {
+/// Speed and inertia act through the inertial number alone, which such a plate keeps.
+std::string_view slow_enough(const Model& m) {
     const double tolerance = m.replica.protocol.rate_tolerance;
-    if (tolerance > 0 && tolerance <= slow_tolerance)
-        return "protocol.rate_tolerance keeps what the plate's speed adds below 1 % of any force; `mcdem "
-               "converge` measures it";
+    return tolerance > 0 && tolerance <= slow_tolerance
+               ? "protocol.rate_tolerance keeps what the plate's speed and inertia add below 1 % of any "
+                 "force; `mcdem converge` measures it"
+               : "";
+}
+
+std::string_view no_slower_plate(const Model& m) {
+    if (const auto reason = slow_enough(m); !reason.empty()) return reason;
     return m.experiment_speed && *m.experiment_speed >= m.replica.plate.speed
                ? "the experiment's plate is stated to move as fast as the scene's"
                : "";
@@ -120,7 +126,7 @@ const Effect table[] = {
     {"plate_speed", "", "part by which the real plate is slower than the scene's", "numerics",
      0, 1, 0.5, 0.75, one, [](Model& m, double a) { take_off(plate_speed(m), a); }, no_slower_plate, plate_speed},
     {"inertia", "", "part by which real inertia is smaller than the scene's, weight alike", "numerics",
-     0, 1, 0.5, 0.75, one, [](Model& m, double a) { take_off(density(m), a); }, nothing, density},
+     0, 1, 0.5, 0.75, one, [](Model& m, double a) { take_off(density(m), a); }, slow_enough, density},
     {"time_step", "", "part by which the time step is too long", "numerics",
      0, 1, 0.3, 0.6, one, [](Model& m, double a) { take_off(time_step(m), a); }, nothing, time_step},
 };
