@@ -1,4 +1,4 @@
-"""scenes/compression.toml with each contact model against an experiment of another packing that has no effect: diagnosed with
+"""scenes/compression.toml with each of six contact models against an experiment of another packing that has no effect: diagnosed with
 all candidates and default numbers, no gap is found, and what cannot be told is named.
 
 diagnosis_models_test.py MCDEM FOLDER [MODEL ..]; all six models where none is named.
