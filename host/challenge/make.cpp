@@ -179,6 +179,7 @@ private:
         if (recording.failure)
             throw RunError(fmt::format("{}: its simulation failed at step {}: {}", c.folder,
                                        recording.failure->step, recording.failure->cause));
+        remove_temporaries(options_.folder / c.folder);
         write_experiment(options_.folder / c.folder, realities_.experiment(c, recording), Packed::gzip);
     }
 
@@ -196,6 +197,7 @@ std::string make_challenge(Device& device, const Scene& scene, const ChallengeOp
                          ": is what may be known of the challenge: give another file for the truth");
     const FolderLock lock = open_output_folder(options.folder);
     make_folder_of(options.truth);
+    remove_temporaries_of(options.truth);
     return Making(device, scene, options).all();
 }
 

@@ -63,7 +63,10 @@ public:
         lock_.emplace(lock_folder(options.out, use));
         expect_own_options();
         make_folder_of(options.library.file);  // now, not after the library is made
+        remove_temporaries_of(options.library.file);
         for (const char* folder : {evidence_folder, findings_folder}) make_folder(options.out / folder);
+        for (const char* folder : {"", "simulations", evidence_folder, findings_folder})
+            remove_temporaries(options.out / folder);
     }
 
     /// Cases come first in the numbers, and last to be computed: they need the library.

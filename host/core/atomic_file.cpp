@@ -48,6 +48,14 @@ std::string temporary_place(const fs::path& temporary) {
     return name.substr(0, name.size() - ending.size() - digits - 1);
 }
 
+/// What no living program has locked.
+void remove_if_abandoned(const fs::path& temporary) {
+    const int descriptor = ::open(temporary.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+    if (descriptor < 0) return;
+    if (::flock(descriptor, LOCK_EX | LOCK_NB) == 0) ::unlink(temporary.c_str());
+    ::close(descriptor);
+}
+
 void force_to_disk(int descriptor, const fs::path& file) {
     // Some file systems cannot sync (EINVAL, EROFS on folders): nothing more can be done there.
     int result = 0;
@@ -77,12 +85,14 @@ NewFile::NewFile(fs::path place) : place_(std::move(place)) {
         descriptor_ = ::open(temporary_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
     } while (descriptor_ < 0 && (errno == EEXIST || errno == EINTR));
     if (descriptor_ < 0) fail(place_, errno);
-    ::flock(descriptor_, LOCK_EX | LOCK_NB);  // see remove_temporaries_of
+    ::flock(descriptor_, LOCK_EX | LOCK_NB);  // see remove_if_abandoned
+    lock_ = ::fcntl(descriptor_, F_DUPFD_CLOEXEC, 0);
 }
 
 NewFile::~NewFile() {
     if (descriptor_ >= 0) ::close(descriptor_);
     if (!temporary_.empty()) ::unlink(temporary_.c_str());
+    if (lock_ >= 0) ::close(lock_);
 }
 
 void NewFile::write(std::string_view bytes) {
@@ -143,18 +153,15 @@ void move_file(const fs::path& from, const fs::path& to) {
 void remove_temporaries_of(const fs::path& file) {
     std::error_code unknown;
     const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
-    for (const auto& entry : fs::directory_iterator(folder, unknown)) {
-        if (!is_temporary(entry.path()) || temporary_place(entry.path()) != file.filename()) continue;
-        const int descriptor = ::open(entry.path().c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
-        if (descriptor < 0) continue;
-        if (::flock(descriptor, LOCK_EX | LOCK_NB) == 0) ::unlink(entry.path().c_str());
-        ::close(descriptor);
-    }
+    for (const auto& entry : fs::directory_iterator(folder, unknown))
+        if (is_temporary(entry.path()) && temporary_place(entry.path()) == file.filename())
+            remove_if_abandoned(entry.path());
 }
 
 void remove_temporaries(const fs::path& folder) {
-    for (const auto& entry : fs::directory_iterator(folder))
-        if (is_temporary(entry.path())) fs::remove(entry.path());
+    std::error_code unknown;
+    for (const auto& entry : fs::directory_iterator(folder, unknown))
+        if (is_temporary(entry.path())) remove_if_abandoned(entry.path());
 }
 
 }  // namespace mcdem::core

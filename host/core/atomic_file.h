@@ -29,6 +29,7 @@ public:
 private:
     std::filesystem::path place_, temporary_;
     int descriptor_ = -1;
+    int lock_ = -1;  ///< keeps the file locked until it is in its place
 };
 
 /// Lets `write` fill a new file and puts it in place of `file`. A reader sees the old file or the new one,
@@ -49,8 +50,7 @@ void move_file(const std::filesystem::path& from, const std::filesystem::path& t
 /// another program is still writing are locked (flock) and stay.
 void remove_temporaries_of(const std::filesystem::path& file);
 
-/// Removes what programs that were killed have left of new files in the folder. Only for its owner: other
-/// programs' files on their way go too.
+/// The same of all files in the folder, not below it; nothing where there is no such folder.
 void remove_temporaries(const std::filesystem::path& folder);
 
 }  // namespace mcdem::core

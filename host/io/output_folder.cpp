@@ -11,8 +11,7 @@ FolderLock open_output_folder(const std::filesystem::path& folder) {
     make_result_folder(folder);
     FolderLock lock(folder, FolderLock::Use::alone);
     expect_no_experiment(folder);  // made by another program meanwhile
-    if (const auto kept = folder / "simulations"; std::filesystem::is_directory(kept))
-        remove_temporaries(kept);
+    remove_temporaries(folder / "simulations");
     return lock;
 }
 

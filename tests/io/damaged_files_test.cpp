@@ -302,6 +302,21 @@ TEST(damaged_files, a_folder_opened_again_keeps_nothing_of_killed_programs) {
     EXPECT_TRUE(std::filesystem::exists(folder / "simulations/a.obs"));
 }
 
+TEST(damaged_files, files_that_are_being_written_are_not_taken_for_left_overs) {
+    TemporaryFolder folder;
+    {
+        NewFile out(folder / "run.h5");
+        remove_temporaries(folder.path());
+        EXPECT_EQ(files_in(folder.path()), 1);
+        out.close();  // and not yet in its place
+        remove_temporaries(folder.path());
+        EXPECT_EQ(files_in(folder.path()), 1);
+        out.put_in_place();
+    }
+    EXPECT_TRUE(std::filesystem::exists(folder / "run.h5"));
+    EXPECT_EQ(files_in(folder.path()), 1);
+}
+
 TEST(damaged_files, full_disk_is_an_error_and_leaves_the_old_file) {
     TemporaryFolder folder;
     const auto file = folder / "run.h5";
