@@ -16,7 +16,8 @@ struct ArmScore {
     Merits first, second;  ///< on the half that limits were set on, and on the other
 };
 
-/// Predicted against realised gap_reduction, over all cases with confirming runs: no limit enters them.
+/// Predicted against realised reduction of the gap, over all cases with confirming runs: no limit enters
+/// them.
 struct GapReductionScore {
     int cases = 0;
     double median_error = 0;  ///< median |predicted - confirmed|

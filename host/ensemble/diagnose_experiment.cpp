@@ -80,26 +80,27 @@ public:
           question_(std::move(plan.question)),
           plan_(std::move(plan.library)) {}
 
-    Diagnosis all() {
+    Diagnosis run() {
         Evidence evidence = gather();
-        auto draft = std::make_unique<DiagnosisBuilder>(confirmed(evidence));
-        if (draft->decision().verdict == Verdict::not_converged && options_.refine > 1) {
-            const Refinement refinement = refinement_of(*draft, options_.refine);
-            draft.reset();
+        auto builder = std::make_unique<DiagnosisBuilder>(confirmed(evidence));
+        if (builder->decision().verdict == Verdict::not_converged && options_.refine > 1) {
+            const Refinement refinement = refinement_of(*builder, options_.refine);
+            builder.reset();
             refine(evidence, refinement);
-            draft = std::make_unique<DiagnosisBuilder>(confirmed(evidence));
+            builder = std::make_unique<DiagnosisBuilder>(confirmed(evidence));
         }
-        if (draft->decision().verdict == Verdict::not_converged)
-            refinements_.push_back(refinement_of(*draft, max_refinement));
+        if (builder->decision().verdict == Verdict::not_converged)
+            refinements_.push_back(refinement_of(*builder, max_refinement));
         options_.on_evidence(evidence);
-        options_.on_findings(draft->findings());
-        Diagnosis diagnosis = draft->diagnosis();
+        options_.on_findings(builder->findings());
+        Diagnosis diagnosis = builder->diagnosis();
         diagnosis.not_testable = choice_.hindered;
         diagnosis.refinements = refinements_;
         if (auto first = change_of_the_scene(diagnosis))
             diagnosis.next.insert(diagnosis.next.begin(), *first);
         if (diagnosis.gap_reduction && options_.paper_metrics && options_.confirmations > 0)
-            add_paper_metrics(*diagnosis.gap_reduction, experiments_.front().recording, before_after(*draft));
+            add_paper_metrics(*diagnosis.gap_reduction, experiments_.front().recording,
+                              before_after(*builder));
         return diagnosis;
     }
 
@@ -158,20 +159,20 @@ private:
     }
 
     DiagnosisBuilder confirmed(const Evidence& evidence) {
-        DiagnosisBuilder draft(evidence, options_.limits);
-        if (options_.confirmations > 0 && draft.decision().verdict != Verdict::no_gap) confirm(draft);
-        return draft;
+        DiagnosisBuilder builder(evidence, options_.limits);
+        if (options_.confirmations > 0 && builder.decision().verdict != Verdict::no_gap) confirm(builder);
+        return builder;
     }
 
-    Refinement refinement_of(const DiagnosisBuilder& draft, double most) {
-        const std::size_t candidate = draft.decision().group.front();
-        const Effect& effect = *find_effect(draft.findings().names[candidate]);
+    Refinement refinement_of(const DiagnosisBuilder& builder, double most) {
+        const std::size_t candidate = builder.decision().group.front();
+        const Effect& effect = *find_effect(builder.findings().names[candidate]);
         const NumericalSetting setting = effect.settings(plan_.specimens.front().model).front();
         return {std::string(effect.name),
                 std::string(setting.key),
                 std::string(find_key(setting.key)->unit),
                 *setting.value,
-                *setting.value / draft.refining_factor(candidate, most),
+                *setting.value / builder.refining_factor(candidate, most),
                 false};
     }
 
@@ -240,41 +241,41 @@ private:
 
     /// Real runs of every proposal, again where they miss; then of the one decided on with what the fitted
     /// part of the data says of it.
-    void confirm(DiagnosisBuilder& draft) {
-        std::vector<std::size_t> tried(draft.findings().proposals.size());
+    void confirm(DiagnosisBuilder& builder) {
+        std::vector<std::size_t> tried(builder.findings().proposals.size());
         std::iota(tried.begin(), tried.end(), std::size_t{0});
         for (int round = 0; round < max_rounds && !tried.empty(); ++round) {
-            run(draft, tried);
-            std::erase_if(tried, [&](std::size_t k) { return !draft.refit(k); });
+            run(builder, tried);
+            std::erase_if(tried, [&](std::size_t k) { return !builder.refit(k); });
         }
-        while (const auto k = draft.wants_held_out()) {
-            const std::vector<Trial> trials = held_out_trials(draft, *k);
+        while (const auto k = builder.wants_held_out()) {
+            const std::vector<Trial> trials = held_out_trials(builder, *k);
             if (options_.paper_metrics) recorded(trials, options_.confirmations);
             const Eigen::MatrixXd runs =
                 observe_trials(device_, question_, trials, store_, stage(options_, "held-out confirmation"));
-            draft.confirm_held_out(*k, mean_over_packings(runs, packings()));
+            builder.confirm_held_out(*k, mean_over_packings(runs, packings()));
         }
     }
 
-    void run(DiagnosisBuilder& draft, const std::vector<std::size_t>& proposals) {
+    void run(DiagnosisBuilder& builder, const std::vector<std::size_t>& proposals) {
         std::vector<Trial> trials;
         for (const std::size_t k : proposals)
-            append(trials, trials_of(draft, draft.findings().proposals[k], draft.whole_fit(k)));
+            append(trials, trials_of(builder, builder.findings().proposals[k], builder.whole_fit(k)));
         const Eigen::MatrixXd runs =
             observe_trials(device_, question_, trials, store_, stage(options_, "confirmation"));
         const Eigen::Index each = options_.confirmations * packings();
         for (std::size_t k = 0; k < proposals.size(); ++k)
-            draft.confirm(
+            builder.confirm(
                 proposals[k],
                 mean_over_packings(runs.middleRows(static_cast<Eigen::Index>(k) * each, each), packings()));
     }
 
     /// Of the first packing.
-    BeforeAfter before_after(const DiagnosisBuilder& draft) {
+    BeforeAfter before_after(const DiagnosisBuilder& builder) {
         const int few = std::min(options_.replicates, options_.confirmations);
         return {kept_recordings(device_, question_, recorded(baseline_trials(plan_), few), store_),
                 kept_recordings(device_, question_,
-                                recorded(held_out_trials(draft, draft.decided()), options_.confirmations),
+                                recorded(held_out_trials(builder, builder.decided()), options_.confirmations),
                                 store_)};
     }
 
@@ -290,17 +291,17 @@ private:
         all.insert(all.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
     }
 
-    std::vector<Trial> trials_of(const DiagnosisBuilder& draft, const Proposal& proposal,
+    std::vector<Trial> trials_of(const DiagnosisBuilder& builder, const Proposal& proposal,
                                  const PartialFit& fit) const {
         LibraryPlan plan = plan_;
         plan.replicates = options_.confirmations;
         for (Specimen& specimen : plan.specimens)
-            specimen.model = fitted(specimen.model, draft.data(), proposal, fit);
+            specimen.model = fitted(specimen.model, builder.data(), proposal, fit);
         return baseline_trials(plan);
     }
 
-    std::vector<Trial> held_out_trials(const DiagnosisBuilder& draft, std::size_t proposal) const {
-        return trials_of(draft, draft.findings().proposals[proposal], draft.part_fit(proposal));
+    std::vector<Trial> held_out_trials(const DiagnosisBuilder& builder, std::size_t proposal) const {
+        return trials_of(builder, builder.findings().proposals[proposal], builder.part_fit(proposal));
     }
 
     /// A model with the fitted effects and nuisances.
@@ -380,7 +381,7 @@ Diagnosis diagnose_experiment(Device& device, const Scene& scene, const std::vec
                               const DiagnoseOptions& options) {
     const auto begin = std::chrono::steady_clock::now();
     Diagnosis diagnosis =
-        DiagnosisRunner(device, plan_of(scene, experiments, options), experiments, options).all();
+        DiagnosisRunner(device, plan_of(scene, experiments, options), experiments, options).run();
     diagnosis.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     std::vector<std::string> names;
     for (const Experiment& experiment : experiments) names.push_back(experiment.name);

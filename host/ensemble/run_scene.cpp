@@ -53,7 +53,7 @@ public:
         simulation_.restore(checkpoint->fields);
     }
 
-    RunSummary go_on() {
+    RunSummary run() {
         try {
             return make_steps();
         } catch (...) {
@@ -162,9 +162,9 @@ RunSummary run_scene(Device& device, const Scene& scene, const RunOptions& optio
     }
     const auto packings = make_packings(scene, options.stop_wanted);
     if (options.stop_wanted()) return {RunEnd::interrupted};
-    RunSession run(device, scene, packings, options, std::move(folder));
-    if (options.start == Start::resume) run.resume();
-    const auto summary = run.go_on();
+    RunSession session(device, scene, packings, options, std::move(folder));
+    if (options.start == Start::resume) session.resume();
+    const auto summary = session.run();
     if (summary.end == RunEnd::done) close_folder(options.folder);
     return summary;
 }

@@ -3,20 +3,18 @@
 // read, written or waited for. Where MCDEM_TEST_HOLD names a folder, the process waits there instead, once:
 // it makes a file named by its number in the folder, and goes on when that is removed. Of several processes
 // only one does so where MCDEM_TEST_VICTIM names a file: the one that launches first, and makes it.
-#define CL_TARGET_OPENCL_VERSION 300
-#include <CL/cl_layer.h>
 #include <fcntl.h>
 #include <unistd.h>
 
 #include <atomic>
 #include <cstdlib>
-#include <cstring>
 #include <limits>
 #include <string>
 
+#include "layer.h"
+
 namespace {
 
-cl_icd_dispatch below, layer;
 std::atomic<long> launches_left;
 
 bool is_victim() {
@@ -74,31 +72,13 @@ cl_int write(cl_command_queue queue, cl_mem buffer, cl_bool blocking, size_t off
                                                event);
 }
 
-}  // namespace
-
-extern "C" {
-
-cl_int CL_API_CALL clGetLayerInfo(cl_layer_info name, size_t size, void* value, size_t* size_used) {
-    const cl_layer_api_version version = CL_LAYER_API_VERSION_100;
-    if (name != CL_LAYER_API_VERSION || (value && size < sizeof version)) return CL_INVALID_VALUE;
-    if (value) std::memcpy(value, &version, sizeof version);
-    if (size_used) *size_used = sizeof version;
-    return CL_SUCCESS;
-}
-
-cl_int CL_API_CALL clInitLayer(cl_uint entries, const cl_icd_dispatch* target, cl_uint* entries_used,
-                               const cl_icd_dispatch** dispatch) {
-    constexpr auto known = sizeof(cl_icd_dispatch) / sizeof(target->clGetPlatformIDs);
-    if (entries < known) return CL_INVALID_VALUE;
+void take_over() {
     const char* launches = std::getenv("MCDEM_TEST_KERNELS");
     launches_left = launches ? std::atol(launches) : 0;
-    below = layer = *target;
     layer.clEnqueueNDRangeKernel = launch;
     layer.clFinish = finish;
     layer.clEnqueueReadBuffer = read;
     layer.clEnqueueWriteBuffer = write;
-    *entries_used = known;
-    *dispatch = &layer;
-    return CL_SUCCESS;
 }
-}
+
+}  // namespace

@@ -2,16 +2,14 @@
 // says that it is one, has 48 KB of local memory and work-groups of at most MCDEM_TEST_GROUP work-items
 // (256), and refuses launches beyond that as drivers do. MCDEM_TEST_KERNEL_GROUP: work-items that any one
 // kernel has registers for.
-#define CL_TARGET_OPENCL_VERSION 300
-#include <CL/cl_layer.h>
 
 #include <algorithm>
 #include <cstdlib>
-#include <cstring>
+
+#include "layer.h"
 
 namespace {
 
-cl_icd_dispatch below, layer;
 constexpr cl_ulong local_memory = 48 << 10;
 
 std::size_t number(const char* variable, std::size_t otherwise) {
@@ -58,28 +56,10 @@ cl_int launch(cl_command_queue queue, cl_kernel kernel, cl_uint dimensions, cons
                                         event);
 }
 
-}  // namespace
-
-extern "C" {
-
-cl_int CL_API_CALL clGetLayerInfo(cl_layer_info name, std::size_t size, void* value, std::size_t* size_used) {
-    const cl_layer_api_version version = CL_LAYER_API_VERSION_100;
-    if (name != CL_LAYER_API_VERSION || (value && size < sizeof version)) return CL_INVALID_VALUE;
-    if (value) std::memcpy(value, &version, sizeof version);
-    if (size_used) *size_used = sizeof version;
-    return CL_SUCCESS;
-}
-
-cl_int CL_API_CALL clInitLayer(cl_uint entries, const cl_icd_dispatch* target, cl_uint* entries_used,
-                               const cl_icd_dispatch** dispatch) {
-    constexpr auto known = sizeof(cl_icd_dispatch) / sizeof(target->clGetPlatformIDs);
-    if (entries < known) return CL_INVALID_VALUE;
-    below = layer = *target;
+void take_over() {
     layer.clGetDeviceInfo = device_info;
     layer.clGetKernelWorkGroupInfo = kernel_info;
     layer.clEnqueueNDRangeKernel = launch;
-    *entries_used = known;
-    *dispatch = &layer;
-    return CL_SUCCESS;
 }
-}
+
+}  // namespace

@@ -54,7 +54,7 @@ TEST(DiagnosisPage, has_all_numbers) {
                                "0.421",
                                "0.187",
                                "0.0312",
-                               "0.0089",  // gap_reduction
+                               "0.0089",  // shrink
                                "66 %",
                                "51 to 78 %",
                                "12 %",

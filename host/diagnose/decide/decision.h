@@ -28,7 +28,7 @@ struct Limits {
     double right_above = 0.97;     ///< .. and clearly more than `reduction`
     double reduction_error = 0.1;  ///< what "clearly" is: the probability goes from one to the other
     double reduction_margin =
-        0.1;  ///< what signatures get wrong in the gap_reduction, on either side of its interval
+        0.1;  ///< what signatures get wrong in the reduction, on either side of its interval
 };
 
 /// One effect, or two together, and how well they do.

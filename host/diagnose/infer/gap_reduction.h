@@ -1,4 +1,4 @@
-// How far does the gap gap_reduction? The effect's amplitude and the nuisances are fitted on loading up to 85
+// How far does the gap shrink? The effect's amplitude and the nuisances are fitted on loading up to 85
 // % of the stroke; the gap is measured on the rest, once with the nuisances refitted alone and once with the
 // effect too.
 #pragma once

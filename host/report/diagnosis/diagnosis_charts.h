@@ -14,8 +14,8 @@ std::optional<Chart> where_chart(const Diagnosis& diagnosis);
 /// Candidates by score, with their amplitudes over what these data can detect. Nothing without a ranking.
 std::optional<Chart> which_chart(const Diagnosis& diagnosis);
 
-/// Top force, and the gap that is left. Empty without a gap_reduction, or where the data held out show no
-/// gap.
+/// Top force, and the gap that is left. Empty without a reduction of the gap, or where the data held out show
+/// no gap.
 std::vector<Chart> how_far_charts(const Diagnosis& diagnosis);
 
 }  // namespace mcdem::report

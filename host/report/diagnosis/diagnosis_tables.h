@@ -18,7 +18,7 @@ TextTable table_of_packings(const Diagnosis& diagnosis);
 /// How far the fit moved the parameters that are known only roughly.
 TextTable table_of_nuisances(const Diagnosis& diagnosis);
 
-/// Gap and metrics before and after; empty without a gap_reduction.
+/// Gap and metrics before and after; empty without a reduction of the gap.
 TextTable table_of_gap_reduction(const Diagnosis& diagnosis);
 
 TextTable table_of_provenance(const Diagnosis& diagnosis);

@@ -19,7 +19,7 @@ struct VerdictLine {
     std::string says;
 };
 
-/// Is there a gap, where, which effects is it consistent with, how far does it gap_reduction, what cannot be
+/// Is there a gap, where, which effects is it consistent with, how far does it shrink, what cannot be
 /// told, and what to do next.
 std::array<VerdictLine, 6> verdict_lines(const Diagnosis& diagnosis);
 
