@@ -2,6 +2,7 @@
 import os
 import pathlib
 import shutil
+import subprocess
 import tempfile
 import unittest
 
@@ -163,6 +164,15 @@ class Files(unittest.TestCase):
         with self.assertRaises(ValueError):
             figures.save(axes, folder / "away.exe")
         self.assertEqual(list(folder.glob("away*")), [])
+
+    def test_a_figure_that_cannot_be_written_is_told(self):
+        limit = (folder / "run/figures.json").stat().st_size // 1024 + 2
+        done = subprocess.run(["bash", "-c", f'ulimit -f {limit}; exec "$@"', "bash", mcdem.file, "figures", "run", "--out", "full"],
+                              cwd=folder, capture_output=True, text=True, timeout=500)
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertRegex(done.stderr, r"full/\w+\.(pdf|png|svg): File too large")
+        self.assertNotIn("Traceback", done.stderr)
+        self.assertEqual(list((folder / "full").glob("*.tmp")), [])
 
     def test_what_is_no_figures_json_is_told(self):
         (folder / "other").mkdir()

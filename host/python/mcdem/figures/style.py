@@ -1,12 +1,13 @@
 """How figures look: sizes and fonts for print, keys, files."""
 import functools
+import io
 import math
-import os
 import pathlib
-import secrets
 
 import matplotlib
 import matplotlib.pyplot as plt
+
+from ..files import write_whole
 
 MILLIMETRE = 1 / 25.4  # of an inch, matplotlib's unit of length
 COLUMN = 86            # width of a column of a journal [mm]
@@ -85,9 +86,6 @@ def save(axes, file):
     kind = file.suffix[1:]
     creator = {"png": "Software"}.get(kind, "Creator")  # by it `mcdem` knows a figure as its own
     dates = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}  # the same figure has the same bytes
-    temporary = file.with_name(f"{file.name}.{secrets.token_hex(8)}.tmp")
-    try:
-        figure_of(axes).savefig(temporary, format=kind, metadata={creator: "mcdem figure", **dates.get(kind, {})})
-        os.replace(temporary, file)
-    finally:
-        temporary.unlink(missing_ok=True)
+    page = io.BytesIO()
+    figure_of(axes).savefig(page, format=kind, metadata={creator: "mcdem figure", **dates.get(kind, {})})
+    write_whole(file, page.getvalue())

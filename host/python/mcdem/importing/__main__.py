@@ -7,6 +7,7 @@ import sys
 import textwrap
 
 from ..errors import InputError
+from ..files import write_whole
 from .assemble import Known, import_tables, write_tables
 from .guess import guess_tables, mapping_of, read_import_tables, wrong_rows
 from .mapping import KEYS, mapping_text, unclear_entries
@@ -63,8 +64,7 @@ class Results:
         self.folder = folder
 
     def write(self, name, text):
-        with open(os.path.join(self.folder, name), "w", encoding="utf-8", errors="surrogateescape", newline="") as out:
-            out.write(text)
+        write_whole(os.path.join(self.folder, name), text.encode("utf-8", "surrogateescape"))
 
     def write_lines(self, name, lines):
         self.write(name, "".join(line.replace("\n", " ") + "\n" for line in lines))

@@ -1,10 +1,12 @@
 """Plate, grains and contacts put together: the tables of an experiment folder."""
+import gzip
 import os
 from dataclasses import dataclass, field
 
 import numpy as np
 import pandas as pd
 
+from ..files import write_whole
 from .contacts import import_contacts
 from .grains import import_grains
 from .mapping import WALLS
@@ -200,6 +202,5 @@ def write_tables(imported, folder, packed=False):
         table = getattr(imported, name)
         if table is not None and len(table):
             file = os.path.join(folder, name + ".csv" + (".gz" if packed else ""))
-            table.to_csv(file, index=False, compression={"method": "gzip", "mtime": 0} if packed else None)
-            with open(file, "rb") as written:
-                os.fsync(written.fileno())
+            rows = table.to_csv(index=False).encode()
+            write_whole(file, gzip.compress(rows, mtime=0) if packed else rows)

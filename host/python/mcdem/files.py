@@ -1,0 +1,20 @@
+"""Files that are written whole or not at all."""
+import os
+import pathlib
+import secrets
+
+
+def write_whole(file, content):
+    """Puts bytes into a file, forced to the disk, under its name only when all are there. An OSError names the file."""
+    file = pathlib.Path(file)
+    temporary = file.with_name(f"{file.name}.{secrets.token_hex(8)}.tmp")
+    try:
+        with open(temporary, "xb") as out:
+            out.write(content)
+            out.flush()
+            os.fsync(out.fileno())
+        os.replace(temporary, file)
+    except OSError as error:
+        raise OSError(error.errno, error.strerror, str(file)) from error
+    finally:
+        temporary.unlink(missing_ok=True)
