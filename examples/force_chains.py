@@ -26,17 +26,24 @@ with open_run(path) as run:
     position = particles["position/value"][int(np.flatnonzero(step == best)[0])].astype(float)
     contacts = table["contact"][offset[best]:offset[best + 1]]
     diameter, (width, depth, _) = particles["diameter"][:], particles["box"].attrs["edges"]
+    shape = particles["box"].attrs.get("shape", "box")
     title = f"{label(run, replica)}: plate {1e3 * displacement(run, replica)[best]:.1f} mm down"
     plate_z = scans["plate_z"][best]
 
 grain, partner = contacts["grain"], contacts["partner"]
 start = position[grain]
 end = position[np.maximum(partner, 0)]
+if shape == "periodic":  # the partner's nearest image
+    cell = np.array([width, depth, np.inf])
+    end = end - np.where(np.isfinite(cell), cell, 0) * np.round((end - start) / cell)
 # Walls: the foot of the perpendicular. Partner -1 - wall, walls x_min x_max y_min y_max floor plate.
 for wall, (axis, place) in enumerate([(0, 0), (0, width), (1, 0), (1, depth), (2, 0), (2, plate_z)]):
     at_wall = partner == -1 - wall
     end[at_wall] = start[at_wall]
     end[at_wall, axis] = place
+    if shape == "cylinder" and wall == 0:  # its side
+        out = start[at_wall, :2] - width / 2
+        end[at_wall, :2] = width / 2 * (1 + out / np.linalg.norm(out, axis=1, keepdims=True))
 force = np.linalg.norm(contacts["force"], axis=1)
 order = np.argsort(force)  # the strongest on top
 lines = np.stack([start, end], axis=1)[order][:, :, [0, 2]] * 1e3

@@ -11,6 +11,28 @@ INLINE int cell_index(global const Replica* restrict replica, int x, int y, int 
            x % replica->cells_x;
 }
 
+INLINE int3 cell_of(global const Replica* restrict replica, real4 point) {
+    if (replica->container == CONTAINER_PERIODIC)
+        point = (real4)(into_cell(point.x, replica->wall_position[1]),
+                        into_cell(point.y, replica->wall_position[3]), point.z, point.w);
+    return (int3)(cell_along(point.x, replica->cell_size, replica->span_x),
+                  cell_along(point.y, replica->cell_size, replica->span_y),
+                  cell_along(point.z, replica->cell_size, replica->span_z));
+}
+
+/* The cells along one axis around one of them, each once; past an end of a span that repeats they are
+ * wrapped. */
+typedef struct {
+    int first, last;
+} CellRange;
+
+INLINE CellRange near_cells(int cell, int span, bool repeats) {
+    if (!repeats) return (CellRange){max(cell - 1, 0), min(cell + 1, span - 1)};
+    return span < 3 ? (CellRange){0, span - 1} : (CellRange){cell - 1, cell + 1};
+}
+
+INLINE int wrapped(int cell, int span) { return cell < 0 ? cell + span : cell < span ? cell : cell - span; }
+
 /* The grain of a work-item of the kernels that list: blocks one after another, whatever a work-group's size;
    -1 past the last. */
 INLINE int listed_grain(global const int* restrict blocks, int block_count) {
@@ -40,8 +62,7 @@ kernel void fill_cells(const int block_count, global const Replica* restrict rep
     global const Replica* restrict replica = replicas + replica_of_block[grain / BLOCK];
     const real4 own = motion[grain].position;
     if (!(own.w > R(0))) return;
-    const int cell = cell_index(replica, cell_along(own.x, replica->cell_size, replica->span_x),
-                                cell_along(own.y, replica->cell_size, replica->span_y),
-                                cell_along(own.z, replica->cell_size, replica->span_z));
+    const int3 place = cell_of(replica, own);
+    const int cell = cell_index(replica, place.x, place.y, place.z);
     cell_next[grain] = atomic_xchg(cell_head + cell, grain);
 }

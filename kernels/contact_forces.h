@@ -57,6 +57,10 @@ INLINE Pressed press(Grain at, const int effects, Neighbours seen, Displaced b, 
     Pressed p;
     const lanes gap = seen.distance - (radius + seen.radius);
     p.pair = reduced(replica, radius, seen.radius, seen.wall);
+    if (replica->container == CONTAINER_CYLINDER) { /* the curved wall alone is not level */
+        const mask curved = seen.wall & AS_MASK(fabs(seen.normal.z) < R(0.5));
+        p.pair.radius = WHERE(curved, curved_radius(replica, radius), p.pair.radius);
+    }
     lanes modulus = WHERE(seen.wall, replica->modulus_wall, replica->modulus_grain);
     if (effects & EFFECT_MODULUS_SCATTER)
         modulus =

@@ -18,8 +18,13 @@ typedef struct {
 INLINE lanes3 wall_feet(Grain at, const int effects, slots partner, lanes3 there) {
     global const Replica* restrict replica = at.replica;
     lanes3 foot = where3(AS_MASK(partner < NO_PARTNER), same3(at.now.position.xyz), there);
+    if (replica->container == CONTAINER_CYLINDER) {
+        const lanes3 side = same3(side_foot(replica, at.now.position));
+        foot = where3(AS_MASK(partner == WALL_PARTNER(0)), side, foot);
+    } else {
+        foot.x = WHERE(AS_MASK(partner == WALL_PARTNER(0)), replica->wall_position[0], foot.x);
+    }
     /* Written out: a loop over axes would go through memory. */
-    foot.x = WHERE(AS_MASK(partner == WALL_PARTNER(0)), replica->wall_position[0], foot.x);
     foot.x = WHERE(AS_MASK(partner == WALL_PARTNER(1)), replica->wall_position[1], foot.x);
     foot.y = WHERE(AS_MASK(partner == WALL_PARTNER(2)), replica->wall_position[2], foot.y);
     foot.y = WHERE(AS_MASK(partner == WALL_PARTNER(3)), replica->wall_position[3], foot.y);
@@ -53,7 +58,11 @@ INLINE Neighbours see_neighbours(Grain at, const int effects, global const Motio
         seen.radius = WHERE(wall, R(0), seen.radius);
         seen.excess_compliance = WHERE(wall, R(0), seen.excess_compliance);
     }
-    const lanes3 apart = subtract3(there, same3(at.now.position.xyz));
+    lanes3 apart = subtract3(there, same3(at.now.position.xyz));
+    if (at.replica->container == CONTAINER_PERIODIC) {
+        apart.x = nearest_image(apart.x, at.replica->wall_position[1]);
+        apart.y = nearest_image(apart.y, at.replica->wall_position[3]);
+    }
     /* An empty slot is given a distance of one, so that nothing is divided by zero. */
     const lanes squared = WHERE(seen.occupied, dot3(apart, apart), R(1));
     seen.distance = sqrt(squared);

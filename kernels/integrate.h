@@ -18,8 +18,7 @@ INLINE int motion_status(Grain at, Motion after) {
     global const Replica* restrict replica = at.replica;
     const real4 x = after.position, w = after.angular_velocity;
     if (!isfinite(x.x + x.y + x.z + w.x + w.y + w.z)) return STATUS_NOT_A_NUMBER;
-    const bool inside = x.x > replica->wall_position[0] && x.x < replica->wall_position[1] &&
-                        x.y > replica->wall_position[2] && x.y < replica->wall_position[3] &&
-                        x.z > replica->wall_position[4] && x.z < plate_height(replica, at.plate_z, x);
+    const bool inside = within_sides(replica, x) && x.z > replica->wall_position[4] &&
+                        x.z < plate_height(replica, at.plate_z, x);
     return inside ? 0 : STATUS_LOST;
 }

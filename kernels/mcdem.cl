@@ -8,6 +8,7 @@
 #include "partner.h"
 #include "motion.h"
 #include "plate.h"
+#include "container.h"
 #include "contact_geometry.h"
 #include "self_displacement.h"
 #include "contact_memory.h"

@@ -17,19 +17,26 @@ INLINE int near_grains(global const Replica* restrict replica, int grain,
                        global const int* restrict cell_next, int* row) {
     const real4 own = motion[grain].position;
     const real reach = replica->probe_gap + replica->skin;
-    const int x = cell_along(own.x, replica->cell_size, replica->span_x);
-    const int y = cell_along(own.y, replica->cell_size, replica->span_y);
-    const int z = cell_along(own.z, replica->cell_size, replica->span_z);
+    const int3 cell = cell_of(replica, own);
+    const bool repeats = replica->container == CONTAINER_PERIODIC;
+    const CellRange along_x = near_cells(cell.x, replica->span_x, repeats);
+    const CellRange along_y = near_cells(cell.y, replica->span_y, repeats);
+    const CellRange along_z = near_cells(cell.z, replica->span_z, false);
     int count = 0;
-    for (int k = max(z - 1, 0); k <= min(z + 1, replica->span_z - 1); ++k)
-        for (int j = max(y - 1, 0); j <= min(y + 1, replica->span_y - 1); ++j)
-            for (int i = max(x - 1, 0); i <= min(x + 1, replica->span_x - 1); ++i) {
-                for (int other = cell_head[cell_index(replica, i, j, k)]; other >= 0;
-                     other = cell_next[other]) {
+    for (int k = along_z.first; k <= along_z.last; ++k)
+        for (int j = along_y.first; j <= along_y.last; ++j)
+            for (int i = along_x.first; i <= along_x.last; ++i) {
+                const int there =
+                    cell_index(replica, wrapped(i, replica->span_x), wrapped(j, replica->span_y), k);
+                for (int other = cell_head[there]; other >= 0; other = cell_next[other]) {
                     if (other == grain) continue;
-                    const real4 there = motion[other].position;
-                    const real3 apart = there.xyz - own.xyz;
-                    const real within = own.w + there.w + reach;
+                    const real4 position = motion[other].position;
+                    real3 apart = position.xyz - own.xyz;
+                    if (repeats) {
+                        apart.x = nearest_image_of_one(apart.x, replica->wall_position[1]);
+                        apart.y = nearest_image_of_one(apart.y, replica->wall_position[3]);
+                    }
+                    const real within = own.w + position.w + reach;
                     if (dot(apart, apart) < within * within) count = insert_sorted(row, count, other);
                 }
             }
@@ -39,12 +46,12 @@ INLINE int near_grains(global const Replica* restrict replica, int grain,
 INLINE int near_walls(global const Replica* restrict replica, real4 own, int* row, int count) {
     const real reach = own.w + replica->probe_gap + replica->skin;
     for (int w = 0; w < 6; ++w) {
-        const real coordinate = w / 2 == 0 ? own.x : w / 2 == 1 ? own.y : own.z;
         const real wall = replica->wall_position[w];
         const bool leaning = w == 5 && (replica->effects & EFFECT_PLATE_TILT);
-        const real distance = leaning ? plate_distance(replica, wall, own)
-                              : w % 2 ? wall - coordinate
-                                      : coordinate - wall;
+        const real distance = leaning  ? plate_distance(replica, wall, own)
+                              : w < 4  ? side_distance(replica, w, own)
+                              : w == 5 ? wall - own.z
+                                       : own.z - wall;
         if (distance >= reach) continue;
         if (count < SLOTS) row[count] = WALL_PARTNER(w);
         ++count;

@@ -64,7 +64,14 @@ typedef struct {
     int deepest_row;     /* among them, of plasticity */
     int relaxed_row;     /* .. of viscoelasticity */
     int effects;         /* EFFECT_* bits: what goes beyond the plain model */
+    int container;       /* CONTAINER_* below */
 } Replica;
+
+/* A cylinder touches x_min, x_max, y_min and y_max; its wall is number 0. A periodic cell has their
+ * distances, and neither has other walls than floor and plate besides. */
+#define CONTAINER_BOX 0
+#define CONTAINER_CYLINDER 1
+#define CONTAINER_PERIODIC 2
 
 #define SURFACE_RIGID 0      /* independent contacts */
 #define SURFACE_HALF_SPACE 1 /* paper, Eq. 1, at the deformed contact points */

@@ -1,5 +1,5 @@
 // The closed sets of words that scenes, results and pictures share: contact models, friction laws,
-// walls, phases. One table each; `name` and `parse` read the same table.
+// containers, walls, phases. One table each; `name` and `parse` read the same table.
 #pragma once
 #include <array>
 #include <optional>
@@ -24,6 +24,13 @@ enum class FrictionLaw {
     mindlin,    ///< tangential spring with history, cut at mu F_n
 };
 
+/// What keeps grains together at the sides, between floor and plate.
+enum class ContainerShape {
+    box,       ///< four walls
+    cylinder,  ///< one upright wall
+    periodic,  ///< none: the packing repeats along x and y
+};
+
 enum class Wall { x_min, x_max, y_min, y_max, floor, plate };
 inline constexpr int wall_count = 6;
 
@@ -42,6 +49,10 @@ struct Names<ContactModel> {
 template <>
 struct Names<FrictionLaw> {
     static constexpr std::array<std::string_view, 2> list{"saturated", "mindlin"};
+};
+template <>
+struct Names<ContainerShape> {
+    static constexpr std::array<std::string_view, 3> list{"box", "cylinder", "periodic"};
 };
 template <>
 struct Names<Wall> {

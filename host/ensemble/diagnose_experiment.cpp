@@ -348,6 +348,9 @@ Packing start_packing(const Experiment& experiment) {
 
 Model model_of(const Scene& scene, const Experiment& experiment) {
     const Recording& recording = experiment.recording;
+    if (scene.replicas.front().box.shape != recording.box.shape)
+        throw InputError(fmt::format("{}: container.shape must be {}, as in {}: others cannot be diagnosed",
+                                     scene.name, name(recording.box.shape), experiment.name));
     Model model;
     model.replica = scene.replicas.front();
     model.replica.box = recording.box;

@@ -29,6 +29,7 @@ constexpr std::array may_differ{
     MayDiffer{"plate.end", by_any_part},  // library's levels
     MayDiffer{"protocol.scans_per_stroke", by_any_part},  // observations are made at the library's levels
     MayDiffer{"box.size_", a_little},                     // measured anew by every experiment
+    MayDiffer{"container.size_", a_little},
     MayDiffer{"mean diameter", a_little},
     MayDiffer{"grains", a_little},
 };

@@ -16,8 +16,8 @@ namespace {
 /// Everything that make_packing looks at, so that equal texts mean equal packings.
 std::string start_of(const Replica& replica) {
     const PackingSource& from = replica.packing;
-    std::string text = fmt::format("{} {} {} {} {} {} {}", replica.box.size_x, replica.box.size_y,
-                                   replica.plate.start, replica.effects.plate_tilt_x,
+    std::string text = fmt::format("{} {} {} {} {} {} {} {}", name(replica.box.shape), replica.box.size_x,
+                                   replica.box.size_y, replica.plate.start, replica.effects.plate_tilt_x,
                                    replica.effects.plate_tilt_y, from.position_jitter, from.seed);
     if (const auto* file = std::get_if<PackingFile>(&from.source))
         return text + fmt::format(" file {} {}", file->path, file->step.value_or(-1));

@@ -56,8 +56,7 @@ void check_overlaps(const Recording& recording, Findings& findings) {
     const double largest = *std::max_element(recording.diameter.begin(), recording.diameter.end());
     for (const Scan& scan : recording.scans) {
         if (scan.position.empty()) continue;
-        const CellList cells(scan.position, {recording.box.size_x, recording.box.size_y, scan.plate_z},
-                             largest);
+        const CellList cells(scan.position, recording.box, scan.plate_z, largest);
         cells.for_each_pair([&](int i, int j) {
             const double sum = radius_of(recording, i) + radius_of(recording, j);
             const double overlap = sum - (at(scan.position, i) - at(scan.position, j)).norm();

@@ -1,10 +1,19 @@
 #include "experiment/from_recording.h"
 
+#include <fmt/format.h>
+
+#include "core/errors.h"
 #include "scene/packing_fields.h"
 
 namespace mcdem::inline experiment {
 
 Experiment experiment_from(const Recording& truth, const Instrument& instrument, std::uint64_t seed) {
+    if (truth.box.shape != ContainerShape::box)
+        throw InputError(
+            fmt::format("{}: container.shape must be box, got {}: experiments in other containers can be "
+                        "neither checked nor "
+                        "diagnosed",
+                        truth.label, name(truth.box.shape)));
     Experiment experiment;
     experiment.name = truth.label;
     experiment.measurement = instrument.stated;

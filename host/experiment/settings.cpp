@@ -93,6 +93,12 @@ private:
     }
 
     void read_box(const toml::table& root, Box& box) {
+        known("container.shape");
+        if (const auto shape = root.at_path("container.shape");
+            shape && shape.value_or(std::string()) != "box")
+            problem(*shape.node(),
+                    "container.shape must be \"box\": experiments in a cylinder or in a periodic cell "
+                    "can be neither checked nor diagnosed");
         known("box.size");
         const auto node = root.at_path("box.size");
         const auto* size = node.as_array();

@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <iterator>
+#include <limits>
 
+#include "core/container.h"
 #include "core/output_file.h"
 #include "core/parameters.h"
 
@@ -36,8 +39,10 @@ std::vector<std::string> varying_keys(const Run& run) {
     return keys_that_vary(all);
 }
 
-/// The force that presses the wall outwards [N].
-double pressing(const Scan& scan, Wall wall) {
+/// The force that presses a level wall outwards; not-a-number of a wall that is not there or not level [N].
+double pressing(const Box& box, const Scan& scan, Wall wall) {
+    if (!has_wall(box, wall) || (is_cylinder(box) && wall == curved_wall))
+        return std::numeric_limits<double>::quiet_NaN();
     const Vec3& force = scan.wall_force[static_cast<std::size_t>(wall)];
     switch (wall) {
         case Wall::x_min:
@@ -56,6 +61,12 @@ double pressing(const Scan& scan, Wall wall) {
     return 0;
 }
 
+/// The vertical force on a cylinder's wall; not-a-number in other containers [N].
+double along_side(const Box& box, const Scan& scan) {
+    if (!is_cylinder(box)) return std::numeric_limits<double>::quiet_NaN();
+    return scan.wall_force[static_cast<std::size_t>(curved_wall)].z();
+}
+
 }  // namespace
 
 std::string csv_text(const Run& run) {
@@ -63,6 +74,9 @@ std::string csv_text(const Run& run) {
     auto out = std::back_inserter(text);
     const auto keys = varying_keys(run);
     fmt::format_to(out, header);
+    const bool any_side = std::ranges::any_of(
+        run.recordings, [](const Recording& recording) { return is_cylinder(recording.box); });
+    if (any_side) fmt::format_to(out, ",side_force_z_N");
     for (const auto& key : keys) fmt::format_to(out, ",{}", key);
     fmt::format_to(out, "\n");
     for (std::size_t r = 0; r < run.recordings.size(); ++r) {
@@ -76,10 +90,12 @@ std::string csv_text(const Run& run) {
             fmt::format_to(out, "{},{},{},{},{},{},{},{},", r, label, scan.frame, scan.cycle,
                            name(scan.phase), scan.time, scan.plate_z, recording.displacement(scan));
             for (Wall wall : {Wall::plate, Wall::floor, Wall::x_min, Wall::x_max, Wall::y_min, Wall::y_max})
-                fmt::format_to(out, "{},", pressing(scan, wall));
-            fmt::format_to(out, "{},{},{},{},{},{},{:d},{}{}\n", scan.coordination_number, scan.mean_force,
+                fmt::format_to(out, "{},", pressing(recording.box, scan, wall));
+            fmt::format_to(out, "{},{},{},{},{},{},{:d},{}", scan.coordination_number, scan.mean_force,
                            scan.packing_fraction, scan.branch_length, scan.kinetic_energy,
-                           scan.elastic_energy, scan.settled, scan.rate_error, parameters);
+                           scan.elastic_energy, scan.settled, scan.rate_error);
+            if (any_side) fmt::format_to(out, ",{}", along_side(recording.box, scan));
+            fmt::format_to(out, "{}\n", parameters);
         }
     }
     return fmt::to_string(text);

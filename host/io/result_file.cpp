@@ -46,6 +46,13 @@ Recording ResultFile::recording_header(std::size_t replica) const {
     if (edges.size() != 3)
         throw InputError(file_.where(particles + "/box") + ": edges must be 3 numbers [m]");
     recording.box = {edges[0], edges[1]};
+    if (file_.has_attribute(particles + "/box", "shape")) {
+        const auto shape = parse<ContainerShape>(file_.text_attribute(particles + "/box", "shape"));
+        if (!shape)
+            throw InputError(file_.where(particles + "/box") + ": shape must be one of " +
+                             all_names<ContainerShape>());
+        recording.box.shape = *shape;
+    }
     recording.plate_start = edges[2];
     const auto diameter = file_.dataset(particles + "/diameter");
     diameter.expect_row({});

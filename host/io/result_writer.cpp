@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/atomic_file.h"
+#include "core/container.h"
 #include "core/errors.h"
 #include "io/result_file.h"
 
@@ -63,7 +64,9 @@ ResultWriter::Tables ResultWriter::make_tables(std::size_t replica, const Record
     file_.make_group(particles + "/box");
     file_.set_attribute(particles, "label", recording.label);
     file_.set_attribute(particles + "/box", "dimension", std::vector<long>{3});
-    file_.set_attribute(particles + "/box", "boundary", std::string_view("none"));
+    file_.set_attribute(particles + "/box", "boundary",
+                        std::string_view(is_periodic(recording.box) ? "periodic periodic none" : "none"));
+    file_.set_attribute(particles + "/box", "shape", name(recording.box.shape));
     file_.set_attribute(
         particles + "/box", "edges",
         std::vector<double>{recording.box.size_x, recording.box.size_y, recording.plate_start});

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/atomic_file.h"
+#include "core/container.h"
 #include "core/make_folder.h"
 #include "core/output_file.h"
 #include "io/folder_lock.h"
@@ -30,7 +31,8 @@ replica_00000/contacts_000000.hdf, ..   its contacts
    Radius `By Scalar`. Colour by `force_magnitude`: the force chains.
 
 Lengths in metres, forces in newtons. Each file carries frame, time, plate_z and top_force as field data.
-Walls are partners -1 to -6: x_min, x_max, y_min, y_max, floor, plate.
+Walls are partners -1 to -6: x_min, x_max, y_min, y_max, floor, plate. The side of a cylinder is partner -1. In a
+periodic cell grains are where they have moved to, also out of the cell, and contacts end at a partner's nearest image.
 )";
 
 /// The parts of a VTKHDF unstructured grid, version 1.0, in one piece.
@@ -80,24 +82,6 @@ private:
 
 void add(std::vector<double>& values, const Vec3& v) { values.insert(values.end(), {v.x(), v.y(), v.z()}); }
 
-Vec3 foot(const Vec3& centre, Wall wall, const Box& box, double plate_z) {
-    switch (wall) {
-        case Wall::x_min:
-            return {0, centre.y(), centre.z()};
-        case Wall::x_max:
-            return {box.size_x, centre.y(), centre.z()};
-        case Wall::y_min:
-            return {centre.x(), 0, centre.z()};
-        case Wall::y_max:
-            return {centre.x(), box.size_y, centre.z()};
-        case Wall::floor:
-            return {centre.x(), centre.y(), 0};
-        case Wall::plate:
-            return {centre.x(), centre.y(), plate_z};
-    }
-    return centre;
-}
-
 int export_scan(const Recording& recording, std::size_t replica, const Scan& scan,
                 const std::filesystem::path& folder) {
     if (scan.position.empty()) return 0;
@@ -144,8 +128,9 @@ void write_vtk_contacts(const std::filesystem::path& file, const Recording& reco
         const Vec3& from = scan.position[static_cast<std::size_t>(contact.grain)];
         add(points, from);
         add(points, is_wall(contact.partner)
-                        ? foot(from, wall_of(contact.partner), recording.box, scan.plate_z)
-                        : scan.position[static_cast<std::size_t>(contact.partner)]);
+                        ? wall_foot(recording.box, wall_of(contact.partner), scan.plate_z, from)
+                        : Vec3(from + apart(recording.box, from,
+                                            scan.position[static_cast<std::size_t>(contact.partner)])));
         add(force, contact.force);
         magnitude.push_back(contact.force.norm());
         end_magnitude.insert(end_magnitude.end(), 2, contact.force.norm());

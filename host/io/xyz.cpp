@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "core/atomic_file.h"
+#include "core/container.h"
 #include "core/errors.h"
 #include "core/make_folder.h"
 #include "core/output_file.h"
@@ -31,7 +32,8 @@ overlap. Colour and width of the bonds can follow force_magnitude [N]. In Python
     pipeline.modifiers.append(contacts)
 
 Of a grain: radius [m], id, coordination_number (walls counted), force_magnitude (sum of its contacts' [N]), wall_force
-(by the walls [N]). Of a contact: its force on the first of the two grains [N], its overlap [m].
+(by the walls [N]). In a periodic cell grains are where they have moved to, also out of the cell: modifier "Wrap at periodic
+boundaries". Of a contact: its force on the first of the two grains [N], its overlap [m].
 )";
 
 /// In double quotes; extended XYZ knows no way to write one.
@@ -45,11 +47,12 @@ void append_grains(fmt::memory_buffer& text, const Recording& recording, const S
     const auto out = fmt::appender(text);
     fmt::format_to(
         out,
-        "{}\nLattice=\"{:.9g} 0 0 0 {:.9g} 0 0 0 {:.9g}\" Origin=\"0 0 0\" pbc=\"F F F\" "
+        "{}\nLattice=\"{:.9g} 0 0 0 {:.9g} 0 0 0 {:.9g}\" Origin=\"0 0 0\" pbc=\"{} F\" "
         "Properties=species:S:1:pos:R:3:id:I:1:radius:R:1:coordination_number:I:1:force_magnitude:R:1:"
         "wall_force:R:3 Time={:.9g} frame={} cycle={} phase={} plate_z={:.9g} top_force={:.9g} label={}\n",
-        scan.position.size(), recording.box.size_x, recording.box.size_y, recording.plate_start, scan.time,
-        scan.frame, scan.cycle, name(scan.phase), scan.plate_z, scan.top_force(), in_quotes(recording.label));
+        scan.position.size(), recording.box.size_x, recording.box.size_y, recording.plate_start,
+        is_periodic(recording.box) ? "T T" : "F F", scan.time, scan.frame, scan.cycle, name(scan.phase),
+        scan.plate_z, scan.top_force(), in_quotes(recording.label));
     const auto loads = grain_loads(scan);
     for (std::size_t i = 0; i < scan.position.size(); ++i) {
         const Vec3 &at = scan.position[i], &wall = loads[i].wall_force;
@@ -65,9 +68,10 @@ void append_contacts(fmt::memory_buffer& text, const Recording& recording, const
         std::ranges::count_if(scan.contacts, [](const Contact& c) { return !is_wall(c.partner); });
     fmt::format_to(
         out,
-        "ITEM: TIMESTEP\n{}\nITEM: NUMBER OF ENTRIES\n{}\nITEM: BOX BOUNDS ff ff ff\n0 {:.9g}\n0 {:.9g}\n"
+        "ITEM: TIMESTEP\n{}\nITEM: NUMBER OF ENTRIES\n{}\nITEM: BOX BOUNDS {} ff\n0 {:.9g}\n0 {:.9g}\n"
         "0 {:.9g}\nITEM: ENTRIES grain partner force_magnitude fx fy fz overlap\n",
-        scan.frame, between_grains, recording.box.size_x, recording.box.size_y, recording.plate_start);
+        scan.frame, between_grains, is_periodic(recording.box) ? "pp pp" : "ff ff", recording.box.size_x,
+        recording.box.size_y, recording.plate_start);
     for (const Contact& contact : scan.contacts)
         if (!is_wall(contact.partner))
             fmt::format_to(out, "{} {} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g}\n", contact.grain, contact.partner,

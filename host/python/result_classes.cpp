@@ -76,7 +76,12 @@ void bind_recording(py::module_& module) {
         .def_property_readonly(
             "box",
             [](const OneRecording& self) { return std::pair(self.get().box.size_x, self.get().box.size_y); },
-            "Size along x and y [m].")
+            "Size along x and y [m]; of a cylinder its diameter, twice.")
+        .def_property_readonly(
+            "container", [](const OneRecording& self) { return std::string(name(self.get().box.shape)); },
+            "\"box\", \"cylinder\" or \"periodic\". Its walls: the side of a cylinder is x_min, and what is "
+            "not there "
+            "carries no force.")
         .def_property_readonly(
             "plate_start", [](const OneRecording& self) { return self.get().plate_start; },
             "Plate position that counts as displacement zero [m].")
@@ -88,8 +93,10 @@ void bind_recording(py::module_& module) {
             "unload), settled, time [s], plate_z [m], kinetic_energy [J], elastic_energy [J], "
             " rate_error, coordination_number, mean_force [N], packing_fraction, "
             "branch_length [m].")
-        .def_property_readonly("wall_force", array_property(wall_force_array),
-                               "[S][6][3] force on each wall [N]: x_min, x_max, y_min, y_max, floor, plate.")
+        .def_property_readonly(
+            "wall_force", array_property(wall_force_array),
+            "[S][6][3] force on each wall [N]: x_min, x_max, y_min, y_max, floor, plate. The side "
+            "of a cylinder is x_min; walls that are not there have zeros.")
         .def_property_readonly("top_force", array_property(top_force_array),
                                "[S] upward force on the plate [N].")
         .def("positions", array_of_scan(position_array), py::arg("scan"),

@@ -1,11 +1,11 @@
-// Pairs of near spheres in a closed box, by a cell list.
+// Pairs of near spheres in a container, by a cell list.
 #pragma once
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
 
-#include "core/vec3.h"
+#include "core/container.h"
 
 namespace mcdem::inline scene {
 
@@ -13,7 +13,10 @@ namespace mcdem::inline scene {
 class CellList {
 public:
     /// `edge`: the longest distance asked for; cells are larger where they would far outnumber the grains.
-    CellList(const std::vector<Vec3>& position, const std::array<double, 3>& size, double edge) {
+    /// The list goes up to `height`. Of a periodic cell, positions are those in the cell.
+    CellList(const std::vector<Vec3>& position, const Box& box, double height, double edge)
+        : repeats_{is_periodic(box), is_periodic(box), false} {
+        const double size[]{box.size_x, box.size_y, height};
         const double volume = size[0] * size[1] * size[2];
         const double enough = 8.0 * static_cast<double>(position.size()) + 64.0;
         edge = std::max(edge, std::cbrt(volume / enough));
@@ -22,6 +25,9 @@ public:
         // In a box flatter or thinner than `edge` the volume alone does not keep them few.
         while (static_cast<double>(cells_[0]) * cells_[1] * cells_[2] > 16 * enough)
             *std::ranges::max_element(cells_) /= 2;
+        // Around the ends of fewer than three cells, two would meet twice.
+        for (int axis = 0; axis < 3; ++axis)
+            if (repeats_[axis] && cells_[axis] < 3) cells_[axis] = 1;
         for (int axis = 0; axis < 3; ++axis) edge_[axis] = size[axis] / cells_[axis];
         sort(position);
     }
@@ -58,6 +64,16 @@ private:
             sorted_[next[index(cell_of(position[i]))]++] = static_cast<int>(i);
     }
 
+    /// False past an end that does not repeat, or back in the same layer.
+    bool wrap(Cell& cell) const {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const bool past = cell[axis] < 0 || cell[axis] >= cells_[axis];
+            if (past && (!repeats_[axis] || cells_[axis] == 1)) return false;
+            cell[axis] = (cell[axis] + cells_[axis]) % cells_[axis];
+        }
+        return true;
+    }
+
     template <class Visit>
     void visit_cell(const Cell& cell, const Visit& visit) const {
         // Half of the 26 neighbours, so that each pair of cells comes once.
@@ -68,16 +84,15 @@ private:
         for (int a = first_[here]; a < first_[here + 1]; ++a)
             for (int b = a + 1; b < first_[here + 1]; ++b) visit(sorted_[a], sorted_[b]);
         for (const auto& step : half) {
-            const Cell other{cell[0] + step[0], cell[1] + step[1], cell[2] + step[2]};
-            if (other[0] < 0 || other[0] >= cells_[0] || other[1] < 0 || other[1] >= cells_[1] ||
-                other[2] >= cells_[2])
-                continue;
+            Cell other{cell[0] + step[0], cell[1] + step[1], cell[2] + step[2]};
+            if (!wrap(other)) continue;
             const std::size_t there = index(other);
             for (int a = first_[here]; a < first_[here + 1]; ++a)
                 for (int b = first_[there]; b < first_[there + 1]; ++b) visit(sorted_[a], sorted_[b]);
         }
     }
 
+    std::array<bool, 3> repeats_{};
     std::array<int, 3> cells_{};
     std::array<double, 3> edge_{};
     std::vector<int> first_, sorted_;

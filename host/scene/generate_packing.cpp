@@ -1,9 +1,11 @@
 #include "scene/generate_packing.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <tuple>
 
+#include "core/container.h"
 #include "scene/overlap_relaxation.h"
 #include "scene/random.h"
 
@@ -17,7 +19,7 @@ TruncatedNormal size_distribution(const GeneratedPacking& wanted) {
 double volume(double diameter) { return std::numbers::pi / 6 * diameter * diameter * diameter; }
 
 double height_for(double grain_volume, double packing_fraction, const Box& box) {
-    return grain_volume / (packing_fraction * box.size_x * box.size_y);
+    return grain_volume / (packing_fraction * box.size_x * box.size_y * floor_share(box));
 }
 
 std::vector<double> draw_diameters(const GeneratedPacking& wanted, std::uint64_t seed) {
@@ -29,18 +31,30 @@ std::vector<double> draw_diameters(const GeneratedPacking& wanted, std::uint64_t
     return diameter;
 }
 
-/// Uniform in the box, sorted into bars of four mean diameters, so that grains near in space are near in
-/// memory.
+/// Takes the square around a cylinder to its floor, areas in proportion.
+void into_cylinder(const Box& box, double margin, Vec3& point) {
+    const double inner = box.size_x - 2 * margin;
+    const double radius = (cylinder_radius(box) - margin) * std::sqrt((point.x() - margin) / inner);
+    const double angle = 2 * std::numbers::pi * (point.y() - margin) / inner;
+    point.x() = cylinder_radius(box) + radius * std::cos(angle);
+    point.y() = cylinder_radius(box) + radius * std::sin(angle);
+}
+
+/// Uniform in the container, sorted into bars of four mean diameters, so that grains near in space are near
+/// in memory.
 std::vector<Vec3> draw_positions(const GeneratedPacking& wanted, const Box& box, double height,
                                  std::uint64_t seed) {
     Random random(seed, Stream::positions);
     const double margin = std::min({wanted.diameter_max, box.size_x, box.size_y, height}) / 2;
     std::vector<Vec3> position(wanted.count);
-    for (Vec3& p : position)
+    for (Vec3& p : position) {
         for (int axis = 0; axis < 3; ++axis) {
             const double size = axis == 0 ? box.size_x : axis == 1 ? box.size_y : height;
-            p[axis] = random.uniform(margin, size - margin);
+            const double from = is_periodic(box) && axis < 2 ? 0 : margin;
+            p[axis] = random.uniform(from, size - from);
         }
+        if (is_cylinder(box)) into_cylinder(box, margin, p);
+    }
     const double bar = 4 * wanted.diameter_mean;
     const auto place = [bar](const Vec3& p) { return std::tuple(int(p.z() / bar), int(p.y() / bar), p.x()); };
     std::sort(position.begin(), position.end(),

@@ -6,12 +6,12 @@
 
 namespace mcdem::inline scene {
 
-/// Grains drawn at random between the six walls of a closed box, which is as high as the packing fraction
-/// says, and pushed apart until overlaps are gone (below 1 % of the radius) or forces balance. Overlaps go
-/// wherever the box has room for spheres without them: up to a packing fraction of about 0.62 far from
-/// walls, 0.57 in a box eight diameters wide, where walls keep grains apart. Above that what remains is the
-/// overlap that compression to this packing fraction demands: at 0.60, 0.62 and 0.70 in such a box at
-/// most about 9, 15 and 30 % of the radius.
+/// Grains drawn at random between floor, plate and sides of a container, which is as high as the packing
+/// fraction says, and pushed apart until overlaps are gone (below 1 % of the radius) or forces balance.
+/// Overlaps go wherever the container has room for spheres without them: up to a packing fraction of about
+/// 0.62 far from walls, 0.57 in a box eight diameters wide, where walls keep grains apart. Above that what
+/// remains is the overlap that compression to this packing fraction demands: at 0.60, 0.62 and 0.70 in such a
+/// box at most about 9, 15 and 30 % of the radius.
 ///
 /// The same seed gives the same packing, bit for bit, on the same machine. Sizes follow the stated
 /// distribution closely (one grain from each of `count` equally likely ranges), so that packings of

@@ -36,8 +36,13 @@ constexpr Scope one_run = Scope::run, each = Scope::replica;
 const Key table[] = {
     {"name", run<&Scene::name>, "", none, one_run, "what the run is called; without it, the file's name"},
 
-    {"box.size_x", replica<&Replica::box, &Box::size_x>, "m", length, each, "distance of the walls x_min and x_max"},
-    {"box.size_y", replica<&Replica::box, &Box::size_y>, "m", length, each, "distance of the walls y_min and y_max; the floor is at z = 0"},
+    {"container.shape", replica<&Replica::box, &Box::shape>, "", none, each, "what holds the grains at the sides, between floor and plate. box: four walls; cylinder: one upright wall, its axis at x = y = radius; periodic: no walls, the packing repeats along x and y"},
+    {"container.size_x", replica<&Replica::box, &Box::size_x>, "m", length, each, "of a box: distance of the walls x_min and x_max; of a periodic cell: its length along x"},
+    {"container.size_y", replica<&Replica::box, &Box::size_y>, "m", length, each, "along y; the floor is at z = 0"},
+    {"container.radius", &follow<&Settings::cylinder_radius>, "m", length, each, "of a cylinder"},
+
+    {"box.size_x", replica<&Replica::box, &Box::size_x>, "m", length, each, "short for container.size_x"},
+    {"box.size_y", replica<&Replica::box, &Box::size_y>, "m", length, each, "short for container.size_y"},
 
     {"grains.youngs_modulus", replica<&Replica::grains, &GrainMaterial::youngs_modulus>, "Pa", stiffness, each, "E"},
     {"grains.poisson_ratio", replica<&Replica::grains, &GrainMaterial::poisson_ratio>, "", poisson, each, "nu"},
@@ -47,7 +52,7 @@ const Key table[] = {
     {"grains.restitution", replica<&Replica::grains, &GrainMaterial::restitution>, "", bounce, each, "e, grain on grain: rebound over approach speed of a lone pair"},
     {"grains.drag", replica<&Replica::grains, &GrainMaterial::drag>, "1/s", between(0, 1e6), each, "background drag, force = -drag * mass * velocity"},
 
-    {"walls.youngs_modulus", replica<&Replica::walls, &WallMaterial::youngs_modulus>, "Pa", stiffness, each, "E of the five walls and the plate"},
+    {"walls.youngs_modulus", replica<&Replica::walls, &WallMaterial::youngs_modulus>, "Pa", stiffness, each, "E of all walls and the plate"},
     {"walls.poisson_ratio", replica<&Replica::walls, &WallMaterial::poisson_ratio>, "", poisson, each, "nu"},
     {"walls.friction", replica<&Replica::walls, &WallMaterial::friction>, "", friction, each, "mu, grain on wall"},
     {"walls.restitution", replica<&Replica::walls, &WallMaterial::restitution>, "", bounce, each, "e, grain on wall"},
@@ -136,6 +141,18 @@ bool is_table(std::string_view name) {
     return std::ranges::any_of(table, [&](const Key& key) {
         return key.name.size() > name.size() && key.name.starts_with(name) && key.name[name.size()] == '.';
     });
+}
+
+const Key* same_key(std::string_view name) {
+    if (name == "box.size_x") return find_key("container.size_x");
+    if (name == "box.size_y") return find_key("container.size_y");
+    if (name == "container.size_x") return find_key("box.size_x");
+    return name == "container.size_y" ? find_key("box.size_y") : nullptr;
+}
+
+bool is_key_of(ContainerShape shape, std::string_view name) {
+    if (name == "container.radius") return shape == ContainerShape::cylinder;
+    return !same_key(name) || shape != ContainerShape::cylinder;
 }
 
 bool is_generator_key(std::string_view name) {

@@ -20,6 +20,7 @@ struct Settings {
     std::string packing_file;  ///< empty: generated
     int packing_frame = -1;    ///< timestep of a dump; -1: its last
     int copies = 1;
+    double cylinder_radius = 0.0827;  ///< of a cylinder, [m]: sets the sizes of its box
 };
 
 /// What a number may be.
@@ -33,9 +34,10 @@ struct Range {
 };
 
 /// Where a key's value is kept; its type is the key's type.
-using Member = std::variant<double& (*)(Settings&), int& (*)(Settings&), std::uint64_t& (*)(Settings&),
-                            bool& (*)(Settings&), std::string& (*)(Settings&), ContactModel& (*)(Settings&),
-                            FrictionLaw& (*)(Settings&), Precision& (*)(Settings&)>;
+using Member =
+    std::variant<double& (*)(Settings&), int& (*)(Settings&), std::uint64_t& (*)(Settings&),
+                 bool& (*)(Settings&), std::string& (*)(Settings&), ContactModel& (*)(Settings&),
+                 FrictionLaw& (*)(Settings&), Precision& (*)(Settings&), ContainerShape& (*)(Settings&)>;
 
 /// Whether the replicas of one run may differ in it.
 enum class Scope { run, replica };
@@ -56,6 +58,12 @@ const Key* find_key(std::string_view name);
 
 /// True for "grains", "packing" and the other tables that keys live in, "batch.vary" included.
 bool is_table(std::string_view name);
+
+/// The other name of the key box.size_x or box.size_y; null for other keys.
+const Key* same_key(std::string_view name);
+
+/// False for the sizes of containers of other shapes than this one.
+bool is_key_of(ContainerShape shape, std::string_view name);
 
 /// True for the keys of a generated packing, which a packing file replaces.
 bool is_generator_key(std::string_view name);

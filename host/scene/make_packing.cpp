@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <map>
+#include <numeric>
 
+#include "core/container.h"
 #include "core/errors.h"
 #include "scene/generate_packing.h"
 #include "scene/random.h"
@@ -21,7 +23,49 @@ double median(std::vector<double> values) {
     return *middle;
 }
 
+std::string described(const Box& box) {
+    if (is_cylinder(box)) return fmt::format("cylinder of radius {} m", cylinder_radius(box));
+    return fmt::format("box of {} x {} m", box.size_x, box.size_y);
+}
+
+bool is_inside(const Box& box, const PlateFace& plate, const Vec3& point) {
+    if (!(point.z() >= 0 && point.z() <= plate.height(point))) return false;
+    if (is_periodic(box)) return point.allFinite();
+    for (const Wall wall : {Wall::x_min, Wall::x_max, Wall::y_min, Wall::y_max})
+        if (has_wall(box, wall) && !(wall_distance(box, wall, plate.z, point) >= 0)) return false;
+    return true;
+}
+
 }  // namespace
+
+std::optional<TooSmall> too_small_container(const Box& box, const Numerics& numerics, double mean_diameter,
+                                            double largest_diameter) {
+    if (is_cylinder(box) && !(cylinder_radius(box) >= largest_diameter))
+        return TooSmall{"container.radius",
+                        fmt::format("must be at least the largest diameter of its grains, {:.6g} m, got "
+                                    "{}: Hertz's contact does not hold in a narrower cylinder",
+                                    largest_diameter, cylinder_radius(box))};
+    if (!is_periodic(box)) return std::nullopt;
+    const double reach = largest_diameter + (numerics.probe_gap + numerics.skin) * mean_diameter / 2;
+    const bool along_x = box.size_x < box.size_y;
+    const double length = along_x ? box.size_x : box.size_y;
+    if (length >= 2 * reach) return std::nullopt;
+    return TooSmall{
+        along_x ? "container.size_x" : "container.size_y",
+        fmt::format("must be at least {:.6g} m in a periodic cell, got {}: two grains could meet twice, over "
+                    "both ends of the cell; take a wider cell, or lower numerics.skin or "
+                    "numerics.probe_gap",
+                    2 * reach, length)};
+}
+
+void expect_room(const Replica& replica, const Packing& packing) {
+    if (packing.size() == 0) return;
+    const double mean = std::accumulate(packing.diameter.begin(), packing.diameter.end(), 0.0) /
+                        static_cast<double>(packing.size());
+    if (const auto small = too_small_container(replica.box, replica.numerics, mean,
+                                               *std::ranges::max_element(packing.diameter)))
+        throw InputError(fmt::format("{} {} ({})", small->key, small->what, replica.label));
+}
 
 void apply_jitter(Packing& packing, double sd, std::uint64_t seed) {
     if (sd == 0) return;
@@ -37,10 +81,9 @@ std::vector<std::string> packing_problems(const Packing& packing, const Box& box
     const double widest = std::min(box.size_x, box.size_y);
     const double typical = median(packing.diameter);
     if (typical > widest)
-        return {fmt::format(
-            "{}: lengths must be in metres and fit the box of {} x {} m, got a median diameter of {}{}",
-            source, box.size_x, box.size_y, typical,
-            typical * 1e-3 <= widest ? "; millimetres? divide by 1000" : "")};
+        return {fmt::format("{}: lengths must be in metres and fit the {}, got a median diameter of {}{}",
+                            source, described(box), typical,
+                            typical * 1e-3 <= widest ? "; millimetres? divide by 1000" : "")};
     Vec3 low = packing.position.front(), high = low;
     for (const Vec3& p : packing.position) low = low.cwiseMin(p), high = high.cwiseMax(p);
     const double width = std::max(box.size_x, box.size_y);
@@ -54,17 +97,14 @@ std::vector<std::string> packing_problems(const Packing& packing, const Box& box
     std::size_t outside = 0;
     for (std::size_t i = 0; i < packing.size(); ++i) {
         const Vec3& p = packing.position[i];
-        const bool inside = p.x() >= 0 && p.x() <= box.size_x && p.y() >= 0 && p.y() <= box.size_y &&
-                            p.z() >= 0 && p.z() <= plate.height(p);
-        if (inside || ++outside > max_problems) continue;
+        if (is_inside(box, plate, p) || ++outside > max_problems) continue;
         problems.push_back(
-            fmt::format("{}: the centre of grain {} must be in the box of {} x {} m below the plate at {} m, "
+            fmt::format("{}: the centre of grain {} must be in the {} below the plate at {} m, "
                         "got {}, {}, {}",
-                        source, i, box.size_x, box.size_y, plate.height(p), p.x(), p.y(), p.z()));
+                        source, i, described(box), plate.height(p), p.x(), p.y(), p.z()));
     }
     if (outside > max_problems)
-        problems.push_back(
-            fmt::format("{}: .. and {} more grains out of the box", source, outside - max_problems));
+        problems.push_back(fmt::format("{}: .. and {} more grains outside", source, outside - max_problems));
     return problems;
 }
 
@@ -103,6 +143,7 @@ Packing make_packing(const Replica& replica) {
     const auto problems =
         packing_problems(packing, replica.box, plate_face(replica, replica.plate.start), source);
     if (!problems.empty()) throw InputError(problems);
+    for (Vec3& position : packing.position) position = into_cell(replica.box, position);
     return packing;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/container.h"
 #include "scene/cell_pairs.h"
 
 namespace mcdem::inline scene {
@@ -40,26 +41,27 @@ struct Fire {
 }  // namespace
 
 double largest_overlap(const Packing& packing, const Box& box, double height) {
-    const std::array<double, 3> size{box.size_x, box.size_y, height};
     double most = 0;
     for (std::size_t i = 0; i < packing.size(); ++i) {
         const double radius = packing.diameter[i] / 2;
-        for (int axis = 0; axis < 3; ++axis) {
-            const double x = packing.position[i][axis];
-            most = std::max(most, (radius - std::min(x, size[axis] - x)) / radius);
-        }
+        for (int wall = 0; wall < wall_count; ++wall)
+            if (has_wall(box, static_cast<Wall>(wall)))
+                most = std::max(most, (radius - wall_distance(box, static_cast<Wall>(wall), height,
+                                                              packing.position[i])) /
+                                          radius);
     }
-    const CellList cells(packing.position, size, largest(packing.diameter));
+    const CellList cells(packing.position, box, height, largest(packing.diameter));
     cells.for_each_pair([&](int i, int j) {
         const double reach = (packing.diameter[i] + packing.diameter[j]) / 2;
-        const double distance = (packing.position[j] - packing.position[i]).norm();
+        const double distance = apart(box, packing.position[i], packing.position[j]).norm();
         most = std::max(most, 2 * (reach - distance) / std::min(packing.diameter[i], packing.diameter[j]));
     });
     return most;
 }
 
 OverlapRelaxation::OverlapRelaxation(const Packing& packing, const Box& box, double height)
-    : size_{box.size_x, box.size_y, height},
+    : box_(box),
+      height_(height),
       position_(packing.position),
       velocity_(packing.size(), Vec3::Zero()),
       force_(packing.size(), Vec3::Zero()) {
@@ -97,7 +99,7 @@ OverlapRelaxation::Sums OverlapRelaxation::push_apart(double scale) {
         push_from_walls(static_cast<int>(i), scale * radius_[i], sums);
     }
     for (const auto [i, j] : pairs_) {
-        const Vec3 apart = position_[j] - position_[i];
+        const Vec3 apart = core::apart(box_, position_[i], position_[j]);
         const double reach = scale * (radius_[i] + radius_[j]);
         const double square = apart.squaredNorm();
         if (square >= reach * reach || square == 0) continue;
@@ -118,14 +120,21 @@ OverlapRelaxation::Sums OverlapRelaxation::push_apart(double scale) {
 }
 
 void OverlapRelaxation::push_from_walls(int grain, double radius, Sums& sums) {
-    for (int axis = 0; axis < 3; ++axis) {
-        const double x = position_[grain][axis];
-        for (const double overlap : {radius - x, x - (size_[axis] - radius)}) {
-            if (overlap <= 0) continue;
-            force_[grain][axis] += overlap == radius - x ? overlap : -overlap;
-            sums.largest = std::max(sums.largest, overlap);
-            sums.overlap_square += overlap * overlap;
-        }
+    const auto push = [&](double overlap, const Vec3& inward) {
+        if (overlap <= 0) return;
+        force_[grain] += overlap * inward;
+        sums.largest = std::max(sums.largest, overlap);
+        sums.overlap_square += overlap * overlap;
+    };
+    const Vec3& at = position_[grain];
+    if (is_cylinder(box_)) {
+        const Vec3 out = from_axis(box_, at);
+        push(out.norm() - (cylinder_radius(box_) - radius), -out.normalized());
+    }
+    const double size[]{box_.size_x, box_.size_y, height_};
+    for (int axis = box_.shape == ContainerShape::box ? 0 : 2; axis < 3; ++axis) {
+        push(radius - at[axis], Vec3::Unit(axis));
+        push(at[axis] - (size[axis] - radius), -Vec3::Unit(axis));
     }
 }
 
@@ -137,9 +146,18 @@ void OverlapRelaxation::move(double time_step) {
         const double travel = velocity_[i].norm() * time_step;
         if (travel > farthest) velocity_[i] *= farthest / travel;
         position_[i] += time_step * velocity_[i];
-        for (int axis = 0; axis < 3; ++axis)
-            position_[i][axis] = std::clamp(position_[i][axis], 0.0, size_[axis]);
+        keep_inside(position_[i]);
     }
+}
+
+void OverlapRelaxation::keep_inside(Vec3& point) const {
+    point.z() = std::clamp(point.z(), 0.0, height_);
+    if (is_periodic(box_)) return;
+    point.x() = std::clamp(point.x(), 0.0, box_.size_x);
+    point.y() = std::clamp(point.y(), 0.0, box_.size_y);
+    if (!is_cylinder(box_)) return;
+    const Vec3 out = from_axis(box_, point);
+    if (out.norm() > cylinder_radius(box_)) point += (cylinder_radius(box_) / out.norm() - 1) * out;
 }
 
 void OverlapRelaxation::find_pairs_when_needed() {
@@ -153,10 +171,13 @@ void OverlapRelaxation::find_pairs_when_needed() {
 void OverlapRelaxation::find_pairs() {
     listed_position_ = position_;
     pairs_.clear();
-    const CellList cells(position_, size_, 2 * largest(radius_) + margin_);
+    std::vector<Vec3> inside;
+    for (const Vec3& point : position_) inside.push_back(into_cell(box_, point));
+    const CellList cells(inside, box_, height_, 2 * largest(radius_) + margin_);
     cells.for_each_pair([&](int i, int j) {
         const double reach = radius_[i] + radius_[j] + margin_;
-        if ((position_[j] - position_[i]).squaredNorm() < reach * reach) pairs_.push_back({i, j});
+        if (core::apart(box_, position_[i], position_[j]).squaredNorm() < reach * reach)
+            pairs_.push_back({i, j});
     });
 }
 

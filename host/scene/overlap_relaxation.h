@@ -1,14 +1,13 @@
-// Spheres in a closed box that push each other apart where they overlap: each pair and each wall stores
+// Spheres in a container that push each other apart where they overlap: each pair and each wall stores
 // half the square of its overlap, and the sum is minimised with FIRE. No weight, no friction.
 #pragma once
-#include <array>
 #include <vector>
 
 #include "core/packing.h"
 
 namespace mcdem::inline scene {
 
-/// Largest overlap of any two grains, or of a grain with one of the six walls, over the radius of the
+/// Largest overlap of any two grains, or of a grain with a wall, over the radius of the
 /// smaller grain.
 double largest_overlap(const Packing& packing, const Box& box, double height);
 
@@ -38,11 +37,13 @@ private:
     Sums push_apart(double scale);
     void push_from_walls(int grain, double radius, Sums& sums);
     void move(double time_step);
+    void keep_inside(Vec3& point) const;
     void find_pairs_when_needed();
     void find_pairs();
 
     std::vector<double> radius_;
-    std::array<double, 3> size_;  ///< of the box [m]
+    Box box_;
+    double height_;  ///< of the box [m]
     double mean_radius_ = 0;
     double margin_ = 0;  ///< gap up to which pairs are listed [m]
     std::vector<Vec3> position_, velocity_, force_, listed_position_;

@@ -23,6 +23,7 @@ public:
     Scene read() {
         for (const Entry& entry : document_.entries()) read_entry(entry);
         check_packing_source();
+        check_container();
         check_size(1);
         if (problems_.empty() || combination_count(variations_) <= max_replicas) check_combinations();
         problems_.report();
@@ -43,8 +44,13 @@ private:
             read_variation(entry, *key);
         } else if (const auto problem = assign(*key, *entry.value, settings_)) {
             problems_.add(entry.place, fmt::format("{} {}", key->name, *problem));
-            bad_.insert(key_name);
+            add_bad(*key);
         }
+    }
+
+    void add_bad(const Key& key) {
+        bad_.insert(std::string(key.name));
+        if (const Key* same = same_key(key.name)) bad_.insert(std::string(same->name));
     }
 
     void refuse_unknown(const Entry& entry, const std::string& key_name) {
@@ -60,7 +66,7 @@ private:
 
     void read_variation(const Entry& entry, const Key& key) {
         const std::string name = fmt::format("batch.vary.\"{}\"", key.name);
-        bad_.insert(std::string(key.name));  // until all its values are known to be good
+        add_bad(key);  // until all its values are known to be good
         if (key.scope == Scope::run) {
             problems_.add(entry.place,
                           name + " must be a key of which replicas have their own, got one of the whole run");
@@ -84,6 +90,7 @@ private:
         }
         if (!good) return;
         bad_.erase(std::string(key.name));
+        if (const Key* same = same_key(key.name)) bad_.erase(std::string(same->name));
         variations_.push_back(std::move(variation));
         check_said_once(entry, key);
     }
@@ -121,6 +128,42 @@ private:
                 "batch.replicas must be 1 where packing.seed varies: it gives every copy its own seed");
     }
 
+    /// Key and place of an entry, varied or not, that gives `key`; null where nothing does.
+    const Entry* entry_of(std::string_view key) const {
+        for (const Entry& entry : document_.entries())
+            if (entry.key == key || entry.key == std::string(vary_prefix) + std::string(key)) return &entry;
+        return nullptr;
+    }
+
+    /// Sizes are given once, and are those of a shape that is asked for.
+    void check_container() {
+        std::set<ContainerShape> shapes{settings_.replica.box.shape};
+        for (const Variation& variation : variations_)
+            if (variation.key->name == "container.shape")
+                for (const toml::node* value : variation.values) {
+                    Settings trial;
+                    assign(*variation.key, *value, trial);
+                    shapes.insert(trial.replica.box.shape);
+                }
+        for (const Key& key : keys()) {
+            const Entry* entry = entry_of(key.name);
+            if (!entry) continue;
+            if (std::ranges::none_of(shapes, [&](auto shape) { return is_key_of(shape, key.name); }))
+                problems_.add(entry->place, fmt::format("{} must be left out where container.shape = \"{}\"",
+                                                        key.name, name(*shapes.begin())));
+            const Key* same = same_key(key.name);
+            if (same && key.name.starts_with("box.") && entry_of(same->name))
+                problems_.add(entry->place,
+                              fmt::format("{} must be left out where {} is given", key.name, same->name));
+        }
+    }
+
+    /// As the scene names it.
+    std::string given_name(const std::string& key) const {
+        const Key* same = same_key(key);
+        return std::string(same && !entry_of(key) && entry_of(same->name) ? same->name : key);
+    }
+
     void check_size(double grains) {
         const double replicas = combination_count(variations_) * settings_.copies;
         const Place place = document_.place_of("batch.replicas");
@@ -140,9 +183,10 @@ private:
         combinations_ = combinations(settings_, variations_);
         for (const Combination& combination : combinations_) {
             const Settings& settings = combination.settings;
-            for (const CrossProblem& problem : cross_problems(settings, bad_))
-                problems_.add(document_.place_of(problem.key),
-                              fmt::format("{} {}", problem.key, problem.what));
+            for (const CrossProblem& problem : cross_problems(settings, bad_)) {
+                const std::string key = given_name(problem.key);
+                problems_.add(document_.place_of(key), fmt::format("{} {}", key, problem.what));
+            }
             if (!bad_.contains("packing.file"))
                 for (const std::string& problem : packing_file_problems(settings, files))
                     problems_.add(document_.place_of("packing.file"), problem);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "core/container.h"
 #include "scene/assign.h"
 
 namespace mcdem::inline scene {
@@ -16,7 +17,8 @@ std::string_view last_part(std::string_view name) { return name.substr(name.rfin
 std::string label_part(const Key& key, const Settings& settings, const std::vector<Variation>& variations) {
     const std::string value = value_text(key, settings);
     if (std::holds_alternative<ContactModel& (*)(Settings&)>(key.member) ||
-        std::holds_alternative<FrictionLaw& (*)(Settings&)>(key.member))
+        std::holds_alternative<FrictionLaw& (*)(Settings&)>(key.member) ||
+        std::holds_alternative<ContainerShape& (*)(Settings&)>(key.member))
         return value;
     if (key.name == "packing.file") return std::filesystem::path(value).filename().string();
     const auto alike = std::ranges::count_if(variations, [&](const Variation& other) {
@@ -33,7 +35,8 @@ PackingFile packing_file(const Settings& settings) {
 std::map<std::string, std::string> parameters(const Settings& settings) {
     std::map<std::string, std::string> all;
     for (const Key& key : keys()) {
-        const bool applies = settings.packing_file.empty() || !is_generator_key(key.name);
+        const bool applies = (settings.packing_file.empty() || !is_generator_key(key.name)) &&
+                             is_key_of(settings.replica.box.shape, key.name);
         all[std::string(key.name)] = applies ? value_text(key, settings) : "";
     }
     return all;
@@ -61,6 +64,9 @@ std::vector<Combination> combinations(const Settings& base, const std::vector<Va
             }
         all = std::move(next);
     }
+    for (Combination& one : all)
+        if (Box& box = one.settings.replica.box; is_cylinder(box))
+            box.size_x = box.size_y = 2 * one.settings.cylinder_radius;
     return all;
 }
 

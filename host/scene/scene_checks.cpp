@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/container.h"
 #include "core/errors.h"
 #include "scene/generate_packing.h"
 #include "scene/make_packing.h"
@@ -22,6 +23,12 @@ struct Check {
     enum class Packing { any, generated } applies;
     Found (*find)(const Settings&);
 };
+
+Found in_container(std::string_view key, const Settings& s) {
+    const auto small = too_small_container(s.replica.box, s.replica.numerics, s.generated.diameter_mean,
+                                           s.generated.diameter_max);
+    return small && small->key == key ? Found{small->what} : Found{};
+}
 
 /// A box that its grains would not cover once, but would if it was meant in millimetres.
 Found millimetres(double width, const Settings& settings) {
@@ -75,6 +82,26 @@ const std::vector<Check> checks{
                       fmt::format("and effects.plate_tilt_y must leave the plate's lowest corner above the floor at plate.end = {}, got {} and {}: it is {:.6g} m lower",
                                   s.replica.plate.end, effects.plate_tilt_x, effects.plate_tilt_y, drop));
     }},
+    {{"container.shape", "effects.plate_tilt_x", "effects.plate_tilt_y"}, Check::Packing::any, [](const Settings& s) {
+        const auto& effects = s.replica.effects;
+        return unless(!is_periodic(s.replica.box) || (effects.plate_tilt_x == 0 && effects.plate_tilt_y == 0),
+                      "must not be periodic where effects.plate_tilt_x or effects.plate_tilt_y is given: a tilted plate does not repeat");
+    }},
+    {{"container.radius", "container.shape", "packing.diameter_max"}, Check::Packing::generated, [](const Settings& s) {
+        return in_container("container.radius", s);
+    }},
+    {{"container.size_x", "container.shape", "packing.diameter_max", "packing.diameter_mean", "numerics.skin", "numerics.probe_gap"},
+     Check::Packing::generated, [](const Settings& s) {
+        return in_container("container.size_x", s);
+    }},
+    {{"container.size_y", "container.shape", "packing.diameter_max", "packing.diameter_mean", "numerics.skin", "numerics.probe_gap"},
+     Check::Packing::generated, [](const Settings& s) {
+        return in_container("container.size_y", s);
+    }},
+    {{"container.radius", "packing.diameter_max", "packing.count", "packing.diameter_mean", "packing.packing_fraction"},
+     Check::Packing::generated, [](const Settings& s) {
+        return is_cylinder(s.replica.box) ? millimetres(cylinder_radius(s.replica.box), s) : Found{};
+    }},
     {{"effects.diameter_error", "packing.diameter_min"}, Check::Packing::generated, [](const Settings& s) {
         return unless(s.replica.effects.diameter_error > -s.generated.diameter_min,
                       fmt::format("must be above minus packing.diameter_min = {}, got {}", s.generated.diameter_min, s.replica.effects.diameter_error));
@@ -100,19 +127,19 @@ const std::vector<Check> checks{
                       fmt::format("must be at most 10 times packing.diameter_min = {}, got {}", g.diameter_min, g.diameter_max));
     }},
     {{"box.size_x", "packing.diameter_max"}, Check::Packing::generated, [](const Settings& s) {
-        return unless(s.replica.box.size_x >= s.generated.diameter_max,
+        return unless(is_cylinder(s.replica.box) || s.replica.box.size_x >= s.generated.diameter_max,
                       fmt::format("must be at least packing.diameter_max = {}, got {}", s.generated.diameter_max, s.replica.box.size_x));
     }},
     {{"box.size_x", "packing.diameter_max", "packing.count", "packing.diameter_mean", "packing.packing_fraction"},
      Check::Packing::generated, [](const Settings& s) {
-        return millimetres(s.replica.box.size_x, s);
+        return is_cylinder(s.replica.box) ? Found{} : millimetres(s.replica.box.size_x, s);
     }},
     {{"box.size_y", "packing.diameter_max", "packing.count", "packing.diameter_mean", "packing.packing_fraction"},
      Check::Packing::generated, [](const Settings& s) {
-        return millimetres(s.replica.box.size_y, s);
+        return is_cylinder(s.replica.box) ? Found{} : millimetres(s.replica.box.size_y, s);
     }},
     {{"box.size_y", "packing.diameter_max"}, Check::Packing::generated, [](const Settings& s) {
-        return unless(s.replica.box.size_y >= s.generated.diameter_max,
+        return unless(is_cylinder(s.replica.box) || s.replica.box.size_y >= s.generated.diameter_max,
                       fmt::format("must be at least packing.diameter_max = {}, got {}", s.generated.diameter_max, s.replica.box.size_y));
     }},
     {{"packing.position_jitter", "packing.diameter_mean"}, Check::Packing::generated, [](const Settings& s) {
@@ -167,6 +194,11 @@ std::vector<std::string> packing_file_problems(const Settings& settings, Checked
     auto problems =
         packing_problems(file.packing, settings.replica.box,
                          plate_face(settings.replica, settings.replica.plate.start), settings.packing_file);
+    try {
+        expect_room(settings.replica, file.packing);
+    } catch (const InputError& error) {
+        problems.push_back(fmt::format("{}: {}", settings.packing_file, error.what()));
+    }
     if (settings.replica.packing.position_jitter > 0.1 * file.smallest)
         problems.push_back(fmt::format(
             "{}: packing.position_jitter must be at most a tenth of the smallest diameter {}, got {}",

@@ -133,7 +133,7 @@ void SceneDocument::apply(const std::string& override_text, Problems& problems) 
 }
 
 /// What an override says takes the place of what it contradicts: the same key, its variation or the value
-/// that it varies, and a packing file or generated grains.
+/// that it varies, its other name, and a packing file or generated grains.
 void SceneDocument::put(const Entry& entry) {
     const bool varied = entry.key.starts_with(vary_prefix);
     const std::string key = varied ? entry.key.substr(vary_prefix.size()) : entry.key;
@@ -141,6 +141,7 @@ void SceneDocument::put(const Entry& entry) {
         const bool is_variation = other.key.starts_with(vary_prefix);
         const std::string other_key = is_variation ? other.key.substr(vary_prefix.size()) : other.key;
         if (other_key == key) return true;
+        if (const Key* same = same_key(key); same && other_key == same->name) return true;
         if (other.place.line == entry.place.line)
             return false;  // overrides may contradict each other: an error
         return (key == "packing.file" && is_generator_key(other_key)) ||

@@ -5,6 +5,8 @@
 #include <numbers>
 #include <numeric>
 
+#include "core/container.h"
+
 namespace mcdem::inline sim {
 namespace {
 
@@ -27,32 +29,60 @@ const std::vector<Vec3>& ball_points() {
     return points;
 }
 
-double part_inside(const Vec3& centre, double radius, const Vec3& low, const Vec3& high) {
-    if (((centre.array() - radius) >= low.array()).all() && ((centre.array() + radius) <= high.array()).all())
-        return 1;
-    if (((centre.array() + radius) <= low.array()).any() || ((centre.array() - radius) >= high.array()).any())
-        return 0;
-    int inside = 0;
-    for (const auto& point : ball_points()) {
-        const Vec3 at = centre + radius * point;
-        inside += (at.array() > low.array()).all() && (at.array() < high.array()).all();
+/// All that is farther than a margin from every wall.
+class Interior {
+public:
+    Interior(const Box& box, double plate_z, double margin)
+        : box_(box),
+          low_(is_periodic(box) ? Vec3(-unlimited, -unlimited, margin) : Vec3::Constant(margin)),
+          high_(is_periodic(box) ? Vec3(unlimited, unlimited, plate_z - margin)
+                                 : Vec3(Vec3(box.size_x, box.size_y, plate_z) - low_)),
+          radius_(is_cylinder(box) ? cylinder_radius(box) - margin : unlimited) {}
+
+    bool empty() const { return !((high_ - low_).array() > 0).all(); }
+
+    double volume() const {
+        if (is_periodic(box_)) return box_.size_x * box_.size_y * (high_.z() - low_.z());
+        return (high_ - low_).prod() * floor_share(box_);
     }
-    return static_cast<double>(inside) / ball_points().size();
-}
+
+    /// Of a sphere's volume.
+    double part_inside(const Vec3& centre, double radius) const {
+        const double out = from_axis(box_, centre).norm();
+        if (((centre.array() - radius) >= low_.array()).all() &&
+            ((centre.array() + radius) <= high_.array()).all() && out + radius <= radius_)
+            return 1;
+        if (((centre.array() + radius) <= low_.array()).any() ||
+            ((centre.array() - radius) >= high_.array()).any() || out - radius >= radius_)
+            return 0;
+        int inside = 0;
+        for (const auto& point : ball_points()) {
+            const Vec3 at = centre + radius * point;
+            inside += (at.array() > low_.array()).all() && (at.array() < high_.array()).all() &&
+                      from_axis(box_, at).norm() < radius_;
+        }
+        return static_cast<double>(inside) / ball_points().size();
+    }
+
+private:
+    static constexpr double unlimited = std::numeric_limits<double>::infinity();
+    Box box_;
+    Vec3 low_, high_;
+    double radius_;
+};
 
 }  // namespace
 
 double packing_fraction(const std::vector<Vec3>& position, const std::vector<double>& diameter,
                         const Box& box, double plate_z) {
     const double mean = std::accumulate(diameter.begin(), diameter.end(), 0.0) / diameter.size();
-    const Vec3 low = Vec3::Constant(mean);
-    const Vec3 high = Vec3(box.size_x, box.size_y, plate_z) - low;
-    if (!((high - low).array() > 0).all()) return not_a_number;
+    const Interior interior(box, plate_z, mean);
+    if (interior.empty()) return not_a_number;
     double volume = 0;
     for (std::size_t i = 0; i < position.size(); ++i)
         volume += std::numbers::pi / 6 * std::pow(diameter[i], 3) *
-                  part_inside(position[i], 0.5 * diameter[i], low, high);
-    return volume / (high - low).prod();
+                  interior.part_inside(position[i], 0.5 * diameter[i]);
+    return volume / interior.volume();
 }
 
 void fill_averages(Scan& scan, const Box& box, const std::vector<double>& diameter, double force_threshold) {
@@ -66,7 +96,7 @@ void fill_averages(Scan& scan, const Box& box, const std::vector<double>& diamet
         ends += is_wall(contact.partner) ? 1 : 2;
         if (is_wall(contact.partner)) continue;
         ++pairs;
-        branch += (scan.position[contact.partner] - scan.position[contact.grain]).norm();
+        branch += apart(box, scan.position[contact.grain], scan.position[contact.partner]).norm();
     }
     scan.coordination_number = static_cast<double>(ends) / diameter.size();
     scan.mean_force = contacts ? force / contacts : not_a_number;

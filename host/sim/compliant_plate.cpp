@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/container.h"
 #include "sim/device_replica.h"
 
 namespace mcdem::inline sim {
@@ -15,8 +16,8 @@ constexpr double learn = 0.25;
 
 /// About the most that a packing adds to the force per length of compression, over the plate's own stiffness.
 double gain(const Replica& replica) {
-    const double block =
-        replica.grains.youngs_modulus * replica.box.size_x * replica.box.size_y / replica.plate.start;
+    const double block = replica.grains.youngs_modulus * replica.box.size_x * replica.box.size_y *
+                         floor_share(replica.box) / replica.plate.start;
     return replica.effects.plate_compliance * block / 3;
 }
 

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "core/container.h"
 #include "elasticity/surface_displacement.h"
 #include "scene/true_grains.h"
 
@@ -120,7 +121,8 @@ std::array<int, 3> repeated_grid(std::array<int, 3> span, std::size_t grains) {
 
 /// `reach`: the farthest that a neighbour's centre may be [m].
 template <class DeviceReplica>
-void set_cells(DeviceReplica& d, const std::array<double, 3>& size, double reach, std::size_t grains) {
+void set_cells(DeviceReplica& d, const std::array<double, 3>& size, double reach, std::size_t grains,
+               bool periodic) {
     // No neighbour is lost to rounding: the margin is 0.001 of a cell, the places of two grains along the box
     // are known to a ten-thousandth of a cell each.
     using Real = decltype(d.cell_size);
@@ -130,6 +132,8 @@ void set_cells(DeviceReplica& d, const std::array<double, 3>& size, double reach
     for (int axis = 0; axis < 3; ++axis) span[axis] = std::max(1, static_cast<int>(size[axis] / cell));
     d.cell_size = cell;
     const auto grid = repeated_grid(span, grains);
+    // Around a periodic end the grid in memory must repeat as well; the last cell is wider.
+    for (int axis = 0; axis < 2 && periodic; ++axis) span[axis] -= span[axis] % grid[axis];
     d.span_x = span[0], d.span_y = span[1], d.span_z = span[2];
     d.cells_x = grid[0], d.cells_y = grid[1], d.cells_z = grid[2];
 }
@@ -144,11 +148,12 @@ void set_space(DeviceReplica& d, const Replica& replica, const Packing& packing)
     d.skin = skin;
     d.probe_gap = probe_gap;
     d.overlap_limit = replica.numerics.overlap_limit;
+    d.container = static_cast<int>(replica.box.shape);
     d.wall_position[1] = replica.box.size_x;
     d.wall_position[3] = replica.box.size_y;
     d.wall_position[5] = replica.plate.start;
     set_cells(d, {replica.box.size_x, replica.box.size_y, replica.plate.start}, largest + probe_gap + skin,
-              packing.size());
+              packing.size(), is_periodic(replica.box));
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "core/container.h"
 #include "core/errors.h"
 #include "scene/plate_face.h"
 #include "sim/engine.h"
@@ -106,6 +107,7 @@ std::vector<Contact> Engine::contacts(int replica, const std::vector<Vec3>& posi
     std::vector<int> partner(count);
     fields_.partner.read(partner.data(), first * sizeof(int), count * sizeof(int));
     const PlateFace plate = plate_face(replicas_[replica], plate_z_[replica]);
+    const Box& box = replicas_[replica].box;
     std::vector<Contact> found;
     for (std::size_t slot = 0; slot < count; ++slot) {
         if (!(overlap[slot] > 0)) continue;
@@ -118,10 +120,12 @@ std::vector<Contact> Engine::contacts(int replica, const std::vector<Vec3>& posi
             direction = Vec3::Zero();
             direction[wall / 2] = wall % 2 ? 1 : -1;
             if (static_cast<Wall>(wall) == Wall::plate) direction = plate.normal();
+            if (is_cylinder(box) && static_cast<Wall>(wall) == curved_wall)
+                direction = from_axis(box, position[contact.grain]).normalized();
         } else {
             contact.partner = order[partner[slot] - layout_.first_grain[replica]];
             if (contact.partner < contact.grain) continue;  // listed from the other side
-            direction = (position[contact.partner] - position[contact.grain]).normalized();
+            direction = apart(box, position[contact.grain], position[contact.partner]).normalized();
         }
         contact.point = position[contact.grain] + arm[slot] * direction;
         if (contact.partner == wall_partner(Wall::plate)) contact.point = plate.foot(position[contact.grain]);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/container.h"
+
 namespace mcdem::inline sim {
 namespace {
 
@@ -29,7 +31,7 @@ PackingScale scale_of(const Replica& replica, const Packing& packing) {
 QuasiStatic::QuasiStatic(const Replica& replica, const PackingScale& scale)
     : plate_speed_(replica.plate.speed),
       tolerance_(replica.protocol.rate_tolerance),
-      area_(replica.box.size_x * replica.box.size_y),
+      area_(replica.box.size_x * replica.box.size_y * floor_share(replica.box)),
       density_(replica.grains.density),
       scale_(scale),
       min_pressure_(

@@ -4,7 +4,9 @@
 
 #include <cstring>
 
+#include "core/container.h"
 #include "core/errors.h"
+#include "scene/make_packing.h"
 #include "scene/true_grains.h"
 #include "sim/averages.h"
 #include "sim/batch_limits.h"
@@ -42,8 +44,12 @@ std::string cause_of(const IntervalResult& result, const Replica& replica, int s
     add(STATUS_NOT_A_NUMBER,
         "a position is not a number: the time step is too long (lower numerics.time_step)");
     add(STATUS_LOST,
-        "the centre of a grain left the box: too fast a plate or too long a time step (lower plate.speed or "
-        "numerics.time_step)");
+        is_periodic(replica.box)
+            ? "a grain has left between floor and plate, or moved on by more than 8 cells: too fast a plate "
+              "or too "
+              "long a time step (lower plate.speed or numerics.time_step)"
+            : "the centre of a grain left the container: too fast a plate or too long a time step (lower "
+              "plate.speed or numerics.time_step)");
     add(STATUS_SLOTS,
         fmt::format("a grain has more than {} near neighbours (raise numerics.slots, or lower numerics.skin)",
                     slots));
@@ -57,6 +63,7 @@ std::string cause_of(const IntervalResult& result, const Replica& replica, int s
 std::vector<Packing> true_packings(const std::vector<Replica>& replicas, std::vector<Packing> stated) {
     for (std::size_t r = 0; r < stated.size(); ++r)
         stated[r] = true_packing(replicas[r], std::move(stated[r]));
+    for (std::size_t r = 0; r < stated.size(); ++r) expect_room(replicas[r], stated[r]);
     return stated;
 }
 

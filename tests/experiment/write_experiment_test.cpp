@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "experiment/experiment_folder.h"
+#include "experiment/from_recording.h"
 
 namespace mcdem::test {
 namespace {
@@ -75,6 +76,19 @@ TEST(write_experiment, comes_back_to_the_last_digit) {
         write_experiment(folder.path(), awkward(), packed);
         expect_same(awkward(), read_experiment(folder.path()));
     }
+}
+
+TEST(write_experiment, other_containers_than_boxes_are_refused) {
+    ExperimentFolder folder;
+    folder["experiment.toml"] += "[container]\nshape = \"cylinder\"\n";
+    EXPECT_NE(folder.error().find("container.shape must be \"box\""), std::string::npos) << folder.error();
+    ExperimentFolder of_a_box;
+    of_a_box["experiment.toml"] += "[container]\nshape = \"box\"\n";
+    EXPECT_EQ(of_a_box.error(), "no error");
+    Recording truth = awkward().recording;
+    EXPECT_NO_THROW(experiment_from(truth, Instrument{}, 1));
+    truth.box.shape = ContainerShape::periodic;
+    EXPECT_THROW(experiment_from(truth, Instrument{}, 1), InputError);
 }
 
 TEST(write_experiment, contacts_below_the_stated_threshold_are_kept) {

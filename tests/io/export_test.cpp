@@ -8,6 +8,7 @@
 
 #include "core/errors.h"
 #include "io/csv.h"
+#include "io/hdf5.h"
 #include "io/result_folder.h"
 #include "io/results.h"
 #include "io/synthetic_run.h"
@@ -61,6 +62,28 @@ TEST(csv, a_row_per_scan_reads_back_exactly) {
     EXPECT_EQ(value("settled"), "1");
 }
 
+TEST(csv, side_forces_are_those_of_walls_that_are_there) {
+    auto run = synthetic_run({.replicas = 3, .scans = 1});
+    run.recordings[1].box.shape = ContainerShape::cylinder;
+    run.recordings[2].box.shape = ContainerShape::periodic;
+    for (auto& recording : run.recordings) {
+        recording.parameters.clear();
+        recording.label = "a";
+    }
+    run.recordings[1].scans[0].wall_force[0] = Vec3(0.1, 0.2, -7.5);
+    std::stringstream lines(csv_text(run));
+    std::string header, box, cylinder, periodic;
+    for (std::string* line : {&header, &box, &cylinder, &periodic}) std::getline(lines, *line);
+    EXPECT_THAT(header, testing::EndsWith(",rate_error,side_force_z_N"));
+    EXPECT_EQ(cells(header)[10], "x_min_force_N");
+    EXPECT_NE(cells(box)[11], "nan");
+    EXPECT_EQ(cells(box).back(), "nan");
+    for (const auto& other : {cylinder, periodic})
+        for (std::size_t column = 10; column < 14; ++column) EXPECT_EQ(cells(other)[column], "nan");
+    EXPECT_EQ(cells(cylinder).back(), "-7.5");
+    EXPECT_EQ(cells(periodic).back(), "nan");
+}
+
 TEST(csv, what_is_not_the_same_in_all_replicas_has_a_column) {
     auto run = synthetic_run();
     ASSERT_GE(run.recordings.size(), 2u);
@@ -104,6 +127,35 @@ TEST(vtk, export_from_files_equals_export_from_memory_and_leaves_out_scans_witho
     for (const std::string name : {"grains_000003.hdf", "contacts_000003.hdf"})
         EXPECT_EQ(read_bytes(folder / ("a/replica_00000/" + name)),
                   read_bytes(folder / ("b/replica_00000/" + name)));
+}
+
+/// Ends of the contacts in an exported file, two points each.
+std::vector<double> points_in(const std::filesystem::path& file) {
+    return h5::File::open(file).dataset("/VTKHDF/Points").read_all<double>();
+}
+
+TEST(vtk, contacts_end_at_round_walls_and_at_nearest_images) {
+    TemporaryFolder folder;
+    auto run = synthetic_run({.replicas = 2, .scans = 1});
+    for (auto& recording : run.recordings) {
+        recording.box = {0.1, 0.1, ContainerShape::cylinder};
+        recording.scans[0].position[0] = {0.08, 0.09, 0.03};
+        recording.scans[0].position[1] = {0.01, 0.015, 0.03};
+        recording.scans[0].contacts.resize(1);
+        recording.scans[0].contacts[0].grain = 0;
+        recording.scans[0].contacts[0].partner = wall_partner(Wall::x_min);
+    }
+    run.recordings[1].box.shape = ContainerShape::periodic;
+    run.recordings[1].scans[0].contacts[0].partner = 1;
+    export_vtk(run, folder / "view");
+    const auto round = points_in(folder / "view/replica_00000/contacts_000000.hdf");
+    ASSERT_EQ(round.size(), 6u);
+    EXPECT_NEAR(round[3], 0.05 + 0.05 * 0.6, 1e-12);
+    EXPECT_NEAR(round[4], 0.05 + 0.05 * 0.8, 1e-12);
+    EXPECT_EQ(round[5], 0.03);
+    const auto image = points_in(folder / "view/replica_00001/contacts_000000.hdf");
+    EXPECT_NEAR(image[3], 0.11, 1e-12);
+    EXPECT_NEAR(image[4], 0.115, 1e-12);
 }
 
 TEST(vtk, a_scan_without_contacts_still_makes_files) {

@@ -30,6 +30,16 @@ TEST(results, float_run_keeps_observables_exactly_and_geometry_to_float) {
     EXPECT_NE(run.recordings[0].scans[1].position[1].x(), found.recordings[0].scans[1].position[1].x());
 }
 
+TEST(results, containers_come_back) {
+    TemporaryFolder folder;
+    auto run = synthetic_run();
+    for (const ContainerShape shape : {ContainerShape::cylinder, ContainerShape::periodic}) {
+        run.recordings[0].box.shape = shape;
+        write_run(folder / "run.h5", run);
+        expect_same(run, read_run(folder / "run.h5"));
+    }
+}
+
 TEST(results, comparison_notices_a_changed_bit) {
     const auto run = synthetic_run();
     auto other = run;

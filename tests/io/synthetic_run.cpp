@@ -101,6 +101,7 @@ void expect_same(const Recording& a, const Recording& b, double tolerance) {
     EXPECT_EQ(a.parameters, b.parameters);
     EXPECT_EQ(a.box.size_x, b.box.size_x);
     EXPECT_EQ(a.box.size_y, b.box.size_y);
+    EXPECT_EQ(a.box.shape, b.box.shape);
     EXPECT_EQ(a.plate_start, b.plate_start);
     EXPECT_EQ(a.diameter, b.diameter);
     ASSERT_EQ(a.failure.has_value(), b.failure.has_value());

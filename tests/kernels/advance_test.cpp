@@ -37,6 +37,23 @@ TEST(Step, FollowsTheReferenceWithThousandGrains) {
                                   9);
 }
 
+TEST(Step, FollowsTheReferenceInEveryContainer) {
+    std::vector<Start> starts;
+    for (ContactModel model : all_models)
+        for (FrictionLaw law : {FrictionLaw::saturated, FrictionLaw::mindlin}) {
+            Replica replica = test_replica(model);
+            replica.contact.friction_law = law;
+            starts.push_back(rings_in_a_cylinder(replica, 2, 21));
+            starts.push_back(periodic_lattice(replica, 3, 2, 22));
+        }
+    starts[0].replica.effects.rolling_resistance = starts[1].replica.effects.rolling_resistance = 0.1;
+    starts[0].replica.effects.adhesion = starts[1].replica.effects.adhesion = 0.02;
+    starts[0].replica.effects.plate_tilt_x = 0.1;
+    for (Precision precision : precisions()) expect_steps_as_reference(build(precision), starts, 23);
+    starts.resize(8);
+    expect_steps_as_reference(other_way(build(finest())), starts, 24);
+}
+
 TEST(Step, FollowsTheReferenceInABatchOfDifferentReplicas) {
     for (Precision precision : precisions()) {
         std::vector<Start> starts;

@@ -16,6 +16,15 @@ struct Near {
     std::vector<int> sure, unsure;
 };
 
+/// To the nearest image in a periodic cell.
+double distance(const mcdem::Box& box, Vec3 apart) {
+    if (box.shape == mcdem::ContainerShape::periodic) {
+        apart.x() = std::remainder(apart.x(), box.size_x);
+        apart.y() = std::remainder(apart.y(), box.size_y);
+    }
+    return apart.norm();
+}
+
 Near near_by_brute_force(const StepReference& reference, const Start& start, int grain) {
     Near near;
     const auto sort_in = [&](int partner, double gap) {
@@ -26,12 +35,16 @@ Near near_by_brute_force(const StepReference& reference, const Start& start, int
             near.unsure.push_back(partner);
     };
     const auto& x = reference.position[grain];
+    const mcdem::Box& box = start.replica.box;
     const double radius = start.packing.diameter[grain] / 2;
     for (std::size_t j = 0; j < start.packing.size(); ++j)
         if (int(j) != grain)
-            sort_in(j, (reference.position[j] - x).norm() - radius - start.packing.diameter[j] / 2);
-    const Vec3 far(start.replica.box.size_x, start.replica.box.size_y, start.replica.plate.start);
-    for (int w = 0; w + 1 < mcdem::wall_count; ++w)
+            sort_in(j, distance(box, reference.position[j] - x) - radius - start.packing.diameter[j] / 2);
+    const Vec3 far(box.size_x, box.size_y, start.replica.plate.start);
+    if (box.shape == mcdem::ContainerShape::cylinder)
+        sort_in(mcdem::wall_partner(mcdem::Wall::x_min),
+                box.size_x / 2 - std::hypot(x.x() - box.size_x / 2, x.y() - box.size_x / 2) - radius);
+    for (int w = box.shape == mcdem::ContainerShape::box ? 0 : 4; w + 1 < mcdem::wall_count; ++w)
         sort_in(mcdem::wall_partner(static_cast<mcdem::Wall>(w)),
                 (w % 2 ? far[w / 2] - x[w / 2] : x[w / 2]) - radius);
     const Vec3 slope(start.replica.effects.plate_tilt_x, start.replica.effects.plate_tilt_y, -1);
@@ -154,6 +167,50 @@ TEST(NeighbourList, HoldsEveryPairInABoxMuchLargerThanItsGrains) {
     if (has_double())
         expect_lists(build(Precision::double_precision), {two_lattices_in_a_large_box(900, {800, 0, 300}),
                                                           two_lattices_in_a_large_box(900, {0.07, 0, 0})});
+}
+
+Start in_cylinder(Start start) {
+    const double radius = 0.1;
+    start.replica.box = {2 * radius, 2 * radius, mcdem::ContainerShape::cylinder};
+    for (Vec3& x : start.packing.position) {  // from the flat box of a gas
+        const double out = (radius - 0.005) * std::sqrt(x.x() / 0.3), angle = 40 * x.y();
+        x = {radius + out * std::cos(angle), radius + out * std::sin(angle), x.z()};
+    }
+    return start;
+}
+
+Start repeated(Start start) {
+    start.replica.box.shape = mcdem::ContainerShape::periodic;
+    return start;
+}
+
+/// Two lattices across the ends of a cell that is far too large for a cell of the grid everywhere.
+Start lattices_across_ends(double size, const Vec3& apart) {
+    Start start = repeated(two_lattices_in_a_large_box(size, apart));
+    for (Vec3& x : start.packing.position) x -= Vec3(0.04, 0.03, 0);
+    return start;
+}
+
+TEST(NeighbourList, HoldsEveryPairInACylinder) {
+    expect_lists(build(Precision::single_precision, 64), {in_cylinder(gas(test_replica()))});
+    expect_lists(build(Precision::single_precision),
+                 {rings_in_a_cylinder(test_replica(), 3, 1), rings_in_a_cylinder(test_replica(), 1, 2)});
+}
+
+// Cells of the grid along a side: 2, 2, 3, 5, and more than there are in memory.
+TEST(NeighbourList, HoldsEveryPairOfAPeriodicCell) {
+    for (Precision precision : {Precision::single_precision, finest()})
+        expect_lists(build(precision),
+                     {periodic_lattice(test_replica(), 3, 3, 1), periodic_lattice(test_replica(), 3, 1, 2),
+                      periodic_lattice(test_replica(), 4, 2, 3), periodic_lattice(test_replica(), 7, 2, 4)});
+    expect_lists(other_way(build(Precision::single_precision)),
+                 {periodic_lattice(test_replica(), 3, 3, 1), periodic_lattice(test_replica(), 5, 2, 4)});
+    expect_lists(build(Precision::single_precision, 64), {repeated(gas(test_replica()))});
+    const Start probe = lattices_across_ends(6, Vec3::Zero());
+    const auto cells = mcdem::device_replica<mcdem::f32::Replica>(probe.replica, probe.packing, {});
+    ASSERT_GT(cells.span_x, 10 * cells.cells_x);
+    expect_lists(build(Precision::single_precision),
+                 {lattices_across_ends(6, {3, 2, 1}), lattices_across_ends(6, {5.9, 0.02, 0.3})});
 }
 
 TEST(NeighbourList, HoldsThePlateWhereItLeans) {

@@ -36,7 +36,7 @@ kernel void write_offsets(global int* offsets) {
     MEMBER(plate_tilt_x) MEMBER(plate_tilt_y) MEMBER(grain_compliance) MEMBER(shear_compliance) \
     MEMBER(adhesion) MEMBER(viscoelasticity) MEMBER(relaxing_share) MEMBER(stiffening) \
     MEMBER(plasticity) MEMBER(bulge_contacts) MEMBER(mindlin_share) MEMBER(rolling_resistance) \
-    MEMBER(effects)
+    MEMBER(effects) MEMBER(container)
 #define MEMBERS_OF_REPORT(MEMBER) \
     MEMBER(kinetic_energy) MEMBER(elastic_energy) MEMBER(moved_squared) MEMBER(deepest_overlap) \
     MEMBER(wall_force) MEMBER(status) MEMBER(failed_grain)

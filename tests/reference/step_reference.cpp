@@ -22,6 +22,26 @@ double shear_modulus(double youngs_modulus, double poisson_ratio) {
 /// The part of `v` across the unit vector e.
 Vec3 across(const Vec3& v, const Vec3& e) { return v - v.dot(e) * e; }
 
+/// Of all images near by, the one closest to `to`.
+Vec3 nearest_image(const mcdem::Box& box, const Vec3& point, const Vec3& to) {
+    if (box.shape != mcdem::ContainerShape::periodic) return point;
+    Vec3 nearest = point;
+    for (int i = -5; i <= 5; ++i)
+        for (int j = -5; j <= 5; ++j) {
+            const Vec3 image = point + Vec3(i * box.size_x, j * box.size_y, 0);
+            if ((image - to).norm() < (nearest - to).norm()) nearest = image;
+        }
+    return nearest;
+}
+
+bool is_there(const mcdem::Box& box, int partner) {
+    if (!mcdem::is_wall(partner)) return true;
+    const auto wall = mcdem::wall_of(partner);
+    if (wall == mcdem::Wall::floor || wall == mcdem::Wall::plate) return true;
+    if (box.shape == mcdem::ContainerShape::cylinder) return wall == mcdem::Wall::x_min;
+    return box.shape == mcdem::ContainerShape::box;
+}
+
 }  // namespace
 
 StepReference::StepReference(const mcdem::Replica& scene, const mcdem::Packing& packing)
@@ -66,11 +86,22 @@ StepReference::Body StepReference::body(int grain) const {
 
 /// A wall is a body of no radius at the foot of the perpendicular.
 StepReference::Body StepReference::partner_of(int grain, int partner) const {
-    if (!mcdem::is_wall(partner)) return body(partner);
+    if (!mcdem::is_wall(partner)) {
+        Body there = body(partner);
+        there.position = nearest_image(scene_.box, there.position, position[grain]);
+        return there;
+    }
     const int wall = static_cast<int>(mcdem::wall_of(partner));
     const std::array<double, 6> at{0, scene_.box.size_x, 0, scene_.box.size_y, 0, plate_z_};
     Body foot{position[grain], Vec3::Zero(), Vec3::Zero(), 0, 0, scene_.walls.youngs_modulus};
     foot.position[wall / 2] = at[wall];
+    if (scene_.box.shape == mcdem::ContainerShape::cylinder && wall == 0) {
+        const double radius = scene_.box.size_x / 2;
+        const double angle = std::atan2(position[grain].y() - radius, position[grain].x() - radius);
+        foot.position = {radius + radius * std::cos(angle), radius + radius * std::sin(angle),
+                         position[grain].z()};
+        foot.curvature = -1 / radius;
+    }
     if (mcdem::wall_of(partner) == mcdem::Wall::plate) {
         foot.velocity.z() = plate_velocity_;
         const Vec3 middle(scene_.box.size_x / 2, scene_.box.size_y / 2, plate_z_);
@@ -91,6 +122,7 @@ void StepReference::list_neighbours() {
     memory.assign(count, {});
     for (int i = 0; i < count; ++i)
         for (int j = -mcdem::wall_count; j < count; ++j) {
+            if (!is_there(scene_.box, j)) continue;
             const double there = mcdem::is_wall(j) ? 0 : radius_[j];
             if (j == i || distance_to(i, j) >= radius_[i] + there + reach_) continue;
             const auto found = before[i].find(j);
@@ -109,6 +141,8 @@ StepReference::Joint StepReference::joint(const Body& a, const Body& b) const {
     joint.shear_modulus =
         1 / ((2 - nu) / shear_modulus(e, nu) + (2 - nu_there) / shear_modulus(e_there, nu_there));
     joint.radius = wall ? a.radius : 1 / (1 / a.radius + 1 / b.radius);
+    // Both directions of a wall that is curved in one, by their geometric mean.
+    if (b.curvature != 0) joint.radius = 1 / std::sqrt((1 / a.radius + b.curvature) / a.radius);
     joint.mass = wall ? a.mass : 1 / (1 / a.mass + 1 / b.mass);
     const double log_e = std::log(wall ? w.restitution : g.restitution);
     joint.damping = 2 * std::sqrt(5.0 / 6) * -log_e / std::sqrt(log_e * log_e + pi * pi);

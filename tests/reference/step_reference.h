@@ -69,6 +69,7 @@ private:
         Vec3 position, velocity, angular_velocity;
         double radius, mass;
         double youngs_modulus;  ///< of this very body [Pa]
+        double curvature = 0;   ///< of a wall around an upright axis, hollow: below zero [1/m]
     };
     /// What two bodies in contact share.
     struct Joint {

@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 #include <cstring>
+#include <numbers>
 #include <random>
 #include <string>
 #include <vector>
@@ -101,6 +102,45 @@ inline Start jittered_lattice(Replica replica, int count, unsigned seed) {
     const double size = (side - 1) * spacing + 2 * wall_gap;
     replica.box = {size, size};
     replica.plate.start = ((count - 1) / (side * side)) * spacing + 2 * wall_gap;
+    replica.plate.end = 0.9 * replica.plate.start;
+    return {replica, packing};
+}
+
+/// `layers` of a jittered square lattice, all of them overlapping their neighbours across the cell's ends;
+/// some grains have moved on to other images of the cell.
+inline Start periodic_lattice(Replica replica, int side, int layers, unsigned seed) {
+    constexpr double spacing = 0.019;
+    Uniform uniform(seed);
+    Packing packing;
+    for (int i = 0; i < side * side * layers; ++i) {
+        const Vec3 site(i % side, i / side % side, i / (side * side));
+        packing.position.push_back(spacing * (site + Vec3(-0.3, 0.1, 0.5)) + uniform.vector(3e-4));
+        packing.diameter.push_back(0.02 * uniform(0.95, 1.05));
+        if (i % 5 == 1) packing.position.back().x() += 2 * side * spacing;
+        if (i % 7 == 2) packing.position.back().y() -= side * spacing;
+    }
+    replica.box = {side * spacing, side * spacing, mcdem::ContainerShape::periodic};
+    replica.plate.start = layers * spacing;
+    replica.plate.end = 0.9 * replica.plate.start;
+    return {replica, packing};
+}
+
+/// `layers` of two rings of grains in a cylinder of 40 mm radius, the outer ones pressed into its wall.
+inline Start rings_in_a_cylinder(Replica replica, int layers, unsigned seed) {
+    constexpr double radius = 0.04, spacing = 0.019;
+    Uniform uniform(seed);
+    Packing packing;
+    for (int layer = 0; layer < layers; ++layer)
+        for (const auto& [ring, count] : {std::pair(radius - 0.0095, 10), std::pair(radius - 0.0285, 3)})
+            for (int i = 0; i < count; ++i) {
+                const double angle = (i + 0.5 * layer) * 2 * std::numbers::pi / count;
+                packing.position.push_back(Vec3(radius + ring * std::cos(angle),
+                                                radius + ring * std::sin(angle), spacing * (layer + 0.5)) +
+                                           uniform.vector(3e-4));
+                packing.diameter.push_back(0.02 * uniform(0.95, 1.05));
+            }
+    replica.box = {2 * radius, 2 * radius, mcdem::ContainerShape::cylinder};
+    replica.plate.start = layers * spacing;
     replica.plate.end = 0.9 * replica.plate.start;
     return {replica, packing};
 }

@@ -47,6 +47,17 @@ TEST(PackingView, lengths_are_millimetres_and_forces_millinewtons) {
     EXPECT_EQ(view["load_mN"], 20.0);
 }
 
+TEST(PackingView, of_a_periodic_cell_shows_grains_in_the_cell) {
+    auto moved = row_of_grains(3, 1);
+    EXPECT_EQ((*packing_view({{"box", moved}}))["settings"][0]["container"], "box");
+    moved.box.shape = ContainerShape::periodic;
+    moved.scans[0].position[1] += Vec3(0.1, -0.4, 0);
+    const auto& setting = (*packing_view({{"mc_dem", moved}}))["settings"][0];
+    EXPECT_EQ(setting["container"], "periodic");
+    EXPECT_EQ(setting["scans"][0]["x_mm"], (Json{50.0, 50.0, 50.0}));
+    EXPECT_EQ(setting["scans"][0]["y_mm"], (Json{33.333, 100.0, 166.667}));
+}
+
 TEST(PackingView, needs_positions) {
     auto bare = row_of_grains(3, 2);
     for (auto& scan : bare.scans) scan.position.clear();

@@ -44,7 +44,7 @@ double height(const Packing& packing, const Box& box, double packing_fraction) {
 
 TEST(CellPairs, AreFoundInABoxFlatterThanAnyCell) {
     const std::vector<Vec3> position{{500, 500, 5e-13}, {500.0001, 500, 5e-13}, {0, 1000, 0}};
-    const CellList cells(position, {1000, 1000, 1e-12}, 1e-3);
+    const CellList cells(position, {1000, 1000}, 1e-12, 1e-3);
     std::set<std::pair<int, int>> pairs;
     cells.for_each_pair([&](int i, int j) { pairs.insert(std::minmax(i, j)); });
     EXPECT_TRUE(pairs.contains({0, 1}));

@@ -62,6 +62,35 @@ TEST(Averages, PackingFractionCountsWhatIsInside) {
     EXPECT_NEAR(fraction({0.15, 0.5, 0.5}), 5.0 / 32, 0.01);
 }
 
+TEST(Averages, PackingFractionOfACylinderIsThatOfItsMiddle) {
+    const Box cylinder{1, 1, ContainerShape::cylinder};
+    const double inner = std::numbers::pi * 0.3 * 0.3 * 0.6, ball = std::numbers::pi / 6 * 0.008;
+    const auto fraction = [&](const Vec3& centre) {
+        return packing_fraction({centre}, {0.2}, cylinder, 1) * inner / ball;
+    };
+    EXPECT_NEAR(fraction({0.5, 0.5, 0.5}), 1, 1e-12);
+    EXPECT_NEAR(fraction({0.64, 0.64, 0.5}), 1, 1e-12) << "0.198 from the axis";
+    EXPECT_EQ(fraction({0.8, 0.8, 0.5}), 0);
+    const double a_third =
+        0.447;  // of a ball cut by a cylinder three times as wide, its centre on the border
+    EXPECT_NEAR(fraction({0.5, 0.8, 0.5}), a_third, 0.02);
+    EXPECT_NEAR(fraction({0.5, 0.5, 0.8}), 0.5, 0.01);
+}
+
+TEST(Averages, OfAPeriodicCellGoOverItsEnds) {
+    const Box cell{1, 1, ContainerShape::periodic};
+    const double ball = std::numbers::pi / 6 * 0.008;
+    for (const Vec3& centre : {Vec3(0, 0.99, 0.5), Vec3(0.5, 0.5, 0.5), Vec3(-3.1, 0.2, 0.3)})
+        EXPECT_NEAR(packing_fraction({centre}, {0.2}, cell, 1) * 0.6 / ball, 1, 1e-12);
+    EXPECT_NEAR(packing_fraction({{0, 0, 0.2}}, {0.2}, cell, 1) * 0.6 / ball, 0.5, 0.01);
+    Scan scan;
+    scan.plate_z = 1;
+    scan.position = {{0.05, 0.5, 0.5}, {1.98, -2.42, 0.5}};
+    scan.contacts = {contact(0, 1, {1, 0, 0})};
+    fill_averages(scan, cell, {0.1, 0.1}, 0);
+    EXPECT_NEAR(scan.branch_length, std::hypot(0.07, 0.08), 1e-12);
+}
+
 TEST(Averages, PackingFractionFollowsThePlate) {
     const double whole = packing_fraction({{0.5, 0.5, 0.5}}, {0.2}, {1, 1}, 1);
     EXPECT_NEAR(packing_fraction({{0.5, 0.5, 0.5}}, {0.2}, {1, 1}, 0.9), whole * 0.6 / 0.5, 1e-12);

@@ -96,16 +96,15 @@ std::array<double, 2> contact_occurrence(const Recording& recording, const Scan&
     std::ranges::sort(listed);
     double silent = 0;
     const double largest = *std::ranges::max_element(recording.diameter);
-    CellList(scan.position, {recording.box.size_x, recording.box.size_y, scan.plate_z}, largest)
-        .for_each_pair([&](int i, int j) {
-            const double a = recording.diameter[static_cast<std::size_t>(i)];
-            const double b = recording.diameter[static_cast<std::size_t>(j)];
-            const double reach = 0.5 * (a + b) - clear_overlap * 0.5 * a * b / (a + b);
-            const Vec3 apart =
-                scan.position[static_cast<std::size_t>(i)] - scan.position[static_cast<std::size_t>(j)];
-            if (apart.squaredNorm() < reach * reach)
-                silent += !std::ranges::binary_search(listed, std::pair<int, int>(std::minmax(i, j)));
-        });
+    CellList(scan.position, recording.box, scan.plate_z, largest).for_each_pair([&](int i, int j) {
+        const double a = recording.diameter[static_cast<std::size_t>(i)];
+        const double b = recording.diameter[static_cast<std::size_t>(j)];
+        const double reach = 0.5 * (a + b) - clear_overlap * 0.5 * a * b / (a + b);
+        const Vec3 apart =
+            scan.position[static_cast<std::size_t>(i)] - scan.position[static_cast<std::size_t>(j)];
+        if (apart.squaredNorm() < reach * reach)
+            silent += !std::ranges::binary_search(listed, std::pair<int, int>(std::minmax(i, j)));
+    });
     return {gaps / grains, silent / grains};
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/container.h"
 #include "report/page/labels.h"
 
 namespace mcdem::inline report {
@@ -60,7 +61,8 @@ Json scan_json(const Recording& recording, const Scan& scan, const Shown& shown)
     for (int a = 0; a < 3; ++a) {
         auto& list = json[axes[a]] = Json::array();
         for (const int grain : shown.grains)
-            list.push_back(rounded(scan.position[static_cast<std::size_t>(grain)][a] / mm));
+            list.push_back(
+                rounded(into_cell(recording.box, scan.position[static_cast<std::size_t>(grain)])[a] / mm));
     }
     Json grain = Json::array(), partner = Json::array(), force = Json::array();
     for (const auto& contact : scan.contacts) {
@@ -84,6 +86,7 @@ Json setting_json(const ShownPacking& packing, const PackingLimits& limits) {
     double top = 0;
     for (const auto& scan : recording.scans) top = std::fmax(top, scan.plate_z);
     return {{"label", one_line(packing.label)},
+            {"container", name(recording.box.shape)},
             {"box_mm", {rounded(recording.box.size_x / mm), rounded(recording.box.size_y / mm)}},
             {"top_mm", rounded(top / mm)},
             {"number", shown.grains},

@@ -104,11 +104,24 @@ class PackingView {
                        outlinewidth: 0}};
   }
 
+  /// The partner's centre, in a periodic cell that of its nearest image.
+  image(scan, grain, partner) {
+    const there = [scan.x_mm[partner], scan.y_mm[partner], scan.z_mm[partner]];
+    if (this.shown.container !== 'periodic') return there;
+    const here = [scan.x_mm[grain], scan.y_mm[grain]];
+    this.shown.box_mm.forEach((size, a) => { there[a] -= size * Math.round((there[a] - here[a]) / size); });
+    return there;
+  }
+
   /// Where a contact's line ends: the partner's centre, or the foot on the wall.
   end(scan, grain, partner) {
-    if (partner >= 0) return [scan.x_mm[partner], scan.y_mm[partner], scan.z_mm[partner]];
+    if (partner >= 0) return this.image(scan, grain, partner);
     const [width, depth] = this.shown.box_mm, wall = -1 - partner;
     const foot = [scan.x_mm[grain], scan.y_mm[grain], scan.z_mm[grain]];
+    if (wall === 0 && this.shown.container === 'cylinder') {
+      const out = Math.hypot(foot[0] - width / 2, foot[1] - width / 2);
+      return [0, 1].map(a => width / 2 * (1 + (foot[a] - width / 2) / out)).concat(foot[2]);
+    }
     foot[wall >> 1] = [0, width, 0, depth, 0, scan.plate_mm][wall];
     return foot;
   }
@@ -125,7 +138,7 @@ class PackingView {
       const grain = scan.grain[c], partner = scan.partner[c];
       const from = [scan.x_mm[grain], scan.y_mm[grain], scan.z_mm[grain]], to = this.end(scan, grain, partner);
       const words = `grain ${number[grain]} and ` +
-        (partner < 0 ? wallNames[-1 - partner] : `grain ${number[partner]}`) + `<br>${force.toPrecision(4)} mN`;
+        (partner < 0 ? this.wallName(-1 - partner) : `grain ${number[partner]}`) + `<br>${force.toPrecision(4)} mN`;
       for (const share of [0, 0.5, 1, null]) {
         ['x', 'y', 'z'].forEach((axis, a) => trace[axis].push(share === null ? null : from[a] + share * (to[a] - from[a])));
         trace.text.push(words);
@@ -134,23 +147,33 @@ class PackingView {
     return traces;
   }
 
-  /// The box's edges and the plate.
+  wallName(wall) { return wall === 0 && this.shown.container === 'cylinder' ? 'side' : wallNames[wall]; }
+
+  /// The outline of floor and plate.
+  outline() {
+    const [width, depth] = this.shown.box_mm, sides = 64;
+    if (this.shown.container !== 'cylinder') return [[0, 0], [width, 0], [width, depth], [0, depth]];
+    return Array.from({length: sides}, (_, n) => [Math.cos, Math.sin].map(f => width / 2 * (1 + f(2 * Math.PI * n / sides))));
+  }
+
+  /// The container's edges and the plate.
   walls(scan) {
-    const [width, depth] = this.shown.box_mm, top = this.shown.top_mm, plate = scan.plate_mm;
+    const top = this.shown.top_mm, plate = scan.plate_mm;
     const edges = {x: [], y: [], z: []};
     const stroke = points => points.concat([[null, null, null]]).forEach(([x, y, z]) => {
       edges.x.push(x);
       edges.y.push(y);
       edges.z.push(z);
     });
-    const corners = [[0, 0], [width, 0], [width, depth], [0, depth]];
+    const corners = this.outline(), fan = corners.slice(2).map((_, n) => n + 1);
+    const uprights = corners.filter((_, n) => n % (corners.length / 4) === 0);
     for (const height of [0, plate]) stroke([...corners, corners[0]].map(([x, y]) => [x, y, height]));
-    for (const [x, y] of corners) stroke([[x, y, 0], [x, y, top]]);
+    for (const [x, y] of uprights) stroke([[x, y, 0], [x, y, top]]);
     return [
       {type: 'scatter3d', mode: 'lines', ...edges, name: 'box', hoverinfo: 'skip', showlegend: false,
        line: {width: 2, color: 'var(--axis)'}},
-      {type: 'mesh3d', name: 'plate', x: corners.map(c => c[0]), y: corners.map(c => c[1]), z: Array(4).fill(plate),
-       i: [0, 0], j: [1, 2], k: [2, 3], color: 'var(--soft)', opacity: 0.18, hoverinfo: 'skip', showscale: false}];
+      {type: 'mesh3d', name: 'plate', x: corners.map(c => c[0]), y: corners.map(c => c[1]), z: corners.map(() => plate),
+       i: fan.map(() => 0), j: fan, k: fan.map(n => n + 1), color: 'var(--soft)', opacity: 0.18, hoverinfo: 'skip', showscale: false}];
   }
 
   layout() {
