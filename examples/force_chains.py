@@ -26,7 +26,7 @@ with open_run(path) as run:
     position = particles["position/value"][int(np.flatnonzero(step == best)[0])].astype(float)
     contacts = table["contact"][offset[best]:offset[best + 1]]
     diameter, (width, depth, _) = particles["diameter"][:], particles["box"].attrs["edges"]
-    shape = particles["box"].attrs.get("shape", "box")
+    shape = particles["box"].attrs.get("shape", b"box").decode()
     title = f"{label(run, replica)}: plate {1e3 * displacement(run, replica)[best]:.1f} mm down"
     plate_z = scans["plate_z"][best]
 

@@ -19,8 +19,8 @@ radius = 0.04
 count = 30
 packing_fraction = 0.5
 [plate]
-start = 0.09
-end = 0.085
+start = 0.07
+end = 0.06
 [protocol]
 scans_per_stroke = 2
 settle_time = 0.001

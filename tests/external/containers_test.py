@@ -1,0 +1,113 @@
+"""Packings in a cylinder and in a periodic cell against LAMMPS: the force on the plate and on the cylinder's side, once from the very
+positions of the last scan and once by LAMMPS's own stroke from the scan before: containers_test.py MCDEM FOLDER"""
+import math
+import pathlib
+import shutil
+import subprocess
+import sys
+
+from realities import execute
+
+try:
+    import h5py
+    import numpy
+except ImportError as missing:
+    print(f"skipped: {missing.name} is not installed")
+    sys.exit(77)
+
+SPEED, START, DRAG = 0.05, 0.105, 6e-3  # [m/s], [m], [kg/s]
+SCENE = """[container]
+{container}
+[packing]
+count = {count}
+packing_fraction = 0.63
+[grains]
+friction = 0
+restitution = 0.5
+[walls]
+youngs_modulus = 23.3e3
+friction = 0
+restitution = 0.5
+[contact]
+model = "independent"
+[plate]
+start = {start}
+end = {end}
+speed = {speed}
+[protocol]
+scans_per_stroke = 5
+scan_at_start = true
+settle_time = 4
+relax_time = 2
+settle_unbalanced_force = 5e-4
+[numerics]
+precision = "double"
+"""
+CASES = {"cylinder": ("shape = \"cylinder\"\nradius = 0.06", 140), "periodic": ("shape = \"periodic\"\nsize_x = 0.1\nsize_y = 0.11", 140)}
+LAW = "hertz/material {:.9g} 0.5 0.5 tangential linear_nohistory 0 0 damping tsuji"
+YOUNGS_MODULUS = 23.3e3
+# This version of LAMMPS gives walls E/(2 (1 - nu)) where two grains of the same material have E/(2 (1 - nu^2)).
+WALL_LAW, LAW = LAW.format(YOUNGS_MODULUS / 1.5), LAW.format(YOUNGS_MODULUS)
+
+
+def mcdem_run(mcdem, folder, shape):
+    """Size of the container, diameters, and (positions, plate, force on it, radial force on the side) of the last scan but one and of
+    the lowest."""
+    container, count = CASES[shape]
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / f"{shape}.toml").write_text(SCENE.format(container=container, count=count, start=START, end=START - 0.01, speed=SPEED))
+    out = folder / f"{shape}_run"
+    shutil.rmtree(out, ignore_errors=True)
+    subprocess.run([mcdem, "run", folder / f"{shape}.toml", "--out", out, "--no-figures"], check=True, stdout=subprocess.DEVNULL)
+    with h5py.File(out / "run.h5") as run:
+        name = next(iter(run["observables"]))
+        scans, particles, contacts = run["observables"][name][:], run["particles"][name], run["contacts"][name]
+        size = particles["box"].attrs["edges"][:2]
+        assert particles["box"].attrs["shape"].decode() == shape and scans["settled"][4:6].all()
+        found = []
+        for scan in (4, 5):
+            rows = contacts["contact"][contacts["offset"][scan]:contacts["offset"][scan + 1]]
+            side = numpy.hypot(*rows["force"][rows["partner"] == -1][:, :2].T).sum()
+            found.append((particles["position/value"][scan], scans["plate_z"][scan], scans["wall_force"][scan][5, 2], side))
+        return size, particles["diameter"][:], found
+
+
+def write_data(path, shape, size, diameters, positions):
+    low, high = ((0, 0), size) if shape == "periodic" else ((-0.01, -0.01), size + 0.01)
+    lines = ["packing", "", f"{len(diameters)} atoms", "1 atom types", "", f"{low[0]} {high[0]:.17g} xlo xhi", f"{low[1]} {high[1]:.17g} ylo yhi",
+             "-0.01 0.9 zlo zhi", "", "Atoms", ""]
+    lines += [f"{n} 1 {d:.17g} 11.5 {p[0]:.17g} {p[1]:.17g} {p[2]:.17g}" for n, (d, p) in enumerate(zip(diameters, positions), 1)]
+    path.write_text("\n".join(lines) + "\n")
+
+
+def lammps(folder, shape, size, diameters, positions, plate, moving, resting, time_step):
+    """Forces on the plate and, radial, on the side after these steps."""
+    write_data(folder / f"{shape}.data", shape, size, diameters, positions)
+    output = execute("lmp", "containers.in", folder, {
+        "shape": shape, "law": LAW, "wall_law": WALL_LAW, "size_x": size[0], "size_y": size[1], "start": plate, "time_step": time_step, "plate_speed": SPEED,
+        "skin": 0.002, "moving": moving, "resting": resting, "drag": DRAG})
+    rows = [line.split() for line in output.splitlines()]
+    last = [row for row in rows if len(row) == 4 and row[0] == str(moving + resting)][-1]
+    return -float(last[2]), float(last[3])
+
+
+def main():
+    mcdem, folder = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
+    if not shutil.which("lmp"):
+        print("skipped: lmp is not installed")
+        return 77
+    for shape in CASES:
+        size, diameters, (first, last) = mcdem_run(mcdem, folder, shape)
+        time_step = 5e-5
+        there = lammps(folder, shape, size, diameters, last[0], last[1], 0, 0, time_step)
+        stroke = lammps(folder, shape, size, diameters, first[0], first[1], round((first[1] - last[1]) / (SPEED * time_step)), 8000, time_step)
+        for what, found, allowed in (("at the same positions", there, 1e-4), ("after its own stroke", stroke, 3e-3)):
+            for of, mine, other in (("plate", last[2], found[0]), ("side", last[3], found[1]))[:2 if shape == "cylinder" else 1]:
+                print(f"{shape}, LAMMPS {what}: force on the {of} {other:.6g} N, mcdem {mine:.6g} N, ratio {mine / other:.5f}")
+                # The side's radius of curvature is LAMMPS's arithmetic mean, mcdem's geometric: 0.3 % at R = R_c/5.
+                assert math.isclose(mine, other, rel_tol=allowed + (0.004 if of == "side" else 0)), "forces differ"
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
