@@ -36,7 +36,7 @@ TEST(Containers, OfSeveralShapesRunTogetherAndComeBack) {
     options.folder = folder.path / "run";
     const Scene scene = parse_scene(three_shapes, "three.toml", {});
     EXPECT_EQ(run_scene(device, scene, options).end, RunEnd::done);
-    const Run run = read_run(options.folder, ReadWhat::everything);
+    const auto run = read_run(options.folder, ReadWhat::everything);
     ASSERT_EQ(run.recordings.size(), 3u);
     for (std::size_t r = 0; r < 3; ++r) {
         const Recording& recording = run.recordings[r];

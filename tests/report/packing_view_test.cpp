@@ -52,10 +52,11 @@ TEST(PackingView, of_a_periodic_cell_shows_grains_in_the_cell) {
     EXPECT_EQ((*packing_view({{"box", moved}}))["settings"][0]["container"], "box");
     moved.box.shape = ContainerShape::periodic;
     moved.scans[0].position[1] += Vec3(0.1, -0.4, 0);
-    const auto& setting = (*packing_view({{"mc_dem", moved}}))["settings"][0];
+    const auto view = *packing_view({{"mc_dem", moved}});
+    const auto& setting = view["settings"][0];
     EXPECT_EQ(setting["container"], "periodic");
     EXPECT_EQ(setting["scans"][0]["x_mm"], (Json{50.0, 50.0, 50.0}));
-    EXPECT_EQ(setting["scans"][0]["y_mm"], (Json{33.333, 100.0, 166.667}));
+    EXPECT_EQ(setting["scans"][0]["y_mm"], (Json{33.333, 100.0, 166.67}));
 }
 
 TEST(PackingView, needs_positions) {
