@@ -6,7 +6,7 @@
 /* Of one grain. */
 typedef struct {
     real pressure; /* sum F / (4 pi R^2 E) */
-    real pairs;    /* -W */
+    real pairs;    /* -W, the work of the pairs' displacements */
 } Confined;
 
 /* The part of points goes with the square of the forces, that of finite contacts with the power 8/3. */
@@ -23,6 +23,14 @@ INLINE Confined confined(EXCHANGE const ContactTable* table, real radius, real c
     const real per_area = compliance / (radius * radius);
     const Confined c = {force * per_area / (R(4) * PI), work * per_area / radius};
     return c;
+}
+
+/* The integral of the displacements below over the forces [J]. */
+INLINE real confined_work(global const Replica* restrict replica, Confined grain, real radius,
+                          real compliance) {
+    const real P = grain.pressure, g = R(1) / (R(1) + replica->confinement_coupling * P);
+    const real volume = R(4) * PI * replica->confinement_volume * P * P * P * g * g;
+    return (g * grain.pairs + volume) * radius * radius * radius / compliance;
 }
 
 /* The displacement of the grain's surface at its slots v, from that of small strain [m]. */

@@ -12,6 +12,7 @@ typedef struct {
     real elastic_energy;  /* [J] */
     real moved_squared;   /* farthest move of a grain since the neighbour list was made, squared [m2] */
     real deepest_overlap; /* corrected overlap over the sum of radii */
+    real frequency;       /* upper estimate of the fastest mode's, stiffened by delayed corrections [rad/s] */
     real wall_force[18];  /* on x_min x_max y_min y_max floor plate, x y z each [N] */
     int status;           /* STATUS_* bits of all grains */
     int failed_grain;     /* lowest grain with a bit, -1 if none */

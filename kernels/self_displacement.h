@@ -16,6 +16,14 @@ INLINE lanes self_displacement(global const Replica* restrict replica, lanes rel
     return whole * share * share * share; /* the force goes with the cube */
 }
 
+/* Its integral over the force, in F^2/(E R): the force goes with the cube of the radius. */
+INLINE lanes self_work(global const Replica* restrict replica, lanes relative) {
+    const lanes x = clamp(relative, (lanes)(SMALLEST_RADIUS), (lanes)(LARGEST_RADIUS));
+    global const real* s = replica->sphere_self;
+    const lanes value = R(0.5) * s[0] + x * (R(3) / R(7) * s[2] + x * (R(0.375) * s[3] + x * (s[4] / R(3))));
+    return s[1] != R(0) ? value + s[1] * (R(0.5) * log(x) - R(1) / R(12)) : value;
+}
+
 /* What a force moves the contact by on this side and on the other, per newton [m/N]. */
 typedef struct {
     lanes here, there;

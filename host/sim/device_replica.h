@@ -17,6 +17,13 @@ double time_step(const Replica& replica, const Packing& packing);
 /// The same of a grain of the smallest `radius` and mean stiffness [s].
 double time_step(const Replica& replica, double radius);
 
+/// The same shortened to what delayed surface displacements stand where contacts have stiffened, for the
+/// frequency of a report [rad/s]: as a number of times by which it is shortened by the eighth root of two.
+/// Goes back to longer steps only where they may be half as long again.
+int shortening(const Replica& replica, double time_step, double frequency, int now);
+double shortened(double time_step, int shortening);
+inline constexpr int max_shortening = 40;
+
 /// How much of the friction force is that of a Mindlin spring, the rest being saturated.
 double mindlin_share(const Replica& replica);
 
@@ -30,6 +37,10 @@ struct Place {
 /// DeviceReplica: f32::Replica or f64::Replica. The plate stands still at its start.
 template <class DeviceReplica>
 DeviceReplica device_replica(const Replica& replica, const Packing& packing, const Place& place);
+
+/// Everything of the replica that depends on its time step [s].
+template <class DeviceReplica>
+void set_time_step(DeviceReplica& device_replica, const Replica& replica, double time_step);
 
 /// Cells of a replica's grid at most: a grid that would have more repeats itself.
 constexpr std::uint64_t max_cells(std::uint64_t grains) { return 8 * grains + 64; }

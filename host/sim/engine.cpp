@@ -75,6 +75,7 @@ Engine::Engine(Device& device, const KernelBuild& build, std::vector<Replica> re
       kernels_(device, build) {
     for (int r = 0; r < layout_.replicas(); ++r) {
         time_step_.push_back(mcdem::time_step(replicas_[r], packings[r]));
+        shortening_.push_back(0);
         excess_compliance_.push_back(mcdem::excess_compliance(replicas_[r], packings[r].size()));
         skin_.push_back(std::visit([&](const auto& all) { return double(all[r].skin); }, device_replicas_));
     }
@@ -94,8 +95,10 @@ void Engine::upload_packings(const std::vector<Packing>& packings) {
     for (auto& copy : fields_.motion.copies) write_reals(copy, 0, values);
 }
 
+double Engine::time_step(int replica) const { return shortened(time_step_[replica], shortening_[replica]); }
+
 int Engine::max_interval(int replica, double plate_velocity) const {
-    const double step = std::abs(plate_velocity) * time_step_[replica];
+    const double step = std::abs(plate_velocity) * time_step(replica);
     const double steps = step > 0 ? max_plate_move(replica) / step : max_interval_steps;
     return std::clamp(static_cast<int>(std::min(steps, 1e6)), 1, max_interval_steps);
 }
@@ -148,6 +151,7 @@ void Engine::upload_intervals(const std::vector<StepInterval>& intervals) {
         [&](auto& all) {
             for (std::size_t r = 0; r < all.size(); ++r) {
                 if (intervals[r].steps == 0) continue;
+                set_time_step(all[r], replicas_[r], time_step(static_cast<int>(r)));
                 all[r].wall_position[5] = intervals[r].plate_z;
                 all[r].plate_velocity = intervals[r].plate_velocity;
                 all[r].steps_before = static_cast<int>(steps_made_[r] % 4);
@@ -202,9 +206,10 @@ void Engine::measure() {
     auto& f = fields_;
     kernels_.measure(working_.blocks.size(), f.replicas, f.blocks, f.replica_of_block, f.stop_at,
                      f.motion.now(0), f.partner, f.partner_slot, f.displacement.now(0), f.memory_of_contacts,
-                     f.listed_position, f.force_x, f.force_y, f.force_z, f.overlap, f.arm, f.energy);
+                     f.listed_position, f.force_x, f.force_y, f.force_z, f.overlap, f.arm, f.energy,
+                     f.frequency);
     kernels_.reduce(working_.portions.size(), f.replicas, f.portions, f.partner, f.force_x, f.force_y,
-                    f.force_z, f.energy, f.status, f.reports);
+                    f.force_z, f.energy, f.frequency, f.status, f.reports);
 }
 
 namespace {
@@ -215,6 +220,7 @@ IntervalResult to_result(const Report& report) {
     result.kinetic_energy = report.kinetic_energy;
     result.elastic_energy = report.elastic_energy;
     result.deepest_overlap = report.deepest_overlap;
+    result.frequency = report.frequency;
     for (int w = 0; w < wall_count; ++w)
         result.wall_force[w] = {report.wall_force[3 * w], report.wall_force[3 * w + 1],
                                 report.wall_force[3 * w + 2]};
@@ -229,6 +235,7 @@ void add(Report& sum, const Report& portion) {
     sum.elastic_energy += portion.elastic_energy;
     sum.moved_squared = std::max(sum.moved_squared, portion.moved_squared);
     sum.deepest_overlap = std::max(sum.deepest_overlap, portion.deepest_overlap);
+    sum.frequency = std::max(sum.frequency, portion.frequency);
     for (int q = 0; q < 3 * wall_count; ++q) sum.wall_force[q] += portion.wall_force[q];
     sum.status |= portion.status;
     if (sum.failed_grain < 0) sum.failed_grain = portion.failed_grain;
@@ -268,13 +275,14 @@ std::vector<IntervalResult> Engine::read_reports(const std::vector<StepInterval>
                 result.steps = made[r];
                 if (result.failed_grain >= 0)
                     result.failed_grain = layout_.order[r][result.failed_grain - layout_.first_grain[r]];
-                const double plate_move = intervals[r].plate_velocity * time_step_[r] * made[r];
+                const double plate_move = intervals[r].plate_velocity * time_step(r) * made[r];
                 plate_moved_[r] += std::abs(plate_move);
                 steps_made_[r] += made[r];
                 plate_z_[r] = intervals[r].plate_z + plate_move;
                 const double limit = rebuild_at * skin_[r];
                 rebuild_[r] = made[r] < intervals[r].steps || plate_moved_[r] > limit ||
                               !(reports[r].moved_squared <= limit * limit);
+                shortening_[r] = shortening(replicas_[r], time_step_[r], result.frequency, shortening_[r]);
             }
         },
         device_replicas_);

@@ -28,6 +28,7 @@ struct IntervalResult {
     double kinetic_energy = 0;   ///< [J]
     double elastic_energy = 0;   ///< [J]
     double deepest_overlap = 0;  ///< corrected overlap over the sum of radii
+    double frequency = 0;        ///< upper estimate of the fastest mode's (kernels/measure.cl) [rad/s]
     std::array<Vec3, wall_count> wall_force = no_wall_forces();  ///< on the walls [N]
     int status = 0;                                              ///< STATUS_* bits
     int failed_grain = -1;                                       ///< the user's grain number
@@ -46,7 +47,8 @@ public:
            std::vector<Packing> packings);
 
     int replicas() const { return layout_.replicas(); }
-    double time_step(int replica) const { return time_step_[replica]; }
+    /// Of the next interval [s].
+    double time_step(int replica) const;
     /// The most steps an interval of `replica` may have with the plate at this velocity, so that the plate
     /// does not outrun the neighbour list.
     int max_interval(int replica, double plate_velocity) const;
@@ -93,7 +95,8 @@ private:
     KernelBuild build_;
     std::vector<Replica> replicas_;
     Layout layout_;
-    std::vector<double> time_step_;
+    std::vector<double> time_step_;                       ///< the scene's [s]
+    std::vector<int> shortening_;                         ///< of it (device_replica.h)
     std::vector<double> skin_;                            ///< [m]
     std::vector<std::vector<double>> excess_compliance_;  ///< E/E_i - 1 by the user's grain numbers
     std::vector<char> rebuild_;                           ///< 1: the neighbour list is to be made anew

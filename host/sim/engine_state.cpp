@@ -7,6 +7,7 @@
 #include "core/container.h"
 #include "core/errors.h"
 #include "scene/plate_face.h"
+#include "sim/device_replica.h"
 #include "sim/engine.h"
 
 namespace mcdem::inline sim {
@@ -166,6 +167,7 @@ std::map<std::string, std::vector<std::byte>> Engine::save() {
     keep("rebuild", rebuild_);
     keep("plate_moved", plate_moved_);
     keep("steps_made", steps_made_);
+    keep("shortening", shortening_);
     return saved;
 }
 
@@ -190,9 +192,15 @@ void Engine::restore(const std::map<std::string, std::vector<std::byte>>& saved)
     bring_back("rebuild", rebuild_);
     bring_back("plate_moved", plate_moved_);
     bring_back("steps_made", steps_made_);
+    bring_back("shortening", shortening_);
     if (!std::ranges::all_of(steps_made_, [](auto steps) { return steps >= 0; }))
         throw InputError(
             "the checkpoint is damaged: it holds a negative number of steps: start the run anew in another "
+            "folder");
+    if (!std::ranges::all_of(shortening_, [](int times) { return times >= 0 && times <= max_shortening; }))
+        throw InputError(
+            "the checkpoint is damaged: it holds a time step that there is not: start the run anew in "
+            "another "
             "folder");
 }
 

@@ -34,6 +34,7 @@ void Fields::visit_extents(const FieldExtents& extents, Make make) {
     make(listed_position, extents.grains, 4 * real);
     make(status, extents.grains, sizeof(int));
     make(energy, extents.grains, 4 * real);
+    make(frequency, extents.grains, real);
     make(partner, slots, sizeof(int));
     const std::uint64_t moving_slots = extents.needs.displacements ? slots : 1;
     make(partner_slot, moving_slots, sizeof(int));

@@ -33,6 +33,7 @@ struct ForceZ;
 struct Overlap;
 struct Arm;
 struct Energy;
+struct Frequency;
 struct Reports;
 
 /// Two copies of what neighbours read while a step writes: `now` and `next` change places every step.
@@ -91,6 +92,7 @@ struct Fields {
     Field<ListedPosition> listed_position;
     Field<Status> status;
     Field<Energy> energy;
+    Field<Frequency> frequency;
     Field<Partner> partner;                           ///< a slot, as all below
     Field<PartnerSlot> partner_slot;                  ///< into displacement; slot_count where there is none
     Pair<SurfaceDisplacement> displacement;           ///< and one more, always zero, at slot_count
@@ -150,10 +152,11 @@ struct Kernels {
         advance;
     Kernel<Field<Constants>, Field<Blocks>, Field<ReplicaOfBlock>, Field<StopAt>, Now<Motion>, Field<Partner>,
            Field<PartnerSlot>, Now<SurfaceDisplacement>, Field<ContactMemory>, Field<ListedPosition>,
-           Field<ForceX>, Field<ForceY>, Field<ForceZ>, Field<Overlap>, Field<Arm>, Field<Energy>>
+           Field<ForceX>, Field<ForceY>, Field<ForceZ>, Field<Overlap>, Field<Arm>, Field<Energy>,
+           Field<Frequency>>
         measure;
     Kernel<Field<Constants>, Field<Portions>, Field<Partner>, Field<ForceX>, Field<ForceY>, Field<ForceZ>,
-           Field<Energy>, Field<Status>, Field<Reports>>
+           Field<Energy>, Field<Frequency>, Field<Status>, Field<Reports>>
         reduce;
 
 private:

@@ -97,8 +97,7 @@ std::optional<ProtocolRunner::ScanTag> ProtocolRunner::made(const IntervalResult
         take_pressure(result);
         return scan;
     }
-    state_.step += result.steps;
-    state_.stage_step += result.steps;
+    count(result.steps);
     take_pressure(result);
     const bool still = settled(result, plate_arrived);
     if (!still && state_.stage_step < max_settling_steps()) return std::nullopt;
@@ -108,10 +107,15 @@ std::optional<ProtocolRunner::ScanTag> ProtocolRunner::made(const IntervalResult
     return tag(0, still);
 }
 
-std::optional<ProtocolRunner::ScanTag> ProtocolRunner::moved(int steps) {
-    const double speed = planned().plate_velocity;
+void ProtocolRunner::count(int steps) {
     state_.step += steps;
     state_.stage_step += steps;
+    state_.time += steps * time_step_;
+}
+
+std::optional<ProtocolRunner::ScanTag> ProtocolRunner::moved(int steps) {
+    const double speed = planned().plate_velocity;
+    count(steps);
     state_.rate_error = quasi_static_.rate_error(std::abs(speed), state_.plate_z, state_.pressure);
     state_.plate_z += speed * time_step_ * steps;
     if (std::abs(distance_left()) > rounding * plate_.start) return std::nullopt;
@@ -122,8 +126,7 @@ std::optional<ProtocolRunner::ScanTag> ProtocolRunner::moved(int steps) {
 }
 
 ProtocolRunner::ScanTag ProtocolRunner::tag(int cycle, bool settled) {
-    return {state_.frame++,    cycle,  state_.phase, state_.plate_z, state_.step * time_step_,
-            state_.rate_error, settled};
+    return {state_.frame++, cycle, state_.phase, state_.plate_z, state_.time, state_.rate_error, settled};
 }
 
 /// The plate is at a scan position: a scan is due, and the next move begins.

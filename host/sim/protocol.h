@@ -25,8 +25,9 @@ struct ProtocolState {
     double plate_z = 0;         ///< [m]
     double pressure = 0;        ///< smoothed over some intervals [Pa]
     double rate_error = 0;      ///< estimated, of the last move
+    double time = 0;            ///< since the start [s]
 };
-static_assert(std::is_trivially_copyable_v<ProtocolState> && sizeof(ProtocolState) == 8 * (2 + 3 + 3),
+static_assert(std::is_trivially_copyable_v<ProtocolState> && sizeof(ProtocolState) == 8 * (2 + 3 + 4),
               "no padding: equal states have equal bytes in checkpoints");
 
 class ProtocolRunner {
@@ -53,6 +54,8 @@ public:
     /// Takes note of an interval. Nothing counts as settled while the plate is still on its way.
     std::optional<ScanTag> made(const IntervalResult& result, bool plate_arrived = true);
 
+    /// Of the steps that follow [s].
+    void set_time_step(double time_step) { time_step_ = time_step; }
     void stop() { state_.stage = ProtocolState::Stage::finished; }
     bool finished() const { return state_.stage == ProtocolState::Stage::finished; }
     double plate_z() const { return state_.plate_z; }  ///< now [m]
@@ -70,6 +73,7 @@ private:
     double drag() const;  ///< while the plate stands still [1/s]
     void take_pressure(const IntervalResult& result);
     bool settled(const IntervalResult& result, bool plate_arrived);
+    void count(int steps);
     std::optional<ScanTag> moved(int steps);
     std::optional<ScanTag> arrive(bool settled);
     ScanTag tag(int cycle, bool settled);

@@ -35,12 +35,19 @@ std::string cause_of(const IntervalResult& result, const Replica& replica, int s
     const auto add = [&](int bit, const std::string& text) {
         if (result.status & bit) cause += (cause.empty() ? "" : "; ") + text;
     };
-    add(STATUS_OVERLAP,
-        fmt::format(
-            "a corrected overlap passed {} of the sum of the radii: no static solution at this compression, "
-            "the force runs away (compress less: raise plate.end{})",
-            replica.numerics.overlap_limit,
-            replica.contact.model == ContactModel::mc_dem ? ", or lower contact.gamma" : ""));
+    if (replica.contact.model == ContactModel::hyperelastic_sphere)
+        add(STATUS_OVERLAP,
+            fmt::format(
+                "a corrected overlap passed {} of the sum of the radii (compress less: raise plate.end; "
+                "or raise numerics.overlap_limit, there are solutions beyond)",
+                replica.numerics.overlap_limit));
+    else
+        add(STATUS_OVERLAP,
+            fmt::format("a corrected overlap passed {} of the sum of the radii: no static solution at this "
+                        "compression, "
+                        "the force runs away (compress less: raise plate.end{})",
+                        replica.numerics.overlap_limit,
+                        replica.contact.model == ContactModel::mc_dem ? ", or lower contact.gamma" : ""));
     add(STATUS_NOT_A_NUMBER,
         "a position is not a number: the time step is too long (lower numerics.time_step)");
     add(STATUS_LOST,
@@ -95,6 +102,7 @@ bool Simulation::advance(const ScanSink& on_scan, const FailureSink& on_failure)
     std::vector<StepInterval> intervals;
     bool any = false;
     for (int r = 0; r < engine_.replicas(); ++r) {
+        runners_[r].set_time_step(engine_.time_step(r));
         intervals.push_back(
             runners_[r].next([&](double plate_velocity) { return engine_.max_interval(r, plate_velocity); }));
         plates_[r].deflect(intervals[r], engine_.time_step(r), engine_.max_plate_move(r));

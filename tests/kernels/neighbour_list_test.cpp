@@ -243,6 +243,7 @@ void expect_memory_moves_with_neighbours(const Start& start, const char* quantit
     int rebuilt = 0, changed = 0;
     bool differs = false;
     for (int step = 0; step < 120; ++step) {
+        reference.set_time_step(batch.engine().time_step(0));
         const auto result = batch.advance(1).front();
         ASSERT_EQ(result.status, 0) << "step " << step;
         reference.step();

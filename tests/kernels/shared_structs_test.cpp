@@ -39,7 +39,7 @@ kernel void write_offsets(global int* offsets) {
     MEMBER(effects) MEMBER(container)
 #define MEMBERS_OF_REPORT(MEMBER) \
     MEMBER(kinetic_energy) MEMBER(elastic_energy) MEMBER(moved_squared) MEMBER(deepest_overlap) \
-    MEMBER(wall_force) MEMBER(status) MEMBER(failed_grain)
+    MEMBER(frequency) MEMBER(wall_force) MEMBER(status) MEMBER(failed_grain)
 // clang-format on
 
 #define NAME_REPLICA(member) "REPLICA(" #member ")"

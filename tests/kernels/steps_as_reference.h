@@ -110,7 +110,10 @@ inline void expect_steps_as_reference(const KernelBuild& build, const std::vecto
     }
     for (int step = 0; step < 6; ++step) {
         std::vector<mcdem::StepInterval> intervals;
-        for (double z : plate) intervals.push_back({1, z, plate_velocity, 0});
+        for (std::size_t r = 0; r < starts.size(); ++r) {
+            intervals.push_back({1, plate[r], plate_velocity, 0});
+            references[r].set_time_step(engine.time_step(static_cast<int>(r)));
+        }
         const auto results = engine.advance(intervals);
         for (std::size_t r = 0; r < starts.size(); ++r) {
             references[r].step();

@@ -52,6 +52,7 @@ public:
     std::vector<std::map<int, Memory>> memory;               ///< grain -> partner -> memory
 
     double time_step() const { return time_step_; }
+    void set_time_step(double time_step) { time_step_ = time_step; }
     double reach() const { return reach_; }  ///< gap up to which a neighbour is listed [m]
     double mass(int grain) const;
 
@@ -95,6 +96,7 @@ private:
     Vec3 mindlin_friction(double limit, const Vec3& sliding, const Seen& seen, const Joint& joint,
                           double elapsed, Vec3& spring) const;
     void displace_surfaces(const std::vector<std::vector<Seen>>& seen);
+    double displacement_energy() const;  ///< [J]
 
     mcdem::Replica scene_;
     mcdem::SurfaceLaw law_;

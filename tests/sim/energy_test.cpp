@@ -13,8 +13,10 @@
 namespace reference {
 namespace {
 
-constexpr double time_steps[] = {0.1, 0.05, 0.025};
+/// Short enough not to be shortened.
+constexpr double time_steps[] = {0.04, 0.02, 0.01};
 constexpr int oscillations = 50;
+constexpr double rounding = 1e-5;  ///< of the mean energy over some oscillations
 
 /// Kinetic energy peaks twice in an oscillation.
 constexpr int peaks_wanted = 2 * oscillations + 1;
@@ -110,13 +112,14 @@ TEST(Energy, DriftsLessThanTheExtrapolationAllows) {
             const double steps = record.steps_per_oscillation();
             fmt::print("{:22} {:>9} {:>18.1f} {:>10.1e} {:>10.1e}\n", name(all_models[m]), time_steps[t],
                        steps, record.drift(), drift_bound(steps));
-            EXPECT_LT(std::abs(record.drift()), drift_bound(steps))
+            EXPECT_LT(std::abs(record.drift()), drift_bound(steps) + rounding)
                 << name(all_models[m]) << ' ' << time_steps[t];
             EXPECT_TRUE(all_models[m] != ContactModel::independent || std::abs(record.drift()) < 2e-5);
         }
         // fifth order would be 32 and 1024 times; half of that for the mixture of modes
         if (all_models[m] == ContactModel::independent) continue;
-        EXPECT_GT(std::abs(records[3 * m].drift() / records[3 * m + 1].drift()), 16) << name(all_models[m]);
+        EXPECT_LT(std::abs(records[3 * m + 1].drift()), std::abs(records[3 * m].drift()) / 16 + rounding)
+            << name(all_models[m]);
         EXPECT_LT(std::abs(records[3 * m + 2].drift()), 5e-5) << name(all_models[m]);
     }
 }
