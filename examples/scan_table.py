@@ -9,7 +9,7 @@ tables = []
 with open_run(path) as run:
     for replica, rows in run["observables"].items():
         scans = rows[:]
-        table = pandas.DataFrame({name: scans[name] for name in scans.dtype.names if name != "wall_force"})
+        table = pandas.DataFrame({name: scans[name] for name in scans.dtype.names if scans[name].ndim == 1})
         table = table.assign(replica=label(run, replica), top_force=scans["wall_force"][:, 5, 2],
                              displacement=displacement(run, replica))
         tables.append(table.replace({"phase": {0: "load", 1: "unload"}}))

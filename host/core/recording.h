@@ -32,6 +32,8 @@ inline std::array<Vec3, wall_count> no_wall_forces() {
     return forces;
 }
 
+inline Mat3 unknown_tensor() { return Mat3::Constant(std::numeric_limits<double>::quiet_NaN()); }
+
 /// The packing at one plate position. Averages not measured are not-a-number; empty vectors where
 /// positions or contacts were not recorded.
 struct Scan {
@@ -50,6 +52,8 @@ struct Scan {
     double mean_force = 0;           ///< <f>: mean |force| of those contacts [N]
     double packing_fraction = 0;     ///< phi, more than a mean diameter from every wall
     double branch_length = 0;        ///< <b>: mean distance of centres of touching grains [m]
+    Mat3 stress = unknown_tensor();  ///< of the packing, compression positive (core/stress.h) [Pa]
+    Mat3 fabric = unknown_tensor();  ///< mean n n of contacts between grains
     std::vector<Vec3> position;      ///< by grain [m]
     std::vector<Contact> contacts;
 

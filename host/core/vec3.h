@@ -1,7 +1,8 @@
-// Double-precision vectors of the host side.
+// Double-precision vectors and tensors of the host side.
 #pragma once
 #include <Eigen/Core>
 
 namespace mcdem::inline core {
 using Vec3 = Eigen::Vector3d;
+using Mat3 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <iterator>
 #include <limits>
+#include <utility>
 
 #include "core/container.h"
 #include "core/output_file.h"
@@ -16,7 +17,10 @@ namespace {
 constexpr const char* header =
     "replica,label,frame,cycle,phase,time_s,plate_z_m,displacement_m,top_force_N,floor_force_N,"
     "x_min_force_N,x_max_force_N,y_min_force_N,y_max_force_N,coordination_number,mean_force_N,"
-    "packing_fraction,branch_length_m,kinetic_energy_J,elastic_energy_J,settled,rate_error";
+    "packing_fraction,branch_length_m,stress_xx_Pa,stress_yy_Pa,stress_zz_Pa,stress_yz_Pa,stress_xz_Pa,"
+    "stress_xy_Pa,kinetic_energy_J,elastic_energy_J,settled,rate_error";
+
+constexpr std::pair<int, int> voigt[] = {{0, 0}, {1, 1}, {2, 2}, {1, 2}, {0, 2}, {0, 1}};
 
 std::string quoted(const std::string& text) {
     std::string result = "\"";
@@ -91,9 +95,12 @@ std::string csv_text(const Run& run) {
                            name(scan.phase), scan.time, scan.plate_z, recording.displacement(scan));
             for (Wall wall : {Wall::plate, Wall::floor, Wall::x_min, Wall::x_max, Wall::y_min, Wall::y_max})
                 fmt::format_to(out, "{},", pressing(recording.box, scan, wall));
-            fmt::format_to(out, "{},{},{},{},{},{},{:d},{}", scan.coordination_number, scan.mean_force,
-                           scan.packing_fraction, scan.branch_length, scan.kinetic_energy,
-                           scan.elastic_energy, scan.settled, scan.rate_error);
+            fmt::format_to(out, "{},{},{},{},", scan.coordination_number, scan.mean_force,
+                           scan.packing_fraction, scan.branch_length);
+            for (const auto& [row, column] : voigt)
+                fmt::format_to(out, "{},", 0.5 * (scan.stress(row, column) + scan.stress(column, row)));
+            fmt::format_to(out, "{},{},{:d},{}", scan.kinetic_energy, scan.elastic_energy, scan.settled,
+                           scan.rate_error);
             if (any_side) fmt::format_to(out, ",{}", along_side(recording.box, scan));
             fmt::format_to(out, "{}\n", parameters);
         }

@@ -73,10 +73,8 @@ std::vector<Scan> ResultFile::scans(const Recording& recording, std::size_t repl
     const h5::Dataset table = file_.dataset(observables_path(replica));
     const h5::Handle type = scan_row_type();
     table.expect_row({});
-    expect_fields(table, type, "rate_error");  // files of version 0.1 have none
-    ScanRow empty{};
-    empty.rate_error = std::numeric_limits<double>::quiet_NaN();
-    std::vector<ScanRow> rows(table.rows(), empty);
+    expect_fields(table, type, {"rate_error", "stress", "fabric"});  // files of earlier versions have none
+    std::vector<ScanRow> rows(table.rows(), scan_row(Scan{}));
     table.read(type, rows.data(), 0, rows.size());
     std::vector<Scan> scans;
     scans.reserve(rows.size());

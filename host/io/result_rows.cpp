@@ -1,5 +1,8 @@
 #include "io/result_rows.h"
 
+#include <algorithm>
+#include <cstring>
+
 #include "core/errors.h"
 
 namespace mcdem::inline io {
@@ -52,6 +55,8 @@ ScanRow scan_row(const Scan& scan) {
     row.mean_force = scan.mean_force;
     row.packing_fraction = scan.packing_fraction;
     row.branch_length = scan.branch_length;
+    std::memcpy(row.stress, scan.stress.data(), sizeof row.stress);
+    std::memcpy(row.fabric, scan.fabric.data(), sizeof row.fabric);
     return row;
 }
 
@@ -73,6 +78,8 @@ Scan scan_of(const ScanRow& row, const std::string& where) {
     scan.mean_force = row.mean_force;
     scan.packing_fraction = row.packing_fraction;
     scan.branch_length = row.branch_length;
+    std::memcpy(scan.stress.data(), row.stress, sizeof row.stress);
+    std::memcpy(scan.fabric.data(), row.fabric, sizeof row.fabric);
     return scan;
 }
 
@@ -122,6 +129,9 @@ h5::Handle scan_row_type() {
     H5Tinsert(type, "mean_force", HOFFSET(ScanRow, mean_force), H5T_NATIVE_DOUBLE);
     H5Tinsert(type, "packing_fraction", HOFFSET(ScanRow, packing_fraction), H5T_NATIVE_DOUBLE);
     H5Tinsert(type, "branch_length", HOFFSET(ScanRow, branch_length), H5T_NATIVE_DOUBLE);
+    const h5::Handle tensor = array_type(H5T_NATIVE_DOUBLE, {3, 3});
+    H5Tinsert(type, "stress", HOFFSET(ScanRow, stress), tensor);
+    H5Tinsert(type, "fabric", HOFFSET(ScanRow, fabric), tensor);
     return type;
 }
 
@@ -146,14 +156,16 @@ h5::Handle packed(const h5::Handle& row_type) {
     return type;
 }
 
-void expect_fields(const h5::Dataset& table, const h5::Handle& row_type, std::string_view optional) {
+void expect_fields(const h5::Dataset& table, const h5::Handle& row_type,
+                   std::initializer_list<std::string_view> optional) {
     const h5::Handle found = table.type();
     if (H5Tget_class(found) != H5T_COMPOUND) table.fail("must be a table of named fields");
     for (int i = 0; i < H5Tget_nmembers(row_type); ++i) {
         char* field = H5Tget_member_name(row_type, static_cast<unsigned>(i));
         const std::string name = field ? field : "";
         H5free_memory(field);
-        if (name != optional && H5Tget_member_index(found, name.c_str()) < 0)
+        if (std::ranges::find(optional, name) == optional.end() &&
+            H5Tget_member_index(found, name.c_str()) < 0)
             table.fail("must have a field '" + name + "'");
     }
 }
@@ -168,7 +180,9 @@ std::vector<std::pair<std::string, std::string>> scan_row_units() {
             {"coordination_number", "1"},
             {"mean_force", "N"},
             {"packing_fraction", "1"},
-            {"branch_length", "m"}};
+            {"branch_length", "m"},
+            {"stress", "Pa"},
+            {"fabric", "1"}};
 }
 
 std::vector<std::pair<std::string, std::string>> contact_row_units() {

@@ -13,6 +13,7 @@ struct ScanRow {
     double wall_force[wall_count][3];
     double kinetic_energy, elastic_energy, rate_error;
     double coordination_number, mean_force, packing_fraction, branch_length;
+    double stress[3][3], fabric[3][3];
 };
 
 /// Real is what the file keeps, float or double: rows go to and from it without conversion.
@@ -36,9 +37,10 @@ template <class Real>
 h5::Handle contact_row_type();
 /// The same fields as a file keeps them: without gaps.
 h5::Handle packed(const h5::Handle& row_type);
-/// Throws unless the table has every field of `row_type` but the optional one: what is missing is left as it
+/// Throws unless the table has every field of `row_type` but the optional ones: what is missing is left as it
 /// was.
-void expect_fields(const h5::Dataset& table, const h5::Handle& row_type, std::string_view optional = {});
+void expect_fields(const h5::Dataset& table, const h5::Handle& row_type,
+                   std::initializer_list<std::string_view> optional = {});
 
 /// Field names and their units, for the attributes of the tables.
 std::vector<std::pair<std::string, std::string>> scan_row_units();

@@ -2,10 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
 #include "core/atomic_file.h"
 #include "core/container.h"
 #include "core/make_folder.h"
 #include "core/output_file.h"
+#include "core/stress.h"
 #include "io/folder_lock.h"
 #include "io/grain_loads.h"
 #include "io/hdf5.h"
@@ -26,13 +31,16 @@ replica_00000/contacts_000000.hdf, ..   its contacts
 1. Start ParaView (5.10 or later), File > Open, choose the group `grains_..hdf` of a replica (ParaView shows the
    numbered files as one time series), reader `VTKHDF`, Apply.
 2. Grains: Filters > Glyph; Glyph Type `Sphere` with Radius 0.5, Orientation Array `No orientation array`,
-   Scale Array `diameter`, Scale Factor 1, Glyph Mode `All Points`. Colour by `coordination_number` or `force_magnitude`.
+   Scale Array `diameter`, Scale Factor 1, Glyph Mode `All Points`. Colour by `coordination_number`, `pressure`, a
+   component of `stress` or `displacement_since_last_scan`.
 3. Contacts: open `contacts_..hdf`, Filters > Extract Surface, then Filters > Tube; Scalars `force_magnitude`, Vary
-   Radius `By Scalar`. Colour by `force_magnitude`: the force chains.
+   Radius `By Scalar`. Colour by `force_magnitude`: the force chains. For arrows: Filters > Glyph, `force`.
 
-Lengths in metres, forces in newtons. Each file carries frame, time, plate_z and top_force as field data.
-Walls are partners -1 to -6: x_min, x_max, y_min, y_max, floor, plate. The side of a cylinder is partner -1. In a
-periodic cell grains are where they have moved to, also out of the cell, and contacts end at a partner's nearest image.
+Lengths in metres, forces in newtons, stress in pascals, compression positive. `stress` of a grain has nine components:
+xx, xy, xz, yx, .. (row: branch from centre to contact, column: force), over the volume of the undeformed sphere. Each
+file carries frame, time, plate_z and top_force as field data. Walls are partners -1 to -6: x_min, x_max, y_min, y_max,
+floor, plate. The side of a cylinder is partner -1. In a periodic cell grains are where they have moved to, also out of
+the cell, and contacts end at a partner's nearest image.
 )";
 
 /// The parts of a VTKHDF unstructured grid, version 1.0, in one piece.
@@ -58,8 +66,8 @@ public:
             file_.make_group(group);
     }
     template <class Number>
-    void point_data(const std::string& name, const std::vector<Number>& values) {
-        file_.write("/VTKHDF/PointData/" + name, values);
+    void point_data(const std::string& name, const std::vector<Number>& values, const h5::Extent& row = {}) {
+        file_.write("/VTKHDF/PointData/" + name, values, row);
     }
     template <class Number>
     void cell_data(const std::string& name, const std::vector<Number>& values, const h5::Extent& row = {}) {
@@ -82,15 +90,45 @@ private:
 
 void add(std::vector<double>& values, const Vec3& v) { values.insert(values.end(), {v.x(), v.y(), v.z()}); }
 
-int export_scan(const Recording& recording, std::size_t replica, const Scan& scan,
-                const std::filesystem::path& folder) {
-    if (scan.position.empty()) return 0;
+/// Positions at the first scan that has them and at the last one seen.
+class Track {
+public:
+    Displacements see(const std::vector<Vec3>& position) {
+        if (first_.empty()) first_ = last_ = position;
+        Displacements moved;
+        for (std::size_t i = 0; i < position.size(); ++i) {
+            moved.since_start.push_back(position[i] - first_[i]);
+            moved.since_last_scan.push_back(position[i] - last_[i]);
+        }
+        last_ = position;
+        return moved;
+    }
+
+private:
+    std::vector<Vec3> first_, last_;
+};
+
+int export_replica(RunReader& reader, std::size_t replica, const std::filesystem::path& folder,
+                   const ExportChoice& choice) {
+    const Recording& recording = reader.run().recordings[replica];
     const auto sub = folder / fmt::format("replica_{:05}", replica);
-    make_folder(sub);
-    const FolderLock lock(sub, FolderLock::Use::alone);  // for what a killed export has left there
-    write_vtk_grains(sub / fmt::format("grains_{:06}.hdf", scan.frame), recording, scan);
-    write_vtk_contacts(sub / fmt::format("contacts_{:06}.hdf", scan.frame), recording, scan);
-    return 2;
+    std::optional<FolderLock> lock;  // for what a killed export has left there
+    Track track;
+    int files = 0;
+    for (std::size_t s = 0; s < recording.scans.size(); ++s) {
+        const Scan scan = reader.read_scan(replica, s);
+        if (scan.position.empty()) continue;
+        const Displacements moved = track.see(scan.position);
+        if (!choice.has_scan(scan.frame)) continue;
+        if (!lock) {
+            make_folder(sub);
+            lock.emplace(sub, FolderLock::Use::alone);
+        }
+        write_vtk_grains(sub / fmt::format("grains_{:06}.hdf", scan.frame), recording, scan, moved);
+        write_vtk_contacts(sub / fmt::format("contacts_{:06}.hdf", scan.frame), recording, scan);
+        files += 2;
+    }
+    return files;
 }
 
 void start_folder(const std::filesystem::path& folder) {
@@ -100,10 +138,17 @@ void start_folder(const std::filesystem::path& folder) {
 
 }  // namespace
 
-void write_vtk_grains(const std::filesystem::path& file, const Recording& recording, const Scan& scan) {
+void write_vtk_grains(const std::filesystem::path& file, const Recording& recording, const Scan& scan,
+                      const Displacements& moved) {
     const std::size_t grains = scan.position.size();
     const std::vector<GrainLoad> loads = grain_loads(scan);
-    std::vector<double> points, force(grains);
+    std::vector<double> points, force(grains), stress, pressure, since_start, since_last_scan;
+    for (const Mat3& tensor : grain_stress(recording.box, recording.diameter, scan)) {
+        stress.insert(stress.end(), tensor.data(), tensor.data() + tensor.size());
+        pressure.push_back(tensor.trace() / 3);
+    }
+    for (const Vec3& by : moved.since_start) add(since_start, by);
+    for (const Vec3& by : moved.since_last_scan) add(since_last_scan, by);
     std::vector<int> number(grains), contacts(grains);
     for (std::size_t i = 0; i < grains; ++i) {
         add(points, scan.position[i]);
@@ -117,12 +162,16 @@ void write_vtk_grains(const std::filesystem::path& file, const Recording& record
         grid.point_data("diameter", recording.diameter);
         grid.point_data("coordination_number", contacts);
         grid.point_data("force_magnitude", force);
+        grid.point_data("stress", stress, {9});
+        grid.point_data("pressure", pressure);
+        grid.point_data("displacement", since_start, {3});
+        grid.point_data("displacement_since_last_scan", since_last_scan, {3});
         grid.close_with(scan);
     });
 }
 
 void write_vtk_contacts(const std::filesystem::path& file, const Recording& recording, const Scan& scan) {
-    std::vector<double> points, force, magnitude, overlap, end_magnitude;
+    std::vector<double> points, force, magnitude, normal, tangential, overlap, end_force, end_magnitude;
     std::vector<int> grain, partner;
     for (const Contact& contact : scan.contacts) {
         const Vec3& from = scan.position[static_cast<std::size_t>(contact.grain)];
@@ -134,41 +183,37 @@ void write_vtk_contacts(const std::filesystem::path& file, const Recording& reco
         add(force, contact.force);
         magnitude.push_back(contact.force.norm());
         end_magnitude.insert(end_magnitude.end(), 2, contact.force.norm());
+        for (int end = 0; end < 2; ++end) add(end_force, contact.force);
+        normal.push_back(normal_force(recording.box, scan, contact));
+        tangential.push_back(
+            std::sqrt(std::max(0.0, contact.force.squaredNorm() - normal.back() * normal.back())));
         overlap.push_back(contact.overlap);
         grain.push_back(contact.grain);
         partner.push_back(contact.partner);
     }
     replace_own(file, FileKind::vtk, [&](NewFile& out) {
         Grid grid(out, vtk_line, 2, points);
-        grid.point_data("force_magnitude",
-                        end_magnitude);  // at the ends too: tubes take their radius from points
+        grid.point_data("force", end_force, {3});  // glyphs and tubes take arrows and radius from points
+        grid.point_data("force_magnitude", end_magnitude);
         grid.cell_data("grain", grain);
         grid.cell_data("partner", partner);
         grid.cell_data("force", force, {3});
         grid.cell_data("force_magnitude", magnitude);
+        grid.cell_data("normal_force", normal);
+        grid.cell_data("tangential_force", tangential);
         grid.cell_data("overlap", overlap);
         grid.close_with(scan);
     });
 }
 
-int export_vtk(const Run& run, const std::filesystem::path& folder) {
-    start_folder(folder);
-    int files = 0;
-    for (std::size_t r = 0; r < run.recordings.size(); ++r)
-        for (const Scan& scan : run.recordings[r].scans)
-            files += export_scan(run.recordings[r], r, scan, folder);
-    return files;
-}
-
-int export_vtk(const std::filesystem::path& file_or_folder, const std::filesystem::path& folder) {
+int export_vtk(const std::filesystem::path& file_or_folder, const std::filesystem::path& folder,
+               const ExportChoice& choice) {
     RunReader reader(file_or_folder);
+    expect_replicas(choice, reader.run());
     start_folder(folder);
     int files = 0;
-    for (std::size_t r = 0; r < reader.run().recordings.size(); ++r) {
-        const Recording& recording = reader.run().recordings[r];
-        for (std::size_t s = 0; s < recording.scans.size(); ++s)
-            files += export_scan(recording, r, reader.read_scan(r, s), folder);
-    }
+    for (std::size_t r = 0; r < reader.run().recordings.size(); ++r)
+        if (choice.has_replica(r)) files += export_replica(reader, r, folder, choice);
     return files;
 }
 

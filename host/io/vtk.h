@@ -2,22 +2,28 @@
 #pragma once
 #include <filesystem>
 
-#include "core/recording.h"
+#include "io/export_choice.h"
 
 namespace mcdem::inline io {
 
 /// Writes `<folder>/replica_00000/grains_000000.hdf` and `contacts_000000.hdf`, .., one pair for every scan
-/// with positions, and a README.txt that says how to look at them. Returns the number of files.
-int export_vtk(const Run& run, const std::filesystem::path& folder);
+/// with positions that is chosen, and a README.txt that says how to look at them. Scans are read one by one.
+/// Returns the number of files. Throws InputError and RunError.
+int export_vtk(const std::filesystem::path& file_or_folder, const std::filesystem::path& folder,
+               const ExportChoice& choice = {});
 
-/// The same from a result file or folder, scan by scan, for runs larger than memory.
-int export_vtk(const std::filesystem::path& file_or_folder, const std::filesystem::path& folder);
+/// How far every grain has come [m]; without a jump where it crosses the border of a periodic cell.
+struct Displacements {
+    std::vector<Vec3> since_last_scan, since_start;  ///< of scans with positions
+};
 
-/// Grains as points with: grain, diameter, coordination_number, force_magnitude (sum of |force| [N]).
-void write_vtk_grains(const std::filesystem::path& file, const Recording& recording, const Scan& scan);
+/// Grains as points with: grain, diameter, coordination_number, force_magnitude (sum of |force| [N]), stress
+/// (core/stress.h), pressure (a third of its trace), displacement and displacement_since_last_scan.
+void write_vtk_grains(const std::filesystem::path& file, const Recording& recording, const Scan& scan,
+                      const Displacements& moved);
 
 /// Contacts as lines from the grain's centre to its partner's, or to the foot on the wall, with: grain,
-/// partner, force (on the grain), force_magnitude, overlap.
+/// partner, force (on the grain; at the ends too), force_magnitude, normal_force, tangential_force, overlap.
 void write_vtk_contacts(const std::filesystem::path& file, const Recording& recording, const Scan& scan);
 
 }  // namespace mcdem::io

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <functional>
 
 #include "core/atomic_file.h"
 #include "core/container.h"
@@ -80,12 +79,14 @@ void append_contacts(fmt::memory_buffer& text, const Recording& recording, const
 }
 
 /// Both files of one replica, its scans read one after the other.
-int export_replica(const Recording& recording, std::size_t number, const std::filesystem::path& folder,
-                   const std::function<Scan(std::size_t)>& read_scan) {
+int export_replica(RunReader& reader, std::size_t number, const std::filesystem::path& folder,
+                   const ExportChoice& choice) {
+    const Recording& recording = reader.run().recordings[number];
     const auto write_frames = [&](NewFile& out, auto append) {
         bool any = false;
         for (std::size_t s = 0; s < recording.scans.size(); ++s) {
-            const Scan scan = read_scan(s);
+            if (!choice.has_scan(recording.scans[s].frame)) continue;
+            const Scan scan = reader.read_scan(number, s);
             if (scan.position.empty()) continue;
             fmt::memory_buffer text;
             append(text, recording, scan);
@@ -113,22 +114,14 @@ void start_folder(const std::filesystem::path& folder) {
 
 }  // namespace
 
-int export_xyz(const Run& run, const std::filesystem::path& folder) {
-    start_folder(folder);
-    int files = 0;
-    for (std::size_t r = 0; r < run.recordings.size(); ++r)
-        files += export_replica(run.recordings[r], r, folder,
-                                [&](std::size_t s) { return run.recordings[r].scans[s]; });
-    return files;
-}
-
-int export_xyz(const std::filesystem::path& file_or_folder, const std::filesystem::path& folder) {
+int export_xyz(const std::filesystem::path& file_or_folder, const std::filesystem::path& folder,
+               const ExportChoice& choice) {
     RunReader reader(file_or_folder);
+    expect_replicas(choice, reader.run());
     start_folder(folder);
     int files = 0;
     for (std::size_t r = 0; r < reader.run().recordings.size(); ++r)
-        files += export_replica(reader.run().recordings[r], r, folder,
-                                [&](std::size_t s) { return reader.read_scan(r, s); });
+        if (choice.has_replica(r)) files += export_replica(reader, r, folder, choice);
     return files;
 }
 

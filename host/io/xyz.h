@@ -3,17 +3,15 @@
 #pragma once
 #include <filesystem>
 
-#include "core/recording.h"
+#include "io/export_choice.h"
 
 namespace mcdem::inline io {
 
 /// Writes `<folder>/replica_00000.xyz` and `replica_00000.contacts.dump`, .., one frame in each for every
-/// scan with positions, and OVITO.txt that says how to look at them; numbers with nine digits. Returns the
-/// number of files of grains and contacts: none where there are no positions. Throws RunError where it cannot
-/// write.
-int export_xyz(const Run& run, const std::filesystem::path& folder);
-
-/// The same from a result file or folder, scan by scan, for runs larger than memory.
-int export_xyz(const std::filesystem::path& file_or_folder, const std::filesystem::path& folder);
+/// chosen scan with positions, and OVITO.txt that says how to look at them; numbers with nine digits. Returns
+/// the number of files of grains and contacts: none where there are no positions. Scans are read one by one.
+/// Throws InputError and RunError.
+int export_xyz(const std::filesystem::path& file_or_folder, const std::filesystem::path& folder,
+               const ExportChoice& choice = {});
 
 }  // namespace mcdem::io

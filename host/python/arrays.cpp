@@ -1,5 +1,9 @@
 #include "python/arrays.h"
 
+#include <algorithm>
+
+#include "core/stress.h"
+
 namespace mcdem::inline python {
 namespace {
 
@@ -85,6 +89,14 @@ py::array top_force_array(const Recording& recording, py::handle owner) {
     return view(py::dtype::of<double>(), {count}, {sizeof(Scan)}, first, owner);
 }
 
+py::array tensor_array(const Recording& recording, Mat3 Scan::*tensor, py::handle owner) {
+    static_assert(sizeof(Mat3) == 9 * sizeof(double));
+    const auto count = static_cast<py::ssize_t>(recording.scans.size());
+    const double* first = count == 0 ? nullptr : (recording.scans.front().*tensor).data();
+    return view(py::dtype::of<double>(), {count, 3, 3}, {sizeof(Scan), 3 * sizeof(double), sizeof(double)},
+                first, owner);
+}
+
 py::array diameter_array(const Recording& recording, py::handle owner) {
     return rows(recording.diameter, py::dtype::of<double>(), owner);
 }
@@ -96,6 +108,14 @@ py::array position_array(const Scan& scan, py::handle owner) {
 
 py::array contact_array(const Scan& scan, py::handle owner) {
     return rows(scan.contacts, contact_type(), owner);
+}
+
+py::array grain_stress_array(const Recording& recording, const Scan& scan) {
+    const auto stress = grain_stress(recording.box, recording.diameter, scan);
+    py::array_t<double> array({static_cast<py::ssize_t>(stress.size()), py::ssize_t{3}, py::ssize_t{3}});
+    for (std::size_t i = 0; i < stress.size(); ++i)
+        std::copy_n(stress[i].data(), 9, array.mutable_data(static_cast<py::ssize_t>(i), 0, 0));
+    return array;
 }
 
 }  // namespace mcdem::python

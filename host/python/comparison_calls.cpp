@@ -5,10 +5,7 @@
 #include "core/errors.h"
 #include "ensemble/calibrate_scene.h"
 #include "ensemble/reference.h"
-#include "io/output_folder.h"
-#include "io/result_folder.h"
-#include "io/vtk.h"
-#include "io/xyz.h"
+#include "io/export_run.h"
 #include "metrics/compare.h"
 #include "python/bindings.h"
 #include "python/watch.h"
@@ -87,17 +84,10 @@ py::dict calibrate(const Scene& scene, const py::object& reference, const std::s
                     py::arg("replicas") = result.replicas);
 }
 
-int export_run(const std::filesystem::path& path, const std::filesystem::path& folder, bool vtk, bool xyz) {
+int export_files(const std::filesystem::path& path, const std::filesystem::path& folder, bool vtk, bool xyz,
+                 std::vector<int> replicas, std::vector<int> scans) {
     const py::gil_scoped_release others_go_on;
-    if (!vtk && !xyz) throw InputError("export: must be told what to write, with vtk=True, xyz=True or both");
-    if (!std::filesystem::exists(path))
-        throw InputError(path.string() + ": must be a result folder or file, got nothing there");
-    result_files(path);  // said before a folder is made where there are none
-    const FolderLock lock = open_output_folder(folder);
-    const int files = (vtk ? export_vtk(path, folder) : 0) + (xyz ? export_xyz(path, folder) : 0);
-    if (files == 0)
-        throw InputError(path.string() + ": has no positions to export: run with output.positions = true");
-    return files;
+    return export_run(path, folder, {vtk, xyz}, {std::move(replicas), std::move(scans)});
 }
 
 }  // namespace
@@ -119,10 +109,12 @@ void bind_comparison(py::module_& module) {
         py::arg("progress") = py::none(),
         "The gamma of MC-DEM that gives the reference's top force, as `mcdem calibrate` finds it; keys of "
         "the dict\nas in calibration.json.");
-    module.def("export", &export_run, py::arg("path"), py::arg("folder"), py::kw_only(),
-               py::arg("vtk") = false, py::arg("xyz") = false,
+    module.def("export", &export_files, py::arg("path"), py::arg("folder"), py::kw_only(),
+               py::arg("vtk") = false, py::arg("xyz") = false, py::arg("replicas") = std::vector<int>{},
+               py::arg("scans") = std::vector<int>{},
                "Writes grains and contacts of a result folder for ParaView (vtk) or OVITO (xyz), as `mcdem "
-               "export` does.\nReturns the number of files.");
+               "export` does.\n`replicas`, `scans`: their numbers; all where empty. Returns the number of "
+               "files.");
 }
 
 }  // namespace mcdem::python

@@ -47,6 +47,14 @@ auto array_property(py::array (*array)(const Recording&, py::handle)) {
     return [array](const py::object& self) { return array(self.cast<const OneRecording&>().get(), self); };
 }
 
+py::array stress_array(const Recording& recording, py::handle owner) {
+    return tensor_array(recording, &Scan::stress, owner);
+}
+
+py::array fabric_array(const Recording& recording, py::handle owner) {
+    return tensor_array(recording, &Scan::fabric, owner);
+}
+
 auto array_of_scan(py::array (*array)(const Scan&, py::handle)) {
     return [array](const py::object& self, py::ssize_t scan) {
         return array(scan_at(self.cast<const OneRecording&>(), scan), self);
@@ -99,6 +107,19 @@ void bind_recording(py::module_& module) {
             "of a cylinder is x_min; walls that are not there have zeros.")
         .def_property_readonly("top_force", array_property(top_force_array),
                                "[S] upward force on the plate [N].")
+        .def_property_readonly(
+            "stress", array_property(stress_array),
+            "[S][3][3] stress of the packing, from contact forces and branch vectors; compression is "
+            "positive [Pa]. Not-a-number in files of earlier versions.")
+        .def_property_readonly("fabric", array_property(fabric_array),
+                               "[S][3][3] mean of n n, n the direction of a contact between grains.")
+        .def(
+            "grain_stress",
+            [](const OneRecording& self, py::ssize_t scan) {
+                return grain_stress_array(self.get(), scan_at(self, scan));
+            },
+            py::arg("scan"),
+            "[N][3][3] stress of each grain at a scan, over its own volume; compression is positive [Pa].")
         .def("positions", array_of_scan(position_array), py::arg("scan"),
              "[N][3] centres [m] at a scan; [0][3] where they were not recorded.")
         .def("contacts", array_of_scan(contact_array), py::arg("scan"),

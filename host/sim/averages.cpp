@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "core/container.h"
+#include "core/stress.h"
 
 namespace mcdem::inline sim {
 namespace {
@@ -101,6 +102,8 @@ void fill_averages(Scan& scan, const Box& box, const std::vector<double>& diamet
     scan.coordination_number = static_cast<double>(ends) / diameter.size();
     scan.mean_force = contacts ? force / contacts : not_a_number;
     scan.branch_length = pairs ? branch / pairs : not_a_number;
+    scan.stress = packing_stress(box, scan);
+    scan.fabric = packing_fabric(box, scan);
     scan.packing_fraction = packing_fraction(scan.position, diameter, box, scan.plate_z);
 }
 

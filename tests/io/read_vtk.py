@@ -30,7 +30,10 @@ force_z, plate_z = float(sys.argv[5]), float(sys.argv[6])
 grid = read(f"{folder}/grains_{scan}.hdf")
 assert grid.GetNumberOfPoints() == grid.GetNumberOfCells() == grains, grid
 points = arrays(grid.GetPointData())
-assert set(points) == {"grain", "diameter", "coordination_number", "force_magnitude"}, points
+assert set(points) == {"grain", "diameter", "coordination_number", "force_magnitude", "stress", "pressure", "displacement",
+                       "displacement_since_last_scan"}, points
+stress = points["stress"].reshape(grains, 3, 3)
+assert abs(points["pressure"] - stress.trace(axis1=1, axis2=2) / 3).max() <= 1e-12 * abs(stress).max()
 assert (points["grain"] == range(grains)).all() and (points["diameter"] > 0).all()
 assert points["coordination_number"].sum() >= contacts
 
@@ -39,7 +42,9 @@ if contacts == 0:
 grid = read(f"{folder}/contacts_{scan}.hdf")
 assert grid.GetNumberOfCells() == contacts and grid.GetNumberOfPoints() == 2 * contacts, grid
 cells = arrays(grid.GetCellData())
-assert set(cells) == {"grain", "partner", "force", "force_magnitude", "overlap"}, cells
+assert set(cells) == {"grain", "partner", "force", "force_magnitude", "normal_force", "tangential_force", "overlap"}, cells
+whole = (cells["normal_force"] ** 2 + cells["tangential_force"] ** 2) ** 0.5
+assert abs(whole - cells["force_magnitude"]).max() <= 1e-9 * whole.max()
 assert cells["force"].shape == (contacts, 3) and cells["force"][-1, 2] == force_z
 line = grid.GetCell(contacts - 1)
 ends = [line.GetPoints().GetPoint(i) for i in range(2)]

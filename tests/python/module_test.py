@@ -105,6 +105,20 @@ class Arrays(unittest.TestCase):
     def setUpClass(cls):
         cls.run_ = mcdem.simulate(mcdem.Scene(SMALL, **MODELS))
 
+    def expect_stress(self, recording, scan):
+        """The sum over the grains, from positions and contacts alone."""
+        position, volume = recording.positions(scan), np.pi / 6 * recording.diameter**3
+        sums = np.zeros((30, 3, 3))
+        for contact in recording.contacts(scan):
+            for grain, sign in ((contact["grain"], 1), (contact["partner"], -1)):
+                if grain >= 0:
+                    sums[grain] -= sign * np.outer(contact["point"] - position[grain], contact["force"])
+        of_grains = recording.grain_stress(scan)
+        np.testing.assert_allclose(of_grains, sums / volume[:, None, None], rtol=1e-9, atol=1e-9 * np.abs(of_grains).max())
+        whole = recording.box[0] * recording.box[1] * recording.scans["plate_z"][scan]
+        np.testing.assert_allclose(recording.stress[scan], sums.sum(0) / whole, rtol=1e-9, atol=1e-9)
+        self.assertAlmostEqual(np.trace(recording.fabric[scan]), 1)
+
     def test_shapes_and_meaning(self):
         recording = self.run_["elastic_sphere"]
         scans = recording.scans
@@ -115,6 +129,7 @@ class Arrays(unittest.TestCase):
         self.assertTrue(np.array_equal(recording.top_force, recording.wall_force[:, 5, 2]))
         self.assertEqual(recording.wall_force.shape, (len(recording), 6, 3))
         self.assertTrue((np.diff(scans["frame"]) == 1).all())
+        self.expect_stress(recording, int(np.argmax(recording.top_force)))
         self.assertGreater(recording.top_force.max(), 0)
         last = int(np.argmax(recording.top_force))
         position, contacts = recording.positions(last), recording.contacts(last)

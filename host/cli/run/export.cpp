@@ -4,35 +4,22 @@
 
 #include "cli/shell/commands.h"
 #include "cli/shell/standard_streams.h"
-#include "core/errors.h"
-#include "io/output_folder.h"
-#include "io/result_folder.h"
-#include "io/vtk.h"
-#include "io/xyz.h"
+#include "io/export_run.h"
 
 namespace mcdem::inline cli {
 namespace {
 
 struct ExportCommand {
     std::string run, out;
-    bool vtk = false, xyz = false;
+    ExportFormats formats;
+    ExportChoice choice;
 };
 
-void export_run(const ExportCommand& command) {
-    if (!command.vtk && !command.xyz)
-        throw InputError("export: must be told what to write, with --vtk, --xyz or both");
-    if (!std::filesystem::exists(command.run))
-        throw InputError(command.run + ": must be a result folder or file, got nothing there");
-    result_files(command.run);  // said before a folder is made where there are none
-    const FolderLock lock = open_output_folder(command.out);
-    int files = 0;
-    if (command.vtk) files += export_vtk(command.run, command.out);
-    if (command.xyz) files += export_xyz(command.run, command.out);
-    if (files == 0)
-        throw InputError(command.run + ": has no positions to export: run with output.positions = true");
+void run_export(const ExportCommand& command) {
+    const int files = export_run(command.run, command.out, command.formats, command.choice);
     std::vector<std::string> guides;
-    if (command.vtk) guides.push_back(command.out + "/README.txt");
-    if (command.xyz) guides.push_back(command.out + "/OVITO.txt");
+    if (command.formats.vtk) guides.push_back(command.out + "/README.txt");
+    if (command.formats.xyz) guides.push_back(command.out + "/OVITO.txt");
     print_out("{} files in {}; {} says how to look at them\n", files, command.out, fmt::join(guides, ", "));
 }
 
@@ -42,16 +29,22 @@ void add_export(CLI::App& app, int&) {
     auto* sub = app.add_subcommand("export", "Write grains and contacts for ParaView or OVITO");
     auto command = std::make_shared<ExportCommand>();
     sub->add_option("RUN", command->run, "Result folder or file")->required();
-    sub->add_flag("--vtk", command->vtk, "VTKHDF files, one of grains and one of contacts a scan");
-    sub->add_flag("--xyz", command->xyz,
+    sub->add_flag("--vtk", command->formats.vtk, "VTKHDF files, one of grains and one of contacts a scan");
+    sub->add_flag("--xyz", command->formats.xyz,
                   "Extended XYZ of the grains and LAMMPS dump local of the contacts, one of each a replica");
+    sub->add_option("--replica", command->choice.replicas, "Numbers of replicas; without it all")
+        ->type_name("N");
+    sub->add_option("--scan", command->choice.scans,
+                    "Numbers of scans (column frame of plate.csv); without it all")
+        ->type_name("N");
     sub->add_option("--out", command->out, "Folder for the files")->required()->type_name("DIR");
     sub->footer(
         "Needs positions and contacts in the run (output.positions, output.contacts: both on by default).\n"
         "Examples:\n"
         "  mcdem export out/small --vtk --out out/paraview\n"
+        "  mcdem export out/small --vtk --replica 1 --scan 6 7 --out out/some\n"
         "  mcdem export out/small --xyz --out out/ovito");
-    sub->callback([command] { export_run(*command); });
+    sub->callback([command] { run_export(*command); });
 }
 
 }  // namespace mcdem::cli

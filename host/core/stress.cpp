@@ -1,0 +1,68 @@
+#include "core/stress.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "core/container.h"
+
+namespace mcdem::inline core {
+namespace {
+
+/// From the centre of a grain of a contact to the contact point; `grain` is one of its two.
+Vec3 arm(const Box& box, const Scan& scan, const Contact& contact, int grain) {
+    return apart(box, scan.position[static_cast<std::size_t>(grain)], contact.point);
+}
+
+/// Minus the sum over its contacts of arm times force, of each grain [N m].
+std::vector<Mat3> moments(const Box& box, const Scan& scan) {
+    std::vector<Mat3> sums(scan.position.size(), Mat3::Zero());
+    for (const Contact& contact : scan.contacts) {
+        sums[static_cast<std::size_t>(contact.grain)] -=
+            arm(box, scan, contact, contact.grain) * contact.force.transpose();
+        if (!is_wall(contact.partner))
+            sums[static_cast<std::size_t>(contact.partner)] +=
+                arm(box, scan, contact, contact.partner) * contact.force.transpose();
+    }
+    return sums;
+}
+
+/// From the grain of a contact to its partner, of length one.
+Vec3 direction(const Box& box, const Scan& scan, const Contact& contact) {
+    const Vec3& centre = scan.position[static_cast<std::size_t>(contact.grain)];
+    const Vec3& other =
+        is_wall(contact.partner) ? contact.point : scan.position[static_cast<std::size_t>(contact.partner)];
+    return apart(box, centre, other).normalized();
+}
+
+}  // namespace
+
+std::vector<Mat3> grain_stress(const Box& box, const std::vector<double>& diameter, const Scan& scan) {
+    std::vector<Mat3> stress = moments(box, scan);
+    for (std::size_t i = 0; i < stress.size(); ++i)
+        stress[i] /= std::numbers::pi / 6 * std::pow(diameter[i], 3);
+    return stress;
+}
+
+Mat3 packing_stress(const Box& box, const Scan& scan) {
+    Mat3 sum = Mat3::Zero();
+    for (const Mat3& moment : moments(box, scan)) sum += moment;
+    return sum / (box.size_x * box.size_y * floor_share(box) * scan.plate_z);
+}
+
+Mat3 packing_fabric(const Box& box, const Scan& scan) {
+    Mat3 sum = Mat3::Zero();
+    int pairs = 0;
+    for (const Contact& contact : scan.contacts) {
+        if (is_wall(contact.partner)) continue;
+        const Vec3 n = direction(box, scan, contact);
+        sum += n * n.transpose();
+        ++pairs;
+    }
+    return pairs > 0 ? Mat3(sum / pairs) : unknown_tensor();
+}
+
+double normal_force(const Box& box, const Scan& scan, const Contact& contact) {
+    return -contact.force.dot(direction(box, scan, contact));
+}
+
+}  // namespace mcdem::core
