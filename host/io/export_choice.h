@@ -12,7 +12,7 @@ namespace mcdem::inline io {
 
 /// Numbers of replicas and of scans (Scan::frame); an empty list stands for all.
 struct ExportChoice {
-    std::vector<int> replicas, scans;
+    std::vector<int> replicas = {}, scans = {};
 
     bool has_replica(std::size_t number) const { return has(replicas, static_cast<int>(number)); }
     bool has_scan(int frame) const { return has(scans, frame); }

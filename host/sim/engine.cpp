@@ -263,7 +263,7 @@ std::vector<IntervalResult> Engine::read_reports(const std::vector<StepInterval>
     fields_.stop_at.read(made.data());
     std::vector<IntervalResult> results(layout_.replicas());
     std::visit(
-        [&]<class DeviceReplica>(const std::vector<DeviceReplica>& all) {
+        [&]<class DeviceReplica>(const std::vector<DeviceReplica>&) {
             using Report =
                 std::conditional_t<std::is_same_v<DeviceReplica, f64::Replica>, f64::Report, f32::Report>;
             std::vector<Report> found(working_.portions.size());

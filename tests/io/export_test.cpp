@@ -184,7 +184,8 @@ TEST(vtk, contacts_end_at_round_walls_and_at_nearest_images) {
     }
     run.recordings[1].box.shape = ContainerShape::periodic;
     run.recordings[1].scans[0].contacts[0].partner = 1;
-    export_vtk(run, folder / "view");
+    write_run(folder / "run.h5", run);
+    export_vtk(folder / "run.h5", folder / "view");
     const auto round = points_in(folder / "view/replica_00000/contacts_000000.hdf");
     ASSERT_EQ(round.size(), 6u);
     EXPECT_NEAR(round[3], 0.05 + 0.05 * 0.6, 1e-12);

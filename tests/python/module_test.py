@@ -205,7 +205,7 @@ class Runs(Folder):
             for number, recording in enumerate(again):
                 table = file[f"observables/replica_{number:05}"][:]
                 for name in table.dtype.names:
-                    held = recording.wall_force if name == "wall_force" else recording.scans[name]
+                    held = getattr(recording, name) if name in ("wall_force", "stress", "fabric") else recording.scans[name]
                     self.assertTrue(np.array_equal(table[name], held, equal_nan=True), name)
                 stored = file[f"contacts/replica_{number:05}/contact"][:]
                 contacts = np.concatenate([recording.contacts(s) for s in range(len(recording))])
@@ -319,7 +319,7 @@ class Runs(Folder):
         mcdem.run(mcdem.Scene(SMALL), self.folder / "shown")
         count = mcdem.export(self.folder / "shown", self.folder / "view", vtk=True, xyz=True)
         self.assertEqual(count, sum(1 for file in (self.folder / "view").rglob("*.*") if file.suffix in (".hdf", ".xyz", ".dump")))
-        with self.assertRaisesRegex(ValueError, "vtk=True"):
+        with self.assertRaisesRegex(ValueError, "vtk, xyz or both"):
             mcdem.export(self.folder / "shown", self.folder / "view")
 
     def test_where_all_replicas_fail_the_run_fails(self):
