@@ -22,6 +22,8 @@ INLINE int near_grains(global const Replica* restrict replica, int grain,
     const CellRange along_x = near_cells(cell.x, replica->span_x, repeats);
     const CellRange along_y = near_cells(cell.y, replica->span_y, repeats);
     const CellRange along_z = near_cells(cell.z, replica->span_z, false);
+    const real2 size = (real2)(replica->wall_position[1], replica->wall_position[3]),
+                inverse_size = R(1) / size;
     int count = 0;
     for (int k = along_z.first; k <= along_z.last; ++k)
         for (int j = along_y.first; j <= along_y.last; ++j)
@@ -32,10 +34,7 @@ INLINE int near_grains(global const Replica* restrict replica, int grain,
                     if (other == grain) continue;
                     const real4 position = motion[other].position;
                     real3 apart = position.xyz - own.xyz;
-                    if (repeats) {
-                        apart.x = nearest_image_of_one(apart.x, replica->wall_position[1]);
-                        apart.y = nearest_image_of_one(apart.y, replica->wall_position[3]);
-                    }
+                    if (repeats) apart.xy -= size * ((apart.xy * inverse_size + ROUNDING) - ROUNDING);
                     const real within = own.w + position.w + reach;
                     if (dot(apart, apart) < within * within) count = insert_sorted(row, count, other);
                 }

@@ -182,11 +182,13 @@ class PackingView {
     const [width, depth] = this.shown.box_mm;
     const past = 0.1 * Math.max(...this.shown.diameter_mm);  // grains reach into walls, and are cut at the axes' ends
     const tall = this.shown.top_mm / Math.cbrt(width * depth * this.shown.top_mm);
+    const spans = [width, depth, this.shown.top_mm].map(length => length + 2 * past), mean = Math.cbrt(spans[0] * spans[1] * spans[2]);
     const far = Math.min(1.2, Math.max(0.8, tall / 1.3));
     return {margin: {l: 0, r: 0, t: 0, b: 0}, paper_bgcolor: 'rgba(0,0,0,0)', modebar: toolLook, uirevision: 'kept',
             font: {family: 'system-ui, sans-serif', size: 12, color: 'var(--ink)'},
             hoverlabel: {bgcolor: 'var(--card)', bordercolor: 'var(--line)', font: {color: 'var(--ink)'}, align: 'left'},
-            scene: {aspectmode: 'data', uirevision: 'kept', camera: {eye: {x: 1.2 * far, y: -1.95 * far, z: 0.55 * far},
+            // not those of what is drawn: contacts in a periodic cell go on beyond it
+            scene: {aspectmode: 'manual', aspectratio: {x: spans[0] / mean, y: spans[1] / mean, z: spans[2] / mean}, uirevision: 'kept', camera: {eye: {x: 1.2 * far, y: -1.95 * far, z: 0.55 * far},
                     center: {x: 0, y: 0, z: -0.08}},
                     xaxis: {...axis('x [mm]'), range: [-past, width + past]},
                     yaxis: {...axis('y [mm]'), range: [-past, depth + past]},
