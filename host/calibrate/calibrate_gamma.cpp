@@ -92,27 +92,28 @@ struct Window {
     double high() const { return centre + half_width; }
 };
 
-[[noreturn]] void fail_out_of_reach(const Evidence& evidence, double target, const Bracket& bracket) {
+[[noreturn]] void fail_out_of_reach(const Evidence& evidence, double target, const Bracket& bracket,
+                                    const std::string& what) {
     const auto& points = evidence.finite();
     if (points.empty())
         throw RunError(
-            fmt::format("calibration: the packing runs away already at gamma = {:.4g}; give a bracket "
+            fmt::format("calibration: the packing runs away already at {} = {:.4g}; give a bracket "
                         "that starts lower",
-                        evidence.runs_away_at()));
+                        what, evidence.runs_away_at()));
     if (std::isnan(neighbours(points, target).below))
         throw RunError(
-            fmt::format("calibration: the top force is {:.4g} N already at gamma = {:.4g}, above the "
+            fmt::format("calibration: the top force is {:.4g} N already at {} = {:.4g}, above the "
                         "target of {:.4g} N; give a bracket that starts lower, or check the modulus",
-                        points.front().y, points.front().x, target));
+                        points.front().y, what, points.front().x, target));
     if (std::isnan(evidence.runs_away_at()))
         throw RunError(
-            fmt::format("calibration: the top force comes only to {:.4g} N at gamma = {:.4g}, the target "
+            fmt::format("calibration: the top force comes only to {:.4g} N at {} = {:.4g}, the target "
                         "is {:.4g} N; give a bracket that ends higher than {:.4g}",
-                        points.back().y, points.back().x, target, bracket.high));
+                        points.back().y, what, points.back().x, target, bracket.high));
     throw RunError(
-        fmt::format("calibration: the packing runs away at gamma = {:.4g} before it comes to the target "
-                    "of {:.4g} N ({:.4g} N at gamma = {:.4g}); no gamma gives Rtop = 1 here",
-                    evidence.runs_away_at(), target, points.back().y, points.back().x));
+        fmt::format("calibration: the packing runs away at {} = {:.4g} before it comes to the target "
+                    "of {:.4g} N ({:.4g} N at {} = {:.4g}); no {} gives Rtop = 1 here",
+                    what, evidence.runs_away_at(), target, points.back().y, what, points.back().x, what));
 }
 
 /// The part of the bracket that a runaway leaves open, while the target has not been passed.
@@ -122,7 +123,7 @@ std::vector<double> explore(const Evidence& evidence, double target, const Brack
     const double from = points.empty() ? bracket.low : points.back().x;
     const double to = evidence.runs_away_at();
     const bool open = points.empty() ? to > bracket.low : !std::isnan(neighbours(points, target).below);
-    if (!open || !(to - from > options.tolerance)) fail_out_of_reach(evidence, target, bracket);
+    if (!open || !(to - from > options.tolerance)) fail_out_of_reach(evidence, target, bracket, options.what);
     auto inner = evenly(from, to, options.batch + 2);  // both ends are known
     return {inner.begin() + 1, inner.end() - 1};
 }
@@ -175,7 +176,7 @@ Calibration calibrate_gamma(const TopForces& top_forces, double target, const Br
         gammas = evenly(std::max(window.low(), bracket.low),
                         evidence.highest_safe(std::min(window.high(), bracket.high)), options.batch);
     }
-    if (std::isnan(result.gamma)) fail_out_of_reach(evidence, target, bracket);
+    if (std::isnan(result.gamma)) fail_out_of_reach(evidence, target, bracket, options.what);
     return result;
 }
 

@@ -1,4 +1,5 @@
-// Finds gamma with Rtop = 1: the root of a noisy, rising function that may run away.
+// Finds gamma, or what else scales a top force, with Rtop = 1: the root of a noisy, rising function that may
+// run away.
 //
 // The top force grows with gamma; every evaluation is a mean over replicas and scatters; above some gamma
 // no static solution exists. Simulations are run in batches, so each round asks for several gammas at
@@ -18,9 +19,10 @@ struct Bracket {
 };
 
 struct CalibrationOptions {
-    double tolerance = 0.005;  ///< standard error of gamma at which to stop
-    int batch = 6;             ///< gammas asked for in one round
-    int rounds = 8;            ///< at most
+    double tolerance = 0.005;    ///< standard error of gamma at which to stop
+    int batch = 6;               ///< gammas asked for in one round
+    int rounds = 8;              ///< at most
+    std::string what = "gamma";  ///< what is searched for, in messages
 };
 
 /// One round: what was asked, and what came back.

@@ -28,12 +28,12 @@ std::set<std::string> keys_that_vary(const Scene& scene) {
     return keys;
 }
 
-/// All gammas and all packings go through one simulation, so that a device is filled.
-class GammaBatch {
+/// All values and all packings go through one simulation, so that a device is filled.
+class ValueBatch {
 public:
-    GammaBatch(Device& device, const Scene& scene, double displacement)
+    ValueBatch(Device& device, const Scene& scene, ContactModel model, double displacement)
         : device_(device), scene_(scene), displacement_(displacement) {
-        scene_.replicas = calibration_replicas(scene);
+        scene_.replicas = calibration_replicas(scene, model);
         scene_.output.positions = scene_.output.contacts = false;
         packings_ = make_packings(scene_);
     }
@@ -41,12 +41,12 @@ public:
     std::size_t replicas() const { return packings_.size(); }
     double stroke() const { return scene_.replicas.front().plate.start - scene_.replicas.front().plate.end; }
 
-    /// Mean top force at the displacement for each gamma [N]; not-a-number where it ran away.
-    std::vector<double> top_forces(const std::vector<double>& gammas,
+    /// Mean top force at the displacement for each value [N]; not-a-number where it ran away.
+    std::vector<double> top_forces(const std::vector<double>& values,
                                    const std::function<void(double)>& on_progress) {
-        const auto recordings = simulate_all(gammas, on_progress);
+        const auto recordings = simulate_all(values, on_progress);
         std::vector<double> forces;
-        for (std::size_t g = 0; g < gammas.size(); ++g) {
+        for (std::size_t g = 0; g < values.size(); ++g) {
             Replicas replicas;
             for (std::size_t r = 0; r < packings_.size(); ++r)
                 replicas.push_back(&recordings[g * packings_.size() + r]);
@@ -56,15 +56,15 @@ public:
     }
 
 private:
-    std::vector<Recording> simulate_all(const std::vector<double>& gammas,
+    std::vector<Recording> simulate_all(const std::vector<double>& values,
                                         const std::function<void(double)>& on_progress) {
         Scene batch = scene_;
         batch.replicas.clear();
         std::vector<Packing> packings;
-        for (const double gamma : gammas)
+        for (const double value : values)
             for (std::size_t r = 0; r < packings_.size(); ++r) {
                 batch.replicas.push_back(scene_.replicas[r]);
-                batch.replicas.back().contact.gamma = gamma;
+                set(batch.replicas.back(), value);
                 packings.push_back(packings_[r]);
             }
         // The last unloading is not looked at.
@@ -73,6 +73,13 @@ private:
         return simulate(device_, batch, packings,
                         std::size_t(strokes) * protocol.scans_per_stroke + protocol.scan_at_start,
                         [&](double fraction) { on_progress(fraction * (strokes + 1) / strokes); });
+    }
+
+    static void set(Replica& replica, double value) {
+        if (replica.contact.model == ContactModel::mc_dem)
+            replica.contact.gamma = value;
+        else
+            replica.grains.youngs_modulus *= value;
     }
 
     double mean_top_force(const Replicas& replicas) const {
@@ -91,7 +98,7 @@ private:
 
 }  // namespace
 
-std::vector<Replica> calibration_replicas(const Scene& scene) {
+std::vector<Replica> calibration_replicas(const Scene& scene, ContactModel model) {
     std::vector<std::string> problems;
     for (const auto& key : keys_that_vary(scene))
         problems.push_back(
@@ -103,7 +110,7 @@ std::vector<Replica> calibration_replicas(const Scene& scene) {
     std::set<std::uint64_t> seeds;
     for (Replica replica : scene.replicas) {
         if (!seeds.insert(replica.packing.seed).second) continue;
-        replica.contact.model = ContactModel::mc_dem;
+        replica.contact.model = model;
         chosen.push_back(std::move(replica));
     }
     return chosen;
@@ -121,7 +128,7 @@ SceneCalibration calibrate_scene(Device& device, const Scene& scene, const Repli
             "replicas failed)");
     result.target = mean_over_replicas(
         top_force_at(reference_levels, reference, result.displacement, levels.tolerance).value);
-    GammaBatch batch(device, scene, result.displacement);
+    ValueBatch batch(device, scene, options.model, result.displacement);
     if (batch.stroke() < result.displacement - levels.tolerance)
         throw InputError(
             fmt::format("calibrate: plate.start - plate.end must reach the reference's greatest "
@@ -129,13 +136,18 @@ SceneCalibration calibrate_scene(Device& device, const Scene& scene, const Repli
                         result.displacement * 1e3, batch.stroke() * 1e3));
     result.replicas = static_cast<int>(batch.replicas());
     int round = 0;
-    const auto top_forces = [&](const std::vector<double>& gammas) {
+    const auto top_forces = [&](const std::vector<double>& values) {
         const auto forces =
-            batch.top_forces(gammas, [&](double fraction) { options.on_progress(round, fraction); });
+            batch.top_forces(values, [&](double fraction) { options.on_progress(round, fraction); });
         ++round;
         return forces;
     };
-    result.found = calibrate_gamma(top_forces, result.target.value, options.bracket, options.search);
+    CalibrationOptions search = options.search;
+    if (options.model != ContactModel::mc_dem) {
+        result.youngs_modulus = scene.replicas.front().grains.youngs_modulus;
+        search.what = "E over the scene's";
+    }
+    result.found = calibrate_gamma(top_forces, result.target.value, options.bracket, search);
     return result;
 }
 

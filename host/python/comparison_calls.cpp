@@ -54,12 +54,18 @@ py::list compare_run(const SharedRun& run, const py::object& reference, const st
     return all;
 }
 
+ContactModel model_named(const std::string& word) {
+    const auto model = parse<ContactModel>(word);
+    if (!model) throw InputError("calibrate: model must be a contact model, got \"" + word + "\"");
+    return *model;
+}
+
 py::dict calibrate(const Scene& scene, const py::object& reference, const std::string& setting, int discard,
-                   double low, double high, double tolerance, int batch, int rounds,
+                   double low, double high, double tolerance, int batch, int rounds, const std::string& model,
                    const std::string& choice, py::object progress) {
     const SharedRun other = reference_of(reference, discard, ReadWhat::observables);
     Watch watch(std::move(progress));
-    CalibrateOptions options{{low, high}, {tolerance, batch, rounds}};
+    CalibrateOptions options{model_named(model), {low, high}, {tolerance, batch, rounds, "gamma"}};
     struct Stopped {};
     options.on_progress = [&](int round, double part) {
         watch.show_progress((round + part) / rounds);
@@ -74,14 +80,18 @@ py::dict calibrate(const Scene& scene, const py::object& reference, const std::s
     } catch (const Stopped&) {
     }
     watch.raise();
-    return py::dict(py::arg("gamma") = value(result.found.gamma),
-                    py::arg("gamma_standard_error") = value(result.found.standard_error),
-                    py::arg("converged") = result.found.converged,
-                    py::arg("runs_away_at_gamma") = value(result.found.runs_away_at),
-                    py::arg("target_top_force_N") = value(result.target.value),
-                    py::arg("target_standard_error_N") = value(result.target.standard_error),
-                    py::arg("displacement_m") = value(result.displacement),
-                    py::arg("replicas") = result.replicas);
+    const bool modulus = result.youngs_modulus > 0;
+    const std::string key = modulus ? "youngs_modulus_Pa" : "gamma";
+    const double unit = modulus ? result.youngs_modulus : 1;
+    py::dict found(py::arg("contact_model") = model, py::arg("converged") = result.found.converged,
+                   py::arg("target_top_force_N") = value(result.target.value),
+                   py::arg("target_standard_error_N") = value(result.target.standard_error),
+                   py::arg("displacement_m") = value(result.displacement),
+                   py::arg("replicas") = result.replicas);
+    found[py::str(key)] = value(unit * result.found.gamma);
+    found[py::str(key + "_standard_error")] = value(unit * result.found.standard_error);
+    found[py::str("runs_away_at_" + key)] = value(unit * result.found.runs_away_at);
+    return found;
 }
 
 int export_files(const std::filesystem::path& path, const std::filesystem::path& folder, bool vtk, bool xyz,
@@ -100,15 +110,15 @@ void bind_comparison(py::module_& module) {
         "compare`\nprints them: Rtop, errf [N], errZ, bhat and tau [N] with standard errors, None where not "
         "known.\n`reference`: a run, a result folder, or the folder of an experiment; `setting` chooses one "
         "of a run's.");
-    module.def(
-        "calibrate", &calibrate, py::arg("scene"), py::arg("reference"), py::kw_only(),
-        py::arg("setting") = "", py::arg("discard") = 0, py::arg("low") = CalibrateOptions{}.bracket.low,
-        py::arg("high") = CalibrateOptions{}.bracket.high,
-        py::arg("tolerance") = CalibrationOptions{}.tolerance, py::arg("batch") = CalibrationOptions{}.batch,
-        py::arg("rounds") = CalibrationOptions{}.rounds, py::arg("device") = "",
-        py::arg("progress") = py::none(),
-        "The gamma of MC-DEM that gives the reference's top force, as `mcdem calibrate` finds it; keys of "
-        "the dict\nas in calibration.json.");
+    module.def("calibrate", &calibrate, py::arg("scene"), py::arg("reference"), py::kw_only(),
+               py::arg("setting") = "", py::arg("discard") = 0,
+               py::arg("low") = CalibrateOptions{}.bracket.low,
+               py::arg("high") = CalibrateOptions{}.bracket.high,
+               py::arg("tolerance") = CalibrationOptions{}.tolerance,
+               py::arg("batch") = CalibrationOptions{}.batch, py::arg("rounds") = CalibrationOptions{}.rounds,
+               py::arg("model") = "mc_dem", py::arg("device") = "", py::arg("progress") = py::none(),
+               "The gamma of MC-DEM that gives the reference's top force, or the grains' Young's modulus for "
+               "another model,\nas `mcdem calibrate` finds it; keys of the dict as in calibration.json.");
     module.def("export", &export_files, py::arg("path"), py::arg("folder"), py::kw_only(),
                py::arg("vtk") = false, py::arg("xyz") = false, py::arg("replicas") = std::vector<int>{},
                py::arg("scans") = std::vector<int>{},

@@ -121,6 +121,19 @@ TEST_F(CliTest, CalibrationFindsTheGammaOfARunAndWritesIt) {
     EXPECT_NEAR(json.at("gamma").get<double>(), 0.9, 0.01);
     EXPECT_TRUE(json.at("converged").get<bool>());
     EXPECT_GE(json.at("rounds").size(), 1u);
+
+    calibrate[5] = "modulus";
+    calibrate.insert(calibrate.end(), {"--model", "hyperelastic_sphere", "--high", "3"});
+    const auto modulus = mcdem(calibrate);
+    expect_done(modulus);
+    EXPECT_THAT(modulus.out, testing::ContainsRegex("\nE = [0-9.]+ ± .*kPa"));
+    const auto of_modulus = nlohmann::json::parse(bytes_of_file(path("modulus/calibration.json")));
+    EXPECT_EQ(of_modulus.at("contact_model"), "hyperelastic_sphere");
+    EXPECT_GT(of_modulus.at("youngs_modulus_Pa").get<double>(), 1e3);
+    EXPECT_FALSE(of_modulus.contains("gamma"));
+    calibrate.back() = "1";
+    calibrate[calibrate.size() - 3] = "rubber";
+    expect_bad_input(mcdem(calibrate), "rubber");
 }
 
 TEST_F(CliTest, OneFailedReplicaIsNamedAllFailedIsAFailure) {

@@ -40,6 +40,32 @@ TEST(CalibrateScene, FindsTheGammaThatTheReferenceWasMadeWith) {
     EXPECT_EQ(rounds, static_cast<int>(result.found.rounds.size()));
 }
 
+// Forces go with the modulus: the law is fitted by E alone.
+TEST(CalibrateScene, FindsTheModulusForAModelWithoutGamma) {
+    TestFolder folder;
+    Device device;
+    const auto of_modulus = [&](double modulus) {
+        Scene scene = one_grain(folder.path, 1);
+        for (Replica& replica : scene.replicas) {
+            replica.contact.model = ContactModel::hyperelastic_sphere;
+            replica.grains.youngs_modulus = modulus;
+        }
+        return scene;
+    };
+    const Scene made_with = of_modulus(26e3);
+    const auto reference = simulate(device, made_with, make_packings(made_with), 1000);
+    CalibrateOptions options;
+    options.model = ContactModel::hyperelastic_sphere;
+    options.search.tolerance = 1e-3;
+    const auto result = calibrate_scene(device, of_modulus(20e3), replicas_of(reference), options);
+    EXPECT_EQ(result.youngs_modulus, 20e3);
+    EXPECT_NEAR(result.found.gamma, 1.3, 3e-3);
+    EXPECT_TRUE(result.found.converged);
+    options.bracket = {0.5, 0.6};
+    EXPECT_THAT([&] { calibrate_scene(device, of_modulus(20e3), replicas_of(reference), options); },
+                testing::ThrowsMessage<RunError>(testing::HasSubstr("E over the scene's = 0.6")));
+}
+
 TEST(CalibrateScene, RefusesAPlateThatStopsShort) {
     TestFolder folder;
     Device device;

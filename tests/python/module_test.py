@@ -314,6 +314,11 @@ class Runs(Folder):
         found = mcdem.calibrate(mcdem.Scene(SMALL), run, setting="elastic_sphere", rounds=2, batch=4, progress=told.append)
         self.assertAlmostEqual(found["target_top_force_N"], force[1], delta=1e-12)
         self.assertTrue(0.5 < found["gamma"] < 1.5 and told)
+        found = mcdem.calibrate(mcdem.Scene(SMALL), run, setting="elastic_sphere", rounds=1, batch=4, model="elastic_sphere")
+        self.assertAlmostEqual(found["youngs_modulus_Pa"] / 23.3e3, 1, delta=0.2)
+        self.assertNotIn("gamma", found)
+        with self.assertRaisesRegex(ValueError, "rubber"):
+            mcdem.calibrate(mcdem.Scene(SMALL), run, setting="elastic_sphere", model="rubber")
 
     def test_export(self):
         mcdem.run(mcdem.Scene(SMALL), self.folder / "shown")

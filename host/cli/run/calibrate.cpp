@@ -36,12 +36,25 @@ nlohmann::json numbers(const std::vector<double>& values) {
     return list;
 }
 
-nlohmann::json json_of(const SceneCalibration& result, const Scene& scene, const LoadedReference& reference) {
+/// What was searched for: its name in calibration.json and in tables, and its unit over the search's.
+struct Sought {
+    std::string key, column;
+    double unit;
+};
+Sought sought(const SceneCalibration& result) {
+    if (result.youngs_modulus == 0) return {"gamma", "gamma", 1};
+    return {"youngs_modulus_Pa", "E [kPa]", result.youngs_modulus};
+}
+
+nlohmann::json json_of(const SceneCalibration& result, ContactModel model, const Scene& scene,
+                       const LoadedReference& reference) {
     nlohmann::json json;
-    json["gamma"] = number(result.found.gamma);
-    json["gamma_standard_error"] = number(result.found.standard_error);
+    const auto [key, column, unit] = sought(result);
+    json["contact_model"] = name(model);
+    json[key] = number(unit * result.found.gamma);
+    json[key + "_standard_error"] = number(unit * result.found.standard_error);
     json["converged"] = result.found.converged;
-    json["runs_away_at_gamma"] = number(result.found.runs_away_at);
+    json["runs_away_at_" + key] = number(unit * result.found.runs_away_at);
     json["target_top_force_N"] = number(result.target.value);
     json["target_standard_error_N"] = number(result.target.standard_error);
     json["displacement_m"] = number(result.displacement);
@@ -49,32 +62,40 @@ nlohmann::json json_of(const SceneCalibration& result, const Scene& scene, const
     json["reference"] = reference.setting.label;
     json["scene"] = scene.text;
     json["program"] = version_text;
-    for (const auto& round : result.found.rounds)
-        json["rounds"].push_back({{"gamma", numbers(round.gamma)},
+    for (const auto& round : result.found.rounds) {
+        std::vector<double> tried = round.gamma;
+        for (double& value : tried) value *= unit;
+        json["rounds"].push_back({{key, numbers(tried)},
                                   {"top_force_N", numbers(round.top_force)},
-                                  {"estimate", number(round.root)},
-                                  {"standard_error", number(round.standard_error)}});
+                                  {"estimate", number(unit * round.root)},
+                                  {"standard_error", number(unit * round.standard_error)}});
+    }
     return json;
 }
 
 void print_calibration(const SceneCalibration& result) {
     TextTable table;
-    table.columns = {{"round"}, {"gamma"}, {"top force [N]"}};
+    const Sought of = sought(result);
+    const bool modulus = result.youngs_modulus > 0;
+    const double unit = modulus ? 1e-3 * of.unit : of.unit;  // kPa
+    table.columns = {{"round"}, {of.column}, {"top force [N]"}};
     for (std::size_t k = 0; k < result.found.rounds.size(); ++k) {
         const auto& round = result.found.rounds[k];
         for (std::size_t i = 0; i < round.gamma.size(); ++i)
-            table.rows.push_back({std::to_string(k + 1), fmt::format("{:.4f}", round.gamma[i]),
+            table.rows.push_back({std::to_string(k + 1), fmt::format("{:.4f}", unit * round.gamma[i]),
                                   std::isfinite(round.top_force[i])
                                       ? fmt::format("{:.3f}", round.top_force[i])
                                       : "runs away"});
     }
     print_out("{}\n", to_text(table, TableFormat::terminal));
-    print_out("target: {} N at {:.2f} mm; {} replica{} for each gamma\n", with_error(result.target, 3),
+    print_out("target: {} N at {:.2f} mm; {} replica{} for each value\n", with_error(result.target, 3),
               result.displacement * 1e3, result.replicas, result.replicas == 1 ? "" : "s");
-    print_out(
-        "gamma = {}{}\n", with_error({result.found.gamma, result.found.standard_error, result.replicas}, 4),
-        result.found.converged ? ""
-                               : " (not yet as sure as asked for: raise --rounds, or use more replicas)");
+    print_out("{} = {}{}{}\n", modulus ? "E" : "gamma",
+              with_error({unit * result.found.gamma, unit * result.found.standard_error, result.replicas}, 4),
+              modulus ? " kPa" : "",
+              result.found.converged
+                  ? ""
+                  : " (not yet as sure as asked for: raise --rounds, or use more replicas)");
 }
 
 void calibrate(CalibrateCommand& command) {
@@ -98,16 +119,26 @@ void calibrate(CalibrateCommand& command) {
     }
     print_calibration(result);
     if (command.out.empty()) return;
-    replace_own(file, FileKind::calibration, json_of(result, scene, reference).dump(2) + "\n");
+    replace_own(file, FileKind::calibration,
+                json_of(result, command.options.model, scene, reference).dump(2) + "\n");
     print_out("wrote {}\n", file.string());
 }
 
+std::map<std::string, ContactModel> models_by_name() {
+    std::map<std::string, ContactModel> models;
+    for (const auto word : Names<ContactModel>::list) models.emplace(word, *parse<ContactModel>(word));
+    return models;
+}
+
 void add_search_options(CLI::App& sub, CalibrateOptions& options) {
-    sub.add_option("--low", options.bracket.low, "Smallest gamma that is tried")->capture_default_str();
-    sub.add_option("--high", options.bracket.high, "Largest gamma that is tried")->capture_default_str();
-    sub.add_option("--tolerance", options.search.tolerance, "Standard error of gamma at which to stop")
+    sub.add_option("--low", options.bracket.low, "Smallest gamma that is tried, or E over the scene's")
         ->capture_default_str();
-    sub.add_option("--batch", options.search.batch, "Gammas in one round, all simulated together")
+    sub.add_option("--high", options.bracket.high, "Largest gamma that is tried, or E over the scene's")
+        ->capture_default_str();
+    sub.add_option("--tolerance", options.search.tolerance,
+                   "Standard error of gamma, or of E over the scene's, at which to stop")
+        ->capture_default_str();
+    sub.add_option("--batch", options.search.batch, "Values in one round, all simulated together")
         ->capture_default_str();
     sub.add_option("--rounds", options.search.rounds, "At most")->capture_default_str();
 }
@@ -115,24 +146,31 @@ void add_search_options(CLI::App& sub, CalibrateOptions& options) {
 }  // namespace
 
 void add_calibrate(CLI::App& app, int&) {
-    auto* sub =
-        app.add_subcommand("calibrate", "Find the gamma of MC-DEM that gives an experiment's top force");
+    auto* sub = app.add_subcommand(
+        "calibrate",
+        "Find the gamma of MC-DEM, or the E of another model, that gives an experiment's top force");
     auto command = std::make_shared<CalibrateCommand>();
     add_scene_options(*sub, command->scene);
     add_reference_options(
         *sub, command->reference, "--experiment",
         "Experiment folder or run whose mean top force at maximum compression is the target");
     sub->get_option("--experiment")->required();
+    sub->add_option("--model", command->options.model,
+                    "mc_dem: gamma is searched for; another contact model: Young's modulus of the grains")
+        ->transform(CLI::CheckedTransformer(models_by_name()))
+        ->default_str("mc_dem");
     sub->add_option("--out", command->out, "Folder for calibration.json")->type_name("DIR");
     add_device_option(*sub, command->device);
     add_search_options(*sub, command->options);
     sub->footer(
         "The scene gives packings, materials and protocol; its contact.model and contact.gamma are left "
         "aside.\n"
-        "More packings (batch.replicas) make gamma surer: single runs scatter by several per cent.\n"
+        "More packings (batch.replicas) make the result surer: single runs scatter by several per cent.\n"
         "Examples:\n"
         "  mcdem calibrate scenes/compression.toml --experiment data/hydrogel --discard 5 --out out/gamma\n"
-        "  mcdem calibrate scenes/small.toml --experiment out/small --setting mc_dem --rounds 2");
+        "  mcdem calibrate scenes/small.toml --experiment out/small --setting mc_dem --rounds 2\n"
+        "  mcdem calibrate scenes/small.toml --experiment out/small --setting mc_dem --model "
+        "hyperelastic_sphere");
     sub->callback([command] { calibrate(*command); });
 }
 

@@ -245,6 +245,7 @@ def calibrate(
     tolerance: float = 0.005,
     batch: int = 6,
     rounds: int = 8,
+    model: str = "mc_dem",
     device: str = "",
     progress: Callable[[float], object] | None = None,
 ) -> dict[str, Any]: ...
