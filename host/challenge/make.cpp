@@ -15,6 +15,7 @@
 #include "core/make_folder.h"
 #include "ensemble/observe_trials.h"
 #include "io/output_folder.h"
+#include "scene/legs.h"
 
 namespace mcdem::inline challenge {
 namespace {
@@ -192,6 +193,7 @@ private:
 }  // namespace
 
 std::string make_challenge(Device& device, const Scene& scene, const ChallengeOptions& options) {
+    expect_strokes(scene, "a challenge");
     if (fs::weakly_canonical(options.truth) == fs::weakly_canonical(options.folder / "challenge.json"))
         throw InputError(options.truth.string() +
                          ": is what may be known of the challenge: give another file for the truth");

@@ -19,6 +19,7 @@
 #include "ensemble/parts/manifest.h"
 #include "io/folder_lock.h"
 #include "io/result_folder.h"
+#include "scene/legs.h"
 #include "scene/random.h"
 
 namespace mcdem::inline challenge {
@@ -322,10 +323,12 @@ private:
 }  // namespace
 
 void run_challenge(Device& device, const Scene& scene, const ChallengeRunOptions& options) {
+    expect_strokes(scene, "a challenge");
     ChallengeParts(scene, options, FolderLock::Use::alone).all(device);
 }
 
 std::unique_ptr<PartedWork> challenge_parts(const Scene& scene, const ChallengeRunOptions& options) {
+    expect_strokes(scene, "a challenge");
     return std::make_unique<ChallengeParts>(scene, options, FolderLock::Use::shared);
 }
 

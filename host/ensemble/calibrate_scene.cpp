@@ -9,6 +9,7 @@
 #include "ensemble/make_packings.h"
 #include "ensemble/simulate.h"
 #include "metrics/top_force.h"
+#include "scene/legs.h"
 
 namespace mcdem::inline ensemble {
 namespace {
@@ -118,6 +119,7 @@ std::vector<Replica> calibration_replicas(const Scene& scene, ContactModel model
 
 SceneCalibration calibrate_scene(Device& device, const Scene& scene, const Replicas& reference,
                                  const CalibrateOptions& options) {
+    expect_strokes(scene, "a calibration");
     const LevelOptions levels;
     const auto reference_levels = group_levels(reference, levels);
     SceneCalibration result;

@@ -9,6 +9,7 @@
 #include "core/errors.h"
 #include "ensemble/make_packings.h"
 #include "ensemble/observe_trials.h"
+#include "scene/legs.h"
 #include "scene/make_packing.h"
 
 namespace mcdem::inline ensemble {
@@ -202,6 +203,7 @@ private:
 }  // namespace
 
 Convergence converge_scene(Device& device, const Scene& scene, const ConvergeOptions& options) {
+    expect_strokes(scene, "mcdem converge");
     return Converging(device, scene, options).all();
 }
 

@@ -14,6 +14,7 @@
 #include "ensemble/paper_metrics.h"
 #include "ensemble/parts/library_parts.h"
 #include "scene/keys.h"
+#include "scene/legs.h"
 
 namespace mcdem::inline ensemble {
 namespace {
@@ -364,8 +365,7 @@ Model model_of(const Scene& scene, const Experiment& experiment) {
     const double begun = 0.02 * (recording.plate_start - lowest);
     int loading = 0, cycles = 1;
     for (const Scan& scan : recording.scans) {
-        loading +=
-            scan.cycle == 0 && scan.phase == Phase::load && recording.displacement(scan) > begun ? 1 : 0;
+        loading += scan.cycle == 0 && scan.phase == Phase::load && recording.displacement(scan) > begun;
         cycles = std::max(cycles, scan.cycle + 1);
     }
     if (loading == 0 || !(lowest < recording.plate_start))
@@ -382,6 +382,7 @@ Model model_of(const Scene& scene, const Experiment& experiment) {
 
 Diagnosis diagnose_experiment(Device& device, const Scene& scene, const std::vector<Experiment>& experiments,
                               const DiagnoseOptions& options) {
+    expect_strokes(scene, "a diagnosis");
     const auto begin = std::chrono::steady_clock::now();
     Diagnosis diagnosis =
         DiagnosisRunner(device, plan_of(scene, experiments, options), experiments, options).run();

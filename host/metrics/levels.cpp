@@ -1,6 +1,11 @@
 #include "metrics/levels.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+
+#include "core/errors.h"
+#include "metrics/programmes.h"
 
 namespace mcdem::inline metrics {
 namespace {
@@ -41,9 +46,21 @@ double median_spacing(const Replicas& replicas) {
     return *middle;
 }
 
+/// A programme comes to one displacement at different loads and times.
+void expect_strokes(const Replicas& replicas) {
+    for (const auto* recording : replicas)
+        if (follows_programme({recording}))
+            throw InputError(fmt::format(
+                "{}: must be a run of the strokes of [plate] and [protocol] to be compared level by level, "
+                "got one of a "
+                "[[programme]]: its scans stand in plate.csv and run.h5, position and force against time",
+                recording->label));
+}
+
 }  // namespace
 
 Levels group_levels(const Replicas& replicas, const LevelOptions& options) {
+    expect_strokes(replicas);
     const double tolerance = std::min(options.tolerance, median_spacing(replicas) / 3);
     Levels levels;
     for (Phase phase : {Phase::load, Phase::unload}) {

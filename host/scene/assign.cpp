@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 
 #include "scene/problems.h"
@@ -36,6 +37,19 @@ struct Assign {
         const bool printable = std::ranges::none_of(text, [](unsigned char c) { return c < 32 || c == 127; });
         if (text.empty() || text.size() > longest || !printable) return false;
         get(settings) = text;
+        return true;
+    }
+    bool operator()(std::vector<double>& (*get)(Settings&)) const {
+        constexpr std::size_t longest = 10000;
+        const toml::array* list = value.as_array();
+        if (!list || list->empty() || list->size() > longest) return false;
+        std::vector<double> numbers;
+        for (const toml::node& element : *list) {
+            const auto number = element.is_number() ? element.value<double>() : std::nullopt;
+            if (!number || !std::isfinite(*number)) return false;
+            numbers.push_back(*number);
+        }
+        get(settings) = std::move(numbers);
         return true;
     }
     template <class Enum>

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "scene/keys.h"
 
 namespace mcdem::inline scene {
@@ -11,11 +13,16 @@ std::string key_reference() {
     defaults.run.name.clear();  // the file's name stands in for it
     std::string text;
     std::string_view open = "none yet";
-    for (const Key& key : keys()) {
-        const auto dot = key.name.find('.');
-        const std::string_view table = dot == key.name.npos ? "" : key.name.substr(0, dot);
+    std::vector<Key> all(keys().begin(), keys().end());
+    all.insert(std::ranges::find(all, "numerics.time_step", &Key::name), stage_keys(0).begin(),
+               stage_keys(0).end());
+    for (const Key& key : all) {
+        const auto dot = key.name.rfind('.');
+        const std::string_view table = dot == key.name.npos ? "" : key.name.substr(0, key.name.find('.'));
         if (table != open) {
-            text += table.empty() ? "### Before any table\n" : fmt::format("\n### [{}]\n", table);
+            text += table.empty() ? "### Before any table\n"
+                                  : fmt::format("\n### [{}{}{}]\n", table == "programme" ? "[" : "", table,
+                                                table == "programme" ? "]" : "");
             text += "\n| key | must be | default | meaning |\n|---|---|---|---|\n";
             open = table;
         }

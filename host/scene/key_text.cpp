@@ -1,7 +1,9 @@
 // Keys in words: what they take, what they are set to, and which one was meant.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <utility>
 
@@ -35,6 +37,7 @@ struct Describe {
     std::string operator()(Get<std::uint64_t>) const { return numbers(range, true); }
     std::string operator()(Get<bool>) const { return "true or false"; }
     std::string operator()(Get<std::string>) const { return "text"; }
+    std::string operator()(Get<std::vector<double>>) const { return "a list of numbers"; }
     template <class Enum>
     std::string operator()(Get<Enum>) const {
         return "one of " + all_names<Enum>();
@@ -43,6 +46,10 @@ struct Describe {
 
 std::string text_of(const std::string& value) { return value; }
 std::string text_of(bool value) { return value ? "true" : "false"; }
+std::string text_of(double value) { return std::isnan(value) ? "" : fmt::format("{}", value); }
+std::string text_of(const std::vector<double>& values) {
+    return values.empty() ? "" : fmt::format("[{}]", fmt::join(values, ", "));
+}
 template <class Value>
 std::string text_of(Value value) {
     if constexpr (std::is_enum_v<Value>)
@@ -95,6 +102,10 @@ std::string suggestion(std::string_view unknown) {
         least = far;
         best = candidate;
     };
+    if (const int stage = stage_of(unknown); stage >= 0) {
+        for (const Key& key : stage_keys(stage)) consider(key.name, distance(unknown, key.name));
+        return best.empty() ? "" : fmt::format(" (did you mean {}?)", best);
+    }
     for (const Key& key : keys()) {
         consider(key.name, distance(unknown, key.name));
         const auto dot = key.name.find('.');

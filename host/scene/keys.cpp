@@ -130,7 +130,11 @@ std::span<const Key> keys() { return table; }
 
 const Key* find_key(std::string_view name) {
     const auto found = std::ranges::find(table, name, &Key::name);
-    return found == std::end(table) ? nullptr : found;
+    if (found != std::end(table)) return found;
+    if (stage_of(name) < 0) return nullptr;
+    const auto stage = stage_keys(stage_of(name));
+    const auto of_stage = std::ranges::find(stage, name, &Key::name);
+    return of_stage == stage.end() ? nullptr : &*of_stage;
 }
 
 bool is_table(std::string_view name) {
@@ -138,6 +142,7 @@ bool is_table(std::string_view name) {
     if (name == vary) return true;
     if (name.starts_with(vary) && name.size() > vary.size() && name[vary.size()] == '.')
         name.remove_prefix(vary.size() + 1);
+    if (name == "programme" || (stage_of(name) >= 0 && name.find('.') == name.rfind('.'))) return true;
     return std::ranges::any_of(table, [&](const Key& key) {
         return key.name.size() > name.size() && key.name.starts_with(name) && key.name[name.size()] == '.';
     });

@@ -37,7 +37,8 @@ struct Range {
 using Member =
     std::variant<double& (*)(Settings&), int& (*)(Settings&), std::uint64_t& (*)(Settings&),
                  bool& (*)(Settings&), std::string& (*)(Settings&), ContactModel& (*)(Settings&),
-                 FrictionLaw& (*)(Settings&), Precision& (*)(Settings&), ContainerShape& (*)(Settings&)>;
+                 FrictionLaw& (*)(Settings&), Precision& (*)(Settings&), ContainerShape& (*)(Settings&),
+                 StageKind& (*)(Settings&), Controlled& (*)(Settings&), std::vector<double>& (*)(Settings&)>;
 
 /// Whether the replicas of one run may differ in it.
 enum class Scope { run, replica };
@@ -51,12 +52,17 @@ struct Key {
     std::string_view meaning;
 };
 
+/// Without those of a programme's stages.
 std::span<const Key> keys();
 
-/// The key of that name, or null.
+/// The keys of one stage of a programme, from 0: "programme.1.force".
+std::span<const Key> stage_keys(int stage);
+
+/// The key of that name, those of stages included, or null.
 const Key* find_key(std::string_view name);
 
-/// True for "grains", "packing" and the other tables that keys live in, "batch.vary" included.
+/// True for "grains", "packing" and the other tables that keys live in, "batch.vary" and "programme.1"
+/// included.
 bool is_table(std::string_view name);
 
 /// The other name of the key box.size_x or box.size_y; null for other keys.
@@ -64,6 +70,9 @@ const Key* same_key(std::string_view name);
 
 /// False for the sizes of containers of other shapes than this one.
 bool is_key_of(ContainerShape shape, std::string_view name);
+
+/// The stage, from 0, that a name such as "programme.2" or "programme.2.force" is about; -1 where none is.
+int stage_of(std::string_view name);
 
 /// True for the keys of a generated packing, which a packing file replaces.
 bool is_generator_key(std::string_view name);

@@ -5,6 +5,7 @@
 #include "core/errors.h"
 #include "core/input_file.h"
 #include "scene/assign.h"
+#include "scene/programme_checks.h"
 #include "scene/replicas.h"
 #include "scene/scene_checks.h"
 #include "scene/scene_document.h"
@@ -55,7 +56,16 @@ private:
 
     void refuse_unknown(const Entry& entry, const std::string& key_name) {
         const std::string shown_name = shortened(entry.key);
-        if (is_table(entry.key))
+        if (entry.key == "programme")
+            problems_.add(entry.place,
+                          fmt::format("programme must be a list of 1 to {} stages ([[programme]]), got {}",
+                                      max_stages, shown(*entry.value)));
+        else if (entry.value->is_table() && stage_of(entry.key) >= 0 && is_table(entry.key))
+            problems_.add(entry.place,
+                          shown_name +
+                              " must say what the plate does, got nothing: position, strain or "
+                              "force of a move, or stage = hold, cycle or repeat with their keys");
+        else if (is_table(entry.key))
             problems_.add(entry.place,
                           fmt::format("{} must be a table, got {}", shown_name, shown(*entry.value)));
         else
@@ -108,6 +118,24 @@ private:
         for (const Variation& variation : variations_)
             if (variation.key->name == key) return true;
         return false;
+    }
+
+    /// Keys that are given or varied.
+    std::set<std::string> said() const {
+        std::set<std::string> keys;
+        for (const Entry& entry : document_.entries())
+            keys.insert(entry.key.starts_with(vary_prefix) ? entry.key.substr(vary_prefix.size())
+                                                           : entry.key);
+        return keys;
+    }
+
+    /// Where the key was said, or, of a stage, the first that was said of it.
+    Place place_of(const std::string& key) const {
+        const Place place = document_.place_of(key);
+        if (place.line > 0 || stage_of(key) < 0) return place;
+        for (const Entry& entry : document_.entries())
+            if (stage_of(entry.key) == stage_of(key)) return entry.place;
+        return place;
     }
 
     /// A packing file and generated grains exclude each other.
@@ -181,12 +209,15 @@ private:
         CheckedFiles files;
         std::size_t grains = 1;
         combinations_ = combinations(settings_, variations_);
+        const std::set<std::string> said_keys = said();
         for (const Combination& combination : combinations_) {
             const Settings& settings = combination.settings;
             for (const CrossProblem& problem : cross_problems(settings, bad_)) {
                 const std::string key = given_name(problem.key);
                 problems_.add(document_.place_of(key), fmt::format("{} {}", key, problem.what));
             }
+            for (const CrossProblem& problem : programme_problems(settings, said_keys, bad_))
+                problems_.add(place_of(problem.key), fmt::format("{} {}", problem.key, problem.what));
             if (!bad_.contains("packing.file"))
                 for (const std::string& problem : packing_file_problems(settings, files))
                     problems_.add(document_.place_of("packing.file"), problem);

@@ -39,6 +39,9 @@ std::map<std::string, std::string> parameters(const Settings& settings) {
                              is_key_of(settings.replica.box.shape, key.name);
         all[std::string(key.name)] = applies ? value_text(key, settings) : "";
     }
+    for (std::size_t n = 0; n < settings.replica.programme.size(); ++n)
+        for (const Key& key : stage_keys(static_cast<int>(n)))
+            all[std::string(key.name)] = value_text(key, settings);
     return all;
 }
 

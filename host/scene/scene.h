@@ -9,6 +9,7 @@
 
 #include "core/names.h"
 #include "core/packing.h"
+#include "scene/programme.h"
 
 namespace mcdem::inline scene {
 
@@ -118,6 +119,7 @@ struct Replica {
     PackingSource packing;
     Plate plate;
     Protocol protocol;
+    std::vector<Stage> programme;  ///< empty: the cycles of `protocol`
     Numerics numerics;
     Effects effects;
 };

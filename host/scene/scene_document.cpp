@@ -33,6 +33,24 @@ std::size_t dots_of_names(std::string_view text) {
     return count;
 }
 
+/// [[programme]] with a number of stages that can be.
+bool is_programme(std::string_view name, const toml::node& node) {
+    const std::size_t stages = node.as_array()->size();
+    return name == "programme" && stages >= 1 && stages <= max_stages;
+}
+
+/// Keys of one stage of which only one of each group can be said.
+bool exclude_each_other(std::string_view a, std::string_view b) {
+    if (stage_of(a) < 0 || stage_of(a) != stage_of(b)) return false;
+    const auto group = [](std::string_view key) {
+        key = key.substr(key.rfind('.') + 1);
+        return key == "position" || key == "strain" || key == "force" ? 1
+               : key == "scans" || key == "scan_at"                   ? 2
+                                                                      : 0;
+    };
+    return group(a) != 0 && group(a) == group(b);
+}
+
 std::string bare(std::string key) {
     std::erase(key, '"');
     return key;
@@ -82,13 +100,30 @@ void SceneDocument::parse(std::string_view text) {
 void SceneDocument::flatten(toml::table& table, const std::string& prefix, std::vector<Entry>& into) const {
     for (auto&& [key, node] : table) {
         const std::string name = prefix + std::string(key.str());
-        if (node.is_table() && is_table(name)) {
+        if (node.is_table() && is_table(name))
             flatten(*node.as_table(), name + ".", into);
-            continue;
-        }
-        const auto& at = node.source().begin;
-        into.push_back({name, &node, {fmt::format("{}:{}", source_, at.line), int(at.line), int(at.column)}});
+        else if (node.is_array() && is_programme(name, node))
+            flatten(*node.as_array(), into);
+        else
+            into.push_back(entry_of(name, node));
     }
+}
+
+/// `programme.1.force` is the first stage's. A stage that says nothing is an entry too, to be refused.
+void SceneDocument::flatten(toml::array& stages, std::vector<Entry>& into) const {
+    int number = 0;
+    for (toml::node& stage : stages) {
+        const std::string name = fmt::format("programme.{}", ++number);
+        if (stage.is_table() && !stage.as_table()->empty())
+            flatten(*stage.as_table(), name + ".", into);
+        else
+            into.push_back(entry_of(name, stage));
+    }
+}
+
+Entry SceneDocument::entry_of(std::string key, toml::node& node) const {
+    const auto& at = node.source().begin;
+    return {std::move(key), &node, {fmt::format("{}:{}", source_, at.line), int(at.line), int(at.column)}};
 }
 
 void SceneDocument::sort_entries(Problems& problems) {
@@ -124,8 +159,12 @@ void SceneDocument::apply(const std::string& override_text, Problems& problems) 
     toml::node& value = *tables_.back().get("value");
     if (value.is_table() && is_table(key))
         flatten(*value.as_table(), key + ".", given);
+    else if (value.is_array() && is_programme(key, value))
+        flatten(*value.as_array(), given);
     else
         given.push_back({key, &value, {}});
+    if (key == "programme")
+        std::erase_if(entries_, [](const Entry& entry) { return stage_of(entry.key) >= 0; });
     for (Entry& entry : given) {
         entry.place = place;
         put(entry);
@@ -144,7 +183,7 @@ void SceneDocument::put(const Entry& entry) {
         if (const Key* same = same_key(key); same && other_key == same->name) return true;
         if (other.place.line == entry.place.line)
             return false;  // overrides may contradict each other: an error
-        return (key == "packing.file" && is_generator_key(other_key)) ||
+        return exclude_each_other(key, other_key) || (key == "packing.file" && is_generator_key(other_key)) ||
                (is_generator_key(key) && other_key == "packing.file");
     };
     std::erase_if(entries_, contradicted);
@@ -196,6 +235,11 @@ std::string SceneDocument::text() const {
         if (key.starts_with(vary_prefix)) {
             table = &inner(inner(whole, "batch"), "vary");
             key = key.substr(vary_prefix.size());
+        } else if (const int stage = stage_of(key); stage >= 0) {
+            auto& list = *whole.insert("programme", toml::array{}).first->second.as_array();
+            while (list.size() <= static_cast<std::size_t>(stage)) list.push_back(toml::table{});
+            table = list[static_cast<std::size_t>(stage)].as_table();
+            key = key.substr(key.rfind('.') + 1);
         } else if (const auto dot = key.find('.'); dot != key.npos) {
             table = &inner(whole, key.substr(0, dot));
             key = key.substr(dot + 1);

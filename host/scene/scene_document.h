@@ -42,6 +42,8 @@ public:
 private:
     void parse(std::string_view text);
     void flatten(toml::table& table, const std::string& prefix, std::vector<Entry>& into) const;
+    void flatten(toml::array& stages, std::vector<Entry>& into) const;
+    Entry entry_of(std::string key, toml::node& node) const;
     void sort_entries(Problems& problems);
     void apply(const std::string& override_text, Problems& problems);
     void put(const Entry& entry);

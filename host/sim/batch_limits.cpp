@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "core/errors.h"
+#include "scene/legs.h"
 #include "sim/device_replica.h"
 
 namespace mcdem::inline sim {
@@ -99,13 +100,25 @@ void expect_within_limits(const DeviceInfo& device, const KernelBuild& build,
     expect_room(device, Fields::memory_of(extents), replicas.size());
 }
 
+namespace {
+
+/// About how long a stage's moves and holds take, each time that it runs [s].
+double seconds_of_stage(const Stage& stage, const Replica& replica) {
+    const double speed = std::isnan(stage.speed) ? replica.plate.speed : stage.speed;
+    if (stage.kind == StageKind::hold) return stage.time;
+    return std::abs(replica.plate.start - replica.plate.end) / speed;
+}
+
+}  // namespace
+
 void expect_countable_steps(const Replica& replica, double time_step) {
     const Protocol& protocol = replica.protocol;
-    const double scans = 2.0 * protocol.cycles * protocol.scans_per_stroke;
-    const double strokes =
-        2.0 * protocol.cycles * std::abs(replica.plate.start - replica.plate.end) / replica.plate.speed;
+    const auto stages = stages_of(replica);
+    const double scans = scan_count(stages);
     const double seconds =
-        protocol.relax_time + strokes + (protocol.stop_at_scans ? scans * protocol.settle_time : 0);
+        protocol.relax_time +
+        sum_over_legs(stages, [&](const Stage& stage) { return seconds_of_stage(stage, replica); }) +
+        (protocol.stop_at_scans ? scans * protocol.settle_time : 0);
     if (!(time_step >= min_time_step))
         throw InputError(
             fmt::format("numerics.time_step must leave steps of at least {} s, got {} s: take larger, "
@@ -114,7 +127,8 @@ void expect_countable_steps(const Replica& replica, double time_step) {
     const double steps = seconds / time_step + 2 * scans;
     if (!(steps <= max_steps))
         throw InputError(
-            fmt::format("plate.speed and the times of [protocol] must leave at most {} steps, got {:.3g} for "
+            fmt::format("plate.speed, the times of [protocol] and those of a programme must leave at most {} "
+                        "steps, got {:.3g} for "
                         "{:.3g} s in steps of {:.3g} s: a faster plate, a shorter stroke, or shorter times",
                         max_steps, steps, seconds, time_step));
 }

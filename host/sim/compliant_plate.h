@@ -28,6 +28,8 @@ public:
 
     const State& state() const { return state_; }
     void set_state(const State& state) { state_ = state; }
+    /// A plate's numbers are any.
+    static bool is_possible(const State&) { return true; }
 
 private:
     double error() const { return compliance_ * state_.force - state_.given; }

@@ -1,5 +1,7 @@
 #include "sim/protocol.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -9,8 +11,8 @@ namespace {
 using Stage = ProtocolState::Stage;
 
 /// Intervals in a row below the limit: a packing that passes through rest at the turning point of an
-/// oscillation is not taken for one at rest.
-constexpr int enough_settled_intervals = 2;
+/// oscillation is not taken for one at rest, and a force that passes the one set not for one that stays.
+constexpr int enough_intervals = 2;
 /// Part of an interval's pressure that is taken over, so that waves in the packing do not shake the plate.
 constexpr double pressure_share = 0.2;
 /// The integrator takes away drag * time step of a velocity in a step. Where the plate halts, motion ends at
@@ -18,6 +20,10 @@ constexpr double pressure_share = 0.2;
 constexpr double max_drag = 0.5, max_relax_drag = 0.02;
 /// Closer than this to a level, over the plate's start, the plate has arrived.
 constexpr double rounding = 1e-12;
+constexpr double max_steps = 1e6;
+/// A force must be reached in this many times what the slowest plate takes for its whole way, a scan to
+/// settle and the approach.
+constexpr double patience = 10;
 
 double force_along_z(const IntervalResult& result, Wall wall) {
     return result.wall_force[static_cast<std::size_t>(wall)].z();
@@ -28,99 +34,213 @@ double force_along_z(const IntervalResult& result, Wall wall) {
 ProtocolRunner::ProtocolRunner(const Replica& replica, double time_step, const PackingScale& scale)
     : plate_(replica.plate),
       protocol_(replica.protocol),
+      stages_(stages_of(replica)),
+      legs_(legs_of(stages_, plate_)),
       time_step_(time_step),
-      quasi_static_(replica, scale) {
+      quasi_static_(replica, scale),
+      force_control_(replica, scale) {
     state_.plate_z = plate_.start;
     state_.pressure = quasi_static_.pressure(0, 0);
 }
 
-double ProtocolRunner::stroke_begin() const {
-    return state_.phase == Phase::load ? plate_.start : plate_.end;
-}
-double ProtocolRunner::stroke_end() const { return state_.phase == Phase::load ? plate_.end : plate_.start; }
-
-double ProtocolRunner::level_z(int level) const {
-    return stroke_begin() + (stroke_end() - stroke_begin()) * level / protocol_.scans_per_stroke;
+bool ProtocolRunner::by_force() const {
+    return state_.stage != Stage::relax && controlled(stage()) == Controlled::force;
 }
 
-double ProtocolRunner::distance_left() const { return level_z(state_.level + 1) - state_.plate_z; }
+/// Stops are approached one by one; without them only the end is.
+double ProtocolRunner::set_force() const {
+    if (stage().kind == StageKind::hold) return state_.leg_begin;
+    return protocol_.stop_at_scans ? waypoint() : leg().target;
+}
 
-long ProtocolRunner::max_settling_steps() const {
-    const double time = state_.stage == Stage::relax ? protocol_.relax_time : protocol_.settle_time;
-    return std::lround(time / time_step_);
+double ProtocolRunner::max_speed() const { return std::isnan(stage().speed) ? plate_.speed : stage().speed; }
+
+/// Where a move is to be scanned.
+double ProtocolRunner::level_value(int level) const {
+    if (!stage().scan_at.empty())
+        return in_si(stage(), stage().scan_at[static_cast<std::size_t>(level - 1)], plate_);
+    return state_.leg_begin + (leg().target - state_.leg_begin) * level / stage().scans;
+}
+
+/// The next scan, or the end of the move.
+double ProtocolRunner::waypoint() const {
+    return state_.level < scans_of(stage()) ? level_value(state_.level + 1) : leg().target;
+}
+
+bool ProtocolRunner::waypoint_is_end() const {
+    const int scans = scans_of(stage());
+    if (state_.level + 1 != scans) return state_.level >= scans;
+    return stage().scan_at.empty() || level_value(scans) == leg().target;
+}
+
+/// From the hold's beginning to its next scan or its end [s].
+double ProtocolRunner::hold_time() const {
+    const int next = state_.level + 1, scans = scans_of(stage());
+    if (next > scans) return stage().time;
+    return stage().scan_at.empty() ? stage().time * next / scans
+                                   : stage().scan_at[static_cast<std::size_t>(next - 1)];
+}
+
+long ProtocolRunner::max_stage_steps() const {
+    if (state_.stage == Stage::relax) return std::lround(protocol_.relax_time / time_step_);
+    if (state_.stage == Stage::settle) return std::lround(protocol_.settle_time / time_step_);
+    if (state_.stage == Stage::hold)
+        return state_.stage_step + std::lround((state_.hold_begin + hold_time() - state_.time) / time_step_);
+    const double slowest = quasi_static_.speed(max_speed(), plate_.start, quasi_static_.min_pressure());
+    const double way = (plate_.start - plate_.end) / slowest;
+    return std::lround(
+        patience * (way + protocol_.settle_time + force_control_.approach_time(state_.control, set_force())) /
+        time_step_);
 }
 
 /// The next interval as far as the protocol is concerned. The plate ends a move at the scan position: its
 /// last speed is a little lower.
 StepInterval ProtocolRunner::planned() const {
-    constexpr double max_steps = 1e6;
+    if (by_force()) return planned_by_force();
     if (state_.stage != Stage::move) {
-        const long left = std::max(1L, max_settling_steps() - state_.stage_step);
+        const long left = std::max(1L, max_stage_steps() - state_.stage_step);
         return {static_cast<int>(std::min<double>(left, max_steps)), state_.plate_z, 0, drag()};
     }
-    const double left = distance_left();
-    const double step = quasi_static_.speed(state_.plate_z, state_.pressure) * time_step_;
+    const double left = waypoint() - state_.plate_z;
+    const double step = quasi_static_.speed(max_speed(), state_.plate_z, state_.pressure) * time_step_;
     const double steps = std::max(1.0, std::ceil(std::abs(left) / step - 1e-9));
     return {static_cast<int>(std::min(steps, max_steps)), state_.plate_z, left / (steps * time_step_), 0};
 }
 
-double ProtocolRunner::drag() const {
-    return std::min(protocol_.settle_drag,
-                    (state_.stage == Stage::relax ? max_relax_drag : max_drag) / time_step_);
+/// The plate stays between its ends.
+StepInterval ProtocolRunner::planned_by_force() const {
+    double steps = std::clamp(std::floor(force_control_.interval(state_.control, set_force()) / time_step_),
+                              2.0, max_steps);
+    if (state_.stage != Stage::move)
+        steps = std::clamp(static_cast<double>(max_stage_steps() - state_.stage_step), 1.0, steps);
+    const double duration = steps * time_step_;
+    const double velocity = std::clamp(state_.control.velocity, (plate_.end - state_.plate_z) / duration,
+                                       (plate_.start - state_.plate_z) / duration);
+    return {static_cast<int>(steps), state_.plate_z, velocity, drag()};
 }
 
-void ProtocolRunner::take_pressure(const IntervalResult& result) {
-    const double now =
-        quasi_static_.pressure(force_along_z(result, Wall::plate), force_along_z(result, Wall::floor));
-    state_.pressure += pressure_share * (now - state_.pressure);
+double ProtocolRunner::drag() const {
+    const double wanted = by_force() ? force_control_.drag(state_.control, set_force()) : HUGE_VAL;
+    return std::min({wanted, protocol_.settle_drag,
+                     (state_.stage == Stage::relax ? max_relax_drag : max_drag) / time_step_});
+}
+
+void ProtocolRunner::take_note(const IntervalResult& result) {
+    const double velocity = planned().plate_velocity, duration = time_step_ * result.steps;
+    state_.step += result.steps;
+    state_.stage_step += result.steps;
+    state_.time += result.steps * time_step_;
+    if (state_.stage == Stage::move)
+        state_.rate_error = quasi_static_.rate_error(std::abs(velocity), state_.plate_z, state_.pressure);
+    state_.plate_z += velocity * time_step_ * result.steps;
+    const double plate = force_along_z(result, Wall::plate);
+    const double pressure = quasi_static_.pressure(plate, force_along_z(result, Wall::floor));
+    state_.pressure += pressure_share * (pressure - state_.pressure);
+    ForceControl::observe(state_.control, plate, duration);
+    if (by_force()) follow_force(duration);
+}
+
+void ProtocolRunner::follow_force(double duration) {
+    const double set = set_force();
+    const bool reached = ForceControl::reached(state_.control, set);
+    state_.reached_intervals = reached ? state_.reached_intervals + 1 : 0;
+    force_control_.steer(state_.control, set, duration,
+                         quasi_static_.speed(max_speed(), state_.plate_z, state_.pressure));
+    const double edge = rounding * plate_.start;
+    const bool at_end = state_.plate_z <= plate_.end + edge && state_.control.force < set,
+               at_start = state_.plate_z >= plate_.start - edge && state_.control.force > set;
+    const bool stuck = (at_end && state_.control.velocity < 0) || (at_start && state_.control.velocity > 0);
+    if (!reached && stuck)
+        give_up(fmt::format("the plate is at {} = {}", at_end ? "plate.end" : "plate.start",
+                            at_end ? plate_.end : plate_.start));
+}
+
+void ProtocolRunner::give_up(const std::string& why) {
+    hindrance_ = fmt::format(
+        "stage {} of the programme: the force {:.6g} N cannot be reached: {}, and the force {:.6g} N (set a "
+        "force that the packing can bear there, or move plate.end or plate.start)",
+        leg().stage + 1, set_force(), why, state_.control.force);
+    stop();
 }
 
 /// At rest: net forces are small. The drag is so strong that velocities follow from the net forces alone.
-bool ProtocolRunner::settled(const IntervalResult& result, bool plate_arrived) {
-    const double unbalanced = quasi_static_.unbalanced_force(result.kinetic_energy, drag(), state_.pressure);
-    const bool still = plate_arrived && unbalanced <= protocol_.settle_unbalanced_force;
+bool ProtocolRunner::settled(const IntervalResult& result, double drag, bool plate_arrived) {
+    const double unbalanced = quasi_static_.unbalanced_force(result.kinetic_energy, drag, state_.pressure);
+    const bool still = plate_arrived && unbalanced <= protocol_.settle_unbalanced_force &&
+                       (!by_force() || ForceControl::reached(state_.control, set_force()));
     state_.settled_intervals = still ? state_.settled_intervals + 1 : 0;
-    return state_.settled_intervals >= enough_settled_intervals;
+    return state_.settled_intervals >= enough_intervals;
 }
 
 void ProtocolRunner::begin(Stage stage) {
     state_.stage = stage;
     state_.stage_step = 0;
-    state_.settled_intervals = 0;
+    state_.settled_intervals = state_.reached_intervals = 0;
+}
+
+void ProtocolRunner::begin_leg() {
+    state_.level = 0;
+    state_.hold_begin = state_.time;
+    begin(stage().kind == StageKind::hold ? Stage::hold : Stage::move);
+    const Leg* before = state_.leg > 0 ? &legs_[static_cast<std::size_t>(state_.leg - 1)] : nullptr;
+    const mcdem::Stage* last = before ? &stages_[static_cast<std::size_t>(before->stage)] : nullptr;
+    const bool alike = last && controlled(*last) == controlled(stage());
+    if (alike && last->kind != StageKind::hold)
+        state_.leg_begin = before->target;
+    else if (!alike || !by_force())
+        state_.leg_begin = by_force() ? state_.control.force : state_.plate_z;
+    const bool goes_on = alike && by_force() && stage().kind == StageKind::hold;
+    if (!goes_on) ForceControl::rest(state_.control);
+    if (by_force() && stage().kind == StageKind::hold && !(state_.leg_begin > 0))
+        return give_up("no grain presses on the plate");
+    if (stage().kind == StageKind::hold || leg().target == state_.leg_begin) return;
+    const bool load = (leg().target > state_.leg_begin) == by_force();
+    if (load && state_.phase == Phase::unload) ++state_.cycle;
+    state_.phase = load ? Phase::load : Phase::unload;
+}
+
+void ProtocolRunner::next_leg() {
+    if (state_.leg + 1 == static_cast<int>(legs_.size())) return stop();
+    ++state_.leg;
+    begin_leg();
 }
 
 std::optional<ProtocolRunner::ScanTag> ProtocolRunner::made(const IntervalResult& result,
                                                             bool plate_arrived) {
     if (finished()) return std::nullopt;
-    if (state_.stage == Stage::move) {
-        auto scan = moved(result.steps);
-        take_pressure(result);
-        return scan;
-    }
-    count(result.steps);
-    take_pressure(result);
-    const bool still = settled(result, plate_arrived);
-    if (!still && state_.stage_step < max_settling_steps()) return std::nullopt;
+    const double drag_before = drag();
+    take_note(result);
+    if (finished()) return std::nullopt;
+    if (state_.stage == Stage::move) return by_force() ? moved_by_force() : moved();
+    const bool still = settled(result, drag_before, plate_arrived);
+    if (state_.stage == Stage::hold) return held(still);
+    if (!still && state_.stage_step < max_stage_steps()) return std::nullopt;
     if (state_.stage == Stage::settle) return arrive(still);
-    begin(Stage::move);
+    begin_leg();
     if (!protocol_.scan_at_start) return std::nullopt;
     return tag(0, still);
 }
 
-void ProtocolRunner::count(int steps) {
-    state_.step += steps;
-    state_.stage_step += steps;
-    state_.time += steps * time_step_;
+std::optional<ProtocolRunner::ScanTag> ProtocolRunner::moved() {
+    if (std::abs(waypoint() - state_.plate_z) > rounding * plate_.start) return std::nullopt;
+    state_.plate_z = waypoint();
+    return waypoint_reached();
 }
 
-std::optional<ProtocolRunner::ScanTag> ProtocolRunner::moved(int steps) {
-    const double speed = planned().plate_velocity;
-    count(steps);
-    state_.rate_error = quasi_static_.rate_error(std::abs(speed), state_.plate_z, state_.pressure);
-    state_.plate_z += speed * time_step_ * steps;
-    if (std::abs(distance_left()) > rounding * plate_.start) return std::nullopt;
-    state_.plate_z = level_z(state_.level + 1);
-    if (!protocol_.stop_at_scans) return arrive(false);
+/// Forces on the way are passed, or, with stops, reached like the last one.
+std::optional<ProtocolRunner::ScanTag> ProtocolRunner::moved_by_force() {
+    const double beyond = state_.control.force - waypoint();
+    const bool up = leg().target > state_.leg_begin;
+    const bool passed = !protocol_.stop_at_scans && !waypoint_is_end() && (up ? beyond >= 0 : beyond <= 0);
+    if (passed || state_.reached_intervals >= enough_intervals) return waypoint_reached();
+    if (state_.stage_step >= max_stage_steps())
+        give_up(fmt::format("after {:.3g} s the plate is at {:.6g}", state_.stage_step * time_step_,
+                            state_.plate_z));
+    return std::nullopt;
+}
+
+std::optional<ProtocolRunner::ScanTag> ProtocolRunner::waypoint_reached() {
+    if (!protocol_.stop_at_scans || state_.level == scans_of(stage())) return arrive(false);
     begin(Stage::settle);
     return std::nullopt;
 }
@@ -129,25 +249,52 @@ ProtocolRunner::ScanTag ProtocolRunner::tag(int cycle, bool settled) {
     return {state_.frame++, cycle, state_.phase, state_.plate_z, state_.time, state_.rate_error, settled};
 }
 
-/// The plate is at a scan position: a scan is due, and the next move begins.
+/// The plate is where a scan is due or a move ends, and the next move begins.
 std::optional<ProtocolRunner::ScanTag> ProtocolRunner::arrive(bool settled) {
-    const ScanTag scan = tag(state_.cycle, settled);
-    begin(Stage::move);
-    if (++state_.level == protocol_.scans_per_stroke) {
-        state_.level = 0;
-        if (state_.phase == Phase::unload && ++state_.cycle == protocol_.cycles) stop();
-        state_.phase = state_.phase == Phase::load ? Phase::unload : Phase::load;
+    const bool end = waypoint_is_end();
+    std::optional<ScanTag> scan;
+    if (state_.level < scans_of(stage())) {
+        scan = tag(state_.cycle, settled);
+        ++state_.level;
     }
+    begin(Stage::move);
+    if (end) next_leg();
+    return scan;
+}
+
+std::optional<ProtocolRunner::ScanTag> ProtocolRunner::held(bool settled) {
+    if (state_.stage_step < max_stage_steps()) return std::nullopt;
+    std::optional<ScanTag> scan;
+    if (state_.level < scans_of(stage())) {
+        scan = tag(state_.cycle, settled);
+        ++state_.level;
+    }
+    if (state_.level == scans_of(stage()) && state_.stage_step >= max_stage_steps()) next_leg();
     return scan;
 }
 
 double ProtocolRunner::progress() const {
     if (finished()) return 1;
-    const double all = 2.0 * protocol_.cycles * protocol_.scans_per_stroke + protocol_.scan_at_start;
-    double moved = 0;
-    if (state_.stage == Stage::move) moved = 1 - std::abs(distance_left() / (level_z(1) - level_z(0)));
-    if (state_.stage == Stage::settle) moved = 1;
-    return (state_.frame + 0.9 * std::max(0.0, moved)) / all;
+    double part = 0;
+    const int scans = std::max(1, scans_of(stage()));
+    if (state_.stage == Stage::hold)
+        part = (state_.time - state_.hold_begin) / stage().time;
+    else if (state_.stage != Stage::relax && by_force())
+        part = static_cast<double>(state_.level) / scans;
+    else if (state_.stage != Stage::relax && leg().target != state_.leg_begin)
+        part = (state_.plate_z - state_.leg_begin) / (leg().target - state_.leg_begin);
+    return (state_.leg + 0.95 * std::clamp(part, 0.0, 1.0)) / static_cast<double>(legs_.size());
+}
+
+bool ProtocolRunner::is_possible(const ProtocolState& state) const {
+    const int stage = static_cast<int>(state.stage), phase = static_cast<int>(state.phase);
+    if (state.leg < 0 || state.leg >= static_cast<int>(legs_.size())) return false;
+    const int scans =
+        scans_of(stages_[static_cast<std::size_t>(legs_[static_cast<std::size_t>(state.leg)].stage)]);
+    return state.step >= 0 && state.stage_step >= 0 && stage >= 0 &&
+           stage <= static_cast<int>(Stage::finished) && state.cycle >= 0 && (phase == 0 || phase == 1) &&
+           state.level >= 0 && state.level <= scans && state.frame >= 0 && state.settled_intervals >= 0 &&
+           state.reached_intervals >= 0;
 }
 
 }  // namespace mcdem::sim

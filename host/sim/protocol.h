@@ -1,33 +1,40 @@
-// The experiment of one replica as a sequence of intervals: relax, then cycles of load and unload strokes
+// The experiment of one replica as a sequence of intervals: relax, then the moves and holds of its programme
 // with scans on the way. It depends on its own replica's results only, so that a replica does the same
 // alone and in any batch.
 #pragma once
 #include <optional>
+#include <string>
 #include <type_traits>
 
-#include "scene/scene.h"
+#include "scene/legs.h"
 #include "sim/engine.h"
+#include "sim/force_control.h"
 #include "sim/quasi_static.h"
 
 namespace mcdem::inline sim {
 
-/// The plate's program and how far it has come: plain values, so that a checkpoint can hold them.
+/// The plate's programme and how far it has come: plain values, so that a checkpoint can hold them.
 struct ProtocolState {
     long step = 0;        ///< since the start
     long stage_step = 0;  ///< since this stage began
-    enum class Stage : int { relax, move, settle, finished };
+    enum class Stage : int { relax, move, settle, hold, finished };
     Stage stage = Stage::relax;
     int cycle = 0;
     Phase phase = Phase::load;
-    int level = 0;              ///< scans of this stroke taken or under way
+    int leg = 0;                ///< under way
+    int level = 0;              ///< scans of this leg taken or under way
     int frame = 0;              ///< scans taken
     int settled_intervals = 0;  ///< in a row that met the settling criterion
+    int reached_intervals = 0;  ///< in a row with the force that is set
     double plate_z = 0;         ///< [m]
     double pressure = 0;        ///< smoothed over some intervals [Pa]
     double rate_error = 0;      ///< estimated, of the last move
+    double leg_begin = 0;       ///< position [m] or force [N] from which scans of this leg are counted
     double time = 0;            ///< since the start [s]
+    double hold_begin = 0;      ///< the time at which it began [s]
+    ForceControl::State control;
 };
-static_assert(std::is_trivially_copyable_v<ProtocolState> && sizeof(ProtocolState) == 8 * (2 + 3 + 4),
+static_assert(std::is_trivially_copyable_v<ProtocolState> && sizeof(ProtocolState) == 8 * (2 + 4 + 6 + 3),
               "no padding: equal states have equal bytes in checkpoints");
 
 class ProtocolRunner {
@@ -58,32 +65,52 @@ public:
     void set_time_step(double time_step) { time_step_ = time_step; }
     void stop() { state_.stage = ProtocolState::Stage::finished; }
     bool finished() const { return state_.stage == ProtocolState::Stage::finished; }
+    /// Why the programme could not go on in the last interval, with what to do; else empty.
+    const std::string& hindrance() const { return hindrance_; }
     double plate_z() const { return state_.plate_z; }  ///< now [m]
     double progress() const;                           ///< part of the protocol that is done, 0 to 1
     const ProtocolState& state() const { return state_; }
     void set_state(const ProtocolState& state) { state_ = state; }
+    /// Whether a checkpoint may say so.
+    bool is_possible(const ProtocolState& state) const;
 
 private:
-    double stroke_begin() const;
-    double stroke_end() const;
-    double level_z(int level) const;
-    double distance_left() const;
-    long max_settling_steps() const;
+    const Stage& stage() const { return stages_[static_cast<std::size_t>(leg().stage)]; }
+    const Leg& leg() const { return legs_[static_cast<std::size_t>(state_.leg)]; }
+    bool by_force() const;
+    double set_force() const;
+    double max_speed() const;
+    double level_value(int level) const;
+    double waypoint() const;
+    bool waypoint_is_end() const;
+    double hold_time() const;
+    long max_stage_steps() const;
     StepInterval planned() const;
-    double drag() const;  ///< while the plate stands still [1/s]
-    void take_pressure(const IntervalResult& result);
-    bool settled(const IntervalResult& result, bool plate_arrived);
-    void count(int steps);
-    std::optional<ScanTag> moved(int steps);
+    StepInterval planned_by_force() const;
+    double drag() const;  ///< besides the grains' own [1/s]
+    void take_note(const IntervalResult& result);
+    void follow_force(double duration);
+    bool settled(const IntervalResult& result, double drag, bool plate_arrived);
+    std::optional<ScanTag> moved();
+    std::optional<ScanTag> moved_by_force();
+    std::optional<ScanTag> held(bool settled);
+    std::optional<ScanTag> waypoint_reached();
     std::optional<ScanTag> arrive(bool settled);
     ScanTag tag(int cycle, bool settled);
     void begin(ProtocolState::Stage stage);
+    void begin_leg();
+    void next_leg();
+    void give_up(const std::string& why);
 
     Plate plate_;
     Protocol protocol_;
+    std::vector<mcdem::Stage> stages_;
+    std::vector<Leg> legs_;
     double time_step_;
     QuasiStatic quasi_static_;
+    ForceControl force_control_;
     ProtocolState state_;
+    std::string hindrance_;
 };
 
 }  // namespace mcdem::sim

@@ -24,13 +24,13 @@ PackingScale scale_of(const Replica& replica, const Packing& packing) {
         volume += sphere_volume(diameter);
     }
     scale.weight = std::max(0.0, replica.grains.excess_density * gravity * volume);
+    scale.volume = volume;
     scale.count = packing.size();
     return scale;
 }
 
 QuasiStatic::QuasiStatic(const Replica& replica, const PackingScale& scale)
-    : plate_speed_(replica.plate.speed),
-      tolerance_(replica.protocol.rate_tolerance),
+    : tolerance_(replica.protocol.rate_tolerance),
       area_(replica.box.size_x * replica.box.size_y * floor_share(replica.box)),
       density_(replica.grains.density),
       scale_(scale),
@@ -45,9 +45,9 @@ double QuasiStatic::rate_error(double speed, double plate_z, double pressure) co
     return error_per_inertial_number * speed / plate_z * scale_.diameter * std::sqrt(density_ / pressure);
 }
 
-double QuasiStatic::speed(double plate_z, double pressure) const {
-    if (tolerance_ == 0) return plate_speed_;
-    return std::min(plate_speed_, tolerance_ / rate_error(1, plate_z, pressure));
+double QuasiStatic::speed(double most, double plate_z, double pressure) const {
+    if (tolerance_ == 0) return most;
+    return std::min(most, tolerance_ / rate_error(1, plate_z, pressure));
 }
 
 double QuasiStatic::unbalanced_force(double kinetic_energy, double drag, double pressure) const {

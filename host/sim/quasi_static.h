@@ -13,6 +13,7 @@ struct PackingScale {
     double diameter = 0;  ///< mean [m]
     double weight = 0;    ///< of all grains in the fluid, at least 0 [N]
     std::size_t count = 1;
+    double volume = 0;  ///< of all grains [m3]
 };
 PackingScale scale_of(const Replica& replica, const Packing& packing);
 
@@ -30,14 +31,15 @@ public:
     double pressure(double plate_force, double floor_force) const;
     /// Estimated relative error of forces at this speed [m/s].
     double rate_error(double speed, double plate_z, double pressure) const;
-    /// The plate's speed: plate.speed, or less where protocol.rate_tolerance asks for it [m/s].
-    double speed(double plate_z, double pressure) const;
+    /// The plate's speed: `most`, or less where protocol.rate_tolerance asks for it [m/s].
+    double speed(double most, double plate_z, double pressure) const;
+    double min_pressure() const { return min_pressure_; }  ///< that pressure() gives [Pa]
     /// Root mean square of the net forces on grains whose motion a drag [1/s] alone resists, over the
     /// pressure on a grain's cross-section: their velocities are then net force / (mass drag).
     double unbalanced_force(double kinetic_energy, double drag, double pressure) const;
 
 private:
-    double plate_speed_, tolerance_, area_, density_;
+    double tolerance_, area_, density_;
     PackingScale scale_;
     double min_pressure_;
 };

@@ -14,21 +14,6 @@
 namespace mcdem::inline sim {
 namespace {
 
-/// What a checkpoint may say of a protocol; a plate's numbers are any.
-void expect_possible(const ProtocolState& state) {
-    const int stage = static_cast<int>(state.stage), phase = static_cast<int>(state.phase);
-    const bool possible = state.step >= 0 && state.stage_step >= 0 && stage >= 0 &&
-                          stage <= static_cast<int>(ProtocolState::Stage::finished) && state.cycle >= 0 &&
-                          (phase == 0 || phase == 1) && state.level >= 0 && state.frame >= 0 &&
-                          state.settled_intervals >= 0;
-    if (!possible)
-        throw InputError(
-            "the checkpoint is damaged: it holds a state of the plate's program that there is not: start the "
-            "run anew "
-            "in another folder");
-}
-void expect_possible(const CompliantPlate::State&) {}
-
 /// What a user can do about each way in which a replica stops (kernels/status.h).
 std::string cause_of(const IntervalResult& result, const Replica& replica, int slots) {
     std::string cause;
@@ -118,9 +103,11 @@ bool Simulation::advance(const ScanSink& on_scan, const FailureSink& on_failure)
         if (results[r].status) {
             on_failure(r, failure(r, results[r]));
             runners_[r].stop();
-        } else if (tag) {
-            on_scan(r, scan(r, *tag, results[r]));
+            continue;
         }
+        if (tag) on_scan(r, scan(r, *tag, results[r]));
+        if (!runners_[r].hindrance().empty())
+            on_failure(r, {runners_[r].state().step, -1, runners_[r].hindrance()});
     }
     return true;
 }
@@ -182,7 +169,10 @@ void Simulation::restore(const std::map<std::string, std::vector<std::byte>>& sa
                 "the checkpoint does not belong to this scene: it holds another number of replicas");
         for (std::size_t r = 0; r < parts.size(); ++r) {
             std::memcpy(&state, found->second.data() + r * sizeof state, sizeof state);
-            expect_possible(state);
+            if (!parts[r].is_possible(state))
+                throw InputError(
+                    "the checkpoint is damaged: it holds a state of the plate's program that there is not: "
+                    "start the run anew in another folder");
             parts[r].set_state(state);
         }
     };

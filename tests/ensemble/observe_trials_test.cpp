@@ -204,6 +204,8 @@ void move(Settings& settings, const Key& key) {
                 value = !value;
             else if constexpr (std::is_enum_v<Value>)
                 value = static_cast<Value>(static_cast<int>(value) == 0 ? 1 : 0);
+            else if constexpr (std::is_same_v<Value, std::vector<double>>)
+                value.push_back(1);
             else
                 ++value;
         },

@@ -100,6 +100,10 @@ void expect_small_errors(const Measurement& errors, const Recording& truth) {
 }
 
 void warn_of_start(const Recording& truth) {
+    if (truth.parameters.contains("programme.1.stage"))
+        throw InputError(
+            "the run must be one of the strokes of [plate] and [protocol], got one of a [[programme]]: "
+            "experiments state strokes only");
     const Scan& first = truth.scans.front();
     if (first.position.empty())
         spdlog::warn(

@@ -18,6 +18,7 @@
 #include "io/result_folder.h"
 #include "io/results.h"
 #include "metrics/model_table.h"
+#include "metrics/programmes.h"
 #include "report/run/tables.h"
 
 namespace mcdem::inline cli {
@@ -85,7 +86,7 @@ void print_summary(const Run& run, const RunSummary& summary, std::size_t failed
         print_out("; {:.1f} million grain-steps in {} ({:.1f} million/s)", summary.grain_steps * 1e-6,
                   duration_text(summary.seconds), summary.grain_steps * 1e-6 / summary.seconds);
     print_out("\n");
-    const auto models = model_table(group_by_setting(run));
+    const auto models = model_table(with_programme(group_by_setting(run), false));
     if (models_vary(models)) print_out("\n{}", to_text(table_of_models(models), TableFormat::terminal));
 }
 

@@ -2,6 +2,7 @@
 #include "cli/run/results.h"
 #include "cli/shell/commands.h"
 #include "cli/shell/standard_streams.h"
+#include "metrics/programmes.h"
 #include "report/run/tables.h"
 
 namespace mcdem::inline cli {
@@ -17,10 +18,16 @@ void print_tables(const TableCommand& command) {
     const auto loaded = load_runs(command.runs, ReadWhat::observables);
     const auto format = command.markdown ? TableFormat::markdown : TableFormat::terminal;
     const auto over = command.over.empty() ? std::nullopt : std::optional(command.over);
-    const auto models = model_table(loaded.settings, {}, over);
-    if (command.csv) return print_out("{}", csv_of_models(models, loaded.settings));
+    if (const auto programmes = with_programme(loaded.settings, true); !programmes.empty() && !command.csv) {
+        print_out("{}", to_text(table_of_scans(programmes), format));
+        if (programmes.size() == loaded.settings.size()) return;
+        print_out("\n");
+    }
+    const auto strokes = command.csv ? loaded.settings : with_programme(loaded.settings, false);
+    const auto models = model_table(strokes, {}, over);
+    if (command.csv) return print_out("{}", csv_of_models(models, strokes));
     print_out("{}\n", to_text(table_of_models(models), format));
-    print_out("{}", to_text(table_of_scaling(loaded.settings), format));
+    print_out("{}", to_text(table_of_scaling(strokes), format));
 }
 
 }  // namespace

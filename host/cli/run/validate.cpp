@@ -8,6 +8,7 @@
 #include "cli/shell/commands.h"
 #include "cli/shell/standard_streams.h"
 #include "core/errors.h"
+#include "scene/legs.h"
 #include "scene/packing_state.h"
 #include "scene/read_packing.h"
 #include "sim/batch_limits.h"
@@ -50,15 +51,22 @@ void print_packings(const Scene& scene) {
     }
 }
 
+/// "2 cycles with 30 scans a stroke", or a programme's size.
+std::string strokes_text(const Replica& replica) {
+    if (replica.programme.empty())
+        return fmt::format("{} cycle{} with {} scans a stroke", replica.protocol.cycles,
+                           replica.protocol.cycles == 1 ? "" : "s", replica.protocol.scans_per_stroke);
+    return fmt::format("a programme of {} stages, {} moves and holds, {} scans", replica.programme.size(),
+                       leg_count(replica.programme), scan_count(replica.programme));
+}
+
 void print_scene(const SceneOptions& options, const std::string& choice) {
     const Scene scene = options.read();
     const auto device = chosen_device(choice);
     if (device) expect_runnable(*device, scene);
-    const Protocol& protocol = scene.replicas.front().protocol;
     print_out("{}: good\n", options.file);
-    print_out("{}, {} precision; {} cycle{} with {} scans a stroke\n", size_text(scene),
-              name(scene.precision), protocol.cycles, protocol.cycles == 1 ? "" : "s",
-              protocol.scans_per_stroke);
+    print_out("{}, {} precision; {}\n", size_text(scene), name(scene.precision),
+              strokes_text(scene.replicas.front()));
     print_packings(scene);
     print_memory(scene, device);
     std::size_t shown = 0;

@@ -118,6 +118,21 @@ Chart scaling_chart(const Cast& cast, const RunFigure& figure) {
     return chart;
 }
 
+/// Of a programme: one line through its scans.
+Chart programme_chart(const Cast& cast, const RunFigure& figure) {
+    const bool by_time = figure.x_label.starts_with("time"), force = figure.y_label.starts_with("top");
+    const std::string title = force ? "Force on the plate" : "Displacement of the plate";
+    auto chart = chart_of(figure, title + (by_time ? " against time" : " against displacement"),
+                          std::string("One scan after the other.") +
+                              (several_replicas(figure) ? " Bands: one standard error over replicas." : ""));
+    const PointWords words{by_time ? "%{x:.4g} s" : "%{x:.3f} mm", force ? "%{y:.4g} N" : "%{y:.3f} mm",
+                           force ? " ± %{customdata:.2g} N" : " ± %{customdata:.2g} mm"};
+    for (const auto& shown : figure.series)
+        append(chart.data, curve_traces(*shown.series, chart_colour(cast, *shown.series),
+                                        shown.curves.front().points, CurveLook::line, words, true));
+    return chart;
+}
+
 }  // namespace
 
 RunCharts run_charts(const std::vector<Setting>& settings, const std::optional<Setting>& reference,
@@ -130,6 +145,9 @@ RunCharts run_charts(const std::vector<Setting>& settings, const std::optional<S
         if (figure.name == "top_force") made.charts.push_back(top_force_chart(cast, figure));
         if (figure.name == "force_distribution") made.charts.push_back(distribution_chart(cast, figure));
         if (figure.name == "coordination") made.charts.push_back(coordination_chart(cast, figure, options));
+        if (figure.name == "force_time" || figure.name == "displacement_time" ||
+            figure.name == "force_displacement")
+            made.charts.push_back(programme_chart(cast, figure));
         if (figure.name == "scaling") made.charts.push_back(scaling_chart(cast, figure));
     }
     return made;

@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "metrics/coordination.h"
+#include "metrics/programmes.h"
 #include "metrics/scaling.h"
 #include "report/page/labels.h"
 
@@ -25,8 +26,11 @@ std::optional<Comparison> comparison_of(const Setting& setting, const std::optio
 
 std::string key_words(const Setting& setting) { return shortened(words_for(setting.label), key_characters); }
 
+bool is_programme(const Series& series) { return follows_programme(series.setting.replicas); }
+
 void add_each(const Cast& cast, RunFigure& figure, const std::function<FigureSeries(const Series&)>& make) {
     const auto add = [&](const Series& series) {
+        if (is_programme(series)) return;  // it has no levels
         auto shown = make(series);
         if (!shown.curves.empty()) figure.series.push_back(std::move(shown));
     };
@@ -140,6 +144,28 @@ RunFigure scaling_figure(const Cast& cast) {
     return figure;
 }
 
+/// Scan by scan, in their order.
+std::vector<RunFigure> programme_figures(const Cast& cast) {
+    const char *time = "time [s]", *force = "top force [N]", *displacement = "plate displacement [mm]";
+    std::vector<RunFigure> figures{{"force_time", time, force, {}, {}},
+                                   {"displacement_time", time, displacement, {}, {}},
+                                   {"force_displacement", displacement, force, {}, {}}};
+    for (const Series& series : cast.simulated) {
+        if (!is_programme(series)) continue;
+        std::vector<FigurePoint> points[3];
+        for (const MeanScan& scan : mean_scans(series.setting.replicas)) {
+            const Estimate &f = scan.top_force, &d = scan.displacement;
+            points[0].push_back({scan.time.value, f.value, f.standard_error});
+            points[1].push_back({scan.time.value, d.value / mm, d.standard_error / mm});
+            points[2].push_back({d.value / mm, f.value, f.standard_error});
+        }
+        for (std::size_t k = 0; k < figures.size(); ++k)
+            if (!points[k].empty())
+                figures[k].series.push_back({&series, "", {{Phase::load, std::move(points[k])}}});
+    }
+    return figures;
+}
+
 }  // namespace
 
 bool is_thresholded(const Cast& cast, const FigureOptions& options) {
@@ -151,8 +177,9 @@ Cast cast_of(const std::vector<Setting>& settings, const std::optional<Setting>&
     Cast cast;
     const auto styles = styles_of(settings);
     for (std::size_t s = 0; s < settings.size(); ++s) {
-        auto levels = group_levels(settings[s].replicas, options.compare.levels);
-        if (!levels.empty())
+        const bool programme = follows_programme(settings[s].replicas);
+        auto levels = programme ? Levels() : group_levels(settings[s].replicas, options.compare.levels);
+        if (programme || !levels.empty())
             cast.simulated.push_back({key_words(settings[s]), styles[s], settings[s], std::move(levels),
                                       comparison_of(settings[s], reference, options)});
     }
@@ -174,6 +201,10 @@ RunFigures run_figures(const Cast& cast, const FigureOptions& options) {
         else
             made.missing.push_back(missing);
     };
+    if (std::ranges::any_of(cast.simulated, &is_programme)) {
+        for (auto& figure : programme_figures(cast)) made.figures.push_back(std::move(figure));
+        if (std::ranges::all_of(cast.simulated, &is_programme)) return made;
+    }
     take(top_force_figure(cast), "the top force: not known");
     take(distribution_figure(cast, options), "the force distribution: no contacts recorded");
     take(coordination_figure(cast, options), "Z: contacts per grain are not known");

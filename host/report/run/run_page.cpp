@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/sha256.h"
+#include "metrics/programmes.h"
 #include "report/run/run_charts.h"
 #include "report/run/tables.h"
 
@@ -34,8 +35,12 @@ void add_tables(Page& page, const RunsOnPage& runs, const std::vector<Comparison
     page.section("Metrics");
     if (!comparisons.empty())
         page.table("Against " + runs.reference->label, table_of_comparisons(comparisons));
-    page.table("Top force", table_of_models(model_table(runs.settings, runs.figures.compare.levels)));
-    page.table("Scaling law", table_of_scaling(runs.settings, runs.figures.compare.levels));
+    if (const auto programmes = with_programme(runs.settings, true); !programmes.empty())
+        page.table("Scans", table_of_scans(programmes));
+    const auto strokes = with_programme(runs.settings, false);
+    if (strokes.empty()) return;
+    page.table("Top force", table_of_models(model_table(strokes, runs.figures.compare.levels)));
+    page.table("Scaling law", table_of_scaling(strokes, runs.figures.compare.levels));
 }
 
 void add_charts(Page& page, const RunsOnPage& runs, const FigureOptions& options) {

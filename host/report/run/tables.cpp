@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/parameters.h"
+#include "metrics/programmes.h"
 #include "report/page/labels.h"
 
 namespace mcdem::inline report {
@@ -76,6 +77,20 @@ TextTable table_of_models(const ModelTable& models) {
     if (std::ranges::any_of(models.rows, [](const ModelRow& row) { return row.reached.has_value(); }))
         table.notes.push_back("*: no replica reached full stroke; force and ratio are of the last scan");
     if (std::isfinite(models.rate_error)) table.notes.push_back(rate_note(models.rate_error));
+    return table;
+}
+
+TextTable table_of_scans(const std::vector<Setting>& settings) {
+    TextTable table;
+    table.columns = {
+        {"model", Align::left}, {"scan"}, {"phase", Align::left}, {"time [s]"}, {"displacement [mm]"},
+        {"top force [N]"},      {"Z"}};
+    for (const auto& setting : settings)
+        for (const MeanScan& scan : mean_scans(setting.replicas))
+            table.rows.push_back({words_for(setting.label), std::to_string(scan.frame),
+                                  std::string(name(scan.phase)), number(scan.time.value, 3),
+                                  with_error(scan.displacement, 3, 1e-3), with_error(scan.top_force, 4),
+                                  with_error(scan.coordination, 2)});
     return table;
 }
 

@@ -13,7 +13,11 @@ std::string with_error(const Estimate& estimate, int decimals, double unit = 1);
 /// Top force at full stroke, or at its last scan with a mark, and over the reference setting's.
 TextTable table_of_models(const ModelTable& models);
 
-/// The same for programs: a row a setting, with a column for each scene key that is not the same in all.
+/// Scan by scan: time, displacement, force and Z of settings that follow a programme.
+TextTable table_of_scans(const std::vector<Setting>& settings);
+
+/// The same as table_of_models for programs: a row a setting, with a column for each scene key that is not
+/// the same in all.
 std::string csv_of_models(const ModelTable& models, const std::vector<Setting>& settings);
 
 /// The paper's Table I, one row a setting, with what was not available below.

@@ -1,4 +1,4 @@
-"""The paper's four figures of runs, alone or against a reference."""
+"""The paper's four figures of runs, alone or against a reference, and those of programmes."""
 import matplotlib.lines
 import matplotlib.patches
 import numpy as np
@@ -72,6 +72,34 @@ def scaling(source, axes=None):
     axes.set_xlim(left=0)
     axes.set_ylim(bottom=0)
     place_key(axes, shown, "upper left")
+    return axes
+
+
+@styled
+def force_time(source, axes=None):
+    """Force on the plate against time, scan by scan of a programme; bands: one standard error over replicas."""
+    return of_programme(source, "force_time", axes)
+
+
+@styled
+def displacement_time(source, axes=None):
+    """Displacement of the plate against time, scan by scan of a programme."""
+    return of_programme(source, "displacement_time", axes)
+
+
+@styled
+def force_displacement(source, axes=None):
+    """Force on the plate against its displacement, scan by scan of a programme."""
+    return of_programme(source, "force_displacement", axes)
+
+
+def of_programme(source, name, axes):
+    values = read(source, name)
+    shown = entries(values, phases=())
+    axes = axes or keyed_axes(shown, is_crowded(shown))
+    draw_curves(axes, values)
+    axes.set_xlim(left=0)
+    place_key(axes, shown, "best")
     return axes
 
 

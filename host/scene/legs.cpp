@@ -1,0 +1,103 @@
+#include "scene/legs.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "core/errors.h"
+
+namespace mcdem::inline scene {
+namespace {
+
+double turning_point(const Stage& stage) {
+    if (!std::isnan(stage.force)) return stage.force;
+    return std::isnan(stage.strain) ? stage.position : stage.strain;
+}
+
+}  // namespace
+
+std::vector<Stage> stages_of(const Replica& replica) {
+    if (!replica.programme.empty()) return replica.programme;
+    Stage strokes;
+    strokes.kind = StageKind::cycle;
+    strokes.position = replica.plate.end;
+    strokes.back = replica.plate.start;
+    strokes.cycles = replica.protocol.cycles;
+    strokes.scans = replica.protocol.scans_per_stroke;
+    return {strokes};
+}
+
+void expect_strokes(const Scene& scene, const std::string& what) {
+    for (const Replica& replica : scene.replicas)
+        if (!replica.programme.empty())
+            throw InputError(
+                fmt::format("programme: must be left out of a scene for {}, which compares the strokes of "
+                            "[plate] and [protocol] only",
+                            what));
+}
+
+Controlled controlled(const Stage& stage) {
+    if (stage.kind == StageKind::hold) return stage.keep;
+    return std::isnan(stage.force) ? Controlled::position : Controlled::force;
+}
+
+double in_si(const Stage& stage, double value, const Plate& plate) {
+    const bool strain = controlled(stage) == Controlled::position && !std::isnan(stage.strain);
+    return strain ? plate.start * (1 - value) : value;
+}
+
+int scans_of(const Stage& stage) {
+    return stage.scan_at.empty() ? stage.scans : static_cast<int>(stage.scan_at.size());
+}
+
+std::vector<Leg> legs_of(const std::vector<Stage>& stages, const Plate& plate) {
+    std::vector<Leg> all;
+    std::vector<std::size_t> begin;  // of each stage in `all`
+    for (std::size_t n = 0; n < stages.size(); ++n) {
+        const Stage& stage = stages[n];
+        const int number = static_cast<int>(n);
+        begin.push_back(all.size());
+        const double target = turning_point(stage);
+        if (stage.kind == StageKind::hold) all.push_back({number});
+        if (stage.kind == StageKind::move) all.push_back({number, in_si(stage, target, plate)});
+        for (int cycle = 0; stage.kind == StageKind::cycle && cycle < stage.cycles; ++cycle) {
+            const double turn =
+                cycle == 0 ? target : stage.back + (target - stage.back) * (1 + stage.growth * cycle);
+            all.push_back({number, in_si(stage, turn, plate)});
+            all.push_back({number, in_si(stage, stage.back, plate)});
+        }
+        if (stage.kind != StageKind::repeat) continue;
+        const std::vector<Leg> once(
+            all.begin() + static_cast<long>(begin[n - static_cast<std::size_t>(stage.stages)]), all.end());
+        for (int time = 1; time < stage.times; ++time) all.insert(all.end(), once.begin(), once.end());
+    }
+    return all;
+}
+
+double sum_over_legs(const std::vector<Stage>& stages, const std::function<double(const Stage&)>& of_stage) {
+    std::vector<double> sums;
+    for (std::size_t n = 0; n < stages.size(); ++n) {
+        const Stage& stage = stages[n];
+        double sum = of_stage(stage);
+        if (stage.kind == StageKind::cycle) sum *= 2.0 * stage.cycles;
+        if (stage.kind == StageKind::repeat) {
+            sum = 0;
+            for (int back = 1; back <= stage.stages && back <= static_cast<int>(n); ++back)
+                sum += (stage.times - 1) * sums[n - static_cast<std::size_t>(back)];
+        }
+        sums.push_back(sum);
+    }
+    double all = 0;
+    for (const double sum : sums) all += sum;
+    return all;
+}
+
+double leg_count(const std::vector<Stage>& stages) {
+    return sum_over_legs(stages, [](const Stage&) { return 1.0; });
+}
+
+double scan_count(const std::vector<Stage>& stages) {
+    return sum_over_legs(stages, [](const Stage& stage) { return 1.0 * scans_of(stage); });
+}
+
+}  // namespace mcdem::scene

@@ -1,0 +1,42 @@
+// A programme as the moves and holds that it consists of, one after the other.
+#pragma once
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "scene/scene.h"
+
+namespace mcdem::inline scene {
+
+/// One way of the plate, or one hold.
+struct Leg {
+    int stage = 0;              ///< of stages_of()
+    double target = not_given;  ///< of a move: position [m] or force [N]
+};
+
+/// The replica's programme; where it has none, the cycles of [plate] and [protocol] as one stage.
+std::vector<Stage> stages_of(const Replica& replica);
+
+/// Cycles and repeats written out.
+std::vector<Leg> legs_of(const std::vector<Stage>& stages, const Plate& plate);
+
+/// The sum of a number over all legs, without making them; `of_stage(stage)` is that of one leg of the stage.
+double sum_over_legs(const std::vector<Stage>& stages, const std::function<double(const Stage&)>& of_stage);
+
+/// How many legs there are, and scans on all of them.
+double leg_count(const std::vector<Stage>& stages);
+double scan_count(const std::vector<Stage>& stages);
+
+/// Throws InputError where a replica has a programme, which `what` cannot treat.
+void expect_strokes(const Scene& scene, const std::string& what);
+
+/// What a move ends at, or a hold keeps.
+Controlled controlled(const Stage& stage);
+
+/// A value in the stage's quantity as position [m] or force [N].
+double in_si(const Stage& stage, double value, const Plate& plate);
+
+/// Of one leg of the stage.
+int scans_of(const Stage& stage);
+
+}  // namespace mcdem::scene

@@ -1,0 +1,54 @@
+// A programme: the stages that the plate is taken through, in order.
+#pragma once
+#include <limits>
+#include <vector>
+
+#include "core/names.h"
+
+namespace mcdem::inline core {
+
+enum class StageKind {
+    move,    ///< to a position, a strain or a force
+    hold,    ///< position or force for a time
+    cycle,   ///< there and back, several times
+    repeat,  ///< stages before once more
+};
+
+/// What the plate is controlled by.
+enum class Controlled { position, force };
+
+template <>
+struct Names<StageKind> {
+    static constexpr std::array<std::string_view, 4> list{"move", "hold", "cycle", "repeat"};
+};
+template <>
+struct Names<Controlled> {
+    static constexpr std::array<std::string_view, 2> list{"position", "force"};
+};
+
+}  // namespace mcdem::core
+
+namespace mcdem::inline scene {
+
+inline constexpr double not_given = std::numeric_limits<double>::quiet_NaN();
+inline constexpr int max_stages = 100;
+
+/// Which members count depends on the kind (programme_checks.cpp).
+struct Stage {
+    StageKind kind = StageKind::move;
+    double position = not_given;  ///< of the plate's lower face [m]
+    double strain = not_given;    ///< of the height at start, compression positive
+    double force = not_given;     ///< upward on the plate [N]
+    double back = not_given;      ///< where a cycle returns to, in the quantity of its turning point
+    int cycles = 1;
+    double growth = 0;  ///< of the amplitude from cycle to cycle, over the first
+    Controlled keep = Controlled::position;
+    double time = not_given;      ///< of a hold [s]
+    int stages = 1;               ///< before this one that are repeated
+    int times = 2;                ///< that they run in all
+    double speed = not_given;     ///< at most; plate.speed where not given [m/s]
+    int scans = 1;                ///< equally spaced, of each stroke of a cycle; the last at its end
+    std::vector<double> scan_at;  ///< in place of `scans`: values of the stage's quantity, or times of a hold
+};
+
+}  // namespace mcdem::scene

@@ -1,0 +1,224 @@
+#include "scene/programme_checks.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "scene/legs.h"
+
+namespace mcdem::inline scene {
+namespace {
+
+constexpr double max_legs = 100'000, max_scans = 1'000'000;
+/// Contacts under a load are stiffer than Hertz where displaced surfaces, stiffening or finite strain add to
+/// them.
+constexpr double beyond_hertz = 10;
+
+/// Which kinds of stage have a key; `stage` has all.
+bool belongs(StageKind kind, std::string_view key) {
+    const auto any = [&](std::initializer_list<std::string_view> list) {
+        return std::ranges::find(list, key) != list.end();
+    };
+    switch (kind) {
+        case StageKind::move:
+            return any({"stage", "position", "strain", "force", "speed", "scans", "scan_at"});
+        case StageKind::hold:
+            return any({"stage", "keep", "time", "scans", "scan_at"});
+        case StageKind::cycle:
+            return any(
+                {"stage", "position", "strain", "force", "back", "cycles", "growth", "speed", "scans"});
+        case StageKind::repeat:
+            return any({"stage", "stages", "times"});
+    }
+    return false;
+}
+
+/// One stage and what is wrong with it.
+class StageChecks {
+public:
+    StageChecks(const Settings& settings, int number, const std::set<std::string>& said,
+                std::vector<CrossProblem>& problems)
+        : plate_(settings.replica.plate),
+          stage_(settings.replica.programme[static_cast<std::size_t>(number)]),
+          number_(number),
+          said_(said),
+          problems_(problems) {}
+
+    void check() {
+        for (const Key& key : stage_keys(number_)) {
+            const std::string_view field = key.name.substr(key.name.rfind('.') + 1);
+            if (said_.contains(std::string(key.name)) && !belongs(stage_.kind, field))
+                add(field, fmt::format("must be left out of a stage that is a {}", name(stage_.kind)));
+        }
+        if (said("scans") && said("scan_at")) add("scan_at", "must be left out where scans is given");
+        if (stage_.kind == StageKind::hold) check_hold();
+        if (stage_.kind == StageKind::move || stage_.kind == StageKind::cycle) check_target();
+        if (stage_.kind == StageKind::repeat && stage_.stages > number_)
+            add("stages", fmt::format("must be at most the {} before it, got {}", number_, stage_.stages));
+    }
+
+private:
+    bool said(std::string_view field) const {
+        return said_.contains(fmt::format("programme.{}.{}", number_ + 1, field));
+    }
+    void add(std::string_view field, std::string what) {
+        problems_.push_back({fmt::format("programme.{}.{}", number_ + 1, field), std::move(what)});
+    }
+
+    void check_hold() {
+        if (std::isnan(stage_.time)) add("time", "must be given: a hold has no other end");
+        if (number_ == 0 && stage_.keep == Controlled::force)
+            add("keep", "must be position in the first stage: no force is there yet to be held");
+        for (std::size_t k = 0; k < stage_.scan_at.size(); ++k) {
+            const double at = stage_.scan_at[k], before = k ? stage_.scan_at[k - 1] : 0;
+            if (!(at > before && !(at > stage_.time)))
+                return add("scan_at",
+                           fmt::format("must be growing times > 0 and <= time = {}, got {} after {}",
+                                       stage_.time, at, before));
+        }
+    }
+
+    void check_target() {
+        std::vector<std::string_view> given;
+        for (const std::string_view field : {"position", "strain", "force"})
+            if (said(field)) given.push_back(field);
+        if (given.empty())
+            return add("position", fmt::format("must be given, or strain or force: a {} needs one of them",
+                                               name(stage_.kind)));
+        for (std::size_t k = 1; k < given.size(); ++k)
+            add(given[k], fmt::format("must be left out where {} is given", given.front()));
+        if (given.size() > 1) return;
+        const std::string_view field = given.front();
+        const double target = field == "force"    ? stage_.force
+                              : field == "strain" ? stage_.strain
+                                                  : stage_.position;
+        expect_possible(field, field, target);
+        if (stage_.kind == StageKind::cycle) check_cycle(field, target);
+        check_scan_places(field, target);
+    }
+
+    /// A position between plate.end and plate.start, or a force.
+    void expect_possible(std::string_view at, std::string_view field, double value) {
+        if (field == "force") {
+            if (!(value > 0)) add(at, fmt::format("must be a force > 0 [N], got {}", value));
+            return;
+        }
+        const double z = in_si(stage_, value, plate_), rounding = 1e-12 * plate_.start;
+        if (z > plate_.start + rounding || z < plate_.end - rounding)
+            add(at, fmt::format("must keep the plate between plate.end = {} and plate.start = {}, got {}{}",
+                                plate_.end, plate_.start, value,
+                                field == "strain" ? fmt::format(", that is {:.6g} m", z) : ""));
+    }
+
+    void check_cycle(std::string_view field, double target) {
+        if (!said("back"))
+            return add("back", fmt::format("must be given: the {} that a cycle returns to", field));
+        expect_possible("back", field, stage_.back);
+        if (stage_.back == target)
+            add("back", fmt::format("must differ from {}, got {} for both", field, target));
+        const double last = 1 + stage_.growth * (stage_.cycles - 1);
+        if (!(last > 0))
+            return add("growth",
+                       fmt::format("must leave the last of {} cycles an amplitude, got {}: at least {:.6g}",
+                                   stage_.cycles, stage_.growth, -1.0 / (stage_.cycles - 1)));
+        if (stage_.growth != 0) expect_possible("growth", field, stage_.back + (target - stage_.back) * last);
+    }
+
+    void check_scan_places(std::string_view field, double target) {
+        const auto& at = stage_.scan_at;
+        for (const double value : at) expect_possible("scan_at", field, value);
+        const bool up = !at.empty() && target > at.front();
+        for (std::size_t k = 0; k < at.size(); ++k) {
+            const double next = k + 1 < at.size() ? at[k + 1] : target;
+            const bool last = k + 1 == at.size();
+            if (last && next == at[k]) continue;
+            if (next == at[k] || (next > at[k]) != up)
+                return add(
+                    "scan_at",
+                    fmt::format("must be places on the way to {} = {}, one after the other, got {} before {}",
+                                field, target, at[k], next));
+        }
+    }
+
+    const Plate& plate_;
+    const Stage& stage_;
+    int number_;
+    const std::set<std::string>& said_;
+    std::vector<CrossProblem>& problems_;
+};
+
+std::vector<double> forces_of(const Stage& stage) {
+    if (stage.kind == StageKind::hold || stage.kind == StageKind::repeat || std::isnan(stage.force))
+        return {};
+    std::vector<double> forces{stage.force};
+    if (stage.kind == StageKind::cycle)
+        forces.push_back(stage.back + (stage.force - stage.back) * (1 + stage.growth * (stage.cycles - 1)));
+    return forces;
+}
+
+void check_forces(const Settings& settings, std::vector<CrossProblem>& problems) {
+    if (!settings.packing_file.empty()) return;
+    const double most = max_plate_force(settings, settings.generated.diameter_min);
+    for (std::size_t n = 0; n < settings.replica.programme.size(); ++n)
+        for (const double force : forces_of(settings.replica.programme[n]))
+            if (force > most)
+                problems.push_back(
+                    {fmt::format("programme.{}.force", n + 1),
+                     fmt::format("must be one that the grains can bear, got {}: beyond some {:.3g} N the "
+                                 "contacts under the plate are deeper than numerics.overlap_limit = {}",
+                                 force, most, settings.replica.numerics.overlap_limit)});
+}
+
+void check_size(const std::vector<Stage>& programme, std::vector<CrossProblem>& problems) {
+    if (const double legs = leg_count(programme); legs > max_legs)
+        problems.push_back({"programme.1.stage",
+                            fmt::format("and the others must be at most {} moves and holds in all, got {}",
+                                        max_legs, legs)});
+    const double scans = scan_count(programme);
+    if (scans > max_scans || scans == 0)
+        problems.push_back(
+            {"programme.1.scans",
+             fmt::format("and the others must leave 1 to {} scans in all, got {}", max_scans, scans)});
+}
+
+}  // namespace
+
+double max_plate_force(const Settings& settings, double smallest_diameter) {
+    const auto& replica = settings.replica;
+    const double radius = smallest_diameter / 2;
+    const double grains = std::max(1.0, replica.box.size_x * replica.box.size_y / (3.4 * radius * radius));
+    const double modulus =
+        replica.grains.youngs_modulus / (1 - replica.grains.poisson_ratio * replica.grains.poisson_ratio);
+    const double overlap = std::min(1.0, replica.numerics.overlap_limit) * 2 * radius;
+    return beyond_hertz * grains * 4 / 3 * modulus * std::sqrt(radius) * std::pow(overlap, 1.5);
+}
+
+std::vector<CrossProblem> programme_problems(const Settings& settings, const std::set<std::string>& said,
+                                             const std::set<std::string, std::less<>>& bad) {
+    std::vector<CrossProblem> problems;
+    const auto& programme = settings.replica.programme;
+    if (programme.empty()) return problems;
+    for (const char* key : {"protocol.cycles", "protocol.scans_per_stroke", "protocol.discard"})
+        if (said.contains(key)) problems.push_back({key, "must be left out where a programme is given"});
+    bool any_bad = bad.contains("plate.start") || bad.contains("plate.end");
+    for (std::size_t n = 0; n < programme.size(); ++n) {
+        const auto keys = stage_keys(static_cast<int>(n));
+        if (std::ranges::any_of(keys, [&](const Key& key) { return bad.contains(key.name); })) {
+            any_bad = true;
+        } else if (std::ranges::none_of(
+                       keys, [&](const Key& key) { return said.contains(std::string(key.name)); })) {
+            problems.push_back({fmt::format("programme.{}.stage", n + 1),
+                                fmt::format("must be given too: there is a stage {}", programme.size())});
+        } else {
+            StageChecks(settings, static_cast<int>(n), said, problems).check();
+        }
+    }
+    if (any_bad || !problems.empty()) return problems;
+    check_forces(settings, problems);
+    check_size(programme, problems);
+    return problems;
+}
+
+}  // namespace mcdem::scene

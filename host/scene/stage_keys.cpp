@@ -1,0 +1,85 @@
+// The keys of a programme's stages: the same rows for every stage.
+#include <array>
+#include <charconv>
+#include <string>
+#include <utility>
+
+#include "scene/keys.h"
+
+namespace mcdem::inline scene {
+namespace {
+
+constexpr std::string_view table = "programme.";
+
+template <std::size_t n, auto member>
+auto& of_stage(Settings& settings) {
+    auto& programme = settings.replica.programme;
+    if (programme.size() <= n) programme.resize(n + 1);
+    return programme[n].*member;
+}
+
+constexpr Range positive(double high) { return {0, high, Range::Low::excluded}; }
+constexpr Range none{};
+constexpr Scope one_run = Scope::run, each = Scope::replica;
+
+// clang-format off
+template <std::size_t n>
+std::vector<Key> rows() {
+    return {
+        {"stage", of_stage<n, &Stage::kind>, "", none, one_run, "what the plate does: move to a position, strain or force; hold one for a time; cycle there and back; repeat stages before"},
+        {"position", of_stage<n, &Stage::position>, "m", positive(1000), each, "of a move, or the turning point of a cycle: the plate's lower face, from plate.end to plate.start"},
+        {"strain", of_stage<n, &Stage::strain>, "", {0, 1, Range::Low::included}, each, "the same as a strain of the height at start: plate.start (1 - strain)"},
+        {"force", of_stage<n, &Stage::force>, "N", positive(1e9), each, "the same as a force on the plate, reached within 0.1 % from the side that the plate comes from"},
+        {"back", of_stage<n, &Stage::back>, "", {0, 1e9, Range::Low::included}, each, "where a cycle returns to, in the quantity (position, strain or force) of its turning point"},
+        {"cycles", of_stage<n, &Stage::cycles>, "", {1, 10000}, each, "of a cycle: how many"},
+        {"growth", of_stage<n, &Stage::growth>, "", {-1, 1000, Range::Low::excluded}, each, "of a cycle: amplitude that each adds to the one before, over the first amplitude"},
+        {"keep", of_stage<n, &Stage::keep>, "", none, one_run, "of a hold: what stays as the stage before left it; the other is recorded against time"},
+        {"time", of_stage<n, &Stage::time>, "s", positive(1e6), each, "of a hold: how long"},
+        {"stages", of_stage<n, &Stage::stages>, "", {1, max_stages}, one_run, "of a repeat: how many stages before it"},
+        {"times", of_stage<n, &Stage::times>, "", {2, 10000}, each, "of a repeat: how often they run in all"},
+        {"speed", of_stage<n, &Stage::speed>, "m/s", positive(1000), each, "of the plate, at most; without it plate.speed. protocol.rate_tolerance may ask for less"},
+        {"scans", of_stage<n, &Stage::scans>, "", {0, 10000}, each, "equally spaced, the last at the end: in position or force of a move and of each stroke of a cycle, in time of a hold"},
+        {"scan_at", of_stage<n, &Stage::scan_at>, "", none, one_run, "in place of scans: a list of positions, strains, forces (as the move has) or times since a hold began"},
+    };
+}
+// clang-format on
+
+/// Rows with their whole names, which live as long as the program.
+struct AllStages {
+    std::array<std::vector<Key>, max_stages> keys;
+    std::array<std::vector<std::string>, max_stages> names;
+
+    AllStages() { fill(std::make_index_sequence<max_stages>()); }
+
+private:
+    template <std::size_t... n>
+    void fill(std::index_sequence<n...>) {
+        (fill<n>(), ...);
+    }
+    template <std::size_t n>
+    void fill() {
+        keys[n] = rows<n>();
+        for (const Key& key : keys[n])
+            names[n].push_back(std::string(table) + std::to_string(n + 1) + "." + std::string(key.name));
+        for (std::size_t k = 0; k < keys[n].size(); ++k) keys[n][k].name = names[n][k];
+    }
+};
+
+}  // namespace
+
+std::span<const Key> stage_keys(int stage) {
+    static const AllStages all;
+    return all.keys[static_cast<std::size_t>(stage)];
+}
+
+int stage_of(std::string_view name) {
+    if (!name.starts_with(table)) return -1;
+    name.remove_prefix(table.size());
+    name = name.substr(0, name.find('.'));
+    int number = 0;
+    const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), number);
+    const bool plain = error == std::errc{} && end == name.data() + name.size() && name.front() != '0';
+    return plain && number >= 1 && number <= max_stages ? number - 1 : -1;
+}
+
+}  // namespace mcdem::scene

@@ -1,0 +1,94 @@
+#include "sim/force_control.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/container.h"
+
+namespace mcdem::inline sim {
+namespace {
+
+constexpr double tolerance = 1e-3;  ///< of a force set, relative
+/// Farther than this the plate is so slow that not even a rigid packing under it could pass the force unseen.
+constexpr double near = 0.05;
+/// Nearer than this, on the way to a stop, drag takes the waves away that the plate would take for its doing.
+constexpr double quiet = 0.25;
+/// Over the elastic stiffness of layers: packings are a few times stiffer (surfaces that displace one
+/// another, small ways back) to several times softer (grains that slide or yield).
+constexpr double stiffness_margin = 1.5;
+/// The rate follows within some `response` times what a wave through the packing takes, the force within
+/// `approach` times that: so far apart that neither overshoots at any of these stiffnesses.
+constexpr double response = 1.5, approach = 14;
+
+}  // namespace
+
+ForceControl::ForceControl(const Replica& replica, const PackingScale& scale)
+    : mass_(scale.volume * replica.grains.density),
+      quiet_(replica.protocol.stop_at_scans ? quiet : near),
+      layers_(1 + replica.plate.start / scale.diameter) {
+    const double radius = scale.diameter / 2;
+    const double area = replica.box.size_x * replica.box.size_y * floor_share(replica.box);
+    const double grains = std::clamp(area / (2 * std::sqrt(3.0) * radius * radius), 1.0,
+                                     std::max(1.0, static_cast<double>(scale.count)));
+    const double modulus =
+        replica.grains.youngs_modulus / (1 - replica.grains.poisson_ratio * replica.grains.poisson_ratio);
+    layer_ = grains * 4 / 3 * modulus * std::sqrt(radius) / (1 - replica.effects.plasticity);
+}
+
+/// The plate cannot feel more than the Hertz contacts of a full layer of grains that do not move.
+double ForceControl::layer_stiffness(double force) const {
+    return 1.5 * std::cbrt(std::max(0.0, force)) * std::cbrt(layer_ * layer_);
+}
+
+double ForceControl::stiffness(const State& state, double set) const {
+    return stiffness_margin * layer_stiffness(std::max(set, state.force)) / layers_;
+}
+
+/// That a wave takes through the packing.
+double ForceControl::response_time(const State& state, double set) const {
+    return std::sqrt(mass_ / stiffness(state, set));
+}
+
+double ForceControl::interval(const State& state, double set) const {
+    return 0.5 * response_time(state, set);
+}
+
+double ForceControl::drag(const State& state, double set) const {
+    return std::abs(set - state.force) <= quiet_ * set ? 1 / response_time(state, set) : 0;
+}
+
+double ForceControl::approach_time(const State& state, double set) const {
+    return approach * response * response_time(state, set);
+}
+
+bool ForceControl::reached(const State& state, double set) {
+    return std::abs(state.force - set) <= 0.5 * tolerance * set;
+}
+
+void ForceControl::observe(State& state, double force, double duration) {
+    state.rate = (force - state.force) / duration;
+    state.force = force;
+}
+
+/// Far off, waves in the packing shake the force by more than the plate changes it: the plate looks at the
+/// distance alone.
+double ForceControl::far_speed(double left, double force, double duration) const {
+    const double stiffest = layer_stiffness(std::max(force, force + left / 2));
+    const double blind = duration + std::sqrt(mass_ / stiffest);
+    return 0.5 * std::abs(left) / (stiffest * blind);
+}
+
+void ForceControl::steer(State& state, double set, double duration, double max_speed) const {
+    const double left = set - state.force;
+    if (std::abs(left) > near * set) {
+        const double speed = std::min(max_speed, far_speed(left, state.force, duration));
+        state.velocity = left > 0 ? -speed : speed;
+        return;
+    }
+    const double follow = response * std::max(duration, response_time(state, set));
+    const double lacking = left / (approach * follow) - state.rate;
+    const double change = std::min(0.5, duration / follow) * lacking / stiffness(state, set);
+    state.velocity = std::clamp(state.velocity - change, -max_speed, max_speed);
+}
+
+}  // namespace mcdem::sim

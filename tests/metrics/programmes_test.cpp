@@ -1,0 +1,57 @@
+// Runs of a programme are read scan by scan; strokes' levels are not made of them.
+#include "metrics/programmes.h"
+
+#include <gmock/gmock.h>
+
+#include "core/errors.h"
+#include "metrics/levels.h"
+
+namespace mcdem {
+namespace {
+
+Recording recording_of(const std::vector<double>& forces, double later) {
+    Recording recording;
+    recording.label = "held";
+    recording.parameters["programme.1.stage"] = "move";
+    recording.plate_start = 0.1;
+    for (std::size_t k = 0; k < forces.size(); ++k) {
+        Scan scan;
+        scan.frame = static_cast<int>(k);
+        scan.time = later + static_cast<double>(k);
+        scan.plate_z = 0.09;
+        scan.wall_force[static_cast<int>(Wall::plate)] = {0, 0, forces[k]};
+        recording.scans.push_back(scan);
+    }
+    return recording;
+}
+
+TEST(Programmes, MeansAreOverTheReplicasThatHaveTheScan) {
+    const Recording whole = recording_of({3, 2, 1.5}, 0), broken = recording_of({5}, 0.5);
+    const auto scans = mean_scans({&whole, &broken});
+    ASSERT_EQ(scans.size(), 3u);
+    EXPECT_EQ(scans[0].top_force.value, 4);
+    EXPECT_EQ(scans[0].top_force.standard_error, 1);
+    EXPECT_EQ(scans[0].time.value, 0.25);
+    EXPECT_EQ(scans[2].top_force.value, 1.5);
+    EXPECT_TRUE(std::isnan(scans[2].top_force.standard_error));
+    EXPECT_NEAR(scans[1].displacement.value, 0.01, 1e-15);
+}
+
+TEST(Programmes, AreToldFromStrokes) {
+    const Recording held = recording_of({1, 1}, 0);
+    Recording stroke = held;
+    stroke.parameters.clear();
+    const std::vector<Setting> both{{"held", {&held}}, {"stroke", {&stroke}}};
+    EXPECT_EQ(with_programme(both, true).front().label, "held");
+    EXPECT_EQ(with_programme(both, false).front().label, "stroke");
+    EXPECT_EQ(group_levels({&stroke}).size(), 1u);
+    try {
+        group_levels({&held});
+        FAIL() << "two scans at one displacement and different times are no level";
+    } catch (const InputError& error) {
+        EXPECT_THAT(error.what(), testing::HasSubstr("got one of a [[programme]]"));
+    }
+}
+
+}  // namespace
+}  // namespace mcdem

@@ -1,0 +1,58 @@
+// A packing taken through a programme, and the plate's position and force at every interval's end.
+#pragma once
+#include "reference/test_scene.h"
+#include "scene/make_packing.h"
+#include "scene/read_scene.h"
+#include "sim/compliant_plate.h"
+#include "sim/simulation.h"
+
+namespace reference {
+
+struct Traced {
+    struct Row {
+        double time, plate_z, force;  ///< [s], [m], [N]
+        int leg;
+        mcdem::ProtocolState::Stage stage;
+    };
+    struct Scanned {
+        mcdem::ProtocolRunner::ScanTag tag;
+        double force;  ///< [N]
+    };
+    std::vector<Row> rows;
+    std::vector<Scanned> scans;
+    std::string hindrance;
+    int status = 0;
+};
+
+/// Every replica of the scene by itself.
+inline Traced trace(const mcdem::Scene& scene, int r, Packing packing) {
+    const Replica& replica = scene.replicas[static_cast<std::size_t>(r)];
+    Engine engine(device(), build(scene.precision, scene.slots), {replica}, {packing});
+    mcdem::ProtocolRunner runner(replica, engine.time_step(0), mcdem::scale_of(replica, packing));
+    mcdem::CompliantPlate plate(replica);
+    Traced traced;
+    while (!runner.finished()) {
+        const double dt = engine.time_step(0);
+        runner.set_time_step(dt);
+        auto interval = runner.next([&](double velocity) { return engine.max_interval(0, velocity); });
+        const auto before = runner.state();
+        plate.deflect(interval, dt, engine.max_plate_move(0));
+        const auto result = engine.advance({interval}).front();
+        plate.made(result);
+        const auto scan = runner.made(result, plate.arrived(engine.max_plate_move(0)));
+        const double force = result.wall_force[static_cast<int>(mcdem::Wall::plate)].z();
+        traced.rows.push_back({runner.state().time, runner.plate_z(), force, before.leg, before.stage});
+        if (scan) traced.scans.push_back({*scan, force});
+        traced.status |= result.status;
+        if (result.status) break;
+    }
+    traced.hindrance = runner.hindrance();
+    return traced;
+}
+
+inline Traced trace(const std::string& text, const std::vector<std::string>& overrides = {}) {
+    const auto scene = mcdem::parse_scene(text, "traced.toml", overrides);
+    return trace(scene, 0, mcdem::make_packing(scene.replicas[0]));
+}
+
+}  // namespace reference
