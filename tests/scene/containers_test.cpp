@@ -136,7 +136,9 @@ TEST(GeneratedPacking, FillsContainersOfEveryShape) {
             EXPECT_TRUE(p.x() >= 0 && p.x() < box.size_x && p.y() >= 0 && p.y() < box.size_y);
         }
         EXPECT_GT(high, height - 0.02);
-        if (is_cylinder(box)) EXPECT_LT(far, cylinder_radius(box) - 0.0089);
+        if (is_cylinder(box)) {
+            EXPECT_LT(far, cylinder_radius(box) - 0.0089);
+        }
     }
 }
 

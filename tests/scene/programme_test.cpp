@@ -67,7 +67,9 @@ times = 3
     for (std::size_t again = 0; again < 2; ++again)
         for (std::size_t k = 0; k < 5; ++k) {
             EXPECT_EQ(legs[7 + 5 * again + k].stage, legs[2 + k].stage);
-            if (k > 0) EXPECT_EQ(at[7 + 5 * again + k], at[2 + k]);
+            if (k > 0) {
+                EXPECT_EQ(at[7 + 5 * again + k], at[2 + k]);
+            }
         }
     EXPECT_EQ(leg_count(read("[[programme]]\nstrain = 0.1\n[[programme]]\nstage = \"repeat\"\nstages = 1\n"
                              "[[programme]]\nstage = \"repeat\"\nstages = 2\ntimes = 4\n")
