@@ -89,7 +89,7 @@ const Key table[] = {
     {"protocol.scan_at_start", replica<&Replica::protocol, &Protocol::scan_at_start>, "", none, each, "a scan, frame 0, of the relaxed packing before the first stroke: an experiment made from the run starts there"},
     {"protocol.force_threshold", replica<&Replica::protocol, &Protocol::force_threshold>, "N", between(0, 1e9), each, "contacts below it do not count in Z and the mean force"},
 
-    {"numerics.time_step", replica<&Replica::numerics, &Numerics::time_step>, "", above_zero_to(1), each, "at most, a fraction of the Rayleigh time of the smallest grain; steps are shorter where contacts that displace one another have stiffened"},
+    {"numerics.time_step", replica<&Replica::numerics, &Numerics::time_step>, "", above_zero_to(1), each, "at most, a fraction of the Rayleigh time of the smallest grain; steps of elastic_sphere and hyperelastic_sphere are shorter where contacts have stiffened"},
     {"numerics.skin", replica<&Replica::numerics, &Numerics::skin>, "", above_zero_to(2), each, "margin of the neighbour list, over the mean radius"},
     {"numerics.probe_gap", replica<&Replica::numerics, &Numerics::probe_gap>, "", between(0, 2), each, "gap up to which surfaces are probed for contacts made by bulging, over the mean radius"},
     {"numerics.overlap_limit", replica<&Replica::numerics, &Numerics::overlap_limit>, "", above_zero_to(1), each, "corrected overlap over the sum of radii beyond which no static solution is assumed and the replica stops"},

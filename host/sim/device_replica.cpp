@@ -188,7 +188,8 @@ double stable_phase(double restitution) {
 }
 
 int shortening(const Replica& replica, double time_step, double frequency, int now) {
-    if (replica.contact.model == ContactModel::independent) return 0;
+    const ContactModel model = replica.contact.model;
+    if (model != ContactModel::elastic_sphere && model != ContactModel::hyperelastic_sphere) return 0;
     const double ratio = time_step * frequency / stable_phase(replica.grains.restitution);
     const int needed = ratio > 1 ? static_cast<int>(std::ceil(8 * std::log2(std::min(ratio, 1e3)))) : 0;
     const bool keep = needed <= now && now < needed + 5;

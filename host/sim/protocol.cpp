@@ -37,6 +37,7 @@ ProtocolRunner::ProtocolRunner(const Replica& replica, double time_step, const P
       stages_(stages_of(replica)),
       legs_(legs_of(stages_, plate_)),
       time_step_(time_step),
+      longest_time_step_(time_step),
       quasi_static_(replica, scale),
       force_control_(replica, scale) {
     state_.plate_z = plate_.start;
@@ -122,7 +123,7 @@ StepInterval ProtocolRunner::planned_by_force() const {
 double ProtocolRunner::drag() const {
     const double wanted = by_force() ? force_control_.drag(state_.control, set_force()) : HUGE_VAL;
     return std::min({wanted, protocol_.settle_drag,
-                     (state_.stage == Stage::relax ? max_relax_drag : max_drag) / time_step_});
+                     (state_.stage == Stage::relax ? max_relax_drag : max_drag) / longest_time_step_});
 }
 
 void ProtocolRunner::take_note(const IntervalResult& result) {

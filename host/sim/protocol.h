@@ -106,7 +106,8 @@ private:
     Protocol protocol_;
     std::vector<mcdem::Stage> stages_;
     std::vector<Leg> legs_;
-    double time_step_;
+    double time_step_;          ///< now [s]
+    double longest_time_step_;  ///< before contacts stiffen [s]
     QuasiStatic quasi_static_;
     ForceControl force_control_;
     ProtocolState state_;

@@ -41,7 +41,7 @@ TEST_F(CliTest, MistakesOnTheCommandLineAreBadInput) {
     expect_bad_input(mcdem({"run", "small.toml", "--out", ""}), "--out: must name a place, got nothing");
     expect_bad_input(mcdem({"experiment", "from-run", "a", "--out", ""}),
                      "--out: must name a place, got nothing");
-    expect_bad_input(mcdem({"export", "a", "--out", "b"}), "--vtk, --xyz or both");
+    expect_bad_input(mcdem({"export", "a", "--out", "b"}), "vtk, xyz or both");
     expect_bad_input(mcdem({"calibrate", "small.toml", "--experiment", "a", "--rounds", "many"}), "many");
 }
 
