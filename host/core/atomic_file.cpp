@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -56,6 +57,15 @@ void remove_if_abandoned(const fs::path& temporary) {
     ::close(descriptor);
 }
 
+/// Locks a file just made. False where another program took it for an abandoned one and has removed it.
+bool lock_before_removal(int descriptor) {
+    int result = 0;
+    do result = ::flock(descriptor, LOCK_EX);
+    while (result != 0 && errno == EINTR);
+    struct stat found {};
+    return ::fstat(descriptor, &found) != 0 || found.st_nlink > 0;
+}
+
 void force_to_disk(int descriptor, const fs::path& file) {
     // Some file systems cannot sync (EINVAL, EROFS on folders): nothing more can be done there.
     int result = 0;
@@ -80,12 +90,12 @@ void force_folder_of(const fs::path& file) {
 }  // namespace
 
 NewFile::NewFile(fs::path place) : place_(std::move(place)) {
-    do {
+    while (descriptor_ < 0) {
         temporary_ = temporary_of(place_);
         descriptor_ = ::open(temporary_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
-    } while (descriptor_ < 0 && (errno == EEXIST || errno == EINTR));
-    if (descriptor_ < 0) fail(place_, errno);
-    ::flock(descriptor_, LOCK_EX | LOCK_NB);  // see remove_if_abandoned
+        if (descriptor_ < 0 && errno != EEXIST && errno != EINTR) fail(place_, errno);
+        if (descriptor_ >= 0 && !lock_before_removal(descriptor_)) ::close(std::exchange(descriptor_, -1));
+    }
     lock_ = ::fcntl(descriptor_, F_DUPFD_CLOEXEC, 0);
 }
 

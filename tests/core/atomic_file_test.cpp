@@ -83,6 +83,20 @@ std::string error_of_reading(const fs::path& file) {
     return "none";
 }
 
+// Programs that share a folder remove what killed ones have left there, while others write.
+TEST_F(AtomicFileTest, WhatIsBeingWrittenIsNotTakenForAbandoned) {
+    std::atomic<bool> done = false;
+    std::jthread sweeper([&] {
+        while (!done) remove_temporaries(folder_);
+    });
+    for (int k = 0; k < 1000; ++k) {
+        NewFile file(folder_ / "file");
+        file.write("whole");
+        EXPECT_NO_THROW(file.put_in_place()) << k;
+    }
+    done = true;
+}
+
 TEST_F(AtomicFileTest, WhatIsNoFileIsRefusedAtOnce) {
     ASSERT_EQ(::mkfifo((folder_ / "pipe").c_str(), 0600), 0);
     EXPECT_THAT(error_of_reading(folder_ / "pipe"), HasSubstr("is a pipe or device"));

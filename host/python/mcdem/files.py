@@ -1,4 +1,5 @@
 """Files that are written whole or not at all."""
+import fcntl
 import os
 import pathlib
 import secrets
@@ -10,6 +11,7 @@ def write_whole(file, content):
     temporary = file.with_name(f"{file.name}.{secrets.token_hex(8)}.tmp")
     try:
         with open(temporary, "xb") as out:
+            fcntl.flock(out, fcntl.LOCK_EX)  # others remove only what no program holds (host/core/atomic_file.cpp)
             out.write(content)
             out.flush()
             os.fsync(out.fileno())
