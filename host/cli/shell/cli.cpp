@@ -1,5 +1,8 @@
 #include "cli/shell/cli.h"
 
+#include <cstdio>
+#include <new>
+
 #include "cl/kernel_cache.h"
 #include "cli/shell/commands.h"
 #include "cli/shell/crash_hint.h"
@@ -89,6 +92,11 @@ int run_cli(int argc, const char* const* argv) {
     try {
         set_up_streams();
         set_up_messages();
+    } catch (const std::bad_alloc&) {  // there is nothing yet to say it with
+        std::fputs("mcdem: needs more memory than there is\n", stderr);
+        return exit_failed;
+    }
+    try {
         hint_at_crashes();
         opencl_started = hint_at_crashes;
         read_run_packing = packing_of_run;
