@@ -10,10 +10,12 @@
 #define ROUNDING R(12582912) /* 1.5 2^23 */
 #endif
 
+#define WHOLE_NUMBER(x) (((x) + ROUNDING) - ROUNDING)
+
 /* Both sides of a pair get the same bits, signs apart. */
 INLINE lanes nearest_image(lanes apart, real size) {
     const real inverse = R(1) / size;
-    return apart - size * ((apart * inverse + ROUNDING) - ROUNDING);
+    return apart - size * WHOLE_NUMBER(apart * inverse);
 }
 
 /* The image in the cell itself, or next to it by rounding. */

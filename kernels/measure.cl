@@ -39,21 +39,21 @@ INLINE void add_contact_sums(Grain at, Neighbours seen, Displaced b, Contacts c,
     const int effects = at.replica->effects;
     const lanes share = WHERE(seen.wall, R(1), R(0.5)), force = c.elastic;
     const lanes overlap = WHERE(c.touching, c.overlap, R(1));
-    /* before the contact's own displacement, which grows with its force */
-    const lanes given = b.here + b.there - (seen.distance - (at.now.position.w + seen.radius));
+    /* Before the contact's own displacement, which grows with its force. */
+    const lanes without_own = b.here + b.there - (seen.distance - (at.now.position.w + seen.radius));
     sums->stored += elastic_energy(at, effects, seen, c);
     sums->deepest =
         fmax(sums->deepest, WHERE(seen.occupied, c.overlap / (at.now.position.w + seen.radius), R(0)));
-    sums->stiffness += R(1.5) * force / fmax(R(1.5) * given - R(0.5) * overlap, R(0.25) * overlap);
+    sums->stiffness += R(1.5) * force / fmax(R(1.5) * without_own - R(0.5) * overlap, R(0.25) * overlap);
     sums->displaced += force * b.here * b.here / overlap;
     sums->pressed += share * force * overlap;
 }
 
 /* Delayed corrections ask for short steps where contacts are stiff and displace one another much: of the
    gain, the force that surface displacements cause over the force that causes them, an estimate is twice the
-   ratio of their root mean squares, for the two sides of a contact. Of the order of the fastest mode's; the
-   limit of stability over it is between 0.69 and 0.81 in packings up to a packing fraction of 0.95
-   (tests/truth). */
+   ratio of their root mean squares, for the two sides of a contact. The result is of the order of the fastest
+   mode's frequency; the limit of stability over it is between 0.69 and 0.81 in packings up to a packing
+   fraction of 0.95 (tests/truth). */
 #define LARGEST_GAIN R(0.9)
 INLINE real fastest_frequency(real mass, real stiffness, real displaced, real pressed) {
     const real gain = pressed > R(0) ? R(2) * sqrt(displaced / pressed) : R(0);
@@ -90,7 +90,7 @@ kernel void measure(global const Replica* restrict replicas, global const int* r
         const Displaced b = load_displacements(at, batch, v);
         const Contacts c = contact_forces(at, replica->effects, seen, b, R(0), &remembered);
         add_contact_sums(at, seen, b, c, &sums);
-        tabulate(c, seen.normal, v, table);
+        if (replica->finite_contacts) tabulate(c, seen.normal, v, table);
         STORE_LANES(c.force.x, force_x + at.row, v);
         STORE_LANES(c.force.y, force_y + at.row, v);
         STORE_LANES(c.force.z, force_z + at.row, v);

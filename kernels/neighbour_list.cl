@@ -34,7 +34,7 @@ INLINE int near_grains(global const Replica* restrict replica, int grain,
                     if (other == grain) continue;
                     const real4 position = motion[other].position;
                     real3 apart = position.xyz - own.xyz;
-                    if (repeats) apart.xy -= size * ((apart.xy * inverse_size + ROUNDING) - ROUNDING);
+                    if (repeats) apart.xy -= size * WHOLE_NUMBER(apart.xy * inverse_size);
                     const real within = own.w + position.w + reach;
                     if (dot(apart, apart) < within * within) count = insert_sorted(row, count, other);
                 }

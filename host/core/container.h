@@ -30,6 +30,9 @@ constexpr double cylinder_radius(const Box& box) { return box.size_x / 2; }
 /// Area of the floor over size_x size_y.
 constexpr double floor_share(const Box& box) { return is_cylinder(box) ? std::numbers::pi / 4 : 1; }
 
+/// [m2]
+constexpr double floor_area(const Box& box) { return box.size_x * box.size_y * floor_share(box); }
+
 /// The horizontal vector from a cylinder's axis [m].
 inline Vec3 from_axis(const Box& box, const Vec3& point) {
     return {point.x() - box.size_x / 2, point.y() - box.size_y / 2, 0};

@@ -46,7 +46,7 @@ std::vector<Mat3> grain_stress(const Box& box, const std::vector<double>& diamet
 Mat3 packing_stress(const Box& box, const Scan& scan) {
     Mat3 sum = Mat3::Zero();
     for (const Mat3& moment : moments(box, scan)) sum += moment;
-    return sum / (box.size_x * box.size_y * floor_share(box) * scan.plate_z);
+    return sum / (floor_area(box) * scan.plate_z);
 }
 
 Mat3 packing_fabric(const Box& box, const Scan& scan) {

@@ -26,6 +26,12 @@ struct SceneCalibration {
     Estimate target;            ///< the reference's mean top force [N]
     double displacement = 0;    ///< of the plate, where it was taken [m]
     int replicas = 0;           ///< packings behind each evaluation
+
+    bool of_modulus() const { return youngs_modulus > 0; }
+    /// What was searched for, with its unit: as in calibration.json.
+    std::string key() const { return of_modulus() ? "youngs_modulus_Pa" : "gamma"; }
+    /// Of the numbers in `found`.
+    double unit() const { return of_modulus() ? youngs_modulus : 1; }
 };
 
 /// The scene gives packings, materials and protocol; what it says of contact.model and contact.gamma is left

@@ -49,7 +49,7 @@ double median_spacing(const Replicas& replicas) {
 /// A programme comes to one displacement at different loads and times.
 void expect_strokes(const Replicas& replicas) {
     for (const auto* recording : replicas)
-        if (follows_programme({recording}))
+        if (follows_programme(*recording))
             throw InputError(fmt::format(
                 "{}: must be a run of the strokes of [plate] and [protocol] to be compared level by level, "
                 "got one of a "

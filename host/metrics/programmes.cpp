@@ -5,10 +5,13 @@
 
 namespace mcdem::inline metrics {
 
+bool follows_programme(const Recording& recording) {
+    return recording.parameters.contains("programme.1.stage");
+}
+
 bool follows_programme(const Replicas& replicas) {
-    return std::ranges::any_of(replicas, [](const Recording* recording) {
-        return recording->parameters.contains("programme.1.stage");
-    });
+    return std::ranges::any_of(replicas,
+                               [](const Recording* recording) { return follows_programme(*recording); });
 }
 
 std::vector<Setting> with_programme(const std::vector<Setting>& settings, bool programme) {

@@ -5,7 +5,10 @@
 
 namespace mcdem::inline metrics {
 
-/// Whether any of the recordings was taken through a [[programme]].
+/// Whether the recording was taken through a [[programme]].
+bool follows_programme(const Recording& recording);
+
+/// Whether any of the recordings was.
 bool follows_programme(const Replicas& replicas);
 
 /// The settings that do, or those that do not.

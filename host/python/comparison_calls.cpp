@@ -80,9 +80,8 @@ py::dict calibrate(const Scene& scene, const py::object& reference, const std::s
     } catch (const Stopped&) {
     }
     watch.raise();
-    const bool modulus = result.youngs_modulus > 0;
-    const std::string key = modulus ? "youngs_modulus_Pa" : "gamma";
-    const double unit = modulus ? result.youngs_modulus : 1;
+    const std::string key = result.key();
+    const double unit = result.unit();
     py::dict found(py::arg("contact_model") = model, py::arg("converged") = result.found.converged,
                    py::arg("target_top_force_N") = value(result.target.value),
                    py::arg("target_standard_error_N") = value(result.target.standard_error),

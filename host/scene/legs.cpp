@@ -7,14 +7,13 @@
 #include "core/errors.h"
 
 namespace mcdem::inline scene {
-namespace {
 
-double turning_point(const Stage& stage) {
-    if (!std::isnan(stage.force)) return stage.force;
-    return std::isnan(stage.strain) ? stage.position : stage.strain;
+double turning_point(const Stage& stage, int cycle) {
+    const double first = !std::isnan(stage.force)    ? stage.force
+                         : !std::isnan(stage.strain) ? stage.strain
+                                                     : stage.position;
+    return cycle == 0 ? first : stage.back + (first - stage.back) * (1 + stage.growth * cycle);
 }
-
-}  // namespace
 
 std::vector<Stage> stages_of(const Replica& replica) {
     if (!replica.programme.empty()) return replica.programme;
@@ -57,13 +56,10 @@ std::vector<Leg> legs_of(const std::vector<Stage>& stages, const Plate& plate) {
         const Stage& stage = stages[n];
         const int number = static_cast<int>(n);
         begin.push_back(all.size());
-        const double target = turning_point(stage);
         if (stage.kind == StageKind::hold) all.push_back({number});
-        if (stage.kind == StageKind::move) all.push_back({number, in_si(stage, target, plate)});
+        if (stage.kind == StageKind::move) all.push_back({number, in_si(stage, turning_point(stage), plate)});
         for (int cycle = 0; stage.kind == StageKind::cycle && cycle < stage.cycles; ++cycle) {
-            const double turn =
-                cycle == 0 ? target : stage.back + (target - stage.back) * (1 + stage.growth * cycle);
-            all.push_back({number, in_si(stage, turn, plate)});
+            all.push_back({number, in_si(stage, turning_point(stage, cycle), plate)});
             all.push_back({number, in_si(stage, stage.back, plate)});
         }
         if (stage.kind != StageKind::repeat) continue;

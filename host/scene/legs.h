@@ -33,6 +33,9 @@ void expect_strokes(const Scene& scene, const std::string& what);
 /// What a move ends at, or a hold keeps.
 Controlled controlled(const Stage& stage);
 
+/// Where a move ends, or a cycle turns round (from 0), in the stage's quantity.
+double turning_point(const Stage& stage, int cycle = 0);
+
 /// A value in the stage's quantity as position [m] or force [N].
 double in_si(const Stage& stage, double value, const Plate& plate);
 

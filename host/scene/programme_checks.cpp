@@ -91,9 +91,7 @@ private:
             add(given[k], fmt::format("must be left out where {} is given", given.front()));
         if (given.size() > 1) return;
         const std::string_view field = given.front();
-        const double target = field == "force"    ? stage_.force
-                              : field == "strain" ? stage_.strain
-                                                  : stage_.position;
+        const double target = turning_point(stage_);
         expect_possible(field, field, target);
         if (stage_.kind == StageKind::cycle) check_cycle(field, target);
         check_scan_places(field, target);
@@ -123,7 +121,7 @@ private:
             return add("growth",
                        fmt::format("must leave the last of {} cycles an amplitude, got {}: at least {:.6g}",
                                    stage_.cycles, stage_.growth, -1.0 / (stage_.cycles - 1)));
-        if (stage_.growth != 0) expect_possible("growth", field, stage_.back + (target - stage_.back) * last);
+        if (stage_.growth != 0) expect_possible("growth", field, turning_point(stage_, stage_.cycles - 1));
     }
 
     void check_scan_places(std::string_view field, double target) {
@@ -153,22 +151,21 @@ std::vector<double> forces_of(const Stage& stage) {
     if (stage.kind == StageKind::hold || stage.kind == StageKind::repeat || std::isnan(stage.force))
         return {};
     std::vector<double> forces{stage.force};
-    if (stage.kind == StageKind::cycle)
-        forces.push_back(stage.back + (stage.force - stage.back) * (1 + stage.growth * (stage.cycles - 1)));
+    if (stage.kind == StageKind::cycle) forces.push_back(turning_point(stage, stage.cycles - 1));
     return forces;
 }
 
 void check_forces(const Settings& settings, std::vector<CrossProblem>& problems) {
     if (!settings.packing_file.empty()) return;
-    const double most = max_plate_force(settings, settings.generated.diameter_min);
+    const double max_force = max_plate_force(settings, settings.generated.diameter_min);
     for (std::size_t n = 0; n < settings.replica.programme.size(); ++n)
         for (const double force : forces_of(settings.replica.programme[n]))
-            if (force > most)
+            if (force > max_force)
                 problems.push_back(
                     {fmt::format("programme.{}.force", n + 1),
                      fmt::format("must be one that the grains can bear, got {}: beyond some {:.3g} N the "
                                  "contacts under the plate are deeper than numerics.overlap_limit = {}",
-                                 force, most, settings.replica.numerics.overlap_limit)});
+                                 force, max_force, settings.replica.numerics.overlap_limit)});
 }
 
 void check_size(const std::vector<Stage>& programme, std::vector<CrossProblem>& problems) {

@@ -110,4 +110,7 @@ private:
     Kernels kernels_;
 };
 
+/// Throws InputError: `what` a checkpoint holds cannot be.
+[[noreturn]] void refuse_checkpoint(const std::string& what);
+
 }  // namespace mcdem::sim

@@ -31,10 +31,7 @@ int number_at(const std::byte* bytes, std::size_t index) {
 }
 
 [[noreturn]] void refuse(const char* name, std::size_t slot, int number) {
-    throw InputError(fmt::format(
-        "the checkpoint is damaged: slot {} of '{}' holds {}, which there is not: start the run anew in "
-        "another folder",
-        slot, name, number));
+    refuse_checkpoint(fmt::format("slot {} of '{}' holds {}, which there is not", slot, name, number));
 }
 
 /// Kernels look up what partners and partner slots point to, and do not check.
@@ -57,6 +54,10 @@ void expect_partner_slots(int slot_count, const std::byte* partner_slot, std::si
 }
 
 }  // namespace
+
+void refuse_checkpoint(const std::string& what) {
+    throw InputError("the checkpoint is damaged: " + what + ": start the run anew in another folder");
+}
 
 template <class Quantity>
 std::vector<double> Engine::read_reals(const Field<Quantity>& field, std::size_t first,
@@ -194,14 +195,9 @@ void Engine::restore(const std::map<std::string, std::vector<std::byte>>& saved)
     bring_back("steps_made", steps_made_);
     bring_back("shortening", shortening_);
     if (!std::ranges::all_of(steps_made_, [](auto steps) { return steps >= 0; }))
-        throw InputError(
-            "the checkpoint is damaged: it holds a negative number of steps: start the run anew in another "
-            "folder");
+        refuse_checkpoint("it holds a negative number of steps");
     if (!std::ranges::all_of(shortening_, [](int times) { return times >= 0 && times <= max_shortening; }))
-        throw InputError(
-            "the checkpoint is damaged: it holds a time step that there is not: start the run anew in "
-            "another "
-            "folder");
+        refuse_checkpoint("it holds a time step that there is not");
 }
 
 }  // namespace mcdem::sim

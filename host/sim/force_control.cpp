@@ -27,7 +27,7 @@ ForceControl::ForceControl(const Replica& replica, const PackingScale& scale)
       quiet_(replica.protocol.stop_at_scans ? quiet : near),
       layers_(1 + replica.plate.start / scale.diameter) {
     const double radius = scale.diameter / 2;
-    const double area = replica.box.size_x * replica.box.size_y * floor_share(replica.box);
+    const double area = floor_area(replica.box);
     const double grains = std::clamp(area / (2 * std::sqrt(3.0) * radius * radius), 1.0,
                                      std::max(1.0, static_cast<double>(scale.count)));
     const double modulus =

@@ -31,7 +31,7 @@ PackingScale scale_of(const Replica& replica, const Packing& packing) {
 
 QuasiStatic::QuasiStatic(const Replica& replica, const PackingScale& scale)
     : tolerance_(replica.protocol.rate_tolerance),
-      area_(replica.box.size_x * replica.box.size_y * floor_share(replica.box)),
+      area_(floor_area(replica.box)),
       density_(replica.grains.density),
       scale_(scale),
       min_pressure_(
@@ -45,9 +45,9 @@ double QuasiStatic::rate_error(double speed, double plate_z, double pressure) co
     return error_per_inertial_number * speed / plate_z * scale_.diameter * std::sqrt(density_ / pressure);
 }
 
-double QuasiStatic::speed(double most, double plate_z, double pressure) const {
-    if (tolerance_ == 0) return most;
-    return std::min(most, tolerance_ / rate_error(1, plate_z, pressure));
+double QuasiStatic::speed(double max_speed, double plate_z, double pressure) const {
+    if (tolerance_ == 0) return max_speed;
+    return std::min(max_speed, tolerance_ / rate_error(1, plate_z, pressure));
 }
 
 double QuasiStatic::unbalanced_force(double kinetic_energy, double drag, double pressure) const {

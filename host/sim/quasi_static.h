@@ -31,8 +31,8 @@ public:
     double pressure(double plate_force, double floor_force) const;
     /// Estimated relative error of forces at this speed [m/s].
     double rate_error(double speed, double plate_z, double pressure) const;
-    /// The plate's speed: `most`, or less where protocol.rate_tolerance asks for it [m/s].
-    double speed(double most, double plate_z, double pressure) const;
+    /// The plate's speed: `max_speed`, or less where protocol.rate_tolerance asks for it [m/s].
+    double speed(double max_speed, double plate_z, double pressure) const;
     double min_pressure() const { return min_pressure_; }  ///< that pressure() gives [Pa]
     /// Root mean square of the net forces on grains whose motion a drag [1/s] alone resists, over the
     /// pressure on a grain's cross-section: their velocities are then net force / (mass drag).

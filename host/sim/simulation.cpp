@@ -170,9 +170,7 @@ void Simulation::restore(const std::map<std::string, std::vector<std::byte>>& sa
         for (std::size_t r = 0; r < parts.size(); ++r) {
             std::memcpy(&state, found->second.data() + r * sizeof state, sizeof state);
             if (!parts[r].is_possible(state))
-                throw InputError(
-                    "the checkpoint is damaged: it holds a state of the plate's program that there is not: "
-                    "start the run anew in another folder");
+                refuse_checkpoint("it holds a state of the plate's program that there is not");
             parts[r].set_state(state);
         }
     };

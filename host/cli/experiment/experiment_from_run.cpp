@@ -15,6 +15,7 @@
 #include "experiment/from_recording.h"
 #include "io/output_folder.h"
 #include "io/results.h"
+#include "metrics/programmes.h"
 #include "scene/packing_fields.h"
 
 namespace mcdem::inline cli {
@@ -100,7 +101,7 @@ void expect_small_errors(const Measurement& errors, const Recording& truth) {
 }
 
 void warn_of_start(const Recording& truth) {
-    if (truth.parameters.contains("programme.1.stage"))
+    if (follows_programme(truth))
         throw InputError(
             "the run must be one of the strokes of [plate] and [protocol], got one of a [[programme]]: "
             "experiments state strokes only");

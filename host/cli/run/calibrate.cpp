@@ -36,20 +36,11 @@ nlohmann::json numbers(const std::vector<double>& values) {
     return list;
 }
 
-/// What was searched for: its name in calibration.json and in tables, and its unit over the search's.
-struct Sought {
-    std::string key, column;
-    double unit;
-};
-Sought sought(const SceneCalibration& result) {
-    if (result.youngs_modulus == 0) return {"gamma", "gamma", 1};
-    return {"youngs_modulus_Pa", "E [kPa]", result.youngs_modulus};
-}
-
 nlohmann::json json_of(const SceneCalibration& result, ContactModel model, const Scene& scene,
                        const LoadedReference& reference) {
     nlohmann::json json;
-    const auto [key, column, unit] = sought(result);
+    const std::string key = result.key();
+    const double unit = result.unit();
     json["contact_model"] = name(model);
     json[key] = number(unit * result.found.gamma);
     json[key + "_standard_error"] = number(unit * result.found.standard_error);
@@ -75,10 +66,9 @@ nlohmann::json json_of(const SceneCalibration& result, ContactModel model, const
 
 void print_calibration(const SceneCalibration& result) {
     TextTable table;
-    const Sought of = sought(result);
-    const bool modulus = result.youngs_modulus > 0;
-    const double unit = modulus ? 1e-3 * of.unit : of.unit;  // kPa
-    table.columns = {{"round"}, {of.column}, {"top force [N]"}};
+    const bool modulus = result.of_modulus();
+    const double unit = modulus ? 1e-3 * result.unit() : 1;  // kPa
+    table.columns = {{"round"}, {modulus ? "E [kPa]" : "gamma"}, {"top force [N]"}};
     for (std::size_t k = 0; k < result.found.rounds.size(); ++k) {
         const auto& round = result.found.rounds[k];
         for (std::size_t i = 0; i < round.gamma.size(); ++i)
