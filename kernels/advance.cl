@@ -84,12 +84,12 @@ INLINE int trouble_status(real counts) {
     return (count % DEEP_SLOTS ? STATUS_OVERLAP : 0) | (count / DEEP_SLOTS ? STATUS_UNPROBED : 0);
 }
 
-/* Stops the replica after this step where a grain is in trouble or has moved half the margin of its neighbour
- * list. */
+/* Stops the replica after this step where a grain is in trouble or has moved as far as the margin of its
+   neighbour list allows. */
 INLINE void expect_listed(Grain at, Motion after, int bits, real3 listed_position, int step,
                           global volatile int* stop_at) {
-    const real3 moved = after.position.xyz - listed_position;
-    if (bits || dot(moved, moved) > R(0.25) * at.replica->skin * at.replica->skin)
+    const real3 moved = deformed_way(at.replica, at.elapsed, after.position.xyz - listed_position);
+    if (bits || dot(moved, moved) > at.replica->max_move * at.replica->max_move)
         atomic_min(stop_at, step + 1);
 }
 
@@ -106,7 +106,12 @@ kernel void advance(const int step, const int slot_count, global const Replica* 
     const int r = replica_of_block[block];
     global const Replica* restrict replica = replicas + r;
     const Batch batch = {motion, partner, partner_slot, displacement, memory};
-    const Grain at = {replica, index, (size_t)index * SLOTS, plate_position(replica, step), motion[index]};
+    const Grain at = {replica,
+                      index,
+                      (size_t)index * SLOTS,
+                      plate_position(replica, step),
+                      replica->time_step * step,
+                      motion[index]};
     /* One answer for a work-group, so that no barrier is missed: what lowers stop_at in this step sets step
      * + 1. */
     const int last = stop_at[r];
@@ -127,7 +132,7 @@ kernel void advance(const int step, const int slot_count, global const Replica* 
 
     const GrainSums total = add_up(sums.force, sums.torque, trouble, scratch);
     if (IS_LEADER && at.now.position.w > R(0)) {
-        const Motion after = integrate(replica, at.now, total.force.xyz, total.torque.xyz);
+        const Motion after = integrate(at, total.force.xyz, total.torque.xyz);
         motion_next[index] = after;
         const int bits = trouble_status(total.force.w) | motion_status(at, after);
         if (bits) status[index] |= bits;

@@ -12,12 +12,13 @@ INLINE int cell_index(global const Replica* restrict replica, int x, int y, int 
 }
 
 INLINE int3 cell_of(global const Replica* restrict replica, real4 point) {
-    if (replica->container == CONTAINER_PERIODIC)
+    if (replica->container >= CONTAINER_PERIODIC)
         point = (real4)(into_cell(point.x, replica->wall_position[1]),
                         into_cell(point.y, replica->wall_position[3]), point.z, point.w);
-    return (int3)(cell_along(point.x, replica->cell_size, replica->span_x),
-                  cell_along(point.y, replica->cell_size, replica->span_y),
-                  cell_along(point.z, replica->cell_size, replica->span_z));
+    if (replica->container == CONTAINER_CELL) point.z = into_cell(point.z, replica->wall_position[5]);
+    return (int3)(cell_along(point.x, replica->cell_size[0], replica->span_x),
+                  cell_along(point.y, replica->cell_size[1], replica->span_y),
+                  cell_along(point.z, replica->cell_size[2], replica->span_z));
 }
 
 /* The cells along one axis around one of them, each once; past an end of a span that repeats they are

@@ -63,10 +63,16 @@ INLINE Neighbours see_neighbours(Grain at, const int effects, global const Motio
         apart.x = nearest_image(apart.x, at.replica->wall_position[1]);
         apart.y = nearest_image(apart.y, at.replica->wall_position[3]);
     }
+    seen.velocity = subtract3(moving, same3(at.now.velocity.xyz));
+    if (at.replica->container == CONTAINER_CELL) {
+        const Deformation f = deformation(at.replica, at.elapsed);
+        const lanes3 listed = nearest_lanes_in_cell(at.replica, f, apart);
+        apart = deformed_lanes(f, listed);
+        seen.velocity = add3(seen.velocity, deformed_lanes(deformation_rate(at.replica), listed));
+    }
     /* An empty slot is given a distance of one, so that nothing is divided by zero. */
     const lanes squared = WHERE(seen.occupied, dot3(apart, apart), R(1));
     seen.distance = sqrt(squared);
     seen.normal = scale3(inverse_root(squared), apart);
-    seen.velocity = subtract3(moving, same3(at.now.velocity.xyz));
     return seen;
 }

@@ -1,5 +1,10 @@
 /* What holds the grains at the sides: walls of a box, the curved wall of a cylinder, or nothing in a periodic
-   cell. Positions in a periodic cell are not wrapped: a difference is taken to the nearest image. */
+   cell. Positions in a periodic cell are not wrapped: a difference is taken to the nearest image.
+
+   A cell repeats along z as well, and is deformed. Positions in it are those that it would have undeformed, and
+   velocities those beyond its own motion: F X is where a grain is that is listed at X, and F' X + v its velocity.
+   So a cell moves its grains with it, without rounding, and images need no velocities of their own. F is upper
+   triangular, linear in time during an interval. */
 
 #define MAX_DRIFT R(8) /* cells, of a grain in a periodic one: positions must stay precise */
 
@@ -21,6 +26,57 @@ INLINE lanes nearest_image(lanes apart, real size) {
 /* The image in the cell itself, or next to it by rounding. */
 INLINE real into_cell(real coordinate, real size) { return coordinate - size * floor(coordinate / size); }
 
+/* F, or its rate. */
+typedef struct {
+    real xx, yy, zz, xy, xz, yz;
+} Deformation;
+
+INLINE Deformation deformation_rate(global const Replica* restrict replica) {
+    global const real* rate = replica->deformation_rate;
+    return (Deformation){rate[0], rate[1], rate[2], rate[3], rate[4], rate[5]};
+}
+
+/* After this time in the interval [s]. */
+INLINE Deformation deformation(global const Replica* restrict replica, real elapsed) {
+    global const real* f = replica->deformation;
+    const Deformation rate = deformation_rate(replica);
+    return (Deformation){f[0] + elapsed * rate.xx, f[1] + elapsed * rate.yy, f[2] + elapsed * rate.zz,
+                         f[3] + elapsed * rate.xy, f[4] + elapsed * rate.xz, f[5] + elapsed * rate.yz};
+}
+
+INLINE real3 deformed(Deformation f, real3 a) {
+    return (real3)(f.xx * a.x + f.xy * a.y + f.xz * a.z, f.yy * a.y + f.yz * a.z, f.zz * a.z);
+}
+
+INLINE real3 undeformed(Deformation f, real3 a) {
+    const real z = a.z / f.zz, y = (a.y - f.yz * z) / f.yy;
+    return (real3)((a.x - f.xy * y - f.xz * z) / f.xx, y, z);
+}
+
+/* From one listed position to another, as it is to the nearest image in the deformed cell. One axis after the
+   other, the last first: right for all that is nearer than half the cell's lengths, however far it leans. */
+#define NEAREST_IN_CELL(name, vector, scalar)                                           \
+    INLINE vector name(global const Replica* restrict replica, Deformation f, vector apart) { \
+        const real size_x = replica->wall_position[1], size_y = replica->wall_position[3],    \
+                   size_z = replica->wall_position[5];                                        \
+        const scalar z = apart.z - size_z * WHOLE_NUMBER(apart.z * (R(1) / size_z));          \
+        const scalar to_y = apart.y + (f.yz / f.yy) * z;                                      \
+        const scalar y = apart.y - size_y * WHOLE_NUMBER(to_y * (R(1) / size_y));             \
+        const scalar to_x = apart.x + (f.xy / f.xx) * y + (f.xz / f.xx) * z;                  \
+        const scalar x = apart.x - size_x * WHOLE_NUMBER(to_x * (R(1) / size_x));             \
+        return (vector){x, y, z};                                                             \
+    }
+NEAREST_IN_CELL(nearest_in_cell, real3, real)
+NEAREST_IN_CELL(nearest_lanes_in_cell, lanes3, lanes)
+
+INLINE real3 deformed_way(global const Replica* restrict replica, real elapsed, real3 way) {
+    return replica->container == CONTAINER_CELL ? deformed(deformation(replica, elapsed), way) : way;
+}
+
+INLINE lanes3 deformed_lanes(Deformation f, lanes3 a) {
+    return (lanes3){f.xx * a.x + f.xy * a.y + f.xz * a.z, f.yy * a.y + f.yz * a.z, f.zz * a.z};
+}
+
 INLINE real cylinder_radius(global const Replica* restrict replica) {
     return R(0.5) * replica->wall_position[1];
 }
@@ -41,7 +97,7 @@ INLINE real3 side_foot(global const Replica* restrict replica, real4 point) {
 
 /* From a wall to a point inside; far where there is no such wall. The plate is another matter (plate.h). */
 INLINE real side_distance(global const Replica* restrict replica, int wall, real4 point) {
-    if (replica->container == CONTAINER_PERIODIC) return INFINITY;
+    if (replica->container >= CONTAINER_PERIODIC) return INFINITY;
     if (replica->container == CONTAINER_CYLINDER) {
         const real2 out = from_axis(replica, point);
         return wall == 0 ? cylinder_radius(replica) - sqrt(out.x * out.x + out.y * out.y) : R(INFINITY);
@@ -51,7 +107,7 @@ INLINE real side_distance(global const Replica* restrict replica, int wall, real
 }
 
 INLINE bool within_sides(global const Replica* restrict replica, real4 point) {
-    if (replica->container == CONTAINER_PERIODIC) {
+    if (replica->container >= CONTAINER_PERIODIC) {
         const real x = point.x / replica->wall_position[1], y = point.y / replica->wall_position[3];
         return fmax(fabs(x), fabs(y)) < MAX_DRIFT;
     }

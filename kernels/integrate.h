@@ -1,16 +1,22 @@
 /* Velocity Verlet in its leapfrog form: velocities stand half a step before the positions that carry the
    forces. Weight less buoyancy, drag, inertia of a sphere. */
-INLINE Motion integrate(global const Replica* restrict replica, Motion now, real3 force, real3 torque) {
+INLINE Motion integrate(Grain at, real3 force, real3 torque) {
+    global const Replica* restrict replica = at.replica;
+    const Motion now = at.now;
     const real dt = replica->time_step, radius = now.position.w;
     const real mass = sphere_mass(replica, radius);
     real3 acceleration = force / mass - replica->drag * now.velocity.xyz;
     acceleration.z -= replica->weight_density / replica->density;
     const real3 turning =
         torque / (R(0.4) * mass * radius * radius) - replica->spin_drag * now.angular_velocity.xyz;
+    const bool in_cell = replica->container == CONTAINER_CELL;
+    const Deformation f = deformation(replica, at.elapsed);
+    if (in_cell) /* what is left of Newton's law beyond the cell's own motion (Evans & Morriss 1984, SLLOD) */
+        acceleration -= deformed(deformation_rate(replica), undeformed(f, now.velocity.xyz));
     const real3 v = now.velocity.xyz + acceleration * dt;
     const real3 w = now.angular_velocity.xyz + turning * dt;
-    const Motion after = {(real4)(now.position.xyz + v * dt, radius), (real4)(v, now.velocity.w),
-                          (real4)(w, R(0))};
+    const real3 position = in_cell ? now.position.xyz + undeformed(f, v) * dt : now.position.xyz + v * dt;
+    const Motion after = {(real4)(position, radius), (real4)(v, now.velocity.w), (real4)(w, R(0))};
     return after;
 }
 
@@ -18,7 +24,8 @@ INLINE int motion_status(Grain at, Motion after) {
     global const Replica* restrict replica = at.replica;
     const real4 x = after.position, w = after.angular_velocity;
     if (!isfinite(x.x + x.y + x.z + w.x + w.y + w.z)) return STATUS_NOT_A_NUMBER;
-    const bool inside = within_sides(replica, x) && x.z > replica->wall_position[4] &&
-                        x.z < plate_height(replica, at.plate_z, x);
-    return inside ? 0 : STATUS_LOST;
+    const bool between = replica->container == CONTAINER_CELL
+                             ? fabs(x.z / replica->wall_position[5]) < MAX_DRIFT
+                             : x.z > replica->wall_position[4] && x.z < plate_height(replica, at.plate_z, x);
+    return within_sides(replica, x) && between ? 0 : STATUS_LOST;
 }

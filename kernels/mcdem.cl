@@ -23,4 +23,5 @@
 #include "neighbour_list.cl"
 #include "advance.cl"
 #include "measure.cl"
+#include "cell_stress.cl"
 /* clang-format on */

@@ -80,7 +80,11 @@ kernel void measure(global const Replica* restrict replicas, global const int* r
     const int r = replica_of_block[block];
     global const Replica* restrict replica = replicas + r;
     const Batch batch = {motion, partner, partner_slot, displacement, memory};
-    const Grain at = {replica, index, (size_t)index * SLOTS, plate_position(replica, steps[r]),
+    const Grain at = {replica,
+                      index,
+                      (size_t)index * SLOTS,
+                      plate_position(replica, steps[r]),
+                      replica->time_step * steps[r],
                       motion[index]};
     prefetch_next_displacements(at, batch);
     ContactSums sums = {R(0), R(0), R(0), R(0), R(0)};
@@ -105,7 +109,8 @@ kernel void measure(global const Replica* restrict replicas, global const int* r
     share(sums.pressed, 4, scratch);
     SYNCHRONISE();
     if (IS_LEADER && at.now.position.w > R(0)) {
-        const real3 moved = at.now.position.xyz - listed_position[index].xyz;
+        const real3 moved =
+            deformed_way(replica, at.elapsed, at.now.position.xyz - listed_position[index].xyz);
         energy[index] = (real4)(kinetic_energy(at), sum_slots(sums.stored, 0, scratch) + surfaces,
                                 dot(moved, moved), max_slots(sums.deepest, 1, scratch));
         frequency[index] =

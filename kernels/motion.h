@@ -18,6 +18,7 @@ typedef struct {
     int index;    /* among all grains of the batch */
     size_t row;   /* its first slot */
     real plate_z; /* where the plate is now [m] */
+    real elapsed; /* of the interval [s] */
     Motion now;
 } Grain;
 

@@ -18,23 +18,27 @@ INLINE int near_grains(global const Replica* restrict replica, int grain,
     const real4 own = motion[grain].position;
     const real reach = replica->probe_gap + replica->skin;
     const int3 cell = cell_of(replica, own);
-    const bool repeats = replica->container == CONTAINER_PERIODIC;
+    const bool repeats = replica->container >= CONTAINER_PERIODIC, is_cell = replica->container == CONTAINER_CELL;
     const CellRange along_x = near_cells(cell.x, replica->span_x, repeats);
     const CellRange along_y = near_cells(cell.y, replica->span_y, repeats);
-    const CellRange along_z = near_cells(cell.z, replica->span_z, false);
+    const CellRange along_z = near_cells(cell.z, replica->span_z, is_cell);
     const real2 size = (real2)(replica->wall_position[1], replica->wall_position[3]),
                 inverse_size = R(1) / size;
+    const Deformation f = deformation(replica, R(0));
     int count = 0;
     for (int k = along_z.first; k <= along_z.last; ++k)
         for (int j = along_y.first; j <= along_y.last; ++j)
             for (int i = along_x.first; i <= along_x.last; ++i) {
-                const int there =
-                    cell_index(replica, wrapped(i, replica->span_x), wrapped(j, replica->span_y), k);
+                const int there = cell_index(replica, wrapped(i, replica->span_x),
+                                             wrapped(j, replica->span_y), wrapped(k, replica->span_z));
                 for (int other = cell_head[there]; other >= 0; other = cell_next[other]) {
                     if (other == grain) continue;
                     const real4 position = motion[other].position;
                     real3 apart = position.xyz - own.xyz;
-                    if (repeats) apart.xy -= size * WHOLE_NUMBER(apart.xy * inverse_size);
+                    if (is_cell)
+                        apart = deformed(f, nearest_in_cell(replica, f, apart));
+                    else if (repeats)
+                        apart.xy -= size * WHOLE_NUMBER(apart.xy * inverse_size);
                     const real within = own.w + position.w + reach;
                     if (dot(apart, apart) < within * within) count = insert_sorted(row, count, other);
                 }
@@ -43,6 +47,7 @@ INLINE int near_grains(global const Replica* restrict replica, int grain,
 }
 
 INLINE int near_walls(global const Replica* restrict replica, real4 own, int* row, int count) {
+    if (replica->container == CONTAINER_CELL) return count;
     const real reach = own.w + replica->probe_gap + replica->skin;
     for (int w = 0; w < 6; ++w) {
         const real wall = replica->wall_position[w];

@@ -29,10 +29,13 @@ typedef struct {
     real confinement_coupling;      /* finite strain of the grain as a whole (confinement.h) */
     real confinement_volume;
     real skin;               /* neighbour list margin [m] */
+    real max_move;           /* of a grain, before the list is made anew [m] */
     real probe_gap;          /* gap up to which surfaces are probed [m] */
     real overlap_limit;      /* over the sum of radii */
-    real cell_size;          /* [m] */
-    real wall_position[6];   /* x_min x_max y_min y_max floor plate, at the chunk's start [m] */
+    real cell_size[3];       /* of the grid, along x y z [m] */
+    real wall_position[6];   /* x_min x_max y_min y_max floor plate, at the interval's start [m] */
+    real deformation[6];     /* of a cell, at the interval's start: xx yy zz xy xz yz (container.h) */
+    real deformation_rate[6]; /* [1/s] */
     real plate_velocity;     /* along z [m/s] */
     real plate_tilt_x;       /* slope of the plate's face along x, about the middle of the box */
     real plate_tilt_y;       /* .. along y */
@@ -68,10 +71,12 @@ typedef struct {
 } Replica;
 
 /* A cylinder touches x_min, x_max, y_min and y_max; its wall is number 0. A periodic cell has their
- * distances, and neither has other walls than floor and plate besides. */
+ * distances, and neither has other walls than floor and plate besides. A cell has no walls, and their distances
+ * at start. */
 #define CONTAINER_BOX 0
 #define CONTAINER_CYLINDER 1
 #define CONTAINER_PERIODIC 2
+#define CONTAINER_CELL 3
 
 #define SURFACE_RIGID 0      /* independent contacts */
 #define SURFACE_HALF_SPACE 1 /* paper, Eq. 1, at the deformed contact points */

@@ -12,10 +12,13 @@ namespace mcdem::inline core {
 /// there.
 inline constexpr Wall curved_wall = Wall::x_min;
 
-constexpr bool is_periodic(const Box& box) { return box.shape == ContainerShape::periodic; }
+constexpr bool is_cell(const Box& box) { return box.shape == ContainerShape::cell; }
+/// Along x and y.
+constexpr bool is_periodic(const Box& box) { return box.shape == ContainerShape::periodic || is_cell(box); }
 constexpr bool is_cylinder(const Box& box) { return box.shape == ContainerShape::cylinder; }
 
 constexpr bool has_wall(const Box& box, Wall wall) {
+    if (is_cell(box)) return false;
     if (wall == Wall::floor || wall == Wall::plate || box.shape == ContainerShape::box) return true;
     return is_cylinder(box) && wall == curved_wall;
 }
@@ -38,25 +41,61 @@ inline Vec3 from_axis(const Box& box, const Vec3& point) {
     return {point.x() - box.size_x / 2, point.y() - box.size_y / 2, 0};
 }
 
-/// From one point to another, or to its nearest image in a periodic cell [m].
-inline Vec3 apart(const Box& box, const Vec3& from, const Vec3& to) {
-    Vec3 apart = to - from;
-    if (!is_periodic(box)) return apart;
-    apart.x() -= box.size_x * std::nearbyint(apart.x() / box.size_x);
-    apart.y() -= box.size_y * std::nearbyint(apart.y() / box.size_y);
-    return apart;
+/// The whole edges of a periodic cell that are taken off a point to bring it between 0 and 1 of them; a cell
+/// leans, so that the edge along z goes first.
+template <class Whole>
+inline Vec3 less_whole_edges(const Box& box, Vec3 point, const Whole& whole) {
+    if (is_cell(box)) point -= whole(point.z() / box.height) * Vec3(box.tilt_xz, box.tilt_yz, box.height);
+    point -= whole(point.y() / box.size_y) * Vec3(box.tilt_xy, box.size_y, 0);
+    point.x() -= whole(point.x() / box.size_x) * box.size_x;
+    return point;
 }
 
-/// The image of a point that lies in the periodic cell itself; the point in others.
+/// From one point to another, or to its nearest image in a periodic cell [m].
+inline Vec3 apart(const Box& box, const Vec3& from, const Vec3& to) {
+    const Vec3 apart = to - from;
+    if (!is_periodic(box)) return apart;
+    return less_whole_edges(box, apart, [](double edges) { return std::nearbyint(edges); });
+}
+
+/// The image of a point that lies in the periodic cell itself; the point in others. A cell that leans is
+/// taken for the upright one of the same lengths, which repeats with it.
 inline Vec3 into_cell(const Box& box, Vec3 point) {
     if (!is_periodic(box)) return point;
-    const auto wrapped = [](double x, double size) {
-        const double inside = x - size * std::floor(x / size);
-        return inside < size ? inside : 0;  // rounding
-    };
-    point.x() = wrapped(point.x(), box.size_x);
-    point.y() = wrapped(point.y(), box.size_y);
+    point = less_whole_edges(box, point, [](double edges) { return std::floor(edges); });
+    const Vec3 size(box.size_x, box.size_y, is_cell(box) ? box.height : HUGE_VAL);
+    for (int axis = 0; axis < 3; ++axis)
+        if (!(point[axis] < size[axis])) point[axis] = 0;  // rounding
     return point;
+}
+
+/// How a strain moves points of a cell: upper triangular.
+inline Mat3 deformation(const Strain& strain) {
+    Mat3 f;
+    f << 1 - strain[0], strain[3], strain[4], 0, 1 - strain[1], strain[5], 0, 0, 1 - strain[2];
+    return f;
+}
+
+inline Mat3 inverse_deformation(const Strain& strain) {
+    return deformation(strain).triangularView<Eigen::Upper>().solve(Mat3::Identity());
+}
+
+/// Of a cell's own motion: how velocity changes from place to place [1/s].
+inline Mat3 velocity_gradient(const Strain& strain, const Strain& rate) {
+    return (deformation(rate) - Mat3::Identity()) * inverse_deformation(strain);
+}
+
+/// A cell that is `box` at start; others as they are.
+inline Box deformed(const Box& box, const Strain& strain) {
+    if (!is_cell(box)) return box;
+    Box now = box;
+    now.size_x *= 1 - strain[0];
+    now.size_y *= 1 - strain[1];
+    now.height *= 1 - strain[2];
+    now.tilt_xy = strain[3] * box.size_y;
+    now.tilt_xz = strain[4] * box.height;
+    now.tilt_yz = strain[5] * box.height;
+    return now;
 }
 
 /// The foot of the perpendicular on a wall that is there, the plate level at plate_z.

@@ -29,6 +29,7 @@ enum class ContainerShape {
     box,       ///< four walls
     cylinder,  ///< one upright wall
     periodic,  ///< none: the packing repeats along x and y
+    cell,      ///< neither walls nor floor nor plate: the packing repeats along x, y and z
 };
 
 enum class Wall { x_min, x_max, y_min, y_max, floor, plate };
@@ -52,7 +53,7 @@ struct Names<FrictionLaw> {
 };
 template <>
 struct Names<ContainerShape> {
-    static constexpr std::array<std::string_view, 3> list{"box", "cylinder", "periodic"};
+    static constexpr std::array<std::string_view, 4> list{"box", "cylinder", "periodic", "cell"};
 };
 template <>
 struct Names<Wall> {

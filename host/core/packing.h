@@ -1,5 +1,6 @@
 // A packing: where the grains are and how large. Index in the vectors = the user's grain number.
 #pragma once
+#include <array>
 #include <vector>
 
 #include "core/names.h"
@@ -15,11 +16,18 @@ struct Packing {
 
 /// What holds the grains: floor z = 0, the plate above, and at the sides what `shape` says. A box has walls
 /// at x = 0 and size_x, y = 0 and size_y. A cylinder touches these four planes: both sizes are its diameter.
-/// A periodic cell repeats with these sizes. What has which walls: core/container.h.
+/// A periodic cell repeats with these sizes; a `cell` along z too, with edges (size_x, 0, 0), (tilt_xy,
+/// size_y, 0) and (tilt_xz, tilt_yz, height). What has which walls: core/container.h.
 struct Box {
     double size_x = 0;  ///< [m]
     double size_y = 0;  ///< [m]
     ContainerShape shape = ContainerShape::box;
+    double height = 0;                             ///< of a cell alone, as are tilts [m]
+    double tilt_xy = 0, tilt_xz = 0, tilt_yz = 0;  ///< [m]
 };
+
+/// Of a cell, over its lengths at start: compression along x, y and z, then the shears xy, xz and yz, where
+/// xy moves what is higher along y towards x.
+using Strain = std::array<double, 6>;
 
 }  // namespace mcdem::core

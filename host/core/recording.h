@@ -40,12 +40,14 @@ struct Scan {
     int frame = 0;  ///< counts the scans of one recording from 0
     int cycle = 0;  ///< compression cycle, from 0
     Phase phase = Phase::load;
-    double time = 0;                                             ///< [s]
-    double plate_z = 0;                                          ///< [m]
-    std::array<Vec3, wall_count> wall_force = no_wall_forces();  ///< on each wall by the grains [N]
-    double kinetic_energy = 0;                                   ///< [J]
-    double elastic_energy = 0;                                   ///< [J]
-    bool settled = false;                                        ///< the settling criterion was met
+    double time = 0;     ///< [s]
+    double plate_z = 0;  ///< of a cell, its height [m]
+    Strain strain{};     ///< of a cell
+    std::array<Vec3, wall_count> wall_force =
+        no_wall_forces();       ///< on each wall by the grains, or through each face of a cell [N]
+    double kinetic_energy = 0;  ///< [J]
+    double elastic_energy = 0;  ///< [J]
+    bool settled = false;       ///< the settling criterion was met
     double rate_error =
         std::numeric_limits<double>::quiet_NaN();  ///< of forces, by the plate's speed, estimated; relative
     double coordination_number = 0;  ///< Z: contacts per grain, walls counted, above the scene's threshold

@@ -1,5 +1,6 @@
 #include "core/stress.h"
 
+#include <Eigen/Geometry>
 #include <cmath>
 #include <numbers>
 
@@ -37,7 +38,7 @@ Vec3 direction(const Box& box, const Scan& scan, const Contact& contact) {
 }  // namespace
 
 std::vector<Mat3> grain_stress(const Box& box, const std::vector<double>& diameter, const Scan& scan) {
-    std::vector<Mat3> stress = moments(box, scan);
+    std::vector<Mat3> stress = moments(deformed(box, scan.strain), scan);
     for (std::size_t i = 0; i < stress.size(); ++i)
         stress[i] /= std::numbers::pi / 6 * std::pow(diameter[i], 3);
     return stress;
@@ -45,16 +46,30 @@ std::vector<Mat3> grain_stress(const Box& box, const std::vector<double>& diamet
 
 Mat3 packing_stress(const Box& box, const Scan& scan) {
     Mat3 sum = Mat3::Zero();
-    for (const Mat3& moment : moments(box, scan)) sum += moment;
-    return sum / (floor_area(box) * scan.plate_z);
+    const Box now = deformed(box, scan.strain);
+    for (const Mat3& moment : moments(now, scan)) sum += moment;
+    return sum / (floor_area(now) * scan.plate_z);
+}
+
+std::array<Vec3, wall_count> face_forces(const Box& now, const Mat3& stress) {
+    const Vec3 edges[]{
+        {now.size_x, 0, 0}, {now.tilt_xy, now.size_y, 0}, {now.tilt_xz, now.tilt_yz, now.height}};
+    std::array<Vec3, wall_count> forces = no_wall_forces();
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const Vec3 area = edges[(axis + 1) % 3].cross(edges[(axis + 2) % 3]);
+        forces[2 * axis + 1] = stress.transpose() * area;
+        forces[2 * axis] = -forces[2 * axis + 1];
+    }
+    return forces;
 }
 
 Mat3 packing_fabric(const Box& box, const Scan& scan) {
     Mat3 sum = Mat3::Zero();
     int pairs = 0;
+    const Box now = deformed(box, scan.strain);
     for (const Contact& contact : scan.contacts) {
         if (is_wall(contact.partner)) continue;
-        const Vec3 n = direction(box, scan, contact);
+        const Vec3 n = direction(now, scan, contact);
         sum += n * n.transpose();
         ++pairs;
     }
@@ -62,7 +77,7 @@ Mat3 packing_fabric(const Box& box, const Scan& scan) {
 }
 
 double normal_force(const Box& box, const Scan& scan, const Contact& contact) {
-    return -contact.force.dot(direction(box, scan, contact));
+    return -contact.force.dot(direction(deformed(box, scan.strain), scan, contact));
 }
 
 }  // namespace mcdem::core

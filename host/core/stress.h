@@ -4,6 +4,8 @@
 
 #include "core/recording.h"
 
+// `box` is the container as it is at start; a cell is deformed by the scan's strain.
+
 namespace mcdem::inline core {
 
 /// Stress of each grain [Pa]: minus the sum over its contacts of (contact point - centre) times force on the
@@ -11,9 +13,14 @@ namespace mcdem::inline core {
 /// column: of the force. Compression is positive.
 std::vector<Mat3> grain_stress(const Box& box, const std::vector<double>& diameter, const Scan& scan);
 
-/// The same sum over all grains, over the volume between floor and plate [Pa]. At rest and without weight
-/// it is symmetric, and where walls have no friction its diagonal is the wall forces over the walls' areas.
+/// The same sum over all grains, over the volume between floor and plate, or that of a cell [Pa]. At rest and
+/// without weight it is symmetric, and where walls have no friction its diagonal is the wall forces over the
+/// walls' areas.
 Mat3 packing_stress(const Box& box, const Scan& scan);
+
+/// The forces through the faces of a cell with these lengths now, as on walls in their places: area times
+/// stress [N].
+std::array<Vec3, wall_count> face_forces(const Box& now, const Mat3& stress);
 
 /// Mean of n times n, n the direction from centre to centre, over the contacts between grains (Satake 1982).
 /// Its trace is one; not-a-number where there are none.

@@ -1,6 +1,7 @@
 #include "io/csv.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <iterator>
@@ -43,9 +44,10 @@ std::vector<std::string> varying_keys(const Run& run) {
     return keys_that_vary(all);
 }
 
-/// The force that presses a level wall outwards; not-a-number of a wall that is not there or not level [N].
+/// The force that presses a level wall, or a face of a cell, outwards; not-a-number of a wall that is not
+/// there or not level [N].
 double pressing(const Box& box, const Scan& scan, Wall wall) {
-    if (!has_wall(box, wall) || (is_cylinder(box) && wall == curved_wall))
+    if ((!has_wall(box, wall) && !is_cell(box)) || (is_cylinder(box) && wall == curved_wall))
         return std::numeric_limits<double>::quiet_NaN();
     const Vec3& force = scan.wall_force[static_cast<std::size_t>(wall)];
     switch (wall) {
@@ -81,6 +83,9 @@ std::string csv_text(const Run& run) {
     const bool any_side = std::ranges::any_of(
         run.recordings, [](const Recording& recording) { return is_cylinder(recording.box); });
     if (any_side) fmt::format_to(out, ",side_force_z_N");
+    const bool any_cell = std::ranges::any_of(
+        run.recordings, [](const Recording& recording) { return is_cell(recording.box); });
+    if (any_cell) fmt::format_to(out, ",strain_x,strain_y,strain_z,shear_xy,shear_xz,shear_yz");
     for (const auto& key : keys) fmt::format_to(out, ",{}", key);
     fmt::format_to(out, "\n");
     for (std::size_t r = 0; r < run.recordings.size(); ++r) {
@@ -102,6 +107,7 @@ std::string csv_text(const Run& run) {
             fmt::format_to(out, "{},{},{:d},{}", scan.kinetic_energy, scan.elastic_energy, scan.settled,
                            scan.rate_error);
             if (any_side) fmt::format_to(out, ",{}", along_side(recording.box, scan));
+            if (any_cell) fmt::format_to(out, ",{}", fmt::join(scan.strain, ","));
             fmt::format_to(out, "{}\n", parameters);
         }
     }

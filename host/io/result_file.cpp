@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/container.h"
 #include "core/errors.h"
 
 namespace mcdem::inline io {
@@ -54,6 +55,7 @@ Recording ResultFile::recording_header(std::size_t replica) const {
         recording.box.shape = *shape;
     }
     recording.plate_start = edges[2];
+    if (is_cell(recording.box)) recording.box.height = edges[2];
     const auto diameter = file_.dataset(particles + "/diameter");
     diameter.expect_row({});
     recording.diameter = diameter.read_all<double>();
@@ -73,7 +75,8 @@ std::vector<Scan> ResultFile::scans(const Recording& recording, std::size_t repl
     const h5::Dataset table = file_.dataset(observables_path(replica));
     const h5::Handle type = scan_row_type();
     table.expect_row({});
-    expect_fields(table, type, {"rate_error", "stress", "fabric"});  // files of earlier versions have none
+    expect_fields(table, type,
+                  {"rate_error", "stress", "fabric", "strain"});  // files of earlier versions have none
     std::vector<ScanRow> rows(table.rows(), scan_row(Scan{}));
     table.read(type, rows.data(), 0, rows.size());
     std::vector<Scan> scans;

@@ -57,6 +57,7 @@ ScanRow scan_row(const Scan& scan) {
     row.branch_length = scan.branch_length;
     std::memcpy(row.stress, scan.stress.data(), sizeof row.stress);
     std::memcpy(row.fabric, scan.fabric.data(), sizeof row.fabric);
+    std::ranges::copy(scan.strain, row.strain);
     return row;
 }
 
@@ -80,6 +81,7 @@ Scan scan_of(const ScanRow& row, const std::string& where) {
     scan.branch_length = row.branch_length;
     std::memcpy(scan.stress.data(), row.stress, sizeof row.stress);
     std::memcpy(scan.fabric.data(), row.fabric, sizeof row.fabric);
+    std::ranges::copy(row.strain, scan.strain.begin());
     return scan;
 }
 
@@ -132,6 +134,7 @@ h5::Handle scan_row_type() {
     const h5::Handle tensor = array_type(H5T_NATIVE_DOUBLE, {3, 3});
     H5Tinsert(type, "stress", HOFFSET(ScanRow, stress), tensor);
     H5Tinsert(type, "fabric", HOFFSET(ScanRow, fabric), tensor);
+    H5Tinsert(type, "strain", HOFFSET(ScanRow, strain), array_type(H5T_NATIVE_DOUBLE, {6}));
     return type;
 }
 
@@ -182,7 +185,8 @@ std::vector<std::pair<std::string, std::string>> scan_row_units() {
             {"packing_fraction", "1"},
             {"branch_length", "m"},
             {"stress", "Pa"},
-            {"fabric", "1"}};
+            {"fabric", "1"},
+            {"strain", "1"}};
 }
 
 std::vector<std::pair<std::string, std::string>> contact_row_units() {

@@ -14,6 +14,7 @@ struct ScanRow {
     double kinetic_energy, elastic_energy, rate_error;
     double coordination_number, mean_force, packing_fraction, branch_length;
     double stress[3][3], fabric[3][3];
+    double strain[6];
 };
 
 /// Real is what the file keeps, float or double: rows go to and from it without conversion.

@@ -65,7 +65,9 @@ ResultWriter::Tables ResultWriter::make_tables(std::size_t replica, const Record
     file_.set_attribute(particles, "label", recording.label);
     file_.set_attribute(particles + "/box", "dimension", std::vector<long>{3});
     file_.set_attribute(particles + "/box", "boundary",
-                        std::string_view(is_periodic(recording.box) ? "periodic periodic none" : "none"));
+                        std::string_view(is_cell(recording.box)       ? "periodic periodic periodic"
+                                         : is_periodic(recording.box) ? "periodic periodic none"
+                                                                      : "none"));
     file_.set_attribute(particles + "/box", "shape", name(recording.box.shape));
     file_.set_attribute(
         particles + "/box", "edges",

@@ -39,8 +39,9 @@ replica_00000/contacts_000000.hdf, ..   its contacts
 Lengths in metres, forces in newtons, stress in pascals, compression positive. `stress` of a grain has nine components:
 xx, xy, xz, yx, .. (row: branch from centre to contact, column: force), over the volume of the undeformed sphere. Each
 file carries frame, time, plate_z and top_force as field data. Walls are partners -1 to -6: x_min, x_max, y_min, y_max,
-floor, plate. The side of a cylinder is partner -1. In a periodic cell grains are where they have moved to, also out of
-the cell, and contacts end at a partner's nearest image.
+floor, plate. The side of a cylinder is partner -1. In a container that is periodic along x and y grains are where they
+have moved to, also out of it; in a cell they are in an upright box of its lengths, and displacements are those beyond
+the cell's own motion. Contacts end at a partner's nearest image.
 )";
 
 /// The parts of a VTKHDF unstructured grid, version 1.0, in one piece.
@@ -93,19 +94,32 @@ void add(std::vector<double>& values, const Vec3& v) { values.insert(values.end(
 /// Positions at the first scan that has them and at the last one seen.
 class Track {
 public:
-    Displacements see(const std::vector<Vec3>& position) {
-        if (first_.empty()) first_ = last_ = position;
-        Displacements moved;
-        for (std::size_t i = 0; i < position.size(); ++i) {
-            moved.since_start.push_back(position[i] - first_[i]);
-            moved.since_last_scan.push_back(position[i] - last_[i]);
-        }
-        last_ = position;
+    explicit Track(const Box& box) : box_(box) {}
+
+    Displacements see(const Scan& scan) {
+        const Seen now{scan.position, scan.strain};
+        if (first_.position.empty()) first_ = last_ = now;
+        const Displacements moved{since(last_, now), since(first_, now)};
+        last_ = now;
         return moved;
     }
 
 private:
-    std::vector<Vec3> first_, last_;
+    struct Seen {
+        std::vector<Vec3> position;
+        Strain strain{};
+    };
+    std::vector<Vec3> since(const Seen& before, const Seen& now) const {
+        const Mat3 motion = deformation(now.strain) * inverse_deformation(before.strain);
+        const Box box = deformed(box_, now.strain);
+        std::vector<Vec3> moved;
+        for (std::size_t i = 0; i < now.position.size(); ++i)
+            moved.push_back(is_cell(box) ? apart(box, motion * before.position[i], now.position[i])
+                                         : Vec3(now.position[i] - before.position[i]));
+        return moved;
+    }
+    Box box_;
+    Seen first_, last_;
 };
 
 int export_replica(RunReader& reader, std::size_t replica, const std::filesystem::path& folder,
@@ -113,12 +127,12 @@ int export_replica(RunReader& reader, std::size_t replica, const std::filesystem
     const Recording& recording = reader.run().recordings[replica];
     const auto sub = folder / fmt::format("replica_{:05}", replica);
     std::optional<FolderLock> lock;  // for what a killed export has left there
-    Track track;
+    Track track(recording.box);
     int files = 0;
     for (std::size_t s = 0; s < recording.scans.size(); ++s) {
         const Scan scan = reader.read_scan(replica, s);
         if (scan.position.empty()) continue;
-        const Displacements moved = track.see(scan.position);
+        const Displacements moved = track.see(scan);
         if (!choice.has_scan(scan.frame)) continue;
         if (!lock) {
             make_folder(sub);
@@ -173,13 +187,14 @@ void write_vtk_grains(const std::filesystem::path& file, const Recording& record
 void write_vtk_contacts(const std::filesystem::path& file, const Recording& recording, const Scan& scan) {
     std::vector<double> points, force, magnitude, normal, tangential, overlap, end_force, end_magnitude;
     std::vector<int> grain, partner;
+    const Box now = deformed(recording.box, scan.strain);
     for (const Contact& contact : scan.contacts) {
         const Vec3& from = scan.position[static_cast<std::size_t>(contact.grain)];
         add(points, from);
-        add(points, is_wall(contact.partner)
-                        ? wall_foot(recording.box, wall_of(contact.partner), scan.plate_z, from)
-                        : Vec3(from + apart(recording.box, from,
-                                            scan.position[static_cast<std::size_t>(contact.partner)])));
+        add(points,
+            is_wall(contact.partner)
+                ? wall_foot(recording.box, wall_of(contact.partner), scan.plate_z, from)
+                : Vec3(from + apart(now, from, scan.position[static_cast<std::size_t>(contact.partner)])));
         add(force, contact.force);
         magnitude.push_back(contact.force.norm());
         end_magnitude.insert(end_magnitude.end(), 2, contact.force.norm());

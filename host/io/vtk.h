@@ -12,7 +12,8 @@ namespace mcdem::inline io {
 int export_vtk(const std::filesystem::path& file_or_folder, const std::filesystem::path& folder,
                const ExportChoice& choice = {});
 
-/// How far every grain has come [m]; without a jump where it crosses the border of a periodic cell.
+/// How far every grain has come [m]; without a jump where it crosses the border of a periodic cell. In a
+/// cell, beyond the cell's own motion.
 struct Displacements {
     std::vector<Vec3> since_last_scan, since_start;  ///< of scans with positions
 };

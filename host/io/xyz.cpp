@@ -31,8 +31,8 @@ overlap. Colour and width of the bonds can follow force_magnitude [N]. In Python
     pipeline.modifiers.append(contacts)
 
 Of a grain: radius [m], id, coordination_number (walls counted), force_magnitude (sum of its contacts' [N]), wall_force
-(by the walls [N]). In a periodic cell grains are where they have moved to, also out of the cell: modifier "Wrap at periodic
-boundaries". Of a contact: its force on the first of the two grains [N], its overlap [m].
+(by the walls [N]). In a container that is periodic along x and y grains are where they have moved to, also out of it:
+modifier "Wrap at periodic boundaries". In a cell they are in an upright box of its lengths. Of a contact: its force on the first of the two grains [N], its overlap [m].
 )";
 
 /// In double quotes; extended XYZ knows no way to write one.
@@ -44,14 +44,19 @@ std::string in_quotes(std::string text) {
 
 void append_grains(fmt::memory_buffer& text, const Recording& recording, const Scan& scan) {
     const auto out = fmt::appender(text);
+    const Box now = deformed(recording.box, scan.strain);
     fmt::format_to(
         out,
-        "{}\nLattice=\"{:.9g} 0 0 0 {:.9g} 0 0 0 {:.9g}\" Origin=\"0 0 0\" pbc=\"{} F\" "
+        "{}\nLattice=\"{:.9g} 0 0 {:.9g} {:.9g} 0 {:.9g} {:.9g} {:.9g}\" Origin=\"0 0 0\" pbc=\"{}\" "
         "Properties=species:S:1:pos:R:3:id:I:1:radius:R:1:coordination_number:I:1:force_magnitude:R:1:"
         "wall_force:R:3 Time={:.9g} frame={} cycle={} phase={} plate_z={:.9g} top_force={:.9g} label={}\n",
-        scan.position.size(), recording.box.size_x, recording.box.size_y, recording.plate_start,
-        is_periodic(recording.box) ? "T T" : "F F", scan.time, scan.frame, scan.cycle, name(scan.phase),
-        scan.plate_z, scan.top_force(), in_quotes(recording.label));
+        scan.position.size(), now.size_x, now.tilt_xy, now.size_y, now.tilt_xz, now.tilt_yz,
+        is_cell(now) ? now.height : recording.plate_start,
+        is_cell(now)       ? "T T T"
+        : is_periodic(now) ? "T T F"
+                           : "F F F",
+        scan.time, scan.frame, scan.cycle, name(scan.phase), scan.plate_z, scan.top_force(),
+        in_quotes(recording.label));
     const auto loads = grain_loads(scan);
     for (std::size_t i = 0; i < scan.position.size(); ++i) {
         const Vec3 &at = scan.position[i], &wall = loads[i].wall_force;
@@ -61,16 +66,29 @@ void append_grains(fmt::memory_buffer& text, const Recording& recording, const S
     }
 }
 
+/// As LAMMPS writes them: of a cell that leans, the bounds of all of it.
+std::string dump_bounds(const Recording& recording, const Scan& scan) {
+    const Box now = deformed(recording.box, scan.strain);
+    if (!is_cell(now))
+        return fmt::format("ITEM: BOX BOUNDS {} ff\n0 {:.9g}\n0 {:.9g}\n0 {:.9g}\n",
+                           is_periodic(now) ? "pp pp" : "ff ff", now.size_x, now.size_y,
+                           recording.plate_start);
+    const auto [low, high] = std::minmax({0.0, now.tilt_xy, now.tilt_xz, now.tilt_xy + now.tilt_xz});
+    return fmt::format(
+        "ITEM: BOX BOUNDS xy xz yz pp pp pp\n{:.9g} {:.9g} {:.9g}\n{:.9g} {:.9g} {:.9g}\n0 {:.9g} "
+        "{:.9g}\n",
+        low, now.size_x + high, now.tilt_xy, std::min(0.0, now.tilt_yz),
+        now.size_y + std::max(0.0, now.tilt_yz), now.tilt_xz, now.height, now.tilt_yz);
+}
+
 void append_contacts(fmt::memory_buffer& text, const Recording& recording, const Scan& scan) {
     const auto out = fmt::appender(text);
     const auto between_grains =
         std::ranges::count_if(scan.contacts, [](const Contact& c) { return !is_wall(c.partner); });
-    fmt::format_to(
-        out,
-        "ITEM: TIMESTEP\n{}\nITEM: NUMBER OF ENTRIES\n{}\nITEM: BOX BOUNDS {} ff\n0 {:.9g}\n0 {:.9g}\n"
-        "0 {:.9g}\nITEM: ENTRIES grain partner force_magnitude fx fy fz overlap\n",
-        scan.frame, between_grains, is_periodic(recording.box) ? "pp pp" : "ff ff", recording.box.size_x,
-        recording.box.size_y, recording.plate_start);
+    fmt::format_to(out,
+                   "ITEM: TIMESTEP\n{}\nITEM: NUMBER OF ENTRIES\n{}\n{}"
+                   "ITEM: ENTRIES grain partner force_magnitude fx fy fz overlap\n",
+                   scan.frame, between_grains, dump_bounds(recording, scan));
     for (const Contact& contact : scan.contacts)
         if (!is_wall(contact.partner))
             fmt::format_to(out, "{} {} {:.9g} {:.9g} {:.9g} {:.9g} {:.9g}\n", contact.grain, contact.partner,

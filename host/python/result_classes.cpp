@@ -87,9 +87,9 @@ void bind_recording(py::module_& module) {
             "Size along x and y [m]; of a cylinder its diameter, twice.")
         .def_property_readonly(
             "container", [](const OneRecording& self) { return std::string(name(self.get().box.shape)); },
-            "\"box\", \"cylinder\" or \"periodic\". Its walls: the side of a cylinder is x_min, and what is "
-            "not there "
-            "carries no force.")
+            "\"box\", \"cylinder\", \"periodic\" or \"cell\". Its walls: the side of a cylinder is x_min, "
+            "and "
+            "what is not there carries no force; those of a cell are its faces.")
         .def_property_readonly(
             "plate_start", [](const OneRecording& self) { return self.get().plate_start; },
             "Plate position that counts as displacement zero [m].")
@@ -100,11 +100,12 @@ void bind_recording(py::module_& module) {
             "[S] rows with the fields of /observables in run.h5: frame, cycle, phase (0 load, 1 "
             "unload), settled, time [s], plate_z [m], kinetic_energy [J], elastic_energy [J], "
             " rate_error, coordination_number, mean_force [N], packing_fraction, "
-            "branch_length [m].")
+            "branch_length [m], strain (of a cell: compression along x, y, z, shears xy, xz, yz).")
         .def_property_readonly(
             "wall_force", array_property(wall_force_array),
             "[S][6][3] force on each wall [N]: x_min, x_max, y_min, y_max, floor, plate. The side "
-            "of a cylinder is x_min; walls that are not there have zeros.")
+            "of a cylinder is x_min; walls that are not there have zeros. Of a cell: the forces through "
+            "its faces.")
         .def_property_readonly("top_force", array_property(top_force_array),
                                "[S] upward force on the plate [N].")
         .def_property_readonly(

@@ -15,7 +15,7 @@ public:
     /// `edge`: the longest distance asked for; cells are larger where they would far outnumber the grains.
     /// The list goes up to `height`. Of a periodic cell, positions are those in the cell.
     CellList(const std::vector<Vec3>& position, const Box& box, double height, double edge)
-        : repeats_{is_periodic(box), is_periodic(box), false} {
+        : repeats_{is_periodic(box), is_periodic(box), is_cell(box)} {
         const double size[]{box.size_x, box.size_y, height};
         const double volume = size[0] * size[1] * size[2];
         const double enough = 8.0 * static_cast<double>(position.size()) + 64.0;

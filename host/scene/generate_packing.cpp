@@ -50,7 +50,7 @@ std::vector<Vec3> draw_positions(const GeneratedPacking& wanted, const Box& box,
     for (Vec3& p : position) {
         for (int axis = 0; axis < 3; ++axis) {
             const double size = axis == 0 ? box.size_x : axis == 1 ? box.size_y : height;
-            const double from = is_periodic(box) && axis < 2 ? 0 : margin;
+            const double from = is_cell(box) || (is_periodic(box) && axis < 2) ? 0 : margin;
             p[axis] = random.uniform(from, size - from);
         }
         if (is_cylinder(box)) into_cylinder(box, margin, p);
@@ -81,7 +81,7 @@ Packing generate_packing(const GeneratedPacking& wanted, const Box& box, std::ui
     packing.diameter = draw_diameters(wanted, seed);
     double grain_volume = 0;
     for (double d : packing.diameter) grain_volume += volume(d);
-    const double height = height_for(grain_volume, wanted.packing_fraction, box);
+    const double height = is_cell(box) ? box.height : height_for(grain_volume, wanted.packing_fraction, box);
     packing.position = draw_positions(wanted, box, height, seed);
 
     OverlapRelaxation relaxation(packing, box, height);

@@ -36,10 +36,11 @@ constexpr Scope one_run = Scope::run, each = Scope::replica;
 const Key table[] = {
     {"name", run<&Scene::name>, "", none, one_run, "what the run is called; without it, the file's name"},
 
-    {"container.shape", replica<&Replica::box, &Box::shape>, "", none, each, "what holds the grains at the sides, between floor and plate. box: four walls; cylinder: one upright wall, its axis at x = y = radius; periodic: no walls, the packing repeats along x and y"},
-    {"container.size_x", replica<&Replica::box, &Box::size_x>, "m", length, each, "of a box: distance of the walls x_min and x_max; of a periodic cell: its length along x"},
+    {"container.shape", replica<&Replica::box, &Box::shape>, "", none, each, "what holds the grains at the sides, between floor and plate. box: four walls; cylinder: one upright wall, its axis at x = y = radius; periodic: no walls, the packing repeats along x and y; cell: neither walls nor floor nor plate nor weight, the packing repeats along x, y and z, and a programme deforms it"},
+    {"container.size_x", replica<&Replica::box, &Box::size_x>, "m", length, each, "of a box: distance of the walls x_min and x_max; of periodic and cell: the length along x after which the packing repeats"},
     {"container.size_y", replica<&Replica::box, &Box::size_y>, "m", length, each, "along y; the floor is at z = 0"},
     {"container.radius", &follow<&Settings::cylinder_radius>, "m", length, each, "of a cylinder"},
+    {"container.height", &follow<&Settings::cell_height>, "m", length, each, "of a cell whose packing is a file: its length along z. That of a generated packing follows from packing.count and packing.packing_fraction"},
 
     {"box.size_x", replica<&Replica::box, &Box::size_x>, "m", length, each, "short for container.size_x"},
     {"box.size_y", replica<&Replica::box, &Box::size_y>, "m", length, each, "short for container.size_y"},
@@ -157,6 +158,10 @@ const Key* same_key(std::string_view name) {
 
 bool is_key_of(ContainerShape shape, std::string_view name) {
     if (name == "container.radius") return shape == ContainerShape::cylinder;
+    if (name == "container.height") return shape == ContainerShape::cell;
+    if (name.starts_with("plate.") || name.starts_with("walls.") || name.starts_with("effects.plate_") ||
+        name == "grains.excess_density")
+        return shape != ContainerShape::cell;
     return !same_key(name) || shape != ContainerShape::cylinder;
 }
 

@@ -21,6 +21,8 @@ struct Settings {
     int packing_frame = -1;    ///< timestep of a dump; -1: its last
     int copies = 1;
     double cylinder_radius = 0.0827;  ///< of a cylinder, [m]: sets the sizes of its box
+    double cell_height =
+        not_given;  ///< of a cell, [m]: sets its box and the start of a plate that is not there
 };
 
 /// What a number may be.

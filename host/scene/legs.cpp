@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "core/container.h"
 #include "core/errors.h"
 
 namespace mcdem::inline scene {
@@ -28,7 +29,12 @@ std::vector<Stage> stages_of(const Replica& replica) {
 
 void expect_strokes(const Scene& scene, const std::string& what) {
     for (const Replica& replica : scene.replicas)
-        if (!replica.programme.empty())
+        if (is_cell(replica.box))
+            throw InputError(fmt::format(
+                "container.shape: must be one with a plate for {}, got cell: it compares strokes of a "
+                "plate",
+                what));
+        else if (!replica.programme.empty())
             throw InputError(
                 fmt::format("programme: must be left out of a scene for {}, which compares the strokes of "
                             "[plate] and [protocol] only",

@@ -8,6 +8,7 @@
 
 #include "core/container.h"
 #include "core/errors.h"
+#include "scene/cell_path.h"
 #include "scene/generate_packing.h"
 #include "scene/random.h"
 #include "scene/read_packing.h"
@@ -29,6 +30,7 @@ std::string described(const Box& box) {
 }
 
 bool is_inside(const Box& box, const PlateFace& plate, const Vec3& point) {
+    if (is_cell(box)) return point.allFinite();
     if (!(point.z() >= 0 && point.z() <= plate.height(point))) return false;
     if (is_periodic(box)) return point.allFinite();
     for (const Wall wall : {Wall::x_min, Wall::x_max, Wall::y_min, Wall::y_max})
@@ -47,22 +49,24 @@ std::optional<TooSmall> too_small_container(const Box& box, const Numerics& nume
                                     largest_diameter, cylinder_radius(box))};
     if (!is_periodic(box)) return std::nullopt;
     const double reach = largest_diameter + (numerics.probe_gap + numerics.skin) * mean_diameter / 2;
-    const bool along_x = box.size_x < box.size_y;
-    const double length = along_x ? box.size_x : box.size_y;
-    if (length >= 2 * reach) return std::nullopt;
+    std::pair<const char*, double> shortest{"container.size_x", box.size_x};
+    if (box.size_y <= shortest.second) shortest = {"container.size_y", box.size_y};
+    if (is_cell(box) && box.height < shortest.second) shortest = {"container.height", box.height};
+    if (shortest.second >= 2 * reach) return std::nullopt;
     return TooSmall{
-        along_x ? "container.size_x" : "container.size_y",
-        fmt::format("must be at least {:.6g} m in a periodic cell, got {}: two grains could meet twice, over "
-                    "both ends of the cell; take a wider cell, or lower numerics.skin or "
-                    "numerics.probe_gap",
-                    2 * reach, length)};
+        shortest.first,
+        fmt::format(
+            "must be at least {:.6g} m in a periodic cell{}, got {}: two grains could meet twice, over "
+            "both ends of the cell; take a {} cell, or lower numerics.skin or numerics.probe_gap",
+            2 * reach, is_cell(box) ? " at its smallest" : "", shortest.second,
+            is_cell(box) ? "larger" : "wider")};
 }
 
 void expect_room(const Replica& replica, const Packing& packing) {
     if (packing.size() == 0) return;
     const double mean = std::accumulate(packing.diameter.begin(), packing.diameter.end(), 0.0) /
                         static_cast<double>(packing.size());
-    if (const auto small = too_small_container(replica.box, replica.numerics, mean,
+    if (const auto small = too_small_container(smallest_cell(replica), replica.numerics, mean,
                                                *std::ranges::max_element(packing.diameter)))
         throw InputError(fmt::format("{} {} ({})", small->key, small->what, replica.label));
 }

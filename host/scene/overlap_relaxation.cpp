@@ -131,6 +131,7 @@ void OverlapRelaxation::push_from_walls(int grain, double radius, Sums& sums) {
         const Vec3 out = from_axis(box_, at);
         push(out.norm() - (cylinder_radius(box_) - radius), -out.normalized());
     }
+    if (is_cell(box_)) return;
     const double size[]{box_.size_x, box_.size_y, height_};
     for (int axis = box_.shape == ContainerShape::box ? 0 : 2; axis < 3; ++axis) {
         push(radius - at[axis], Vec3::Unit(axis));
@@ -151,6 +152,7 @@ void OverlapRelaxation::move(double time_step) {
 }
 
 void OverlapRelaxation::keep_inside(Vec3& point) const {
+    if (is_cell(box_)) return;
     point.z() = std::clamp(point.z(), 0.0, height_);
     if (is_periodic(box_)) return;
     point.x() = std::clamp(point.x(), 0.0, box_.size_x);

@@ -22,7 +22,7 @@ PackingState packing_state(const Packing& packing, const Box& box, const PlateFa
         for (int wall = 0; wall < static_cast<int>(Wall::plate); ++wall)
             if (has_wall(box, static_cast<Wall>(wall)))
                 add(diameter / 2 - wall_distance(box, static_cast<Wall>(wall), plate.z, at), diameter, 1);
-        add(diameter / 2 - (plate.foot(at) - at).norm(), diameter, 1);
+        if (!is_cell(box)) add(diameter / 2 - (plate.foot(at) - at).norm(), diameter, 1);
     }
     const double widest = packing.size() == 0 ? 0 : *std::ranges::max_element(packing.diameter);
     CellList(packing.position, box, plate.z, widest).for_each_pair([&](int i, int j) {

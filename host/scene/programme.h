@@ -1,4 +1,4 @@
-// A programme: the stages that the plate is taken through, in order.
+// A programme: the stages that the plate, or a cell, is taken through, in order.
 #pragma once
 #include <limits>
 #include <vector>
@@ -37,9 +37,12 @@ inline constexpr int max_stages = 100;
 struct Stage {
     StageKind kind = StageKind::move;
     double position = not_given;  ///< of the plate's lower face [m]
-    double strain = not_given;    ///< of the height at start, compression positive
-    double force = not_given;     ///< upward on the plate [N]
-    double back = not_given;      ///< where a cycle returns to, in the quantity of its turning point
+    double strain = not_given;  ///< of the height at start, or of all lengths of a cell; compression positive
+    double force = not_given;   ///< upward on the plate [N]
+    double strain_x = not_given, strain_y = not_given, strain_z = not_given;  ///< of a cell (core/packing.h)
+    double shear_xy = not_given, shear_xz = not_given, shear_yz = not_given;  ///< of a cell
+    double rate = 0.1;        ///< of a cell: the fastest of its strains, at most [1/s]
+    double back = not_given;  ///< where a cycle returns to, in the quantity of its turning point
     int cycles = 1;
     double growth = 0;  ///< of the amplitude from cycle to cycle, over the first
     Controlled keep = Controlled::position;

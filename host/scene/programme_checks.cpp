@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/container.h"
 #include "scene/legs.h"
 
 namespace mcdem::inline scene {
@@ -17,10 +18,14 @@ constexpr double max_legs = 100'000, max_scans = 1'000'000;
 constexpr double beyond_hertz = 10;
 
 /// Which kinds of stage have a key; `stage` has all.
-bool belongs(StageKind kind, std::string_view key) {
+bool belongs(StageKind kind, std::string_view key, bool cell) {
     const auto any = [&](std::initializer_list<std::string_view> list) {
         return std::ranges::find(list, key) != list.end();
     };
+    if (cell && kind == StageKind::move)
+        return any({"stage", "strain", "strain_x", "strain_y", "strain_z", "shear_xy", "shear_xz", "shear_yz",
+                    "rate", "scans"});
+    if (cell && kind == StageKind::hold) return any({"stage", "time", "scans", "scan_at"});
     switch (kind) {
         case StageKind::move:
             return any({"stage", "position", "strain", "force", "speed", "scans", "scan_at"});
@@ -40,20 +45,27 @@ class StageChecks {
 public:
     StageChecks(const Settings& settings, int number, const std::set<std::string>& said,
                 std::vector<CrossProblem>& problems)
-        : plate_(settings.replica.plate),
+        : is_cell_(is_cell(settings.replica.box)),
+          plate_(settings.replica.plate),
           stage_(settings.replica.programme[static_cast<std::size_t>(number)]),
           number_(number),
           said_(said),
           problems_(problems) {}
 
     void check() {
+        if (is_cell_ && stage_.kind == StageKind::cycle)
+            return add("stage",
+                       "must be move, hold or repeat in a cell, got cycle: take a move there, a move back "
+                       "and a repeat of both");
         for (const Key& key : stage_keys(number_)) {
             const std::string_view field = key.name.substr(key.name.rfind('.') + 1);
-            if (said_.contains(std::string(key.name)) && !belongs(stage_.kind, field))
-                add(field, fmt::format("must be left out of a stage that is a {}", name(stage_.kind)));
+            if (said_.contains(std::string(key.name)) && !belongs(stage_.kind, field, is_cell_))
+                add(field, fmt::format("must be left out of a stage that is a {} of {}", name(stage_.kind),
+                                       is_cell_ ? "a cell" : "the plate"));
         }
         if (said("scans") && said("scan_at")) add("scan_at", "must be left out where scans is given");
         if (stage_.kind == StageKind::hold) check_hold();
+        if (stage_.kind == StageKind::move && is_cell_) return check_strains();
         if (stage_.kind == StageKind::move || stage_.kind == StageKind::cycle) check_target();
         if (stage_.kind == StageKind::repeat && stage_.stages > number_)
             add("stages", fmt::format("must be at most the {} before it, got {}", number_, stage_.stages));
@@ -78,6 +90,18 @@ private:
                            fmt::format("must be growing times > 0 and <= time = {}, got {} after {}",
                                        stage_.time, at, before));
         }
+    }
+
+    void check_strains() {
+        const std::string_view strains[]{"strain_x", "strain_y", "strain_z",
+                                         "shear_xy", "shear_xz", "shear_yz"};
+        const bool any = std::ranges::any_of(strains, [&](auto field) { return said(field); });
+        if (!any && !said("strain"))
+            add("strain", "must be given, or strain_x, shear_xy, ..: a move of a cell needs one of them");
+        for (const std::string_view field : {"strain_x", "strain_y", "strain_z"})
+            if (said(field) && said("strain")) add(field, "must be left out where strain is given");
+        if (stage_.strain > 0.99)
+            add("strain", fmt::format("must leave a cell some volume, at most 0.99, got {}", stage_.strain));
     }
 
     void check_target() {
@@ -140,6 +164,7 @@ private:
         }
     }
 
+    bool is_cell_;
     const Plate& plate_;
     const Stage& stage_;
     int number_;

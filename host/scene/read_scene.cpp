@@ -147,6 +147,10 @@ private:
             if (from_file && is_generator_key(key))
                 problems_.add(entry.place, key + " must be left out where packing.file is given");
         }
+        if (const Entry* height = entry_of("container.height"); height && !from_file)
+            problems_.add(height->place,
+                          "container.height must be left out where the packing is generated: it "
+                          "follows from packing.count and packing.packing_fraction");
         if (!from_file && (settings_.packing_frame >= 0 || varies("packing.frame")))
             problems_.add(document_.place_of("packing.frame"),
                           "packing.frame must be left out where no packing.file is given");

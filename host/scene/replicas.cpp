@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include "core/container.h"
 #include "scene/assign.h"
+#include "scene/generate_packing.h"
 
 namespace mcdem::inline scene {
 namespace {
@@ -45,6 +47,16 @@ std::map<std::string, std::string> parameters(const Settings& settings) {
     return all;
 }
 
+void set_container(Settings& settings) {
+    Box& box = settings.replica.box;
+    if (is_cylinder(box)) box.size_x = box.size_y = 2 * settings.cylinder_radius;
+    if (!is_cell(box)) return;
+    box.height = settings.packing_file.empty()      ? expected_height(settings.generated, box)
+                 : std::isnan(settings.cell_height) ? box.size_x
+                                                    : settings.cell_height;
+    settings.replica.plate = {box.height, 0};
+}
+
 }  // namespace
 
 double combination_count(const std::vector<Variation>& variations) {
@@ -67,9 +79,7 @@ std::vector<Combination> combinations(const Settings& base, const std::vector<Va
             }
         all = std::move(next);
     }
-    for (Combination& one : all)
-        if (Box& box = one.settings.replica.box; is_cylinder(box))
-            box.size_x = box.size_y = 2 * one.settings.cylinder_radius;
+    for (Combination& one : all) set_container(one.settings);
     return all;
 }
 

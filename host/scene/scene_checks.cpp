@@ -7,6 +7,7 @@
 
 #include "core/container.h"
 #include "core/errors.h"
+#include "scene/cell_path.h"
 #include "scene/generate_packing.h"
 #include "scene/make_packing.h"
 #include "scene/read_packing.h"
@@ -25,8 +26,8 @@ struct Check {
 };
 
 Found in_container(std::string_view key, const Settings& s) {
-    const auto small = too_small_container(s.replica.box, s.replica.numerics, s.generated.diameter_mean,
-                                           s.generated.diameter_max);
+    const auto small = too_small_container(smallest_cell(s.replica), s.replica.numerics,
+                                           s.generated.diameter_mean, s.generated.diameter_max);
     return small && small->key == key ? Found{small->what} : Found{};
 }
 
@@ -78,7 +79,7 @@ const std::vector<Check> checks{
         const auto& effects = s.replica.effects;
         const auto& box = s.replica.box;
         const double drop = (std::abs(effects.plate_tilt_x) * box.size_x + std::abs(effects.plate_tilt_y) * box.size_y) / 2;
-        return unless(drop < s.replica.plate.end,
+        return unless(is_cell(s.replica.box) || drop < s.replica.plate.end,
                       fmt::format("and effects.plate_tilt_y must leave the plate's lowest corner above the floor at plate.end = {}, got {} and {}: it is {:.6g} m lower",
                                   s.replica.plate.end, effects.plate_tilt_x, effects.plate_tilt_y, drop));
     }},
@@ -86,6 +87,18 @@ const std::vector<Check> checks{
         const auto& effects = s.replica.effects;
         return unless(!is_periodic(s.replica.box) || (effects.plate_tilt_x == 0 && effects.plate_tilt_y == 0),
                       "must not be periodic where effects.plate_tilt_x or effects.plate_tilt_y is given: a tilted plate does not repeat");
+    }},
+    {{"container.shape"}, Check::Packing::any, [](const Settings& s) {
+        return unless(!is_cell(s.replica.box) || !s.replica.programme.empty(),
+                      "must come with a [[programme]] where it is cell: nothing else deforms a cell");
+    }},
+    {{"container.height", "container.shape", "packing.file"}, Check::Packing::any, [](const Settings& s) {
+        return unless(!is_cell(s.replica.box) || s.packing_file.empty() || !std::isnan(s.cell_height),
+                      "must be given where the packing of a cell is a file: the file does not say it");
+    }},
+    {{"container.height", "container.shape", "packing.diameter_max", "packing.diameter_mean", "numerics.skin", "numerics.probe_gap"},
+     Check::Packing::generated, [](const Settings& s) {
+        return in_container("container.height", s);
     }},
     {{"container.radius", "container.shape", "packing.diameter_max"}, Check::Packing::generated, [](const Settings& s) {
         return in_container("container.radius", s);

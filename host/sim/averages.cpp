@@ -72,10 +72,17 @@ private:
     double radius_;
 };
 
+double grain_volume(const std::vector<double>& diameter) {
+    double volume = 0;
+    for (const double d : diameter) volume += std::numbers::pi / 6 * std::pow(d, 3);
+    return volume;
+}
+
 }  // namespace
 
 double packing_fraction(const std::vector<Vec3>& position, const std::vector<double>& diameter,
                         const Box& box, double plate_z) {
+    if (is_cell(box)) return grain_volume(diameter) / (floor_area(box) * box.height);
     const double mean = std::accumulate(diameter.begin(), diameter.end(), 0.0) / diameter.size();
     const Interior interior(box, plate_z, mean);
     if (interior.empty()) return not_a_number;
@@ -87,6 +94,7 @@ double packing_fraction(const std::vector<Vec3>& position, const std::vector<dou
 }
 
 void fill_averages(Scan& scan, const Box& box, const std::vector<double>& diameter, double force_threshold) {
+    const Box now = deformed(box, scan.strain);
     int ends = 0, contacts = 0, pairs = 0;
     double force = 0, branch = 0;
     for (const auto& contact : scan.contacts) {
@@ -97,14 +105,14 @@ void fill_averages(Scan& scan, const Box& box, const std::vector<double>& diamet
         ends += is_wall(contact.partner) ? 1 : 2;
         if (is_wall(contact.partner)) continue;
         ++pairs;
-        branch += apart(box, scan.position[contact.grain], scan.position[contact.partner]).norm();
+        branch += apart(now, scan.position[contact.grain], scan.position[contact.partner]).norm();
     }
     scan.coordination_number = static_cast<double>(ends) / diameter.size();
     scan.mean_force = contacts ? force / contacts : not_a_number;
     scan.branch_length = pairs ? branch / pairs : not_a_number;
     scan.stress = packing_stress(box, scan);
     scan.fabric = packing_fabric(box, scan);
-    scan.packing_fraction = packing_fraction(scan.position, diameter, box, scan.plate_z);
+    scan.packing_fraction = packing_fraction(scan.position, diameter, now, scan.plate_z);
 }
 
 }  // namespace mcdem::sim

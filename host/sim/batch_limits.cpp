@@ -7,7 +7,9 @@
 #include <limits>
 #include <numeric>
 
+#include "core/container.h"
 #include "core/errors.h"
+#include "scene/cell_path.h"
 #include "scene/legs.h"
 #include "sim/device_replica.h"
 
@@ -55,6 +57,7 @@ FieldNeeds field_needs(const std::vector<Replica>& replicas) {
         needs.displacements |= replica.contact.model != ContactModel::independent;
         needs.springs |= mindlin_share(replica) > 0;
         needs.deepest |= replica.effects.plasticity > 0;
+        needs.cells |= is_cell(replica.box);
         needs.relaxed |= replica.effects.viscoelasticity > 0;
     }
     return needs;
@@ -102,10 +105,32 @@ void expect_within_limits(const DeviceInfo& device, const KernelBuild& build,
 
 namespace {
 
+/// That a move of the cell can change at most.
+double max_strain_of_move(const Replica& replica) {
+    double low = 0, high = 0;
+    for (const Stage& stage : replica.programme)
+        for (const double strain : strain_after(stage, {}))
+            low = std::min(low, strain), high = std::max(high, strain);
+    return high - low;
+}
+
+/// The fastest strain rate must leave a cell its shape in a step.
+void expect_slow_strains(const Replica& replica, double time_step) {
+    constexpr double most = 0.01;  // strain in a step
+    for (std::size_t n = 0; is_cell(replica.box) && n < replica.programme.size(); ++n)
+        if (const Stage& stage = replica.programme[n];
+            stage.kind == StageKind::move && stage.rate * time_step > most)
+            throw InputError(
+                fmt::format("programme.{}.rate must leave strains of at most {} in a time step of {:.3g} "
+                            "s, got {} 1/s: at most {:.3g} 1/s",
+                            n + 1, most, time_step, stage.rate, most / time_step));
+}
+
 /// About how long a stage's moves and holds take, each time that it runs [s].
 double seconds_of_stage(const Stage& stage, const Replica& replica) {
     const double speed = std::isnan(stage.speed) ? replica.plate.speed : stage.speed;
     if (stage.kind == StageKind::hold) return stage.time;
+    if (is_cell(replica.box)) return max_strain_of_move(replica) / stage.rate;
     return std::abs(replica.plate.start - replica.plate.end) / speed;
 }
 
@@ -124,6 +149,7 @@ void expect_countable_steps(const Replica& replica, double time_step) {
             fmt::format("numerics.time_step must leave steps of at least {} s, got {} s: take larger, "
                         "heavier or excess_compliance grains",
                         min_time_step, time_step));
+    expect_slow_strains(replica, time_step);
     const double steps = seconds / time_step + 2 * scans;
     if (!(steps <= max_steps))
         throw InputError(

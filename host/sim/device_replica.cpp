@@ -17,6 +17,11 @@ namespace {
 constexpr double gravity = 9.81;  // [m/s2]
 constexpr double pi = std::numbers::pi;
 
+double mean_radius(const Packing& packing) {
+    return 0.5 * std::accumulate(packing.diameter.begin(), packing.diameter.end(), 0.0) /
+           static_cast<double>(packing.size());
+}
+
 double shear_modulus(double youngs_modulus, double poisson_ratio) {
     return youngs_modulus / (2 * (1 + poisson_ratio));
 }
@@ -42,7 +47,7 @@ void set_materials(DeviceReplica& d, const Replica& replica) {
     const auto& g = replica.grains;
     const auto& w = replica.walls;
     d.density = g.density;
-    d.weight_density = g.excess_density * gravity;
+    d.weight_density = is_cell(replica.box) ? 0 : g.excess_density * gravity;
     d.drag = g.drag;
     d.modulus_grain = reduced_modulus(g.youngs_modulus, g.poisson_ratio, g.youngs_modulus, g.poisson_ratio);
     d.modulus_wall = reduced_modulus(g.youngs_modulus, g.poisson_ratio, w.youngs_modulus, w.poisson_ratio);
@@ -118,44 +123,73 @@ std::array<int, 3> repeated_grid(std::array<int, 3> span, std::size_t grains) {
     return span;
 }
 
+/// No neighbour is lost to rounding: the margin is 0.001 of a cell of the grid, the places of two grains
+/// along the box are known to a ten-thousandth of one each.
+template <class Real>
+constexpr double max_along = 0.0002 / std::numeric_limits<Real>::epsilon();
+constexpr double rounding_margin = 1.001;
+
+std::array<double, 3> sizes(const Replica& replica) {
+    return {replica.box.size_x, replica.box.size_y, replica.plate.start};
+}
+
 /// `reach`: the farthest that a neighbour's centre may be [m].
 template <class DeviceReplica>
-void set_cells(DeviceReplica& d, const std::array<double, 3>& size, double reach, std::size_t grains,
-               bool periodic) {
-    // No neighbour is lost to rounding: the margin is 0.001 of a cell, the places of two grains along the box
-    // are known to a ten-thousandth of a cell each.
-    using Real = decltype(d.cell_size);
-    const double max_along = std::min(0.0002 / std::numeric_limits<Real>::epsilon(), 1e9);
-    const double cell = std::max(1.001 * reach, *std::ranges::max_element(size) / max_along);
+void set_cells(DeviceReplica& d, const Replica& replica, double reach, std::size_t grains) {
+    using Real = decltype(d.skin);
+    const auto size = sizes(replica);
+    const double cell =
+        std::max(rounding_margin * reach, *std::ranges::max_element(size) / std::min(max_along<Real>, 1e9));
     std::array<int, 3> span;
     for (int axis = 0; axis < 3; ++axis) span[axis] = std::max(1, static_cast<int>(size[axis] / cell));
-    d.cell_size = cell;
+    std::fill_n(d.cell_size, 3, cell);
     const auto grid = repeated_grid(span, grains);
     // Around a periodic end the grid in memory must repeat as well; the last cell is wider.
-    for (int axis = 0; axis < 2 && periodic; ++axis) span[axis] -= span[axis] % grid[axis];
+    for (int axis = 0; axis < 2 && is_periodic(replica.box); ++axis) span[axis] -= span[axis] % grid[axis];
     d.span_x = span[0], d.span_y = span[1], d.span_z = span[2];
     d.cells_x = grid[0], d.cells_y = grid[1], d.cells_z = grid[2];
 }
 
+/// Grains lie in the grid undeformed; how far neighbours are apart there depends on the deformation. The grid
+/// in memory stays and is used in part.
+template <class DeviceReplica>
+void set_deformed_cells(DeviceReplica& d, const Replica& replica, double reach, const Strain& strain) {
+    using Real = decltype(d.skin);
+    const Mat3 inverse = inverse_deformation(strain);
+    const auto size = sizes(replica);
+    const int most[]{d.cells_x, d.cells_y, d.cells_z};
+    int* const span[]{&d.span_x, &d.span_y, &d.span_z};
+    for (int axis = 0; axis < 3; ++axis) {
+        const double width =
+            std::max(rounding_margin * reach * inverse.row(axis).norm(), size[axis] / max_along<Real>);
+        *span[axis] = std::clamp(static_cast<int>(std::min(size[axis] / width, 1e9)), 1, most[axis]);
+        d.cell_size[axis] = size[axis] / *span[axis];
+    }
+}
+
 template <class DeviceReplica>
 void set_space(DeviceReplica& d, const Replica& replica, const Packing& packing) {
-    const double mean_radius =
-        0.5 * std::accumulate(packing.diameter.begin(), packing.diameter.end(), 0.0) / packing.size();
-    const double largest = *std::max_element(packing.diameter.begin(), packing.diameter.end());
-    const double skin = replica.numerics.skin * mean_radius;
-    const double probe_gap = replica.numerics.probe_gap * mean_radius;
+    const double radius = mean_radius(packing);
+    const double skin = replica.numerics.skin * radius;
     d.skin = skin;
-    d.probe_gap = probe_gap;
+    d.max_move = (is_cell(replica.box) ? 0.25 : 0.5) * static_cast<double>(d.skin);
+    d.probe_gap = replica.numerics.probe_gap * radius;
     d.overlap_limit = replica.numerics.overlap_limit;
     d.container = static_cast<int>(replica.box.shape);
     d.wall_position[1] = replica.box.size_x;
     d.wall_position[3] = replica.box.size_y;
     d.wall_position[5] = replica.plate.start;
-    set_cells(d, {replica.box.size_x, replica.box.size_y, replica.plate.start}, largest + probe_gap + skin,
-              packing.size(), is_periodic(replica.box));
+    std::fill_n(d.deformation, 3, 1);
+    set_cells(d, replica, list_reach(replica, packing), packing.size());
+    if (is_cell(replica.box)) set_deformed_cells(d, replica, list_reach(replica, packing), {});
 }
 
 }  // namespace
+
+double list_reach(const Replica& replica, const Packing& packing) {
+    return *std::ranges::max_element(packing.diameter) +
+           (replica.numerics.probe_gap + replica.numerics.skin) * mean_radius(packing);
+}
 
 double mindlin_share(const Replica& replica) {
     const double other = replica.effects.friction_history;
@@ -205,6 +239,16 @@ void set_time_step(DeviceReplica& d, const Replica& replica, double time_step) {
 }
 
 template <class DeviceReplica>
+void set_strain(DeviceReplica& d, const Replica& replica, const Strain& strain, const Strain& rate,
+                double reach) {
+    for (std::size_t k = 0; k < strain.size(); ++k) {
+        d.deformation[k] = k < 3 ? 1 - strain[k] : strain[k];
+        d.deformation_rate[k] = k < 3 ? -rate[k] : rate[k];
+    }
+    if (reach > 0) set_deformed_cells(d, replica, reach, strain);
+}
+
+template <class DeviceReplica>
 DeviceReplica device_replica(const Replica& replica, const Packing& packing, const Place& place) {
     DeviceReplica d{};
     set_time_step(d, replica, time_step(replica, packing));
@@ -220,6 +264,8 @@ DeviceReplica device_replica(const Replica& replica, const Packing& packing, con
 
 template void set_time_step(f32::Replica&, const Replica&, double);
 template void set_time_step(f64::Replica&, const Replica&, double);
+template void set_strain(f32::Replica&, const Replica&, const Strain&, const Strain&, double);
+template void set_strain(f64::Replica&, const Replica&, const Strain&, const Strain&, double);
 template f32::Replica device_replica(const Replica&, const Packing&, const Place&);
 template f64::Replica device_replica(const Replica&, const Packing&, const Place&);
 

@@ -24,6 +24,9 @@ int shortening(const Replica& replica, double time_step, double frequency, int n
 double shortened(double time_step, int shortening);
 inline constexpr int max_shortening = 40;
 
+/// How far centres may be apart in a neighbour list, at most [m].
+double list_reach(const Replica& replica, const Packing& packing);
+
 /// How much of the friction force is that of a Mindlin spring, the rest being saturated.
 double mindlin_share(const Replica& replica);
 
@@ -41,6 +44,12 @@ DeviceReplica device_replica(const Replica& replica, const Packing& packing, con
 /// Everything of the replica that depends on its time step [s].
 template <class DeviceReplica>
 void set_time_step(DeviceReplica& device_replica, const Replica& replica, double time_step);
+
+/// The deformation of a cell at the interval's start and its rate; with `reach` > 0 [m] the grid to find
+/// neighbours by as well.
+template <class DeviceReplica>
+void set_strain(DeviceReplica& device_replica, const Replica& replica, const Strain& strain,
+                const Strain& strain_rate, double reach);
 
 /// Cells of a replica's grid at most: a grid that would have more repeats itself.
 constexpr std::uint64_t max_cells(std::uint64_t grains) { return 8 * grains + 64; }

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/container.h"
 #include "core/errors.h"
+#include "core/stress.h"
 #include "scene/true_grains.h"
 #include "sim/batch_limits.h"
 #include "sim/device_replica.h"
@@ -16,7 +18,8 @@ namespace {
 /// A list is made anew when a grain or the plate has moved this part of the margin. Half the margin is the
 /// limit that the kernels enforce step by step.
 constexpr double rebuild_at = 0.3;
-/// The plate moves at most this part of the margin in an interval: rebuild_at + plate_share <= 1/2.
+/// The plate moves at most this part of the margin in an interval: rebuild_at + plate_share <= 1/2. In a cell
+/// the same holds for two grains at the list's reach that go with the cell; what is left is for both of them.
 constexpr double plate_share = 0.2;
 constexpr int max_interval_steps = 60;
 
@@ -66,6 +69,7 @@ Engine::Engine(Device& device, const KernelBuild& build, std::vector<Replica> re
       rebuild_(replicas_.size(), 1),
       plate_moved_(replicas_.size(), 0),
       plate_z_(replicas_.size(), 0),
+      strain_(replicas_.size(), Strain{}),
       steps_made_(replicas_.size(), 0),
       device_replicas_(any_device_replicas(build, replicas_, packings, layout_)),
       fields_(device,
@@ -77,6 +81,7 @@ Engine::Engine(Device& device, const KernelBuild& build, std::vector<Replica> re
         time_step_.push_back(mcdem::time_step(replicas_[r], packings[r]));
         shortening_.push_back(0);
         excess_compliance_.push_back(mcdem::excess_compliance(replicas_[r], packings[r].size()));
+        reach_.push_back(list_reach(replicas_[r], packings[r]));
         skin_.push_back(std::visit([&](const auto& all) { return double(all[r].skin); }, device_replicas_));
     }
     upload_packings(packings);
@@ -97,8 +102,15 @@ void Engine::upload_packings(const std::vector<Packing>& packings) {
 
 double Engine::time_step(int replica) const { return shortened(time_step_[replica], shortening_[replica]); }
 
-int Engine::max_interval(int replica, double plate_velocity) const {
-    const double step = std::abs(plate_velocity) * time_step(replica);
+/// Of the plate, or of a cell's motion between two grains at the list's reach [m/s].
+double Engine::speed_of_walls(int replica, const StepInterval& interval) const {
+    const auto r = static_cast<std::size_t>(replica);
+    if (!is_cell(replicas_[r].box)) return std::abs(interval.plate_velocity);
+    return reach_[r] * velocity_gradient(interval.strain, interval.strain_rate).norm();
+}
+
+int Engine::max_interval(int replica, const StepInterval& interval) const {
+    const double step = speed_of_walls(replica, interval) * time_step(replica);
     const double steps = step > 0 ? max_plate_move(replica) / step : max_interval_steps;
     return std::clamp(static_cast<int>(std::min(steps, 1e6)), 1, max_interval_steps);
 }
@@ -152,8 +164,13 @@ void Engine::upload_intervals(const std::vector<StepInterval>& intervals) {
             for (std::size_t r = 0; r < all.size(); ++r) {
                 if (intervals[r].steps == 0) continue;
                 set_time_step(all[r], replicas_[r], time_step(static_cast<int>(r)));
-                all[r].wall_position[5] = intervals[r].plate_z;
-                all[r].plate_velocity = intervals[r].plate_velocity;
+                if (is_cell(replicas_[r].box)) {
+                    set_strain(all[r], replicas_[r], intervals[r].strain, intervals[r].strain_rate,
+                               rebuild_[r] ? reach_[r] : 0);
+                } else {
+                    all[r].wall_position[5] = intervals[r].plate_z;
+                    all[r].plate_velocity = intervals[r].plate_velocity;
+                }
                 all[r].steps_before = static_cast<int>(steps_made_[r] % 4);
                 all[r].drag = replicas_[r].grains.drag + intervals[r].settle_drag;
                 all[r].spin_drag = intervals[r].settle_drag;
@@ -210,6 +227,26 @@ void Engine::measure() {
                      f.frequency);
     kernels_.reduce(working_.portions.size(), f.replicas, f.portions, f.partner, f.force_x, f.force_y,
                     f.force_z, f.energy, f.frequency, f.status, f.reports);
+    if (f.has_cells())
+        kernels_.cell_stress(working_.portions.size(), f.replicas, f.portions, f.stop_at, f.motion.now(0),
+                             f.partner, f.force_x, f.force_y, f.force_z, f.cell_moments);
+}
+
+/// Of the working replicas that are cells, with these strains.
+std::vector<Mat3> Engine::read_stresses(const std::vector<Strain>& strain) const {
+    std::vector<Mat3> stress(replicas_.size(), Mat3::Zero());
+    if (!fields_.has_cells()) return stress;
+    const auto moments = read_reals(fields_.cell_moments, 0, 9 * working_.portions.size());
+    for (std::size_t p = 0; p < working_.portions.size(); ++p)
+        for (int q = 0; q < 9; ++q)
+            stress[static_cast<std::size_t>(working_.portions[p].replica)](q / 3, q % 3) +=
+                moments[9 * p + q];
+    for (const int replica : working_.replicas) {
+        const auto r = static_cast<std::size_t>(replica);
+        const Box now = deformed(replicas_[r].box, strain[r]);
+        stress[r] /= floor_area(now) * now.height;
+    }
+    return stress;
 }
 
 namespace {
@@ -271,17 +308,29 @@ std::vector<IntervalResult> Engine::read_reports(const std::vector<StepInterval>
             const auto reports = by_replica(working_.portions, found, layout_.replicas());
             for (int r = 0; r < layout_.replicas(); ++r) {
                 if (intervals[r].steps == 0) continue;
+                const double duration = time_step(r) * made[r];
+                for (std::size_t k = 0; k < strain_[r].size(); ++k)
+                    strain_[r][k] = intervals[r].strain[k] + duration * intervals[r].strain_rate[k];
+            }
+            const auto stresses = read_stresses(strain_);
+            for (int r = 0; r < layout_.replicas(); ++r) {
+                if (intervals[r].steps == 0) continue;
                 auto& result = results[r] = to_result(reports[r]);
                 result.steps = made[r];
+                if (is_cell(replicas_[r].box)) {
+                    result.stress = stresses[r];
+                    result.wall_force = face_forces(deformed(replicas_[r].box, strain_[r]), stresses[r]);
+                }
                 if (result.failed_grain >= 0)
                     result.failed_grain = layout_.order[r][result.failed_grain - layout_.first_grain[r]];
                 const double plate_move = intervals[r].plate_velocity * time_step(r) * made[r];
-                plate_moved_[r] += std::abs(plate_move);
+                plate_moved_[r] += speed_of_walls(r, intervals[r]) * time_step(r) * made[r];
                 steps_made_[r] += made[r];
                 plate_z_[r] = intervals[r].plate_z + plate_move;
                 const double limit = rebuild_at * skin_[r];
+                const double own_limit = is_cell(replicas_[r].box) ? limit / 2 : limit;
                 rebuild_[r] = made[r] < intervals[r].steps || plate_moved_[r] > limit ||
-                              !(reports[r].moved_squared <= limit * limit);
+                              !(reports[r].moved_squared <= own_limit * own_limit);
                 shortening_[r] = shortening(replicas_[r], time_step_[r], result.frequency, shortening_[r]);
             }
         },

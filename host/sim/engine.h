@@ -20,6 +20,8 @@ struct StepInterval {
     double plate_z = 0;         ///< when the interval begins [m]
     double plate_velocity = 0;  ///< [m/s]
     double settle_drag = 0;     ///< of velocities, on top of the scene's, and of spins [1/s]
+    Strain strain{};            ///< of a cell, when the interval begins
+    Strain strain_rate{};       ///< [1/s]
 };
 
 /// What became of it.
@@ -30,11 +32,13 @@ struct IntervalResult {
     double deepest_overlap = 0;  ///< corrected overlap over the sum of radii
     double frequency = 0;        ///< upper estimate of the fastest mode's (kernels/measure.cl) [rad/s]
     std::array<Vec3, wall_count> wall_force = no_wall_forces();  ///< on the walls [N]
-    int status = 0;                                              ///< STATUS_* bits
-    int failed_grain = -1;                                       ///< the user's grain number
+    Mat3 stress = unknown_tensor();  ///< of a cell, compression positive (core/stress.h) [Pa]
+    int status = 0;                  ///< STATUS_* bits
+    int failed_grain = -1;           ///< the user's grain number
 };
 
-/// A replica as it stands: by the user's grain numbers.
+/// A replica as it stands: by the user's grain numbers. In a cell grains are where they have moved to, also
+/// out of it, and velocities are those beyond the cell's own motion.
 struct ReplicaState {
     std::vector<Vec3> position, velocity, angular_velocity;
     std::vector<Contact> contacts;
@@ -49,9 +53,9 @@ public:
     int replicas() const { return layout_.replicas(); }
     /// Of the next interval [s].
     double time_step(int replica) const;
-    /// The most steps an interval of `replica` may have with the plate at this velocity, so that the plate
-    /// does not outrun the neighbour list.
-    int max_interval(int replica, double plate_velocity) const;
+    /// The most steps that the interval may have with its velocity of the plate, or its strain rate, so that
+    /// these do not outrun the neighbour list.
+    int max_interval(int replica, const StepInterval& interval) const;
     /// How far the plate may move in one interval of more than one step [m].
     double max_plate_move(int replica) const;
     /// Device memory in use [bytes].
@@ -79,11 +83,13 @@ private:
     };
     Part part(const std::vector<char>& wanted) const;
     void upload_packings(const std::vector<Packing>& packings);
+    double speed_of_walls(int replica, const StepInterval& interval) const;
     void choose(const std::vector<char>& active);
     void upload_intervals(const std::vector<StepInterval>& intervals);
     void find_neighbours(const std::vector<char>& active);
     void make_steps(int steps);
     void measure();
+    std::vector<Mat3> read_stresses(const std::vector<Strain>& strain) const;
     std::vector<IntervalResult> read_reports(const std::vector<StepInterval>& intervals);
     IntervalResult result_of(int replica, const double* reals, int status, int failed_place) const;
     template <class Quantity>
@@ -100,8 +106,10 @@ private:
     std::vector<double> skin_;                            ///< [m]
     std::vector<std::vector<double>> excess_compliance_;  ///< E/E_i - 1 by the user's grain numbers
     std::vector<char> rebuild_;                           ///< 1: the neighbour list is to be made anew
-    std::vector<double> plate_moved_;                     ///< since the list was made [m]
-    std::vector<double> plate_z_;                         ///< where the last interval left it [m]
+    std::vector<double> reach_;                           ///< of the list, between centres, at most [m]
+    std::vector<double> plate_moved_;  ///< since the list was made; or a cell at its ends [m]
+    std::vector<double> plate_z_;      ///< where the last interval left it [m]
+    std::vector<Strain> strain_;       ///< of a cell, the same
     std::vector<long> steps_made_;
     std::vector<char> active_;  ///< the replicas of working_
     Part working_;              ///< in work, as the device's lists have it

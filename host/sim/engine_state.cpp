@@ -83,6 +83,7 @@ void Engine::write_reals(Field<Quantity>& field, std::size_t first, const std::v
     }
 }
 
+template std::vector<double> Engine::read_reals(const Field<CellMoments>&, std::size_t, std::size_t) const;
 template void Engine::write_reals(Field<Motion>&, std::size_t, const std::vector<double>&);
 
 ReplicaState Engine::state(int replica) const {
@@ -92,6 +93,8 @@ ReplicaState Engine::state(int replica) const {
                    reals_of_motion * order.size());
     ReplicaState state;
     state.position = by_grain(motion, 0, order);
+    if (is_cell(replicas_[replica].box))
+        for (Vec3& x : state.position) x = deformation(strain_[replica]) * x;
     state.velocity = by_grain(motion, 4, order);
     state.angular_velocity = by_grain(motion, 8, order);
     state.contacts = contacts(replica, state.position);
@@ -109,7 +112,7 @@ std::vector<Contact> Engine::contacts(int replica, const std::vector<Vec3>& posi
     std::vector<int> partner(count);
     fields_.partner.read(partner.data(), first * sizeof(int), count * sizeof(int));
     const PlateFace plate = plate_face(replicas_[replica], plate_z_[replica]);
-    const Box& box = replicas_[replica].box;
+    const Box box = deformed(replicas_[replica].box, strain_[replica]);
     std::vector<Contact> found;
     for (std::size_t slot = 0; slot < count; ++slot) {
         if (!(overlap[slot] > 0)) continue;
@@ -167,6 +170,7 @@ std::map<std::string, std::vector<std::byte>> Engine::save() {
     };
     keep("rebuild", rebuild_);
     keep("plate_moved", plate_moved_);
+    keep("strain", strain_);
     keep("steps_made", steps_made_);
     keep("shortening", shortening_);
     return saved;
@@ -192,6 +196,7 @@ void Engine::restore(const std::map<std::string, std::vector<std::byte>>& saved)
     };
     bring_back("rebuild", rebuild_);
     bring_back("plate_moved", plate_moved_);
+    bring_back("strain", strain_);
     bring_back("steps_made", steps_made_);
     bring_back("shortening", shortening_);
     if (!std::ranges::all_of(steps_made_, [](auto steps) { return steps >= 0; }))

@@ -25,6 +25,7 @@ void Fields::visit_extents(const FieldExtents& extents, Make make) {
     make(replicas, extents.replicas, is_double ? sizeof(f64::Replica) : sizeof(f32::Replica));
     make(stop_at, extents.replicas, sizeof(int));
     make(reports, extents.portions, is_double ? sizeof(f64::Report) : sizeof(f32::Report));
+    make(cell_moments, extents.needs.cells ? 9 * extents.portions : 1, real);
     make(portions, extents.portions, sizeof(Portion));
     make(rebuilt, extents.portions, sizeof(Portion));
     make(blocks, extents.blocks, sizeof(int));
@@ -67,6 +68,7 @@ Fields::Fields(Device& device, const FieldExtents& extents, const Layout& layout
         memory_.largest_field = std::max<std::uint64_t>(memory_.largest_field, field.bytes());
     });
     const auto slots = static_cast<std::size_t>(extents.grains * extents.slots);
+    has_cells_ = extents.needs.cells;
     slot_count = extents.needs.displacements ? static_cast<int>(slots) : 1;
     replica_of_block.write(layout.replica_of_block.data());
     partner.write(std::vector<int>(slots, NO_PARTNER).data());
@@ -83,6 +85,7 @@ Kernels::Kernels(Device& device, const KernelBuild& build, const cl::Program& pr
       link_partner_slots(device, program, "link_partner_slots", build.list_items()),
       advance(device, program, "advance", build.work_items()),
       measure(device, program, "measure", build.work_items()),
-      reduce(device, program, "reduce", 64) {}
+      reduce(device, program, "reduce", 64),
+      cell_stress(device, program, "cell_stress", 64) {}
 
 }  // namespace mcdem::sim

@@ -35,6 +35,7 @@ struct Arm;
 struct Energy;
 struct Frequency;
 struct Reports;
+struct CellMoments;
 
 /// Two copies of what neighbours read while a step writes: `now` and `next` change places every step.
 template <class Quantity>
@@ -54,6 +55,7 @@ struct FieldNeeds {
     bool springs = false;        ///< some replica has friction with history
     bool deepest = false;        ///< some replica has plasticity
     bool relaxed = false;        ///< some replica has viscoelasticity
+    bool cells = false;          ///< some replica is a cell
 };
 
 /// Rows of a grain's contact memory (kernels/contact_memory.h): springs, where kept, take the first three.
@@ -85,6 +87,7 @@ struct Fields {
     Field<Constants> replicas;             ///< a replica
     Field<StopAt> stop_at;                 ///< a replica: steps it makes in this interval
     Field<Reports> reports;                ///< a portion in work
+    Field<CellMoments> cell_moments;       ///< the same, 9 reals each
     Field<Portions> portions, rebuilt;     ///< portions in work
     Field<Blocks> blocks, rebuilt_blocks;  ///< blocks in work
     Field<ReplicaOfBlock> replica_of_block;
@@ -121,6 +124,7 @@ struct Fields {
     FieldMemory memory() const { return memory_; }
     /// Some replica's surfaces move; else no partner slot is ever looked up.
     bool has_displacements() const { return slot_count > 1; }
+    bool has_cells() const { return has_cells_; }
     int slot_count = 0;  ///< of all grains that have surface displacements; 1 if none
 
 private:
@@ -130,6 +134,7 @@ private:
     void visit_extents(const FieldExtents& extents, Make make);
 
     FieldMemory memory_;
+    bool has_cells_ = false;
 };
 
 /// The kernels, with the quantities that each works on, in the kernels' order.
@@ -158,6 +163,9 @@ struct Kernels {
     Kernel<Field<Constants>, Field<Portions>, Field<Partner>, Field<ForceX>, Field<ForceY>, Field<ForceZ>,
            Field<Energy>, Field<Frequency>, Field<Status>, Field<Reports>>
         reduce;
+    Kernel<Field<Constants>, Field<Portions>, Field<StopAt>, Now<Motion>, Field<Partner>, Field<ForceX>,
+           Field<ForceY>, Field<ForceZ>, Field<CellMoments>>
+        cell_stress;
 
 private:
     Kernels(Device& device, const KernelBuild& build, const cl::Program& program);

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/container.h"
+
 namespace mcdem::inline sim {
 namespace {
 
@@ -18,7 +20,7 @@ constexpr double pressure_share = 0.2;
 /// The integrator takes away drag * time step of a velocity in a step. Where the plate halts, motion ends at
 /// once; before the first stroke grains still have some way to fall.
 constexpr double max_drag = 0.5, max_relax_drag = 0.02;
-/// Closer than this to a level, over the plate's start, the plate has arrived.
+/// Closer than this to a level, over the plate's start or a strain of one, the plate has arrived.
 constexpr double rounding = 1e-12;
 constexpr double max_steps = 1e6;
 /// A force must be reached in this many times what the slowest plate takes for its whole way, a scan to
@@ -36,11 +38,15 @@ ProtocolRunner::ProtocolRunner(const Replica& replica, double time_step, const P
       protocol_(replica.protocol),
       stages_(stages_of(replica)),
       legs_(legs_of(stages_, plate_)),
+      path_(is_cell(replica.box) ? std::optional(CellPath(stages_, legs_)) : std::nullopt),
+      scale_(path_ ? 1 : plate_.start),
       time_step_(time_step),
       longest_time_step_(time_step),
       quasi_static_(replica, scale),
       force_control_(replica, scale) {
-    state_.plate_z = plate_.start;
+    state_.plate_z = path_ ? 0 : plate_.start;
+    for (std::size_t leg = 0; path_ && leg < legs_.size(); ++leg)
+        legs_[leg].target = path_->end(static_cast<int>(leg));
     state_.pressure = quasi_static_.pressure(0, 0);
 }
 
@@ -54,7 +60,19 @@ double ProtocolRunner::set_force() const {
     return protocol_.stop_at_scans ? waypoint() : leg().target;
 }
 
-double ProtocolRunner::max_speed() const { return std::isnan(stage().speed) ? plate_.speed : stage().speed; }
+double ProtocolRunner::max_speed() const {
+    if (path_) return stage().rate;
+    return std::isnan(stage().speed) ? plate_.speed : stage().speed;
+}
+
+Strain ProtocolRunner::strain() const { return path_ ? path_->strain(state_.leg, state_.plate_z) : Strain{}; }
+
+void ProtocolRunner::deform(StepInterval& interval) const {
+    interval.strain = strain();
+    interval.strain_rate = path_->direction(state_.leg);
+    for (double& rate : interval.strain_rate) rate *= interval.plate_velocity;
+    interval.plate_velocity = 0;
+}
 
 /// Where a move is to be scanned.
 double ProtocolRunner::level_value(int level) const {
@@ -103,7 +121,7 @@ StepInterval ProtocolRunner::planned() const {
         return {static_cast<int>(std::min<double>(left, max_steps)), state_.plate_z, 0, drag()};
     }
     const double left = waypoint() - state_.plate_z;
-    const double step = quasi_static_.speed(max_speed(), state_.plate_z, state_.pressure) * time_step_;
+    const double step = quasi_static_.speed(max_speed(), rate_length(), state_.pressure) * time_step_;
     const double steps = std::max(1.0, std::ceil(std::abs(left) / step - 1e-9));
     return {static_cast<int>(std::min(steps, max_steps)), state_.plate_z, left / (steps * time_step_), 0};
 }
@@ -132,10 +150,11 @@ void ProtocolRunner::take_note(const IntervalResult& result) {
     state_.stage_step += result.steps;
     state_.time += result.steps * time_step_;
     if (state_.stage == Stage::move)
-        state_.rate_error = quasi_static_.rate_error(std::abs(velocity), state_.plate_z, state_.pressure);
+        state_.rate_error = quasi_static_.rate_error(std::abs(velocity), rate_length(), state_.pressure);
     state_.plate_z += velocity * time_step_ * result.steps;
     const double plate = force_along_z(result, Wall::plate);
-    const double pressure = quasi_static_.pressure(plate, force_along_z(result, Wall::floor));
+    const double pressure = path_ ? quasi_static_.pressure(result.stress)
+                                  : quasi_static_.pressure(plate, force_along_z(result, Wall::floor));
     state_.pressure += pressure_share * (pressure - state_.pressure);
     ForceControl::observe(state_.control, plate, duration);
     if (by_force()) follow_force(duration);
@@ -195,7 +214,7 @@ void ProtocolRunner::begin_leg() {
     if (by_force() && stage().kind == StageKind::hold && !(state_.leg_begin > 0))
         return give_up("no grain presses on the plate");
     if (stage().kind == StageKind::hold || leg().target == state_.leg_begin) return;
-    const bool load = (leg().target > state_.leg_begin) == by_force();
+    const bool load = path_ ? path_->loads(state_.leg) : (leg().target > state_.leg_begin) == by_force();
     if (load && state_.phase == Phase::unload) ++state_.cycle;
     state_.phase = load ? Phase::load : Phase::unload;
 }
@@ -223,7 +242,7 @@ std::optional<ProtocolRunner::ScanTag> ProtocolRunner::made(const IntervalResult
 }
 
 std::optional<ProtocolRunner::ScanTag> ProtocolRunner::moved() {
-    if (std::abs(waypoint() - state_.plate_z) > rounding * plate_.start) return std::nullopt;
+    if (std::abs(waypoint() - state_.plate_z) > rounding * scale_) return std::nullopt;
     state_.plate_z = waypoint();
     return waypoint_reached();
 }

@@ -1,11 +1,12 @@
 // The experiment of one replica as a sequence of intervals: relax, then the moves and holds of its programme
-// with scans on the way. It depends on its own replica's results only, so that a replica does the same
-// alone and in any batch.
+// with scans on the way. Of a cell, the plate's position is the place on its path (scene/cell_path.h). It
+// depends on its own replica's results only, so that a replica does the same alone and in any batch.
 #pragma once
 #include <optional>
 #include <string>
 #include <type_traits>
 
+#include "scene/cell_path.h"
 #include "scene/legs.h"
 #include "sim/engine.h"
 #include "sim/force_control.h"
@@ -42,12 +43,13 @@ public:
     /// `time_step` [s]
     ProtocolRunner(const Replica& replica, double time_step, const PackingScale& scale);
 
-    /// What to do next, at most `longest(plate_velocity)` steps; no steps when finished or stopped.
+    /// What to do next, at most `longest(interval)` steps; no steps when finished or stopped.
     template <class Longest>
     StepInterval next(Longest longest) const {
         if (state_.stage == ProtocolState::Stage::finished) return {};
         StepInterval interval = planned();
-        interval.steps = std::min(interval.steps, longest(interval.plate_velocity));
+        if (path_) deform(interval);
+        interval.steps = std::min(interval.steps, longest(interval));
         return interval;
     }
 
@@ -68,6 +70,7 @@ public:
     /// Why the programme could not go on in the last interval, with what to do; else empty.
     const std::string& hindrance() const { return hindrance_; }
     double plate_z() const { return state_.plate_z; }  ///< now [m]
+    Strain strain() const;                             ///< of a cell, now
     double progress() const;                           ///< part of the protocol that is done, 0 to 1
     const ProtocolState& state() const { return state_; }
     void set_state(const ProtocolState& state) { state_ = state; }
@@ -80,6 +83,7 @@ private:
     bool by_force() const;
     double set_force() const;
     double max_speed() const;
+    double rate_length() const { return path_ ? 1 : state_.plate_z; }
     double level_value(int level) const;
     double waypoint() const;
     bool waypoint_is_end() const;
@@ -87,6 +91,7 @@ private:
     long max_stage_steps() const;
     StepInterval planned() const;
     StepInterval planned_by_force() const;
+    void deform(StepInterval& interval) const;
     double drag() const;  ///< besides the grains' own [1/s]
     void take_note(const IntervalResult& result);
     void follow_force(double duration);
@@ -106,8 +111,10 @@ private:
     Protocol protocol_;
     std::vector<mcdem::Stage> stages_;
     std::vector<Leg> legs_;
-    double time_step_;          ///< now [s]
-    double longest_time_step_;  ///< before contacts stiffen [s]
+    std::optional<CellPath> path_;  ///< of a cell
+    double scale_;                  ///< of positions: the plate's start [m], 1 on a path
+    double time_step_;              ///< now [s]
+    double longest_time_step_;      ///< before contacts stiffen [s]
     QuasiStatic quasi_static_;
     ForceControl force_control_;
     ProtocolState state_;

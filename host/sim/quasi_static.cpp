@@ -23,7 +23,7 @@ PackingScale scale_of(const Replica& replica, const Packing& packing) {
         scale.diameter += diameter / static_cast<double>(packing.size());
         volume += sphere_volume(diameter);
     }
-    scale.weight = std::max(0.0, replica.grains.excess_density * gravity * volume);
+    if (!is_cell(replica.box)) scale.weight = std::max(0.0, replica.grains.excess_density * gravity * volume);
     scale.volume = volume;
     scale.count = packing.size();
     return scale;
@@ -40,6 +40,8 @@ QuasiStatic::QuasiStatic(const Replica& replica, const PackingScale& scale)
 double QuasiStatic::pressure(double plate_force, double floor_force) const {
     return std::max(0.5 * (std::abs(plate_force) + std::abs(floor_force)) / area_, min_pressure_);
 }
+
+double QuasiStatic::pressure(const Mat3& stress) const { return std::max(stress.trace() / 3, min_pressure_); }
 
 double QuasiStatic::rate_error(double speed, double plate_z, double pressure) const {
     return error_per_inertial_number * speed / plate_z * scale_.diameter * std::sqrt(density_ / pressure);

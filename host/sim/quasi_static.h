@@ -29,7 +29,9 @@ public:
     /// Between floor and plate, at least what the packing's weight and a hundred-thousandth of its modulus
     /// make [Pa].
     double pressure(double plate_force, double floor_force) const;
-    /// Estimated relative error of forces at this speed [m/s].
+    /// The same of a cell, a third of the trace of its stress.
+    double pressure(const Mat3& stress) const;
+    /// Estimated relative error of forces at this speed [m/s]; of a cell at this rate, with a plate_z of one.
     double rate_error(double speed, double plate_z, double pressure) const;
     /// The plate's speed: `max_speed`, or less where protocol.rate_tolerance asks for it [m/s].
     double speed(double max_speed, double plate_z, double pressure) const;

@@ -20,23 +20,26 @@ std::string cause_of(const IntervalResult& result, const Replica& replica, int s
     const auto add = [&](int bit, const std::string& text) {
         if (result.status & bit) cause += (cause.empty() ? "" : "; ") + text;
     };
+    const std::string less = is_cell(replica.box) ? "compress less" : "compress less: raise plate.end";
     if (replica.contact.model == ContactModel::hyperelastic_sphere)
         add(STATUS_OVERLAP,
             fmt::format(
-                "a corrected overlap passed {} of the sum of the radii (compress less: raise plate.end; "
-                "or raise numerics.overlap_limit, there are solutions beyond)",
-                replica.numerics.overlap_limit));
+                "a corrected overlap passed {} of the sum of the radii ({}; or raise numerics.overlap_limit, "
+                "there are solutions beyond)",
+                replica.numerics.overlap_limit, less));
     else
         add(STATUS_OVERLAP,
             fmt::format("a corrected overlap passed {} of the sum of the radii: no static solution at this "
-                        "compression, "
-                        "the force runs away (compress less: raise plate.end{})",
-                        replica.numerics.overlap_limit,
+                        "compression, the force runs away ({}{})",
+                        replica.numerics.overlap_limit, less,
                         replica.contact.model == ContactModel::mc_dem ? ", or lower contact.gamma" : ""));
     add(STATUS_NOT_A_NUMBER,
         "a position is not a number: the time step is too long (lower numerics.time_step)");
     add(STATUS_LOST,
-        is_periodic(replica.box)
+        is_cell(replica.box)
+            ? "a grain has moved on by more than 8 cells, beyond the cell's own motion: too long a time step "
+              "(lower numerics.time_step)"
+        : is_periodic(replica.box)
             ? "a grain has left between floor and plate, or moved on by more than 8 cells: too fast a plate "
               "or too "
               "long a time step (lower plate.speed or numerics.time_step)"
@@ -57,6 +60,17 @@ std::vector<Packing> true_packings(const std::vector<Replica>& replicas, std::ve
         stated[r] = true_packing(replicas[r], std::move(stated[r]));
     for (std::size_t r = 0; r < stated.size(); ++r) expect_room(replicas[r], stated[r]);
     return stated;
+}
+
+/// Grains, and the points of their contacts with them.
+void bring_into_cell(const Box& now, Scan& scan) {
+    std::vector<Vec3> moved;
+    for (Vec3& position : scan.position) {
+        const Vec3 inside = into_cell(now, position);
+        moved.push_back(inside - position);
+        position = inside;
+    }
+    for (Contact& contact : scan.contacts) contact.point += moved[static_cast<std::size_t>(contact.grain)];
 }
 
 }  // namespace
@@ -89,7 +103,7 @@ bool Simulation::advance(const ScanSink& on_scan, const FailureSink& on_failure)
     for (int r = 0; r < engine_.replicas(); ++r) {
         runners_[r].set_time_step(engine_.time_step(r));
         intervals.push_back(
-            runners_[r].next([&](double plate_velocity) { return engine_.max_interval(r, plate_velocity); }));
+            runners_[r].next([&](const StepInterval& next) { return engine_.max_interval(r, next); }));
         plates_[r].deflect(intervals[r], engine_.time_step(r), engine_.max_plate_move(r));
         any |= intervals.back().steps > 0;
     }
@@ -118,7 +132,9 @@ Scan Simulation::scan(int replica, const ProtocolRunner::ScanTag& tag, const Int
     scan.cycle = tag.cycle;
     scan.phase = tag.phase;
     scan.time = tag.time;
-    scan.plate_z = tag.plate_z;
+    const auto& spec = scene_.replicas[replica];
+    scan.strain = runners_[replica].strain();
+    scan.plate_z = is_cell(spec.box) ? deformed(spec.box, scan.strain).height : tag.plate_z;
     scan.settled = tag.settled;
     scan.rate_error = tag.rate_error;
     scan.wall_force = result.wall_force;
@@ -127,7 +143,7 @@ Scan Simulation::scan(int replica, const ProtocolRunner::ScanTag& tag, const Int
     auto state = engine_.state(replica);
     scan.position = std::move(state.position);
     scan.contacts = std::move(state.contacts);
-    const auto& spec = scene_.replicas[replica];
+    if (is_cell(spec.box)) bring_into_cell(deformed(spec.box, scan.strain), scan);
     fill_averages(scan, spec.box, diameter_[replica], spec.protocol.force_threshold);
     if (!scene_.output.positions) scan.position.clear();
     if (!scene_.output.contacts) scan.contacts.clear();

@@ -1,5 +1,6 @@
-"""Packings in a cylinder and in a periodic cell against LAMMPS: the force on the plate and on the cylinder's side, once from the very
-positions of the last scan and once by LAMMPS's own stroke from the scan before: containers_test.py MCDEM FOLDER"""
+"""Packings in a cylinder, a periodic container and a cell against LAMMPS: the force on the plate and on the cylinder's side, or the
+stress of the cell, once from the very positions of the last scan and once by LAMMPS's own way from the scan before:
+containers_test.py MCDEM FOLDER"""
 import math
 import pathlib
 import shutil
@@ -91,6 +92,85 @@ def lammps(folder, shape, size, diameters, positions, plate, moving, resting, ti
     return -float(last[2]), float(last[3])
 
 
+CELL = """[container]
+shape = "cell"
+size_x = 0.1
+size_y = 0.11
+[packing]
+count = 140
+packing_fraction = 0.64
+[grains]
+friction = 0
+restitution = 0.5
+[contact]
+model = "independent"
+[protocol]
+settle_time = 4
+relax_time = 2
+settle_unbalanced_force = 5e-4
+[[programme]]
+strain = 0.06
+rate = 0.1
+scans = 3
+[[programme]]
+shear_xz = 0.03
+strain_z = 0.08
+rate = 0.05
+[numerics]
+precision = "double"
+"""
+
+
+def cell_run(mcdem, folder):
+    """Lengths of the cell at start, diameters, and (positions, strain, stress) of the last three scans."""
+    (folder / "cell.toml").write_text(CELL)
+    out = folder / "cell_run"
+    shutil.rmtree(out, ignore_errors=True)
+    subprocess.run([mcdem, "run", folder / "cell.toml", "--out", out, "--no-figures"], check=True, stdout=subprocess.DEVNULL)
+    with h5py.File(out / "run.h5") as run:
+        name = next(iter(run["observables"]))
+        scans, particles = run["observables"][name][:], run["particles"][name]
+        assert scans["settled"].all(), "not at rest"
+        found = [(particles["position/value"][s], scans["strain"][s], scans["stress"][s]) for s in (1, 2, 3)]
+        return particles["box"].attrs["edges"][:], particles["diameter"][:], found
+
+
+def write_cell(path, edges, strain, diameters, positions):
+    x, y, z = edges * (1 - strain[:3])
+    with open(path, "w", encoding="ascii") as out:
+        out.write(f"cell\n\n{len(diameters)} atoms\n1 atom types\n\n0 {x:.17g} xlo xhi\n0 {y:.17g} ylo yhi\n0 {z:.17g} zlo zhi\n"
+                  f"{strain[3] * edges[1]:.17g} {strain[4] * edges[2]:.17g} {strain[5] * edges[2]:.17g} xy xz yz\n\nAtoms\n\n")
+        for n, (at, d) in enumerate(zip(positions, diameters), 1):
+            out.write(f"{n} 1 {d:.17g} 11.5 {at[0]:.17g} {at[1]:.17g} {at[2]:.17g}\n")
+
+
+def lammps_cell(folder, edges, diameters, start, end, moving, resting):
+    """Mean and xx, yy, zz, xz of LAMMPS's stress [Pa] where it has gone from one scan to the strain of another."""
+    positions, strain, _ = start
+    write_cell(folder / "cell.data", edges, strain, diameters, positions)
+    last = edges * (1 - end[1][:3])
+    output = execute("lmp", "cell.in", folder, {
+        "law": LAW, "time_step": 5e-5, "skin": 0.002, "moving": moving, "resting": resting, "drag": DRAG, "end_x": last[0],
+        "end_y": last[1], "end_z": last[2], "shear": end[1][4] * edges[2]})
+    rows = [line.split() for line in output.splitlines()]
+    return numpy.array([row for row in rows if len(row) == 7 and row[0] == str(moving + resting)][-1][2:], float)
+
+
+def compare_cell(mcdem, folder):
+    edges, diameters, scans = cell_run(mcdem, folder)
+    for what, start, end, moving, allowed in (
+            ("at the same positions", scans[2], scans[2], 0, 1e-4), ("after its own compression", scans[0], scans[1], 4000, 1e-2),
+            ("after its own compression and shear", scans[1], scans[2], 12000, 1e-2)):
+        found = lammps_cell(folder, edges, diameters, start, end, moving, 8000 if moving else 0)
+        mine = end[2]
+        pressure = numpy.trace(mine) / 3
+        print(f"cell, LAMMPS {what}: pressure {found[0]:.6g} Pa, mcdem {pressure:.6g} Pa, ratio {pressure / found[0]:.5f}")
+        assert math.isclose(pressure, found[0], rel_tol=allowed), "pressures differ"
+        for (row, column), other in zip(((0, 0), (1, 1), (2, 2), (0, 2)), found[1:]):
+            print(f"    stress {'xyz'[row]}{'xyz'[column]} {other:.6g} Pa, mcdem {mine[row, column]:.6g} Pa")
+            assert abs(mine[row, column] - other) < 3 * allowed * pressure, "stresses differ"  # frictionless grains slide in jerks
+
+
 def main():
     mcdem, folder = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
     if not shutil.which("lmp"):
@@ -106,6 +186,7 @@ def main():
                 print(f"{shape}, LAMMPS {what}: force on the {of} {other:.6g} N, mcdem {mine:.6g} N, ratio {mine / other:.5f}")
                 # The side's radius of curvature is LAMMPS's arithmetic mean, mcdem's geometric: 0.3 % at R = R_c/5.
                 assert math.isclose(mine, other, rel_tol=allowed + (0.004 if of == "side" else 0)), "forces differ"
+    compare_cell(mcdem, folder)
     return 0
 
 

@@ -88,10 +88,10 @@ void expect_cells(const CellScene& scene, int r) {
             ASSERT_EQ(seen[grain]++, 0) << "grain " << grain << " is in a cell twice";
             const float* x = &scene.motion[mcdem::reals_of_motion * grain];
             const int expected =
-                (cell_along(x[2], replica.cell_size, replica.span_z) % replica.cells_z * replica.cells_y +
-                 cell_along(x[1], replica.cell_size, replica.span_y) % replica.cells_y) *
+                (cell_along(x[2], replica.cell_size[0], replica.span_z) % replica.cells_z * replica.cells_y +
+                 cell_along(x[1], replica.cell_size[0], replica.span_y) % replica.cells_y) *
                     replica.cells_x +
-                cell_along(x[0], replica.cell_size, replica.span_x) % replica.cells_x;
+                cell_along(x[0], replica.cell_size[0], replica.span_x) % replica.cells_x;
             EXPECT_EQ(cell, expected) << "grain " << grain;
         }
     for (int k = 0; k < replica.grain_count; ++k)

@@ -160,7 +160,7 @@ TEST(NeighbourList, HoldsEveryPairInABoxMuchLargerThanItsGrains) {
     const auto cells = mcdem::device_replica<mcdem::f32::Replica>(probe.replica, probe.packing, {});
     ASSERT_GT(cells.span_x, 10 * cells.cells_x);
     ASSERT_LE(mcdem::cell_count(cells), mcdem::max_cells(128));
-    const double period = cells.cells_x * cells.cell_size;
+    const double period = cells.cells_x * cells.cell_size[0];
     expect_lists(build(Precision::single_precision),
                  {two_lattices_in_a_large_box(6, {3, 2, 1}), two_lattices_in_a_large_box(6, {period, 0, 0}),
                   two_lattices_in_a_large_box(6, {period / 3, period / 3, period / 3})});
@@ -286,7 +286,7 @@ TEST(NeighbourList, LongStretchesMissNoContact) {
     double plate = start.replica.plate.start;
     int cut_short = 0;
     for (int interval = 0; interval < 60; ++interval) {
-        const int asked = batch.engine().max_interval(0, plate_velocity);
+        const int asked = batch.engine().max_interval(0, {.plate_velocity = plate_velocity});
         ASSERT_GT(asked, 0);
         const auto result = batch.engine().advance({{asked, plate, plate_velocity, 0}}).front();
         ASSERT_EQ(result.status, 0);
@@ -309,13 +309,13 @@ TEST(NeighbourList, StretchesEndBeforeThePlateOutrunsTheList) {
     Batch batch(build(Precision::single_precision), start);
     const double margin = 0.2 * start.replica.numerics.skin * 0.01;
     for (double velocity : {-10.0, -1.0, 0.01}) {
-        const int steps = batch.engine().max_interval(0, velocity);
+        const int steps = batch.engine().max_interval(0, {.plate_velocity = velocity});
         const double step = std::abs(velocity) * batch.engine().time_step(0);
         EXPECT_TRUE(steps == 1 || steps * step < 1.02 * margin) << velocity;
         EXPECT_GT((steps + 1) * step, steps == 60 ? 0 : 0.98 * margin)
             << velocity << ": no shorter than needed";
     }
-    EXPECT_EQ(batch.engine().max_interval(0, 0), 60);
+    EXPECT_EQ(batch.engine().max_interval(0, {}), 60);
 }
 
 TEST(NeighbourList, BulgesMoveWithTheirNeighbours) {

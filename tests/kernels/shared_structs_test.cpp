@@ -27,8 +27,9 @@ kernel void write_offsets(global int* offsets) {
     MEMBER(sliding_velocity) MEMBER(half_space_scale) MEMBER(half_space_normal) \
     MEMBER(half_space_shear) MEMBER(sphere_scale) MEMBER(sphere_point) MEMBER(sphere_size) \
     MEMBER(sphere_self) MEMBER(confinement_coupling) MEMBER(confinement_volume) \
-    MEMBER(confinement) MEMBER(skin) MEMBER(probe_gap) MEMBER(overlap_limit) MEMBER(cell_size) \
-    MEMBER(wall_position) MEMBER(plate_velocity) MEMBER(first_grain) MEMBER(grain_count) \
+    MEMBER(confinement) MEMBER(skin) MEMBER(max_move) MEMBER(probe_gap) MEMBER(overlap_limit) MEMBER(cell_size) \
+    MEMBER(wall_position) MEMBER(deformation) MEMBER(deformation_rate) \
+    MEMBER(plate_velocity) MEMBER(first_grain) MEMBER(grain_count) \
     MEMBER(first_cell) MEMBER(cells_x) MEMBER(cells_y) MEMBER(cells_z) MEMBER(span_x) \
     MEMBER(span_y) MEMBER(span_z) MEMBER(surface) MEMBER(finite_contacts) MEMBER(mindlin) \
     MEMBER(memory_rows) MEMBER(deepest_row) MEMBER(relaxed_row) MEMBER(steps_before) MEMBERS_OF_EFFECTS(MEMBER)
@@ -87,7 +88,8 @@ TEST(SharedStructs, AreListedWhole) {
     const auto host = host_offsets<mcdem::f32::Replica, mcdem::f32::Report>();
     std::size_t replica_words = sizeof(mcdem::f32::Replica) / 4,
                 report_words = sizeof(mcdem::f32::Report) / 4;
-    const std::size_t arrays = (POINT_TERMS - 1) + (SIZE_TERMS - 1) + (SELF_TERMS - 1) + (6 - 1);
+    const std::size_t arrays =
+        (POINT_TERMS - 1) + (SIZE_TERMS - 1) + (SELF_TERMS - 1) + 3 * (6 - 1) + (3 - 1);
     EXPECT_EQ(host.size() - 2, (replica_words - arrays) + (report_words - 17));
 }
 

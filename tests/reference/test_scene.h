@@ -125,6 +125,18 @@ inline Start periodic_lattice(Replica replica, int side, int layers, unsigned se
     return {replica, packing};
 }
 
+/// A jittered cubic lattice, `side` grains along each edge, that repeats in all directions.
+inline Start cell_lattice(Replica replica, int side, unsigned seed) {
+    Start start = periodic_lattice(replica, side, side, seed);
+    start.replica.grains.excess_density = 0;
+    start.replica.box.shape = mcdem::ContainerShape::cell;
+    start.replica.box.height = start.replica.plate.start;
+    start.replica.plate.end = 0;
+    for (std::size_t i = 0; i < start.packing.size(); ++i)
+        if (i % 4 == 3) start.packing.position[i].z() -= start.replica.box.height;
+    return start;
+}
+
 /// `layers` of two rings of grains in a cylinder of 40 mm radius, the outer ones pressed into its wall.
 inline Start rings_in_a_cylinder(Replica replica, int layers, unsigned seed) {
     constexpr double radius = 0.04, spacing = 0.019;

@@ -140,8 +140,8 @@ TEST(BatchLimits, CellsAreFewWhateverTheBox) {
             const auto fine = mcdem::device_replica<mcdem::f64::Replica>(replica, packing, {});
             EXPECT_LE(mcdem::cell_count(coarse), mcdem::max_cells(grains));
             EXPECT_LE(mcdem::cell_count(fine), mcdem::max_cells(grains));
-            EXPECT_GT(fine.cell_size, 1e-3);
-            EXPECT_GE(fine.span_x, x / fine.cell_size - 1.001);
+            EXPECT_GT(fine.cell_size[0], 1e-3);
+            EXPECT_GE(fine.span_x, x / fine.cell_size[0] - 1.001);
         }
     }
 }

@@ -45,7 +45,7 @@ private:
     void run(const Replica& replica, double kinetic, int longest) {
         ProtocolRunner runner(replica, time_step, scale);
         while (!runner.finished()) {
-            intervals.push_back(runner.next([&](double) { return longest; }));
+            intervals.push_back(runner.next([&](const StepInterval&) { return longest; }));
             ASSERT_GT(intervals.back().steps, 0);
             ASSERT_LE(intervals.back().steps, longest);
             ASSERT_LT(intervals.size(), 100000u);
@@ -54,7 +54,7 @@ private:
                 scans.push_back(*scan);
             progress.push_back(runner.progress());
         }
-        EXPECT_EQ(runner.next([](double) { return 60; }).steps, 0);
+        EXPECT_EQ(runner.next([](const StepInterval&) { return 60; }).steps, 0);
     }
 };
 
@@ -123,7 +123,7 @@ struct Pressed {
         replica.plate.speed = 100;
         ProtocolRunner runner(replica, time_step, scale);
         while (runner.state().phase == Phase::load) {
-            const StepInterval interval = runner.next([](double) { return 5; });
+            const StepInterval interval = runner.next([](const StepInterval&) { return 5; });
             IntervalResult result = answer(interval.steps, 0);
             const double force = 2e4 * std::max(0.0, 0.19 - interval.plate_z);
             result.wall_force[static_cast<int>(Wall::plate)] = {0, 0, force};
@@ -165,7 +165,7 @@ TEST(Protocol, WithoutAToleranceTheSpeedIsTheScenes) {
     Replica replica = replica_of(1, 4, false);
     ProtocolRunner runner(replica, time_step, scale);
     while (runner.state().stage == ProtocolState::Stage::relax) runner.made(answer(10, 0));
-    EXPECT_NEAR(runner.next([](double) { return 5; }).plate_velocity, -0.5, 1e-9);
+    EXPECT_NEAR(runner.next([](const StepInterval&) { return 5; }).plate_velocity, -0.5, 1e-9);
     const double strain_rate = 0.5 / replica.plate.start, min_pressure = 1e-5 * replica.grains.youngs_modulus;
     ASSERT_FALSE(runner.made(answer(5, 0)));
     EXPECT_NEAR(runner.state().rate_error,
@@ -209,7 +209,7 @@ TEST(Protocol, GoesOnFromItsStateAlone) {
     for (int round = 0; !runner.finished(); ++round) {
         ProtocolRunner other(replica, time_step, scale);
         other.set_state(runner.state());
-        const auto longest = [](double) { return 17; };
+        const auto longest = [](const StepInterval&) { return 17; };
         const StepInterval one = runner.next(longest), two = other.next(longest);
         ASSERT_EQ(one.steps, two.steps) << "round " << round;
         ASSERT_EQ(one.plate_z, two.plate_z);

@@ -105,7 +105,7 @@ TEST(RandomProgrammes, EndAndScanWhereAsked) {
         double before = -1, highest = -1;
         for (int rounds = 0; !runner.finished(); ++rounds) {
             ASSERT_LT(rounds, 400000);
-            const StepInterval interval = runner.next([](double) { return 60; });
+            const StepInterval interval = runner.next([](const StepInterval&) { return 60; });
             ASSERT_GE(interval.steps, 1);
             ASSERT_LE(interval.steps, 60);
             const double z = interval.plate_z + interval.plate_velocity * interval.steps * time_step;

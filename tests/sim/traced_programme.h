@@ -34,7 +34,7 @@ inline Traced trace(const mcdem::Scene& scene, int r, Packing packing) {
     while (!runner.finished()) {
         const double dt = engine.time_step(0);
         runner.set_time_step(dt);
-        auto interval = runner.next([&](double velocity) { return engine.max_interval(0, velocity); });
+        auto interval = runner.next([&](const auto& next) { return engine.max_interval(0, next); });
         const auto before = runner.state();
         plate.deflect(interval, dt, engine.max_plate_move(0));
         const auto result = engine.advance({interval}).front();

@@ -57,12 +57,16 @@ Json scan_json(const Recording& recording, const Scan& scan, const Shown& shown)
               {"title", title_of(recording, scan)},
               {"displacement_mm", rounded(recording.displacement(scan) / mm)},
               {"plate_mm", rounded(scan.plate_z / mm)}};
+    const Box now = deformed(recording.box, scan.strain);
+    if (is_cell(now))
+        for (const double length :
+             {now.size_x, now.size_y, now.height, now.tilt_xy, now.tilt_xz, now.tilt_yz})
+            json["cell_mm"].push_back(rounded(length / mm));
     const char* axes[]{"x_mm", "y_mm", "z_mm"};
     for (int a = 0; a < 3; ++a) {
         auto& list = json[axes[a]] = Json::array();
         for (const int grain : shown.grains)
-            list.push_back(
-                rounded(into_cell(recording.box, scan.position[static_cast<std::size_t>(grain)])[a] / mm));
+            list.push_back(rounded(into_cell(now, scan.position[static_cast<std::size_t>(grain)])[a] / mm));
     }
     Json grain = Json::array(), partner = Json::array(), force = Json::array();
     for (const auto& contact : scan.contacts) {

@@ -107,6 +107,14 @@ class PackingView {
   /// The partner's centre, in a periodic cell that of its nearest image.
   image(scan, grain, partner) {
     const there = [scan.x_mm[partner], scan.y_mm[partner], scan.z_mm[partner]];
+    if (this.shown.container === 'cell') {
+      const [x, y, z, xy, xz, yz] = scan.cell_mm, here = [scan.x_mm, scan.y_mm, scan.z_mm].map(of => of[grain]);
+      [[xz, yz, z], [xy, y, 0], [x, 0, 0]].forEach((edge, n) => {
+        const axis = 2 - n, times = Math.round((there[axis] - here[axis]) / edge[axis]);
+        edge.forEach((length, a) => { there[a] -= times * length; });
+      });
+      return there;
+    }
     if (this.shown.container !== 'periodic') return there;
     const here = [scan.x_mm[grain], scan.y_mm[grain]];
     this.shown.box_mm.forEach((size, a) => { there[a] -= size * Math.round((there[a] - here[a]) / size); });
@@ -150,28 +158,29 @@ class PackingView {
   wallName(wall) { return wall === 0 && this.shown.container === 'cylinder' ? 'side' : wallNames[wall]; }
 
   /// The outline of floor and plate.
-  outline() {
-    const [width, depth] = this.shown.box_mm, sides = 64;
+  outline(scan) {
+    const [width, depth] = scan.cell_mm ?? this.shown.box_mm, sides = 64;
     if (this.shown.container !== 'cylinder') return [[0, 0], [width, 0], [width, depth], [0, depth]];
     return Array.from({length: sides}, (_, n) => [Math.cos, Math.sin].map(f => width / 2 * (1 + f(2 * Math.PI * n / sides))));
   }
 
   /// The container's edges and the plate.
   walls(scan) {
-    const top = this.shown.top_mm, plate = scan.plate_mm;
+    const plate = scan.plate_mm, top = scan.cell_mm ? plate : this.shown.top_mm;
     const edges = {x: [], y: [], z: []};
     const stroke = points => points.concat([[null, null, null]]).forEach(([x, y, z]) => {
       edges.x.push(x);
       edges.y.push(y);
       edges.z.push(z);
     });
-    const corners = this.outline(), fan = corners.slice(2).map((_, n) => n + 1);
+    const corners = this.outline(scan), fan = corners.slice(2).map((_, n) => n + 1);
     const uprights = corners.filter((_, n) => n % (corners.length / 4) === 0);
     for (const height of [0, plate]) stroke([...corners, corners[0]].map(([x, y]) => [x, y, height]));
     for (const [x, y] of uprights) stroke([[x, y, 0], [x, y, top]]);
-    return [
-      {type: 'scatter3d', mode: 'lines', ...edges, name: 'box', hoverinfo: 'skip', showlegend: false,
-       line: {width: 2, color: 'var(--axis)'}},
+    const box = {type: 'scatter3d', mode: 'lines', ...edges, name: 'box', hoverinfo: 'skip', showlegend: false,
+                 line: {width: 2, color: 'var(--axis)'}};
+    return scan.cell_mm ? [box] : [
+      box,
       {type: 'mesh3d', name: 'plate', x: corners.map(c => c[0]), y: corners.map(c => c[1]), z: corners.map(() => plate),
        i: fan.map(() => 0), j: fan, k: fan.map(n => n + 1), color: 'var(--soft)', opacity: 0.18, hoverinfo: 'skip', showscale: false}];
   }

@@ -1,0 +1,153 @@
+// Cells: their keys, what is wrong with them, their packings, and the path of their programme.
+#include "core/container.h"
+#include "core/errors.h"
+#include "scene/cell_path.h"
+#include "scene/make_packing.h"
+#include "scene/overlap_relaxation.h"
+#include "scene/read_scene.h"
+#include "scene_test_tools.h"
+
+namespace mcdem {
+namespace {
+
+using testing::AllOf;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+const std::string cell = "[container]\nshape = \"cell\"\nsize_x = 0.12\nsize_y = 0.1\n";
+const std::string few = "[packing]\ncount = 200\npacking_fraction = 0.6\n";
+const std::string one_move = "[[programme]]\nstrain = 0.1\n";
+
+std::vector<std::string> problems_in(const std::string& text,
+                                     const std::vector<std::string>& overrides = {}) {
+    return problems_of([&] { parse_scene(text, "bad.toml", overrides); });
+}
+
+Replica read_one(const std::string& text) { return parse_scene(text, "good.toml", {}).replicas.at(0); }
+
+TEST(Cell, IsAsHighAsItsGrainsAsk) {
+    const Replica replica = read_one(cell + few + one_move);
+    EXPECT_EQ(replica.box.shape, ContainerShape::cell);
+    EXPECT_EQ(replica.plate.start, replica.box.height);
+    const Packing packing = make_packing(replica);
+    double volume = 0;
+    for (const double d : packing.diameter) volume += std::numbers::pi / 6 * d * d * d;
+    EXPECT_NEAR(volume / (0.12 * 0.1 * replica.box.height), 0.6, 1e-3);
+    EXPECT_LT(largest_overlap(packing, replica.box, replica.box.height), 0.05);
+    double low = 1, high = 0;
+    for (const Vec3& p : packing.position) low = std::min(low, p.z()), high = std::max(high, p.z());
+    EXPECT_GE(low, 0);
+    EXPECT_LT(high, replica.box.height);
+    EXPECT_LT(low + replica.box.height - high, 0.01) << "no wall keeps grains off";
+    EXPECT_EQ(replica.parameters.at("plate.start"), "") << "does not apply";
+    EXPECT_EQ(replica.parameters.at("walls.friction"), "");
+}
+
+TEST(Cell, OfAPackingFileNeedsItsHeight) {
+    const TestFolder folder;
+    const auto two =
+        folder.write("two.csv", "x_m,y_m,z_m,diameter_m\n0.2,-0.3,0.02,0.024\n0.1,0.1,0.9,0.02\n");
+    const std::string file = "[packing]\nfile = \"" + two.string() + "\"\n";
+    EXPECT_THAT(problems_in(cell + file + one_move),
+                ElementsAre(HasSubstr("container.height must be given")));
+    const Replica replica = read_one(cell + "height = 0.11\n" + file + one_move);
+    EXPECT_EQ(replica.box.height, 0.11);
+    EXPECT_NEAR(make_packing(replica).position[1].z(), 0.9 - 8 * 0.11, 1e-12);
+    EXPECT_THAT(problems_in(cell + "height = 0.11\n" + few + one_move),
+                ElementsAre(AllOf(HasSubstr("bad.toml:5: container.height must be left out"),
+                                  HasSubstr("packing.packing_fraction"))));
+}
+
+TEST(Cell, TakesNoKeysOfPlateAndWalls) {
+    for (const char* key : {"plate.start", "plate.speed", "walls.friction", "effects.plate_compliance",
+                            "effects.plate_tilt_x", "grains.excess_density"})
+        EXPECT_THAT(
+            problems_in(cell + few + one_move, {std::string(key) + "=0.01"}),
+            ElementsAre(AllOf(HasSubstr(key), HasSubstr("left out where container.shape = \"cell\""))));
+    EXPECT_THAT(problems_in(cell + few),
+                ElementsAre(HasSubstr("container.shape must come with a [[programme]]")));
+    EXPECT_THAT(problems_in("[container]\nheight = 0.1\n" + few),
+                ElementsAre(HasSubstr("container.height must be left out where container.shape = \"box\"")));
+}
+
+TEST(Cell, RefusesStagesThatAreNotItsOwn) {
+    const auto problems = [](const std::string& stage) {
+        return problems_in(cell + few + "[[programme]]\n" + stage);
+    };
+    EXPECT_THAT(problems("position = 0.1\n"),
+                Contains(HasSubstr("position must be left out of a stage that is a move of a cell")));
+    EXPECT_THAT(problems("strain = 0.1\nspeed = 0.1\n"), ElementsAre(HasSubstr("speed must be left out")));
+    EXPECT_THAT(problems("stage = \"cycle\"\n"),
+                ElementsAre(HasSubstr("must be move, hold or repeat in a cell")));
+    EXPECT_THAT(problems("rate = 1\n"), ElementsAre(HasSubstr("strain must be given, or strain_x")));
+    EXPECT_THAT(problems("strain = 0.1\nstrain_y = 0.1\n"),
+                ElementsAre(HasSubstr("strain_y must be left out where strain is given")));
+    EXPECT_THAT(problems("shear_xy = 6\n"),
+                ElementsAre(HasSubstr("shear_xy must be a number between -5 and 5")));
+    EXPECT_THAT(problems_in(few + "[[programme]]\nstrain_x = 0.1\n"),
+                Contains(HasSubstr("strain_x must be left out of a stage that is a move of the plate")));
+}
+
+TEST(Cell, MustKeepItsSizeToTheEndOfItsProgramme) {
+    const std::string thin = "[container]\nshape = \"cell\"\nsize_x = 0.06\nsize_y = 0.1\n";
+    EXPECT_NO_THROW(parse_scene(thin + few + "[[programme]]\nstrain_z = 0.3\n", "good.toml", {}));
+    EXPECT_THAT(problems_in(thin + few + "[[programme]]\nstrain_x = 0.1\n"),
+                ElementsAre(AllOf(HasSubstr("container.size_x must be at least 0.0566"),
+                                  HasSubstr("at its smallest, got 0.054"))));
+    EXPECT_THAT(problems_in(cell + few + "[[programme]]\nstrain_z = 0.9\n"),
+                ElementsAre(HasSubstr("container.height must be at least")));
+    EXPECT_THROW(expect_strokes(parse_scene(cell + few + one_move, "good.toml", {}), "a diagnosis"),
+                 InputError);
+}
+
+TEST(CellPath, GoesStraightFromMoveToMove) {
+    std::vector<Stage> stages(4);
+    stages[0].strain = 0.1;
+    stages[1].shear_xz = 0.4;
+    stages[1].strain_y = 0.2;
+    stages[2].kind = StageKind::hold;
+    stages[3].strain_x = 0;
+    const auto legs = legs_of(stages, {});
+    const CellPath path(stages, legs);
+    EXPECT_NEAR(path.end(0), 0.1, 1e-15);
+    EXPECT_NEAR(path.end(1), 0.5, 1e-15);
+    EXPECT_EQ(path.end(2), path.end(1));
+    EXPECT_NEAR(path.end(3), 0.6, 1e-15);
+    EXPECT_EQ(path.strain(0, 0), (Strain{}));
+    EXPECT_EQ(path.strain(1, path.end(1)), (Strain{0.1, 0.2, 0.1, 0, 0.4, 0}));
+    EXPECT_EQ(path.strain(2, path.end(2)), path.strain(1, path.end(1)));
+    const Strain half = path.strain(1, 0.3);
+    EXPECT_NEAR(half[1], 0.15, 1e-15);
+    EXPECT_NEAR(half[4], 0.2, 1e-15);
+    EXPECT_NEAR(path.direction(1)[1], 0.25, 1e-12);
+    EXPECT_NEAR(path.direction(3)[0], -1, 1e-12);
+    EXPECT_TRUE(path.loads(0) && path.loads(1));
+    EXPECT_FALSE(path.loads(3));
+    Replica replica;
+    replica.box = {1, 1, ContainerShape::cell, 2};
+    replica.programme = stages;
+    EXPECT_NEAR(smallest_cell(replica).size_x, 0.9, 1e-15);
+    EXPECT_NEAR(smallest_cell(replica).size_y, 0.8, 1e-15);
+    EXPECT_NEAR(smallest_cell(replica).height, 1.8, 1e-15);
+}
+
+TEST(CellImages, AreTheNearestHoweverTheCellLeans) {
+    const Box start{0.1, 0.2, ContainerShape::cell, 0.3};
+    const Box now = deformed(start, {0.1, 0, -0.1, 1.3, -0.7, 2.1});
+    const Vec3 edges[]{
+        {now.size_x, 0, 0}, {now.tilt_xy, now.size_y, 0}, {now.tilt_xz, now.tilt_yz, now.height}};
+    const Vec3 near(0.02, -0.03, 0.04), from(0.5, 0.1, -0.2);
+    for (int n = 0; n < 27; ++n) {
+        const Vec3 to =
+            from + near + (n % 3 - 1) * edges[0] + (n / 3 % 3 - 1) * edges[1] + (n / 9 - 1) * edges[2];
+        EXPECT_LT((apart(now, from, to) - near).norm(), 1e-15);
+        const Vec3 inside = into_cell(now, to);
+        EXPECT_LT(apart(now, inside, to).norm(), 1e-15);
+        EXPECT_TRUE((inside.array() >= 0).all() && inside.x() < now.size_x && inside.y() < now.size_y &&
+                    inside.z() < now.height);
+    }
+}
+
+}  // namespace
+}  // namespace mcdem
