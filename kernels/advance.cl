@@ -106,12 +106,9 @@ kernel void advance(const int step, const int slot_count, global const Replica* 
     const int r = replica_of_block[block];
     global const Replica* restrict replica = replicas + r;
     const Batch batch = {motion, partner, partner_slot, displacement, memory};
-    const Grain at = {replica,
-                      index,
-                      (size_t)index * SLOTS,
-                      plate_position(replica, step),
-                      replica->time_step * step,
-                      motion[index]};
+    const Grain at = {
+        replica,      index, (size_t)index * SLOTS, plate_position(replica, step), replica->time_step * step,
+        motion[index]};
     /* One answer for a work-group, so that no barrier is missed: what lowers stop_at in this step sets step
      * + 1. */
     const int last = stop_at[r];

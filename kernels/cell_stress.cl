@@ -1,5 +1,5 @@
-/* Stress of a cell, summed over its pairs of grains: half of branch times force of every slot, since each pair
-   has two. One work-group a portion, as in reduce. */
+/* Stress of a cell, summed over its pairs of grains: half of branch times force of every slot, since each
+   pair has two. One work-group a portion, as in reduce. */
 
 #define STRESS_SUMS 9
 

@@ -1,10 +1,10 @@
 /* What holds the grains at the sides: walls of a box, the curved wall of a cylinder, or nothing in a periodic
    cell. Positions in a periodic cell are not wrapped: a difference is taken to the nearest image.
 
-   A cell repeats along z as well, and is deformed. Positions in it are those that it would have undeformed, and
-   velocities those beyond its own motion: F X is where a grain is that is listed at X, and F' X + v its velocity.
-   So a cell moves its grains with it, without rounding, and images need no velocities of their own. F is upper
-   triangular, linear in time during an interval. */
+   A cell repeats along z as well, and is deformed. Positions in it are those that it would have undeformed,
+   and velocities those beyond its own motion: F X is where a grain is that is listed at X, and F' X + v its
+   velocity. So a cell moves its grains with it, without rounding, and images need no velocities of their own.
+   F is upper triangular, linear in time during an interval. */
 
 #define MAX_DRIFT R(8) /* cells, of a grain in a periodic one: positions must stay precise */
 
@@ -55,7 +55,7 @@ INLINE real3 undeformed(Deformation f, real3 a) {
 
 /* From one listed position to another, as it is to the nearest image in the deformed cell. One axis after the
    other, the last first: right for all that is nearer than half the cell's lengths, however far it leans. */
-#define NEAREST_IN_CELL(name, vector, scalar)                                           \
+#define NEAREST_IN_CELL(name, vector, scalar)                                                 \
     INLINE vector name(global const Replica* restrict replica, Deformation f, vector apart) { \
         const real size_x = replica->wall_position[1], size_y = replica->wall_position[3],    \
                    size_z = replica->wall_position[5];                                        \

@@ -18,7 +18,8 @@ INLINE int near_grains(global const Replica* restrict replica, int grain,
     const real4 own = motion[grain].position;
     const real reach = replica->probe_gap + replica->skin;
     const int3 cell = cell_of(replica, own);
-    const bool repeats = replica->container >= CONTAINER_PERIODIC, is_cell = replica->container == CONTAINER_CELL;
+    const bool repeats = replica->container >= CONTAINER_PERIODIC,
+               is_cell = replica->container == CONTAINER_CELL;
     const CellRange along_x = near_cells(cell.x, replica->span_x, repeats);
     const CellRange along_y = near_cells(cell.y, replica->span_y, repeats);
     const CellRange along_z = near_cells(cell.z, replica->span_z, is_cell);

@@ -28,28 +28,28 @@ typedef struct {
     real sphere_self[SELF_TERMS];   /* S0 + S1 ln(a/R) + S2 a/R + ..: the loaded contact itself */
     real confinement_coupling;      /* finite strain of the grain as a whole (confinement.h) */
     real confinement_volume;
-    real skin;               /* neighbour list margin [m] */
-    real max_move;           /* of a grain, before the list is made anew [m] */
-    real probe_gap;          /* gap up to which surfaces are probed [m] */
-    real overlap_limit;      /* over the sum of radii */
-    real cell_size[3];       /* of the grid, along x y z [m] */
-    real wall_position[6];   /* x_min x_max y_min y_max floor plate, at the interval's start [m] */
-    real deformation[6];     /* of a cell, at the interval's start: xx yy zz xy xz yz (container.h) */
+    real skin;                /* neighbour list margin [m] */
+    real max_move;            /* of a grain, before the list is made anew [m] */
+    real probe_gap;           /* gap up to which surfaces are probed [m] */
+    real overlap_limit;       /* over the sum of radii */
+    real cell_size[3];        /* of the grid, along x y z [m] */
+    real wall_position[6];    /* x_min x_max y_min y_max floor plate, at the interval's start [m] */
+    real deformation[6];      /* of a cell, at the interval's start: xx yy zz xy xz yz (container.h) */
     real deformation_rate[6]; /* [1/s] */
-    real plate_velocity;     /* along z [m/s] */
-    real plate_tilt_x;       /* slope of the plate's face along x, about the middle of the box */
-    real plate_tilt_y;       /* .. along y */
-    real grain_compliance;   /* (1 - nu^2) / E of a grain [1/Pa] */
-    real shear_compliance;   /* (2 - nu) / G of a grain [1/Pa] */
-    real adhesion;           /* 2 pi w, pull-off force over R* [N/m] */
-    real viscoelasticity;    /* part of the force that relaxes */
-    real relaxing_share;     /* 1 - exp(-dt / T): of what is left to relax, in a step */
-    real stiffening;         /* c, per overlap over R*; below zero it softens */
-    real plasticity;         /* part of the deepest overlap that stays */
-    real bulge_contacts;     /* part of the surface displacements that counts without geometric overlap */
-    real mindlin_share;      /* of the friction force, the rest is saturated */
-    real rolling_resistance; /* mu_r */
-    int first_grain;         /* of the padded arrays */
+    real plate_velocity;      /* along z [m/s] */
+    real plate_tilt_x;        /* slope of the plate's face along x, about the middle of the box */
+    real plate_tilt_y;        /* .. along y */
+    real grain_compliance;    /* (1 - nu^2) / E of a grain [1/Pa] */
+    real shear_compliance;    /* (2 - nu) / G of a grain [1/Pa] */
+    real adhesion;            /* 2 pi w, pull-off force over R* [N/m] */
+    real viscoelasticity;     /* part of the force that relaxes */
+    real relaxing_share;      /* 1 - exp(-dt / T): of what is left to relax, in a step */
+    real stiffening;          /* c, per overlap over R*; below zero it softens */
+    real plasticity;          /* part of the deepest overlap that stays */
+    real bulge_contacts;      /* part of the surface displacements that counts without geometric overlap */
+    real mindlin_share;       /* of the friction force, the rest is saturated */
+    real rolling_resistance;  /* mu_r */
+    int first_grain;          /* of the padded arrays */
     int grain_count;
     int first_cell;
     int cells_x; /* of the grid in memory */
@@ -71,8 +71,8 @@ typedef struct {
 } Replica;
 
 /* A cylinder touches x_min, x_max, y_min and y_max; its wall is number 0. A periodic cell has their
- * distances, and neither has other walls than floor and plate besides. A cell has no walls, and their distances
- * at start. */
+ * distances, and neither has other walls than floor and plate besides. A cell has no walls, and their
+ * distances at start. */
 #define CONTAINER_BOX 0
 #define CONTAINER_CYLINDER 1
 #define CONTAINER_PERIODIC 2

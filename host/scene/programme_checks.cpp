@@ -221,7 +221,14 @@ std::vector<CrossProblem> programme_problems(const Settings& settings, const std
                                              const std::set<std::string, std::less<>>& bad) {
     std::vector<CrossProblem> problems;
     const auto& programme = settings.replica.programme;
-    if (programme.empty()) return problems;
+    if (programme.empty()) {
+        const bool tried = std::ranges::any_of(said, [](const auto& key) { return stage_of(key) >= 0; });
+        if (is_cell(settings.replica.box) && !tried)
+            problems.push_back(
+                {"container.shape",
+                 "must come with a [[programme]] where it is cell: nothing else deforms a cell"});
+        return problems;
+    }
     for (const char* key : {"protocol.cycles", "protocol.scans_per_stroke", "protocol.discard"})
         if (said.contains(key)) problems.push_back({key, "must be left out where a programme is given"});
     bool any_bad = bad.contains("plate.start") || bad.contains("plate.end");

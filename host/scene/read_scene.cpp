@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "core/container.h"
 #include "core/errors.h"
 #include "core/input_file.h"
 #include "scene/assign.h"
@@ -147,7 +148,8 @@ private:
             if (from_file && is_generator_key(key))
                 problems_.add(entry.place, key + " must be left out where packing.file is given");
         }
-        if (const Entry* height = entry_of("container.height"); height && !from_file)
+        const bool may_be_cell = is_cell(settings_.replica.box) || varies("container.shape");
+        if (const Entry* height = entry_of("container.height"); height && !from_file && may_be_cell)
             problems_.add(height->place,
                           "container.height must be left out where the packing is generated: it "
                           "follows from packing.count and packing.packing_fraction");

@@ -85,12 +85,8 @@ const std::vector<Check> checks{
     }},
     {{"container.shape", "effects.plate_tilt_x", "effects.plate_tilt_y"}, Check::Packing::any, [](const Settings& s) {
         const auto& effects = s.replica.effects;
-        return unless(!is_periodic(s.replica.box) || (effects.plate_tilt_x == 0 && effects.plate_tilt_y == 0),
+        return unless(s.replica.box.shape != ContainerShape::periodic || (effects.plate_tilt_x == 0 && effects.plate_tilt_y == 0),
                       "must not be periodic where effects.plate_tilt_x or effects.plate_tilt_y is given: a tilted plate does not repeat");
-    }},
-    {{"container.shape"}, Check::Packing::any, [](const Settings& s) {
-        return unless(!is_cell(s.replica.box) || !s.replica.programme.empty(),
-                      "must come with a [[programme]] where it is cell: nothing else deforms a cell");
     }},
     {{"container.height", "container.shape", "packing.file"}, Check::Packing::any, [](const Settings& s) {
         return unless(!is_cell(s.replica.box) || s.packing_file.empty() || !std::isnan(s.cell_height),

@@ -112,6 +112,14 @@ TEST_F(InterruptionTest, OneThreadOrTwoGiveTheSameBits) {
     EXPECT_TRUE(result("one") == result("two"));
 }
 
+TEST_F(InterruptionTest, OneThreadOrTwoGiveACellTheSameBits) {
+    for (const std::string threads : {"1", "2"})
+        expect_done(mcdem({"run", MCDEM_SOURCE_DIR "/scenes/cell.toml", "--out", threads, "--no-figures",
+                           "--set", "protocol.relax_time=0.01", "--set", "programme.1.strain=0.02"},
+                          {"POCL_MAX_PTHREAD_COUNT=" + threads}));
+    EXPECT_TRUE(result("1") == result("2"));
+}
+
 TEST_F(InterruptionTest, TruncatedCheckpointIsRefusedOrTheOneBeforeTaken) {
     expect_done(mcdem(words("whole", false)));
     interrupt("a", SIGINT);

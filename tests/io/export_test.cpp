@@ -6,6 +6,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "core/container.h"
 #include "core/errors.h"
 #include "io/csv.h"
 #include "io/hdf5.h"
@@ -82,6 +83,24 @@ TEST(csv, side_forces_are_those_of_walls_that_are_there) {
         for (std::size_t column = 10; column < 14; ++column) EXPECT_EQ(cells(other)[column], "nan");
     EXPECT_EQ(cells(cylinder).back(), "-7.5");
     EXPECT_EQ(cells(periodic).back(), "nan");
+}
+
+TEST(csv, cells_have_strains_and_forces_through_their_faces) {
+    auto run = synthetic_run({.replicas = 2, .scans = 1});
+    run.recordings[1].box = {0.1, 0.1, ContainerShape::cell, 0.1};
+    run.recordings[1].scans[0].strain = {0.1, 0.2, 0.3, 0.4, 0.5, 0.625};
+    for (auto& recording : run.recordings) {
+        recording.parameters.clear();
+        recording.label = "a";
+    }
+    std::stringstream lines(csv_text(run));
+    std::string header, box, cell;
+    for (std::string* line : {&header, &box, &cell}) std::getline(lines, *line);
+    EXPECT_THAT(header,
+                testing::EndsWith(",rate_error,strain_x,strain_y,strain_z,shear_xy,shear_xz,shear_yz"));
+    EXPECT_THAT(cell, testing::EndsWith(",0.1,0.2,0.3,0.4,0.5,0.625"));
+    EXPECT_THAT(box, testing::EndsWith(",0,0,0,0,0,0"));
+    for (std::size_t column = 10; column < 14; ++column) EXPECT_NE(cells(cell)[column], "nan");
 }
 
 TEST(csv, what_is_not_the_same_in_all_replicas_has_a_column) {
@@ -194,6 +213,32 @@ TEST(vtk, contacts_end_at_round_walls_and_at_nearest_images) {
     const auto image = points_in(folder / "view/replica_00001/contacts_000000.hdf");
     EXPECT_NEAR(image[3], 0.11, 1e-12);
     EXPECT_NEAR(image[4], 0.115, 1e-12);
+}
+
+TEST(vtk, displacements_in_a_cell_are_those_beyond_its_own_motion) {
+    TemporaryFolder folder;
+    auto run = synthetic_run({.replicas = 1, .scans = 2});
+    Recording& recording = run.recordings[0];
+    recording.box = {0.1, 0.1, ContainerShape::cell, 0.1};
+    const Vec3 moved(0.003, -0.002, 0.001);
+    Scan &before = recording.scans[0], &after = recording.scans[1];
+    before.strain = {0.02, 0, 0, 0, 0.3, 0};
+    after.strain = {0.05, 0.1, -0.02, 0.1, 0.9, -0.2};
+    for (std::size_t i = 0; i < before.position.size(); ++i) {
+        const Vec3 place(0.1 * static_cast<double>(i) / 30, 0.05, 0.09);
+        before.position[i] =
+            into_cell(deformed(recording.box, before.strain), deformation(before.strain) * place);
+        after.position[i] =
+            into_cell(deformed(recording.box, after.strain), deformation(after.strain) * place + moved);
+    }
+    write_run(folder / "run.h5", run);
+    export_vtk(folder / "run.h5", folder / "view");
+    const auto found = h5::File::open(folder / "view/replica_00000/grains_000001.hdf")
+                           .dataset("/VTKHDF/PointData/displacement")
+                           .read_all<double>();
+    ASSERT_EQ(found.size(), 3 * before.position.size());
+    for (std::size_t n = 0; n < found.size(); ++n)
+        EXPECT_NEAR(found[n], moved[static_cast<int>(n % 3)], 1e-12);
 }
 
 TEST(vtk, a_scan_without_contacts_still_makes_files) {

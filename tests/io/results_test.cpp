@@ -40,6 +40,20 @@ TEST(results, containers_come_back) {
     }
 }
 
+TEST(results, cells_come_back_with_their_strains) {
+    TemporaryFolder folder;
+    auto run = synthetic_run();
+    Recording& cell = run.recordings[0];
+    cell.box = {0.1, 0.11, ContainerShape::cell, cell.plate_start};
+    for (std::size_t k = 0; k < 6; ++k) cell.scans[1].strain[k] = 0.1 * static_cast<double>(k) - 0.2;
+    write_run(folder / "run.h5", run);
+    const auto found = read_run(folder / "run.h5");
+    expect_same(run, found);
+    EXPECT_EQ(found.recordings[0].box.height, cell.plate_start);
+    EXPECT_EQ(found.recordings[0].scans[1].strain, cell.scans[1].strain);
+    EXPECT_EQ(found.recordings[0].scans[0].strain, Strain{});
+}
+
 TEST(results, comparison_notices_a_changed_bit) {
     const auto run = synthetic_run();
     auto other = run;
