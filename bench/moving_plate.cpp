@@ -75,8 +75,8 @@ void MovingPlate::make_steps(int steps, double plate_velocity, double settle_dra
     while (std::ranges::any_of(left, [](int n) { return n > 0; })) {
         std::vector<StepInterval> intervals(replicas);
         for (int r = 0; r < replicas; ++r)
-            intervals[r] = {std::min(left[r], engine_.max_interval(r, {.plate_velocity = plate_velocity})), plate_z_[r],
-                            plate_velocity, settle_drag};
+            intervals[r] = {std::min(left[r], engine_.max_interval(r, {.plate_velocity = plate_velocity})),
+                            plate_z_[r], plate_velocity, settle_drag};
         const auto results = engine_.advance(intervals);
         for (int r = 0; r < replicas; ++r) {
             if (intervals[r].steps == 0) continue;
