@@ -55,7 +55,6 @@ py::dtype scan_type() {
         .add("mean_force", &Scan::mean_force, "f8")
         .add("packing_fraction", &Scan::packing_fraction, "f8")
         .add("branch_length", &Scan::branch_length, "f8")
-        .add("strain", &Scan::strain, "(6,)f8")
         .type();
 }
 
@@ -96,6 +95,12 @@ py::array tensor_array(const Recording& recording, Mat3 Scan::*tensor, py::handl
     const double* first = count == 0 ? nullptr : (recording.scans.front().*tensor).data();
     return view(py::dtype::of<double>(), {count, 3, 3}, {sizeof(Scan), 3 * sizeof(double), sizeof(double)},
                 first, owner);
+}
+
+py::array strain_array(const Recording& recording, py::handle owner) {
+    const auto count = static_cast<py::ssize_t>(recording.scans.size());
+    const double* first = count == 0 ? nullptr : recording.scans.front().strain.data();
+    return view(py::dtype::of<double>(), {count, 6}, {sizeof(Scan), sizeof(double)}, first, owner);
 }
 
 py::array diameter_array(const Recording& recording, py::handle owner) {

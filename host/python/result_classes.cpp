@@ -100,7 +100,7 @@ void bind_recording(py::module_& module) {
             "[S] rows with the fields of /observables in run.h5: frame, cycle, phase (0 load, 1 "
             "unload), settled, time [s], plate_z [m], kinetic_energy [J], elastic_energy [J], "
             " rate_error, coordination_number, mean_force [N], packing_fraction, "
-            "branch_length [m], strain (of a cell: compression along x, y, z, shears xy, xz, yz).")
+            "branch_length [m].")
         .def_property_readonly(
             "wall_force", array_property(wall_force_array),
             "[S][6][3] force on each wall [N]: x_min, x_max, y_min, y_max, floor, plate. The side "
@@ -108,6 +108,10 @@ void bind_recording(py::module_& module) {
             "its faces.")
         .def_property_readonly("top_force", array_property(top_force_array),
                                "[S] upward force on the plate [N].")
+        .def_property_readonly(
+            "strain", array_property(strain_array),
+            "[S][6] of a cell, over its lengths at start: compression along x, y and z, shears "
+            "xy, xz and yz.")
         .def_property_readonly(
             "stress", array_property(stress_array),
             "[S][3][3] stress of the packing, from contact forces and branch vectors; compression is "

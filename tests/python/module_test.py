@@ -205,7 +205,7 @@ class Runs(Folder):
             for number, recording in enumerate(again):
                 table = file[f"observables/replica_{number:05}"][:]
                 for name in table.dtype.names:
-                    held = getattr(recording, name) if name in ("wall_force", "stress", "fabric") else recording.scans[name]
+                    held = getattr(recording, name) if name in ("wall_force", "stress", "fabric", "strain") else recording.scans[name]
                     self.assertTrue(np.array_equal(table[name], held, equal_nan=True), name)
                 stored = file[f"contacts/replica_{number:05}/contact"][:]
                 contacts = np.concatenate([recording.contacts(s) for s in range(len(recording))])

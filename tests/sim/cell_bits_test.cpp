@@ -1,0 +1,55 @@
+// Cells with a programme: the same bits alone, in a batch and after a restart at any point.
+#include "sim/whole_run.h"
+
+namespace reference {
+namespace {
+
+Start programmed(int kind) {
+    Replica replica = test_replica(all_models[(kind + 4) % 6]);
+    replica.contact.friction_law = FrictionLaw::mindlin;
+    replica.effects.viscoelasticity = kind == 1 ? 0.3 : 0;
+    replica.protocol.relax_time = replica.protocol.settle_time = 0.03;
+    Start start = cell_lattice(replica, 3 + kind % 2, 40 + kind);
+    auto& programme = start.replica.programme;
+    programme.resize(4);
+    programme[0].strain = 0.01;
+    programme[1].shear_xy = 0.1 + 0.02 * kind;
+    programme[1].strain_z = 0.02;
+    programme[2].kind = mcdem::StageKind::hold;
+    programme[2].time = 0.02;
+    programme[3].kind = mcdem::StageKind::repeat;
+    for (auto& stage : programme) stage.rate = 2;
+    return start;
+}
+
+std::vector<Start> programmes(const std::vector<int>& kinds) {
+    std::vector<Start> all;
+    for (const int kind : kinds) all.push_back(programmed(kind));
+    return all;
+}
+
+TEST(CellBits, AreTheSameAloneAndInABatch) {
+    WholeRun alone(Precision::single_precision, programmes({0})),
+        three(Precision::single_precision, programmes({1, 2, 0}));
+    alone.finish();
+    three.finish();
+    expect_same(alone, 0, three, 2);
+}
+
+TEST(CellBits, AreTheSameAfterARestart) {
+    const auto kinds = programmes({0, 1});
+    WholeRun whole(Precision::single_precision, kinds);
+    int rounds = 0;
+    while (whole.advance()) ++rounds;
+    for (const int stop : {1, rounds / 4, rounds / 2, 3 * rounds / 4}) {
+        WholeRun first(Precision::single_precision, kinds), second(Precision::single_precision, kinds);
+        first.advance(stop);
+        second.restore(first.save());
+        second.told = first.told;
+        second.finish();
+        for (int r = 0; r < 2; ++r) expect_same(whole, r, second, r);
+    }
+}
+
+}  // namespace
+}  // namespace reference
