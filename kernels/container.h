@@ -48,23 +48,24 @@ INLINE real3 deformed(Deformation f, real3 a) {
     return (real3)(f.xx * a.x + f.xy * a.y + f.xz * a.z, f.yy * a.y + f.yz * a.z, f.zz * a.z);
 }
 
+/* F^-1 a. */
 INLINE real3 undeformed(Deformation f, real3 a) {
-    const real z = a.z / f.zz, y = (a.y - f.yz * z) / f.yy;
-    return (real3)((a.x - f.xy * y - f.xz * z) / f.xx, y, z);
+    const real3 inverse = R(1) / (real3)(f.xx, f.yy, f.zz); /* one division of vectors */
+    const real z = a.z * inverse.z, y = (a.y - f.yz * z) * inverse.y;
+    return (real3)((a.x - f.xy * y - f.xz * z) * inverse.x, y, z);
 }
 
 /* From one listed position to another, as it is to the nearest image in the deformed cell. One axis after the
    other, the last first: right for all that is nearer than half the cell's lengths, however far it leans. */
-#define NEAREST_IN_CELL(name, vector, scalar)                                                 \
-    INLINE vector name(global const Replica* restrict replica, Deformation f, vector apart) { \
-        const real size_x = replica->wall_position[1], size_y = replica->wall_position[3],    \
-                   size_z = replica->wall_position[5];                                        \
-        const scalar z = apart.z - size_z * WHOLE_NUMBER(apart.z * (R(1) / size_z));          \
-        const scalar to_y = apart.y + (f.yz / f.yy) * z;                                      \
-        const scalar y = apart.y - size_y * WHOLE_NUMBER(to_y * (R(1) / size_y));             \
-        const scalar to_x = apart.x + (f.xy / f.xx) * y + (f.xz / f.xx) * z;                  \
-        const scalar x = apart.x - size_x * WHOLE_NUMBER(to_x * (R(1) / size_x));             \
-        return (vector){x, y, z};                                                             \
+#define NEAREST_IN_CELL(name, vector, scalar)                                                              \
+    INLINE vector name(global const Replica* restrict replica, Deformation f, vector apart) {              \
+        const real3 size =                                                                                 \
+            (real3)(replica->wall_position[1], replica->wall_position[3], replica->wall_position[5]);      \
+        const real3 inverse = R(1) / size, tilt = (real3)(f.yz, f.xy, f.xz) / (real3)(f.yy, f.xx, f.xx);   \
+        const scalar z = apart.z - size.z * WHOLE_NUMBER(apart.z * inverse.z);                             \
+        const scalar y = apart.y - size.y * WHOLE_NUMBER((apart.y + tilt.x * z) * inverse.y);              \
+        const scalar x = apart.x - size.x * WHOLE_NUMBER((apart.x + tilt.y * y + tilt.z * z) * inverse.x); \
+        return (vector){x, y, z};                                                                          \
     }
 NEAREST_IN_CELL(nearest_in_cell, real3, real)
 NEAREST_IN_CELL(nearest_lanes_in_cell, lanes3, lanes)

@@ -9,14 +9,20 @@ INLINE Motion integrate(Grain at, real3 force, real3 torque) {
     acceleration.z -= replica->weight_density / replica->density;
     const real3 turning =
         torque / (R(0.4) * mass * radius * radius) - replica->spin_drag * now.angular_velocity.xyz;
-    const bool in_cell = replica->container == CONTAINER_CELL;
-    const Deformation f = deformation(replica, at.elapsed);
-    if (in_cell) /* what is left of Newton's law beyond the cell's own motion (Evans & Morriss 1984, SLLOD) */
+    if (replica->container == CONTAINER_CELL) {
+        /* What is left of Newton's law beyond the cell's own motion (Evans & Morriss 1984, SLLOD). */
+        const Deformation f = deformation(replica, at.elapsed);
         acceleration -= deformed(deformation_rate(replica), undeformed(f, now.velocity.xyz));
+        const real3 own = now.velocity.xyz + acceleration * dt;
+        const real3 spin = now.angular_velocity.xyz + turning * dt;
+        const Motion after = {(real4)(now.position.xyz + undeformed(f, own) * dt, radius),
+                              (real4)(own, now.velocity.w), (real4)(spin, R(0))};
+        return after;
+    }
     const real3 v = now.velocity.xyz + acceleration * dt;
     const real3 w = now.angular_velocity.xyz + turning * dt;
-    const real3 position = in_cell ? now.position.xyz + undeformed(f, v) * dt : now.position.xyz + v * dt;
-    const Motion after = {(real4)(position, radius), (real4)(v, now.velocity.w), (real4)(w, R(0))};
+    const Motion after = {(real4)(now.position.xyz + v * dt, radius), (real4)(v, now.velocity.w),
+                          (real4)(w, R(0))};
     return after;
 }
 
