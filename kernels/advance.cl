@@ -33,18 +33,16 @@ INLINE RowSums row_forces(Grain at, const int effects, Batch batch, EXCHANGE Con
 
 /* Where the contacts of this step push the surface at every slot. */
 INLINE void surface_displacements(Grain at, EXCHANGE ContactTable* table, lanes* restrict displacement) {
-    global const Replica* restrict replica = at.replica;
-    const real radius = at.now.position.w, compliance_ratio = R(1) + at.now.velocity.w;
+    const bool is_confined = at.replica->confinement;
     for (int v = 0; v < VECTORS; ++v) {
-        const SurfaceDisplacement b = surface_displacement(replica, table, radius, compliance_ratio, v);
+        const SurfaceDisplacement b = surface_displacement(at, table, v);
         displacement[v] = b.point + b.size;
-        if (replica->confinement) tabulate_work(b, v, table);
+        if (is_confined) tabulate_work(b, v, table);
     }
-    if (!replica->confinement) return;
+    if (!is_confined) return;
     SYNCHRONISE();
-    const Confined grain = confined(table, radius, replica->sphere_scale * compliance_ratio);
-    for (int v = 0; v < VECTORS; ++v)
-        displacement[v] = confined_displacement(replica, grain, radius, displacement[v]);
+    const Confined grain = confined(at, table);
+    for (int v = 0; v < VECTORS; ++v) displacement[v] = confined_displacement(at, grain, displacement[v]);
 }
 
 /* Where the contacts of this step push the surface at every slot, extrapolated to the next step:
@@ -95,20 +93,18 @@ INLINE void expect_listed(Grain at, Motion after, int bits, real3 listed_positio
 
 WORK_GROUP(STEP_ITEMS)
 kernel void advance(const int step, const int slot_count, global const Replica* restrict replicas,
-                    global const int* restrict blocks, global const int* restrict replica_of_block,
-                    global volatile int* restrict stop_at, global const Motion* restrict motion,
-                    global Motion* restrict motion_next, global const int* restrict partner,
-                    global const int* restrict partner_slot, global const real* restrict displacement,
-                    global real* restrict displacement_next, global real* restrict history,
-                    global real* restrict memory, global const real4* restrict listed_position,
-                    global int* restrict status) {
+                    global const Material* restrict materials, global const int* restrict blocks,
+                    global const int* restrict replica_of_block, global volatile int* restrict stop_at,
+                    global const Motion* restrict motion, global Motion* restrict motion_next,
+                    global const int* restrict partner, global const int* restrict partner_slot,
+                    global const real* restrict displacement, global real* restrict displacement_next,
+                    global real* restrict history, global real* restrict memory,
+                    global const real4* restrict listed_position, global int* restrict status) {
     GRAIN_OF_WORK_ITEM
     const int r = replica_of_block[block];
     global const Replica* restrict replica = replicas + r;
     const Batch batch = {motion, partner, partner_slot, displacement, memory};
-    const Grain at = {
-        replica,      index, (size_t)index * SLOTS, plate_position(replica, step), replica->time_step * step,
-        motion[index]};
+    const Grain at = grain_at(replica, materials, r, index, step, motion[index]);
     /* One answer for a work-group, so that no barrier is missed: what lowers stop_at in this step sets step
      * + 1. */
     const int last = stop_at[r];

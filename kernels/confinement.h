@@ -14,7 +14,11 @@ INLINE void tabulate_work(SurfaceDisplacement b, int v, EXCHANGE ContactTable* t
     STORE_LANES(LOAD_LANES(table->elastic, v) * (R(0.5) * b.point + R(0.375) * b.size), table->work, v);
 }
 
-INLINE Confined confined(EXCHANGE const ContactTable* table, real radius, real compliance) {
+/* 1/E_i of the grain [1/Pa]. */
+INLINE real own_compliance(Grain at) { return at.material->sphere_scale * (R(1) + at.now.velocity.w); }
+
+INLINE Confined confined(Grain at, EXCHANGE const ContactTable* table) {
+    const real radius = at.now.position.w, compliance = own_compliance(at);
     real force = R(0), work = R(0);
     for (int k = 0; k < SLOTS; ++k) {
         force += table->elastic[k];
@@ -26,17 +30,17 @@ INLINE Confined confined(EXCHANGE const ContactTable* table, real radius, real c
 }
 
 /* The integral of the displacements below over the forces [J]. */
-INLINE real confined_work(global const Replica* restrict replica, Confined grain, real radius,
-                          real compliance) {
-    const real P = grain.pressure, g = R(1) / (R(1) + replica->confinement_coupling * P);
-    const real volume = R(4) * PI * replica->confinement_volume * P * P * P * g * g;
+INLINE real confined_work(Grain at, Confined grain) {
+    const real radius = at.now.position.w, compliance = own_compliance(at);
+    const real P = grain.pressure, g = R(1) / (R(1) + at.material->confinement_coupling * P);
+    const real volume = R(4) * PI * at.material->confinement_volume * P * P * P * g * g;
     return (g * grain.pairs + volume) * radius * radius * radius / compliance;
 }
 
 /* The displacement of the grain's surface at its slots v, from that of small strain [m]. */
-INLINE lanes confined_displacement(global const Replica* restrict replica, Confined grain, real radius,
-                                   lanes small_strain) {
-    const real c = replica->confinement_coupling, P = grain.pressure, g = R(1) / (R(1) + c * P);
-    const real volume = replica->confinement_volume * P * P * (R(3) - R(2) * c * P * g);
+INLINE lanes confined_displacement(Grain at, Confined grain, lanes small_strain) {
+    const real radius = at.now.position.w;
+    const real c = at.material->confinement_coupling, P = grain.pressure, g = R(1) / (R(1) + c * P);
+    const real volume = at.material->confinement_volume * P * P * (R(3) - R(2) * c * P * g);
     return g * small_strain + radius * g * g * (volume - c * grain.pairs / (R(4) * PI));
 }

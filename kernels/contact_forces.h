@@ -15,26 +15,6 @@ typedef struct {
     lanes energy;       /* stored beyond Hertz's 2/5 F delta by effects, set where there are any [J] */
 } Contacts;
 
-INLINE real sphere_mass(global const Replica* restrict replica, real radius) {
-    return replica->density * (R(4) / R(3)) * PI * radius * radius * radius;
-}
-
-/* R* and m* of each pair from one division; both sides of a pair get the same bits. */
-typedef struct {
-    lanes radius, mass;
-} Reduced;
-
-INLINE Reduced reduced(global const Replica* restrict replica, real radius, lanes radius_there, mask wall) {
-    const lanes sum = radius + radius_there, product = radius * radius_there;
-    const lanes cubes = add_alike(radius * radius * radius, radius_there * radius_there * radius_there);
-    const lanes part = product / (sum * cubes);
-    const real density = replica->density * (R(4) / R(3)) * PI;
-    Reduced r;
-    r.radius = WHERE(wall, radius, part * cubes);
-    r.mass = WHERE(wall, density * radius * radius * radius, density * (part * sum) * product * product);
-    return r;
-}
-
 /* What the elastic part of a contact leaves for the rest. */
 typedef struct {
     Reduced pair;
@@ -56,15 +36,15 @@ INLINE Pressed press(Grain at, const int effects, Neighbours seen, Displaced b, 
     const real radius = at.now.position.w, excess_compliance = at.now.velocity.w;
     Pressed p;
     const lanes gap = seen.distance - (radius + seen.radius);
-    p.pair = reduced(replica, radius, seen.radius, seen.wall);
+    p.pair = reduced(at, seen);
     if (replica->container == CONTAINER_CYLINDER) { /* the curved wall alone is not level */
         const mask curved = seen.wall & AS_MASK(fabs(seen.normal.z) < R(0.5));
         p.pair.radius = WHERE(curved, curved_radius(replica, radius), p.pair.radius);
     }
-    lanes modulus = WHERE(seen.wall, replica->modulus_wall, replica->modulus_grain);
+    lanes modulus = of_pairs(at.material->modulus, seen);
     if (effects & EFFECT_MODULUS_SCATTER)
-        modulus =
-            scattered_modulus(modulus, replica->grain_compliance, excess_compliance + seen.excess_compliance);
+        modulus = scattered_modulus(at, seen, modulus, at.material->grain_compliance,
+                                    of_neighbours(&at.materials->grain_compliance, seen));
     lanes outward = b.here + b.there;
     if (effects & EFFECT_BULGE_CONTACTS)
         outward = counted_displacements(gap, outward, replica->bulge_contacts);
@@ -77,8 +57,7 @@ INLINE Pressed press(Grain at, const int effects, Neighbours seen, Displaced b, 
     if (replica->finite_contacts) {
         const ComplianceRatio ratio = {effects ? R(1) + excess_compliance : R(1),
                                        effects ? R(1) + seen.excess_compliance : (lanes)(R(1))};
-        const SelfConsistent solved = self_consistent(replica, ratio, c->overlap, p.pair.radius, modulus,
-                                                      radius, seen.radius, seen.wall);
+        const SelfConsistent solved = self_consistent(at, seen, ratio, c->overlap, p.pair.radius, modulus);
         c->overlap = solved.overlap;
         self = solved.compliance;
         c->approach = WHERE(c->touching, c->overlap, c->approach);
@@ -100,11 +79,10 @@ INLINE Pressed press(Grain at, const int effects, Neighbours seen, Displaced b, 
 
 /* Stiffness of a tangential spring, 8 G* a. */
 INLINE lanes shear_stiffness(Grain at, const int effects, Neighbours seen, lanes contact_radius) {
-    global const Replica* restrict replica = at.replica;
-    lanes modulus = WHERE(seen.wall, replica->shear_wall, replica->shear_grain);
+    lanes modulus = of_pairs(at.material->shear, seen);
     if (effects & EFFECT_MODULUS_SCATTER)
-        modulus =
-            scattered_modulus(modulus, replica->shear_compliance, at.now.velocity.w + seen.excess_compliance);
+        modulus = scattered_modulus(at, seen, modulus, at.material->shear_compliance,
+                                    of_neighbours(&at.materials->shear_compliance, seen));
     return R(8) * modulus * contact_radius;
 }
 
@@ -122,7 +100,7 @@ INLINE Contacts contact_forces(Grain at, const int effects, Neighbours seen, Dis
     Contacts c;
     const Pressed pressed = press(at, effects, seen, b, memory, &c);
     const Reduced pair = pressed.pair;
-    const lanes damping = WHERE(seen.wall, replica->damping_wall, replica->damping_grain);
+    const lanes damping = of_pairs(at.material->damping, seen);
     const lanes separating = dot3(seen.velocity, seen.normal);
     const lanes normal_force =
         pressed.relaxed_force - damping * sqrt(pressed.stiffness * pair.mass) * separating;
@@ -132,7 +110,7 @@ INLINE Contacts contact_forces(Grain at, const int effects, Neighbours seen, Dis
         R(0.5) * (seen.distance + (radius + c.displacement) - (seen.radius + pressed.displacement_there));
     c.arm = WHERE(c.touching, WHERE(seen.wall, seen.distance, midway), radius + c.displacement);
 
-    const lanes friction_coefficient = WHERE(seen.wall, replica->friction_wall, replica->friction_grain);
+    const lanes friction_coefficient = of_pairs(at.material->friction, seen);
     FrictionTerms terms = {friction_coefficient * fmax(normal_force, (lanes)(R(0))), R(0), damping, pair.mass,
                            c.touching};
     if (replica->mindlin) terms.stiffness = shear_stiffness(at, effects, seen, c.radius);

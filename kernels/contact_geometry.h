@@ -11,6 +11,7 @@ typedef struct {
     lanes3 velocity;         /* the neighbour's less this grain's [m/s] */
     lanes3 spin;             /* the neighbour's angular velocity [1/s] */
     lanes excess_compliance; /* E/E_j - 1 of the neighbour, zero for a wall */
+    slots species;           /* the neighbour's, WALL_COLUMN for a wall; set where there are several */
 } Neighbours;
 
 /* The foot of the perpendicular to each wall among the partners, and the other coordinates of `there` for
@@ -58,6 +59,9 @@ INLINE Neighbours see_neighbours(Grain at, const int effects, global const Motio
         seen.radius = WHERE(wall, R(0), seen.radius);
         seen.excess_compliance = WHERE(wall, R(0), seen.excess_compliance);
     }
+#if SPECIES > 1
+    seen.species = AS_SLOTS(WHERE(wall, R(WALL_COLUMN), spin.w));
+#endif
     lanes3 apart = subtract3(there, same3(at.now.position.xyz));
     if (at.replica->container == CONTAINER_PERIODIC) {
         apart.x = nearest_image(apart.x, at.replica->wall_position[1]);

@@ -4,9 +4,10 @@ INLINE Motion integrate(Grain at, real3 force, real3 torque) {
     global const Replica* restrict replica = at.replica;
     const Motion now = at.now;
     const real dt = replica->time_step, radius = now.position.w;
-    const real mass = sphere_mass(replica, radius);
+    const real species = SPECIES > 1 ? now.angular_velocity.w : R(0);
+    const real mass = sphere_mass(at, radius);
     real3 acceleration = force / mass - replica->drag * now.velocity.xyz;
-    acceleration.z -= replica->weight_density / replica->density;
+    acceleration.z -= at.material->weight_density / at.material->density;
     const real3 turning =
         torque / (R(0.4) * mass * radius * radius) - replica->spin_drag * now.angular_velocity.xyz;
     if (replica->container == CONTAINER_CELL) {
@@ -16,13 +17,13 @@ INLINE Motion integrate(Grain at, real3 force, real3 torque) {
         const real3 own = now.velocity.xyz + acceleration * dt;
         const real3 spin = now.angular_velocity.xyz + turning * dt;
         const Motion after = {(real4)(now.position.xyz + undeformed(f, own) * dt, radius),
-                              (real4)(own, now.velocity.w), (real4)(spin, R(0))};
+                              (real4)(own, now.velocity.w), (real4)(spin, species)};
         return after;
     }
     const real3 v = now.velocity.xyz + acceleration * dt;
     const real3 w = now.angular_velocity.xyz + turning * dt;
     const Motion after = {(real4)(now.position.xyz + v * dt, radius), (real4)(v, now.velocity.w),
-                          (real4)(w, R(0))};
+                          (real4)(w, species)};
     return after;
 }
 

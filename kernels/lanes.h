@@ -13,6 +13,7 @@ typedef int16 mask;
 #define AS_MASK(integers) (integers)
 #endif
 typedef int16 slots;
+#define AS_SLOTS(numbers) convert_int16(numbers)
 #define WHERE(condition, yes, no) select((lanes)(no), (lanes)(yes), (condition))
 #define EXCHANGE private
 #define VECTORS (SLOTS / 16)
@@ -31,6 +32,7 @@ typedef int16 slots;
 typedef real lanes;
 typedef int mask;
 typedef int slots;
+#define AS_SLOTS(numbers) ((int)(numbers))
 #define AS_MASK(integers) (integers)
 #define WHERE(condition, yes, no) ((condition) ? (lanes)(yes) : (lanes)(no))
 #define EXCHANGE local

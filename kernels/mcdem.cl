@@ -1,6 +1,7 @@
 /* The program: every kernel, in the order in which one concept needs another. */
 /* clang-format off */
 #include "real.h"
+#include "material.h"
 #include "replica.h"
 #include "status.h"
 #include "report.h"
@@ -10,6 +11,7 @@
 #include "plate.h"
 #include "container.h"
 #include "contact_geometry.h"
+#include "species.h"
 #include "self_displacement.h"
 #include "contact_memory.h"
 #include "contact_effects.h"

@@ -17,8 +17,8 @@ INLINE lanes elastic_energy(Grain at, int effects, Neighbours seen, Contacts c) 
     const real radius = at.now.position.w;
     lanes displaced = R(0.5) * c.elastic * c.displacement;
     if (replica->finite_contacts) /* by itself; others' in surface_energy */
-        displaced = c.elastic * c.elastic * self_work(replica, c.radius / radius) *
-                    (replica->sphere_scale * (R(1) + at.now.velocity.w) / radius);
+        displaced =
+            c.elastic * c.elastic * self_work(at.material, c.radius / radius) * (own_compliance(at) / radius);
     lanes energy = c.elastic * (WHERE(seen.wall, R(0.4), R(0.2)) * c.overlap - c.displacement) + displaced;
     if (effects) energy += WHERE(seen.wall, R(1), R(0.5)) * c.energy;
     return energy;
@@ -26,13 +26,10 @@ INLINE lanes elastic_energy(Grain at, int effects, Neighbours seen, Contacts c) 
 
 /* The integral of what the contacts of a grain displace at one another, spheres only [J]. */
 INLINE real surface_energy(Grain at, EXCHANGE ContactTable* table) {
-    const real radius = at.now.position.w, compliance_ratio = R(1) + at.now.velocity.w;
     SYNCHRONISE();
-    for (int v = 0; v < VECTORS; ++v)
-        tabulate_work(surface_displacement(at.replica, table, radius, compliance_ratio, v), v, table);
+    for (int v = 0; v < VECTORS; ++v) tabulate_work(surface_displacement(at, table, v), v, table);
     SYNCHRONISE();
-    const real compliance = at.replica->sphere_scale * compliance_ratio;
-    return confined_work(at.replica, confined(table, radius, compliance), radius, compliance);
+    return confined_work(at, confined(at, table));
 }
 
 INLINE void add_contact_sums(Grain at, Neighbours seen, Displaced b, Contacts c, ContactSums* restrict sums) {
@@ -63,29 +60,25 @@ INLINE real fastest_frequency(real mass, real stiffness, real displaced, real pr
 INLINE real kinetic_energy(Grain at) {
     const real3 velocity = at.now.velocity.xyz, spin = at.now.angular_velocity.xyz;
     const real radius = at.now.position.w;
-    return R(0.5) * sphere_mass(at.replica, radius) *
+    return R(0.5) * sphere_mass(at, radius) *
            (dot(velocity, velocity) + R(0.4) * radius * radius * dot(spin, spin));
 }
 
 WORK_GROUP(STEP_ITEMS)
-kernel void measure(global const Replica* restrict replicas, global const int* restrict blocks,
-                    global const int* restrict replica_of_block, global const int* restrict steps,
-                    global const Motion* restrict motion, global const int* restrict partner,
-                    global const int* restrict partner_slot, global const real* restrict displacement,
-                    global real* restrict memory, global const real4* restrict listed_position,
-                    global real* restrict force_x, global real* restrict force_y,
-                    global real* restrict force_z, global real* restrict overlap, global real* restrict arm,
-                    global real4* restrict energy, global real* restrict frequency) {
+kernel void measure(global const Replica* restrict replicas, global const Material* restrict materials,
+                    global const int* restrict blocks, global const int* restrict replica_of_block,
+                    global const int* restrict steps, global const Motion* restrict motion,
+                    global const int* restrict partner, global const int* restrict partner_slot,
+                    global const real* restrict displacement, global real* restrict memory,
+                    global const real4* restrict listed_position, global real* restrict force_x,
+                    global real* restrict force_y, global real* restrict force_z,
+                    global real* restrict overlap, global real* restrict arm, global real4* restrict energy,
+                    global real* restrict frequency) {
     GRAIN_OF_WORK_ITEM
     const int r = replica_of_block[block];
     global const Replica* restrict replica = replicas + r;
     const Batch batch = {motion, partner, partner_slot, displacement, memory};
-    const Grain at = {replica,
-                      index,
-                      (size_t)index * SLOTS,
-                      plate_position(replica, steps[r]),
-                      replica->time_step * steps[r],
-                      motion[index]};
+    const Grain at = grain_at(replica, materials, r, index, steps[r], motion[index]);
     prefetch_next_displacements(at, batch);
     ContactSums sums = {R(0), R(0), R(0), R(0), R(0)};
     for (int v = 0; v < VECTORS; ++v) {
@@ -114,7 +107,7 @@ kernel void measure(global const Replica* restrict replicas, global const int* r
         energy[index] = (real4)(kinetic_energy(at), sum_slots(sums.stored, 0, scratch) + surfaces,
                                 dot(moved, moved), max_slots(sums.deepest, 1, scratch));
         frequency[index] =
-            fastest_frequency(sphere_mass(replica, at.now.position.w), sum_slots(sums.stiffness, 2, scratch),
+            fastest_frequency(sphere_mass(at, at.now.position.w), sum_slots(sums.stiffness, 2, scratch),
                               sum_slots(sums.displaced, 3, scratch), sum_slots(sums.pressed, 4, scratch));
     }
 }

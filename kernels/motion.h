@@ -3,7 +3,7 @@
 typedef struct {
     real4 position;         /* w: radius, zero for padding [m] */
     real4 velocity;         /* w: excess compliance, E/E_i - 1 [m/s] */
-    real4 angular_velocity; /* [1/s] */
+    real4 angular_velocity; /* w: species, from 0 [1/s] */
 } Motion;
 #define MOTION_VECTORS 3 /* the real4 of one grain */
 
@@ -15,12 +15,24 @@ INLINE lanes4 gather_motion(global const Motion* restrict motion, slots grain, i
 /* What one work-item of a step works for. */
 typedef struct {
     global const Replica* replica;
-    int index;    /* among all grains of the batch */
-    size_t row;   /* its first slot */
-    real plate_z; /* where the plate is now [m] */
-    real elapsed; /* of the interval [s] */
+    global const Material* materials; /* of all species of the replica */
+    global const Material* material;  /* its own */
+    int index;                        /* among all grains of the batch */
+    size_t row;                       /* its first slot */
+    real plate_z;                     /* where the plate is now [m] */
+    real elapsed;                     /* of the interval [s] */
     Motion now;
 } Grain;
+
+/* Without -DSPECIES all grains of a replica are of one material, known when this is compiled. */
+#ifndef SPECIES
+#define SPECIES 1
+#endif
+#if SPECIES > 1
+#define SPECIES_OF(motion) ((int)(motion).angular_velocity.w)
+#else
+#define SPECIES_OF(motion) 0
+#endif
 
 /* The batch as a step finds it. */
 typedef struct {

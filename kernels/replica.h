@@ -1,33 +1,12 @@
 /* What the kernels know of one replica. Shared by host and device; `real` is the
    includer's. Scalars and arrays of scalars only, widest first. Units in brackets, SI. */
-#define POINT_TERMS 9
-#define SIZE_TERMS 7
-#define SELF_TERMS 5
 
 typedef struct {
-    real time_step;      /* dt [s] */
-    real density;        /* inertial [kg/m3] */
-    real weight_density; /* (density - fluid density) g [N/m3] */
-    real drag;           /* of velocities [1/s] */
-    real spin_drag;      /* of angular velocities, while the packing settles [1/s] */
-    real modulus_grain;  /* E*, grain on grain [Pa] */
-    real modulus_wall;   /* E*, grain on wall [Pa] */
-    real shear_grain;    /* G*, grain on grain [Pa] */
-    real shear_wall;     /* G*, grain on wall [Pa] */
-    real damping_grain;  /* 2 sqrt(5/6) beta */
-    real damping_wall;
-    real friction_grain; /* mu */
-    real friction_wall;
-    real sliding_velocity;          /* regularises saturated friction [m/s] */
-    real half_space_scale;          /* -gamma (1 + nu) / (2 pi E) [1/Pa] */
-    real half_space_normal;         /* 3 - 4 nu */
-    real half_space_shear;          /* 1 - 2 nu */
-    real sphere_scale;              /* 1 / E [1/Pa] */
-    real sphere_point[POINT_TERMS]; /* P: a point force moves the surface by P(s)/s, s = sin(theta/2) */
-    real sphere_size[SIZE_TERMS];   /* T: contact radii add (2/5 a_k^2 + 2/3 a_c^2)/R^2 T(s)/s^3 */
-    real sphere_self[SELF_TERMS];   /* S0 + S1 ln(a/R) + S2 a/R + ..: the loaded contact itself */
-    real confinement_coupling;      /* finite strain of the grain as a whole (confinement.h) */
-    real confinement_volume;
+    Material material;        /* of all grains; where some replica of the batch has several, see material.h */
+    real time_step;           /* dt [s] */
+    real drag;                /* of velocities [1/s] */
+    real spin_drag;           /* of angular velocities, while the packing settles [1/s] */
+    real sliding_velocity;    /* regularises saturated friction [m/s] */
     real skin;                /* neighbour list margin [m] */
     real max_move;            /* of a grain, before the list is made anew [m] */
     real probe_gap;           /* gap up to which surfaces are probed [m] */
@@ -39,8 +18,6 @@ typedef struct {
     real plate_velocity;      /* along z [m/s] */
     real plate_tilt_x;        /* slope of the plate's face along x, about the middle of the box */
     real plate_tilt_y;        /* .. along y */
-    real grain_compliance;    /* (1 - nu^2) / E of a grain [1/Pa] */
-    real shear_compliance;    /* (2 - nu) / G of a grain [1/Pa] */
     real adhesion;            /* 2 pi w, pull-off force over R* [N/m] */
     real viscoelasticity;     /* part of the force that relaxes */
     real relaxing_share;      /* 1 - exp(-dt / T): of what is left to relax, in a step */
@@ -60,8 +37,8 @@ typedef struct {
     int span_z;
     int steps_before;    /* this interval, modulo 4: turns the ring of surface displacements */
     int surface;         /* SURFACE_* below */
-    int finite_contacts; /* 1: the sphere's size and self terms are not zero */
-    int confinement;     /* 1: its coupling and volume are not zero */
+    int finite_contacts; /* 1: the spheres' size and self terms are not zero */
+    int confinement;     /* 1: coupling or volume of some species are not zero */
     int mindlin;         /* 1: friction with history, all or a share */
     int memory_rows;     /* of a grain's contacts (contact_memory.h); springs take the first three */
     int deepest_row;     /* among them, of plasticity */

@@ -5,21 +5,40 @@
 #define LARGEST_RADIUS R(0.64)
 #define SATURATED_RADIUS R(1) /* with confinement, larger contacts move themselves no further */
 
+/* S0 to S4 of one side's materials and 1/E [1/Pa]. */
+typedef struct {
+    lanes s0, s1, s2, s3, s4, scale;
+} SelfTerms;
+
+INLINE SelfTerms self_terms_there(Grain at, Neighbours seen) {
+    global const Material* first = at.materials;
+    const SelfTerms terms = {
+        of_neighbours(first->sphere_self, seen),     of_neighbours(first->sphere_self + 1, seen),
+        of_neighbours(first->sphere_self + 2, seen), of_neighbours(first->sphere_self + 3, seen),
+        of_neighbours(first->sphere_self + 4, seen), of_neighbours(&first->sphere_scale, seen)};
+    return terms;
+}
+INLINE SelfTerms self_terms_here(Grain at) {
+    global const real* s = at.material->sphere_self;
+    const SelfTerms terms = {s[0], s[1], s[2], s[3], s[4], at.material->sphere_scale};
+    return terms;
+}
+
 /* In F/(E R); `relative` is a/R. */
-INLINE lanes self_displacement(global const Replica* restrict replica, lanes relative) {
+INLINE lanes self_displacement(Grain at, SelfTerms t, lanes relative) {
     const lanes x = clamp(relative, (lanes)(SMALLEST_RADIUS), (lanes)(LARGEST_RADIUS));
-    global const real* s = replica->sphere_self;
-    const lanes value = s[0] + x * (s[2] + x * (s[3] + x * s[4]));
-    const lanes whole = s[1] != R(0) ? value + s[1] * log(x) : value;
-    if (!replica->confinement) return whole;
+    const lanes value = t.s0 + x * (t.s2 + x * (t.s3 + x * t.s4));
+    const bool has_log = SPECIES > 1 || at.material->sphere_self[1] != R(0);
+    const lanes whole = has_log ? value + t.s1 * log(x) : value;
+    if (!at.replica->confinement) return whole;
     const lanes share = SATURATED_RADIUS / fmax(relative, (lanes)(SATURATED_RADIUS));
     return whole * share * share * share; /* the force goes with the cube */
 }
 
 /* Its integral over the force, in F^2/(E R): the force goes with the cube of the radius. */
-INLINE lanes self_work(global const Replica* restrict replica, lanes relative) {
+INLINE lanes self_work(global const Material* restrict material, lanes relative) {
     const lanes x = clamp(relative, (lanes)(SMALLEST_RADIUS), (lanes)(LARGEST_RADIUS));
-    global const real* s = replica->sphere_self;
+    global const real* s = material->sphere_self;
     const lanes value = R(0.5) * s[0] + x * (R(3) / R(7) * s[2] + x * (R(0.375) * s[3] + x * (s[4] / R(3))));
     return s[1] != R(0) ? value + s[1] * (R(0.5) * log(x) - R(1) / R(12)) : value;
 }
@@ -35,14 +54,14 @@ typedef struct {
     lanes there;
 } ComplianceRatio;
 
-INLINE SelfCompliance self_compliance(global const Replica* restrict replica, ComplianceRatio ratio,
+/* Of both sides' materials; zero for a wall, whose inverse radius is zero. */
+INLINE SelfCompliance self_compliance(Grain at, SelfTerms here, SelfTerms there, ComplianceRatio ratio,
                                       lanes contact_radius, real inverse_radius, lanes inverse_there) {
     SelfCompliance c;
-    c.here = self_displacement(replica, contact_radius * inverse_radius) *
-             (replica->sphere_scale * inverse_radius * ratio.here);
-    /* zero for a wall, whose inverse radius is zero */
-    c.there = self_displacement(replica, contact_radius * inverse_there) *
-              (replica->sphere_scale * inverse_there * ratio.there);
+    c.here = self_displacement(at, here, contact_radius * inverse_radius) *
+             (here.scale * inverse_radius * ratio.here);
+    c.there = self_displacement(at, there, contact_radius * inverse_there) *
+              (there.scale * inverse_there * ratio.there);
     return c;
 }
 
@@ -55,16 +74,16 @@ typedef struct {
 /* Solves overlap = given + compliance F(overlap), F = 4/3 E* sqrt(R* overlap) overlap, by Newton's method;
    the compliance goes slowly with the contact radius and is taken anew at each step. Three steps leave some
    1e-6 of the overlap (tests/kernels measures it against bisection). */
-INLINE SelfConsistent self_consistent(global const Replica* restrict replica, ComplianceRatio ratio,
-                                      lanes given, lanes reduced_radius, lanes modulus, real radius,
-                                      lanes radius_there, mask wall) {
-    const real inverse_radius = R(1) / radius;
-    const lanes inverse_there = WHERE(wall, R(0), R(1) / radius_there);
+INLINE SelfConsistent self_consistent(Grain at, Neighbours seen, ComplianceRatio ratio, lanes given,
+                                      lanes reduced_radius, lanes modulus) {
+    const real inverse_radius = R(1) / at.now.position.w;
+    const lanes inverse_there = WHERE(seen.wall, R(0), R(1) / seen.radius);
+    const SelfTerms here = self_terms_here(at), there = self_terms_there(at, seen);
     SelfConsistent s;
     s.overlap = given;
     for (int step = 0; step < 3; ++step) {
         const lanes a = sqrt(reduced_radius * s.overlap);
-        s.compliance = self_compliance(replica, ratio, a, inverse_radius, inverse_there);
+        s.compliance = self_compliance(at, here, there, ratio, a, inverse_radius, inverse_there);
         const lanes slope = add_alike(s.compliance.here, s.compliance.there) * R(2) * modulus * a;
         const lanes excess = given + (R(2) / R(3)) * slope * s.overlap - s.overlap;
         s.overlap += fmax(excess / fmax(R(1) - slope, (lanes)(R(0.25))), R(-0.5) * s.overlap);

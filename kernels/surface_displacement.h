@@ -15,15 +15,15 @@ typedef struct {
 
 /* Paper, Eq. 1, from contact k with unit force and unit prefactor, at the deformed contact points. With
    n = -e at both, all products follow from cos(theta) = e_k . e_c and the two arms. */
-INLINE lanes half_space_displacement(global const Replica* restrict replica, lanes cosine, lanes arm,
+INLINE lanes half_space_displacement(global const Material* restrict material, lanes cosine, lanes arm,
                                      real arm_k) {
     const lanes squared = arm * arm + arm_k * arm_k - R(2) * arm * arm_k * cosine;
     const lanes inverse = inverse_root(squared);
     const lanes along_k = (arm_k - arm * cosine) * inverse; /* n_k . u */
     const lanes along_c = (arm_k * cosine - arm) * inverse; /* n_c . u */
-    lanes bracket = along_k * along_c + replica->half_space_normal * cosine;
-    if (replica->half_space_shear != R(0))
-        bracket -= replica->half_space_shear * (cosine + along_c) / (R(1) + along_k);
+    lanes bracket = along_k * along_c + material->half_space_normal * cosine;
+    if (material->half_space_shear != R(0))
+        bracket -= material->half_space_shear * (cosine + along_c) / (R(1) + along_k);
     return bracket * inverse;
 }
 
@@ -50,14 +50,14 @@ typedef struct {
 
 /* Displacement of an elastic sphere, in F/(E R), at the angle whose cosine is given; `spread` is
    (2/5 a_k^2 + 2/3 a_c^2)/R^2 of the two contact radii. */
-INLINE SurfaceDisplacement sphere_displacement(global const Replica* restrict replica, lanes cosine,
-                                               lanes spread) {
+INLINE SurfaceDisplacement sphere_displacement(Grain at, lanes cosine, lanes spread) {
+    global const Material* restrict material = at.material;
     const lanes squared = fmax(R(0.5) - R(0.5) * cosine, (lanes)(SMALLEST_SINE * SMALLEST_SINE));
     const lanes inverse = inverse_root(squared);
     const lanes s = squared * inverse;
-    SurfaceDisplacement b = {point_polynomial(replica->sphere_point, s) * inverse, R(0)};
-    if (replica->finite_contacts)
-        b.size = spread * inverse * inverse * size_polynomial(replica->sphere_size, s) * inverse;
+    SurfaceDisplacement b = {point_polynomial(material->sphere_point, s) * inverse, R(0)};
+    if (at.replica->finite_contacts)
+        b.size = spread * inverse * inverse * size_polynomial(material->sphere_size, s) * inverse;
     return b;
 }
 
@@ -71,8 +71,9 @@ INLINE void tabulate(Contacts c, lanes3 normal, int v, EXCHANGE ContactTable* ta
 }
 
 /* The sum over the contacts k of the grain, for its slots v. */
-INLINE lanes half_space_sum(global const Replica* restrict replica, EXCHANGE const ContactTable* table,
-                            real compliance_ratio, lanes3 direction, int v) {
+INLINE lanes half_space_sum(Grain at, EXCHANGE const ContactTable* table, real compliance_ratio,
+                            lanes3 direction, int v) {
+    global const Material* restrict material = at.material;
     const lanes arm = LOAD_LANES(table->arm, v);
     lanes sum = R(0);
     for (int k = 0; k < SLOTS; ++k) {
@@ -80,15 +81,15 @@ INLINE lanes half_space_sum(global const Replica* restrict replica, EXCHANGE con
         if (!(force > R(0))) continue;
         const lanes cosine =
             direction.x * table->x[k] + direction.y * table->y[k] + direction.z * table->z[k];
-        const lanes term = half_space_displacement(replica, cosine, arm, table->arm[k]) * force;
+        const lanes term = half_space_displacement(material, cosine, arm, table->arm[k]) * force;
         sum += WHERE(AS_MASK(SLOT_NUMBERS(v) == k), R(0), term);
     }
-    return sum * (replica->half_space_scale * compliance_ratio);
+    return sum * (material->half_space_scale * compliance_ratio);
 }
 
-INLINE SurfaceDisplacement sphere_sum(global const Replica* restrict replica,
-                                      EXCHANGE const ContactTable* table, real radius, real compliance_ratio,
+INLINE SurfaceDisplacement sphere_sum(Grain at, EXCHANGE const ContactTable* table, real compliance_ratio,
                                       lanes3 direction, int v) {
+    const real radius = at.now.position.w;
     const lanes relative = LOAD_LANES(table->radius, v) / radius;
     const lanes receiving = (R(2) / R(3)) * relative * relative;
     SurfaceDisplacement sum = {R(0), R(0)};
@@ -98,25 +99,22 @@ INLINE SurfaceDisplacement sphere_sum(global const Replica* restrict replica,
         const lanes cosine =
             direction.x * table->x[k] + direction.y * table->y[k] + direction.z * table->z[k];
         const real source = table->radius[k] / radius;
-        const SurfaceDisplacement b =
-            sphere_displacement(replica, cosine, receiving + R(0.4) * source * source);
+        const SurfaceDisplacement b = sphere_displacement(at, cosine, receiving + R(0.4) * source * source);
         const mask itself = AS_MASK(SLOT_NUMBERS(v) == k);
         sum.point += WHERE(itself, R(0), b.point * force);
         sum.size += WHERE(itself, R(0), b.size * force);
     }
-    const real scale = replica->sphere_scale / radius * compliance_ratio;
+    const real scale = at.material->sphere_scale / radius * compliance_ratio;
     sum.point *= scale;
     sum.size *= scale;
     return sum;
 }
 
-/* `compliance_ratio` is E over the grain's own Young's modulus. */
-INLINE SurfaceDisplacement surface_displacement(global const Replica* restrict replica,
-                                                EXCHANGE const ContactTable* table, real radius,
-                                                real compliance_ratio, int v) {
+/* By the contacts of the grain, at its slots v. */
+INLINE SurfaceDisplacement surface_displacement(Grain at, EXCHANGE const ContactTable* table, int v) {
     const lanes3 direction = {LOAD_LANES(table->x, v), LOAD_LANES(table->y, v), LOAD_LANES(table->z, v)};
-    if (replica->surface == SURFACE_SPHERE)
-        return sphere_sum(replica, table, radius, compliance_ratio, direction, v);
-    const SurfaceDisplacement b = {half_space_sum(replica, table, compliance_ratio, direction, v), R(0)};
+    const real compliance_ratio = R(1) + at.now.velocity.w;
+    if (at.replica->surface == SURFACE_SPHERE) return sphere_sum(at, table, compliance_ratio, direction, v);
+    const SurfaceDisplacement b = {half_space_sum(at, table, compliance_ratio, direction, v), R(0)};
     return b;
 }

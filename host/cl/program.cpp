@@ -76,9 +76,9 @@ cl::Program build_program(const Device& device, const KernelBuild& build) {
     // -w: what the compiler finds odd about a device's own headers and vector widths is no user's concern.
     const auto options = fmt::format(
         "-w -cl-std=CL1.2 -DMCDEM_DOUBLE={} -DLANES={} -DSLOTS={} -DBLOCK={} "
-        "-DLIST_ITEMS={}",
+        "-DLIST_ITEMS={}{}",
         build.precision == Precision::double_precision ? 1 : 0, build.lanes, build.slots, build.block(),
-        build.list_items());
+        build.list_items(), build.species > 1 ? fmt::format(" -DSPECIES={}", build.species) : "");
     cl::Program program(device.context(), program_text());
     try {
         program.build({device.handle()}, options.c_str());

@@ -13,6 +13,7 @@ struct KernelBuild {
     Precision precision = Precision::single_precision;
     int slots = 16;   ///< neighbour slots a grain, a multiple of 16
     int lanes = 16;   ///< 16: a work-item a grain (CPU); 1: a work-item a slot (GPU)
+    int species = 1;  ///< materials that a replica can have: 1 or MAX_SPECIES of kernels/material.h
     int group = 256;  ///< work-items a work-group has at most; every GPU known takes 256
 
     /// Grains a block: what a work-group of a step works for.

@@ -1,6 +1,7 @@
 // A packing: where the grains are and how large. Index in the vectors = the user's grain number.
 #pragma once
 #include <array>
+#include <string>
 #include <vector>
 
 #include "core/names.h"
@@ -9,8 +10,10 @@
 namespace mcdem::inline core {
 
 struct Packing {
-    std::vector<Vec3> position;    ///< centres [m]
-    std::vector<double> diameter;  ///< [m]
+    std::vector<Vec3> position;     ///< centres [m]
+    std::vector<double> diameter;   ///< [m]
+    std::vector<int> species = {};  ///< from 0; empty where all grains are alike or nothing is known of it
+    std::vector<std::string> species_names = {};  ///< as a file has them, names or numbers
     std::size_t size() const { return position.size(); }
 };
 

@@ -77,6 +77,8 @@ struct Recording {
     Box box;
     double plate_start = 0;        ///< plate position that counts as displacement zero [m]
     std::vector<double> diameter;  ///< [m]
+    std::vector<int> species;      ///< of each grain, a place in species_names; empty without species
+    std::vector<std::string> species_names;
     std::vector<Scan> scans;
     std::optional<Failure> failure;
 

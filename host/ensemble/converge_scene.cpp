@@ -204,6 +204,7 @@ private:
 
 Convergence converge_scene(Device& device, const Scene& scene, const ConvergeOptions& options) {
     expect_strokes(scene, "mcdem converge");
+    expect_one_material(scene, "mcdem converge");
     return Converging(device, scene, options).all();
 }
 

@@ -19,6 +19,12 @@ std::string start_of(const Replica& replica) {
     std::string text = fmt::format("{} {} {} {} {} {} {} {}", name(replica.box.shape), replica.box.size_x,
                                    replica.box.size_y, replica.plate.start, replica.effects.plate_tilt_x,
                                    replica.effects.plate_tilt_y, from.position_jitter, from.seed);
+    text += fmt::format(" {}", name(from.fractions_by));
+    for (const Species& one : replica.species) {
+        const Sizes& sizes = one.sizes;
+        text += fmt::format(" species {} {} {} {} {} {} {} {}", one.name, one.fraction, name(sizes.law),
+                            sizes.mean, sizes.sd, sizes.min, sizes.max, sizes.file);
+    }
     if (const auto* file = std::get_if<PackingFile>(&from.source))
         return text + fmt::format(" file {} {}", file->path, file->step.value_or(-1));
     const auto& drawn = std::get<GeneratedPacking>(from.source);

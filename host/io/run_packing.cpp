@@ -19,7 +19,8 @@ Packing packing_of_run(const std::filesystem::path& file, std::optional<long> fr
     for (std::size_t s = 0; s < recording.scans.size(); ++s) {
         if (frame && recording.scans[s].frame != *frame) continue;
         Scan scan = reader.read_scan(0, s);
-        if (!scan.position.empty()) return {std::move(scan.position), recording.diameter};
+        if (!scan.position.empty())
+            return {std::move(scan.position), recording.diameter, recording.species, recording.species_names};
         if (frame) break;
     }
     throw InputError(fmt::format("{}: must hold positions of {}, got none: run with output.positions = true",

@@ -8,13 +8,10 @@
 #include "core/container.h"
 #include "scene/overlap_relaxation.h"
 #include "scene/random.h"
+#include "scene/sizes.h"
 
 namespace mcdem::inline scene {
 namespace {
-
-TruncatedNormal size_distribution(const GeneratedPacking& wanted) {
-    return {wanted.diameter_mean, wanted.diameter_sd, wanted.diameter_min, wanted.diameter_max};
-}
 
 double volume(double diameter) { return std::numbers::pi / 6 * diameter * diameter * diameter; }
 
@@ -22,13 +19,36 @@ double height_for(double grain_volume, double packing_fraction, const Box& box) 
     return grain_volume / (packing_fraction * box.size_x * box.size_y * floor_share(box));
 }
 
-std::vector<double> draw_diameters(const GeneratedPacking& wanted, std::uint64_t seed) {
+/// Sizes of the only grains there are, or of each species, and how many of each.
+struct Population {
+    std::vector<Sizes> sizes;
+    std::vector<int> counts;
+};
+
+Population population(const GeneratedPacking& wanted, const Mixture& mixture) {
+    if (mixture.species.empty())
+        return {{{SizeLaw::normal, wanted.diameter_mean, wanted.diameter_sd, wanted.diameter_min,
+                  wanted.diameter_max, ""}},
+                {wanted.count}};
+    Population all;
+    for (const Species& species : mixture.species) all.sizes.push_back(species.sizes);
+    all.counts = species_counts(wanted.count, mixture.species, mixture.by);
+    return all;
+}
+
+/// Each species' sizes as distributed, in an order left to chance.
+void draw_grains(Packing& packing, const Population& population, std::uint64_t seed) {
     Random random(seed, Stream::diameters);
-    std::vector<double> diameter(wanted.count);
-    for (int i = 0; i < wanted.count; ++i)
-        diameter[i] = size_distribution(wanted).quantile((i + random.uniform()) / wanted.count);
-    random.shuffle(diameter);
-    return diameter;
+    std::vector<std::pair<double, int>> grains;
+    for (std::size_t s = 0; s < population.sizes.size(); ++s)
+        for (int i = 0; i < population.counts[s]; ++i)
+            grains.emplace_back(quantile(population.sizes[s], (i + random.uniform()) / population.counts[s]),
+                                static_cast<int>(s));
+    random.shuffle(grains);
+    for (const auto& [diameter, species] : grains) {
+        packing.diameter.push_back(diameter);
+        packing.species.push_back(species);
+    }
 }
 
 /// Takes the square around a cylinder to its floor, areas in proportion.
@@ -64,21 +84,23 @@ std::vector<Vec3> draw_positions(const GeneratedPacking& wanted, const Box& box,
 
 }  // namespace
 
-double expected_height(const GeneratedPacking& wanted, const Box& box) {
-    const int samples = 200;
-    double mean_volume = 0;
-    for (int i = 0; i < samples; ++i)
-        mean_volume += volume(size_distribution(wanted).quantile((i + 0.5) / samples)) / samples;
-    return height_for(mean_volume * wanted.count, wanted.packing_fraction, box);
+double expected_height(const GeneratedPacking& wanted, const Box& box, const Mixture& mixture) {
+    const Population all = population(wanted, mixture);
+    double grain_volume = 0;
+    for (std::size_t s = 0; s < all.sizes.size(); ++s)
+        grain_volume += mean_volume(all.sizes[s]) * all.counts[s];
+    return height_for(grain_volume, wanted.packing_fraction, box);
 }
 
-Packing generate_packing(const GeneratedPacking& wanted, const Box& box, std::uint64_t seed) {
+Packing generate_packing(const GeneratedPacking& wanted, const Box& box, std::uint64_t seed,
+                         const Mixture& mixture) {
     // Growing gently lets grains find room; more stages or iterations change little.
     constexpr int stages = 10, iterations_of_stage = 200, last_iterations = 3000;
     constexpr double smallest_scale = 0.7;
 
     Packing packing;
-    packing.diameter = draw_diameters(wanted, seed);
+    draw_grains(packing, population(wanted, mixture), seed);
+    if (mixture.species.empty()) packing.species.clear();
     double grain_volume = 0;
     for (double d : packing.diameter) grain_volume += volume(d);
     const double height = is_cell(box) ? box.height : height_for(grain_volume, wanted.packing_fraction, box);

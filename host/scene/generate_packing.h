@@ -6,6 +6,12 @@
 
 namespace mcdem::inline scene {
 
+/// Species with fractions of the grains; none: all are as `GeneratedPacking` says.
+struct Mixture {
+    std::vector<Species> species;
+    FractionsBy by = FractionsBy::number;
+};
+
 /// Grains drawn at random between floor, plate and sides of a container, which is as high as the packing
 /// fraction says, and pushed apart until overlaps are gone (below 1 % of the radius) or forces balance.
 /// Overlaps go wherever the container has room for spheres without them: up to a packing fraction of about
@@ -16,9 +22,12 @@ namespace mcdem::inline scene {
 /// The same seed gives the same packing, bit for bit, on the same machine. Sizes follow the stated
 /// distribution closely (one grain from each of `count` equally likely ranges), so that packings of
 /// different seeds hold nearly the same volume.
-Packing generate_packing(const GeneratedPacking& wanted, const Box& box, std::uint64_t seed);
+/// Where there are species, each has its share of the grains and its sizes; which grain is of which is left
+/// to chance.
+Packing generate_packing(const GeneratedPacking& wanted, const Box& box, std::uint64_t seed,
+                         const Mixture& mixture = {});
 
 /// Height of the box that `generate_packing` would fill, for sizes exactly as distributed [m].
-double expected_height(const GeneratedPacking& wanted, const Box& box);
+double expected_height(const GeneratedPacking& wanted, const Box& box, const Mixture& mixture = {});
 
 }  // namespace mcdem::scene

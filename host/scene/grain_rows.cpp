@@ -24,7 +24,13 @@ GrainColumns GrainColumns::named(const std::vector<std::string>& names, const st
         throw InputError(
             fmt::format("{}: the columns must be x, y, z and diameter or radius, among others, got {}", file,
                         fmt::join(names, ", ")));
-    return {*x, *y, *z, diameter ? *diameter : *radius, diameter ? 1.0 : 2.0, first_of({"id"})};
+    return {*x,
+            *y,
+            *z,
+            diameter ? *diameter : *radius,
+            diameter ? 1.0 : 2.0,
+            first_of({"id"}),
+            first_of({"species", "type"})};
 }
 
 void GrainRows::add(const std::vector<std::string_view>& words, long line) {
@@ -41,6 +47,7 @@ void GrainRows::add(const std::vector<std::string_view>& words, long line) {
     }
     packing_.position.emplace_back(values[0], values[1], values[2]);
     packing_.diameter.push_back(columns_.diameters * values[3]);
+    if (columns_.species) add_species(packing_, words[*columns_.species]);
     ids_.push_back(columns_.id ? to_number(words[*columns_.id]).value_or(-1) : 0);
     lines_.push_back(line);
 }
@@ -57,8 +64,10 @@ Packing GrainRows::packing() const {
                           fmt::format("each grain must have its own id, got {} again", ids_[order[k]]));
         sorted.position.push_back(packing_.position[order[k]]);
         sorted.diameter.push_back(packing_.diameter[order[k]]);
+        if (columns_.species) sorted.species.push_back(packing_.species[order[k]]);
     }
     problems_.report();
+    sorted.species_names = packing_.species_names;
     return sorted;
 }
 

@@ -13,9 +13,10 @@ namespace mcdem::inline scene {
 struct GrainColumns {
     std::size_t x, y, z, size;
     double diameters = 1;  ///< of what `size` states: 2 for a radius
-    std::optional<std::size_t> id;
+    std::optional<std::size_t> id, species;
 
-    /// Of columns x, y, z (or xu, yu, zu) and diameter, radius or r, perhaps id. Throws InputError.
+    /// Of columns x, y, z (or xu, yu, zu) and diameter, radius or r, perhaps id and species or type. Throws
+    /// InputError.
     static GrainColumns named(const std::vector<std::string>& names, const std::string& file);
 };
 

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "scene/keys.h"
+#include "scene/list_tables.h"
 
 namespace mcdem::inline scene {
 
@@ -14,15 +14,20 @@ std::string key_reference() {
     std::string text;
     std::string_view open = "none yet";
     std::vector<Key> all(keys().begin(), keys().end());
-    all.insert(std::ranges::find(all, "numerics.time_step", &Key::name), stage_keys(0).begin(),
-               stage_keys(0).end());
+    const auto put_before = [&](std::string_view next, std::span<const Key> keys) {
+        all.insert(std::ranges::find(all, next, &Key::name), keys.begin(), keys.end());
+    };
+    put_before("walls.youngs_modulus", species_keys(0));
+    put_before("walls.youngs_modulus", pair_keys(0));
+    put_before("numerics.time_step", stage_keys(0));
     for (const Key& key : all) {
         const auto dot = key.name.rfind('.');
         const std::string_view table = dot == key.name.npos ? "" : key.name.substr(0, key.name.find('.'));
         if (table != open) {
-            text += table.empty() ? "### Before any table\n"
-                                  : fmt::format("\n### [{}{}{}]\n", table == "programme" ? "[" : "", table,
-                                                table == "programme" ? "]" : "");
+            text += table.empty()
+                        ? "### Before any table\n"
+                        : fmt::format("\n### {1}{0}{2}\n", table, find_list_table(table) ? "[[" : "[",
+                                      find_list_table(table) ? "]]" : "]");
             text += "\n| key | must be | default | meaning |\n|---|---|---|---|\n";
             open = table;
         }

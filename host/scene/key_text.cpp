@@ -7,7 +7,7 @@
 #include <numeric>
 #include <utility>
 
-#include "scene/keys.h"
+#include "scene/list_tables.h"
 
 namespace mcdem::inline scene {
 namespace {
@@ -102,10 +102,11 @@ std::string suggestion(std::string_view unknown) {
         least = far;
         best = candidate;
     };
-    if (const int stage = stage_of(unknown); stage >= 0) {
-        for (const Key& key : stage_keys(stage)) consider(key.name, distance(unknown, key.name));
+    if (const auto element = list_element(unknown)) {
+        for (const Key& key : element->keys()) consider(key.name, distance(unknown, key.name));
         return best.empty() ? "" : fmt::format(" (did you mean {}?)", best);
     }
+    for (const ListTable& table : list_tables()) consider(table.name, distance(unknown, table.name));
     for (const Key& key : keys()) {
         consider(key.name, distance(unknown, key.name));
         const auto dot = key.name.find('.');

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "scene/list_tables.h"
+
 namespace mcdem::inline scene {
 namespace {
 
@@ -63,7 +65,7 @@ const Key table[] = {
     {"contact.friction_law", replica<&Replica::contact, &ContactLaw::friction_law>, "", none, each, "saturated: always mu times the normal force, against sliding; mindlin: a spring with history, cut there"},
     {"contact.sliding_velocity", replica<&Replica::contact, &ContactLaw::sliding_velocity>, "m/s", above_zero_to(100), each, "below it saturated friction fades to zero"},
 
-    {"packing.file", &follow<&Settings::packing_file>, "", none, each, "LIGGGHTS/LAMMPS data file or text dump, Yade's text (x y z r), run.h5, or .csv with columns x_m,y_m,z_m,diameter_m, such as an experiment's grains.csv; relative to the scene file (in --set: to the current folder). Without it the packing is generated"},
+    {"packing.file", &follow<&Settings::packing_file>, "", none, each, "LIGGGHTS/LAMMPS data file or text dump, Yade's text (x y z r), run.h5, or .csv with columns x_m,y_m,z_m,diameter_m, such as an experiment's grains.csv; a column species or type says which [[species]] a grain is, by name or by number from 1; relative to the scene file (in --set: to the current folder). Without it the packing is generated"},
     {"packing.frame", &follow<&Settings::packing_frame>, "", between(-1, 2e9), each, "timestep of the dump that packing.file names, or frame of a grains.csv or run.h5; -1: the last of a dump, the first of the others"},
     {"packing.count", generated<&GeneratedPacking::count>, "", between(1, 1e7), each, "grains generated"},
     {"packing.diameter_mean", generated<&GeneratedPacking::diameter_mean>, "m", grain_size, each, "of a normal distribution"},
@@ -72,7 +74,8 @@ const Key table[] = {
     {"packing.diameter_max", generated<&GeneratedPacking::diameter_max>, "m", grain_size, each, "where it is cut above"},
     {"packing.packing_fraction", generated<&GeneratedPacking::packing_fraction>, "", between(0.01, 0.75), each, "grains' volume over the box's volume up to the height that is filled"},
     {"packing.position_jitter", replica<&Replica::packing, &PackingSource::position_jitter>, "m", between(0, 10), each, "standard deviation of a random displacement of every coordinate"},
-    {"packing.seed", replica<&Replica::packing, &PackingSource::seed>, "", between(0, 1e15), each, "of generation and jitter; copy n has seed + n - 1"},
+    {"packing.fractions_by", replica<&Replica::packing, &PackingSource::fractions_by>, "", none, each, "what the fractions of [[species]] are shares of: the number of the grains or their volume"},
+    {"packing.seed", replica<&Replica::packing, &PackingSource::seed>, "", between(0, 1e15), each, "of generation, jitter and which grain is of which species; copy n has seed + n - 1"},
 
     {"plate.start", replica<&Replica::plate, &Plate::start>, "m", length, each, "highest position of its lower face"},
     {"plate.end", replica<&Replica::plate, &Plate::end>, "m", length, each, "lowest position"},
@@ -132,10 +135,10 @@ std::span<const Key> keys() { return table; }
 const Key* find_key(std::string_view name) {
     const auto found = std::ranges::find(table, name, &Key::name);
     if (found != std::end(table)) return found;
-    if (stage_of(name) < 0) return nullptr;
-    const auto stage = stage_keys(stage_of(name));
-    const auto of_stage = std::ranges::find(stage, name, &Key::name);
-    return of_stage == stage.end() ? nullptr : &*of_stage;
+    const auto element = list_element(name);
+    if (!element) return nullptr;
+    const auto of_element = std::ranges::find(element->keys(), name, &Key::name);
+    return of_element == element->keys().end() ? nullptr : &*of_element;
 }
 
 bool is_table(std::string_view name) {
@@ -143,7 +146,7 @@ bool is_table(std::string_view name) {
     if (name == vary) return true;
     if (name.starts_with(vary) && name.size() > vary.size() && name[vary.size()] == '.')
         name.remove_prefix(vary.size() + 1);
-    if (name == "programme" || (stage_of(name) >= 0 && name.find('.') == name.rfind('.'))) return true;
+    if (find_list_table(name) || (list_element(name) && name.find('.') == name.rfind('.'))) return true;
     return std::ranges::any_of(table, [&](const Key& key) {
         return key.name.size() > name.size() && key.name.starts_with(name) && key.name[name.size()] == '.';
     });
@@ -166,6 +169,8 @@ bool is_key_of(ContainerShape shape, std::string_view name) {
 }
 
 bool is_generator_key(std::string_view name) {
+    if (const auto element = list_element(name); element && element->table->name == "species")
+        return name.ends_with(".sizes") || name.find(".diameter_") != name.npos;
     return name == "packing.count" || name == "packing.packing_fraction" ||
            name.starts_with("packing.diameter_");
 }

@@ -40,7 +40,8 @@ using Member =
     std::variant<double& (*)(Settings&), int& (*)(Settings&), std::uint64_t& (*)(Settings&),
                  bool& (*)(Settings&), std::string& (*)(Settings&), ContactModel& (*)(Settings&),
                  FrictionLaw& (*)(Settings&), Precision& (*)(Settings&), ContainerShape& (*)(Settings&),
-                 StageKind& (*)(Settings&), Controlled& (*)(Settings&), std::vector<double>& (*)(Settings&)>;
+                 StageKind& (*)(Settings&), Controlled& (*)(Settings&), SizeLaw& (*)(Settings&),
+                 FractionsBy& (*)(Settings&), std::vector<double>& (*)(Settings&)>;
 
 /// Whether the replicas of one run may differ in it.
 enum class Scope { run, replica };
@@ -54,17 +55,17 @@ struct Key {
     std::string_view meaning;
 };
 
-/// Without those of a programme's stages.
+/// Without those of tables that a scene can have several of (scene/list_tables.h).
 std::span<const Key> keys();
 
 /// The keys of one stage of a programme, from 0: "programme.1.force".
 std::span<const Key> stage_keys(int stage);
 
-/// The key of that name, those of stages included, or null.
+/// The key of that name, those of stages and species included, or null.
 const Key* find_key(std::string_view name);
 
-/// True for "grains", "packing" and the other tables that keys live in, "batch.vary" and "programme.1"
-/// included.
+/// True for "grains", "packing" and the other tables that keys live in, "batch.vary", "programme.1" and
+/// "species.2" included.
 bool is_table(std::string_view name);
 
 /// The other name of the key box.size_x or box.size_y; null for other keys.

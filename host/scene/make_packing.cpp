@@ -8,6 +8,7 @@
 
 #include "core/container.h"
 #include "core/errors.h"
+#include "scene/assign_species.h"
 #include "scene/cell_path.h"
 #include "scene/generate_packing.h"
 #include "scene/random.h"
@@ -139,8 +140,10 @@ Packing make_packing(const Replica& replica) {
     if (const auto* file = std::get_if<PackingFile>(&from.source)) {
         packing = read_packing(file->path, file->step);
         source = file->path;
+        assign_species(packing, replica, source);
     } else {
-        packing = generate_packing(std::get<GeneratedPacking>(from.source), replica.box, from.seed);
+        packing = generate_packing(std::get<GeneratedPacking>(from.source), replica.box, from.seed,
+                                   {replica.species, from.fractions_by});
     }
     apply_jitter(packing, from.position_jitter, from.seed);
     // A generated packing may be a little higher than the plate, never so high that a centre is above it.

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -67,6 +68,15 @@ void add_grain(Packing& packing, std::string_view x, std::string_view y, std::st
     }
     packing.position.emplace_back(values[0], values[1], values[2]);
     packing.diameter.push_back(values[3]);
+}
+
+void add_species(Packing& packing, std::string_view word) {
+    constexpr std::size_t max_names = 64;  // more than a scene can have; the last stands for all beyond
+    auto& names = packing.species_names;
+    const auto found = std::ranges::find(names, word);
+    const auto place = std::min(static_cast<std::size_t>(found - names.begin()), max_names - 1);
+    packing.species.push_back(static_cast<int>(place));
+    if (place == names.size()) names.emplace_back(word);
 }
 
 }  // namespace mcdem::scene

@@ -38,4 +38,7 @@ private:
 void add_grain(Packing& packing, std::string_view x, std::string_view y, std::string_view z,
                std::string_view diameter, long line, FileProblems& problems);
 
+/// Appends what a file calls the species of a grain.
+void add_species(Packing& packing, std::string_view word);
+
 }  // namespace mcdem::scene

@@ -1,9 +1,9 @@
 // A programme: the stages that the plate, or a cell, is taken through, in order.
 #pragma once
-#include <limits>
 #include <vector>
 
 #include "core/names.h"
+#include "scene/not_given.h"
 
 namespace mcdem::inline core {
 
@@ -30,7 +30,6 @@ struct Names<Controlled> {
 
 namespace mcdem::inline scene {
 
-inline constexpr double not_given = std::numeric_limits<double>::quiet_NaN();
 inline constexpr int max_stages = 100;
 
 /// Which members count depends on the kind (programme_checks.cpp).

@@ -211,8 +211,7 @@ double max_plate_force(const Settings& settings, double smallest_diameter) {
     const auto& replica = settings.replica;
     const double radius = smallest_diameter / 2;
     const double grains = std::max(1.0, replica.box.size_x * replica.box.size_y / (3.4 * radius * radius));
-    const double modulus =
-        replica.grains.youngs_modulus / (1 - replica.grains.poisson_ratio * replica.grains.poisson_ratio);
+    const double modulus = plane_modulus(stiffest(replica));
     const double overlap = std::min(1.0, replica.numerics.overlap_limit) * 2 * radius;
     return beyond_hertz * grains * 4 / 3 * modulus * std::sqrt(radius) * std::pow(overlap, 1.5);
 }

@@ -20,6 +20,7 @@ enum class Stream : std::uint64_t {
     measured_forces = 6,
     moduli = 7,
     true_diameters = 8,
+    species = 9,
     null_draws = 20,
     bootstrap = 21,
     placebo = 22,

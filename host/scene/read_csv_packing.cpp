@@ -14,7 +14,7 @@ namespace mcdem::inline scene {
 namespace {
 
 // Words are read as text: the library's own numbers are not rounded to the nearest double.
-using Reader = io::CSVReader<5, io::trim_chars<' ', '\t'>, io::no_quote_escape<','>, io::throw_on_overflow,
+using Reader = io::CSVReader<7, io::trim_chars<' ', '\t'>, io::no_quote_escape<','>, io::throw_on_overflow,
                              io::single_and_empty_line_comment<'#'>>;
 
 /// The rows of one frame; a file without frames is one.
@@ -42,12 +42,14 @@ public:
 
 private:
     bool next() {
-        const char *x = nullptr, *y = nullptr, *z = nullptr, *diameter = nullptr, *frame = nullptr;
+        const char *x = nullptr, *y = nullptr, *z = nullptr, *diameter = nullptr, *frame = nullptr,
+                   *species = nullptr, *type = nullptr;
         try {
-            if (!reader_.read_row(x, y, z, diameter, frame)) return false;
+            if (!reader_.read_row(x, y, z, diameter, frame, species, type)) return false;
             const long line = reader_.get_file_line();
-            if (!has_frames_ || is_wanted(frame, line))
-                add_grain(packing_, x, y, z, diameter, line, problems_);
+            if (has_frames_ && !is_wanted(frame, line)) return true;
+            add_grain(packing_, x, y, z, diameter, line, problems_);
+            if (species || type) add_named_species(species ? species : type, line);
         } catch (const io::error::too_few_columns&) {
             problems_.add(reader_.get_file_line(),
                           "a line must have as many columns as the header, got fewer");
@@ -56,6 +58,11 @@ private:
                           "a line must have as many columns as the header, got more");
         }
         return true;
+    }
+
+    void add_named_species(std::string_view word, long line) {
+        if (word.empty()) problems_.add(line, "the species must be a name or a number, got none");
+        add_species(packing_, word);
     }
 
     bool is_wanted(const char* word, long line) {
@@ -84,7 +91,7 @@ Packing read_csv_packing(std::istream& input, const std::string& source, std::op
     try {
         Reader reader(source, input);
         reader.read_header(io::ignore_extra_column | io::ignore_missing_column, "x_m", "y_m", "z_m",
-                           "diameter_m", "frame");
+                           "diameter_m", "frame", "species", "type");
         for (const char* column : {"x_m", "y_m", "z_m", "diameter_m"})
             if (!reader.has_column(column))
                 problems.add(

@@ -73,6 +73,7 @@ private:
                           fmt::format("the atom's id must be a whole number > 0, got {}", quoted(words_[0])));
         if (static_cast<long>(ids_.size()) >= largest_packing) return;
         add_grain(packing_, words_[4], words_[5], words_[6], words_[2], line_, problems_);
+        add_species(packing_, words_[1]);
         ids_.push_back(id.value_or(0));
         lines_.push_back(line_);
     }
@@ -103,8 +104,10 @@ private:
                                           ids_[i], lines_[order[k - 1]]));
             sorted.position.push_back(packing_.position[i]);
             sorted.diameter.push_back(packing_.diameter[i]);
+            sorted.species.push_back(packing_.species[i]);
         }
         problems_.report();
+        sorted.species_names = packing_.species_names;
         return sorted;
     }
 

@@ -23,12 +23,12 @@ using RunPackingReader = Packing (*)(const std::filesystem::path& file, std::opt
 inline RunPackingReader read_run_packing = nullptr;
 
 /// LIGGGHTS/LAMMPS data file, atom style sphere or granular: lines `id type diameter density x y z` in
-/// its `Atoms` section, in metres. Grains are numbered from 0 in the order of the file's ids. Type,
-/// density, bounds and velocities are left aside: the scene says what they are.
+/// its `Atoms` section, in metres. Grains are numbered from 0 in the order of the file's ids. Density,
+/// bounds and velocities are left aside: the scene says what they are.
 Packing read_lammps_packing(std::istream& input, const std::string& source);
 
-/// CSV with the columns x_m, y_m, z_m, diameter_m in any order, perhaps frame; others, such as `grain`, are
-/// left aside. Grains are numbered from 0 in the order of the lines.
+/// CSV with the columns x_m, y_m, z_m, diameter_m in any order, perhaps frame and species or type; others,
+/// such as `grain`, are left aside. Grains are numbered from 0 in the order of the lines.
 Packing read_csv_packing(std::istream& input, const std::string& source, std::optional<long> frame = {});
 
 // By what they begin with. Yade's text may be cut anywhere.

@@ -6,10 +6,12 @@
 #include "core/errors.h"
 #include "core/input_file.h"
 #include "scene/assign.h"
+#include "scene/list_tables.h"
 #include "scene/programme_checks.h"
 #include "scene/replicas.h"
 #include "scene/scene_checks.h"
 #include "scene/scene_document.h"
+#include "scene/species_checks.h"
 
 namespace mcdem::inline scene {
 namespace {
@@ -57,15 +59,14 @@ private:
 
     void refuse_unknown(const Entry& entry, const std::string& key_name) {
         const std::string shown_name = shortened(entry.key);
-        if (entry.key == "programme")
+        const auto element = list_element(entry.key);
+        if (const ListTable* table = find_list_table(entry.key))
             problems_.add(entry.place,
-                          fmt::format("programme must be a list of 1 to {} stages ([[programme]]), got {}",
-                                      max_stages, shown(*entry.value)));
-        else if (entry.value->is_table() && stage_of(entry.key) >= 0 && is_table(entry.key))
-            problems_.add(entry.place,
-                          shown_name +
-                              " must say what the plate does, got nothing: position, strain or "
-                              "force of a move, or stage = hold, cycle or repeat with their keys");
+                          fmt::format("{0} must be a list of 1 to {1} {2} ([[{0}]]), got {3}", table->name,
+                                      table->most, table->elements, shown(*entry.value)));
+        else if (entry.value->is_table() && element && is_table(entry.key))
+            problems_.add(entry.place, fmt::format("{} must say {}, got nothing: {}", shown_name,
+                                                   element->table->says, element->table->remedy));
         else if (is_table(entry.key))
             problems_.add(entry.place,
                           fmt::format("{} must be a table, got {}", shown_name, shown(*entry.value)));
@@ -130,12 +131,13 @@ private:
         return keys;
     }
 
-    /// Where the key was said, or, of a stage, the first that was said of it.
+    /// Where the key was said, or, of a stage or species, the first that was said of it.
     Place place_of(const std::string& key) const {
         const Place place = document_.place_of(key);
-        if (place.line > 0 || stage_of(key) < 0) return place;
+        const auto element = list_element(key);
+        if (place.line > 0 || !element) return place;
         for (const Entry& entry : document_.entries())
-            if (stage_of(entry.key) == stage_of(key)) return entry.place;
+            if (list_element(entry.key) == element) return entry.place;
         return place;
     }
 
@@ -222,6 +224,8 @@ private:
                 const std::string key = given_name(problem.key);
                 problems_.add(document_.place_of(key), fmt::format("{} {}", key, problem.what));
             }
+            for (const CrossProblem& problem : species_problems(settings, said_keys, bad_))
+                problems_.add(place_of(problem.key), fmt::format("{} {}", problem.key, problem.what));
             for (const CrossProblem& problem : programme_problems(settings, said_keys, bad_))
                 problems_.add(place_of(problem.key), fmt::format("{} {}", problem.key, problem.what));
             if (!bad_.contains("packing.file"))

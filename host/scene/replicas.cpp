@@ -9,6 +9,8 @@
 #include "core/container.h"
 #include "scene/assign.h"
 #include "scene/generate_packing.h"
+#include "scene/list_tables.h"
+#include "scene/resolve_species.h"
 
 namespace mcdem::inline scene {
 namespace {
@@ -41,9 +43,13 @@ std::map<std::string, std::string> parameters(const Settings& settings) {
                              is_key_of(settings.replica.box.shape, key.name);
         all[std::string(key.name)] = applies ? value_text(key, settings) : "";
     }
-    for (std::size_t n = 0; n < settings.replica.programme.size(); ++n)
-        for (const Key& key : stage_keys(static_cast<int>(n)))
-            all[std::string(key.name)] = value_text(key, settings);
+    if (!settings.replica.species.empty())
+        for (const char* key : {"mean", "sd", "min", "max"})
+            all[fmt::format("packing.diameter_{}", key)].clear();
+    for (const ListTable& table : list_tables())
+        for (std::size_t n = 0; n < table.size(settings.replica); ++n)
+            for (const Key& key : table.keys(static_cast<int>(n)))
+                all[std::string(key.name)] = value_text(key, settings);
     return all;
 }
 
@@ -79,7 +85,11 @@ std::vector<Combination> combinations(const Settings& base, const std::vector<Va
             }
         all = std::move(next);
     }
-    for (Combination& one : all) set_container(one.settings);
+    SizeTables tables;
+    for (Combination& one : all) {
+        resolve_species(one.settings, tables);
+        set_container(one.settings);
+    }
     return all;
 }
 

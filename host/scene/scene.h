@@ -10,18 +10,9 @@
 #include "core/names.h"
 #include "core/packing.h"
 #include "scene/programme.h"
+#include "scene/species.h"
 
 namespace mcdem::inline scene {
-
-struct GrainMaterial {
-    double youngs_modulus = 23.3e3;  ///< E [Pa]
-    double poisson_ratio = 0.5;      ///< nu
-    double density = 11.5;           ///< inertial [kg/m3]
-    double excess_density = 11.5;    ///< over the fluid, gives the weight [kg/m3]
-    double friction = 0.03;          ///< mu, grain on grain
-    double restitution = 0.95;       ///< e
-    double drag = 0;                 ///< background drag, force = -drag * mass * velocity [1/s]
-};
 
 struct WallMaterial {
     double youngs_modulus = 50e6;  ///< [Pa]
@@ -56,7 +47,8 @@ struct GeneratedPacking {
 struct PackingSource {
     std::variant<PackingFile, GeneratedPacking> source = GeneratedPacking{};
     double position_jitter = 0;  ///< sd of a normal displacement of every coordinate [m]
-    std::uint64_t seed = 1;      ///< of generation and jitter
+    std::uint64_t seed = 1;      ///< of generation, jitter and which grain is of which species
+    FractionsBy fractions_by = FractionsBy::number;
 };
 
 struct Plate {
@@ -113,7 +105,9 @@ struct Replica {
     std::string label;                              ///< what sets it apart, e.g. "mc_dem #3"
     std::map<std::string, std::string> parameters;  ///< every scene key and its value here, as text
     Box box{0.165191, 0.165834};
-    GrainMaterial grains;
+    GrainMaterial grains;          ///< of all, or what species say nothing of
+    std::vector<Species> species;  ///< empty: one material
+    std::vector<SpeciesPair> pairs;
     WallMaterial walls;
     ContactLaw contact;
     PackingSource packing;

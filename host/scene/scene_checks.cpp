@@ -7,6 +7,7 @@
 
 #include "core/container.h"
 #include "core/errors.h"
+#include "scene/assign_species.h"
 #include "scene/cell_path.h"
 #include "scene/generate_packing.h"
 #include "scene/make_packing.h"
@@ -31,12 +32,14 @@ Found in_container(std::string_view key, const Settings& s) {
     return small && small->key == key ? Found{small->what} : Found{};
 }
 
+Mixture mixture(const Settings& s) { return {s.replica.species, s.replica.packing.fractions_by}; }
+
 /// A box that its grains would not cover once, but would if it was meant in millimetres.
 Found millimetres(double width, const Settings& settings) {
     const auto& grains = settings.generated;
     return unless(
         width <= widest_box || width * 1e-3 < grains.diameter_max ||
-            expected_height(grains, settings.replica.box) >= grains.diameter_max,
+            expected_height(grains, settings.replica.box, mixture(settings)) >= grains.diameter_max,
         fmt::format("must be in metres, got {}, {:.3g} times packing.diameter_max: divide by 1000 if it is "
                     "in millimetres",
                     width, width / grains.diameter_max));
@@ -160,7 +163,7 @@ const std::vector<Check> checks{
       "packing.diameter_max", "box.size_x", "box.size_y", "plate.start"}, Check::Packing::generated, [](const Settings& s) {
         const auto& g = s.generated;
         if (g.diameter_min > g.diameter_mean || g.diameter_max < g.diameter_mean) return Found{};
-        const double height = expected_height(g, s.replica.box);
+        const double height = expected_height(g, s.replica.box, mixture(s));
         if (height < g.diameter_max)
             return Found{fmt::format("must leave room for the largest grain, got {}: the grains would fill the box up to {:.6g} m only; "
                                      "lower it, or take more grains or a smaller box", g.packing_fraction, height)};
@@ -171,6 +174,31 @@ const std::vector<Check> checks{
 };
 // clang-format on
 
+bool has_sizes(const Replica& replica) {
+    return std::ranges::all_of(replica.species, [](const Species& one) {
+        const bool found = one.sizes.law != SizeLaw::table || one.sizes.table;
+        return found && one.sizes.min > 0 && one.sizes.min <= one.sizes.mean &&
+               one.sizes.mean <= one.sizes.max && one.fraction >= 0;
+    });
+}
+
+/// Where sizes are those of species there are no keys of [packing] to blame.
+CrossProblem of_species(const Settings& settings, CrossProblem problem) {
+    if (settings.replica.species.empty()) return problem;
+    const auto replace = [&](std::string_view key, std::string_view words) {
+        for (std::size_t at; (at = problem.what.find(key)) != problem.what.npos;)
+            problem.what.replace(at, key.size(), words);
+        if (problem.key == key) {
+            problem.key = "species.1.sizes";
+            problem.what = fmt::format("and those of the others: {} {}", words, problem.what);
+        }
+    };
+    replace("packing.diameter_min", "the smallest diameter");
+    replace("packing.diameter_max", "the largest diameter");
+    replace("packing.diameter_mean", "the mean diameter");
+    return problem;
+}
+
 }  // namespace
 
 std::vector<CrossProblem> cross_problems(const Settings& settings,
@@ -178,12 +206,27 @@ std::vector<CrossProblem> cross_problems(const Settings& settings,
     std::vector<CrossProblem> problems;
     for (const Check& check : checks) {
         if (check.applies == Check::Packing::generated && !settings.packing_file.empty()) continue;
+        // Sizes of species that are not whole (species_checks.cpp).
+        if (check.applies == Check::Packing::generated && !has_sizes(settings.replica)) continue;
         if (std::ranges::any_of(check.keys, [&](auto key) { return bad.contains(key); })) continue;
         if (const Found problem = check.find(settings))
-            problems.push_back({std::string(check.keys.front()), *problem});
+            problems.push_back(of_species(settings, {std::string(check.keys.front()), *problem}));
     }
     return problems;
 }
+
+namespace {
+
+std::vector<std::string> problems_of_species(Packing packing, const Settings& settings) {
+    try {
+        assign_species(packing, settings.replica, settings.packing_file);
+        return {};
+    } catch (const InputError& error) {
+        return error.problems();
+    }
+}
+
+}  // namespace
 
 std::vector<std::string> packing_file_problems(const Settings& settings, CheckedFiles& files) {
     if (settings.packing_file.empty()) return {};
@@ -200,6 +243,7 @@ std::vector<std::string> packing_file_problems(const Settings& settings, Checked
         }
     }
     if (!file.problems.empty()) return file.problems;
+    if (auto problems = problems_of_species(file.packing, settings); !problems.empty()) return problems;
     auto problems =
         packing_problems(file.packing, settings.replica.box,
                          plate_face(settings.replica, settings.replica.plate.start), settings.packing_file);

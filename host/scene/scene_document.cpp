@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "core/errors.h"
-#include "scene/keys.h"
+#include "scene/list_tables.h"
 
 namespace mcdem::inline scene {
 namespace {
@@ -33,10 +33,11 @@ std::size_t dots_of_names(std::string_view text) {
     return count;
 }
 
-/// [[programme]] with a number of stages that can be.
-bool is_programme(std::string_view name, const toml::node& node) {
-    const std::size_t stages = node.as_array()->size();
-    return name == "programme" && stages >= 1 && stages <= max_stages;
+/// [[programme]] or another such table with a number of elements that can be.
+bool is_list_table(std::string_view name, const toml::node& node) {
+    const ListTable* table = find_list_table(name);
+    const std::size_t elements = node.as_array()->size();
+    return table && elements >= 1 && elements <= static_cast<std::size_t>(table->most);
 }
 
 /// Keys of one stage of which only one of each group can be said.
@@ -77,7 +78,7 @@ SceneDocument::SceneDocument(std::string_view text, std::string source,
     flatten(tables_.front(), "", entries_);
     for (const std::string& one : overrides) apply(one, problems);
     sort_entries(problems);
-    resolve_packing_files();
+    resolve_files();
 }
 
 void SceneDocument::parse(std::string_view text) {
@@ -102,22 +103,22 @@ void SceneDocument::flatten(toml::table& table, const std::string& prefix, std::
         const std::string name = prefix + std::string(key.str());
         if (node.is_table() && is_table(name))
             flatten(*node.as_table(), name + ".", into);
-        else if (node.is_array() && is_programme(name, node))
-            flatten(*node.as_array(), into);
+        else if (node.is_array() && is_list_table(name, node))
+            flatten(*node.as_array(), name, into);
         else
             into.push_back(entry_of(name, node));
     }
 }
 
-/// `programme.1.force` is the first stage's. A stage that says nothing is an entry too, to be refused.
-void SceneDocument::flatten(toml::array& stages, std::vector<Entry>& into) const {
+/// `programme.1.force` is the first stage's. An element that says nothing is an entry too, to be refused.
+void SceneDocument::flatten(toml::array& elements, const std::string& table, std::vector<Entry>& into) const {
     int number = 0;
-    for (toml::node& stage : stages) {
-        const std::string name = fmt::format("programme.{}", ++number);
-        if (stage.is_table() && !stage.as_table()->empty())
-            flatten(*stage.as_table(), name + ".", into);
+    for (toml::node& element : elements) {
+        const std::string name = fmt::format("{}.{}", table, ++number);
+        if (element.is_table() && !element.as_table()->empty())
+            flatten(*element.as_table(), name + ".", into);
         else
-            into.push_back(entry_of(name, stage));
+            into.push_back(entry_of(name, element));
     }
 }
 
@@ -159,12 +160,12 @@ void SceneDocument::apply(const std::string& override_text, Problems& problems) 
     toml::node& value = *tables_.back().get("value");
     if (value.is_table() && is_table(key))
         flatten(*value.as_table(), key + ".", given);
-    else if (value.is_array() && is_programme(key, value))
-        flatten(*value.as_array(), given);
+    else if (value.is_array() && is_list_table(key, value))
+        flatten(*value.as_array(), key, given);
     else
         given.push_back({key, &value, {}});
-    if (key == "programme")
-        std::erase_if(entries_, [](const Entry& entry) { return stage_of(entry.key) >= 0; });
+    if (find_list_table(key))
+        std::erase_if(entries_, [&](const Entry& entry) { return entry.key.starts_with(key + "."); });
     for (Entry& entry : given) {
         entry.place = place;
         put(entry);
@@ -190,7 +191,7 @@ void SceneDocument::put(const Entry& entry) {
     entries_.push_back(entry);
 }
 
-void SceneDocument::resolve_packing_files() {
+void SceneDocument::resolve_files() {
     const auto resolve = [&](toml::node& node, const Place& place) {
         auto* path = node.as_string();
         if (!path || path->get().empty()) return;
@@ -199,9 +200,13 @@ void SceneDocument::resolve_packing_files() {
         *path = std::filesystem::absolute(full).lexically_normal().string();
         changed_ = true;
     };
+    const auto is_path = [](std::string_view key) {
+        return key == "packing.file" || (list_element(key) && key.ends_with(".diameter_file"));
+    };
     for (Entry& entry : entries_) {
-        if (entry.key == "packing.file") resolve(*entry.value, entry.place);
-        if (entry.key == std::string(vary_prefix) + "packing.file" && entry.value->is_array())
+        if (is_path(entry.key)) resolve(*entry.value, entry.place);
+        const bool varied = entry.key.starts_with(vary_prefix);
+        if (varied && is_path(entry.key.substr(vary_prefix.size())) && entry.value->is_array())
             for (auto& element : *entry.value->as_array()) resolve(element, entry.place);
     }
 }
@@ -235,10 +240,11 @@ std::string SceneDocument::text() const {
         if (key.starts_with(vary_prefix)) {
             table = &inner(inner(whole, "batch"), "vary");
             key = key.substr(vary_prefix.size());
-        } else if (const int stage = stage_of(key); stage >= 0) {
-            auto& list = *whole.insert("programme", toml::array{}).first->second.as_array();
-            while (list.size() <= static_cast<std::size_t>(stage)) list.push_back(toml::table{});
-            table = list[static_cast<std::size_t>(stage)].as_table();
+        } else if (const auto element = list_element(key)) {
+            auto& list = *whole.insert(element->table->name, toml::array{}).first->second.as_array();
+            const auto place = static_cast<std::size_t>(element->number);
+            while (list.size() <= place) list.push_back(toml::table{});
+            table = list[place].as_table();
             key = key.substr(key.rfind('.') + 1);
         } else if (const auto dot = key.find('.'); dot != key.npos) {
             table = &inner(whole, key.substr(0, dot));

@@ -42,12 +42,12 @@ public:
 private:
     void parse(std::string_view text);
     void flatten(toml::table& table, const std::string& prefix, std::vector<Entry>& into) const;
-    void flatten(toml::array& stages, std::vector<Entry>& into) const;
+    void flatten(toml::array& elements, const std::string& table, std::vector<Entry>& into) const;
     Entry entry_of(std::string key, toml::node& node) const;
     void sort_entries(Problems& problems);
     void apply(const std::string& override_text, Problems& problems);
     void put(const Entry& entry);
-    void resolve_packing_files();
+    void resolve_files();
     const Entry* find(std::string_view key) const;
 
     std::string source_;

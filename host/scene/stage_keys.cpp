@@ -1,15 +1,8 @@
 // The keys of a programme's stages: the same rows for every stage.
-#include <array>
-#include <charconv>
-#include <string>
-#include <utility>
-
-#include "scene/keys.h"
+#include "scene/list_tables.h"
 
 namespace mcdem::inline scene {
 namespace {
-
-constexpr std::string_view table = "programme.";
 
 template <std::size_t n, auto member>
 auto& of_stage(Settings& settings) {
@@ -24,70 +17,41 @@ constexpr Range none{};
 constexpr Scope one_run = Scope::run, each = Scope::replica;
 
 // clang-format off
-template <std::size_t n>
-std::vector<Key> rows() {
-    return {
-        {"stage", of_stage<n, &Stage::kind>, "", none, one_run, "what the plate does: move to a position, strain or force; hold one for a time; cycle there and back; repeat stages before. A cell moves, holds its strains and repeats"},
-        {"position", of_stage<n, &Stage::position>, "m", positive(1000), each, "of a move, or the turning point of a cycle: the plate's lower face, from plate.end to plate.start"},
-        {"strain", of_stage<n, &Stage::strain>, "", {0, 1, Range::Low::included}, each, "the same as a strain of the height at start: plate.start (1 - strain); of a cell: of its three lengths alike"},
-        {"force", of_stage<n, &Stage::force>, "N", positive(1e9), each, "the same as a force on the plate, reached within 0.1 % from the side that the plate comes from"},
-        {"strain_x", of_stage<n, &Stage::strain_x>, "", compression, each, "of a cell: where a move ends, as a compression of its length at start; what a move does not name stays as it was"},
-        {"strain_y", of_stage<n, &Stage::strain_y>, "", compression, each, "along y"},
-        {"strain_z", of_stage<n, &Stage::strain_z>, "", compression, each, "along z"},
-        {"shear_xy", of_stage<n, &Stage::shear_xy>, "", shear, each, "of a cell: how far planes y = const. move along x, over their distance at start"},
-        {"shear_xz", of_stage<n, &Stage::shear_xz>, "", shear, each, "planes z = const. along x"},
-        {"shear_yz", of_stage<n, &Stage::shear_yz>, "", shear, each, "planes z = const. along y"},
-        {"back", of_stage<n, &Stage::back>, "", {0, 1e9, Range::Low::included}, each, "where a cycle returns to, in the quantity (position, strain or force) of its turning point"},
-        {"cycles", of_stage<n, &Stage::cycles>, "", {1, 10000}, each, "of a cycle: how many"},
-        {"growth", of_stage<n, &Stage::growth>, "", {-1, 1000, Range::Low::excluded}, each, "of a cycle: amplitude that each adds to the one before, over the first amplitude"},
-        {"keep", of_stage<n, &Stage::keep>, "", none, one_run, "of a hold: what stays as the stage before left it; the other is recorded against time"},
-        {"time", of_stage<n, &Stage::time>, "s", positive(1e6), each, "of a hold: how long"},
-        {"stages", of_stage<n, &Stage::stages>, "", {1, max_stages}, one_run, "of a repeat: how many stages before it"},
-        {"times", of_stage<n, &Stage::times>, "", {2, 10000}, each, "of a repeat: how often they run in all"},
-        {"speed", of_stage<n, &Stage::speed>, "m/s", positive(1000), each, "of the plate, at most; without it plate.speed. protocol.rate_tolerance may ask for less"},
-        {"rate", of_stage<n, &Stage::rate>, "1/s", positive(100), each, "of a cell: the fastest of its strains and shears, at most. protocol.rate_tolerance may ask for less"},
-        {"scans", of_stage<n, &Stage::scans>, "", {0, 10000}, each, "equally spaced, the last at the end: in position or force of a move and of each stroke of a cycle, in time of a hold"},
-        {"scan_at", of_stage<n, &Stage::scan_at>, "", none, one_run, "in place of scans: a list of positions, strains, forces (as the move has) or times since a hold began"},
-    };
-}
-// clang-format on
-
-/// Rows with their whole names, which live as long as the program.
-struct AllStages {
-    std::array<std::vector<Key>, max_stages> keys;
-    std::array<std::vector<std::string>, max_stages> names;
-
-    AllStages() { fill(std::make_index_sequence<max_stages>()); }
-
-private:
-    template <std::size_t... n>
-    void fill(std::index_sequence<n...>) {
-        (fill<n>(), ...);
-    }
+struct Rows {
     template <std::size_t n>
-    void fill() {
-        keys[n] = rows<n>();
-        for (const Key& key : keys[n])
-            names[n].push_back(std::string(table) + std::to_string(n + 1) + "." + std::string(key.name));
-        for (std::size_t k = 0; k < keys[n].size(); ++k) keys[n][k].name = names[n][k];
+    static std::vector<Key> of() {
+        return {
+            {"stage", of_stage<n, &Stage::kind>, "", none, one_run, "what the plate does: move to a position, strain or force; hold one for a time; cycle there and back; repeat stages before. A cell moves, holds its strains and repeats"},
+            {"position", of_stage<n, &Stage::position>, "m", positive(1000), each, "of a move, or the turning point of a cycle: the plate's lower face, from plate.end to plate.start"},
+            {"strain", of_stage<n, &Stage::strain>, "", {0, 1, Range::Low::included}, each, "the same as a strain of the height at start: plate.start (1 - strain); of a cell: of its three lengths alike"},
+            {"force", of_stage<n, &Stage::force>, "N", positive(1e9), each, "the same as a force on the plate, reached within 0.1 % from the side that the plate comes from"},
+            {"strain_x", of_stage<n, &Stage::strain_x>, "", compression, each, "of a cell: where a move ends, as a compression of its length at start; what a move does not name stays as it was"},
+            {"strain_y", of_stage<n, &Stage::strain_y>, "", compression, each, "along y"},
+            {"strain_z", of_stage<n, &Stage::strain_z>, "", compression, each, "along z"},
+            {"shear_xy", of_stage<n, &Stage::shear_xy>, "", shear, each, "of a cell: how far planes y = const. move along x, over their distance at start"},
+            {"shear_xz", of_stage<n, &Stage::shear_xz>, "", shear, each, "planes z = const. along x"},
+            {"shear_yz", of_stage<n, &Stage::shear_yz>, "", shear, each, "planes z = const. along y"},
+            {"back", of_stage<n, &Stage::back>, "", {0, 1e9, Range::Low::included}, each, "where a cycle returns to, in the quantity (position, strain or force) of its turning point"},
+            {"cycles", of_stage<n, &Stage::cycles>, "", {1, 10000}, each, "of a cycle: how many"},
+            {"growth", of_stage<n, &Stage::growth>, "", {-1, 1000, Range::Low::excluded}, each, "of a cycle: amplitude that each adds to the one before, over the first amplitude"},
+            {"keep", of_stage<n, &Stage::keep>, "", none, one_run, "of a hold: what stays as the stage before left it; the other is recorded against time"},
+            {"time", of_stage<n, &Stage::time>, "s", positive(1e6), each, "of a hold: how long"},
+            {"stages", of_stage<n, &Stage::stages>, "", {1, max_stages}, one_run, "of a repeat: how many stages before it"},
+            {"times", of_stage<n, &Stage::times>, "", {2, 10000}, each, "of a repeat: how often they run in all"},
+            {"speed", of_stage<n, &Stage::speed>, "m/s", positive(1000), each, "of the plate, at most; without it plate.speed. protocol.rate_tolerance may ask for less"},
+            {"rate", of_stage<n, &Stage::rate>, "1/s", positive(100), each, "of a cell: the fastest of its strains and shears, at most. protocol.rate_tolerance may ask for less"},
+            {"scans", of_stage<n, &Stage::scans>, "", {0, 10000}, each, "equally spaced, the last at the end: in position or force of a move and of each stroke of a cycle, in time of a hold"},
+            {"scan_at", of_stage<n, &Stage::scan_at>, "", none, one_run, "in place of scans: a list of positions, strains, forces (as the move has) or times since a hold began"},
+        };
     }
 };
+// clang-format on
 
 }  // namespace
 
 std::span<const Key> stage_keys(int stage) {
-    static const AllStages all;
-    return all.keys[static_cast<std::size_t>(stage)];
-}
-
-int stage_of(std::string_view name) {
-    if (!name.starts_with(table)) return -1;
-    name.remove_prefix(table.size());
-    name = name.substr(0, name.find('.'));
-    int number = 0;
-    const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), number);
-    const bool plain = error == std::errc{} && end == name.data() + name.size() && name.front() != '0';
-    return plain && number >= 1 && number <= max_stages ? number - 1 : -1;
+    static const ListKeys<Rows, max_stages> all("programme");
+    return all.of(stage);
 }
 
 }  // namespace mcdem::scene

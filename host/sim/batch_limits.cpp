@@ -11,6 +11,7 @@
 #include "core/errors.h"
 #include "scene/cell_path.h"
 #include "scene/legs.h"
+#include "sim/device_material.h"
 #include "sim/device_replica.h"
 
 namespace mcdem::inline sim {
@@ -74,6 +75,7 @@ FieldExtents field_extents(const KernelBuild& build, const std::vector<Replica>&
     extents.grains = extents.blocks * build.block();
     extents.cells = cells;
     extents.slots = build.slots;
+    extents.species = static_cast<std::uint64_t>(materials_kept(replicas));
     extents.precision = build.precision;
     extents.needs = field_needs(replicas);
     return extents;

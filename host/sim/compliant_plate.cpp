@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/container.h"
-#include "sim/device_replica.h"
+#include "sim/device_material.h"
 
 namespace mcdem::inline sim {
 namespace {
@@ -16,9 +17,16 @@ constexpr double learn = 0.25;
 
 /// About the most that a packing adds to the force per length of compression, over the plate's own stiffness.
 double gain(const Replica& replica) {
-    const double block = replica.grains.youngs_modulus * replica.box.size_x * replica.box.size_y *
+    const double block = stiffest(replica).youngs_modulus * replica.box.size_x * replica.box.size_y *
                          floor_share(replica.box) / replica.plate.start;
     return replica.effects.plate_compliance * block / 3;
+}
+
+double slowest_wave(const Replica& replica) {
+    double slowest = std::numeric_limits<double>::infinity();
+    for (const GrainMaterial& material : materials(replica))
+        slowest = std::min(slowest, rayleigh_speed(material));
+    return slowest;
 }
 
 }  // namespace
@@ -28,7 +36,7 @@ double gain(const Replica& replica) {
 // interval corrects must not be undone by the next: catch_up (1 + gain) < 2.
 CompliantPlate::CompliantPlate(const Replica& replica)
     : compliance_(replica.effects.plate_compliance),
-      follow_time_(replica.plate.start / rayleigh_speed(replica.grains) * std::max(1.0, gain(replica))),
+      follow_time_(replica.plate.start / slowest_wave(replica) * std::max(1.0, gain(replica))),
       max_catch_up_(1 / (1 + gain(replica))) {}
 
 void CompliantPlate::deflect(StepInterval& interval, double time_step, double farthest) {

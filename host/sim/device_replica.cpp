@@ -10,11 +10,11 @@
 #include "core/container.h"
 #include "elasticity/surface_displacement.h"
 #include "scene/true_grains.h"
+#include "sim/device_material.h"
 
 namespace mcdem::inline sim {
 namespace {
 
-constexpr double gravity = 9.81;  // [m/s2]
 constexpr double pi = std::numbers::pi;
 
 double mean_radius(const Packing& packing) {
@@ -22,55 +22,11 @@ double mean_radius(const Packing& packing) {
            static_cast<double>(packing.size());
 }
 
-double shear_modulus(double youngs_modulus, double poisson_ratio) {
-    return youngs_modulus / (2 * (1 + poisson_ratio));
-}
-
-/// 1/E* = (1 - nu_i^2)/E_i + (1 - nu_j^2)/E_j
-double reduced_modulus(double e_i, double nu_i, double e_j, double nu_j) {
-    return 1 / ((1 - nu_i * nu_i) / e_i + (1 - nu_j * nu_j) / e_j);
-}
-
-/// 1/G* = (2 - nu_i)/G_i + (2 - nu_j)/G_j  (Mindlin 1949)
-double reduced_shear_modulus(double e_i, double nu_i, double e_j, double nu_j) {
-    return 1 / ((2 - nu_i) / shear_modulus(e_i, nu_i) + (2 - nu_j) / shear_modulus(e_j, nu_j));
-}
-
-/// 2 sqrt(5/6) beta with beta = -ln e / sqrt(ln^2 e + pi^2): constant restitution with a Hertz contact.
-double damping_factor(double restitution) {
-    const double log_e = std::log(restitution);
-    return 2 * std::sqrt(5.0 / 6.0) * -log_e / std::sqrt(log_e * log_e + pi * pi);
-}
-
-template <class DeviceReplica>
-void set_materials(DeviceReplica& d, const Replica& replica) {
-    const auto& g = replica.grains;
-    const auto& w = replica.walls;
-    d.density = g.density;
-    d.weight_density = is_cell(replica.box) ? 0 : g.excess_density * gravity;
-    d.drag = g.drag;
-    d.modulus_grain = reduced_modulus(g.youngs_modulus, g.poisson_ratio, g.youngs_modulus, g.poisson_ratio);
-    d.modulus_wall = reduced_modulus(g.youngs_modulus, g.poisson_ratio, w.youngs_modulus, w.poisson_ratio);
-    d.shear_grain =
-        reduced_shear_modulus(g.youngs_modulus, g.poisson_ratio, g.youngs_modulus, g.poisson_ratio);
-    d.shear_wall =
-        reduced_shear_modulus(g.youngs_modulus, g.poisson_ratio, w.youngs_modulus, w.poisson_ratio);
-    d.damping_grain = damping_factor(g.restitution);
-    d.damping_wall = damping_factor(w.restitution);
-    d.friction_grain = g.friction;
-    d.friction_wall = w.friction;
-    d.sliding_velocity = replica.contact.sliding_velocity;
-    d.mindlin = mindlin_share(replica) > 0;
-}
-
 template <class DeviceReplica>
 void set_effects(DeviceReplica& d, const Replica& replica) {
     const Effects& e = replica.effects;
-    const auto& g = replica.grains;
     const auto on = [&](bool wanted, int bit) { d.effects |= wanted ? bit : 0; };
     on(e.modulus_scatter > 0, EFFECT_MODULUS_SCATTER);
-    d.grain_compliance = (1 - g.poisson_ratio * g.poisson_ratio) / g.youngs_modulus;
-    d.shear_compliance = (2 - g.poisson_ratio) / shear_modulus(g.youngs_modulus, g.poisson_ratio);
     on(e.bulge_contacts != 1, EFFECT_BULGE_CONTACTS);
     d.bulge_contacts = e.bulge_contacts;
     on(e.plasticity > 0, EFFECT_PLASTICITY);
@@ -92,24 +48,18 @@ void set_effects(DeviceReplica& d, const Replica& replica) {
 }
 
 template <class DeviceReplica>
-void set_surface(DeviceReplica& d, const Replica& replica) {
-    const auto surface =
-        surface_law(replica.contact.model, replica.grains.poisson_ratio, replica.contact.gamma);
-    const double nu = replica.grains.poisson_ratio;
-    const double e = replica.grains.youngs_modulus;
-    d.surface = static_cast<int>(surface.shape);
-    d.half_space_scale = -surface.gamma * (1 + nu) / (2 * pi * e);
-    d.half_space_normal = 3 - 4 * nu;
-    d.half_space_shear = 1 - 2 * nu;
-    d.sphere_scale = 1 / e;
-    std::copy(surface.point.begin(), surface.point.end(), d.sphere_point);
-    std::copy(surface.size.begin(), surface.size.end(), d.sphere_size);
-    std::copy(surface.self.begin(), surface.self.end(), d.sphere_self);
-    d.finite_contacts = surface.self[0] != 0;
-    const Confinement& c = surface.confinement;
-    d.confinement_coupling = c.coupling;
-    d.confinement_volume = c.volume;
-    d.confinement = c.coupling != 0 || c.volume != 0;
+void set_contact_law(DeviceReplica& d, const Replica& replica) {
+    d.material = device_materials<decltype(d.material)>({replica}, materials_kept({replica}))[0];
+    d.drag = replica.grains.drag;
+    d.sliding_velocity = replica.contact.sliding_velocity;
+    d.mindlin = mindlin_share(replica) > 0;
+    for (const GrainMaterial& material : materials(replica)) {
+        const auto surface =
+            surface_law(replica.contact.model, material.poisson_ratio, replica.contact.gamma);
+        d.surface = static_cast<int>(surface.shape);
+        d.finite_contacts |= surface.self[0] != 0;
+        d.confinement |= surface.confinement.coupling != 0 || surface.confinement.volume != 0;
+    }
 }
 
 /// A grid that covers `span` cells by repeating itself where they are too many. Three cells a side are enough
@@ -184,6 +134,18 @@ void set_space(DeviceReplica& d, const Replica& replica, const Packing& packing)
     if (is_cell(replica.box)) set_deformed_cells(d, replica, list_reach(replica, packing), {});
 }
 
+double time_step_of(const Replica& replica, const GrainMaterial& material, double radius) {
+    return replica.numerics.time_step * pi * radius / rayleigh_speed(material);
+}
+
+/// Of the pair of species that loses least.
+double max_restitution(const Replica& replica) {
+    double most = 0;
+    for (std::size_t i = 0; i < std::max<std::size_t>(1, replica.species.size()); ++i)
+        for (std::size_t j = 0; j <= i; ++j) most = std::max(most, pair_law(replica, i, j).restitution);
+    return most;
+}
+
 }  // namespace
 
 double list_reach(const Replica& replica, const Packing& packing) {
@@ -196,22 +158,26 @@ double mindlin_share(const Replica& replica) {
     return replica.contact.friction_law == FrictionLaw::mindlin ? 1 - other : other;
 }
 
-double rayleigh_speed(const GrainMaterial& g) {
-    return std::sqrt(shear_modulus(g.youngs_modulus, g.poisson_ratio) / g.density) *
-           (0.163 * g.poisson_ratio + 0.8766);
-}
-
 double time_step(const Replica& replica, const Packing& packing) {
     const auto excess = excess_compliance(replica, packing.size());
-    double smallest =
-        0.5 * packing.diameter[0] * std::sqrt(1 + excess[0]);  // grain of mean stiffness as slow as this one
-    for (std::size_t i = 1; i < packing.size(); ++i)
-        smallest = std::min(smallest, 0.5 * packing.diameter[i] * std::sqrt(1 + excess[i]));
-    return time_step(replica, smallest);
+    const auto all = materials(replica);
+    // Of each species; a grain of mean stiffness as slow as the fastest one.
+    std::vector<double> smallest(all.size(), std::numeric_limits<double>::infinity());
+    for (std::size_t i = 0; i < packing.size(); ++i) {
+        double& radius = smallest[packing.species.empty() ? 0 : static_cast<std::size_t>(packing.species[i])];
+        radius = std::min(radius, 0.5 * packing.diameter[i] * std::sqrt(1 + excess[i]));
+    }
+    double shortest = std::numeric_limits<double>::infinity();
+    for (std::size_t s = 0; s < all.size(); ++s)
+        shortest = std::min(shortest, time_step_of(replica, all[s], smallest[s]));
+    return shortest;
 }
 
 double time_step(const Replica& replica, double radius) {
-    return replica.numerics.time_step * pi * radius / rayleigh_speed(replica.grains);
+    double shortest = std::numeric_limits<double>::infinity();
+    for (const GrainMaterial& material : materials(replica))
+        shortest = std::min(shortest, time_step_of(replica, material, radius));
+    return shortest;
 }
 
 /// The limit of stability over a report's frequency goes with the fifth root of the damping, as the
@@ -224,7 +190,7 @@ double stable_phase(double restitution) {
 int shortening(const Replica& replica, double time_step, double frequency, int now) {
     const ContactModel model = replica.contact.model;
     if (model != ContactModel::elastic_sphere && model != ContactModel::hyperelastic_sphere) return 0;
-    const double ratio = time_step * frequency / stable_phase(replica.grains.restitution);
+    const double ratio = time_step * frequency / stable_phase(max_restitution(replica));
     const int needed = ratio > 1 ? static_cast<int>(std::ceil(8 * std::log2(std::min(ratio, 1e3)))) : 0;
     const bool keep = needed <= now && now < needed + 5;
     return keep ? now : std::min(needed, max_shortening);
@@ -252,9 +218,8 @@ template <class DeviceReplica>
 DeviceReplica device_replica(const Replica& replica, const Packing& packing, const Place& place) {
     DeviceReplica d{};
     set_time_step(d, replica, time_step(replica, packing));
-    set_materials(d, replica);
+    set_contact_law(d, replica);
     set_effects(d, replica);
-    set_surface(d, replica);
     set_space(d, replica, packing);
     d.first_grain = place.first_grain;
     d.grain_count = place.grain_count;

@@ -8,13 +8,10 @@
 
 namespace mcdem::inline sim {
 
-/// Of waves along the surface of the grains' material, sqrt(G / rho) (0.163 nu + 0.8766) [m/s].
-double rayleigh_speed(const GrainMaterial& grains);
-
 /// Fraction of the shortest Rayleigh time of a grain, pi R / rayleigh_speed [s].
 double time_step(const Replica& replica, const Packing& packing);
 
-/// The same of a grain of the smallest `radius` and mean stiffness [s].
+/// The same of a grain of the smallest `radius` and mean stiffness, of whatever species is fastest [s].
 double time_step(const Replica& replica, double radius);
 
 /// The same shortened to what delayed surface displacements stand where contacts have stiffened, for the

@@ -4,11 +4,13 @@
 namespace mcdem::inline sim {
 namespace f32 {
 using real = float;
+#include "kernels/material.h"
 #include "kernels/replica.h"
 #include "kernels/report.h"
 }  // namespace f32
 namespace f64 {
 using real = double;
+#include "kernels/material.h"
 #include "kernels/replica.h"
 #include "kernels/report.h"
 }  // namespace f64

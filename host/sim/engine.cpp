@@ -10,6 +10,7 @@
 #include "core/stress.h"
 #include "scene/true_grains.h"
 #include "sim/batch_limits.h"
+#include "sim/device_material.h"
 #include "sim/device_replica.h"
 
 namespace mcdem::inline sim {
@@ -58,25 +59,30 @@ std::variant<std::vector<f32::Replica>, std::vector<f64::Replica>> any_device_re
     return device_replicas<f32::Replica>(replicas, packings, layout);
 }
 
+KernelBuild with_species(KernelBuild build, const std::vector<Replica>& replicas) {
+    build.species = materials_kept(replicas);
+    return build;
+}
+
 }  // namespace
 
 Engine::Engine(Device& device, const KernelBuild& build, std::vector<Replica> replicas,
                std::vector<Packing> packings)
-    : build_(build),
+    : build_(with_species(build, replicas)),
       replicas_(std::move(replicas)),
-      layout_((expect_within_limits(device.info(), build, replicas_, sizes_of(packings)),
-               make_layout(packings, build.block()))),
+      layout_((expect_within_limits(device.info(), build_, replicas_, sizes_of(packings)),
+               make_layout(packings, build_.block()))),
       rebuild_(replicas_.size(), 1),
       plate_moved_(replicas_.size(), 0),
       plate_z_(replicas_.size(), 0),
       strain_(replicas_.size(), Strain{}),
       steps_made_(replicas_.size(), 0),
-      device_replicas_(any_device_replicas(build, replicas_, packings, layout_)),
+      device_replicas_(any_device_replicas(build_, replicas_, packings, layout_)),
       fields_(device,
-              field_extents(build, replicas_, sizes_of(packings),
+              field_extents(build_, replicas_, sizes_of(packings),
                             std::visit([](const auto& all) { return total_cells(all); }, device_replicas_)),
               layout_),
-      kernels_(device, build) {
+      kernels_(device, build_) {
     for (int r = 0; r < layout_.replicas(); ++r) {
         time_step_.push_back(mcdem::time_step(replicas_[r], packings[r]));
         shortening_.push_back(0);
@@ -84,7 +90,15 @@ Engine::Engine(Device& device, const KernelBuild& build, std::vector<Replica> re
         reach_.push_back(list_reach(replicas_[r], packings[r]));
         skin_.push_back(std::visit([&](const auto& all) { return double(all[r].skin); }, device_replicas_));
     }
+    upload_materials();
     upload_packings(packings);
+}
+
+void Engine::upload_materials() {
+    if (build_.precision == Precision::double_precision)
+        fields_.materials.write(device_materials<f64::Material>(replicas_, build_.species).data());
+    else
+        fields_.materials.write(device_materials<f32::Material>(replicas_, build_.species).data());
 }
 
 void Engine::upload_packings(const std::vector<Packing>& packings) {
@@ -96,6 +110,7 @@ void Engine::upload_packings(const std::vector<Packing>& packings) {
             for (int axis = 0; axis < 3; ++axis) at[axis] = packings[r].position[grain][axis];
             at[3] = 0.5 * packings[r].diameter[grain];
             at[7] = excess_compliance_[r][grain];
+            at[11] = packings[r].species.empty() ? 0 : packings[r].species[grain];
         }
     for (auto& copy : fields_.motion.copies) write_reals(copy, 0, values);
 }
@@ -212,16 +227,16 @@ void Engine::make_steps(int steps) {
     auto& f = fields_;
     for (int s = 0; s < steps + steps % 2; ++s) {
         const int p = s % 2;
-        kernels_.advance(working_.blocks.size(), s, f.slot_count, f.replicas, f.blocks, f.replica_of_block,
-                         f.stop_at, f.motion.now(p), f.motion.next(p), f.partner, f.partner_slot,
-                         f.displacement.now(p), f.displacement.next(p), f.displacement_history,
-                         f.memory_of_contacts, f.listed_position, f.status);
+        kernels_.advance(working_.blocks.size(), s, f.slot_count, f.replicas, f.materials, f.blocks,
+                         f.replica_of_block, f.stop_at, f.motion.now(p), f.motion.next(p), f.partner,
+                         f.partner_slot, f.displacement.now(p), f.displacement.next(p),
+                         f.displacement_history, f.memory_of_contacts, f.listed_position, f.status);
     }
 }
 
 void Engine::measure() {
     auto& f = fields_;
-    kernels_.measure(working_.blocks.size(), f.replicas, f.blocks, f.replica_of_block, f.stop_at,
+    kernels_.measure(working_.blocks.size(), f.replicas, f.materials, f.blocks, f.replica_of_block, f.stop_at,
                      f.motion.now(0), f.partner, f.partner_slot, f.displacement.now(0), f.memory_of_contacts,
                      f.listed_position, f.force_x, f.force_y, f.force_z, f.overlap, f.arm, f.energy,
                      f.frequency);

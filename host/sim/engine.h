@@ -82,6 +82,7 @@ private:
         std::vector<Portion> portions;
     };
     Part part(const std::vector<char>& wanted) const;
+    void upload_materials();
     void upload_packings(const std::vector<Packing>& packings);
     double speed_of_walls(int replica, const StepInterval& interval) const;
     void choose(const std::vector<char>& active);

@@ -23,6 +23,8 @@ void Fields::visit_extents(const FieldExtents& extents, Make make) {
         for (auto& copy : pair.copies) make(copy, count, size);
     };
     make(replicas, extents.replicas, is_double ? sizeof(f64::Replica) : sizeof(f32::Replica));
+    make(materials, extents.replicas * extents.species,
+         is_double ? sizeof(f64::Material) : sizeof(f32::Material));
     make(stop_at, extents.replicas, sizeof(int));
     make(reports, extents.portions, is_double ? sizeof(f64::Report) : sizeof(f32::Report));
     make(cell_moments, extents.needs.cells ? 9 * extents.portions : 1, real);

@@ -13,6 +13,7 @@ namespace mcdem::inline sim {
 
 // Quantities: names only.
 struct Constants;
+struct Materials;
 struct Blocks;
 struct ReplicaOfBlock;
 struct Portions;
@@ -46,7 +47,7 @@ struct Pair {
 };
 
 /// Reals of a grain in the field Motion: position, radius, velocity, excess compliance, angular velocity,
-/// padding.
+/// species.
 inline constexpr std::size_t reals_of_motion = 12;
 
 /// Which of the optional fields a batch needs.
@@ -68,6 +69,7 @@ MemoryRows memory_rows(const FieldNeeds& needs);
 struct FieldExtents {
     std::uint64_t replicas = 0, blocks = 0, portions = 0, grains = 0, cells = 0;  ///< grains: padded
     std::uint64_t slots = 0;                                                      ///< of one grain
+    std::uint64_t species = 1;  ///< materials kept of a replica
     Precision precision = Precision::single_precision;
     FieldNeeds needs;
 };
@@ -85,6 +87,7 @@ struct Fields {
     static FieldMemory memory_of(const FieldExtents& extents);
 
     Field<Constants> replicas;             ///< a replica
+    Field<Materials> materials;            ///< a species of a replica
     Field<StopAt> stop_at;                 ///< a replica: steps it makes in this interval
     Field<Reports> reports;                ///< a portion in work
     Field<CellMoments> cell_moments;       ///< the same, 9 reals each
@@ -150,15 +153,15 @@ struct Kernels {
            Field<ContactMemory>, Field<ListedPosition>, Field<Status>>
         list_neighbours;
     Kernel<int, int, Field<Blocks>, Field<Partner>, Field<PartnerSlot>> link_partner_slots;
-    Kernel<int, int, Field<Constants>, Field<Blocks>, Field<ReplicaOfBlock>, Field<StopAt>, Now<Motion>,
-           Next<Motion>, Field<Partner>, Field<PartnerSlot>, Now<SurfaceDisplacement>,
+    Kernel<int, int, Field<Constants>, Field<Materials>, Field<Blocks>, Field<ReplicaOfBlock>, Field<StopAt>,
+           Now<Motion>, Next<Motion>, Field<Partner>, Field<PartnerSlot>, Now<SurfaceDisplacement>,
            Next<SurfaceDisplacement>, Field<DisplacementHistory>, Field<ContactMemory>, Field<ListedPosition>,
            Field<Status>>
         advance;
-    Kernel<Field<Constants>, Field<Blocks>, Field<ReplicaOfBlock>, Field<StopAt>, Now<Motion>, Field<Partner>,
-           Field<PartnerSlot>, Now<SurfaceDisplacement>, Field<ContactMemory>, Field<ListedPosition>,
-           Field<ForceX>, Field<ForceY>, Field<ForceZ>, Field<Overlap>, Field<Arm>, Field<Energy>,
-           Field<Frequency>>
+    Kernel<Field<Constants>, Field<Materials>, Field<Blocks>, Field<ReplicaOfBlock>, Field<StopAt>,
+           Now<Motion>, Field<Partner>, Field<PartnerSlot>, Now<SurfaceDisplacement>, Field<ContactMemory>,
+           Field<ListedPosition>, Field<ForceX>, Field<ForceY>, Field<ForceZ>, Field<Overlap>, Field<Arm>,
+           Field<Energy>, Field<Frequency>>
         measure;
     Kernel<Field<Constants>, Field<Portions>, Field<Partner>, Field<ForceX>, Field<ForceY>, Field<ForceZ>,
            Field<Energy>, Field<Frequency>, Field<Status>, Field<Reports>>

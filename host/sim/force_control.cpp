@@ -23,25 +23,27 @@ constexpr double response = 1.5, approach = 14;
 }  // namespace
 
 ForceControl::ForceControl(const Replica& replica, const PackingScale& scale)
-    : mass_(scale.volume * replica.grains.density),
+    : mass_(scale.mass),
       quiet_(replica.protocol.stop_at_scans ? quiet : near),
       layers_(1 + replica.plate.start / scale.diameter) {
     const double radius = scale.diameter / 2;
     const double area = floor_area(replica.box);
     const double grains = std::clamp(area / (2 * std::sqrt(3.0) * radius * radius), 1.0,
                                      std::max(1.0, static_cast<double>(scale.count)));
-    const double modulus =
-        replica.grains.youngs_modulus / (1 - replica.grains.poisson_ratio * replica.grains.poisson_ratio);
-    layer_ = grains * 4 / 3 * modulus * std::sqrt(radius) / (1 - replica.effects.plasticity);
+    const auto layer = [&](double modulus) {
+        return grains * 4 / 3 * modulus * std::sqrt(radius) / (1 - replica.effects.plasticity);
+    };
+    stiffest_layer_ = layer(plane_modulus(stiffest(replica)));
+    layer_ = layer(scale.modulus);
 }
 
-/// The plate cannot feel more than the Hertz contacts of a full layer of grains that do not move.
-double ForceControl::layer_stiffness(double force) const {
-    return 1.5 * std::cbrt(std::max(0.0, force)) * std::cbrt(layer_ * layer_);
+/// Of the Hertz contacts of a full layer of grains that do not move.
+double ForceControl::layer_stiffness(double force, double layer) {
+    return 1.5 * std::cbrt(std::max(0.0, force)) * std::cbrt(layer * layer);
 }
 
 double ForceControl::stiffness(const State& state, double set) const {
-    return stiffness_margin * layer_stiffness(std::max(set, state.force)) / layers_;
+    return stiffness_margin * layer_stiffness(std::max(set, state.force), layer_) / layers_;
 }
 
 /// That a wave takes through the packing.
@@ -71,9 +73,9 @@ void ForceControl::observe(State& state, double force, double duration) {
 }
 
 /// Far off, waves in the packing shake the force by more than the plate changes it: the plate looks at the
-/// distance alone.
+/// distance alone. It cannot feel more than a layer of the stiffest grains.
 double ForceControl::far_speed(double left, double force, double duration) const {
-    const double stiffest = layer_stiffness(std::max(force, force + left / 2));
+    const double stiffest = layer_stiffness(std::max(force, force + left / 2), stiffest_layer_);
     const double blind = duration + std::sqrt(mass_ / stiffest);
     return 0.5 * std::abs(left) / (stiffest * blind);
 }

@@ -37,14 +37,15 @@ public:
 
 private:
     double far_speed(double left, double force, double duration) const;
-    double layer_stiffness(double force) const;
+    static double layer_stiffness(double force, double layer);
     double stiffness(const State& state, double set) const;
     double response_time(const State& state, double set) const;
 
-    double mass_;    ///< of all grains [kg]
-    double quiet_;   ///< relative distance of a force from which on there is drag
-    double layers_;  ///< of grains between floor and plate
-    double layer_;   ///< of the Hertz law of all grains that the plate can touch [N/m^(3/2)]
+    double mass_;            ///< of all grains [kg]
+    double quiet_;           ///< relative distance of a force from which on there is drag
+    double layers_;          ///< of grains between floor and plate
+    double layer_;           ///< of the Hertz law of all grains that the plate can touch [N/m^(3/2)]
+    double stiffest_layer_;  ///< .. were all of the stiffest species
 };
 
 }  // namespace mcdem::sim

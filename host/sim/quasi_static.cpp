@@ -18,13 +18,24 @@ double sphere_volume(double diameter) { return std::numbers::pi / 6 * std::pow(d
 
 PackingScale scale_of(const Replica& replica, const Packing& packing) {
     PackingScale scale;
-    double volume = 0;
-    for (const double diameter : packing.diameter) {
-        scale.diameter += diameter / static_cast<double>(packing.size());
-        volume += sphere_volume(diameter);
+    const auto all = materials(replica);
+    std::vector<double> volume(all.size(), 0.0);
+    for (std::size_t i = 0; i < packing.size(); ++i) {
+        scale.diameter += packing.diameter[i] / static_cast<double>(packing.size());
+        volume[packing.species.empty() ? 0 : static_cast<std::size_t>(packing.species[i])] +=
+            sphere_volume(packing.diameter[i]);
     }
-    if (!is_cell(replica.box)) scale.weight = std::max(0.0, replica.grains.excess_density * gravity * volume);
-    scale.volume = volume;
+    for (std::size_t s = 0; s < all.size(); ++s) {
+        if (!is_cell(replica.box)) scale.weight += all[s].excess_density * gravity * volume[s];
+        scale.mass += volume[s] * all[s].density;
+        scale.volume += volume[s];
+    }
+    scale.weight = std::max(0.0, scale.weight);
+    double compliance = 0;
+    for (std::size_t s = 0; s < all.size(); ++s)
+        compliance += volume[s] / scale.volume / plane_modulus(all[s]);
+    scale.modulus = all.size() == 1 ? plane_modulus(all[0]) : 1 / compliance;
+    scale.density = all.size() == 1 ? all[0].density : scale.mass / scale.volume;
     scale.count = packing.size();
     return scale;
 }
@@ -32,10 +43,10 @@ PackingScale scale_of(const Replica& replica, const Packing& packing) {
 QuasiStatic::QuasiStatic(const Replica& replica, const PackingScale& scale)
     : tolerance_(replica.protocol.rate_tolerance),
       area_(floor_area(replica.box)),
-      density_(replica.grains.density),
+      density_(scale.density),
       scale_(scale),
       min_pressure_(
-          std::max(scale.weight / area_, min_pressure_over_modulus * replica.grains.youngs_modulus)) {}
+          std::max(scale.weight / area_, min_pressure_over_modulus * softest(replica).youngs_modulus)) {}
 
 double QuasiStatic::pressure(double plate_force, double floor_force) const {
     return std::max(0.5 * (std::abs(plate_force) + std::abs(floor_force)) / area_, min_pressure_);

@@ -13,7 +13,10 @@ struct PackingScale {
     double diameter = 0;  ///< mean [m]
     double weight = 0;    ///< of all grains in the fluid, at least 0 [N]
     std::size_t count = 1;
-    double volume = 0;  ///< of all grains [m3]
+    double volume = 0;   ///< of all grains [m3]
+    double mass = 0;     ///< of all grains [kg]
+    double density = 0;  ///< their mean, by volume [kg/m3]
+    double modulus = 0;  ///< E/(1 - nu^2), as of layers one on the other [Pa]
 };
 PackingScale scale_of(const Replica& replica, const Packing& packing);
 

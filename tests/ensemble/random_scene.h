@@ -30,6 +30,7 @@ public:
             chance(0.6) ? 16 : 32, chance(0.5) ? "float" : "double", between(0.05, 0.4), between(0.1, 0.4),
             between(0.03, 0.15));
         draw_variations();
+        if (chance(0.4)) draw_species();
         return text_;
     }
 
@@ -77,6 +78,24 @@ private:
                         of_any_size(1e5, 1e8), between(0, 0.5), between(0, 0.6), between(0.2, 1));
         text_ += fmt::format("[contact]\ngamma = {}\nfriction_law = \"{}\"\n", between(0.5, 1.3),
                              chance(0.5) ? "mindlin" : "saturated");
+    }
+
+    void draw_species() {
+        const int species = whole(1, std::min(3, count_));
+        for (int s = 1; s <= species; ++s) {
+            text_ += fmt::format("[[species]]\nname = \"s{}\"\n", s);
+            const auto maybe = [&](const char* key, double value) {
+                if (chance(0.5)) text_ += fmt::format("{} = {}\n", key, value);
+            };
+            maybe("youngs_modulus", of_any_size(5e3, 1e5));
+            maybe("poisson_ratio", between(0, 0.5));
+            maybe("density", of_any_size(5, 50));
+            maybe("friction", between(0, 0.6));
+            maybe("restitution", between(0.2, 1));
+        }
+        if (species > 1 && chance(0.5))
+            text_ += fmt::format("[[pair]]\nfirst = \"s1\"\nsecond = \"{}\"\nfriction = {}\n",
+                                 chance(0.5) ? "s2" : "walls", between(0, 0.6));
     }
 
     void draw_effects() {

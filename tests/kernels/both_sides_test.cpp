@@ -1,5 +1,6 @@
 // What a contact takes from both of its grains has the same bits seen from either, however unequal they are.
 #include "kernels/test_kernel.h"
+#include "sim/device_material.h"
 #include "sim/device_replica.h"
 
 namespace reference {
@@ -8,14 +9,23 @@ namespace {
 constexpr int numbers = 3, row_size = 16;
 
 const char* const pair_kernel = R"(
-kernel void see_pairs(global const Replica* replicas, global const real* radii, global real* out) {
+kernel void see_pairs(global const Replica* replicas, global const Material* materials, global const real* radii,
+                      global real* out) {
     const int i = get_global_id(0);
     const real here = radii[2 * i], there = radii[2 * i + 1];
-    const mask no_wall = AS_MASK((slots)(0));
-    const Reduced pair = reduced(replicas, here, (lanes)(there), no_wall);
+    const int species = SPECIES > 1 ? i & 1 : 0; /* of the first; the second of a pair is of the other */
+    Motion now;
+    now.position = (real4)(R(0), R(0), R(0), here);
+    now.angular_velocity = (real4)(R(0), R(0), R(0), (real)species);
+    const Grain at = grain_at(replicas, materials, 0, 0, 0, now);
+    Neighbours seen;
+    seen.wall = AS_MASK((slots)(0));
+    seen.radius = (lanes)(there);
+    seen.species = (slots)(1 - species);
+    const Reduced pair = reduced(at, seen);
     const ComplianceRatio ratio = {R(1), (lanes)(R(1))};
-    const SelfConsistent solved = self_consistent(replicas, ratio, (lanes)(R(0.05) * (here + there)), pair.radius,
-                                                  (lanes)(replicas->modulus_grain), here, (lanes)(there), no_wall);
+    const SelfConsistent solved = self_consistent(at, seen, ratio, (lanes)(R(0.05) * (here + there)), pair.radius,
+                                                  of_pairs(at.material->modulus, seen));
     global real* row = out + (size_t)i * 3 * 16;
     STORE_LANES(pair.radius, row, 0);
     STORE_LANES(pair.mass, row + 16, 0);
@@ -23,41 +33,61 @@ kernel void see_pairs(global const Replica* replicas, global const real* radii, 
 })";
 
 /// R*, m* and the elastic sphere's overlap of each pair of radii.
-std::vector<float> seen(const std::vector<float>& radii, const KernelBuild& kernels) {
-    const Start start = jittered_lattice(test_replica(ContactModel::elastic_sphere), 8, 1);
+std::vector<float> seen(const std::vector<float>& radii, KernelBuild kernels, const Replica& scene) {
+    const Start start = jittered_lattice(scene, 8, 1);
+    kernels.species = mcdem::materials_kept({scene});
     const auto constants =
         mcdem::device_replica<mcdem::f32::Replica>(start.replica, start.packing, {0, 8, 0});
+    const auto kept = mcdem::device_materials<mcdem::f32::Material>({start.replica}, kernels.species);
     struct Radii;
     struct Seen;
     mcdem::Field<mcdem::Constants> replica(device(), 1, sizeof constants);
+    mcdem::Field<mcdem::Materials> material(device(), kept.size(), sizeof kept[0]);
     mcdem::Field<Radii> in(device(), radii.size(), sizeof(float));
     mcdem::Field<Seen> out(device(), radii.size() / 2 * numbers * row_size, sizeof(float));
     replica.write(&constants);
+    material.write(kept.data());
     in.write(radii.data());
-    mcdem::Kernel<mcdem::Field<mcdem::Constants>, mcdem::Field<Radii>, mcdem::Field<Seen>>(
-        device(), with_kernel(pair_kernel, kernels), "see_pairs", 1)(radii.size() / 2, replica, in, out);
+    mcdem::Kernel<mcdem::Field<mcdem::Constants>, mcdem::Field<mcdem::Materials>, mcdem::Field<Radii>,
+                  mcdem::Field<Seen>>(device(), with_kernel(pair_kernel, kernels), "see_pairs", 1)(
+        radii.size() / 2, replica, material, in, out);
     std::vector<float> rows(radii.size() / 2 * numbers * row_size), found;
     out.read(rows.data());
     for (std::size_t place = 0; place < rows.size(); place += row_size) found.push_back(rows[place]);
     return found;
 }
 
-TEST(BothSides, OfAPairOfUnequalGrainsHaveTheSameBits) {
+void expect_same_from_both_sides(const Replica& scene, double overlap) {
     Uniform uniform(5);
     std::vector<float> radii, swapped;
     for (int i = 0; i < 500; ++i) {
-        radii.push_back(static_cast<float>(uniform(0.005, 0.02)));
-        radii.push_back(static_cast<float>(uniform(0.005, 0.02)));
-        swapped.insert(swapped.end(), {radii[2 * i + 1], radii[2 * i]});
+        const float a = static_cast<float>(uniform(0.005, 0.02)),
+                    b = static_cast<float>(uniform(0.005, 0.02));
+        radii.insert(radii.end(), {a, b, b, a});
+        swapped.insert(swapped.end(), {b, a, a, b});
     }
     const KernelBuild kernels = build(Precision::single_precision);
     for (const KernelBuild& way : {kernels, other_way(kernels)}) {
-        const auto here = seen(radii, way);
-        EXPECT_EQ(here, seen(swapped, way));
-        const double a = radii[0], b = radii[1];
-        EXPECT_NEAR(here[0], a * b / (a + b), 1e-6 * a);
-        EXPECT_GT(here[2], 0.01 * (a + b));
+        const auto here = seen(radii, way, scene);
+        EXPECT_GT(here[2], overlap * (radii[0] + radii[1]));
+        EXPECT_NEAR(here[0], double(radii[0]) * radii[1] / (radii[0] + radii[1]), 1e-6 * radii[0]);
+        // Of two species, each pair comes in both orders of species too.
+        const auto there = seen(swapped, way, scene);
+        for (std::size_t pair = 0; pair < radii.size() / 2; ++pair)
+            for (int k = 0; k < numbers; ++k)
+                EXPECT_EQ(here[pair * numbers + k],
+                          scene.species.empty() ? there[pair * numbers + k] : here[(pair ^ 1) * numbers + k]);
     }
+}
+
+TEST(BothSides, OfAPairOfUnequalGrainsHaveTheSameBits) {
+    expect_same_from_both_sides(test_replica(ContactModel::elastic_sphere), 0.01);
+}
+
+TEST(BothSides, OfAPairOfTwoSpeciesHaveTheSameBits) {
+    Replica scene = test_replica(ContactModel::elastic_sphere);
+    scene.species = {{"soft", {1e4, 0.49, 900, 900, 0.1, 0.9}}, {"stiff", {7e5, 0.2, 2500, 2500, 0.4, 0.6}}};
+    expect_same_from_both_sides(scene, 0.01);
 }
 
 }  // namespace

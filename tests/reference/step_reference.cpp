@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <set>
 
 #include "core/recording.h"
 #include "reference/grain_reference.h"
@@ -50,17 +51,23 @@ StepReference::StepReference(const mcdem::Replica& scene, const mcdem::Packing& 
       angular_velocity(packing.size(), Vec3::Zero()),
       memory(packing.size()),
       scene_(scene),
-      law_(mcdem::surface_law(scene.contact.model, scene.grains.poisson_ratio, scene.contact.gamma)) {
+      species_(packing.species.empty() ? std::vector<int>(packing.size(), 0) : packing.species) {
     for (double diameter : packing.diameter) radius_.push_back(diameter / 2);
-    const auto& g = scene.grains;
-    for (double excess_compliance : mcdem::excess_compliance(scene, packing.size()))
-        youngs_modulus_.push_back(g.youngs_modulus / (1 + excess_compliance));
-    const double rayleigh_speed = 0.163 * g.poisson_ratio + 0.8766;  // over sqrt(G / rho)
+    for (int species : species_) {
+        material_.push_back(scene.species.empty() ? scene.grains : scene.species[species].material);
+        law_.push_back(
+            mcdem::surface_law(scene.contact.model, material_.back().poisson_ratio, scene.contact.gamma));
+    }
+    const auto excess_compliance = mcdem::excess_compliance(scene, packing.size());
     std::vector<double> rayleigh_time;
-    for (std::size_t i = 0; i < radius_.size(); ++i)
+    for (std::size_t i = 0; i < radius_.size(); ++i) {
+        const auto& g = material_[i];
+        youngs_modulus_.push_back(g.youngs_modulus / (1 + excess_compliance[i]));
+        const double rayleigh_speed = 0.163 * g.poisson_ratio + 0.8766;  // over sqrt(G / rho)
         rayleigh_time.push_back(pi * radius_[i] *
                                 std::sqrt(g.density / shear_modulus(youngs_modulus_[i], g.poisson_ratio)) /
                                 rayleigh_speed);
+    }
     time_step_ = scene.numerics.time_step * *std::min_element(rayleigh_time.begin(), rayleigh_time.end());
     const double mean = std::accumulate(radius_.begin(), radius_.end(), 0.0) / radius_.size();
     probe_gap_ = scene.numerics.probe_gap * mean;
@@ -69,7 +76,7 @@ StepReference::StepReference(const mcdem::Replica& scene, const mcdem::Packing& 
 }
 
 double StepReference::mass(int grain) const {
-    return scene_.grains.density * 4 / 3 * pi * std::pow(radius_[grain], 3);
+    return material_[grain].density * 4 / 3 * pi * std::pow(radius_[grain], 3);
 }
 
 void StepReference::begin(double plate_z, double plate_velocity, double settle_drag) {
@@ -80,8 +87,8 @@ void StepReference::begin(double plate_z, double plate_velocity, double settle_d
 }
 
 StepReference::Body StepReference::body(int grain) const {
-    return {position[grain], velocity[grain], angular_velocity[grain],
-            radius_[grain],  mass(grain),     youngs_modulus_[grain]};
+    return {position[grain], velocity[grain],        angular_velocity[grain], radius_[grain],
+            mass(grain),     youngs_modulus_[grain], species_[grain],         &law_[grain]};
 }
 
 /// A wall is a body of no radius at the foot of the perpendicular.
@@ -131,10 +138,8 @@ void StepReference::list_neighbours() {
 }
 
 StepReference::Joint StepReference::joint(const Body& a, const Body& b) const {
-    const auto& g = scene_.grains;
-    const auto& w = scene_.walls;
     const bool wall = b.radius == 0;
-    const double nu = g.poisson_ratio, nu_there = wall ? w.poisson_ratio : nu;
+    const double nu = poisson_ratio(a), nu_there = poisson_ratio(b);
     const double e = a.youngs_modulus, e_there = b.youngs_modulus;
     Joint joint;
     joint.modulus = 1 / ((1 - nu * nu) / e + (1 - nu_there * nu_there) / e_there);
@@ -144,17 +149,45 @@ StepReference::Joint StepReference::joint(const Body& a, const Body& b) const {
     // Both directions of a wall that is curved in one, by their geometric mean.
     if (b.curvature != 0) joint.radius = 1 / std::sqrt((1 / a.radius + b.curvature) / a.radius);
     joint.mass = wall ? a.mass : 1 / (1 / a.mass + 1 / b.mass);
-    const double log_e = std::log(wall ? w.restitution : g.restitution);
+    const auto [friction, restitution] = friction_and_restitution(a, b);
+    const double log_e = std::log(restitution);
     joint.damping = 2 * std::sqrt(5.0 / 6) * -log_e / std::sqrt(log_e * log_e + pi * pi);
-    joint.friction = wall ? w.friction : g.friction;
+    joint.friction = friction;
     return joint;
+}
+
+double StepReference::poisson_ratio(const Body& body) const {
+    if (body.species < 0) return scene_.walls.poisson_ratio;
+    return scene_.species.empty() ? scene_.grains.poisson_ratio
+                                  : scene_.species[body.species].material.poisson_ratio;
+}
+
+/// What a pair says of itself, else the smaller of both, else what the walls say.
+std::array<double, 2> StepReference::friction_and_restitution(const Body& a, const Body& b) const {
+    const auto own = [&](const Body& body) -> std::array<double, 2> {
+        if (body.species < 0) return {scene_.walls.friction, scene_.walls.restitution};
+        const auto& g = scene_.species.empty() ? scene_.grains : scene_.species[body.species].material;
+        return {g.friction, g.restitution};
+    };
+    const auto called = [&](const Body& body) -> std::string {
+        if (body.species < 0) return "walls";
+        return scene_.species.empty() ? "" : scene_.species[body.species].name;
+    };
+    auto law = own(b);
+    for (std::size_t k = 0; k < 2 && b.species >= 0; ++k) law[k] = std::min(law[k], own(a)[k]);
+    for (const auto& pair : scene_.pairs) {
+        if (std::set{pair.first, pair.second} != std::set{called(a), called(b)}) continue;
+        if (pair.friction == pair.friction) law[0] = pair.friction;
+        if (pair.restitution == pair.restitution) law[1] = pair.restitution;
+    }
+    return law;
 }
 
 /// What a force moves its own point by beyond Hertz [m/N]; nothing on a wall.
 double StepReference::self_compliance(double contact_radius, const Body& body) const {
     if (body.radius == 0) return 0;
-    const Grain grain{body.radius, body.youngs_modulus, scene_.grains.poisson_ratio, {}};
-    return self_displacement(law_, grain, {Vec3::Zero(), body.radius, 1, contact_radius}) /
+    const Grain grain{body.radius, body.youngs_modulus, poisson_ratio(body), {}};
+    return self_displacement(*body.law, grain, {Vec3::Zero(), body.radius, 1, contact_radius}) /
            (grain.youngs_modulus * grain.radius);
 }
 
@@ -215,7 +248,7 @@ Seen StepReference::see(int i, int partner, double elapsed, Memory& memory) cons
         attract(seen, overlap, joint);
         return seen;
     }
-    const bool self_term = law_.self[0] != 0;
+    const bool self_term = law_[i].self[0] != 0;
     seen.overlap = self_term ? self_consistent_overlap(overlap, a, b, joint) : overlap;
     seen.contact_radius = std::sqrt(joint.radius * seen.overlap);
     seen.elastic = 4.0 / 3 * joint.modulus * std::sqrt(joint.radius) * std::pow(seen.overlap, 1.5);
@@ -314,10 +347,10 @@ std::vector<Seen> StepReference::neighbours() const {
 /// Surfaces as this step's forces move them, extrapolated to the next:
 /// b(t + dt) = (10 b(t) - 5 b(t - 2 dt) + b(t - 4 dt)) / 6.
 void StepReference::displace_surfaces(const std::vector<std::vector<Seen>>& seen) {
-    mcdem::SurfaceLaw by_others = law_;
-    by_others.self.fill(0);  // a contact's own term is part of its overlap
     for (std::size_t i = 0; i < seen.size(); ++i) {
-        Grain grain{radius_[i], youngs_modulus_[i], scene_.grains.poisson_ratio, {}};
+        mcdem::SurfaceLaw by_others = law_[i];
+        by_others.self.fill(0);  // a contact's own term is part of its overlap
+        Grain grain{radius_[i], youngs_modulus_[i], material_[i].poisson_ratio, {}};
         for (const Seen& c : seen[i])
             grain.slots.push_back({c.direction, c.arm, c.elastic, c.contact_radius});
         const auto moved = surface_displacement(by_others, grain);
@@ -339,7 +372,7 @@ void StepReference::step() {
     for (std::size_t i = 0; i < position.size(); ++i) {
         const double m = mass(static_cast<int>(i)), inertia = 0.4 * m * radius_[i] * radius_[i];
         Vec3 force = -drag_ * m * velocity[i], torque = Vec3::Zero();
-        force.z() -= scene_.grains.excess_density / scene_.grains.density * m * 9.81;
+        force.z() -= material_[i].excess_density / material_[i].density * m * 9.81;
         for (const Seen& c : seen[i]) {
             force += c.force;
             torque += (c.arm * c.direction).cross(c.tangential) + c.couple;
@@ -358,10 +391,11 @@ double StepReference::displacement_energy() const {
     double energy = 0;
     std::vector<Grain> grains;
     for (std::size_t i = 0; i < position.size(); ++i)
-        grains.push_back({radius_[i], youngs_modulus_[i], scene_.grains.poisson_ratio, {}});
+        grains.push_back({radius_[i], youngs_modulus_[i], material_[i].poisson_ratio, {}});
     for (const Seen& c : neighbours())
         grains[c.grain].slots.push_back({c.direction, c.arm, c.elastic, c.contact_radius});
-    for (const Grain& whole : grains)
+    for (std::size_t i = 0; i < grains.size(); ++i) {
+        const Grain& whole = grains[i];
         for (int part = 0; part < parts; ++part) {
             const double t = (part + 0.5) / parts;
             Grain grain = whole;
@@ -369,9 +403,10 @@ double StepReference::displacement_energy() const {
                 slot.force *= t;
                 slot.contact_radius *= std::cbrt(t);
             }
-            const auto moved = surface_displacement(law_, grain);
+            const auto moved = surface_displacement(law_[i], grain);
             for (std::size_t c = 0; c < moved.size(); ++c) energy += whole.slots[c].force * moved[c] / parts;
         }
+    }
     return energy;
 }
 
@@ -383,7 +418,7 @@ Totals StepReference::totals() const {
         totals.kinetic_energy += 0.5 * m * velocity[i].squaredNorm() +
                                  0.5 * 0.4 * m * radius_[i] * radius_[i] * angular_velocity[i].squaredNorm();
     }
-    const bool finite = law_.self[0] != 0;
+    const bool finite = law_[0].self[0] != 0;
     if (finite) totals.elastic_energy += displacement_energy();
     for (const Seen& c : neighbours()) {
         const bool wall = mcdem::is_wall(c.partner);

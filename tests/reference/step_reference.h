@@ -70,7 +70,9 @@ private:
         Vec3 position, velocity, angular_velocity;
         double radius, mass;
         double youngs_modulus;  ///< of this very body [Pa]
-        double curvature = 0;   ///< of a wall around an upright axis, hollow: below zero [1/m]
+        int species = -1;       ///< -1: a wall
+        const mcdem::SurfaceLaw* law = nullptr;
+        double curvature = 0;  ///< of a wall around an upright axis, hollow: below zero [1/m]
     };
     /// What two bodies in contact share.
     struct Joint {
@@ -82,6 +84,8 @@ private:
     Body body(int grain) const;
     Body partner_of(int grain, int partner) const;
     Joint joint(const Body& a, const Body& b) const;
+    double poisson_ratio(const Body& body) const;
+    std::array<double, 2> friction_and_restitution(const Body& a, const Body& b) const;
     double distance_to(int grain, int partner) const;
     double self_consistent_overlap(double given, const Body& a, const Body& b, const Joint& joint) const;
     double self_compliance(double contact_radius, const Body& body) const;
@@ -99,8 +103,10 @@ private:
     double displacement_energy() const;  ///< [J]
 
     mcdem::Replica scene_;
-    mcdem::SurfaceLaw law_;
+    std::vector<mcdem::GrainMaterial> material_;  ///< of each grain
+    std::vector<mcdem::SurfaceLaw> law_;          ///< of each grain
     std::vector<double> radius_, youngs_modulus_;
+    std::vector<int> species_;
     double time_step_ = 0, reach_ = 0, probe_gap_ = 0;
     double plate_z_ = 0, plate_velocity_ = 0, drag_ = 0, spin_drag_ = 0;
 };

@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "scene/assign.h"
-#include "scene/keys.h"
+#include "scene/list_tables.h"
 #include "scene_test_tools.h"
 
 namespace mcdem {
@@ -93,9 +93,14 @@ TEST(Keys, CoverEveryMember) {
     EXPECT_EQ(count_keys("container."), 4u + 1) << "the radius of a cylinder too";
     EXPECT_EQ(count_keys("box."), 2u) << "short forms";
     EXPECT_EQ(count_keys("grains."), 7u);
+    [[maybe_unused]] const auto [s1, material, s2, sizes] = Species{};
+    [[maybe_unused]] const auto [z1, z2, z3, z4, z5, z6, no_key_of_its_own] = Sizes{};
+    [[maybe_unused]] const auto [i1, i2, i3, i4] = SpeciesPair{};
+    EXPECT_EQ(species_keys(0).size(), 2u + 6 + 6) << "drag is of [grains]";
+    EXPECT_EQ(pair_keys(0).size(), 4u);
     EXPECT_EQ(count_keys("walls."), 4u);
     EXPECT_EQ(count_keys("contact."), 4u);
-    EXPECT_EQ(count_keys("packing."), 6u + 4) << "file, frame, jitter and seed too";
+    EXPECT_EQ(count_keys("packing."), 6u + 5) << "file, frame, jitter, seed and what fractions are of too";
     EXPECT_EQ(count_keys("plate."), 3u);
     EXPECT_EQ(count_keys("protocol."), 11u);
     EXPECT_EQ(count_keys("numerics."), 4u + 2) << "precision and slots too";

@@ -10,6 +10,8 @@
 namespace reference {
 namespace {
 
+constexpr int with_species = 7;
+
 /// Replicas of different sizes, models and time steps, all compressed by their plates.
 Start squeezed_lattice(int kind) {
     Replica replica = test_replica(all_models[(kind + 4) % 6]);
@@ -19,8 +21,14 @@ Start squeezed_lattice(int kind) {
     auto& protocol = replica.protocol;
     protocol.scans_per_stroke = 2;
     protocol.relax_time = protocol.settle_time = 0.03;
-    const int counts[] = {27, 1, 65, 16, 7, 33, 64};
-    return jittered_lattice(replica, counts[kind], 40 + kind);
+    const int counts[] = {27, 1, 65, 16, 7, 33, 64, 40};
+    Start start = jittered_lattice(replica, counts[kind], 40 + kind);
+    if (kind == with_species) {
+        start.replica.species = {{"a", {23.3e3, 0.45, 1000, 300, 0.3, 0.7}},
+                                 {"b", {8e4, 0.3, 2000, 900, 0.6, 0.9}}};
+        for (int i = 0; i < counts[kind]; ++i) start.packing.species.push_back(i % 2);
+    }
+    return start;
 }
 
 std::vector<Start> starts(const std::vector<int>& kinds) {
@@ -33,7 +41,11 @@ TEST(Bits, AReplicaIsTheSameAloneAndInAnyBatch) {
     for (Precision precision : {Precision::single_precision, finest()}) {
         WholeRun alone(precision, starts({0})), two(precision, starts({3, 0})),
             seven(precision, starts({1, 2, 3, 0, 4, 5, 6})), twice(precision, starts({0, 2, 0}));
-        for (WholeRun* run : {&alone, &two, &seven, &twice}) run->finish();
+        // Where one replica has species the kernels are others.
+        WholeRun of_species(precision, starts({7})), beside_species(precision, starts({0, 7, 2}));
+        for (WholeRun* run : {&alone, &two, &seven, &twice, &of_species, &beside_species}) run->finish();
+        expect_same(alone, 0, beside_species, 0);
+        expect_same(of_species, 0, beside_species, 1);
         expect_same(alone, 0, two, 1);
         expect_same(alone, 0, seven, 3);
         expect_same(alone, 0, twice, 0);
@@ -53,7 +65,7 @@ TEST(Bits, TwoFreshRunsAreTheSame) {
 
 // Taken out at several moments, put into a fresh simulation, run to the end.
 TEST(Bits, ARestartChangesNothing) {
-    const auto kinds = starts({0, 2, 5});
+    const auto kinds = starts({0, with_species, 5});
     WholeRun whole(Precision::single_precision, kinds);
     whole.finish();
     for (int rounds : {0, 1, 2, 7, 25}) {

@@ -105,6 +105,10 @@ void warn_of_start(const Recording& truth) {
         throw InputError(
             "the run must be one of the strokes of [plate] and [protocol], got one of a [[programme]]: "
             "experiments state strokes only");
+    if (truth.parameters.contains("species.1.name"))
+        throw InputError(
+            "the run must be one of grains of one material, got one of [[species]]: experiments state one "
+            "material only");
     const Scan& first = truth.scans.front();
     if (first.position.empty())
         spdlog::warn(

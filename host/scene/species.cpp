@@ -1,0 +1,64 @@
+#include "scene/species.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/errors.h"
+#include "scene/scene.h"
+
+namespace mcdem::inline scene {
+namespace {
+
+/// Where the pair says something it takes the place of what would hold without it.
+PairLaw with_pair(const Replica& replica, std::string_view a, std::string_view b, PairLaw law) {
+    for (const SpeciesPair& pair : replica.pairs) {
+        const bool is_it = (pair.first == a && pair.second == b) || (pair.first == b && pair.second == a);
+        if (is_it && !std::isnan(pair.friction)) law.friction = pair.friction;
+        if (is_it && !std::isnan(pair.restitution)) law.restitution = pair.restitution;
+    }
+    return law;
+}
+
+}  // namespace
+
+std::vector<GrainMaterial> materials(const Replica& replica) {
+    if (replica.species.empty()) return {replica.grains};
+    std::vector<GrainMaterial> all;
+    for (const Species& species : replica.species) all.push_back(species.material);
+    return all;
+}
+
+void expect_one_material(const Scene& scene, const std::string& what) {
+    for (const Replica& replica : scene.replicas)
+        if (!replica.species.empty())
+            throw InputError(
+                fmt::format("species: must be left out of a scene for {}, which knows grains of one "
+                            "material only",
+                            what));
+}
+
+GrainMaterial stiffest(const Replica& replica) {
+    return std::ranges::max(materials(replica), {}, plane_modulus);
+}
+
+GrainMaterial softest(const Replica& replica) {
+    return std::ranges::min(materials(replica), {}, plane_modulus);
+}
+
+PairLaw pair_law(const Replica& replica, std::size_t first, std::size_t second) {
+    if (replica.species.empty()) return {replica.grains.friction, replica.grains.restitution};
+    const Species &a = replica.species[first], &b = replica.species[second];
+    return with_pair(replica, a.name, b.name,
+                     {std::min(a.material.friction, b.material.friction),
+                      std::min(a.material.restitution, b.material.restitution)});
+}
+
+PairLaw wall_law(const Replica& replica, std::size_t species) {
+    const PairLaw law{replica.walls.friction, replica.walls.restitution};
+    if (replica.species.empty()) return law;
+    return with_pair(replica, replica.species[species].name, walls_name, law);
+}
+
+}  // namespace mcdem::scene
