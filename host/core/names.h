@@ -1,5 +1,5 @@
 // The closed sets of words that scenes, results and pictures share: contact models, friction laws,
-// containers, walls, phases. One table each; `name` and `parse` read the same table.
+// containers, walls, phases, sizes. One table each; `name` and `parse` read the same table.
 #pragma once
 #include <array>
 #include <optional>
@@ -37,6 +37,17 @@ inline constexpr int wall_count = 6;
 
 enum class Phase { load, unload };
 
+/// How the diameters of a species are distributed.
+enum class SizeLaw {
+    normal,     ///< cut below and above
+    lognormal,  ///< .. likewise
+    single,     ///< all alike
+    table,      ///< of the diameters in a file, all equally likely
+};
+
+/// What fractions of species are fractions of.
+enum class FractionsBy { number, volume };
+
 enum class Precision { single_precision, double_precision };
 
 template <class Enum>
@@ -63,6 +74,14 @@ struct Names<Wall> {
 template <>
 struct Names<Phase> {
     static constexpr std::array<std::string_view, 2> list{"load", "unload"};
+};
+template <>
+struct Names<SizeLaw> {
+    static constexpr std::array<std::string_view, 4> list{"normal", "lognormal", "single", "table"};
+};
+template <>
+struct Names<FractionsBy> {
+    static constexpr std::array<std::string_view, 2> list{"number", "volume"};
 };
 template <>
 struct Names<Precision> {

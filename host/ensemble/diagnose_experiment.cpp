@@ -369,8 +369,7 @@ Model model_of(const Scene& scene, const Experiment& experiment) {
         cycles = std::max(cycles, scan.cycle + 1);
     }
     if (loading == 0 || !(lowest < recording.plate_start))
-        throw InputError(
-            fmt::format("{}: plate.csv must have loading frames below plate.start", experiment.name));
+        throw InputError(experiment.name + ": plate.csv must have loading frames below plate.start");
     model.replica.plate.start = recording.plate_start;
     model.replica.plate.end = lowest;
     model.replica.protocol.scans_per_stroke = loading;

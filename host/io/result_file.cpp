@@ -39,6 +39,21 @@ Run ResultFile::header() const {
     return run;
 }
 
+/// Files of runs without species have none.
+void ResultFile::read_species(Recording& recording, const std::string& particles) const {
+    if (!file_.exists(particles + "/species")) return;
+    const auto species = file_.dataset(particles + "/species");
+    species.expect_row({});
+    recording.species = species.read_all<int>();
+    recording.species_names = file_.read_texts(particles + "/species_names");
+    const auto count = static_cast<int>(recording.species_names.size());
+    const bool known =
+        std::ranges::all_of(recording.species, [&](int one) { return one >= 0 && one < count; });
+    if (!known || recording.species.size() != recording.diameter.size())
+        throw InputError(fmt::format("{}: must be a species of 0 to {} for each of the {} grains",
+                                     species.where(), count - 1, recording.diameter.size()));
+}
+
 Recording ResultFile::recording_header(std::size_t replica) const {
     const std::string particles = particles_path(replica);
     Recording recording;
@@ -59,6 +74,7 @@ Recording ResultFile::recording_header(std::size_t replica) const {
     const auto diameter = file_.dataset(particles + "/diameter");
     diameter.expect_row({});
     recording.diameter = diameter.read_all<double>();
+    read_species(recording, particles);
     const auto parameters = file_.read_texts(parameters_path(replica));
     if (parameters.size() % 2 != 0)
         throw InputError(file_.where(parameters_path(replica)) + ": must be pairs");

@@ -76,6 +76,7 @@ public:
 
 private:
     Recording recording_header(std::size_t replica) const;
+    void read_species(Recording& recording, const std::string& particles) const;
     void read_positions(std::vector<Scan>& scans, std::size_t grains, std::size_t replica) const;
     void read_contacts(std::vector<Scan>& scans, std::size_t grains, std::size_t replica) const;
     std::vector<Contact> contact_rows(const h5::Dataset& table, std::size_t grains, long first,

@@ -74,6 +74,10 @@ ResultWriter::Tables ResultWriter::make_tables(std::size_t replica, const Record
         std::vector<double>{recording.box.size_x, recording.box.size_y, recording.plate_start});
     file_.write(particles + "/diameter", recording.diameter);
     file_.set_attribute(particles + "/diameter", "unit", std::string_view("m"));
+    if (!recording.species_names.empty()) {
+        file_.write(particles + "/species", recording.species);
+        file_.write_texts(particles + "/species_names", recording.species_names);
+    }
 
     const hsize_t grains = recording.diameter.size();
     Tables tables{file_.create_rows(observables_path(replica), packed(scan_row_), {}),

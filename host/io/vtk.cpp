@@ -174,6 +174,7 @@ void write_vtk_grains(const std::filesystem::path& file, const Recording& record
         Grid grid(out, vtk_vertex, 1, points);
         grid.point_data("grain", number);
         grid.point_data("diameter", recording.diameter);
+        if (!recording.species.empty()) grid.point_data("species", recording.species);
         grid.point_data("coordination_number", contacts);
         grid.point_data("force_magnitude", force);
         grid.point_data("stress", stress, {9});

@@ -30,7 +30,7 @@ overlap. Colour and width of the bonds can follow force_magnitude [N]. In Python
         "Particle Identifiers.2", "force_magnitude", "force_x", "force_y", "force_z", "overlap"])
     pipeline.modifiers.append(contacts)
 
-Of a grain: radius [m], id, coordination_number (walls counted), force_magnitude (sum of its contacts' [N]), wall_force
+Of a grain: its species as particle type, radius [m], id, coordination_number (walls counted), force_magnitude (sum of its contacts' [N]), wall_force
 (by the walls [N]). In a container that is periodic along x and y grains are where they have moved to, also out of it:
 modifier "Wrap at periodic boundaries". In a cell they are in an upright box of its lengths. Of a contact: its force on the first of the two grains [N], its overlap [m].
 )";
@@ -40,6 +40,14 @@ std::string in_quotes(std::string text) {
     std::ranges::replace(text, '"', '\'');
     std::ranges::replace(text, '\n', ' ');
     return '"' + text + '"';
+}
+
+/// One word, as the format has it.
+std::string particle_type(const Recording& recording, std::size_t grain) {
+    if (recording.species.empty()) return "X";
+    std::string word = recording.species_names[static_cast<std::size_t>(recording.species[grain])];
+    std::ranges::replace(word, ' ', '_');
+    return word;
 }
 
 void append_grains(fmt::memory_buffer& text, const Recording& recording, const Scan& scan) {
@@ -60,9 +68,9 @@ void append_grains(fmt::memory_buffer& text, const Recording& recording, const S
     const auto loads = grain_loads(scan);
     for (std::size_t i = 0; i < scan.position.size(); ++i) {
         const Vec3 &at = scan.position[i], &wall = loads[i].wall_force;
-        fmt::format_to(out, "X {:.9g} {:.9g} {:.9g} {} {:.9g} {} {:.9g} {:.9g} {:.9g} {:.9g}\n", at.x(),
-                       at.y(), at.z(), i, recording.diameter[i] / 2, loads[i].contacts,
-                       loads[i].force_magnitude, wall.x(), wall.y(), wall.z());
+        fmt::format_to(out, "{} {:.9g} {:.9g} {:.9g} {} {:.9g} {} {:.9g} {:.9g} {:.9g} {:.9g}\n",
+                       particle_type(recording, i), at.x(), at.y(), at.z(), i, recording.diameter[i] / 2,
+                       loads[i].contacts, loads[i].force_magnitude, wall.x(), wall.y(), wall.z());
     }
 }
 

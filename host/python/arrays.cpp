@@ -103,6 +103,10 @@ py::array strain_array(const Recording& recording, py::handle owner) {
     return view(py::dtype::of<double>(), {count, 6}, {sizeof(Scan), sizeof(double)}, first, owner);
 }
 
+py::array species_array(const Recording& recording, py::handle owner) {
+    return rows(recording.species, py::dtype::of<int>(), owner);
+}
+
 py::array diameter_array(const Recording& recording, py::handle owner) {
     return rows(recording.diameter, py::dtype::of<double>(), owner);
 }

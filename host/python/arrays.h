@@ -14,6 +14,7 @@ pybind11::array top_force_array(const Recording& recording, pybind11::handle own
 pybind11::array strain_array(const Recording& recording, pybind11::handle owner);
 pybind11::array tensor_array(const Recording& recording, Mat3 Scan::*tensor, pybind11::handle owner);
 pybind11::array diameter_array(const Recording& recording, pybind11::handle owner);
+pybind11::array species_array(const Recording& recording, pybind11::handle owner);
 pybind11::array position_array(const Scan& scan, pybind11::handle owner);
 pybind11::array contact_array(const Scan& scan, pybind11::handle owner);
 

@@ -101,6 +101,14 @@ std::shared_ptr<const std::vector<double>> SizeTables::of(const std::string& fil
     return place->second;
 }
 
+bool has_sizes(const Replica& replica) {
+    return std::ranges::all_of(replica.species, [](const Species& one) {
+        const bool found = one.sizes.law != SizeLaw::table || one.sizes.table;
+        return found && one.sizes.min > 0 && one.sizes.min <= one.sizes.mean &&
+               one.sizes.mean <= one.sizes.max && one.fraction >= 0;
+    });
+}
+
 void resolve_species(Settings& settings, SizeTables& tables) {
     auto& species = settings.replica.species;
     if (species.empty()) return;

@@ -24,4 +24,7 @@ private:
 /// species_problems says why.
 void resolve_species(Settings& settings, SizeTables& tables);
 
+/// False where some species has no sizes, or fractions, that hold together.
+bool has_sizes(const Replica& replica);
+
 }  // namespace mcdem::scene

@@ -12,6 +12,7 @@
 #include "scene/generate_packing.h"
 #include "scene/make_packing.h"
 #include "scene/read_packing.h"
+#include "scene/resolve_species.h"
 
 namespace mcdem::inline scene {
 namespace {
@@ -173,14 +174,6 @@ const std::vector<Check> checks{
     }},
 };
 // clang-format on
-
-bool has_sizes(const Replica& replica) {
-    return std::ranges::all_of(replica.species, [](const Species& one) {
-        const bool found = one.sizes.law != SizeLaw::table || one.sizes.table;
-        return found && one.sizes.min > 0 && one.sizes.min <= one.sizes.mean &&
-               one.sizes.mean <= one.sizes.max && one.fraction >= 0;
-    });
-}
 
 /// Where sizes are those of species there are no keys of [packing] to blame.
 CrossProblem of_species(const Settings& settings, CrossProblem problem) {

@@ -8,30 +8,6 @@
 #include "core/names.h"
 #include "scene/not_given.h"
 
-namespace mcdem::inline core {
-
-/// How the diameters of a species are distributed.
-enum class SizeLaw {
-    normal,     ///< cut below and above
-    lognormal,  ///< .. likewise
-    single,     ///< all alike
-    table,      ///< of the diameters in a file, all equally likely
-};
-
-/// What fractions of species are fractions of.
-enum class FractionsBy { number, volume };
-
-template <>
-struct Names<SizeLaw> {
-    static constexpr std::array<std::string_view, 4> list{"normal", "lognormal", "single", "table"};
-};
-template <>
-struct Names<FractionsBy> {
-    static constexpr std::array<std::string_view, 2> list{"number", "volume"};
-};
-
-}  // namespace mcdem::core
-
 namespace mcdem::inline scene {
 
 struct Replica;

@@ -201,6 +201,8 @@ Recording begin_recording(const Replica& replica, const Packing& packing) {
     recording.box = replica.box;
     recording.plate_start = replica.plate.start;
     recording.diameter = packing.diameter;
+    recording.species = packing.species;
+    for (const Species& species : replica.species) recording.species_names.push_back(species.name);
     return recording;
 }
 

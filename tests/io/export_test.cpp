@@ -127,7 +127,7 @@ TEST(vtk, vtk_reads_grains_and_contacts) {
     command.precision(17);
     command << "/usr/bin/python3 " << source << "/tests/io/read_vtk.py "
             << (folder / "view/replica_00001").string() << " 000002 " << scan.position.size() << ' '
-            << scan.contacts.size() << ' ' << last.force.z() << ' ' << scan.plate_z;
+            << scan.contacts.size() << ' ' << last.force.z() << ' ' << scan.plate_z << " species";
     const Finished finished = run_command(command.str());
     if (finished.exit_code == module_missing)
         GTEST_SKIP() << "neither python3-paraview nor python3-vtk9 is installed";

@@ -26,12 +26,14 @@ def arrays(data):
 folder, scan = sys.argv[1], sys.argv[2]
 grains, contacts = int(sys.argv[3]), int(sys.argv[4])
 force_z, plate_z = float(sys.argv[5]), float(sys.argv[6])
+of_species = {"species"} if sys.argv[7:] == ["species"] else set()
 
 grid = read(f"{folder}/grains_{scan}.hdf")
 assert grid.GetNumberOfPoints() == grid.GetNumberOfCells() == grains, grid
 points = arrays(grid.GetPointData())
 assert set(points) == {"grain", "diameter", "coordination_number", "force_magnitude", "stress", "pressure", "displacement",
-                       "displacement_since_last_scan"}, points
+                       "displacement_since_last_scan"} | of_species, points
+assert not of_species or (points["species"] == [grain % 2 for grain in range(grains)]).all()
 stress = points["stress"].reshape(grains, 3, 3)
 assert abs(points["pressure"] - stress.trace(axis1=1, axis2=2) / 3).max() <= 1e-12 * abs(stress).max()
 assert (points["grain"] == range(grains)).all() and (points["diameter"] > 0).all()

@@ -130,6 +130,23 @@ TEST(results, positions_of_another_number_of_grains_are_refused_and_nothing_is_w
     EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 
+TEST(results, species_that_there_are_not_are_refused) {
+    for (const std::vector<int>& wrong :
+         {std::vector<int>(27, 2), std::vector<int>(27, -1), std::vector<int>(26, 0)}) {
+        TemporaryFolder folder;
+        auto run = synthetic_run({.replicas = 2, .grains = 27, .scans = 2});
+        run.recordings[1].species = wrong;
+        write_run(folder / "run.h5", run);
+        try {
+            read_run(folder / "run.h5");
+            ADD_FAILURE() << wrong.front();
+        } catch (const InputError& error) {
+            EXPECT_THAT(error.what(), ::testing::HasSubstr(
+                                          "species: must be a species of 0 to 1 for each of the 27 grains"));
+        }
+    }
+}
+
 TEST(results, missing_file_and_folder_without_a_run_say_so) {
     TemporaryFolder folder;
     for (const auto& path : {folder / "nowhere", folder.path()}) {

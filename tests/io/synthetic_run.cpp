@@ -22,6 +22,8 @@ Recording synthetic_recording(const Size& size, int replica) {
     recording.box = {side * spacing, side * spacing};
     recording.plate_start = side * spacing;
     for (int i = 0; i < size.grains; ++i) recording.diameter.push_back(spacing * (1 + 0.01 * (i % 3)));
+    if (replica % 2) recording.species_names = {"soft", "half stiff"};
+    for (int i = 0; i < size.grains && replica % 2; ++i) recording.species.push_back(i % 2);
     for (int s = 0; s < size.scans; ++s) {
         Scan scan;
         scan.frame = s;
@@ -104,6 +106,8 @@ void expect_same(const Recording& a, const Recording& b, double tolerance) {
     EXPECT_EQ(a.box.shape, b.box.shape);
     EXPECT_EQ(a.plate_start, b.plate_start);
     EXPECT_EQ(a.diameter, b.diameter);
+    EXPECT_EQ(a.species, b.species);
+    EXPECT_EQ(a.species_names, b.species_names);
     ASSERT_EQ(a.failure.has_value(), b.failure.has_value());
     if (a.failure) {
         EXPECT_EQ(a.failure->step, b.failure->step);

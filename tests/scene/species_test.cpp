@@ -88,46 +88,48 @@ TEST(SpeciesOfAScene, VaryAndComeBackFromTheSceneText) {
     EXPECT_EQ(other.replicas[0].species.size(), 1u);
 }
 
+/// What a scene says wrongly, and what it is told.
+const std::vector<std::pair<std::string, std::string>> cases{
+    {"[[species]]\nfraction = 1\n", "s.toml:19: species.1.name must be given"},
+    {"[[species]]\n", "species.1 must say what its grains are, got nothing"},
+    {"[[species]]\nname = \"walls\"\n", "species.1.name must be another word"},
+    {"[[species]]\nname = \"a\"\n[[species]]\nname = \"a\"\n",
+     "species.2.name must differ from that of species 1"},
+    {"[[species]]\nname = \"a\"\nyungs_modulus = 1\n", "did you mean species.1.youngs_modulus?"},
+    {"[[species]]\nname = \"a\"\nfraction = 0.7\n[[species]]\nname = \"b\"\nfraction = 0.7\n",
+     "species.1.fraction and those of the other species must add up to 1, got 1.4"},
+    {"[[species]]\nname = \"a\"\nfraction = 0.5\n", "must add up to 1, got 0.5"},
+    {"[[species]]\nname = \"a\"\nsizes = \"single\"\ndiameter_sd = 1e-3\n",
+     "species.1.diameter_sd must be left out where sizes = \"single\""},
+    {"[[species]]\nname = \"a\"\nsizes = \"table\"\n", "species.1.diameter_file must be given"},
+    {"[[species]]\nname = \"a\"\nsizes = \"table\"\ndiameter_file = \"none.csv\"\n",
+     "got no file that can be read"},
+    {"[[species]]\nname = \"a\"\ndiameter_mean = 0.02\ndiameter_sd = 0.01\n",
+     "species.1.diameter_min must be given: three standard deviations below the mean are -0.01 m"},
+    {"[[species]]\nname = \"a\"\ndiameter_min = 0.021\n",
+     "species.1.diameter_min must be at most diameter_mean = 0.02, got 0.021"},
+    {"[[species]]\nname = \"a\"\nsizes = \"single\"\n[[species]]\nname = \"b\"\nsizes = \"single\"\n"
+     "diameter_mean = 0.001\n",
+     "the largest diameter must be at most 10 times the smallest diameter = 0.001, got 0.02"},
+    {"[[species]]\nname = \"a\"\nfraction = 1e-5\n[[species]]\nname = \"b\"\n",
+     "species.1.fraction must leave the species a grain of the 2000 (packing.count), got 1e-05 by "
+     "number"},
+    {"[[pair]]\nfirst = \"a\"\nsecond = \"b\"\nfriction = 1\n",
+     "pair.1.first must be the name of a species, got \"a\"; there are none"},
+    {two + "[[pair]]\nfirst = \"soft\"\nsecond = \"stif\"\nfriction = 1\n",
+     "pair.1.second must be the name of a species or walls, got \"stif\"; there are soft, stiff"},
+    {two + "[[pair]]\nfirst = \"soft\"\nsecond = \"soft\"\nfriction = 1\n",
+     "must be another species than first"},
+    {two + "[[pair]]\nfirst = \"soft\"\nsecond = \"walls\"\n",
+     "pair.1.friction must be given, or restitution"},
+    {two + "[[pair]]\nfirst = \"soft\"\nsecond = \"stiff\"\nfriction = 1\n"
+           "[[pair]]\nfirst = \"stiff\"\nsecond = \"soft\"\nfriction = 2\n",
+     "pair.2.first and second must be two that no other pair has"},
+    {two + "[batch.vary]\n\"species.4.density\" = [1]\n",
+     "species.3.name must be given too: there is a species 4"},
+};
+
 TEST(SpeciesOfAScene, AreRefusedWithReasons) {
-    const std::vector<std::pair<std::string, std::string>> cases{
-        {"[[species]]\nfraction = 1\n", "s.toml:19: species.1.name must be given"},
-        {"[[species]]\n", "species.1 must say what its grains are, got nothing"},
-        {"[[species]]\nname = \"walls\"\n", "species.1.name must be another word"},
-        {"[[species]]\nname = \"a\"\n[[species]]\nname = \"a\"\n",
-         "species.2.name must differ from that of species 1"},
-        {"[[species]]\nname = \"a\"\nyungs_modulus = 1\n", "did you mean species.1.youngs_modulus?"},
-        {"[[species]]\nname = \"a\"\nfraction = 0.7\n[[species]]\nname = \"b\"\nfraction = 0.7\n",
-         "species.1.fraction and those of the other species must add up to 1, got 1.4"},
-        {"[[species]]\nname = \"a\"\nfraction = 0.5\n", "must add up to 1, got 0.5"},
-        {"[[species]]\nname = \"a\"\nsizes = \"single\"\ndiameter_sd = 1e-3\n",
-         "species.1.diameter_sd must be left out where sizes = \"single\""},
-        {"[[species]]\nname = \"a\"\nsizes = \"table\"\n", "species.1.diameter_file must be given"},
-        {"[[species]]\nname = \"a\"\nsizes = \"table\"\ndiameter_file = \"none.csv\"\n",
-         "got no file that can be read"},
-        {"[[species]]\nname = \"a\"\ndiameter_mean = 0.02\ndiameter_sd = 0.01\n",
-         "species.1.diameter_min must be given: three standard deviations below the mean are -0.01 m"},
-        {"[[species]]\nname = \"a\"\ndiameter_min = 0.021\n",
-         "species.1.diameter_min must be at most diameter_mean = 0.02, got 0.021"},
-        {"[[species]]\nname = \"a\"\nsizes = \"single\"\n[[species]]\nname = \"b\"\nsizes = \"single\"\n"
-         "diameter_mean = 0.001\n",
-         "the largest diameter must be at most 10 times the smallest diameter = 0.001, got 0.02"},
-        {"[[species]]\nname = \"a\"\nfraction = 1e-5\n[[species]]\nname = \"b\"\n",
-         "species.1.fraction must leave the species a grain of the 2000 (packing.count), got 1e-05 by "
-         "number"},
-        {"[[pair]]\nfirst = \"a\"\nsecond = \"b\"\nfriction = 1\n",
-         "pair.1.first must be the name of a species, got \"a\"; there are none"},
-        {two + "[[pair]]\nfirst = \"soft\"\nsecond = \"stif\"\nfriction = 1\n",
-         "pair.1.second must be the name of a species or walls, got \"stif\"; there are soft, stiff"},
-        {two + "[[pair]]\nfirst = \"soft\"\nsecond = \"soft\"\nfriction = 1\n",
-         "must be another species than first"},
-        {two + "[[pair]]\nfirst = \"soft\"\nsecond = \"walls\"\n",
-         "pair.1.friction must be given, or restitution"},
-        {two + "[[pair]]\nfirst = \"soft\"\nsecond = \"stiff\"\nfriction = 1\n"
-               "[[pair]]\nfirst = \"stiff\"\nsecond = \"soft\"\nfriction = 2\n",
-         "pair.2.first and second must be two that no other pair has"},
-        {two + "[batch.vary]\n\"species.4.density\" = [1]\n",
-         "species.3.name must be given too: there is a species 4"},
-    };
     for (const auto& [text, problem] : cases)
         EXPECT_THAT(problems_in(text), Contains(HasSubstr(problem))) << text;
     EXPECT_THAT(problems_of([] { parse_scene("species = 3\n" + box_text, "s.toml"); }),
@@ -186,16 +188,11 @@ TEST(GeneratedSpecies, FollowTheirSizeLaws) {
     EXPECT_EQ(single.size(), 200u);
     EXPECT_EQ(table.size(), 400u);
     const double low = normal_below(-3), high = normal_below(3);
-    EXPECT_LE(
-        distance(normal, [&](double d) { return (normal_below((d - 0.02) / 0.001) - low) / (high - low); }),
-        1.01 / 600);
+    const auto cut = [&](double x) { return (normal_below(x) - low) / (high - low); };
+    EXPECT_LE(distance(normal, [&](double d) { return cut((d - 0.02) / 0.001); }), 1.01 / 600);
     const double variance = std::log(1 + 0.04), mean = std::log(0.015) - variance / 2;
-    EXPECT_LE(distance(lognormal,
-                       [&](double d) {
-                           return (normal_below((std::log(d) - mean) / std::sqrt(variance)) - low) /
-                                  (high - low);
-                       }),
-              1.01 / 800);
+    const auto of_logarithm = [&](double d) { return cut((std::log(d) - mean) / std::sqrt(variance)); };
+    EXPECT_LE(distance(lognormal, of_logarithm), 1.01 / 800);
     EXPECT_EQ(single.front(), 0.025);
     EXPECT_EQ(single.back(), 0.025);
     EXPECT_EQ(std::ranges::count(table, 0.02), 100);

@@ -1,6 +1,7 @@
 #include "report/run/run_page.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -21,6 +22,16 @@ std::string listed_names(const std::vector<RunOrigin>& origins) {
     return names;
 }
 
+/// " Grains of gel, rubber." where some run has species.
+std::string species_of(const RunsOnPage& runs) {
+    std::vector<std::string> names;
+    for (const RunOrigin& origin : runs.origins)
+        for (const Recording& recording : origin.run->recordings)
+            for (const std::string& name : recording.species_names)
+                if (std::ranges::find(names, name) == names.end()) names.push_back(name);
+    return names.empty() ? "" : fmt::format(" Grains of {}.", fmt::join(names, ", "));
+}
+
 std::string what_it_is(const RunsOnPage& runs) {
     std::size_t replicas = 0;
     for (const auto& setting : runs.settings) replicas += setting.replicas.size();
@@ -28,7 +39,7 @@ std::string what_it_is(const RunsOnPage& runs) {
         return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
     };
     return counted(runs.settings.size(), "setting") + ", " + counted(replicas, "replica") +
-           (runs.reference ? ", held against " + runs.reference->label : "") + ".";
+           (runs.reference ? ", held against " + runs.reference->label : "") + "." + species_of(runs);
 }
 
 void add_tables(Page& page, const RunsOnPage& runs, const std::vector<Comparison>& comparisons) {
