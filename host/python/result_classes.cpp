@@ -98,9 +98,7 @@ void bind_recording(py::module_& module) {
         .def_property_readonly(
             "species", array_property(species_array),
             "[N] species of each grain, a place in species_names; empty without [[species]].")
-        .def_property_readonly(
-            "species_names", [](const OneRecording& self) { return self.get().species_names; },
-            "Names of the species.")
+        .def_property_readonly("species_names", [](const OneRecording& r) { return r.get().species_names; })
         .def_property_readonly(
             "scans", array_property(scans_array),
             "[S] rows with the fields of /observables in run.h5: frame, cycle, phase (0 load, 1 "
