@@ -34,15 +34,16 @@ double between(double poisson_ratio, auto&& value) {
 
 }  // namespace
 
-void add_finite_strain(SurfaceLaw& law, double poisson_ratio) {
+void add_finite_strain(SurfaceLaw& law, double poisson_ratio, double share) {
     const auto own = [&](std::size_t n) {
-        return between(poisson_ratio, [n](const Coefficients& c) { return c.own[n]; });
+        return share * between(poisson_ratio, [n](const Coefficients& c) { return c.own[n]; });
     };
     // `self` is outward and has the logarithm second.
     law.self[0] -= own(0);
     law.self[2] -= own(1);
     law.self[3] -= own(2);
-    law.confinement = {coupling, between(poisson_ratio, [](const Coefficients& c) { return c.volume; })};
+    law.confinement = {share * coupling,
+                       share * between(poisson_ratio, [](const Coefficients& c) { return c.volume; })};
 }
 
 }  // namespace mcdem::elasticity

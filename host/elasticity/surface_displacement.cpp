@@ -19,7 +19,7 @@ std::array<double, point_terms> sphere_to_sphere(double nu) {
 
 }  // namespace
 
-SurfaceLaw surface_law(ContactModel model, double poisson_ratio, double gamma) {
+SurfaceLaw surface_law(ContactModel model, double poisson_ratio, double gamma, double finite_strain) {
     SurfaceLaw law;
     switch (model) {
         case ContactModel::independent:
@@ -46,6 +46,7 @@ SurfaceLaw surface_law(ContactModel model, double poisson_ratio, double gamma) {
             law.point = sphere.point;
             law.size = sphere.size;
             law.self = sphere.self;
+            if (finite_strain > 0) add_finite_strain(law, poisson_ratio, finite_strain);
             break;
         }
         case ContactModel::hyperelastic_sphere:

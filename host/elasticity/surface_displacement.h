@@ -35,8 +35,9 @@ struct SurfaceLaw {
     Confinement confinement;
 };
 
-/// `gamma` is used by mc_dem only.
-SurfaceLaw surface_law(ContactModel model, double poisson_ratio, double gamma);
+/// `gamma` is used by mc_dem only, `finite_strain` (share of what hyperelastic_sphere adds) by
+/// elastic_sphere.
+SurfaceLaw surface_law(ContactModel model, double poisson_ratio, double gamma, double finite_strain = 0);
 
 /// Outward radial displacement, in F/(E R), of a free elastic sphere under a point force, at angle theta
 /// [rad] from it; the load is balanced by a uniform body force and the centre is held. By the Legendre

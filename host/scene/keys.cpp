@@ -104,6 +104,7 @@ const Key table[] = {
     {"effects.viscoelasticity", effect<&Effects::viscoelasticity>, "", between(0, 1), each, "part of a contact's force that relaxes at constant overlap"},
     {"effects.relaxation_time", effect<&Effects::relaxation_time>, "s", duration, each, "of that part"},
     {"effects.stiffening", effect<&Effects::stiffening>, "", between(-100, 100), each, "c: Hertz force times 1 + c overlap / R*; where c < 0 over 1 - c overlap / R*, which softens"},
+    {"effects.finite_strain", effect<&Effects::finite_strain>, "", between(0, 1), each, "elastic_sphere: share of what finite strain adds to it, 1: hyperelastic_sphere; unused by other models"},
     {"effects.plasticity", effect<&Effects::plasticity>, "", between(0, 0.99), each, "part of the deepest overlap that stays after unloading"},
     {"effects.bulge_contacts", effect<&Effects::bulge_contacts>, "", between(0, 1), each, "part of the bulges that counts where grains do not overlap by themselves; 1: all of it, 0: bulges make no contacts"},
     {"effects.friction_history", effect<&Effects::friction_history>, "", between(0, 1), each, "share of the friction law that contact.friction_law does not name"},

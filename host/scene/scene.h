@@ -88,6 +88,8 @@ struct Effects {
     double relaxation_time = 0.1;  ///< of that part [s]
     double stiffening =
         0;  ///< c: Hertz force times 1 + c overlap / R*, or over 1 - c overlap / R* where c < 0
+    double finite_strain =
+        0;  ///< share of what hyperelastic_sphere adds to elastic_sphere; unused by other models
     double plasticity = 0;      ///< part of the largest overlap that stays after unloading
     double bulge_contacts = 1;  ///< part of the bulges that counts where grains do not overlap by themselves
     double friction_history = 0;    ///< share of the friction law that contact.friction_law does not name

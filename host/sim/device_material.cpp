@@ -50,7 +50,8 @@ void set_pairs(Material& m, const Replica& replica, const std::vector<GrainMater
 template <class Material>
 void set_surface(Material& m, const Replica& replica, const GrainMaterial& g) {
     const double e = g.youngs_modulus, nu = g.poisson_ratio;
-    const auto surface = surface_law(replica.contact.model, nu, replica.contact.gamma);
+    const auto surface =
+        surface_law(replica.contact.model, nu, replica.contact.gamma, replica.effects.finite_strain);
     m.half_space_scale = -surface.gamma * (1 + nu) / (2 * pi * e);
     m.half_space_normal = 3 - 4 * nu;
     m.half_space_shear = 1 - 2 * nu;

@@ -54,8 +54,8 @@ void set_contact_law(DeviceReplica& d, const Replica& replica) {
     d.sliding_velocity = replica.contact.sliding_velocity;
     d.mindlin = mindlin_share(replica) > 0;
     for (const GrainMaterial& material : materials(replica)) {
-        const auto surface =
-            surface_law(replica.contact.model, material.poisson_ratio, replica.contact.gamma);
+        const auto surface = surface_law(replica.contact.model, material.poisson_ratio, replica.contact.gamma,
+                                         replica.effects.finite_strain);
         d.surface = static_cast<int>(surface.shape);
         d.finite_contacts |= surface.self[0] != 0;
         d.confinement |= surface.confinement.coupling != 0 || surface.confinement.volume != 0;

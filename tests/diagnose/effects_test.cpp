@@ -41,6 +41,7 @@ std::map<std::string, double> numbers_of(const Model& m) {
             {"viscoelasticity", e.viscoelasticity},
             {"relaxation_time", e.relaxation_time},
             {"stiffening", e.stiffening},
+            {"finite_strain", e.finite_strain},
             {"plasticity", e.plasticity},
             {"bulge_contacts", e.bulge_contacts},
             {"friction_history", e.friction_history},
@@ -78,6 +79,7 @@ const std::map<std::string, std::set<std::string>> moves{
     {"adhesion", {"adhesion"}},
     {"viscoelasticity", {"viscoelasticity"}},
     {"stiffening", {"stiffening"}},
+    {"finite_strain", {"finite_strain"}},
     {"plasticity", {"plasticity"}},
     {"buoyancy", {"grains.excess_density"}},
     {"diameter_error", {"diameter_error"}},
@@ -112,6 +114,7 @@ Model full_model() {
                              .viscoelasticity = 0.2,
                              .relaxation_time = 0.1,
                              .stiffening = 0.5,
+                             .finite_strain = 0.3,
                              .plasticity = 0.1,
                              .bulge_contacts = 0.6,
                              .friction_history = 0.3,
@@ -260,20 +263,20 @@ TEST(Effects, HindrancesSayWhy) {
             if (!effect.hindrance(model).empty()) names.emplace_back(effect.name);
         return names;
     };
-    EXPECT_THAT(hindered(independent), ElementsAre("bulge_contacts"));
+    EXPECT_THAT(hindered(independent), ElementsAre("bulge_contacts", "finite_strain"));
     EXPECT_THAT(hindered(interacting), ElementsAre("cross_contact"));
-    EXPECT_THAT(hindered(smooth), ElementsAre("bulge_contacts", "friction_history"));
-    EXPECT_THAT(hindered(unlimited), ElementsAre("bulge_contacts", "force_threshold"));
+    EXPECT_THAT(hindered(smooth), ElementsAre("bulge_contacts", "friction_history", "finite_strain"));
+    EXPECT_THAT(hindered(unlimited), ElementsAre("bulge_contacts", "finite_strain", "force_threshold"));
     Model stated = independent;
     stated.experiment_speed = 0.9 * stated.replica.plate.speed;
-    EXPECT_THAT(hindered(stated), ElementsAre("bulge_contacts"));
+    EXPECT_THAT(hindered(stated), ElementsAre("bulge_contacts", "finite_strain"));
     stated.experiment_speed = stated.replica.plate.speed;
-    EXPECT_THAT(hindered(stated), ElementsAre("bulge_contacts", "plate_speed"));
+    EXPECT_THAT(hindered(stated), ElementsAre("bulge_contacts", "finite_strain", "plate_speed"));
     Model slow = independent;
     slow.replica.protocol.rate_tolerance = 0.01;
-    EXPECT_THAT(hindered(slow), ElementsAre("bulge_contacts", "plate_speed", "inertia"));
+    EXPECT_THAT(hindered(slow), ElementsAre("bulge_contacts", "finite_strain", "plate_speed", "inertia"));
     slow.replica.protocol.rate_tolerance = 0.02;
-    EXPECT_THAT(hindered(slow), ElementsAre("bulge_contacts"));
+    EXPECT_THAT(hindered(slow), ElementsAre("bulge_contacts", "finite_strain"));
 }
 
 // A plate that keeps an inertial number is slowed down by that; plate.speed, its highest, goes along.

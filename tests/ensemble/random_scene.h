@@ -106,6 +106,7 @@ private:
         maybe("adhesion", between(0, 0.02));
         maybe("viscoelasticity", between(0, 0.6));
         maybe("stiffening", between(-1, 1));
+        maybe("finite_strain", between(0, 1));
         maybe("plasticity", between(0, 0.4));
         maybe("bulge_contacts", between(0, 1));
         maybe("friction_history", between(0, 1));
@@ -122,7 +123,8 @@ private:
         std::vector<ContactModel> models;
         for (const auto model :
              {ContactModel::independent, ContactModel::point_force_on_sphere, ContactModel::sphere_to_sphere,
-              ContactModel::elastic_half_space, ContactModel::mc_dem, ContactModel::elastic_sphere})
+              ContactModel::elastic_half_space, ContactModel::mc_dem, ContactModel::elastic_sphere,
+              ContactModel::hyperelastic_sphere})
             models.push_back(model);
         std::shuffle(models.begin(), models.end(), engine_);
         text_ += fmt::format("[batch.vary]\n\"contact.model\" = [\"{}\", \"{}\"]\n", name(models[0]),

@@ -54,8 +54,8 @@ StepReference::StepReference(const mcdem::Replica& scene, const mcdem::Packing& 
     for (double diameter : packing.diameter) radius_.push_back(diameter / 2);
     for (int species : species_) {
         material_.push_back(scene.species.empty() ? scene.grains : scene.species[species].material);
-        law_.push_back(
-            mcdem::surface_law(scene.contact.model, material_.back().poisson_ratio, scene.contact.gamma));
+        law_.push_back(mcdem::surface_law(scene.contact.model, material_.back().poisson_ratio,
+                                          scene.contact.gamma, scene.effects.finite_strain));
     }
     const auto excess_compliance = mcdem::excess_compliance(scene, packing.size());
     std::vector<double> rayleigh_time;

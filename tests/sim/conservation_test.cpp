@@ -78,6 +78,7 @@ Start random_free_cluster(unsigned seed, ContactModel model) {
     effects.viscoelasticity = some(0.8);
     effects.relaxation_time = 0.01;
     effects.stiffening = some(2) - some(1);
+    effects.finite_strain = some(1);
     effects.plasticity = some(0.5);
     effects.friction_history = some(1);
     effects.modulus_scatter = some(0.4);

@@ -76,5 +76,26 @@ TEST(SurfaceEnergy, IsTheWorkDoneOnTheGrain) {
     }
 }
 
+Start with_finite_strain(ContactModel model, double share) {
+    Start start = boxed(model, 0.06, 0.04, 0.02);
+    start.replica.effects.finite_strain = share;
+    return start;
+}
+
+TEST(FiniteStrain, GoesFromTheElasticToTheHyperelasticSphere) {
+    const auto force = [](ContactModel model, double share) {
+        return Path(with_finite_strain(model, share)).move(0.06, 100).force;
+    };
+    const double elastic = force(ContactModel::elastic_sphere, 0);
+    const double hyperelastic = force(ContactModel::hyperelastic_sphere, 0);
+    EXPECT_EQ(force(ContactModel::elastic_sphere, 1), hyperelastic);
+    EXPECT_EQ(force(ContactModel::hyperelastic_sphere, 0.5), hyperelastic) << "unused by other models";
+    EXPECT_EQ(force(ContactModel::point_force_on_sphere, 1), force(ContactModel::point_force_on_sphere, 0));
+    const double half = force(ContactModel::elastic_sphere, 0.5);
+    EXPECT_GT(half, elastic + 0.3 * (hyperelastic - elastic));
+    EXPECT_LT(half, elastic + 0.7 * (hyperelastic - elastic));
+    EXPECT_GT(hyperelastic, 1.01 * elastic);
+}
+
 }  // namespace
 }  // namespace reference

@@ -72,6 +72,11 @@ std::string_view interacting_already(const Model& m) {
 std::string_view independent_contacts(const Model& m) {
     return interacting(m) ? "" : "independent contacts make no bulges";
 }
+std::string_view not_elastic_sphere(const Model& m) {
+    return m.replica.contact.model == ContactModel::elastic_sphere
+               ? ""
+               : "only grains of elastic_sphere have a law of finite strain, hyperelastic_sphere";
+}
 std::string_view no_friction(const Model& m) {
     return m.replica.grains.friction > 0 ? "" : "the scene has no friction";
 }
@@ -97,6 +102,8 @@ const Effect table[] = {
      0, 0.8, 0.1, 0.3, one, [](Model& m, double a) { add_share(m.replica.effects.viscoelasticity, a); }, nothing},
     {"stiffening", "", "c in F = F_Hertz (1 + c overlap/R*)", "first correction to Hertz at large strain",
      -1.5, 4, -0.7, 1.2, one, [](Model& m, double a) { m.replica.effects.stiffening += a; }, nothing},
+    {"finite_strain", "", "share of what finite strain adds to an elastic sphere", "finite elements of a neo-Hookean sphere",
+     0, 1, 0.5, 1.0, one, [](Model& m, double a) { add_share(m.replica.effects.finite_strain, a); }, not_elastic_sphere},
     {"plasticity", "", "part of the largest overlap that stays after unloading", "Walton & Braun 1986",
      0, 0.5, 0.05, 0.15, one, [](Model& m, double a) { add_share(m.replica.effects.plasticity, a); }, nothing},
     {"buoyancy", "kg/m3", "change of the grains' density over the fluid's", "Archimedes",

@@ -20,6 +20,7 @@ const std::map<std::string, std::string>& special_words() {
         {"wall_friction", "friction at the walls"},
         {"friction_history", "friction with memory"},
         {"stiffening", "stiffening at large strain"},
+        {"finite_strain", "finite strain of the grains"},
         {"buoyancy", "weight under buoyancy"},
         {"diameter_error", "error of all diameters"},
         {"polydispersity", "scatter of diameters"},
