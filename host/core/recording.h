@@ -54,6 +54,8 @@ struct Scan {
     double mean_force = 0;           ///< <f>: mean |force| of those contacts [N]
     double packing_fraction = 0;     ///< phi, more than a mean diameter from every wall
     double branch_length = 0;        ///< <b>: mean distance of centres of touching grains [m]
+    double max_overlap = std::numeric_limits<double>::quiet_NaN();  ///< geometric, of two grains over the sum
+                                                                    ///< of their radii; 0: none touch
     Mat3 stress = unknown_tensor();  ///< of the packing, compression positive (core/stress.h) [Pa]
     Mat3 fabric = unknown_tensor();  ///< mean n n of contacts between grains
     std::vector<Vec3> position;      ///< by grain [m]

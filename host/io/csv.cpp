@@ -18,7 +18,8 @@ namespace {
 constexpr const char* header =
     "replica,label,frame,cycle,phase,time_s,plate_z_m,displacement_m,top_force_N,floor_force_N,"
     "x_min_force_N,x_max_force_N,y_min_force_N,y_max_force_N,coordination_number,mean_force_N,"
-    "packing_fraction,branch_length_m,stress_xx_Pa,stress_yy_Pa,stress_zz_Pa,stress_yz_Pa,stress_xz_Pa,"
+    "packing_fraction,branch_length_m,max_overlap,stress_xx_Pa,stress_yy_Pa,stress_zz_Pa,stress_yz_Pa,stress_"
+    "xz_Pa,"
     "stress_xy_Pa,kinetic_energy_J,elastic_energy_J,settled,rate_error";
 
 constexpr std::pair<int, int> voigt[] = {{0, 0}, {1, 1}, {2, 2}, {1, 2}, {0, 2}, {0, 1}};
@@ -100,8 +101,8 @@ std::string csv_text(const Run& run) {
                            name(scan.phase), scan.time, scan.plate_z, recording.displacement(scan));
             for (Wall wall : {Wall::plate, Wall::floor, Wall::x_min, Wall::x_max, Wall::y_min, Wall::y_max})
                 fmt::format_to(out, "{},", pressing(recording.box, scan, wall));
-            fmt::format_to(out, "{},{},{},{},", scan.coordination_number, scan.mean_force,
-                           scan.packing_fraction, scan.branch_length);
+            fmt::format_to(out, "{},{},{},{},{},", scan.coordination_number, scan.mean_force,
+                           scan.packing_fraction, scan.branch_length, scan.max_overlap);
             for (const auto& [row, column] : voigt)
                 fmt::format_to(out, "{},", 0.5 * (scan.stress(row, column) + scan.stress(column, row)));
             fmt::format_to(out, "{},{},{:d},{}", scan.kinetic_energy, scan.elastic_energy, scan.settled,

@@ -55,6 +55,7 @@ ScanRow scan_row(const Scan& scan) {
     row.mean_force = scan.mean_force;
     row.packing_fraction = scan.packing_fraction;
     row.branch_length = scan.branch_length;
+    row.max_overlap = scan.max_overlap;
     std::memcpy(row.stress, scan.stress.data(), sizeof row.stress);
     std::memcpy(row.fabric, scan.fabric.data(), sizeof row.fabric);
     std::ranges::copy(scan.strain, row.strain);
@@ -79,6 +80,7 @@ Scan scan_of(const ScanRow& row, const std::string& where) {
     scan.mean_force = row.mean_force;
     scan.packing_fraction = row.packing_fraction;
     scan.branch_length = row.branch_length;
+    scan.max_overlap = row.max_overlap;
     std::memcpy(scan.stress.data(), row.stress, sizeof row.stress);
     std::memcpy(scan.fabric.data(), row.fabric, sizeof row.fabric);
     std::ranges::copy(row.strain, scan.strain.begin());
@@ -131,6 +133,7 @@ h5::Handle scan_row_type() {
     H5Tinsert(type, "mean_force", HOFFSET(ScanRow, mean_force), H5T_NATIVE_DOUBLE);
     H5Tinsert(type, "packing_fraction", HOFFSET(ScanRow, packing_fraction), H5T_NATIVE_DOUBLE);
     H5Tinsert(type, "branch_length", HOFFSET(ScanRow, branch_length), H5T_NATIVE_DOUBLE);
+    H5Tinsert(type, "max_overlap", HOFFSET(ScanRow, max_overlap), H5T_NATIVE_DOUBLE);
     const h5::Handle tensor = array_type(H5T_NATIVE_DOUBLE, {3, 3});
     H5Tinsert(type, "stress", HOFFSET(ScanRow, stress), tensor);
     H5Tinsert(type, "fabric", HOFFSET(ScanRow, fabric), tensor);
@@ -184,6 +187,7 @@ std::vector<std::pair<std::string, std::string>> scan_row_units() {
             {"mean_force", "N"},
             {"packing_fraction", "1"},
             {"branch_length", "m"},
+            {"max_overlap", "1"},
             {"stress", "Pa"},
             {"fabric", "1"},
             {"strain", "1"}};

@@ -75,6 +75,7 @@ ModelTable model_table(const std::vector<Setting>& settings, const LevelOptions&
             row.reached = last;
         }
         for (const auto* recording : setting.replicas) row.failed += recording->failure.has_value();
+        row.beyond = beyond_law(setting.replicas);
         table.rate_error = std::fmax(table.rate_error, largest_rate_error(setting.replicas));
         table.rows.push_back(row);
     }

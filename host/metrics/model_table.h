@@ -1,6 +1,7 @@
 // Top force of each setting at full stroke over a reference setting's: the paper's Rtop column without
 // measured data.
 #pragma once
+#include "metrics/law_range.h"
 #include "metrics/levels.h"
 
 namespace mcdem::inline metrics {
@@ -14,6 +15,7 @@ struct ModelRow {
     int failed = 0;  ///< replicas that stopped before the end of their protocol
     /// Displacement of the last scan where no replica reached full stroke [m].
     std::optional<double> reached = std::nullopt;
+    std::optional<BeyondLaw> beyond = std::nullopt;
 };
 
 struct ModelTable {

@@ -55,6 +55,7 @@ py::dtype scan_type() {
         .add("mean_force", &Scan::mean_force, "f8")
         .add("packing_fraction", &Scan::packing_fraction, "f8")
         .add("branch_length", &Scan::branch_length, "f8")
+        .add("max_overlap", &Scan::max_overlap, "f8")
         .type();
 }
 

@@ -97,6 +97,7 @@ const Key table[] = {
     {"numerics.skin", replica<&Replica::numerics, &Numerics::skin>, "", above_zero_to(2), each, "margin of the neighbour list, over the mean radius"},
     {"numerics.probe_gap", replica<&Replica::numerics, &Numerics::probe_gap>, "", between(0, 2), each, "gap up to which surfaces are probed for contacts made by bulging, over the mean radius"},
     {"numerics.overlap_limit", replica<&Replica::numerics, &Numerics::overlap_limit>, "", above_zero_to(1), each, "corrected overlap over the sum of radii beyond which no static solution is assumed and the replica stops"},
+    {"numerics.stop_beyond_law", replica<&Replica::numerics, &Numerics::stop_beyond_law>, "", none, each, "a replica stops at the first scan in which grains overlap more than its contact model was tested for against finite elements: elastic_sphere 0.1, hyperelastic_sphere 0.2 of the sum of radii; false: it goes on, and `mcdem table` says so"},
     {"numerics.precision", run<&Scene::precision>, "", none, one_run, "of the device's arithmetic"},
     {"numerics.slots", run<&Scene::slots>, "", Range{16, 64, Range::Low::included, 16}, one_run, "neighbours that a grain can have"},
 

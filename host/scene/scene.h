@@ -79,6 +79,7 @@ struct Numerics {
     double probe_gap = 0.15;  ///< gap up to which surfaces are probed, over the mean radius
     double overlap_limit =
         0.5;  ///< corrected overlap over the sum of radii beyond which no static solution is assumed
+    bool stop_beyond_law = false;  ///< at the first scan beyond core/law_range.h
 };
 
 /// Effects that the plain model leaves out: each off, and at no cost, at its default.

@@ -1,5 +1,6 @@
 #include "sim/averages.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -78,6 +79,18 @@ double grain_volume(const std::vector<double>& diameter) {
     return volume;
 }
 
+double max_overlap(const Scan& scan, const Box& box, const std::vector<double>& diameter) {
+    double largest = 0;
+    for (const auto& contact : scan.contacts) {
+        if (is_wall(contact.partner)) continue;
+        const double reach = (diameter[contact.grain] + diameter[contact.partner]) / 2;
+        const double distance =
+            apart(box, scan.position[contact.grain], scan.position[contact.partner]).norm();
+        largest = std::max(largest, (reach - distance) / reach);
+    }
+    return largest;
+}
+
 }  // namespace
 
 double packing_fraction(const std::vector<Vec3>& position, const std::vector<double>& diameter,
@@ -107,6 +120,7 @@ void fill_averages(Scan& scan, const Box& box, const std::vector<double>& diamet
         ++pairs;
         branch += apart(now, scan.position[contact.grain], scan.position[contact.partner]).norm();
     }
+    scan.max_overlap = max_overlap(scan, box, diameter);
     scan.coordination_number = static_cast<double>(ends) / diameter.size();
     scan.mean_force = contacts ? force / contacts : not_a_number;
     scan.branch_length = pairs ? branch / pairs : not_a_number;

@@ -5,8 +5,8 @@
 namespace mcdem::inline sim {
 
 /// Fills coordination_number, mean_force and branch_length (contacts at or above `force_threshold` [N];
-/// not-a-number where there are none), stress and fabric (all contacts) and packing_fraction of `scan`. A
-/// contact between grains counts for both, a contact with a wall for its grain.
+/// not-a-number where there are none), max_overlap, stress and fabric (all contacts) and packing_fraction of
+/// `scan`. A contact between grains counts for both, a contact with a wall for its grain.
 void fill_averages(Scan& scan, const Box& box, const std::vector<double>& diameter, double force_threshold);
 
 /// Volume of the grains inside the region more than a mean diameter from every wall, over the region's

@@ -6,6 +6,7 @@
 
 #include "core/container.h"
 #include "core/errors.h"
+#include "core/law_range.h"
 #include "scene/make_packing.h"
 #include "scene/true_grains.h"
 #include "sim/averages.h"
@@ -13,6 +14,16 @@
 
 namespace mcdem::inline sim {
 namespace {
+
+/// Why a replica stops that is not to go on beyond its law; empty where it goes on.
+std::string beyond_law(const Replica& replica, const Scan& scan) {
+    const auto tested = tested_overlap(replica.contact.model);
+    if (!replica.numerics.stop_beyond_law || !tested || !(scan.max_overlap > *tested)) return "";
+    return fmt::format(
+        "grains overlap by {:.3f} of the sum of their radii, more than the law of {} was tested for, {} "
+        "(compress less: raise plate.end; or set numerics.stop_beyond_law = false)",
+        scan.max_overlap, name(replica.contact.model), *tested);
+}
 
 /// What a user can do about each way in which a replica stops (kernels/status.h).
 std::string cause_of(const IntervalResult& result, const Replica& replica, int slots) {
@@ -119,7 +130,16 @@ bool Simulation::advance(const ScanSink& on_scan, const FailureSink& on_failure)
             runners_[r].stop();
             continue;
         }
-        if (tag) on_scan(r, scan(r, *tag, results[r]));
+        if (tag) {
+            Scan recorded = scan(r, *tag, results[r]);
+            const std::string beyond = beyond_law(scene_.replicas[r], recorded);
+            on_scan(r, std::move(recorded));
+            if (!beyond.empty()) {
+                on_failure(r, {runners_[r].state().step, -1, beyond});
+                runners_[r].stop();
+                continue;
+            }
+        }
         if (!runners_[r].hindrance().empty())
             on_failure(r, {runners_[r].state().step, -1, runners_[r].hindrance()});
     }

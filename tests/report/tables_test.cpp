@@ -67,6 +67,16 @@ TEST(TableOfModels, marks_what_did_not_reach_full_stroke) {
     EXPECT_THAT(text, HasSubstr("*: no replica reached full stroke"));
 }
 
+TEST(TableOfModels, says_where_a_law_was_not_tested) {
+    auto run = synthetic::run({{.model = "elastic_sphere", .levels = 2}}, 1);
+    EXPECT_THAT(to_text(table_of_models(model_table(group_by_setting(run))), TableFormat::terminal),
+                Not(HasSubstr("tested")));
+    run.recordings[0].scans[1].max_overlap = 0.15;
+    EXPECT_THAT(to_text(table_of_models(model_table(group_by_setting(run))), TableFormat::terminal),
+                HasSubstr("Elastic sphere: from 30.00 mm on grains overlap more than the law was tested for "
+                          "(0.10 of the sum of their radii), by up to 0.15"));
+}
+
 TEST(CsvOfModels, has_a_column_for_each_key_that_is_not_the_same_in_all) {
     auto run = synthetic::run({{.model = "mc_dem", .top = 12}}, 2);
     run.recordings[1].parameters["contact.gamma"] = "1.125";

@@ -155,6 +155,40 @@ TEST(Failure, SimulationNamesReplicaGrainStepAndCause) {
     EXPECT_DOUBLE_EQ(simulation.progress(), 1);
 }
 
+// Two grains on top of each other, pressed by 3 to 14 % of the sum of their radii.
+TEST(Failure, BeyondItsLawAReplicaGoesOnOrStopsAsTheSceneAsks) {
+    Replica going_on = test_replica(ContactModel::elastic_sphere), stopping = going_on, other = going_on;
+    stopping.numerics.stop_beyond_law = other.numerics.stop_beyond_law = true;
+    other.contact.model = ContactModel::independent;  // no law that was tested
+    std::vector<Start> starts;
+    for (Replica* replica : {&going_on, &stopping, &other}) {
+        replica->box = {0.03, 0.03};
+        replica->walls.youngs_modulus = 1e9;
+        replica->grains.friction = replica->walls.friction = 0;
+        replica->plate.start = 0.0388;
+        replica->plate.end = 0.034;
+        starts.push_back({*replica, {{{0.015, 0.015, 0.0097}, {0.015, 0.015, 0.0291}}, {0.02, 0.02}}});
+    }
+    auto scene = short_scene(starts);
+    for (auto& replica : scene.replicas) replica.protocol.scans_per_stroke = 4;
+    mcdem::Simulation simulation(device(), scene, {starts[0].packing, starts[1].packing, starts[2].packing});
+    std::vector<std::vector<double>> overlaps(3);
+    std::vector<std::pair<int, mcdem::Failure>> failures;
+    while (simulation.advance(
+        [&](int r, const mcdem::Scan& scan) { overlaps[r].push_back(scan.max_overlap); },
+        [&](int r, const mcdem::Failure& failure) { failures.emplace_back(r, failure); })) {
+    }
+    EXPECT_EQ(overlaps[0].size(), 8u);
+    EXPECT_EQ(overlaps[2].size(), 8u);
+    const auto first = std::ranges::find_if(overlaps[0], [](double overlap) { return overlap > 0.1; });
+    ASSERT_NE(first, overlaps[0].end());
+    EXPECT_EQ(overlaps[1], std::vector(overlaps[0].begin(), first + 1));
+    ASSERT_EQ(failures.size(), 1u);
+    EXPECT_EQ(failures[0].first, 1);
+    EXPECT_THAT(failures[0].second.cause,
+                testing::HasSubstr("more than the law of elastic_sphere was tested"));
+}
+
 TEST(Failure, AdviceNamesOnlyKeysThatTheModelUses) {
     const Start start = squeezed(ContactModel::elastic_half_space, 1, 0.35, 5);
     mcdem::Simulation simulation(device(), short_scene({start}), {start.packing});

@@ -58,6 +58,14 @@ std::string rate_note(double rate_error) {
         rate_error > too_much ? "; set protocol.rate_tolerance for less, `mcdem converge` measures it" : "");
 }
 
+std::string beyond_note(const std::string& setting, const BeyondLaw& beyond) {
+    return fmt::format(
+        "{}: from {} mm on grains overlap more than the law was tested for ({:.2f} of the sum of their "
+        "radii), by "
+        "up to {:.2f}; numerics.stop_beyond_law stops there",
+        words_for(setting), number(beyond.displacement * 1e3, 2), beyond.tested, beyond.max_overlap);
+}
+
 TextTable table_of_models(const ModelTable& models) {
     TextTable table;
     const auto full_stroke = std::isfinite(models.displacement)
@@ -76,6 +84,8 @@ TextTable table_of_models(const ModelTable& models) {
     }
     if (std::ranges::any_of(models.rows, [](const ModelRow& row) { return row.reached.has_value(); }))
         table.notes.push_back("*: no replica reached full stroke; force and ratio are of the last scan");
+    for (const auto& row : models.rows)
+        if (row.beyond) table.notes.push_back(beyond_note(row.setting, *row.beyond));
     if (std::isfinite(models.rate_error)) table.notes.push_back(rate_note(models.rate_error));
     return table;
 }
