@@ -120,7 +120,7 @@ void fill_averages(Scan& scan, const Box& box, const std::vector<double>& diamet
         ++pairs;
         branch += apart(now, scan.position[contact.grain], scan.position[contact.partner]).norm();
     }
-    scan.max_overlap = max_overlap(scan, box, diameter);
+    scan.max_overlap = max_overlap(scan, now, diameter);
     scan.coordination_number = static_cast<double>(ends) / diameter.size();
     scan.mean_force = contacts ? force / contacts : not_a_number;
     scan.branch_length = pairs ? branch / pairs : not_a_number;
