@@ -5,29 +5,45 @@ STIFF_WALL = 50e6                                       # [Pa]
 ABSTAIN = ["unknown_effect"]
 
 
-def liggghts(further="", tangential="history", tangential_damping="off", **changes):
+def liggghts(further="", tangential="history", tangential_damping="off", moduli=(E,), wall_youngs_modulus=STIFF_WALL,
+             friction=FRICTION, wall_friction=FRICTION, floor_friction=None, cohesion_energy=0, rolling=0, gamma=0, skin=0.001):
     """Variables of liggghts.in. LIGGGHTS adds the damping of sticking contacts to friction without a limit, so that f_t/f_n
     reaches 0.1 where mu is 0.03; without that damping Coulomb's limit holds, as it does in the scene."""
+    count = len(moduli)
+    types = count + 2  # of grains, walls, floor
+
+    def table(between_grains, at_walls, at_floor):
+        def value(a, b):
+            return at_floor if max(a, b) == types - 1 else at_walls if max(a, b) == count else between_grains
+        return " ".join(str(value(a, b)) for a in range(types) for b in range(types))
+
     return {"program": "liggghts", "input": "liggghts.in", "models": f"tangential {tangential} {further}",
-            "tangential_damping": tangential_damping, "skin": 0.001, "youngs_modulus": E, "wall_youngs_modulus": STIFF_WALL,
-            "friction": FRICTION, "wall_friction": FRICTION, "cohesion_energy": 0, "rolling": 0, "gamma": 0, **changes}
+            "tangential_damping": tangential_damping, "skin": skin, "gamma": gamma, "types": types, "materials": count,
+            "wall_type": count + 1, "floor_type": count + 2,
+            "moduli": " ".join(map(str, [*moduli, wall_youngs_modulus, wall_youngs_modulus])),
+            "poisson_ratios": " ".join([str(NU)] * types), "restitutions": table(*[RESTITUTION] * 3),
+            "frictions": table(friction, wall_friction, wall_friction if floor_friction is None else floor_friction),
+            "cohesions": table(cohesion_energy, 0, 0), "rollings": table(*[rolling] * 3)}
 
 
-def lammps(normal=f"hertz/material {E} {RESTITUTION} {NU}", wall="hertz/material", wall_stiffness=1, further=""):
+def lammps(work=0, modulus=E, friction=FRICTION, wall_friction=FRICTION, floor_friction=None,
+           wall_stiffness=1, further=""):
     """Variables of lammps.in. The modulus given to a wall of the version of 29 Sep 2021 is E* itself where nu = 0.5 (for
     grains E* = E / (2 (1 - nu^2))): E / (1 - nu^2) makes a rigid one, its shear stiffness 8 G* = 8 G / (2 - nu) is written
-    out."""
-    shear = 8 * E / (2 * (1 + NU) * (2 - NU))
-    wall_modulus = wall_stiffness * E / (1 - NU**2)
+    out. `work`: of adhesion, of which LAMMPS takes half: it attracts by 4 pi (w/2) R*."""
+    shear = 8 * modulus / (2 * (1 + NU) * (2 - NU))
+    wall_modulus = wall_stiffness * modulus / (1 - NU**2)
+    sticking = f" {work / 2}" if work else ""
+    normal = "dmt" if work else "hertz/material"
+
+    def wall(limit):
+        return (f"{normal} {wall_modulus} {RESTITUTION} {NU}{sticking} "
+                f"tangential mindlin {shear} 1.0 {limit} damping tsuji")
+
     return {"program": "lmp", "input": "lammps.in", "skin": 0.001,
-            "law": f"{normal} tangential mindlin NULL 1.0 {FRICTION} {further} damping tsuji",
-            "wall_law": f"{wall.split()[0]} {wall_modulus} {RESTITUTION} {NU} {' '.join(wall.split()[1:])} "
-                        f"tangential mindlin {shear} 1.0 {FRICTION} damping tsuji"}
-
-
-def dmt(work):
-    """LAMMPS takes half of the work of adhesion: it attracts by 4 pi (w/2) R*."""
-    return lammps(normal=f"dmt {E} {RESTITUTION} {NU} {work / 2}", wall=f"dmt {work / 2}")
+            "law": f"{normal} {modulus} {RESTITUTION} {NU}{sticking} tangential mindlin NULL 1.0 {friction} {further} "
+                   "damping tsuji",
+            "wall_law": wall(wall_friction), "floor_law": wall(wall_friction if floor_friction is None else floor_friction)}
 
 
 CASES = {
@@ -36,7 +52,7 @@ CASES = {
     "liggghts_multicontact": {
         "effect": "cross_contact: multi-contact model, gamma = 1", "expected": ["cross_contact"],
         "reality": liggghts("surface multicontact", skin=0.004, gamma=1.0)},
-    "lammps_adhesion": {"effect": "adhesion: DMT, w = 0.1 J/m2", "expected": ["adhesion"], "reality": dmt(0.1)},
+    "lammps_adhesion": {"effect": "adhesion: DMT, w = 0.1 J/m2", "expected": ["adhesion"], "reality": lammps(work=0.1)},
     "liggghts_friction": {
         "effect": "friction: 0.10 for 0.03 between grains", "expected": ["friction"], "reality": liggghts(friction=0.10)},
     "liggghts_wall_friction": {
@@ -48,7 +64,7 @@ CASES = {
         "effect": "rolling_resistance: spring, dashpot, slider, mu_r = 0.1", "expected": ["rolling_resistance"],
         "reality": lammps(further="rolling sds 20.0 0.0 0.1")},
     "liggghts_no_history": {
-        "effect": "friction without history: viscous up to mu F_n", "expected": ["friction_history", "friction"] + ABSTAIN,
+        "effect": "friction without history: viscous up to mu F_n", "expected": ["friction_history", "friction", "wall_friction"] + ABSTAIN,
         "reality": liggghts(tangential="no_history", tangential_damping="on")},
     "liggghts_unlimited_damping": {
         "effect": "not in the library: damping beyond Coulomb's limit, LIGGGHTS's own", "expected": ABSTAIN,

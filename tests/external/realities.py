@@ -10,10 +10,10 @@ BOX = 0.125                        # [m]
 START, STROKE = 0.1240, 0.0223     # of the plate, as scenes/challenge.toml has it [m]
 SPEED = 0.1                        # of the plate [m/s]
 SCANS = 12                         # a stroke
-STEPS = 170                        # between scans: a time step of 0.08 Rayleigh times
+STEPS = 170                        # between scans at that speed: a time step of 0.08 Rayleigh times
 TIME_STEP = STROKE / (SCANS * STEPS * SPEED)
 RELAXED = 12 * STEPS               # steps with a drag,
-BEGIN = 15 * STEPS                 # and without, before the plate moves
+BEGIN = 15 * STEPS                 # and without, at least, before the plate moves
 GRAINS = 216
 DENSITY = 11.5                     # [kg/m3]
 GRAVITY = 9.81                     # [m/s2]
@@ -41,11 +41,13 @@ def execute(program, script, folder, variables):
     return done.stdout
 
 
-def write_data(path, rows):
-    """A data file that both codes read: diameter and centre of every grain."""
-    lines = ["packing", "", f"{len(rows)} atoms", "2 atom types", "", f"-0.01 {BOX + 0.01} xlo xhi", f"-0.01 {BOX + 0.01} ylo yhi",
+def write_data(path, rows, types=2, materials=None):
+    """A data file that both codes read: diameter and centre of every grain. `materials`: their types, all 1 where left out."""
+    lines = ["packing", "", f"{len(rows)} atoms", f"{types} atom types", "", f"-0.01 {BOX + 0.01} xlo xhi", f"-0.01 {BOX + 0.01} ylo yhi",
              "-0.01 0.9 zlo zhi", "", "Atoms", ""]
-    lines += [f"{n} 1 {d:.10g} {DENSITY} {x:.10g} {y:.10g} {z:.10g}" for n, (d, x, y, z) in enumerate(rows, 1)]
+    materials = materials or [1] * len(rows)
+    lines += [f"{n} {m} {d:.10g} {DENSITY} {x:.10g} {y:.10g} {z:.10g}"
+              for n, (m, (d, x, y, z)) in enumerate(zip(materials, rows), 1)]
     path.write_text("\n".join(lines) + "\n")
 
 
@@ -85,15 +87,21 @@ def make_packing(folder, seed, modulus):
     return [tuple(row[1:]) for row in max(read_dump(folder / "packing.dump").items())[1]]
 
 
-def write_walls(folder):
+def plate_height(height, tilt, x):
+    """Of the plate's face at x: it is tilted about the middle of the box."""
+    return height + tilt * (x - BOX / 2)
+
+
+def write_walls(folder, tilt):
     """Every wall as two triangles, a little wider than the box."""
     low, high, top = -0.005, BOX + 0.005, 0.16
+    left, right = plate_height(START, tilt, low), plate_height(START, tilt, high)
     planes = {"x_min": [(0, low, low), (0, high, low), (0, high, top), (0, low, top)],
               "x_max": [(BOX, low, low), (BOX, high, low), (BOX, high, top), (BOX, low, top)],
               "y_min": [(low, 0, low), (high, 0, low), (high, 0, top), (low, 0, top)],
               "y_max": [(low, BOX, low), (high, BOX, low), (high, BOX, top), (low, BOX, top)],
               "floor": [(low, low, 0), (high, low, 0), (high, high, 0), (low, high, 0)],
-              "plate": [(low, low, START), (high, low, START), (high, high, START), (low, high, START)]}
+              "plate": [(low, low, left), (high, low, right), (high, high, right), (low, high, left)]}
     for name, corners in planes.items():
         text = f"solid {name}\n"
         for triangle in ((0, 1, 2), (0, 2, 3)):
@@ -123,12 +131,12 @@ def wall_contacts_of(program, rows):
     return [(int(i) - 1, WALLS[int(mesh)], force) for mesh, i, *force in rows]
 
 
-def point_of(grains, i, partner, height):
+def point_of(grains, i, partner, height, tilt):
     """Midway between the surfaces of two grains; a wall's point under the centre."""
     d, *centre = grains[i]
     if isinstance(partner, str):
         axis = "xyz".index(partner[0]) if partner[1] == "_" else 2
-        centre[axis] = {"x_min": 0, "y_min": 0, "floor": 0, "plate": height}.get(partner, BOX)
+        centre[axis] = {"x_min": 0, "y_min": 0, "floor": 0, "plate": plate_height(height, tilt, centre[0])}.get(partner, BOX)
         return centre
     other, *there = grains[partner]
     distance = math.dist(centre, there)
@@ -136,11 +144,11 @@ def point_of(grains, i, partner, height):
     return [a + part * (b - a) for a, b in zip(centre, there)]
 
 
-def expect_all_contacts(scan, atoms, contacts):
+def expect_all_contacts(scan, atoms, contacts, gravity):
     """The force on every grain is that of its contacts and its weight. LIGGGHTS computes contacts anew for its list, from
     bulges one step younger: 8 % of the mean contact force apart at most, where grains rearrange; a contact that is missing
     shows by all of its force."""
-    missing = [[*row[5:7], row[7] + math.pi / 6 * row[1]**3 * DENSITY * GRAVITY] for row in atoms]
+    missing = [[f - math.pi / 6 * row[1]**3 * DENSITY * g for f, g in zip(row[5:8], gravity)] for row in atoms]
     for i, partner, force in contacts:
         for axis in range(3):
             missing[i][axis] -= force[axis]
@@ -152,33 +160,68 @@ def expect_all_contacts(scan, atoms, contacts):
         raise Failed(f"scan {scan}: the contacts of a grain miss {worst} N of its force, with {mean} N a contact on average")
 
 
-def scan_of(program, n, top, atoms, pairs, walls):
+def scan_of(reality, n, top, atoms, pairs, walls):
+    program, tilt = reality["program"], reality["tilt"]
     height = START - STROKE / SCANS * min(n, 2 * SCANS - n)
     grains = [tuple(row[1:5]) for row in atoms]
     contacts = pairs_of(program, pairs) + wall_contacts_of(program, walls)
     plate = -sum(force[2] for _, partner, force in contacts if partner == "plate")
     if abs(plate - top) > 0.01 * abs(top) + 1e-4:
         raise Failed(f"scan {n}: contacts push the plate with {plate} N, its gauge says {top} N")
-    expect_all_contacts(n, atoms, contacts)
+    expect_all_contacts(n, atoms, contacts, gravity_of(reality))
     return {"height": height, "phase": "load" if n <= SCANS else "unload", "top": top, "grains": grains,
-            "contacts": [(i, j, point_of(grains, i, j, height), force) for i, j, force in contacts]}
+            "contacts": [(i, j, point_of(grains, i, j, height, tilt), force) for i, j, force in contacts]}
+
+
+def gravity_of(reality):
+    """[m/s2], along x, y and z. `lean`: tangent of the angle by which the box stands crooked."""
+    down = GRAVITY * reality["weight"] / math.hypot(1, reality["lean"])
+    return [down * reality["lean"], 0.0, -down]
+
+
+def schedule(reality):
+    """Steps between scans, and those at which the plate starts, has reached the lowest place, leaves it, and is back."""
+    steps = round(STEPS * reality["slower"])
+    begin = steps * math.ceil(BEGIN / steps)
+    turn = begin + SCANS * steps
+    back = turn + reality["held"] * steps
+    return steps, begin, turn, back, back + SCANS * steps
+
+
+# What a reality has besides what its input script asks for.
+DEFAULTS = {
+    "slower": 1,       # times than SPEED
+    "held": 0,         # intervals between scans for which the plate rests at its lowest place
+    "tilt": 0,         # slope of the plate along x
+    "weight": 1,       # over that of grains of DENSITY
+    "lean": 0,         # of the box along x
+    "types": 2,        # of atoms in the packing's file
+    "materials": None  # number of materials of grains, dealt at random; types 1, 2, ..
+}
 
 
 def simulate(folder, seed, reality):
     """Scans of the case: plate position, phase and force, grains as (diameter, x, y, z), contacts as (grain, partner, point,
     force on grain)."""
     folder.mkdir(parents=True, exist_ok=True)
+    reality = {**DEFAULTS, **reality}
     packing = make_packing(folder, seed, 23.3e3)
-    write_data(folder / "packing.data", packing)
-    write_walls(folder)
-    variables = {key: value for key, value in reality.items() if key not in ("program", "input")}
+    chance = random.Random(seed)
+    materials = [chance.randint(1, reality["materials"]) for _ in packing] if reality["materials"] else None
+    write_data(folder / "packing.data", packing, reality["types"], materials)
+    write_walls(folder, reality["tilt"])
+    steps, begin, turn, back, end = schedule(reality)
+    pull = gravity_of(reality)
+    variables = {key: value for key, value in reality.items() if key not in ("program", "input", *DEFAULTS)}
     output = execute(reality["program"], reality["input"], folder, {
-        **variables, "size_x": BOX, "size_y": BOX, "start": START, "time_step": TIME_STEP, "plate_speed": SPEED, "steps": STEPS,
-        "relaxed": RELAXED, "begin": BEGIN, "turn": BEGIN + SCANS * STEPS, "end": BEGIN + 2 * SCANS * STEPS})
+        **variables, "size_x": BOX, "size_y": BOX, "start": START, "time_step": TIME_STEP,
+        "types": reality["types"], "plate_speed": STROKE / (SCANS * steps * TIME_STEP), "steps": steps, "relaxed": RELAXED, "begin": begin, "turn": turn,
+        "back": back, "end": end, "slope": reality["tilt"], "gravity": math.hypot(*pull), "gravity_x": pull[0],
+        "gravity_z": pull[2]})
     tops = top_forces(reality["program"], output)
     grains, pairs, walls = (read_dump(folder / f"{name}.dump") for name in ("grains", "pairs", "walls"))
     try:
-        return [scan_of(reality["program"], n, *(table[BEGIN + n * STEPS] for table in (tops, grains, pairs, walls)))
-                for n in range(2 * SCANS + 1)]
+        return [scan_of(reality, n, *(table[(begin if n <= SCANS else back - SCANS * steps) + n * steps]
+                                      for table in (tops, grains, pairs, walls))) for n in range(2 * SCANS + 1)]
     except KeyError as step:
         raise Failed(f"{folder}: nothing was dumped at step {step}") from step

@@ -1,0 +1,141 @@
+"""The challenge of other codes: what is hidden is what is said, the truth is sealed, and the score counts right.
+
+challenge_test.py MCDEM FOLDER; exit code 77 where one of the programs is missing.
+"""
+import copy
+import hashlib
+import importlib.machinery
+import importlib.util
+import json
+import math
+import pathlib
+import random
+import shutil
+import subprocess
+import sys
+
+import hidden
+import realities
+
+HERE = pathlib.Path(__file__).resolve().parent
+
+
+def load_challenge():
+    loader = importlib.machinery.SourceFileLoader("challenge", str(HERE / "challenge"))
+    module = importlib.util.module_from_spec(importlib.util.spec_from_loader("challenge", loader))
+    loader.exec_module(module)
+    return module
+
+
+def scans():
+    """Three grains in a row, a contact of two and one at the floor; down once and back."""
+    grains = [(0.02, 0.03 + 0.02 * n, 0.0625, 0.01) for n in range(3)]
+    contacts = [(0, 1, [0.04, 0.0625, 0.01], [0.3, 0.0, 0.4]), (2, "floor", [0.07, 0.0625, 0.0], [0.0, 0.0, 1.0])]
+    return [{"height": 0.12 - 0.01 * depth, "phase": phase, "top": top, "grains": list(grains), "contacts": list(contacts)}
+            for depth, phase, top in ((0, "load", 0.0), (1, "load", 2.0), (2, "load", 6.0), (1, "unload", 1.0))]
+
+
+def read(name, amplitude):
+    changed = copy.deepcopy(scans())
+    hidden.find(name).reading(changed, amplitude, random.Random(1))
+    return changed
+
+
+def tops(changed):
+    return [scan["top"] for scan in changed]
+
+
+def test_readings():
+    assert read("force_bias", 0.1)[0]["contacts"][0][3][2] == 0.4 * 1.1
+    assert math.isclose(read("force_saturation", 2)[0]["contacts"][0][3][2], 0.4 / (1 + 2 * 0.5))
+    dim = read("dim_walls", 0.3)[0]["contacts"]
+    assert dim[0][3] == [0.3, 0.0, 0.4] and math.isclose(dim[1][3][2], 0.7)
+    assert [len(scan["contacts"]) for scan in read("missing_contacts", 1)] == [1] * 4, "those at walls stay"
+    fewer = read("missing_grains", 1 / 3)[0]
+    assert len(fewer["grains"]) == 2 and all(i < 2 for i, *_ in fewer["contacts"])
+    assert math.isclose(read("diameter_error", 1e-3)[0]["grains"][1][0], 0.019)
+    assert read("position_bias", 0.1)[0]["grains"][0][1:] == (0.0625 - 1.1 * 0.0325, 0.0625, 0.01 * 1.1)
+    assert read("vertical_stretch", 0.1)[0]["grains"][0][1:] == (0.03, 0.0625, 0.01 * 1.1)
+    edge = 0.0625 - (1 + 0.1 * (0.0325 / 0.0625)**2) * 0.0325
+    assert math.isclose(read("barrel", 0.1)[0]["grains"][0][1], edge)
+    assert all(map(math.isclose, tops(read("late_force", 0.5)), [0, 1, 4, 3.5]))
+    assert all(map(math.isclose, tops(read("gauge_drift", 0.3)), [0, 2.2, 7.2, 1.3]))
+    assert all(map(math.isclose, tops(read("gauge_hysteresis", 0.6)), [0, 2, 6, 1.5]))
+    assert all(map(math.isclose, tops(read("zero_drift", 0.1)), [0, 2.2, 6.4, 1.6]))
+    assert all(map(math.isclose, [scan["height"] for scan in read("backlash", 1e-3)], [0.12, 0.11, 0.10, 0.111]))
+    assert math.isclose(read("plate_compliance", 1e-3)[2]["height"], 0.10 - 6e-3)
+
+
+def test_moduli():
+    logs = [math.log(m / 23.3e3) for m in hidden.scattered_moduli("liggghts", 0.4, None)["moduli"]]
+    assert abs(sum(logs)) < 1e-6 and math.isclose(math.sqrt(sum(x * x for x in logs) / 8), 0.4, rel_tol=1e-6)
+
+
+def answered(kind, effects, verdict, causes=(), limit=0.01):
+    listed = [{"effect": e, "group": [e], "amplitude": a, "amplitude_error": 0.01, "confidence": p} for e, a, p in causes]
+    return {"kind": kind, "code": "lammps", "effects": [{"name": n, "amplitude": a} for n, a in effects],
+            "answer": {"verdict": verdict, "causes": listed, "shrink": {"fraction": 0.9, "confirmed": 0.95},
+                       "detection_limits": [{"effect": n, "minimum_amplitude": limit} for n, _ in effects]}}
+
+
+def test_score(challenge):
+    cases = [
+        answered("none", [], "no_gap"),
+        answered("none", [], "effect", [("friction", 0.05, 0.9)]),
+        answered("effect", [("friction", 0.05)], "effect", [("friction", 0.06, 0.9)]),
+        answered("effect", [("friction", 0.05)], "effect", [("adhesion", 0.1, 0.5)]),
+        answered("effect", [("friction", 0.05)], "no_gap", limit=0.04),  # not clear
+        answered("effect", [("adhesion", 0.5)], "unknown_effect"),
+        answered("pair", [("friction", 0.05), ("adhesion", 0.5)], "effect", [("adhesion", 0.5, 0.9), ("friction", 0.05, 0)]),
+        answered("pair", [("friction", 0.05), ("adhesion", 0.5)], "effect", [("adhesion", 0.5, 0.9)]),
+        answered("unknown", [("barrel", 0.1)], "effect", [("adhesion", 0.5, 0.8)]),
+        answered("unknown", [("barrel", 0.1)], "unknown_effect"),
+    ]
+    told = challenge.figures(cases)
+    assert told["no effect: a gap is claimed"].startswith("1 of 2:")
+    assert told["one clear effect: detected"].startswith("3 of 3:")
+    assert told["one clear effect, detected: named first"].startswith("1 of 3:")
+    assert told["two clear effects: both named"].startswith("1 of 2:")
+    assert told["not in the library: an effect is named"].startswith("1 of 2: 50 % [9, 91]"), "Wilson 1927"
+    assert told["an effect is named: it is right"].startswith("3 of 6:")
+    brier = (0.9**2 + 0.1**2 + 0.5**2 + 0.1**2 + 0.1**2 + 0.8**2) / 6
+    assert told["Brier score (of the base rate)"] == f"{brier:.3f} (0.250)"
+    assert told["90 % interval of the amplitude holds it"].startswith("1 of 1:")
+
+
+def test_sealed(mcdem, folder):
+    def make(*options):
+        return subprocess.run([HERE / "challenge", "make", "--out", folder / "made", "--truth", folder / "truth.json", "--seed", "2",
+                               "--per-effect", "0", "--pairs", "0", "--per-unknown", "0", *options], capture_output=True, text=True)
+
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+    assert make("--none", "2").returncode == 0
+    seal = hashlib.sha256((folder / "truth.json").read_bytes()).hexdigest()
+    opened = json.loads((folder / "made/challenge.json").read_text())
+    assert opened["sealed_sha256"] == seal and len(opened["cases"]) == 2
+    assert {case["code"] for case in json.loads((folder / "truth.json").read_text())["cases"]} == {"liggghts", "lammps"}
+    for case in opened["cases"]:
+        place = folder / "made" / case["folder"]
+        assert subprocess.run([mcdem, "experiment", "check", place], capture_output=True).returncode == 0
+        assert "liggghts" not in (place / "experiment.toml").read_text().lower()
+    before = {path: path.stat().st_mtime_ns for path in folder.glob("made/case_*/*.csv")}
+    assert make("--none", "2").returncode == 0
+    assert before == {path: path.stat().st_mtime_ns for path in folder.glob("made/case_*/*.csv")}
+    other = make("--none", "3")
+    assert other.returncode != 0 and "another challenge" in other.stderr, other.stderr
+
+
+def main():
+    if realities.missing_programs():
+        print("skipped: missing", *realities.missing_programs())
+        return 77
+    test_readings()
+    test_moduli()
+    test_score(load_challenge())
+    test_sealed(sys.argv[1], pathlib.Path(sys.argv[2]))
+    print("challenge: readings, seal and score as said")
+    return 0
+
+
+sys.exit(main())
