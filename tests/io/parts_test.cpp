@@ -43,7 +43,7 @@ TEST_P(PartsTest, MergedAreTheBytesOfTheWholeRun) {
 
 TEST_P(PartsTest, ADamagedOneIsNamedAndNothingIsWritten) {
     auto bytes = read_bytes(parts_[1]);
-    bytes[bytes.size() / 2] ^= 1;
+    for (std::size_t k = bytes.size() / 2; k < bytes.size(); k += 64) bytes[k] ^= 1;  // not in gaps alone
     for (const std::string& damaged : {bytes, bytes.substr(0, bytes.size() / 2)}) {
         write_bytes(parts_[1], damaged);
         try {

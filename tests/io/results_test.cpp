@@ -78,6 +78,7 @@ TEST(results, ragged_and_missing_parts_come_back) {
     run.recordings[1].scans[2].contacts.clear();
     run.recordings[2].scans.resize(1);
     run.recordings[3].diameter.clear();
+    run.recordings[3].species.clear();
     run.recordings[3].parameters.clear();
     for (auto& scan : run.recordings[3].scans) {
         scan.position.clear();

@@ -193,7 +193,8 @@ TEST(PlateCompliance, ArrivesWhenItGivesAsMuchAsItShould) {
 }
 
 TEST(PlateCompliance, NothingIsSettledBeforeThePlateArrives) {
-    mcdem::ProtocolRunner runner(single_grain(), 1e-4, {2 * radius, 0, 1});
+    mcdem::ProtocolRunner runner(
+        single_grain(), 1e-4, {.diameter = 2 * radius, .count = 1, .density = single_grain().grains.density});
     mcdem::IntervalResult still;
     still.steps = 60;
     still.elastic_energy = 1;

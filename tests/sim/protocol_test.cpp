@@ -11,7 +11,7 @@ namespace mcdem {
 namespace {
 
 constexpr double time_step = 1e-3;
-const PackingScale scale{0.02, 0, 100};
+const PackingScale scale{.diameter = 0.02, .count = 100, .density = GrainMaterial{}.density};
 
 Replica replica_of(int cycles, int scans, bool stop_at_scans) {
     Replica replica;

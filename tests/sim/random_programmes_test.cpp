@@ -13,7 +13,13 @@ namespace mcdem {
 namespace {
 
 constexpr double start = 0.1, end = 0.06, time_step = 1e-4, touching = 0.098;
-const PackingScale scale{0.02, 0, 60, 60 * std::numbers::pi / 6 * 8e-6};
+constexpr double volume = 60 * std::numbers::pi / 6 * 8e-6, density = 11.5;
+const PackingScale scale{.diameter = 0.02,
+                         .count = 60,
+                         .volume = volume,
+                         .mass = volume * density,
+                         .density = density,
+                         .modulus = 23.3e3 / (1 - 0.5 * 0.5)};
 
 /// Hertz between the plate and a floor of grains, elastic and without inertia [N].
 double spring_force(double plate_z) { return 500 * std::pow(std::max(0.0, touching - plate_z), 1.5); }
