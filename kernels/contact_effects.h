@@ -95,7 +95,7 @@ INLINE lanes3 rolling_couple(Grain at, Neighbours seen, lanes normal_force, lane
     lanes fifth_there = r_there * r_there * r_there * r_there * r_there;
 #if SPECIES > 1
     fifth *= at.material->relative_density;
-    fifth_there *= of_neighbours(&at.materials->relative_density, seen);
+    fifth_there *= of_neighbours(at, seen, PLACE_OF(relative_density));
 #endif
     const lanes reduced_inertia = at.materials->density * (R(8) / R(15)) * PI *
                                   WHERE(seen.wall, fifth, R(1) / (R(1) / fifth + R(1) / fifth_there));

@@ -44,7 +44,7 @@ INLINE Pressed press(Grain at, const int effects, Neighbours seen, Displaced b, 
     lanes modulus = of_pairs(at.material->modulus, seen);
     if (effects & EFFECT_MODULUS_SCATTER)
         modulus = scattered_modulus(at, seen, modulus, at.material->grain_compliance,
-                                    of_neighbours(&at.materials->grain_compliance, seen));
+                                    of_neighbours(at, seen, PLACE_OF(grain_compliance)));
     lanes outward = b.here + b.there;
     if (effects & EFFECT_BULGE_CONTACTS)
         outward = counted_displacements(gap, outward, replica->bulge_contacts);
@@ -82,7 +82,7 @@ INLINE lanes shear_stiffness(Grain at, const int effects, Neighbours seen, lanes
     lanes modulus = of_pairs(at.material->shear, seen);
     if (effects & EFFECT_MODULUS_SCATTER)
         modulus = scattered_modulus(at, seen, modulus, at.material->shear_compliance,
-                                    of_neighbours(&at.materials->shear_compliance, seen));
+                                    of_neighbours(at, seen, PLACE_OF(shear_compliance)));
     return R(8) * modulus * contact_radius;
 }
 

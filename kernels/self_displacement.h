@@ -11,11 +11,10 @@ typedef struct {
 } SelfTerms;
 
 INLINE SelfTerms self_terms_there(Grain at, Neighbours seen) {
-    global const Material* first = at.materials;
     const SelfTerms terms = {
-        of_neighbours(first->sphere_self, seen),     of_neighbours(first->sphere_self + 1, seen),
-        of_neighbours(first->sphere_self + 2, seen), of_neighbours(first->sphere_self + 3, seen),
-        of_neighbours(first->sphere_self + 4, seen), of_neighbours(&first->sphere_scale, seen)};
+        of_neighbours(at, seen, PLACE_OF(sphere_self[0])), of_neighbours(at, seen, PLACE_OF(sphere_self[1])),
+        of_neighbours(at, seen, PLACE_OF(sphere_self[2])), of_neighbours(at, seen, PLACE_OF(sphere_self[3])),
+        of_neighbours(at, seen, PLACE_OF(sphere_self[4])), of_neighbours(at, seen, PLACE_OF(sphere_scale))};
     return terms;
 }
 INLINE SelfTerms self_terms_here(Grain at) {

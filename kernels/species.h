@@ -30,13 +30,16 @@ INLINE lanes of_pairs(global const real* row, Neighbours seen) {
 #endif
 }
 
-/* One constant of the neighbours' own materials, by its place in that of the first species; any where there
-   is a wall. */
-INLINE lanes of_neighbours(global const real* first, Neighbours seen) {
+/* Of a constant in a material, in reals, of which it is made. */
+#define PLACE_OF(member) ((int)((size_t) & ((global const Material*)0)->member / sizeof(real)))
+
+/* One constant of the neighbours' own materials, by its place; any where there is a wall. */
+INLINE lanes of_neighbours(Grain at, Neighbours seen, int place) {
+    global const real* of_first = (global const real*)at.materials + place;
 #if SPECIES > 1
-    return gather(first, (seen.species & (MAX_SPECIES - 1)) * (int)(sizeof(Material) / sizeof(real)));
+    return gather(of_first, (seen.species & (MAX_SPECIES - 1)) * (int)(sizeof(Material) / sizeof(real)));
 #else
-    return *first;
+    return *of_first;
 #endif
 }
 
@@ -53,7 +56,7 @@ typedef struct {
    what unlike densities change of m*. One where they are alike, to the bit. */
 INLINE lanes relative_mass(Grain at, Neighbours seen, lanes cubes, real cube, lanes cube_there) {
     const real here = at.material->relative_density;
-    const lanes there = of_neighbours(&at.materials->relative_density, seen);
+    const lanes there = of_neighbours(at, seen, PLACE_OF(relative_density));
     const lanes both = here * there * cubes / add_alike(here * cube, there * cube_there);
     return WHERE(seen.wall, here, both);
 }

@@ -24,6 +24,7 @@ const std::vector<Choice> choices{
     {"second_gain",  &Limits::second_gain,  {4, 8, 12, 20}},
     {"second_share", &Limits::second_share, {0.02, 0.04, 0.08, 0.15, 0.3}},
     {"right_below",  &Limits::right_below,  {0.03, 0.1, 0.3}},
+    {"certain",      &Limits::certain,      {0.7, 0.8, 0.9, 0.95, 1}},
     {"right_above",  &Limits::right_above,  {0.9, 0.94, 0.97, 0.99}},
 };
 // clang-format on

@@ -11,8 +11,9 @@ namespace {
 
 using ::testing::ElementsAre;
 
-/// One that takes away most of the gap.
-Proposal proposal(std::vector<std::size_t> candidates, double gain, double misfit_p, double reduction = 0.9) {
+/// One that takes away nearly all of the gap.
+Proposal proposal(std::vector<std::size_t> candidates, double gain, double misfit_p,
+                  double reduction = 0.96) {
     Proposal p;
     p.amplitudes.assign(candidates.size(), 1);
     p.errors.assign(candidates.size(), 0.1);
@@ -59,13 +60,15 @@ TEST(Decision, ConfidenceFallsWithWhatIsTakenAway) {
         return all_confidence(decide(f, limits));
     };
     EXPECT_NEAR(confidence(1), limits.right_above, 1e-12);
-    EXPECT_NEAR(confidence(limits.reduction + limits.reduction_error), limits.right_above, 1e-12);
-    EXPECT_NEAR(confidence(limits.reduction), 0.5 * (limits.right_above + limits.right_below), 1e-12);
-    EXPECT_NEAR(confidence(limits.reduction - limits.reduction_error), limits.right_below, 1e-12);
+    EXPECT_NEAR(confidence(limits.certain), limits.right_above, 1e-12);
+    const double none = limits.reduction - limits.reduction_error;
+    EXPECT_NEAR(confidence(none), limits.right_below, 1e-12);
+    EXPECT_NEAR(confidence(0.25 * limits.certain + 0.75 * none),
+                0.25 * limits.right_above + 0.75 * limits.right_below, 1e-12);
     EXPECT_NEAR(confidence(-1), limits.right_below, 1e-12);
-    f.proposals[0].confirmed_reduction = 0.9;
+    f.proposals[0].confirmed_reduction = 0.96;
     EXPECT_NEAR(confidence(-1), limits.right_above, 1e-12) << "real runs count";
-    f.placebo = 0.95;
+    f.placebo = 1;
     EXPECT_NEAR(confidence(-1), limits.right_below, 1e-12);
 }
 
@@ -194,9 +197,9 @@ TEST(Decision, UnknownWhereTheBestTakesAwayLittle) {
 TEST(Decision, UnknownWhereAPlaceboDoesNearlyAsWell) {
     Findings f = clear_case();
     const Limits limits;
-    f.placebo = 0.9 - 0.99 * limits.over_placebo;
+    f.placebo = f.proposals[0].reduction - 0.99 * limits.over_placebo;
     EXPECT_EQ(decide(f, limits).verdict, Verdict::unknown_effect);
-    f.placebo = 0.9 - 1.01 * limits.over_placebo;
+    f.placebo = f.proposals[0].reduction - 1.01 * limits.over_placebo;
     EXPECT_EQ(decide(f, limits).verdict, Verdict::effect);
 }
 

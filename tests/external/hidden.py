@@ -180,7 +180,7 @@ def zero_drift(scans, amplitude, chance):
 
 
 LIBRARY = {
-    "cross_contact": Hidden(0.25, 1.0, "multi-contact model, gamma: beyond, dense packings run away", codes=("liggghts",), arguments=lambda code, a, chance: {
+    "cross_contact": Hidden(0.25, 1.5, "multi-contact model, gamma; the strongest may run away and are left out", codes=("liggghts",), arguments=lambda code, a, chance: {
         "further": "surface multicontact", "skin": 0.004, "gamma": a}),
     "friction": Hidden(0.02, 0.11, "more friction between grains", arguments=lambda code, a, chance: {
         "friction": cases.FRICTION + a}),

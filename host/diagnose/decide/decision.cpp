@@ -58,8 +58,9 @@ bool is_better(const Proposal& pair, const Proposal& single, const Limits& limit
 
 /// Probability that an explanation is right, by the part of the gap that it takes away.
 double trust(const Proposal& proposal, const Findings& findings, const Limits& limits) {
-    const double over = proposal.best_reduction() - needed_reduction(findings, limits);
-    const double above = std::clamp(0.5 + 0.5 * over / limits.reduction_error, 0.0, 1.0);
+    const double low = needed_reduction(findings, limits) - limits.reduction_error;
+    const double high = std::max(limits.certain, low + 2 * limits.reduction_error);
+    const double above = std::clamp((proposal.best_reduction() - low) / (high - low), 0.0, 1.0);
     return limits.right_below + above * (limits.right_above - limits.right_below);
 }
 

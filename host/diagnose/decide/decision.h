@@ -14,19 +14,20 @@ namespace mcdem::inline diagnose {
 /// (tests/challenge/README.md), but for `reduction`: over 108 gaps of an independent solver's, 63 of 63
 /// leaders that took away 0.6 or more were right, and 41 of 45 that took away less were wrong.
 struct Limits {
-    double false_alarm = 0.01;     ///< p below which there is a gap
-    double reduction = 0.6;        ///< part of the gap that is to be taken away for a name ..
-    double over_placebo = 0.1;     ///< .. and by how much more than a placebo does
-    double misfit = 0.001;         ///< p below which what one effect leaves is more than noise
-    double pair_misfit = 0.05;     ///< .. above which what two leave is noise
-    double pair_remainder = 0.5;   ///< .. or at most this part of what one leaves
-    double group = 2.0;            ///< log likelihood by which members of a group differ at most ..
-    double group_share = 0.01;     ///< .. or this part of the leader's gain
-    double second_gain = 8.0;      ///< log likelihood that a second effect must gain ..
-    double second_share = 0.02;    ///< .. and this part of the leader's gain
-    double right_below = 0.1;      ///< probability that a leader is right that takes away clearly less ..
-    double right_above = 0.97;     ///< .. and clearly more than `reduction`
-    double reduction_error = 0.1;  ///< what "clearly" is: the probability goes from one to the other
+    double false_alarm = 0.01;    ///< p below which there is a gap
+    double reduction = 0.6;       ///< part of the gap that is to be taken away for a name ..
+    double over_placebo = 0.1;    ///< .. and by how much more than a placebo does
+    double misfit = 0.001;        ///< p below which what one effect leaves is more than noise
+    double pair_misfit = 0.05;    ///< .. above which what two leave is noise
+    double pair_remainder = 0.5;  ///< .. or at most this part of what one leaves
+    double group = 2.0;           ///< log likelihood by which members of a group differ at most ..
+    double group_share = 0.01;    ///< .. or this part of the leader's gain
+    double second_gain = 8.0;     ///< log likelihood that a second effect must gain ..
+    double second_share = 0.02;   ///< .. and this part of the leader's gain
+    double right_below = 0.1;  ///< probability that a leader is right that takes away less than `reduction`
+    double reduction_error = 0.1;  ///< .. by this much,
+    double right_above = 0.97;     ///< .. and of one that takes away
+    double certain = 0.95;         ///< .. this much; in between it is in proportion
     double reduction_margin =
         0.1;  ///< what signatures get wrong in the reduction, on either side of its interval
 };
