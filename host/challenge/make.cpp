@@ -193,8 +193,7 @@ private:
 }  // namespace
 
 std::string make_challenge(Device& device, const Scene& scene, const ChallengeOptions& options) {
-    expect_strokes(scene, "a challenge");
-    expect_one_material(scene, "a challenge");
+    expect_plain_strokes(scene, "a challenge");
     if (fs::weakly_canonical(options.truth) == fs::weakly_canonical(options.folder / "challenge.json"))
         throw InputError(options.truth.string() +
                          ": is what may be known of the challenge: give another file for the truth");

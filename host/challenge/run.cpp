@@ -323,14 +323,12 @@ private:
 }  // namespace
 
 void run_challenge(Device& device, const Scene& scene, const ChallengeRunOptions& options) {
-    expect_strokes(scene, "a challenge");
-    expect_one_material(scene, "a challenge");
+    expect_plain_strokes(scene, "a challenge");
     ChallengeParts(scene, options, FolderLock::Use::alone).all(device);
 }
 
 std::unique_ptr<PartedWork> challenge_parts(const Scene& scene, const ChallengeRunOptions& options) {
-    expect_strokes(scene, "a challenge");
-    expect_one_material(scene, "a challenge");
+    expect_plain_strokes(scene, "a challenge");
     return std::make_unique<ChallengeParts>(scene, options, FolderLock::Use::shared);
 }
 

@@ -15,6 +15,9 @@ struct Packing {
     std::vector<int> species = {};  ///< from 0; empty where all grains are alike or nothing is known of it
     std::vector<std::string> species_names = {};  ///< as a file has them, names or numbers
     std::size_t size() const { return position.size(); }
+    std::size_t species_of(std::size_t grain) const {
+        return species.empty() ? 0 : static_cast<std::size_t>(species[grain]);
+    }
 };
 
 /// What holds the grains: floor z = 0, the plate above, and at the sides what `shape` says. A box has walls

@@ -119,8 +119,7 @@ std::vector<Replica> calibration_replicas(const Scene& scene, ContactModel model
 
 SceneCalibration calibrate_scene(Device& device, const Scene& scene, const Replicas& reference,
                                  const CalibrateOptions& options) {
-    expect_strokes(scene, "a calibration");
-    expect_one_material(scene, "a calibration");
+    expect_plain_strokes(scene, "a calibration");
     const LevelOptions levels;
     const auto reference_levels = group_levels(reference, levels);
     SceneCalibration result;

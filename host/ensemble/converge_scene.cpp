@@ -203,8 +203,7 @@ private:
 }  // namespace
 
 Convergence converge_scene(Device& device, const Scene& scene, const ConvergeOptions& options) {
-    expect_strokes(scene, "mcdem converge");
-    expect_one_material(scene, "mcdem converge");
+    expect_plain_strokes(scene, "mcdem converge");
     return Converging(device, scene, options).all();
 }
 

@@ -381,8 +381,7 @@ Model model_of(const Scene& scene, const Experiment& experiment) {
 
 Diagnosis diagnose_experiment(Device& device, const Scene& scene, const std::vector<Experiment>& experiments,
                               const DiagnoseOptions& options) {
-    expect_strokes(scene, "a diagnosis");
-    expect_one_material(scene, "a diagnosis");
+    expect_plain_strokes(scene, "a diagnosis");
     const auto begin = std::chrono::steady_clock::now();
     Diagnosis diagnosis =
         DiagnosisRunner(device, plan_of(scene, experiments, options), experiments, options).run();

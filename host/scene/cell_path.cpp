@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
+
+#include "core/container.h"
 
 namespace mcdem::inline scene {
 
@@ -62,11 +63,7 @@ Box smallest_cell(const Replica& replica) {
         strain = strain_after(stage, strain);
         for (std::size_t k = 0; k < 3; ++k) most[k] = std::max(most[k], strain[k]);
     }
-    Box box = replica.box;
-    box.size_x *= 1 - most[0];
-    box.size_y *= 1 - most[1];
-    box.height *= 1 - most[2];
-    return box;
+    return deformed(replica.box, most);
 }
 
 }  // namespace mcdem::scene

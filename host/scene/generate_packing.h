@@ -11,6 +11,7 @@ struct Mixture {
     std::vector<Species> species;
     FractionsBy by = FractionsBy::number;
 };
+inline Mixture mixture_of(const Replica& replica) { return {replica.species, replica.packing.fractions_by}; }
 
 /// Grains drawn at random between floor, plate and sides of a container, which is as high as the packing
 /// fraction says, and pushed apart until overlaps are gone (below 1 % of the radius) or forces balance.

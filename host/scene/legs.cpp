@@ -27,7 +27,7 @@ std::vector<Stage> stages_of(const Replica& replica) {
     return {strokes};
 }
 
-void expect_strokes(const Scene& scene, const std::string& what) {
+void expect_plain_strokes(const Scene& scene, const std::string& what) {
     for (const Replica& replica : scene.replicas)
         if (is_cell(replica.box))
             throw InputError(fmt::format(
@@ -39,6 +39,11 @@ void expect_strokes(const Scene& scene, const std::string& what) {
                 fmt::format("programme: must be left out of a scene for {}, which compares the strokes of "
                             "[plate] and [protocol] only",
                             what));
+    for (const Replica& replica : scene.replicas)
+        if (!replica.species.empty())
+            throw InputError(fmt::format(
+                "species: must be left out of a scene for {}, which knows grains of one material only",
+                what));
 }
 
 Controlled controlled(const Stage& stage) {

@@ -27,8 +27,9 @@ double sum_over_legs(const std::vector<Stage>& stages, const std::function<doubl
 double leg_count(const std::vector<Stage>& stages);
 double scan_count(const std::vector<Stage>& stages);
 
-/// Throws InputError where a replica has a programme, which `what` cannot treat.
-void expect_strokes(const Scene& scene, const std::string& what);
+/// Throws InputError where a replica is a cell or has a programme or species: `what` ("a diagnosis") knows
+/// the strokes of a plate on grains of one material only.
+void expect_plain_strokes(const Scene& scene, const std::string& what);
 
 /// What a move ends at, or a hold keeps.
 Controlled controlled(const Stage& stage);

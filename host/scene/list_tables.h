@@ -37,6 +37,13 @@ std::optional<ListElement> list_element(std::string_view name);
 std::span<const Key> species_keys(int species);
 std::span<const Key> pair_keys(int pair);
 
+/// Element `n`, which is there from now on.
+template <class Element>
+Element& element(std::vector<Element>& list, std::size_t n) {
+    if (list.size() <= n) list.resize(n + 1);
+    return list[n];
+}
+
 /// The same rows for every element, with their whole names, which live as long as the program.
 /// Rows::of<n>() gives those of element n.
 template <class Rows, int most>

@@ -41,6 +41,10 @@ bool is_inside(const Box& box, const PlateFace& plate, const Vec3& point) {
 
 }  // namespace
 
+double list_reach(const Numerics& numerics, double mean_diameter, double largest_diameter) {
+    return largest_diameter + (numerics.probe_gap + numerics.skin) * mean_diameter / 2;
+}
+
 std::optional<TooSmall> too_small_container(const Box& box, const Numerics& numerics, double mean_diameter,
                                             double largest_diameter) {
     if (is_cylinder(box) && !(cylinder_radius(box) >= largest_diameter))
@@ -49,7 +53,7 @@ std::optional<TooSmall> too_small_container(const Box& box, const Numerics& nume
                                     "{}: Hertz's contact does not hold in a narrower cylinder",
                                     largest_diameter, cylinder_radius(box))};
     if (!is_periodic(box)) return std::nullopt;
-    const double reach = largest_diameter + (numerics.probe_gap + numerics.skin) * mean_diameter / 2;
+    const double reach = list_reach(numerics, mean_diameter, largest_diameter);
     std::pair<const char*, double> shortest{"container.size_x", box.size_x};
     if (box.size_y <= shortest.second) shortest = {"container.size_y", box.size_y};
     if (is_cell(box) && box.height < shortest.second) shortest = {"container.height", box.height};
@@ -143,7 +147,7 @@ Packing make_packing(const Replica& replica) {
         assign_species(packing, replica, source);
     } else {
         packing = generate_packing(std::get<GeneratedPacking>(from.source), replica.box, from.seed,
-                                   {replica.species, from.fractions_by});
+                                   mixture_of(replica));
     }
     apply_jitter(packing, from.position_jitter, from.seed);
     // A generated packing may be a little higher than the plate, never so high that a centre is above it.

@@ -29,6 +29,9 @@ Packing make_packing(const Replica& replica);
 /// Moves every coordinate of every centre by a normal random length with standard deviation `sd` [m].
 void apply_jitter(Packing& packing, double sd, std::uint64_t seed);
 
+/// How far centres may be apart in a neighbour list, at most [m].
+double list_reach(const Numerics& numerics, double mean_diameter, double largest_diameter);
+
 /// Where the container is too small for its grains: the key to blame, and what it must be. A periodic cell
 /// must keep every two grains from meeting twice, over both ends, and a grain from meeting itself.
 struct TooSmall {

@@ -57,9 +57,8 @@ void set_container(Settings& settings) {
     Box& box = settings.replica.box;
     if (is_cylinder(box)) box.size_x = box.size_y = 2 * settings.cylinder_radius;
     if (!is_cell(box)) return;
-    const Mixture mixture{settings.replica.species, settings.replica.packing.fractions_by};
     const bool generated = settings.packing_file.empty() && has_sizes(settings.replica);
-    box.height = generated                          ? expected_height(settings.generated, box, mixture)
+    box.height = generated ? expected_height(settings.generated, box, mixture_of(settings.replica))
                  : std::isnan(settings.cell_height) ? box.size_x
                                                     : settings.cell_height;
     settings.replica.plate = {box.height, 0};

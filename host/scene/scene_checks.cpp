@@ -33,14 +33,13 @@ Found in_container(std::string_view key, const Settings& s) {
     return small && small->key == key ? Found{small->what} : Found{};
 }
 
-Mixture mixture(const Settings& s) { return {s.replica.species, s.replica.packing.fractions_by}; }
-
 /// A box that its grains would not cover once, but would if it was meant in millimetres.
 Found millimetres(double width, const Settings& settings) {
     const auto& grains = settings.generated;
     return unless(
         width <= widest_box || width * 1e-3 < grains.diameter_max ||
-            expected_height(grains, settings.replica.box, mixture(settings)) >= grains.diameter_max,
+            expected_height(grains, settings.replica.box, mixture_of(settings.replica)) >=
+                grains.diameter_max,
         fmt::format("must be in metres, got {}, {:.3g} times packing.diameter_max: divide by 1000 if it is "
                     "in millimetres",
                     width, width / grains.diameter_max));
@@ -164,7 +163,7 @@ const std::vector<Check> checks{
       "packing.diameter_max", "box.size_x", "box.size_y", "plate.start"}, Check::Packing::generated, [](const Settings& s) {
         const auto& g = s.generated;
         if (g.diameter_min > g.diameter_mean || g.diameter_max < g.diameter_mean) return Found{};
-        const double height = expected_height(g, s.replica.box, mixture(s));
+        const double height = expected_height(g, s.replica.box, mixture_of(s.replica));
         if (height < g.diameter_max)
             return Found{fmt::format("must leave room for the largest grain, got {}: the grains would fill the box up to {:.6g} m only; "
                                      "lower it, or take more grains or a smaller box", g.packing_fraction, height)};

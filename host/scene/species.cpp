@@ -1,11 +1,8 @@
 #include "scene/species.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
-#include "core/errors.h"
 #include "scene/scene.h"
 
 namespace mcdem::inline scene {
@@ -28,15 +25,6 @@ std::vector<GrainMaterial> materials(const Replica& replica) {
     std::vector<GrainMaterial> all;
     for (const Species& species : replica.species) all.push_back(species.material);
     return all;
-}
-
-void expect_one_material(const Scene& scene, const std::string& what) {
-    for (const Replica& replica : scene.replicas)
-        if (!replica.species.empty())
-            throw InputError(
-                fmt::format("species: must be left out of a scene for {}, which knows grains of one "
-                            "material only",
-                            what));
 }
 
 GrainMaterial stiffest(const Replica& replica) {

@@ -11,7 +11,6 @@
 namespace mcdem::inline scene {
 
 struct Replica;
-struct Scene;
 
 inline constexpr int max_species = 8;
 inline constexpr int max_pairs = 44;  ///< of eight species, and of each with the walls
@@ -54,9 +53,6 @@ struct SpeciesPair {
 
 /// One for each species; that of [grains] where none are named.
 std::vector<GrainMaterial> materials(const Replica& replica);
-
-/// Throws InputError where a replica has species: `what` ("a diagnosis") knows grains of one material only.
-void expect_one_material(const Scene& scene, const std::string& what);
 
 /// Of largest E/(1 - nu^2), and of smallest.
 GrainMaterial stiffest(const Replica& replica);

@@ -4,29 +4,21 @@
 namespace mcdem::inline scene {
 namespace {
 
-template <std::size_t n>
-Species& species(Settings& settings) {
-    auto& all = settings.replica.species;
-    if (all.size() <= n) all.resize(n + 1);
-    return all[n];
-}
 template <std::size_t n, auto member>
 auto& of_species(Settings& settings) {
-    return species<n>(settings).*member;
+    return element(settings.replica.species, n).*member;
 }
 template <std::size_t n, auto member>
 auto& of_material(Settings& settings) {
-    return species<n>(settings).material.*member;
+    return of_species<n, &Species::material>(settings).*member;
 }
 template <std::size_t n, auto member>
 auto& of_sizes(Settings& settings) {
-    return species<n>(settings).sizes.*member;
+    return of_species<n, &Species::sizes>(settings).*member;
 }
 template <std::size_t n, auto member>
 auto& of_pair(Settings& settings) {
-    auto& all = settings.replica.pairs;
-    if (all.size() <= n) all.resize(n + 1);
-    return all[n].*member;
+    return element(settings.replica.pairs, n).*member;
 }
 
 constexpr Range positive(double high) { return {0, high, Range::Low::excluded}; }

@@ -6,9 +6,7 @@ namespace {
 
 template <std::size_t n, auto member>
 auto& of_stage(Settings& settings) {
-    auto& programme = settings.replica.programme;
-    if (programme.size() <= n) programme.resize(n + 1);
-    return programme[n].*member;
+    return element(settings.replica.programme, n).*member;
 }
 
 constexpr Range positive(double high) { return {0, high, Range::Low::excluded}; }

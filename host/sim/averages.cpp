@@ -79,18 +79,6 @@ double grain_volume(const std::vector<double>& diameter) {
     return volume;
 }
 
-double max_overlap(const Scan& scan, const Box& box, const std::vector<double>& diameter) {
-    double largest = 0;
-    for (const auto& contact : scan.contacts) {
-        if (is_wall(contact.partner)) continue;
-        const double reach = (diameter[contact.grain] + diameter[contact.partner]) / 2;
-        const double distance =
-            apart(box, scan.position[contact.grain], scan.position[contact.partner]).norm();
-        largest = std::max(largest, (reach - distance) / reach);
-    }
-    return largest;
-}
-
 }  // namespace
 
 double packing_fraction(const std::vector<Vec3>& position, const std::vector<double>& diameter,
@@ -110,17 +98,22 @@ void fill_averages(Scan& scan, const Box& box, const std::vector<double>& diamet
     const Box now = deformed(box, scan.strain);
     int ends = 0, contacts = 0, pairs = 0;
     double force = 0, branch = 0;
+    scan.max_overlap = 0;
     for (const auto& contact : scan.contacts) {
+        double distance = 0;
+        if (!is_wall(contact.partner)) {
+            distance = apart(now, scan.position[contact.grain], scan.position[contact.partner]).norm();
+            const double reach = (diameter[contact.grain] + diameter[contact.partner]) / 2;
+            scan.max_overlap = std::max(scan.max_overlap, (reach - distance) / reach);
+        }
         const double size = contact.force.norm();
         if (size < force_threshold) continue;
         ++contacts;
         force += size;
         ends += is_wall(contact.partner) ? 1 : 2;
-        if (is_wall(contact.partner)) continue;
-        ++pairs;
-        branch += apart(now, scan.position[contact.grain], scan.position[contact.partner]).norm();
+        pairs += !is_wall(contact.partner);
+        branch += distance;
     }
-    scan.max_overlap = max_overlap(scan, now, diameter);
     scan.coordination_number = static_cast<double>(ends) / diameter.size();
     scan.mean_force = contacts ? force / contacts : not_a_number;
     scan.branch_length = pairs ? branch / pairs : not_a_number;

@@ -9,6 +9,7 @@
 
 #include "core/container.h"
 #include "elasticity/surface_displacement.h"
+#include "scene/make_packing.h"
 #include "scene/true_grains.h"
 #include "sim/device_material.h"
 
@@ -149,8 +150,8 @@ double max_restitution(const Replica& replica) {
 }  // namespace
 
 double list_reach(const Replica& replica, const Packing& packing) {
-    return *std::ranges::max_element(packing.diameter) +
-           (replica.numerics.probe_gap + replica.numerics.skin) * mean_radius(packing);
+    return list_reach(replica.numerics, 2 * mean_radius(packing),
+                      *std::ranges::max_element(packing.diameter));
 }
 
 double mindlin_share(const Replica& replica) {
@@ -164,7 +165,7 @@ double time_step(const Replica& replica, const Packing& packing) {
     // Of each species; a grain of mean stiffness as slow as the fastest one.
     std::vector<double> smallest(all.size(), std::numeric_limits<double>::infinity());
     for (std::size_t i = 0; i < packing.size(); ++i) {
-        double& radius = smallest[packing.species.empty() ? 0 : static_cast<std::size_t>(packing.species[i])];
+        double& radius = smallest[packing.species_of(i)];
         radius = std::min(radius, 0.5 * packing.diameter[i] * std::sqrt(1 + excess[i]));
     }
     double shortest = std::numeric_limits<double>::infinity();

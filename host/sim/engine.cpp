@@ -110,7 +110,7 @@ void Engine::upload_packings(const std::vector<Packing>& packings) {
             for (int axis = 0; axis < 3; ++axis) at[axis] = packings[r].position[grain][axis];
             at[3] = 0.5 * packings[r].diameter[grain];
             at[7] = excess_compliance_[r][grain];
-            at[11] = packings[r].species.empty() ? 0 : packings[r].species[grain];
+            at[11] = static_cast<double>(packings[r].species_of(grain));
         }
     for (auto& copy : fields_.motion.copies) write_reals(copy, 0, values);
 }

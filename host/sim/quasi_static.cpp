@@ -22,8 +22,7 @@ PackingScale scale_of(const Replica& replica, const Packing& packing) {
     std::vector<double> volume(all.size(), 0.0);
     for (std::size_t i = 0; i < packing.size(); ++i) {
         scale.diameter += packing.diameter[i] / static_cast<double>(packing.size());
-        volume[packing.species.empty() ? 0 : static_cast<std::size_t>(packing.species[i])] +=
-            sphere_volume(packing.diameter[i]);
+        volume[packing.species_of(i)] += sphere_volume(packing.diameter[i]);
     }
     for (std::size_t s = 0; s < all.size(); ++s) {
         if (!is_cell(replica.box)) scale.weight += all[s].excess_density * gravity * volume[s];

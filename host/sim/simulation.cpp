@@ -15,14 +15,18 @@
 namespace mcdem::inline sim {
 namespace {
 
+std::string compress_less(const Replica& replica) {
+    return is_cell(replica.box) ? "compress less" : "compress less: raise plate.end";
+}
+
 /// Why a replica stops that is not to go on beyond its law; empty where it goes on.
 std::string beyond_law(const Replica& replica, const Scan& scan) {
     const auto tested = tested_overlap(replica.contact.model);
     if (!replica.numerics.stop_beyond_law || !tested || !(scan.max_overlap > *tested)) return "";
     return fmt::format(
         "grains overlap by {:.3f} of the sum of their radii, more than the law of {} was tested for, {} "
-        "(compress less: raise plate.end; or set numerics.stop_beyond_law = false)",
-        scan.max_overlap, name(replica.contact.model), *tested);
+        "({}; or set numerics.stop_beyond_law = false)",
+        scan.max_overlap, name(replica.contact.model), *tested, compress_less(replica));
 }
 
 /// What a user can do about each way in which a replica stops (kernels/status.h).
@@ -31,7 +35,7 @@ std::string cause_of(const IntervalResult& result, const Replica& replica, int s
     const auto add = [&](int bit, const std::string& text) {
         if (result.status & bit) cause += (cause.empty() ? "" : "; ") + text;
     };
-    const std::string less = is_cell(replica.box) ? "compress less" : "compress less: raise plate.end";
+    const std::string less = compress_less(replica);
     if (replica.contact.model == ContactModel::hyperelastic_sphere)
         add(STATUS_OVERLAP,
             fmt::format(

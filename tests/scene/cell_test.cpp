@@ -19,11 +19,6 @@ const std::string cell = "[container]\nshape = \"cell\"\nsize_x = 0.12\nsize_y =
 const std::string few = "[packing]\ncount = 200\npacking_fraction = 0.6\n";
 const std::string one_move = "[[programme]]\nstrain = 0.1\n";
 
-std::vector<std::string> problems_in(const std::string& text,
-                                     const std::vector<std::string>& overrides = {}) {
-    return problems_of([&] { parse_scene(text, "bad.toml", overrides); });
-}
-
 Replica read_one(const std::string& text) { return parse_scene(text, "good.toml", {}).replicas.at(0); }
 
 TEST(Cell, IsAsHighAsItsGrainsAsk) {
@@ -97,7 +92,7 @@ TEST(Cell, MustKeepItsSizeToTheEndOfItsProgramme) {
                                   HasSubstr("at its smallest, got 0.054"))));
     EXPECT_THAT(problems_in(cell + few + "[[programme]]\nstrain_z = 0.9\n"),
                 ElementsAre(HasSubstr("container.height must be at least")));
-    EXPECT_THROW(expect_strokes(parse_scene(cell + few + one_move, "good.toml", {}), "a diagnosis"),
+    EXPECT_THROW(expect_plain_strokes(parse_scene(cell + few + one_move, "good.toml", {}), "a diagnosis"),
                  InputError);
 }
 

@@ -17,11 +17,6 @@ using testing::HasSubstr;
 
 const std::string few = "[packing]\ncount = 150\npacking_fraction = 0.5\n";
 
-std::vector<std::string> problems_in(const std::string& text,
-                                     const std::vector<std::string>& overrides = {}) {
-    return problems_of([&] { parse_scene(text, "bad.toml", overrides); });
-}
-
 TEST(Containers, AreReadWithTheirSizes) {
     const auto box_of = [](const std::string& text, const std::vector<std::string>& overrides = {}) {
         return parse_scene(text + few, "good.toml", overrides).replicas.at(0).box;

@@ -11,11 +11,6 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::StartsWith;
 
-std::vector<std::string> problems_in(const std::string& text,
-                                     const std::vector<std::string>& overrides = {}) {
-    return problems_of([&] { parse_scene(text, "bad.toml", overrides); });
-}
-
 TEST(EffectsErrors, OutOfRangeAreToldWithTheirUnits) {
     EXPECT_THAT(
         problems_in(R"([effects]

@@ -11,11 +11,6 @@ using testing::HasSubstr;
 using testing::SizeIs;
 using testing::StartsWith;
 
-std::vector<std::string> problems_in(const std::string& text,
-                                     const std::vector<std::string>& overrides = {}) {
-    return problems_of([&] { parse_scene(text, "bad.toml", overrides); });
-}
-
 TEST(SceneErrors, ABoxTooLargeForSinglePrecisionIsRefused) {
     const TestFolder folder;
     const auto two =

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/errors.h"
+#include "scene/read_scene.h"
 
 namespace mcdem {
 
@@ -23,6 +24,12 @@ std::vector<std::string> problems_of(const Action& action) {
     }
     ADD_FAILURE() << "no problem was reported";
     return {};
+}
+
+/// The problems of a scene's text.
+inline std::vector<std::string> problems_in(const std::string& text,
+                                            const std::vector<std::string>& overrides = {}) {
+    return problems_of([&] { parse_scene(text, "bad.toml", overrides); });
 }
 
 /// A folder of one test, removed with it.

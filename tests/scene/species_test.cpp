@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "scene/legs.h"
 #include "scene/make_packing.h"
 #include "scene/random.h"
 #include "scene/read_scene.h"
@@ -33,11 +34,6 @@ const std::string two =
 Replica replica_of(const std::string& text, const std::vector<std::string>& overrides = {}) {
     return parse_scene(box_text + text, "s.toml", overrides).replicas.front();
 }
-std::vector<std::string> problems_in(const std::string& text,
-                                     const std::vector<std::string>& overrides = {}) {
-    return problems_of([&] { parse_scene(box_text + text, "s.toml", overrides); });
-}
-
 TEST(SpeciesOfAScene, TakeWhatTheyLeaveOutFromGrains) {
     const Replica replica = replica_of(two, {"species.1.density=900"});
     ASSERT_EQ(replica.species.size(), 2u);
@@ -131,11 +127,11 @@ const std::vector<std::pair<std::string, std::string>> cases{
 
 TEST(SpeciesOfAScene, AreRefusedWithReasons) {
     for (const auto& [text, problem] : cases)
-        EXPECT_THAT(problems_in(text), Contains(HasSubstr(problem))) << text;
+        EXPECT_THAT(problems_in(box_text + text), Contains(HasSubstr(problem))) << text;
     EXPECT_THAT(problems_of([] { parse_scene("species = 3\n" + box_text, "s.toml"); }),
                 ElementsAre(HasSubstr("species must be a list of 1 to 8 species ([[species]]), got 3")));
     EXPECT_THAT(
-        problems_of([] { expect_one_material(parse_scene(box_text + two, "s.toml"), "a diagnosis"); }),
+        problems_of([] { expect_plain_strokes(parse_scene(box_text + two, "s.toml"), "a diagnosis"); }),
         ElementsAre(HasSubstr("species: must be left out of a scene for a diagnosis")));
 }
 

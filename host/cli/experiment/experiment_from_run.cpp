@@ -105,7 +105,7 @@ void warn_of_start(const Recording& truth) {
         throw InputError(
             "the run must be one of the strokes of [plate] and [protocol], got one of a [[programme]]: "
             "experiments state strokes only");
-    if (truth.parameters.contains("species.1.name"))
+    if (!truth.species_names.empty())
         throw InputError(
             "the run must be one of grains of one material, got one of [[species]]: experiments state one "
             "material only");

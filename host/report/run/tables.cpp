@@ -61,8 +61,7 @@ std::string rate_note(double rate_error) {
 std::string beyond_note(const std::string& setting, const BeyondLaw& beyond) {
     return fmt::format(
         "{}: from {} mm on grains overlap more than the law was tested for ({:.2f} of the sum of their "
-        "radii), by "
-        "up to {:.2f}; numerics.stop_beyond_law stops there",
+        "radii), by up to {:.2f}; numerics.stop_beyond_law stops there",
         words_for(setting), number(beyond.displacement * 1e3, 2), beyond.tested, beyond.max_overlap);
 }
 
