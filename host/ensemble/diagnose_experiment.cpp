@@ -27,25 +27,6 @@ TrialOptions stage(const DiagnoseOptions& options, const std::string& name) {
     return trial_options;
 }
 
-void expect_library_of(const Library& library, const Grid& grid, const LibraryPlan& plan,
-                       const std::filesystem::path& file) {
-    std::vector<std::string> problems;
-    const auto expect = [&](const std::vector<Signature>& list, const std::string& name) {
-        if (std::ranges::find(list, name, &Signature::name) == list.end())
-            problems.push_back(fmt::format(
-                "{}: has no signature of {}: give another file, which is made where it is missing, or leave "
-                "{} out of --candidates",
-                file.string(), name, name));
-    };
-    for (const std::string& name : plan.candidates) expect(library.effects, name);
-    for (const Nuisance& nuisance : plan.nuisances) expect(library.nuisances, nuisance.name);
-    constexpr double alike = 0.1;  // a shifted zero of strain is for the diagnosis to find
-    if (std::abs(library.grid.stroke - grid.stroke) > alike * grid.stroke)
-        problems.push_back(fmt::format("{}: was made for a stroke of {:.4g} mm, the experiment has {:.4g} mm",
-                                       file.string(), 1e3 * library.grid.stroke, 1e3 * grid.stroke));
-    if (!problems.empty()) throw InputError(problems);
-}
-
 /// "contact.gamma = 1.16" of every key in which the second differs.
 std::vector<std::string> differing_keys(const Replica& before, const Replica& after) {
     Settings a, b;
@@ -122,6 +103,7 @@ private:
         if (ready) {
             question_.grid = evidence.library.grid;
             take_baseline(evidence, simulated_baseline("baseline"));
+            expect_alike_loads(evidence.library, evidence.baseline, *options_.library);
         } else {
             evidence.library = build_library(device_, question_, plan_, store_, stage(options_, "library"));
             library_is_own_ = true;

@@ -105,4 +105,59 @@ void expect_origin(const Library& library, const std::map<std::string, std::stri
     throw InputError(problems);
 }
 
+void expect_library_of(const Library& library, const Grid& grid, const LibraryPlan& plan,
+                       const std::filesystem::path& file) {
+    std::vector<std::string> problems;
+    const auto expect = [&](const std::vector<Signature>& list, const std::string& name) {
+        if (std::ranges::find(list, name, &Signature::name) == list.end())
+            problems.push_back(fmt::format(
+                "{}: has no signature of {}: give another file, which is made where it is missing, or leave "
+                "{} out of --candidates",
+                file.string(), name, name));
+    };
+    for (const std::string& name : plan.candidates) expect(library.effects, name);
+    for (const Nuisance& nuisance : plan.nuisances) expect(library.nuisances, nuisance.name);
+    constexpr double alike = 0.1;  // a shifted zero of strain is for the diagnosis to find
+    if (std::abs(library.grid.stroke - grid.stroke) > alike * grid.stroke)
+        problems.push_back(fmt::format("{}: was made for a stroke of {:.4g} mm, the experiment has {:.4g} mm",
+                                       file.string(), 1e3 * library.grid.stroke, 1e3 * grid.stroke));
+    if (!problems.empty()) throw InputError(problems);
+}
+
+namespace {
+
+/// Of the top force while it is loaded.
+double mean_log_load(const Grid& grid, const Eigen::MatrixXd& baseline) {
+    const std::vector<Cell> cells = cells_of(grid);
+    double sum = 0;
+    int count = 0;
+    for (std::size_t k = 0; k < cells.size(); ++k) {
+        if (observables()[static_cast<std::size_t>(cells[k].observable)].name != "top_force") continue;
+        if (cells[k].phase != Phase::load) continue;
+        for (const double log_force : baseline.col(static_cast<Eigen::Index>(k))) {
+            if (!std::isfinite(log_force)) continue;
+            sum += log_force;
+            ++count;
+        }
+    }
+    return sum / count;
+}
+
+}  // namespace
+
+void expect_alike_loads(const Library& library, const Eigen::MatrixXd& baseline,
+                        const std::filesystem::path& file) {
+    constexpr double alike = 0.3;  // packings of one kind scatter by 0.06
+    const double apart =
+        mean_log_load(library.grid, baseline) - mean_log_load(library.grid, library.baseline);
+    if (!(std::abs(apart) > alike)) return;
+    throw InputError(
+        fmt::format("{}: at the same displacements the scene carries {:.2f} times the load on this "
+                    "experiment's packing that it "
+                    "carries on the library's packings, and effects act otherwise there: leave out "
+                    "--library, or give another "
+                    "file, made where the plate starts as near to the grains",
+                    file.string(), std::exp(apart)));
+}
+
 }  // namespace mcdem::ensemble

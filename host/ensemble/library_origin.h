@@ -4,8 +4,7 @@
 #include <map>
 #include <string>
 
-#include "diagnose/infer/library.h"
-#include "ensemble/observe_trials.h"
+#include "ensemble/build_library.h"
 
 namespace mcdem::inline ensemble {
 
@@ -18,5 +17,14 @@ std::map<std::string, std::string> library_origin(const Question& question, cons
 /// both values. What may differ, and how much, is listed in library_origin.cpp.
 void expect_origin(const Library& library, const std::map<std::string, std::string>& needed,
                    const std::filesystem::path& file);
+
+/// Throws InputError where the library lacks a signature that the plan wants, or is of another stroke.
+void expect_library_of(const Library& library, const Grid& grid, const LibraryPlan& plan,
+                       const std::filesystem::path& file);
+
+/// Throws InputError where runs of the scene on the experiment's packing (`baseline`, in the library's cells)
+/// carry another load than those of the library: weight, say, counts half as much at twice the load.
+void expect_alike_loads(const Library& library, const Eigen::MatrixXd& baseline,
+                        const std::filesystem::path& file);
 
 }  // namespace mcdem::ensemble

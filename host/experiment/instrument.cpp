@@ -19,7 +19,7 @@ public:
           position_noise_(seed, Stream::measured_positions),
           force_noise_(seed, Stream::measured_forces) {}
 
-    /// `path`: part of the plate's whole path up to this scan.
+    /// `path`: part of the path of whole cycles that the plate has gone up to this scan.
     Scan read(const Scan& truth, std::size_t frame, double path) const {
         Scan scan = unknown_scan();
         scan.frame = static_cast<int>(frame);
@@ -84,14 +84,19 @@ private:
     KeyedNormal position_noise_, force_noise_;
 };
 
-/// How far the plate has gone, up and down, up to each scan, over the whole of it; 0 where it does not move.
-std::vector<double> parts_of_path(const std::vector<Scan>& scans) {
-    std::vector<double> path(scans.size(), 0);
-    for (std::size_t s = 1; s < scans.size(); ++s)
-        path[s] = path[s - 1] + std::abs(scans[s].plate_z - scans[s - 1].plate_z);
-    const double whole = path.empty() ? 0 : path.back();
-    if (whole > 0)
-        for (double& part : path) part /= whole;
+/// How far the plate has gone, up and down, up to each scan, over the path of whole cycles; 0 where it does
+/// not move. A recording need not go to the end of its last cycle.
+std::vector<double> parts_of_path(const Recording& recording) {
+    std::vector<double> path;
+    double gone = 0, before = recording.plate_start, lowest = before;
+    for (const Scan& scan : recording.scans) {
+        path.push_back(gone += std::abs(scan.plate_z - before));
+        before = scan.plate_z;
+        lowest = std::min(lowest, scan.plate_z);
+    }
+    const double stroke = recording.plate_start - lowest;
+    if (stroke > 0)
+        for (double& part : path) part /= 2 * stroke * (recording.scans.back().cycle + 1);
     return path;
 }
 
@@ -110,7 +115,7 @@ Recording measured(const Recording& truth, const Instrument& instrument, std::ui
         recording.diameter[i] += instrument.stated.diameter_error * diameter_noise(i, 0);
     const Reading reading(truth, instrument, seed);
     recording.scans.reserve(truth.scans.size());
-    const std::vector<double> path = parts_of_path(truth.scans);
+    const std::vector<double> path = parts_of_path(truth);
     for (std::size_t s = 0; s < truth.scans.size(); ++s)
         recording.scans.push_back(reading.read(truth.scans[s], s, path[s]));
     average_contacts(recording, instrument.stated.force_threshold);

@@ -5,6 +5,7 @@
 
 #include "core/errors.h"
 #include "ensemble/small_trials.h"
+#include "metrics/estimate.h"
 #include "scene/keys.h"
 
 namespace mcdem {
@@ -91,6 +92,26 @@ TEST_F(LibraryOrigin, WhatExperimentsBringMayDiffer) {
 TEST_F(LibraryOrigin, WithoutOneNothingIsTaken) {
     library.origin.clear();
     expect_refused("grains.friction = nothing");
+}
+
+TEST_F(LibraryOrigin, ItsPackingsCarryTheLoadOfTheExperiments) {
+    library.grid = {{0.01, 0.02}, 0.005, 0.022};
+    const std::vector<Cell> cells = cells_of(library.grid);
+    library.baseline = Eigen::MatrixXd::Constant(3, static_cast<Eigen::Index>(cells.size()), 0.5);
+    const auto at_times_the_load = [&](double times) {
+        Eigen::MatrixXd baseline = library.baseline;
+        for (std::size_t k = 0; k < cells.size(); ++k)
+            if (observables()[static_cast<std::size_t>(cells[k].observable)].name == "top_force")
+                baseline.col(static_cast<Eigen::Index>(k)).array() +=
+                    cells[k].phase == Phase::load ? std::log(times) : 3;
+        baseline(0, 0) = not_available;
+        expect_alike_loads(library, baseline, "file.json");
+    };
+    for (const double times : {0.8, 1.0, 1.3}) EXPECT_NO_THROW(at_times_the_load(times));
+    EXPECT_THAT([&] { at_times_the_load(1.9); },
+                ThrowsMessage<InputError>(testing::AllOf(HasSubstr("file.json: at the same displacements"),
+                                                         HasSubstr("carries 1.90 times the load"))));
+    EXPECT_THROW(at_times_the_load(0.5), InputError);
 }
 
 }  // namespace

@@ -202,17 +202,38 @@ TEST(measured, gauge_drifts_with_the_plates_path_up_and_down) {
     Recording real = truth();
     const double path[] = {0, 0.01, 0.03, 0.04};  // down, down, up
     const double height[] = {0.1, 0.09, 0.07, 0.08};
+    real.plate_start = 0.1;
     real.scans.resize(4, real.scans.back());
-    for (int s = 0; s < 4; ++s) real.scans[s].plate_z = height[s];
+    for (int s = 0; s < 4; ++s) {
+        real.scans[s].plate_z = height[s];
+        real.scans[s].cycle = 0;
+    }
     Instrument drifting;
     drifting.gauge_drift = 0.2;
     const Recording seen = measured(real, drifting, 1);
     for (int s = 0; s < 4; ++s) {
-        EXPECT_DOUBLE_EQ(seen.scans[s].top_force(), (1 + 0.2 * path[s] / 0.04) * real.scans[s].top_force());
+        EXPECT_DOUBLE_EQ(seen.scans[s].top_force(), (1 + 0.2 * path[s] / 0.06) * real.scans[s].top_force());
         EXPECT_EQ(seen.scans[s].plate_z, real.scans[s].plate_z);
     }
     real.scans.resize(1);
     EXPECT_EQ(measured(real, drifting, 1).scans[0].top_force(), real.scans[0].top_force());
+}
+
+TEST(measured, gauge_drift_is_alike_where_a_recording_ends_early) {
+    Recording real = truth();
+    real.plate_start = 0.1;
+    real.scans.resize(8, real.scans.back());
+    for (int s = 0; s < 8; ++s) {
+        real.scans[s].plate_z = s % 4 == 2 ? 0.08 : s % 2 ? 0.09 : 0.1;
+        real.scans[s].cycle = s / 4;
+    }
+    Instrument drifting;
+    drifting.gauge_drift = 0.2;
+    const Recording whole = measured(real, drifting, 1);
+    EXPECT_DOUBLE_EQ(whole.scans[2].top_force(), (1 + 0.2 / 4) * real.scans[2].top_force());
+    real.scans.resize(7);
+    const Recording cut = measured(real, drifting, 1);
+    for (int s = 0; s < 7; ++s) EXPECT_EQ(cut.scans[s].top_force(), whole.scans[s].top_force());
 }
 
 TEST(measured, threshold_is_the_true_one_and_counts_what_is_read) {

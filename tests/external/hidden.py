@@ -7,6 +7,7 @@ were measured. Amplitudes are those of host/diagnose/infer/effects.cpp.
 import dataclasses
 import math
 import random
+import statistics
 import typing
 
 import cases
@@ -40,14 +41,7 @@ def rolling(code, amplitude, chance):
 
 def scattered_moduli(code, amplitude, chance):
     """The quantiles of a log-normal distribution with that standard deviation, one a material."""
-    moduli = []
-    for k in range(MATERIALS):
-        low, high = -8.0, 8.0
-        while high - low > 1e-9:
-            middle = (low + high) / 2
-            below = (1 + math.erf(middle / math.sqrt(2))) / 2
-            low, high = (middle, high) if below < (k + 0.5) / MATERIALS else (low, middle)
-        moduli.append(low)
+    moduli = [statistics.NormalDist().inv_cdf((k + 0.5) / MATERIALS) for k in range(MATERIALS)]
     spread = math.sqrt(sum(m * m for m in moduli) / MATERIALS)
     return {"moduli": tuple(cases.E * math.exp(amplitude * m / spread) for m in moduli)}
 

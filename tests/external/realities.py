@@ -7,7 +7,7 @@ import subprocess
 
 HERE = pathlib.Path(__file__).resolve().parent
 BOX = 0.125                        # [m]
-START, STROKE = 0.1240, 0.0223     # of the plate, as scenes/challenge.toml has it [m]
+START, STROKE = 0.1240, 0.0223     # of the plate, as challenge.toml has it [m]
 SPEED = 0.1                        # of the plate [m/s]
 SCANS = 12                         # a stroke
 STEPS = 170                        # between scans at that speed: a time step of 0.08 Rayleigh times

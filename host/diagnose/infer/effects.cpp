@@ -124,7 +124,7 @@ const Effect table[] = {
      0, 1, 0.1, 0.3, compliance_scale, [](Model& m, double a) { m.replica.effects.plate_compliance += a; }, nothing},
     {"force_bias", "relative", "contact forces read too large by this part", "measurement",
      -0.5, 0.8, -0.1, 0.1, one, [](Model& m, double a) { m.instrument.force_bias += a; }, nothing},
-    {"gauge_drift", "relative", "top force read too large in the end by this part, before in proportion to the plate's path", "measurement",
+    {"gauge_drift", "relative", "top force read too large after the last cycle by this part, before in proportion to the plate's path", "measurement",
      -0.5, 0.8, -0.1, 0.1, one, [](Model& m, double a) { m.instrument.gauge_drift += a; }, nothing},
     {"force_threshold", "N", "true less stated threshold of contact forces", "measurement",
      -1, 8, -0.5, 1.5, threshold_scale, [](Model& m, double a) { m.instrument.threshold_shift += a; }, no_threshold},

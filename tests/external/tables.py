@@ -1,0 +1,8 @@
+"""Tables on the terminal, which are Markdown too."""
+
+
+def print_table(columns, rows):
+    widths = [max(len(str(row[k])) for row in [columns, *rows]) for k in range(len(columns))]
+    for row in [columns, ["-" * width for width in widths], *rows]:
+        print("| " + " | ".join(str(cell).ljust(width) for cell, width in zip(row, widths)) + " |")
+    print()
