@@ -2,6 +2,7 @@
 #pragma once
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <string_view>
 
 #include "core/packing.h"
@@ -26,6 +27,14 @@ constexpr bool has_wall(const Box& box, Wall wall) {
 /// As words for readers have it: "side" in a cylinder.
 constexpr std::string_view wall_name(const Box& box, Wall wall) {
     return is_cylinder(box) && wall == curved_wall ? "side" : name(wall);
+}
+
+/// The wall that readers call so, where it is there.
+inline std::optional<Wall> find_wall(const Box& box, std::string_view words) {
+    for (int wall = 0; wall < wall_count; ++wall)
+        if (has_wall(box, static_cast<Wall>(wall)) && words == wall_name(box, static_cast<Wall>(wall)))
+            return static_cast<Wall>(wall);
+    return std::nullopt;
 }
 
 constexpr double cylinder_radius(const Box& box) { return box.size_x / 2; }
@@ -98,18 +107,31 @@ inline Box deformed(const Box& box, const Strain& strain) {
     return now;
 }
 
-/// The foot of the perpendicular on a wall that is there, the plate level at plate_z.
-inline Vec3 wall_foot(const Box& box, Wall wall, double plate_z, const Vec3& point) {
+/// The unit vector from a point inside to a wall that is there, at right angles to it.
+inline Vec3 towards_wall(const Box& box, Wall wall, const Vec3& point) {
     if (is_cylinder(box) && wall == curved_wall) {
         const Vec3 out = from_axis(box, point);
-        const double distance = out.norm();
-        return point +
-               (cylinder_radius(box) - distance) * (distance > 0 ? Vec3(out / distance) : Vec3::UnitX());
+        return out.norm() > 0 ? Vec3(out.normalized()) : Vec3::UnitX();
     }
+    const int number = static_cast<int>(wall);
+    return (number % 2 ? 1 : -1) * Vec3::Unit(number / 2);
+}
+
+/// The foot of the perpendicular on a wall that is there, the plate level at plate_z.
+inline Vec3 wall_foot(const Box& box, Wall wall, double plate_z, const Vec3& point) {
+    if (is_cylinder(box) && wall == curved_wall)
+        return point + (cylinder_radius(box) - from_axis(box, point).norm()) * towards_wall(box, wall, point);
     const double places[wall_count] = {0, box.size_x, 0, box.size_y, 0, plate_z};
     Vec3 foot = point;
     foot[static_cast<int>(wall) / 2] = places[static_cast<int>(wall)];
     return foot;
+}
+
+/// R* of a sphere at a wall that is there [m]. Inside a cylinder 1/R* = sqrt(1/R (1/R - 1/R_c)), the
+/// geometric mean of both directions (Johnson 1985, section 4.2).
+inline double reduced_radius(const Box& box, Wall wall, double radius) {
+    if (!(is_cylinder(box) && wall == curved_wall)) return radius;
+    return radius / std::sqrt(1 - radius / cylinder_radius(box));
 }
 
 /// From a wall to a point inside, negative outside [m].

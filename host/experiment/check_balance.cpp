@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/container.h"
 #include "experiment/findings.h"
 
 namespace mcdem::inline experiment {
@@ -39,11 +40,10 @@ std::vector<Load> loads(const Recording& recording, const Scan& scan) {
 }
 
 bool is_in_bulk(const Recording& recording, const Scan& scan, int grain) {
-    for (int wall = 0; wall < wall_count; ++wall)
-        if (distance_to(static_cast<Wall>(wall), at(scan.position, grain), recording.box, scan.plate_z) <
-            near_wall * radius_of(recording, grain))
-            return false;
-    return true;
+    return std::ranges::none_of(walls_of(recording.box), [&](Wall wall) {
+        return wall_distance(recording.box, wall, scan.plate_z, at(scan.position, grain)) <
+               near_wall * radius_of(recording, grain);
+    });
 }
 
 /// Of the bulk's grains: force that does not cancel, over the root of the sum of squares and over its error.

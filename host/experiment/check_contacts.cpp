@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/container.h"
 #include "experiment/findings.h"
 
 namespace mcdem::inline experiment {
@@ -25,48 +26,49 @@ double gap(const Recording& recording, const Scan& scan, const Contact& contact)
     const Vec3& centre = at(scan.position, contact.grain);
     const double radius = radius_of(recording, contact.grain);
     if (is_wall(contact.partner))
-        return distance_to(wall_of(contact.partner), centre, recording.box, scan.plate_z) - radius;
-    return (at(scan.position, contact.partner) - centre).norm() - radius -
+        return wall_distance(recording.box, wall_of(contact.partner), scan.plate_z, centre) - radius;
+    return apart(recording.box, centre, at(scan.position, contact.partner)).norm() - radius -
            radius_of(recording, contact.partner);
 }
 
-std::string names(const Contact& contact) {
-    return is_wall(contact.partner)
-               ? fmt::format("grain {} and {}", contact.grain, name(wall_of(contact.partner)))
-               : fmt::format("grains {} and {}", contact.grain, contact.partner);
+std::string names(const Recording& recording, const Contact& contact) {
+    return is_wall(contact.partner) ? fmt::format("grain {} and {}", contact.grain,
+                                                  wall_name(recording.box, wall_of(contact.partner)))
+                                    : fmt::format("grains {} and {}", contact.grain, contact.partner);
 }
 
 void check_places(const Recording& recording, Findings& findings) {
-    Tally apart, off;
+    Tally distant, off;
     const double diameter = mean_diameter(recording);
     for (const Scan& scan : recording.scans) {
         if (scan.position.empty()) continue;
         for (const Contact& contact : scan.contacts) {
             const double distance = gap(recording, scan, contact);
             if (distance > max_apart * diameter)
-                apart.add(scan, [&] { return fmt::format("{}, {:.3g} mm", names(contact), 1e3 * distance); });
-            const double away = (contact.point - at(scan.position, contact.grain)).norm();
+                distant.add(scan, [&] {
+                    return fmt::format("{}, {:.3g} mm", names(recording, contact), 1e3 * distance);
+                });
+            const double away = apart(recording.box, at(scan.position, contact.grain), contact.point).norm();
             if (away > 1.5 * radius_of(recording, contact.grain))
                 off.add(scan, [&] {
-                    return fmt::format("{}, {:.3g} mm from the centre of grain {}", names(contact),
+                    return fmt::format("{}, {:.3g} mm from the centre of grain {}", names(recording, contact),
                                        1e3 * away, contact.grain);
                 });
         }
     }
-    if (apart.count())
+    if (distant.count())
         findings.odd(contacts_file,
                      "contacts of grains that do not touch, are grains and frames numbered as in "
                      "grains.csv? " +
-                         apart.text());
+                         distant.text());
     if (off.count()) findings.odd(contacts_file, "contact points away from their grain: " + off.text());
 }
 
 /// The direction in which a contact pushes its grain away.
-Vec3 outward(const Scan& scan, const Contact& contact) {
-    if (!is_wall(contact.partner))
-        return (at(scan.position, contact.grain) - at(scan.position, contact.partner)).normalized();
-    const int wall = static_cast<int>(wall_of(contact.partner));
-    return (wall % 2 == 0 ? 1 : -1) * Vec3::Unit(wall / 2);
+Vec3 outward(const Box& box, const Scan& scan, const Contact& contact) {
+    const Vec3& centre = at(scan.position, contact.grain);
+    if (is_wall(contact.partner)) return -towards_wall(box, wall_of(contact.partner), centre);
+    return apart(box, at(scan.position, contact.partner), centre).normalized();
 }
 
 void check_signs(const Recording& recording, double force_threshold, Findings& findings) {
@@ -76,9 +78,10 @@ void check_signs(const Recording& recording, double force_threshold, Findings& f
         for (const Contact& contact : scan.contacts) {
             if (scan.position.empty() || contact.force.norm() < 3 * force_threshold) continue;
             ++all;
-            if (contact.force.dot(outward(scan, contact)) < 0)
-                pulls.add(scan,
-                          [&] { return fmt::format("{}, {:.3g} N", names(contact), contact.force.norm()); });
+            if (contact.force.dot(outward(recording.box, scan, contact)) < 0)
+                pulls.add(scan, [&] {
+                    return fmt::format("{}, {:.3g} N", names(recording, contact), contact.force.norm());
+                });
         }
     if (pulls.count() > max_pulling * static_cast<double>(all))
         findings.odd(contacts_file,
@@ -97,7 +100,9 @@ void check_threshold(const Recording& recording, double force_threshold, Finding
             ++all;
             weakest = std::min(weakest, force);
             if (force < force_threshold)
-                below.add(scan, [&] { return fmt::format("{}, {:.3g} mN", names(contact), 1e3 * force); });
+                below.add(scan, [&] {
+                    return fmt::format("{}, {:.3g} mN", names(recording, contact), 1e3 * force);
+                });
         }
     if (below.count())
         findings.odd(contacts_file, fmt::format("forces below the stated threshold of {:.3g} mN: {}",

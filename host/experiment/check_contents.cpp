@@ -6,6 +6,7 @@
 #include <numbers>
 #include <set>
 
+#include "core/container.h"
 #include "experiment/findings.h"
 
 namespace mcdem::inline experiment {
@@ -52,7 +53,7 @@ void describe_contacts(const Recording& recording, Findings& findings) {
     }
     if (frames == 0) return;
     std::vector<std::string_view> names;
-    for (const Wall wall : walls) names.push_back(name(wall));
+    for (const Wall wall : walls) names.push_back(wall_name(recording.box, wall));
     findings.note(contacts_file,
                   fmt::format("{} contacts in {} of {} frames, between grains and with {}", contacts, frames,
                               recording.scans.size(),
@@ -62,14 +63,12 @@ void describe_contacts(const Recording& recording, Findings& findings) {
 }
 
 void describe_settings(const Experiment& experiment, Findings& findings) {
-    const Box& box = experiment.recording.box;
     const Measurement& errors = experiment.measurement;
-    findings.note(
-        settings_file,
-        fmt::format("box of {:.6g} by {:.6g} mm; errors of {:.3g} mm in positions, {:.3g} mm in "
-                    "diameters, {:.3g} % in forces; contacts seen from {:.3g} mN on",
-                    1e3 * box.size_x, 1e3 * box.size_y, 1e3 * errors.position_error,
-                    1e3 * errors.diameter_error, 100 * errors.force_error, 1e3 * errors.force_threshold));
+    findings.note(settings_file, fmt::format("{}; errors of {:.3g} mm in positions, {:.3g} mm in "
+                                             "diameters, {:.3g} % in forces; contacts seen from {:.3g} mN on",
+                                             container_words(experiment.recording.box),
+                                             1e3 * errors.position_error, 1e3 * errors.diameter_error,
+                                             100 * errors.force_error, 1e3 * errors.force_threshold));
     std::vector<std::string> known;
     for (const auto& [key, value] : experiment.materials) {
         const auto sigma = experiment.uncertainty.find(key);

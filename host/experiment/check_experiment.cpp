@@ -6,6 +6,7 @@
 #include <limits>
 #include <numeric>
 
+#include "core/container.h"
 #include "experiment/findings.h"
 
 namespace mcdem::inline experiment {
@@ -25,10 +26,18 @@ std::string Tally::text() const {
                        first_, example_);
 }
 
-double distance_to(Wall wall, const Vec3& centre, const Box& box, double plate_z) {
-    const double places[wall_count] = {0, box.size_x, 0, box.size_y, 0, plate_z};
-    const int index = static_cast<int>(wall);
-    return (index % 2 == 0 ? 1 : -1) * (centre[index / 2] - places[index]);
+std::vector<Wall> walls_of(const Box& box) {
+    std::vector<Wall> walls;
+    for (int wall = 0; wall < wall_count; ++wall)
+        if (has_wall(box, static_cast<Wall>(wall))) walls.push_back(static_cast<Wall>(wall));
+    return walls;
+}
+
+std::string container_words(const Box& box) {
+    if (is_cylinder(box))
+        return fmt::format("cylinder with a radius of {:.6g} mm", 1e3 * cylinder_radius(box));
+    return fmt::format("{} of {:.6g} by {:.6g} mm", is_periodic(box) ? "periodic container" : "box",
+                       1e3 * box.size_x, 1e3 * box.size_y);
 }
 
 double mean_diameter(const Recording& recording) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/container.h"
 #include "experiment/findings.h"
 #include "scene/cell_pairs.h"
 
@@ -19,8 +20,7 @@ constexpr double max_in_wall = 0.5;  // over the radius
 void check_volume(const Recording& recording, Findings& findings) {
     double volume = 0;
     for (const double diameter : recording.diameter) volume += std::numbers::pi / 6 * std::pow(diameter, 3);
-    const double fraction =
-        volume / (recording.box.size_x * recording.box.size_y * recording.scans.front().plate_z);
+    const double fraction = volume / (floor_area(recording.box) * recording.scans.front().plate_z);
     if (fraction < min_fraction)
         findings.odd(grains_file,
                      fmt::format("the grains fill {:.2g} of the box below the plate: are diameters "
@@ -37,14 +37,14 @@ void check_walls(const Recording& recording, Findings& findings) {
     Tally tally;
     for (const Scan& scan : recording.scans)
         for (int i = 0; i < static_cast<int>(scan.position.size()); ++i)
-            for (int wall = 0; wall < wall_count; ++wall) {
+            for (const Wall wall : walls_of(recording.box)) {
                 const double radius = radius_of(recording, i);
-                const double inside = radius - distance_to(static_cast<Wall>(wall), at(scan.position, i),
-                                                           recording.box, scan.plate_z);
+                const double inside =
+                    radius - wall_distance(recording.box, wall, scan.plate_z, at(scan.position, i));
                 if (inside > max_in_wall * radius)
                     tally.add(scan, [&] {
                         return fmt::format("grain {} by {:.3g} mm in {}", i, 1e3 * inside,
-                                           name(static_cast<Wall>(wall)));
+                                           wall_name(recording.box, wall));
                     });
             }
     if (tally.count())
@@ -59,7 +59,8 @@ void check_overlaps(const Recording& recording, Findings& findings) {
         const CellList cells(scan.position, recording.box, scan.plate_z, largest);
         cells.for_each_pair([&](int i, int j) {
             const double sum = radius_of(recording, i) + radius_of(recording, j);
-            const double overlap = sum - (at(scan.position, i) - at(scan.position, j)).norm();
+            const double overlap =
+                sum - apart(recording.box, at(scan.position, j), at(scan.position, i)).norm();
             if (overlap > max_overlap * sum)
                 tally.add(scan, [&] {
                     return fmt::format("grains {} and {} by {:.3g} mm", std::min(i, j), std::max(i, j),

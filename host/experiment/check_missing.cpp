@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <numbers>
 
+#include "core/container.h"
 #include "experiment/findings.h"
 
 namespace mcdem::inline experiment {
@@ -94,10 +95,10 @@ void missing_contacts(const Recording& recording, Findings& findings) {
             contacts_file,
             fmt::format("contacts in {} of {} frames under load: forces are compared in the others only",
                         empty, frames));
-    for (int wall = 0; wall < wall_count; ++wall)
-        if (!seen[wall])
-            findings.missing(contacts_file, fmt::format("contacts with {}: {}", name(static_cast<Wall>(wall)),
-                                                        told_by(static_cast<Wall>(wall))));
+    for (const Wall wall : walls_of(recording.box))
+        if (!seen[static_cast<int>(wall)])
+            findings.missing(contacts_file, fmt::format("contacts with {}: {}",
+                                                        wall_name(recording.box, wall), told_by(wall)));
 }
 
 double sine(const Vec3& a, const Vec3& b) { return a.cross(b).norm() / (a.norm() * b.norm()); }
@@ -109,11 +110,12 @@ void missing_tangential(const Experiment& experiment, Findings& findings) {
     for (const Scan& scan : recording.scans)
         for (const Contact& contact : scan.contacts) {
             if (is_wall(contact.partner))
-                at_walls.push_back(
-                    sine(contact.force, Vec3::Unit(static_cast<int>(wall_of(contact.partner)) / 2)));
+                at_walls.push_back(sine(
+                    contact.force, towards_wall(recording.box, wall_of(contact.partner), contact.point)));
             else if (!scan.position.empty())
-                between_grains.push_back(sine(
-                    contact.force, at(scan.position, contact.partner) - at(scan.position, contact.grain)));
+                between_grains.push_back(
+                    sine(contact.force, apart(recording.box, at(scan.position, contact.grain),
+                                              at(scan.position, contact.partner))));
         }
     if (median(at_walls) < min_tilt)
         findings.missing(contacts_file, "tangential forces at walls: friction of walls");

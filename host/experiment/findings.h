@@ -47,8 +47,8 @@ inline const Vec3& at(const std::vector<Vec3>& position, int grain) {
 inline double radius_of(const Recording& recording, int grain) {
     return 0.5 * recording.diameter[static_cast<std::size_t>(grain)];
 }
-/// How far a centre is from a wall; the plate where it stands in this scan [m].
-double distance_to(Wall wall, const Vec3& centre, const Box& box, double plate_z);
+std::vector<Wall> walls_of(const Box& box);
+std::string container_words(const Box& box);  ///< "box of 165 by 166 mm"
 double mean_diameter(const Recording& recording);
 double median(std::vector<double> values);  ///< not-a-number of none
 std::optional<double> material(const Experiment& experiment, const std::string& key);

@@ -2,17 +2,17 @@
 
 #include <fmt/format.h>
 
+#include "core/container.h"
 #include "core/errors.h"
 #include "scene/packing_fields.h"
 
 namespace mcdem::inline experiment {
 
 Experiment experiment_from(const Recording& truth, const Instrument& instrument, std::uint64_t seed) {
-    if (truth.box.shape != ContainerShape::box)
+    if (is_cell(truth.box))
         throw InputError(
-            fmt::format("{}: container.shape must be box, got {}: experiments in other containers can be "
-                        "neither checked nor "
-                        "diagnosed",
+            fmt::format("{}: container.shape must be one with a plate, got {}: an experiment is a "
+                        "compression by a plate",
                         truth.label, name(truth.box.shape)));
     Experiment experiment;
     experiment.name = truth.label;

@@ -1,9 +1,12 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <compare>
 #include <limits>
 
+#include "core/container.h"
+#include "experiment/findings.h"
 #include "experiment/measurements.h"
 #include "scene/packing_fields.h"
 
@@ -81,10 +84,12 @@ private:
     }
 
     std::optional<int> read_partner() {
-        if (const auto wall = parse<Wall>(table_.text(2))) return wall_partner(*wall);
+        if (const auto wall = find_wall(recording_.box, table_.text(2))) return wall_partner(*wall);
         if (to_whole_number(table_.text(2))) return read_grain(2);
-        table_.problem(fmt::format("partner must be a grain's number or one of {}, got {}", all_names<Wall>(),
-                                   quoted(table_.text(2))));
+        std::vector<std::string_view> names;
+        for (const Wall wall : walls_of(recording_.box)) names.push_back(wall_name(recording_.box, wall));
+        table_.problem(fmt::format("partner must be a grain's number or one of {}, got {}",
+                                   fmt::join(names, ", "), quoted(table_.text(2))));
         return std::nullopt;
     }
 
@@ -115,8 +120,8 @@ private:
     void check_units(const Contact& contact) {
         const Box& box = recording_.box;
         const Vec3 size(box.size_x, box.size_y, recording_.scans.front().plate_z);
-        const bool far_off = (contact.point.array() < -margin_.array()).any() ||
-                             (contact.point.array() > (size + margin_).array()).any();
+        const bool far_off = !is_periodic(box) && ((contact.point.array() < -margin_.array()).any() ||
+                                                   (contact.point.array() > (size + margin_).array()).any());
         if (box.size_x > 0 && far_off)
             table_.problem_once(
                 "unit",

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/container.h"
+#include "experiment/findings.h"
 #include "experiment/measurements.h"
 
 namespace mcdem::inline experiment {
@@ -56,16 +58,15 @@ private:
     void check(const GrainRow& row) {
         check_diameter(row);
         const Box& box = recording_.box;
-        const Vec3 size(box.size_x, box.size_y, recording_.scans[static_cast<std::size_t>(frame_)].plate_z);
-        const bool outside = (row.position.array() < 0).any() || (row.position.array() > size.array()).any();
-        if (box.size_x > 0 && outside)
+        const double plate_z = recording_.scans[static_cast<std::size_t>(frame_)].plate_z;
+        if (box.size_x > 0 && is_outside(box, plate_z, row.position))
             table_.problem_once(
                 "position",
-                fmt::format(
-                    "centres must lie in the box of {} by {} m below the plate at {} m, got {}, {}, {}: "
-                    "divide by 1000 if they are in millimetres, shift them if the origin is "
-                    "elsewhere, and see that frames count alike in plate.csv",
-                    size.x(), size.y(), size.z(), row.position.x(), row.position.y(), row.position.z()));
+                fmt::format("centres must lie in the {} below the plate at {} m, got {}, {}, {} m: "
+                            "divide by 1000 if they are in millimetres, shift them if the origin is "
+                            "elsewhere, and see that frames count alike in plate.csv",
+                            container_words(box), plate_z, row.position.x(), row.position.y(),
+                            row.position.z()));
     }
 
     void check_diameter(const GrainRow& row) {
@@ -100,12 +101,29 @@ private:
             return table_.problem_at(table_.where(row.line),
                                      fmt::format("grain {} is there twice in frame {}", row.grain, frame_));
         seen[i] = true;
-        position[i] = row.position;
+        position[i] = near_the_last(i, row.position);
         diameter[i] = row.diameter;
+    }
+
+    static bool is_outside(const Box& box, double plate_z, const Vec3& point) {
+        constexpr double drift = 20;  // of a grain in a periodic container, in its edges
+        if (is_periodic(box) &&
+            std::max(std::abs(point.x()) / box.size_x, std::abs(point.y()) / box.size_y) > drift)
+            return true;
+        return std::ranges::any_of(walls_of(box),
+                                   [&](Wall wall) { return wall_distance(box, wall, plate_z, point) < 0; });
+    }
+
+    /// Of the images in a periodic container the one nearest to where the grain was last.
+    Vec3 near_the_last(std::size_t grain, const Vec3& point) {
+        if (!is_periodic(recording_.box)) return point;
+        if (grain >= last_.size()) last_.resize(grain + 1, point);
+        return last_[grain] += apart(recording_.box, last_[grain], point);
     }
 
     Table& table_;
     Recording& recording_;
+    std::vector<Vec3> last_;  ///< by grain: its position in the frame before
     std::vector<GrainRow> rows_;
     long frame_ = -1;
 };

@@ -8,6 +8,7 @@
 #include <span>
 #include <sstream>
 
+#include "core/container.h"
 #include "core/input_file.h"
 #include "scene/packing_fields.h"
 
@@ -41,6 +42,7 @@ constexpr Setting measurements[] = {
 };
 constexpr Setting plate_start{"plate.start", 0, 100, true, "m"};
 constexpr Setting plate_speed{"plate.speed", 0, 1000, true, "m/s"};
+constexpr Setting container_radius{"container.radius", 0, 10, true, "m"};
 constexpr double largest_box = 20;  // [m]; a larger one was given in millimetres
 
 std::string range_text(const Setting& setting) {
@@ -57,7 +59,7 @@ public:
         const auto name = root.get("name");
         if (name && !name->is_string()) problem(*name, "name must be a text");
         if (name) experiment.name = name->value_or(std::string());
-        read_box(root, experiment.recording.box);
+        read_container(root, experiment.recording.box);
         experiment.recording.plate_start = number(root, plate_start).value_or(std::nan(""));
         experiment.plate_speed = number(root, plate_speed);
         for (const Setting& setting : materials)
@@ -92,13 +94,32 @@ private:
         return std::nullopt;
     }
 
-    void read_box(const toml::table& root, Box& box) {
+    void read_container(const toml::table& root, Box& box) {
         known("container.shape");
-        if (const auto shape = root.at_path("container.shape");
-            shape && shape.value_or(std::string()) != "box")
-            problem(*shape.node(),
-                    "container.shape must be \"box\": experiments in a cylinder or in a periodic cell "
-                    "can be neither checked nor diagnosed");
+        if (const auto shape = root.at_path("container.shape")) {
+            const auto known_shape = parse<ContainerShape>(shape.value_or(std::string()));
+            if (!known_shape || *known_shape == ContainerShape::cell)
+                return problem(
+                    *shape.node(),
+                    "container.shape must be \"box\", \"cylinder\" or \"periodic\": an experiment is a "
+                    "compression by a plate");
+            box.shape = *known_shape;
+        }
+        if (is_cylinder(box))
+            read_radius(root, box);
+        else
+            read_size(root, box);
+    }
+
+    void read_radius(const toml::table& root, Box& box) {
+        const auto radius = number(root, container_radius);
+        if (radius) box.size_x = box.size_y = 2 * *radius;
+        if (!radius && !root.at_path(container_radius.key))
+            problems_.add(file_,
+                          "container.radius must be the inner radius of the cylinder [m], such as 0.06");
+    }
+
+    void read_size(const toml::table& root, Box& box) {
         known("box.size");
         const auto node = root.at_path("box.size");
         const auto* size = node.as_array();
@@ -112,7 +133,8 @@ private:
                 problems_.add(file_, what);
             return;
         }
-        box = {size->get_as<double>(0)->get(), size->get_as<double>(1)->get()};
+        box.size_x = size->get_as<double>(0)->get();
+        box.size_y = size->get_as<double>(1)->get();
         for (double length : {box.size_x, box.size_y})
             if (!(length > 0 && length <= largest_box))
                 problem(*node.node(),
@@ -226,7 +248,6 @@ std::string settings_text(const Experiment& experiment) {
     toml::table plate{{"start", recording.plate_start}};
     if (experiment.plate_speed) plate.insert("speed", *experiment.plate_speed);
     toml::table root{{"name", experiment.name},
-                     {"box", toml::table{{"size", toml::array{recording.box.size_x, recording.box.size_y}}}},
                      {"plate", plate},
                      {"grains", grains},
                      {"walls", walls},
@@ -235,6 +256,13 @@ std::string settings_text(const Experiment& experiment) {
                                                  {"diameter_error", errors.diameter_error},
                                                  {"force_error", errors.force_error},
                                                  {"force_threshold", errors.force_threshold}}}};
+    const Box& box = recording.box;
+    toml::table container{{"shape", std::string(name(box.shape))}};
+    if (is_cylinder(box))
+        container.insert("radius", cylinder_radius(box));
+    else
+        root.insert("box", toml::table{{"size", toml::array{box.size_x, box.size_y}}});
+    if (box.shape != ContainerShape::box) root.insert("container", container);
     std::stringstream text;
     text << root << '\n';
     return text.str();

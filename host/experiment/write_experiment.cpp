@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "core/atomic_file.h"
+#include "core/container.h"
 #include "core/errors.h"
 #include "core/make_folder.h"
 #include "core/sha256.h"
@@ -41,8 +42,9 @@ std::string contact_rows(const Recording& recording) {
     fmt::memory_buffer text;
     for (std::size_t s = 0; s < recording.scans.size(); ++s)
         for (const Contact& contact : recording.scans[s].contacts) {
-            const std::string partner = is_wall(contact.partner) ? std::string(name(wall_of(contact.partner)))
-                                                                 : std::to_string(contact.partner);
+            const std::string partner = is_wall(contact.partner)
+                                            ? std::string(wall_name(recording.box, wall_of(contact.partner)))
+                                            : std::to_string(contact.partner);
             fmt::format_to(std::back_inserter(text), "{},{},{},{},{},{},{},{},{}\n", s, contact.grain,
                            partner, contact.point.x(), contact.point.y(), contact.point.z(),
                            contact.force.x(), contact.force.y(), contact.force.z());

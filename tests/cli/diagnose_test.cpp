@@ -97,6 +97,34 @@ TEST_F(DiagnoseTest, SeveralPackingsGetOneVerdict) {
     expect_bad_input(mcdem(twice), "--experiment: a is given twice");
 }
 
+// A packing in a cylinder, and one between floor and plate that repeats: without an effect, and with one.
+class DiagnoseContainerTest : public DiagnoseTest, public testing::WithParamInterface<const char*> {};
+
+TEST_P(DiagnoseContainerTest, NamesWhatIsThereAndNothingElse) {
+    std::stringstream scene;
+    scene << std::ifstream(path("tiny.toml")).rdbuf();
+    const std::string box = "[box]\nsize_x = 0.083\nsize_y = 0.083\n";
+    std::string text = scene.str();
+    ASSERT_NE(text.find(box), std::string::npos);
+    std::ofstream(path("tiny.toml")) << text.replace(text.find(box), box.size(), GetParam());
+    experiment({});
+    const std::string check = mcdem({"experiment", "check", "e"}).out;
+    EXPECT_THAT(check, HasSubstr("needs beside it: nothing"));
+    EXPECT_THAT(check, HasSubstr("what looks odd: nothing"));
+    const Words words{"--replicates",    "16", "--pairs",      "4",
+                      "--confirmations", "4",  "--candidates", "friction,viscoelasticity,force_bias"};
+    EXPECT_EQ(diagnosis(words)["verdict"], "no_gap");
+    experiment({"grains.friction=0.2"}, "f");
+    const auto told = diagnosis(words, {"f"});
+    EXPECT_EQ(told["verdict"], "effect") << told["sentence"];
+    EXPECT_EQ(told["causes"][0]["effect"], "friction");
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Shapes, DiagnoseContainerTest,
+    testing::Values("[container]\nshape = \"cylinder\"\nradius = 0.047\n",
+                    "[container]\nshape = \"periodic\"\nsize_x = 0.08\nsize_y = 0.085\n"));
+
 // Plate, positions and no contacts: what the force on the plate tells, and what it does not.
 TEST_F(DiagnoseTest, PlateAndPositionsAreEnough) {
     experiment({});

@@ -74,6 +74,37 @@ TEST(ContactResiduals, AtEveryWall) {
     }
 }
 
+// Inside a cylinder with twice a grain's radius R, 1/R* = sqrt(1/R (1/R - 1/(2 R))).
+TEST(ContactResiduals, AtTheSideOfACylinder) {
+    const ReferenceMaterial material = soft_material();
+    const double radius = 0.05, seen = 3e-4;
+    Recording recording = grains_of({radius});
+    recording.box = {0.2, 0.2};
+    recording.box.shape = ContainerShape::cylinder;
+    const Vec3 outward(0.6, -0.8, 0);
+    Scan scan;
+    scan.plate_z = 0.2;
+    scan.position = {Vec3(0.1, 0.1, 0.1) + (0.1 - radius + seen) * outward};
+    scan.contacts = {{0, wall_partner(Wall::x_min), Vec3::Zero(), -0.02 * outward}};
+    const ContactResidual c = contact_residuals(recording, scan, material).at(0);
+    EXPECT_LT((c.normal - outward).norm(), 1e-12);
+    EXPECT_NEAR(c.push, 0.02, 1e-15);
+    EXPECT_NEAR(c.reduced_radius, radius * std::sqrt(2), 1e-12);
+    EXPECT_NEAR(c.measured * c.reduced_radius, seen, 1e-12);
+}
+
+TEST(ContactResiduals, OverTheEdgeOfAPeriodicContainer) {
+    const double radius = 0.01, seen = 4e-4;
+    Recording recording = grains_of({radius, radius});
+    recording.box.shape = ContainerShape::periodic;
+    Scan scan;
+    scan.position = {Vec3(0.005, 0.1, 0.1), Vec3(0.2 - 0.015 + seen, 0.1 + 0.3, 0.1)};
+    scan.contacts = {{0, 1, Vec3::Zero(), Vec3(0.01, 0, 0)}};
+    const ContactResidual c = contact_residuals(recording, scan, soft_material()).at(0);
+    EXPECT_LT((c.normal + Vec3::UnitX()).norm(), 1e-12);
+    EXPECT_NEAR(c.measured * c.reduced_radius, seen, 1e-12);
+}
+
 /// Of contact 0 of a grain with two partners at an angle, in F/(E R) of the other's force.
 double cross_contact_at(double degrees, double nu) {
     ReferenceMaterial material = soft_material();

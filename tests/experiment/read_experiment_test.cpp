@@ -150,7 +150,7 @@ INSTANTIATE_TEST_SUITE_P(
         Spoiled{"grains.csv", "0.01,0.02\n", "0.01,0\n", "grains.csv:2: diameter_m must be > 0 [m]"},
         Spoiled{"grains.csv", "0,0,0.01", "0,0,10", "grains.csv:2: centres must lie in the box"},
         Spoiled{"grains.csv", "0.015,0.01,", "0.015,10,",
-                "grains.csv:2: centres must lie in the box of 0.04 by"},
+                "grains.csv:2: centres must lie in the box of 40 by 30 mm"},
         Spoiled{"grains.csv", "0.015,0.01,", "0.015,-0.01,", "grains.csv:2: centres must lie in the box"},
         Spoiled{"grains.csv", "0.0095,0.02\n", "0.0095,0.03\n",
                 "grains.csv:4: grain 0 must be as large as in frame 0, 0.02 m, got 0.03: number the grains"},

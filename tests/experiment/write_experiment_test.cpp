@@ -1,7 +1,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
+#include <iterator>
 
+#include "core/container.h"
 #include "experiment/experiment_folder.h"
 #include "experiment/from_recording.h"
 
@@ -78,17 +81,87 @@ TEST(write_experiment, comes_back_to_the_last_digit) {
     }
 }
 
-TEST(write_experiment, other_containers_than_boxes_are_refused) {
+TEST(write_experiment, containers_come_back_with_their_walls) {
     ExperimentFolder folder;
-    folder["experiment.toml"] += "[container]\nshape = \"cylinder\"\n";
-    EXPECT_NE(folder.error().find("container.shape must be \"box\""), std::string::npos) << folder.error();
-    ExperimentFolder of_a_box;
-    of_a_box["experiment.toml"] += "[container]\nshape = \"box\"\n";
-    EXPECT_EQ(of_a_box.error(), "no error");
-    Recording truth = awkward().recording;
-    EXPECT_NO_THROW(experiment_from(truth, Instrument{}, 1));
-    truth.box.shape = ContainerShape::periodic;
-    EXPECT_THROW(experiment_from(truth, Instrument{}, 1), InputError);
+    for (const ContainerShape shape : {ContainerShape::cylinder, ContainerShape::periodic}) {
+        Experiment experiment = awkward();
+        Recording& recording = experiment.recording;
+        recording.box.shape = shape;
+        recording.box.size_y = recording.box.size_x = 0.1 / 3;
+        if (shape == ContainerShape::periodic)
+            for (Scan& scan : recording.scans)
+                std::erase_if(scan.contacts, [](const Contact& contact) {
+                    return contact.partner == wall_partner(Wall::x_min);
+                });
+        else
+            for (Scan& scan : recording.scans)
+                for (Vec3& centre : scan.position) centre.y() = 0.05 / 3;
+        write_experiment(folder.path(), experiment);
+        const Experiment back = read_experiment(folder.path());
+        EXPECT_EQ(back.recording.box.shape, shape);
+        expect_same(experiment, back);
+        std::ifstream contacts(folder.path() / "contacts.csv");
+        const std::string text(std::istreambuf_iterator<char>(contacts), {});
+        EXPECT_EQ(text.find("x_min"), std::string::npos);
+        EXPECT_EQ(text.find(",side,") != std::string::npos, shape == ContainerShape::cylinder);
+    }
+    Recording cell;
+    cell.box.shape = ContainerShape::cell;
+    EXPECT_THROW(experiment_from(cell, {}, 1), InputError);
+}
+
+/// The two grains in a cylinder with a radius of 20 mm.
+class InACylinder : public ExperimentFolder {
+public:
+    InACylinder() {
+        replace("experiment.toml", "[box]\nsize = [0.04, 0.03]\n",
+                "[container]\nshape = \"cylinder\"\nradius = 0.02\n");
+        replace("contacts.csv", "x_min", "side");
+    }
+};
+
+TEST(read_experiment, of_a_cylinder) {
+    InACylinder folder;
+    const Recording read = folder.read().recording;
+    EXPECT_EQ(read.box.size_x, 0.04);
+    EXPECT_EQ(read.scans[1].contacts.back().partner, wall_partner(curved_wall));
+    folder.replace("contacts.csv", "side", "x_min");
+    EXPECT_NE(
+        folder.error().find("partner must be a grain's number or one of side, floor, plate, got \"x_min\""),
+        std::string::npos)
+        << folder.error();
+}
+
+TEST(read_experiment, of_a_cylinder_that_does_not_hold_its_grains_or_has_no_radius) {
+    InACylinder outside;
+    outside.replace("grains.csv", "1,0,0.0095,0.015", "1,0,0.0095,0.001");
+    EXPECT_NE(outside.error().find("grains.csv:4: centres must lie in the cylinder with a radius of 20 mm"),
+              std::string::npos)
+        << outside.error();
+    InACylinder without;
+    without.replace("experiment.toml", "radius = 0.02\n", "");
+    EXPECT_NE(without.error().find("container.radius must be the inner radius"), std::string::npos)
+        << without.error();
+    InACylinder cell;
+    cell.replace("experiment.toml", "cylinder", "cell");
+    EXPECT_NE(cell.error().find("container.shape must be \"box\", \"cylinder\" or \"periodic\""),
+              std::string::npos)
+        << cell.error();
+}
+
+// What wraps the grains of a periodic container may do so anew in every frame.
+TEST(read_experiment, follows_grains_over_the_edges_of_a_periodic_container) {
+    ExperimentFolder folder;
+    folder["experiment.toml"] += "[container]\nshape = \"periodic\"\n";
+    folder.replace("contacts.csv", "1,0,x_min,0,0.015,0.0095,0.004,0,0\n", "");
+    folder.replace("grains.csv", "1,1,0.0305", "1,1,-0.0095");
+    const Recording read = folder.read().recording;
+    EXPECT_NEAR(read.scans[1].position[1].x(), 0.0305, 1e-15);
+    EXPECT_EQ(read.scans[0].position[1].x(), 0.03);
+    folder.replace("grains.csv", "1,1,-0.0095", "1,1,-9.5");
+    EXPECT_NE(folder.error().find("centres must lie in the periodic container of 40 by 30 mm"),
+              std::string::npos)
+        << folder.error();
 }
 
 TEST(write_experiment, contacts_below_the_stated_threshold_are_kept) {

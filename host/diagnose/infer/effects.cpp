@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/container.h"
+
 namespace mcdem::inline diagnose {
 namespace {
 
@@ -80,6 +82,11 @@ std::string_view not_elastic_sphere(const Model& m) {
 std::string_view no_friction(const Model& m) {
     return m.replica.grains.friction > 0 ? "" : "the scene has no friction";
 }
+std::string_view no_sides(const Model& m) {
+    return is_periodic(m.replica.box)
+               ? "a periodic container repeats: its plate is level, and lengths are told by its edges"
+               : "";
+}
 std::string_view no_threshold(const Model& m) {
     return m.instrument.stated.force_threshold > 0 ? "" : "the experiment states no force threshold";
 }
@@ -117,9 +124,9 @@ const Effect table[] = {
     {"rolling_resistance", "", "mu_r: a torque mu_r R* F_n resists rolling", "Ai, Chen, Rotter & Ooi 2011",
      0, 0.5, 0.05, 0.15, one, [](Model& m, double a) { m.replica.effects.rolling_resistance += a; }, nothing},
     {"plate_tilt", "", "slope of the plate along x", "geometry",
-     -0.08, 0.08, -0.015, 0.015, one, [](Model& m, double a) { m.replica.effects.plate_tilt_x += a; }, nothing},
+     -0.08, 0.08, -0.015, 0.015, one, [](Model& m, double a) { m.replica.effects.plate_tilt_x += a; }, no_sides},
     {"plate_tilt_y", "", "slope of the plate along y", "geometry",
-     -0.08, 0.08, -0.015, 0.015, one, [](Model& m, double a) { m.replica.effects.plate_tilt_y += a; }, nothing},
+     -0.08, 0.08, -0.015, 0.015, one, [](Model& m, double a) { m.replica.effects.plate_tilt_y += a; }, no_sides},
     {"plate_compliance", "m/N", "how far the plate gives way per newton", "linear spring",
      0, 1, 0.1, 0.3, compliance_scale, [](Model& m, double a) { m.replica.effects.plate_compliance += a; }, nothing},
     {"force_bias", "relative", "contact forces read too large by this part", "measurement",
@@ -129,7 +136,7 @@ const Effect table[] = {
     {"force_threshold", "N", "true less stated threshold of contact forces", "measurement",
      -1, 8, -0.5, 1.5, threshold_scale, [](Model& m, double a) { m.instrument.threshold_shift += a; }, no_threshold},
     {"position_bias", "relative", "lengths read too large by this part", "measurement",
-     -0.02, 0.02, -0.003, 0.003, one, [](Model& m, double a) { m.instrument.position_bias += a; }, nothing},
+     -0.02, 0.02, -0.003, 0.003, one, [](Model& m, double a) { m.instrument.position_bias += a; }, no_sides},
     {"plate_speed", "", "part by which the real plate is slower than the scene's", "numerics",
      0, 1, 0.5, 0.75, one, [](Model& m, double a) { take_off(plate_speed(m), a); }, no_slower_plate, plate_speed},
     {"inertia", "", "part by which real inertia is smaller than the scene's, weight alike", "numerics",

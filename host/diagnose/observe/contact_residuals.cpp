@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/container.h"
+
 namespace mcdem::inline diagnose {
 namespace {
 
@@ -59,20 +61,18 @@ private:
     }
 
     double meet_grain(ContactResidual& c) const {
-        const Vec3 apart = position(c.partner) - position(c.grain);
-        const double distance = apart.norm(), here = radius(c.grain), there = radius(c.partner);
-        c.normal = distance > 0 ? Vec3(apart / distance) : Vec3::UnitZ();
+        const Vec3 between = apart(recording_.box, position(c.grain), position(c.partner));
+        const double distance = between.norm(), here = radius(c.grain), there = radius(c.partner);
+        c.normal = distance > 0 ? Vec3(between / distance) : Vec3::UnitZ();
         c.reduced_radius = here * there / (here + there);
         return distance - here - there;
     }
 
     double meet_wall(ContactResidual& c) const {
-        const int wall = -1 - c.partner;
-        const double places[] = {0, recording_.box.size_x, 0, recording_.box.size_y, 0, scan_.plate_z};
-        const double side = wall % 2 == 0 ? -1 : 1;
-        c.normal = side * Vec3::Unit(wall / 2);
-        c.reduced_radius = radius(c.grain);
-        return side * (places[wall] - position(c.grain)[wall / 2]) - radius(c.grain);
+        const Wall wall = wall_of(c.partner);
+        c.normal = towards_wall(recording_.box, wall, position(c.grain));
+        c.reduced_radius = mcdem::reduced_radius(recording_.box, wall, radius(c.grain));
+        return wall_distance(recording_.box, wall, scan_.plate_z, position(c.grain)) - radius(c.grain);
     }
 
     /// 1/E* of two grains, or of a grain and a wall.

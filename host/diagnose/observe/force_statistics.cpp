@@ -7,6 +7,7 @@
 #include <numeric>
 #include <vector>
 
+#include "core/container.h"
 #include "metrics/estimate.h"
 
 namespace mcdem::inline diagnose {
@@ -63,7 +64,9 @@ std::array<double, 5> wall_loads(const Recording& recording, const Scan& scan) {
                 break;
             }
             default:
-                sides += std::abs(contact.force[wall_of(contact.partner) < Wall::y_min ? 0 : 1]) / 4;
+                sides += std::abs(contact.force.dot(
+                             towards_wall(recording.box, wall_of(contact.partner), contact.point))) /
+                         4;
         }
     }
     const double top = scan.top_force();

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "core/container.h"
 #include "metrics/estimate.h"
 #include "scene/cell_pairs.h"
 
@@ -100,9 +101,9 @@ std::array<double, 2> contact_occurrence(const Recording& recording, const Scan&
         const double a = recording.diameter[static_cast<std::size_t>(i)];
         const double b = recording.diameter[static_cast<std::size_t>(j)];
         const double reach = 0.5 * (a + b) - clear_overlap * 0.5 * a * b / (a + b);
-        const Vec3 apart =
-            scan.position[static_cast<std::size_t>(i)] - scan.position[static_cast<std::size_t>(j)];
-        if (apart.squaredNorm() < reach * reach)
+        const Vec3 between = apart(recording.box, scan.position[static_cast<std::size_t>(i)],
+                                   scan.position[static_cast<std::size_t>(j)]);
+        if (between.squaredNorm() < reach * reach)
             silent += !std::ranges::binary_search(listed, std::pair<int, int>(std::minmax(i, j)));
     });
     return {gaps / grains, silent / grains};

@@ -15,7 +15,7 @@ constexpr Observable table[] = {
     {"top_force", Needs::plate, 0.003, "plate", "", "log of the force on the plate"},
 
     {"floor_force", Needs::contacts, 0.003, "floor", "", "force on the floor over that on the plate"},
-    {"side_force", Needs::contacts, 0.003, "sides", "", "mean force on a side wall over that on the plate"},
+    {"side_force", Needs::contacts, 0.003, "sides", "", "a quarter of the normal forces on the sides over the force on the plate"},
     {"plate_contacts", Needs::contacts, 0.003, "plate", "", "sum of the contact forces at the plate over the plate's own reading"},
     {"plate_couple_x", Needs::contacts, 0.002, "plate", "", "centre of the plate's load along x, over half the box"},
     {"plate_couple_y", Needs::contacts, 0.002, "plate", "", "centre of the plate's load along y, over half the box"},
