@@ -17,44 +17,34 @@ Strain strain_after(const Stage& stage, Strain before) {
     return before;
 }
 
-CellPath::CellPath(const std::vector<Stage>& stages, const std::vector<Leg>& legs)
-    : strain_{Strain{}}, length_{0} {
-    for (const Leg& leg : legs) {
-        const Strain& before = strain_.back();
-        const Strain after = strain_after(stages[static_cast<std::size_t>(leg.stage)], before);
-        double most = 0;
-        for (std::size_t k = 0; k < after.size(); ++k) most = std::max(most, std::abs(after[k] - before[k]));
-        length_.push_back(length_.back() + most);
-        strain_.push_back(after);
-    }
+CellMove::CellMove(const Stage& stage, const Strain& before, double begin)
+    : from(before), to(strain_after(stage, before)), begin(begin) {
+    double most = 0;
+    for (std::size_t k = 0; k < to.size(); ++k) most = std::max(most, std::abs(to[k] - from[k]));
+    end = begin + most;
 }
 
-Strain CellPath::strain(int leg, double place) const {
-    const auto at = static_cast<std::size_t>(leg);
-    const double way = length_[at + 1] - length_[at];
-    const double part = way > 0 ? std::clamp((place - length_[at]) / way, 0.0, 1.0) : 1;
-    if (part == 1) return strain_[at + 1];
-    Strain strain = strain_[at];
-    for (std::size_t k = 0; k < strain.size(); ++k) strain[k] += part * (strain_[at + 1][k] - strain[k]);
+Strain CellMove::strain(double place) const {
+    const double way = end - begin;
+    const double part = way > 0 ? std::clamp((place - begin) / way, 0.0, 1.0) : 1;
+    if (part == 1) return to;
+    Strain strain = from;
+    for (std::size_t k = 0; k < strain.size(); ++k) strain[k] += part * (to[k] - strain[k]);
     return strain;
 }
 
-Strain CellPath::direction(int leg) const {
-    const auto at = static_cast<std::size_t>(leg);
-    const double way = length_[at + 1] - length_[at];
+Strain CellMove::direction() const {
+    const double way = end - begin;
     Strain direction{};
-    for (std::size_t k = 0; way > 0 && k < direction.size(); ++k)
-        direction[k] = (strain_[at + 1][k] - strain_[at][k]) / way;
+    for (std::size_t k = 0; way > 0 && k < direction.size(); ++k) direction[k] = (to[k] - from[k]) / way;
     return direction;
 }
 
-bool CellPath::loads(int leg) const {
+bool CellMove::loads() const {
     const auto volume = [](const Strain& s) { return (1 - s[0]) * (1 - s[1]) * (1 - s[2]); };
     const auto shear = [](const Strain& s) { return s[3] * s[3] + s[4] * s[4] + s[5] * s[5]; };
-    const Strain &before = strain_[static_cast<std::size_t>(leg)],
-                 &after = strain_[static_cast<std::size_t>(leg) + 1];
-    const double change = volume(after) - volume(before);
-    return change < 0 || (change == 0 && shear(after) >= shear(before));
+    const double change = volume(to) - volume(from);
+    return change < 0 || (change == 0 && shear(to) >= shear(from));
 }
 
 Box smallest_cell(const Replica& replica) {

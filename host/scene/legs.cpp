@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/container.h"
@@ -46,8 +47,19 @@ void expect_plain_strokes(const Scene& scene, const std::string& what) {
                 what));
 }
 
+SetStress set_stress(const Stage& stage) {
+    if (stage.kind != StageKind::move) return no_stress;
+    if (!std::isnan(stage.pressure)) return {stage.pressure, stage.pressure, stage.pressure};
+    return {stage.stress_x, stage.stress_y, stage.stress_z};
+}
+
+bool sets_stress(const Stage& stage) {
+    return std::ranges::any_of(set_stress(stage), [](double stress) { return !std::isnan(stress); });
+}
+
 Controlled controlled(const Stage& stage) {
     if (stage.kind == StageKind::hold) return stage.keep;
+    if (sets_stress(stage)) return Controlled::stress;
     return std::isnan(stage.force) ? Controlled::position : Controlled::force;
 }
 

@@ -1,5 +1,6 @@
 // A programme as the moves and holds that it consists of, one after the other.
 #pragma once
+#include <array>
 #include <functional>
 #include <string>
 #include <vector>
@@ -30,6 +31,12 @@ double scan_count(const std::vector<Stage>& stages);
 /// Throws InputError where a replica is a cell or has a programme or species: `what` ("a diagnosis") knows
 /// the strokes of a plate on grains of one material only.
 void expect_plain_strokes(const Scene& scene, const std::string& what);
+
+/// Of a cell's directions x, y and z [Pa]; not-a-number where a stage does not set a stress.
+using SetStress = std::array<double, 3>;
+inline constexpr SetStress no_stress{not_given, not_given, not_given};
+SetStress set_stress(const Stage& stage);
+bool sets_stress(const Stage& stage);
 
 /// What a move ends at, or a hold keeps.
 Controlled controlled(const Stage& stage);

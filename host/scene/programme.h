@@ -8,14 +8,14 @@
 namespace mcdem::inline core {
 
 enum class StageKind {
-    move,    ///< to a position, a strain or a force
-    hold,    ///< position or force for a time
+    move,    ///< to a position, a strain, a force or stresses
+    hold,    ///< position, force or stresses for a time
     cycle,   ///< there and back, several times
     repeat,  ///< stages before once more
 };
 
-/// What the plate is controlled by.
-enum class Controlled { position, force };
+/// What the plate, or a cell, is controlled by.
+enum class Controlled { position, force, stress };
 
 template <>
 struct Names<StageKind> {
@@ -23,7 +23,7 @@ struct Names<StageKind> {
 };
 template <>
 struct Names<Controlled> {
-    static constexpr std::array<std::string_view, 2> list{"position", "force"};
+    static constexpr std::array<std::string_view, 3> list{"position", "force", "stress"};
 };
 
 }  // namespace mcdem::core
@@ -40,6 +40,8 @@ struct Stage {
     double force = not_given;   ///< upward on the plate [N]
     double strain_x = not_given, strain_y = not_given, strain_z = not_given;  ///< of a cell (core/packing.h)
     double shear_xy = not_given, shear_xz = not_given, shear_yz = not_given;  ///< of a cell
+    double pressure = not_given;  ///< of a cell: all three of the stresses [Pa]
+    double stress_x = not_given, stress_y = not_given, stress_z = not_given;  ///< of a cell [Pa]
     double rate = 0.1;        ///< of a cell: the fastest of its strains, at most [1/s]
     double back = not_given;  ///< where a cycle returns to, in the quantity of its turning point
     int cycles = 1;

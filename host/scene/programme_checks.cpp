@@ -24,8 +24,8 @@ bool belongs(StageKind kind, std::string_view key, bool cell) {
     };
     if (cell && kind == StageKind::move)
         return any({"stage", "strain", "strain_x", "strain_y", "strain_z", "shear_xy", "shear_xz", "shear_yz",
-                    "rate", "scans"});
-    if (cell && kind == StageKind::hold) return any({"stage", "time", "scans", "scan_at"});
+                    "pressure", "stress_x", "stress_y", "stress_z", "rate", "scans"});
+    if (cell && kind == StageKind::hold) return any({"stage", "keep", "time", "scans", "scan_at"});
     switch (kind) {
         case StageKind::move:
             return any({"stage", "position", "strain", "force", "speed", "scans", "scan_at"});
@@ -65,7 +65,7 @@ public:
         }
         if (said("scans") && said("scan_at")) add("scan_at", "must be left out where scans is given");
         if (stage_.kind == StageKind::hold) check_hold();
-        if (stage_.kind == StageKind::move && is_cell_) return check_strains();
+        if (stage_.kind == StageKind::move && is_cell_) return check_move_of_cell();
         if (stage_.kind == StageKind::move || stage_.kind == StageKind::cycle) check_target();
         if (stage_.kind == StageKind::repeat && stage_.stages > number_)
             add("stages", fmt::format("must be at most the {} before it, got {}", number_, stage_.stages));
@@ -81,8 +81,7 @@ private:
 
     void check_hold() {
         if (std::isnan(stage_.time)) add("time", "must be given: a hold has no other end");
-        if (number_ == 0 && stage_.keep == Controlled::force)
-            add("keep", "must be position in the first stage: no force is there yet to be held");
+        check_kept();
         for (std::size_t k = 0; k < stage_.scan_at.size(); ++k) {
             const double at = stage_.scan_at[k], before = k ? stage_.scan_at[k - 1] : 0;
             if (!(at > before && !(at > stage_.time)))
@@ -92,16 +91,41 @@ private:
         }
     }
 
-    void check_strains() {
-        const std::string_view strains[]{"strain_x", "strain_y", "strain_z",
-                                         "shear_xy", "shear_xz", "shear_yz"};
-        const bool any = std::ranges::any_of(strains, [&](auto field) { return said(field); });
-        if (!any && !said("strain"))
-            add("strain", "must be given, or strain_x, shear_xy, ..: a move of a cell needs one of them");
-        for (const std::string_view field : {"strain_x", "strain_y", "strain_z"})
-            if (said(field) && said("strain")) add(field, "must be left out where strain is given");
+    void check_kept() {
+        if (stage_.keep == Controlled::position) return;
+        const Controlled other = is_cell_ ? Controlled::stress : Controlled::force;
+        if (stage_.keep != other)
+            return add("keep", fmt::format("must be position or {} in a hold of {}, got {}", name(other),
+                                           is_cell_ ? "a cell" : "the plate", name(stage_.keep)));
+        if (number_ == 0)
+            return add("keep",
+                       fmt::format("must be position in the first stage: no {} is there yet to be held",
+                                   name(other)));
+    }
+
+    void check_move_of_cell() {
+        const std::array<std::string_view, 3> strains{"strain_x", "strain_y", "strain_z"},
+            stresses{"stress_x", "stress_y", "stress_z"};
+        const std::string_view others[]{"strain", "shear_xy", "shear_xz", "shear_yz", "pressure"};
+        const auto is_said = [&](auto field) { return said(field); };
+        if (std::ranges::none_of(strains, is_said) && std::ranges::none_of(stresses, is_said) &&
+            std::ranges::none_of(others, is_said))
+            add("strain",
+                "must be given, or strain_x, shear_xy, pressure, stress_x, ..: a move of a cell "
+                "needs one of them");
+        for (const std::string_view all : {"strain", "pressure"})
+            for (std::size_t axis = 0; said(all) && axis < 3; ++axis)
+                for (const std::string_view field : {strains[axis], stresses[axis]})
+                    if (said(field)) add(field, fmt::format("must be left out where {} is given", all));
+        if (said("strain") && said("pressure")) add("pressure", either("strain"));
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            if (said(strains[axis]) && said(stresses[axis])) add(stresses[axis], either(strains[axis]));
         if (stage_.strain > 0.99)
             add("strain", fmt::format("must leave a cell some volume, at most 0.99, got {}", stage_.strain));
+    }
+    static std::string either(std::string_view strain) {
+        return fmt::format("must be left out where {} is given: a direction has a strain or a stress",
+                           strain);
     }
 
     void check_target() {
@@ -193,6 +217,27 @@ void check_forces(const Settings& settings, std::vector<CrossProblem>& problems)
                                  force, max_force, settings.replica.numerics.overlap_limit)});
 }
 
+void check_stresses(const Settings& settings, std::vector<CrossProblem>& problems) {
+    if (!settings.packing_file.empty()) return;
+    const double max_stress = max_cell_stress(settings);
+    for (std::size_t n = 0; n < settings.replica.programme.size(); ++n) {
+        const Stage& stage = settings.replica.programme[n];
+        const SetStress stress = set_stress(stage);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            if (!(stress[axis] > max_stress)) continue;
+            const std::string field =
+                std::isnan(stage.pressure) ? fmt::format("stress_{}", "xyz"[axis]) : "pressure";
+            problems.push_back(
+                {fmt::format("programme.{}.{}", n + 1, field),
+                 fmt::format(
+                     "must be one that the grains can bear, got {}: beyond some {:.3g} Pa their contacts "
+                     "are deeper than numerics.overlap_limit = {}",
+                     stress[axis], max_stress, settings.replica.numerics.overlap_limit)});
+            if (!std::isnan(stage.pressure)) break;
+        }
+    }
+}
+
 void check_size(const std::vector<Stage>& programme, std::vector<CrossProblem>& problems) {
     if (const double legs = leg_count(programme); legs > max_legs)
         problems.push_back({"programme.1.stage",
@@ -205,6 +250,23 @@ void check_size(const std::vector<Stage>& programme, std::vector<CrossProblem>& 
              fmt::format("and the others must leave 1 to {} scans in all, got {}", max_scans, scans)});
 }
 
+/// A hold of stresses keeps those that the last move before it has set, also where stages are repeated.
+void check_kept_stresses(const std::vector<Stage>& programme, const Plate& plate,
+                         std::vector<CrossProblem>& problems) {
+    const Stage* move = nullptr;
+    for (const Leg& leg : legs_of(programme, plate)) {
+        const Stage& stage = programme[static_cast<std::size_t>(leg.stage)];
+        if (stage.kind != StageKind::hold) {
+            move = &stage;
+        } else if (stage.keep == Controlled::stress && !(move && sets_stress(*move))) {
+            problems.push_back({fmt::format("programme.{}.keep", leg.stage + 1),
+                                "must be position where the move before sets no stress: set those to be held "
+                                "there (pressure, or stress_x, ..)"});
+            return;
+        }
+    }
+}
+
 }  // namespace
 
 double max_plate_force(const Settings& settings, double smallest_diameter) {
@@ -214,6 +276,15 @@ double max_plate_force(const Settings& settings, double smallest_diameter) {
     const double modulus = plane_modulus(stiffest(replica));
     const double overlap = std::min(1.0, replica.numerics.overlap_limit) * 2 * radius;
     return beyond_hertz * grains * 4 / 3 * modulus * std::sqrt(radius) * std::pow(overlap, 1.5);
+}
+
+double max_cell_stress(const Settings& settings) {
+    const auto& replica = settings.replica;
+    const double radius = settings.generated.diameter_min / 2;
+    const double overlap = std::min(1.0, replica.numerics.overlap_limit) * 2 * radius;
+    const double force =
+        4.0 / 3 * plane_modulus(stiffest(replica)) / 2 * std::sqrt(radius / 2) * std::pow(overlap, 1.5);
+    return beyond_hertz * force / (2 * std::sqrt(3.0) * radius * radius);
 }
 
 std::vector<CrossProblem> programme_problems(const Settings& settings, const std::set<std::string>& said,
@@ -245,7 +316,9 @@ std::vector<CrossProblem> programme_problems(const Settings& settings, const std
     }
     if (any_bad || !problems.empty()) return problems;
     check_forces(settings, problems);
+    check_stresses(settings, problems);
     check_size(programme, problems);
+    if (problems.empty()) check_kept_stresses(programme, settings.replica.plate, problems);
     return problems;
 }
 

@@ -16,5 +16,7 @@ std::vector<CrossProblem> programme_problems(const Settings& settings, const std
 
 /// Beyond this force on the plate [N] every contact under it would be deeper than numerics.overlap_limit.
 double max_plate_force(const Settings& settings, double smallest_diameter);
+/// The same of a stress of a cell [Pa].
+double max_cell_stress(const Settings& settings);
 
 }  // namespace mcdem::scene

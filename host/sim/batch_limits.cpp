@@ -132,7 +132,10 @@ void expect_slow_strains(const Replica& replica, double time_step) {
 double seconds_of_stage(const Stage& stage, const Replica& replica) {
     const double speed = std::isnan(stage.speed) ? replica.plate.speed : stage.speed;
     if (stage.kind == StageKind::hold) return stage.time;
-    if (is_cell(replica.box)) return max_strain_of_move(replica) / stage.rate;
+    if (is_cell(replica.box))
+        return (sets_stress(stage) ? std::max(1.0, max_strain_of_move(replica))
+                                   : max_strain_of_move(replica)) /
+               stage.rate;
     return std::abs(replica.plate.start - replica.plate.end) / speed;
 }
 

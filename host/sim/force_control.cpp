@@ -19,13 +19,17 @@ constexpr double stiffness_margin = 1.5;
 /// The rate follows within some `response` times what a wave through the packing takes, the force within
 /// `approach` times that: so far apart that neither overshoots at any of these stiffnesses.
 constexpr double response = 1.5, approach = 14;
+/// How much stiffer than its layers a cell may be that goes fast: strained in all directions at once, far
+/// compressed, with surfaces that displace one another.
+constexpr double cell_margin = 5;
 
 }  // namespace
 
-ForceControl::ForceControl(const Replica& replica, const PackingScale& scale)
-    : mass_(scale.mass),
-      quiet_(replica.protocol.stop_at_scans ? quiet : near),
-      layers_(1 + replica.plate.start / scale.diameter) {
+ForceControl ForceControl::of_plate(const Replica& replica, const PackingScale& scale) {
+    ForceControl control;
+    control.inertia_ = scale.mass;
+    control.quiet_ = replica.protocol.stop_at_scans ? quiet : near;
+    control.layers_ = 1 + replica.plate.start / scale.diameter;
     const double radius = scale.diameter / 2;
     const double area = floor_area(replica.box);
     const double grains = std::clamp(area / (2 * std::sqrt(3.0) * radius * radius), 1.0,
@@ -33,8 +37,28 @@ ForceControl::ForceControl(const Replica& replica, const PackingScale& scale)
     const auto layer = [&](double modulus) {
         return grains * 4 / 3 * modulus * std::sqrt(radius) / (1 - replica.effects.plasticity);
     };
-    stiffest_layer_ = layer(plane_modulus(stiffest(replica)));
-    layer_ = layer(scale.modulus);
+    control.stiffest_layer_ = layer(plane_modulus(stiffest(replica)));
+    control.layer_ = layer(scale.modulus);
+    return control;
+}
+
+/// All layers deform alike, so that the packing's stiffness is felt at once.
+ForceControl ForceControl::of_cell(const Replica& replica, const PackingScale& scale) {
+    ForceControl control;
+    const Box& box = replica.box;
+    const double longest = std::max({box.size_x, box.size_y, box.height}), radius = scale.diameter / 2;
+    control.inertia_ = scale.mass * longest * longest / (floor_area(box) * box.height);
+    control.quiet_ = replica.protocol.stop_at_scans ? quiet : near;
+    control.layers_ = 1 / scale.diameter;
+    control.rigid_layers_ = control.layers_ / cell_margin;
+    const auto layer = [&](double modulus) {
+        const double contact =
+            4.0 / 3 * modulus / 2 * std::sqrt(radius / 2) / (1 - replica.effects.plasticity);
+        return contact / (2 * std::sqrt(3.0) * radius * radius);
+    };
+    control.stiffest_layer_ = layer(plane_modulus(stiffest(replica)));
+    control.layer_ = layer(scale.modulus);
+    return control;
 }
 
 /// Of the Hertz contacts of a full layer of grains that do not move.
@@ -48,7 +72,7 @@ double ForceControl::stiffness(const State& state, double set) const {
 
 /// That a wave takes through the packing.
 double ForceControl::response_time(const State& state, double set) const {
-    return std::sqrt(mass_ / stiffness(state, set));
+    return std::sqrt(inertia_ / stiffness(state, set));
 }
 
 double ForceControl::interval(const State& state, double set) const {
@@ -75,8 +99,9 @@ void ForceControl::observe(State& state, double force, double duration) {
 /// Far off, waves in the packing shake the force by more than the plate changes it: the plate looks at the
 /// distance alone. It cannot feel more than a layer of the stiffest grains.
 double ForceControl::far_speed(double left, double force, double duration) const {
-    const double stiffest = layer_stiffness(std::max(force, force + left / 2), stiffest_layer_);
-    const double blind = duration + std::sqrt(mass_ / stiffest);
+    const double stiffest =
+        layer_stiffness(std::max(force, force + left / 2), stiffest_layer_) / rigid_layers_;
+    const double blind = duration + std::sqrt(inertia_ / stiffest);
     return 0.5 * std::abs(left) / (stiffest * blind);
 }
 

@@ -1,6 +1,8 @@
 // A plate that goes to a force and stays there. It knows the force at interval ends only and nothing of the
 // packing, so that it acts on rates: the speed changes until the force approaches the one set at a rate in
 // proportion to what is left. How stiff the packing is decides how fast the speed changes, not where it ends.
+// A cell's direction goes to a stress in the same way: stress in place of force [Pa], the rate of the cell's
+// length over that at start in place of the plate's velocity [1/s].
 #pragma once
 #include "scene/scene.h"
 #include "sim/engine.h"
@@ -17,7 +19,9 @@ public:
         double velocity = 0;  ///< of the plate from now on, upward [m/s]
     };
 
-    ForceControl(const Replica& replica, const PackingScale& scale);
+    static ForceControl of_plate(const Replica& replica, const PackingScale& scale);
+    /// One for every direction.
+    static ForceControl of_cell(const Replica& replica, const PackingScale& scale);
 
     /// Takes note of an interval: `force` at its end [N], its `duration` [s].
     static void observe(State& state, double force, double duration);
@@ -36,16 +40,18 @@ public:
     static bool reached(const State& state, double set);
 
 private:
+    ForceControl() = default;
     double far_speed(double left, double force, double duration) const;
     static double layer_stiffness(double force, double layer);
     double stiffness(const State& state, double set) const;
     double response_time(const State& state, double set) const;
 
-    double mass_;            ///< of all grains [kg]
-    double quiet_;           ///< relative distance of a force from which on there is drag
-    double layers_;          ///< of grains between floor and plate
-    double layer_;           ///< of the Hertz law of all grains that the plate can touch [N/m^(3/2)]
-    double stiffest_layer_;  ///< .. were all of the stiffest species
+    double inertia_ = 0;       ///< mass of all grains [kg]; of a cell times length squared over volume
+    double quiet_ = 0;         ///< relative distance of a force from which on there is drag
+    double layers_ = 1;        ///< of grains between floor and plate; of a cell, in a metre
+    double rigid_layers_ = 1;  ///< the fewest that may deform
+    double layer_ = 0;  ///< of the Hertz law of all grains of a layer [N/m^(3/2)]; of a cell, over its area
+    double stiffest_layer_ = 0;  ///< .. were all of the stiffest species
 };
 
 }  // namespace mcdem::sim

@@ -12,9 +12,6 @@ namespace {
 
 using Stage = ProtocolState::Stage;
 
-/// Intervals in a row below the limit: a packing that passes through rest at the turning point of an
-/// oscillation is not taken for one at rest, and a force that passes the one set not for one that stays.
-constexpr int enough_intervals = 2;
 /// Part of an interval's pressure that is taken over, so that waves in the packing do not shake the plate.
 constexpr double pressure_share = 0.2;
 /// The integrator takes away drag * time step of a velocity in a step. Where the plate halts, motion ends at
@@ -22,10 +19,6 @@ constexpr double pressure_share = 0.2;
 constexpr double max_drag = 0.5, max_relax_drag = 0.02;
 /// Closer than this to a level, over the plate's start or a strain of one, the plate has arrived.
 constexpr double rounding = 1e-12;
-constexpr double max_steps = 1e6;
-/// A force must be reached in this many times what the slowest plate takes for its whole way, a scan to
-/// settle and the approach.
-constexpr double patience = 10;
 
 double force_along_z(const IntervalResult& result, Wall wall) {
     return result.wall_force[static_cast<std::size_t>(wall)].z();
@@ -38,15 +31,13 @@ ProtocolRunner::ProtocolRunner(const Replica& replica, double time_step, const P
       protocol_(replica.protocol),
       stages_(stages_of(replica)),
       legs_(legs_of(stages_, plate_)),
-      path_(is_cell(replica.box) ? std::optional(CellPath(stages_, legs_)) : std::nullopt),
-      scale_(path_ ? 1 : plate_.start),
+      cell_(is_cell(replica.box) ? std::optional(CellControl(replica, scale)) : std::nullopt),
+      scale_(cell_ ? 1 : plate_.start),
       time_step_(time_step),
       longest_time_step_(time_step),
       quasi_static_(replica, scale),
-      force_control_(replica, scale) {
-    state_.plate_z = path_ ? 0 : plate_.start;
-    for (std::size_t leg = 0; path_ && leg < legs_.size(); ++leg)
-        legs_[leg].target = path_->end(static_cast<int>(leg));
+      force_control_(ForceControl::of_plate(replica, scale)) {
+    state_.plate_z = cell_ ? 0 : plate_.start;
     state_.pressure = quasi_static_.pressure(0, 0);
 }
 
@@ -61,35 +52,26 @@ double ProtocolRunner::set_force() const {
 }
 
 double ProtocolRunner::max_speed() const {
-    if (path_) return stage().rate;
+    if (cell_) return last_move().rate;
     return std::isnan(stage().speed) ? plate_.speed : stage().speed;
-}
-
-Strain ProtocolRunner::strain() const { return path_ ? path_->strain(state_.leg, state_.plate_z) : Strain{}; }
-
-void ProtocolRunner::deform(StepInterval& interval) const {
-    interval.strain = strain();
-    interval.strain_rate = path_->direction(state_.leg);
-    for (double& rate : interval.strain_rate) rate *= interval.plate_velocity;
-    interval.plate_velocity = 0;
 }
 
 /// Where a move is to be scanned.
 double ProtocolRunner::level_value(int level) const {
     if (!stage().scan_at.empty())
         return in_si(stage(), stage().scan_at[static_cast<std::size_t>(level - 1)], plate_);
-    return state_.leg_begin + (leg().target - state_.leg_begin) * level / stage().scans;
+    return state_.leg_begin + (target() - state_.leg_begin) * level / stage().scans;
 }
 
 /// The next scan, or the end of the move.
 double ProtocolRunner::waypoint() const {
-    return state_.level < scans_of(stage()) ? level_value(state_.level + 1) : leg().target;
+    return state_.level < scans_of(stage()) ? level_value(state_.level + 1) : target();
 }
 
 bool ProtocolRunner::waypoint_is_end() const {
     const int scans = scans_of(stage());
     if (state_.level + 1 != scans) return state_.level >= scans;
-    return stage().scan_at.empty() || level_value(scans) == leg().target;
+    return stage().scan_at.empty() || level_value(scans) == target();
 }
 
 /// From the hold's beginning to its next scan or its end [s].
@@ -105,6 +87,7 @@ long ProtocolRunner::max_stage_steps() const {
     if (state_.stage == Stage::settle) return std::lround(protocol_.settle_time / time_step_);
     if (state_.stage == Stage::hold)
         return state_.stage_step + std::lround((state_.hold_begin + hold_time() - state_.time) / time_step_);
+    if (cell_) return max_steps_by_stress();
     const double slowest = quasi_static_.speed(max_speed(), plate_.start, quasi_static_.min_pressure());
     const double way = (plate_.start - plate_.end) / slowest;
     return std::lround(
@@ -116,6 +99,7 @@ long ProtocolRunner::max_stage_steps() const {
 /// last speed is a little lower.
 StepInterval ProtocolRunner::planned() const {
     if (by_force()) return planned_by_force();
+    if (by_stress()) return planned_by_stress();
     if (state_.stage != Stage::move) {
         const long left = std::max(1L, max_stage_steps() - state_.stage_step);
         return {static_cast<int>(std::min<double>(left, max_steps)), state_.plate_z, 0, drag()};
@@ -139,25 +123,38 @@ StepInterval ProtocolRunner::planned_by_force() const {
 }
 
 double ProtocolRunner::drag() const {
-    const double wanted = by_force() ? force_control_.drag(state_.control, set_force()) : HUGE_VAL;
+    const double wanted = by_force()    ? force_control_.drag(state_.control, set_force())
+                          : by_stress() ? cell_->drag(state_.cell, stress())
+                                        : HUGE_VAL;
     return std::min({wanted, protocol_.settle_drag,
                      (state_.stage == Stage::relax ? max_relax_drag : max_drag) / longest_time_step_});
 }
 
 void ProtocolRunner::take_note(const IntervalResult& result) {
-    const double velocity = planned().plate_velocity, duration = time_step_ * result.steps;
+    StepInterval interval = planned();
+    const double velocity = interval.plate_velocity, duration = time_step_ * result.steps;
+    double fastest = std::abs(velocity);
+    if (by_stress()) {
+        deform(interval);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            state_.cell.direction[axis].strain += interval.strain_rate[axis] * duration;
+            fastest = std::max(fastest, std::abs(interval.strain_rate[axis]));
+        }
+    }
     state_.step += result.steps;
     state_.stage_step += result.steps;
     state_.time += result.steps * time_step_;
     if (state_.stage == Stage::move)
-        state_.rate_error = quasi_static_.rate_error(std::abs(velocity), rate_length(), state_.pressure);
+        state_.rate_error = quasi_static_.rate_error(fastest, rate_length(), state_.pressure);
     state_.plate_z += velocity * time_step_ * result.steps;
     const double plate = force_along_z(result, Wall::plate);
-    const double pressure = path_ ? quasi_static_.pressure(result.stress)
+    const double pressure = cell_ ? quasi_static_.pressure(result.stress)
                                   : quasi_static_.pressure(plate, force_along_z(result, Wall::floor));
     state_.pressure += pressure_share * (pressure - state_.pressure);
     ForceControl::observe(state_.control, plate, duration);
     if (by_force()) follow_force(duration);
+    if (cell_) CellControl::observe(state_.cell, result.stress, duration);
+    if (by_stress()) follow_stress(duration);
 }
 
 void ProtocolRunner::follow_force(double duration) {
@@ -187,7 +184,8 @@ void ProtocolRunner::give_up(const std::string& why) {
 bool ProtocolRunner::settled(const IntervalResult& result, double drag, bool plate_arrived) {
     const double unbalanced = quasi_static_.unbalanced_force(result.kinetic_energy, drag, state_.pressure);
     const bool still = plate_arrived && unbalanced <= protocol_.settle_unbalanced_force &&
-                       (!by_force() || ForceControl::reached(state_.control, set_force()));
+                       (!by_force() || ForceControl::reached(state_.control, set_force())) &&
+                       (!by_stress() || CellControl::reached(state_.cell, stress()));
     state_.settled_intervals = still ? state_.settled_intervals + 1 : 0;
     return state_.settled_intervals >= enough_intervals;
 }
@@ -196,12 +194,14 @@ void ProtocolRunner::begin(Stage stage) {
     state_.stage = stage;
     state_.stage_step = 0;
     state_.settled_intervals = state_.reached_intervals = 0;
+    if (state_.cell.drive > 0) CellControl::rest(state_.cell);
 }
 
 void ProtocolRunner::begin_leg() {
     state_.level = 0;
     state_.hold_begin = state_.time;
     begin(stage().kind == StageKind::hold ? Stage::hold : Stage::move);
+    if (cell_) return begin_leg_of_cell();
     const Leg* before = state_.leg > 0 ? &legs_[static_cast<std::size_t>(state_.leg - 1)] : nullptr;
     const mcdem::Stage* last = before ? &stages_[static_cast<std::size_t>(before->stage)] : nullptr;
     const bool alike = last && controlled(*last) == controlled(stage());
@@ -214,13 +214,17 @@ void ProtocolRunner::begin_leg() {
     if (by_force() && stage().kind == StageKind::hold && !(state_.leg_begin > 0))
         return give_up("no grain presses on the plate");
     if (stage().kind == StageKind::hold || leg().target == state_.leg_begin) return;
-    const bool load = path_ ? path_->loads(state_.leg) : (leg().target > state_.leg_begin) == by_force();
+    set_phase((leg().target > state_.leg_begin) == by_force());
+}
+
+void ProtocolRunner::set_phase(bool load) {
     if (load && state_.phase == Phase::unload) ++state_.cycle;
     state_.phase = load ? Phase::load : Phase::unload;
 }
 
 void ProtocolRunner::next_leg() {
     if (state_.leg + 1 == static_cast<int>(legs_.size())) return stop();
+    if (cell_) end_leg_of_cell();
     ++state_.leg;
     begin_leg();
 }
@@ -231,7 +235,8 @@ std::optional<ProtocolRunner::ScanTag> ProtocolRunner::made(const IntervalResult
     const double drag_before = drag();
     take_note(result);
     if (finished()) return std::nullopt;
-    if (state_.stage == Stage::move) return by_force() ? moved_by_force() : moved();
+    if (state_.stage == Stage::move)
+        return by_force() ? moved_by_force() : by_stress() && !driven() ? moved_by_stress() : moved();
     const bool still = settled(result, drag_before, plate_arrived);
     if (state_.stage == Stage::hold) return held(still);
     if (!still && state_.stage_step < max_stage_steps()) return std::nullopt;
@@ -242,8 +247,12 @@ std::optional<ProtocolRunner::ScanTag> ProtocolRunner::made(const IntervalResult
 }
 
 std::optional<ProtocolRunner::ScanTag> ProtocolRunner::moved() {
-    if (std::abs(waypoint() - state_.plate_z) > rounding * scale_) return std::nullopt;
+    if (std::abs(waypoint() - state_.plate_z) > rounding * scale_) {
+        give_up_late();
+        return std::nullopt;
+    }
     state_.plate_z = waypoint();
+    if (by_stress() && protocol_.stop_at_scans && !stresses_are_back()) return std::nullopt;
     return waypoint_reached();
 }
 
@@ -299,10 +308,10 @@ double ProtocolRunner::progress() const {
     const int scans = std::max(1, scans_of(stage()));
     if (state_.stage == Stage::hold)
         part = (state_.time - state_.hold_begin) / stage().time;
-    else if (state_.stage != Stage::relax && by_force())
+    else if (state_.stage != Stage::relax && (by_force() || (by_stress() && !driven())))
         part = static_cast<double>(state_.level) / scans;
-    else if (state_.stage != Stage::relax && leg().target != state_.leg_begin)
-        part = (state_.plate_z - state_.leg_begin) / (leg().target - state_.leg_begin);
+    else if (state_.stage != Stage::relax && target() != state_.leg_begin)
+        part = (state_.plate_z - state_.leg_begin) / (target() - state_.leg_begin);
     return (state_.leg + 0.95 * std::clamp(part, 0.0, 1.0)) / static_cast<double>(legs_.size());
 }
 

@@ -1,5 +1,5 @@
 // The experiment of one replica as a sequence of intervals: relax, then the moves and holds of its programme
-// with scans on the way. Of a cell, the plate's position is the place on its path (scene/cell_path.h). It
+// with scans on the way. Of a cell, the plate's position is the place on its way (scene/cell_path.h). It
 // depends on its own replica's results only, so that a replica does the same alone and in any batch.
 #pragma once
 #include <optional>
@@ -8,6 +8,7 @@
 
 #include "scene/cell_path.h"
 #include "scene/legs.h"
+#include "sim/cell_control.h"
 #include "sim/engine.h"
 #include "sim/force_control.h"
 #include "sim/quasi_static.h"
@@ -26,7 +27,7 @@ struct ProtocolState {
     int level = 0;              ///< scans of this leg taken or under way
     int frame = 0;              ///< scans taken
     int settled_intervals = 0;  ///< in a row that met the settling criterion
-    int reached_intervals = 0;  ///< in a row with the force that is set
+    int reached_intervals = 0;  ///< in a row with the force or the stresses that are set
     double plate_z = 0;         ///< [m]
     double pressure = 0;        ///< smoothed over some intervals [Pa]
     double rate_error = 0;      ///< estimated, of the last move
@@ -34,8 +35,10 @@ struct ProtocolState {
     double time = 0;            ///< since the start [s]
     double hold_begin = 0;      ///< the time at which it began [s]
     ForceControl::State control;
+    CellControl::State cell;
 };
-static_assert(std::is_trivially_copyable_v<ProtocolState> && sizeof(ProtocolState) == 8 * (2 + 4 + 6 + 3),
+static_assert(std::is_trivially_copyable_v<ProtocolState> &&
+                  sizeof(ProtocolState) == 8 * (2 + 4 + 6 + 3 + 7 + 15),
               "no padding: equal states have equal bytes in checkpoints");
 
 class ProtocolRunner {
@@ -48,7 +51,7 @@ public:
     StepInterval next(Longest longest) const {
         if (state_.stage == ProtocolState::Stage::finished) return {};
         StepInterval interval = planned();
-        if (path_) deform(interval);
+        if (cell_) deform(interval);
         interval.steps = std::min(interval.steps, longest(interval));
         return interval;
     }
@@ -78,43 +81,68 @@ public:
     bool is_possible(const ProtocolState& state) const;
 
 private:
+    /// Intervals in a row below the limit: a packing that passes through rest at the turning point of an
+    /// oscillation is not taken for one at rest, and a force that passes the one set not for one that stays.
+    static constexpr int enough_intervals = 2;
+    static constexpr double max_steps = 1e6;
+    /// A force must be reached in this many times what the slowest plate takes for its whole way, a scan to
+    /// settle and the approach; a stress in that many times a strain of one.
+    static constexpr double patience = 10;
+
     const Stage& stage() const { return stages_[static_cast<std::size_t>(leg().stage)]; }
     const Leg& leg() const { return legs_[static_cast<std::size_t>(state_.leg)]; }
     bool by_force() const;
+    bool by_stress() const;
+    bool driven() const;
     double set_force() const;
+    SetStress end_stress() const;
+    SetStress stress() const;
+    const mcdem::Stage& last_move() const;
+    CellMove move() const { return {stage(), state_.cell.begin, state_.leg_begin}; }
+    double target() const { return cell_ ? move().end : leg().target; }
     double max_speed() const;
-    double rate_length() const { return path_ ? 1 : state_.plate_z; }
+    double rate_length() const { return cell_ ? 1 : state_.plate_z; }
     double level_value(int level) const;
     double waypoint() const;
     bool waypoint_is_end() const;
     double hold_time() const;
     long max_stage_steps() const;
+    long max_steps_by_stress() const;
     StepInterval planned() const;
     StepInterval planned_by_force() const;
+    StepInterval planned_by_stress() const;
     void deform(StepInterval& interval) const;
     double drag() const;  ///< besides the grains' own [1/s]
     void take_note(const IntervalResult& result);
     void follow_force(double duration);
+    void follow_stress(double duration);
+    bool stresses_are_back();
     bool settled(const IntervalResult& result, double drag, bool plate_arrived);
     std::optional<ScanTag> moved();
     std::optional<ScanTag> moved_by_force();
+    std::optional<ScanTag> moved_by_stress();
     std::optional<ScanTag> held(bool settled);
     std::optional<ScanTag> waypoint_reached();
     std::optional<ScanTag> arrive(bool settled);
     ScanTag tag(int cycle, bool settled);
     void begin(ProtocolState::Stage stage);
     void begin_leg();
+    void begin_leg_of_cell();
+    void end_leg_of_cell();
+    void set_phase(bool load);
     void next_leg();
     void give_up(const std::string& why);
+    void give_up(std::size_t direction, const std::string& why);
+    void give_up_late();
 
     Plate plate_;
     Protocol protocol_;
     std::vector<mcdem::Stage> stages_;
     std::vector<Leg> legs_;
-    std::optional<CellPath> path_;  ///< of a cell
-    double scale_;                  ///< of positions: the plate's start [m], 1 on a path
-    double time_step_;              ///< now [s]
-    double longest_time_step_;      ///< before contacts stiffen [s]
+    std::optional<CellControl> cell_;  ///< of a cell
+    double scale_;                     ///< of positions: the plate's start [m], 1 in a cell
+    double time_step_;                 ///< now [s]
+    double longest_time_step_;         ///< before contacts stiffen [s]
     QuasiStatic quasi_static_;
     ForceControl force_control_;
     ProtocolState state_;

@@ -5,6 +5,8 @@
 #include <numbers>
 
 #include "core/container.h"
+#include "scene/true_grains.h"
+#include "sim/device_replica.h"
 
 namespace mcdem::inline sim {
 namespace {
@@ -36,6 +38,7 @@ PackingScale scale_of(const Replica& replica, const Packing& packing) {
     scale.modulus = all.size() == 1 ? plane_modulus(all[0]) : 1 / compliance;
     scale.density = all.size() == 1 ? all[0].density : scale.mass / scale.volume;
     scale.count = packing.size();
+    scale.reach = list_reach(replica, true_packing(replica, packing));
     return scale;
 }
 

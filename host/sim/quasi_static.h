@@ -17,6 +17,7 @@ struct PackingScale {
     double mass = 0;     ///< of all grains [kg]
     double density = 0;  ///< their mean, by volume [kg/m3]
     double modulus = 0;  ///< E/(1 - nu^2), as of layers one on the other [Pa]
+    double reach = 0;    ///< between centres that may be neighbours, at most [m]
 };
 PackingScale scale_of(const Replica& replica, const Packing& packing);
 

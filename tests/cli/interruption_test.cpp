@@ -120,6 +120,55 @@ TEST_F(InterruptionTest, OneThreadOrTwoGiveACellTheSameBits) {
     EXPECT_TRUE(result("1") == result("2"));
 }
 
+TEST_F(InterruptionTest, ACellUnderStressGivesTheSameBitsKilledOnThreadsOrInParts) {
+    const auto stressed = [&](const std::string& out, const std::vector<std::string>& more = {}) {
+        std::vector<std::string> words{"run", "stressed.toml", "--out", out, "--no-figures"};
+        words.insert(words.end(), more.begin(), more.end());
+        return words;
+    };
+    std::ofstream(path("stressed.toml")) << R"([container]
+shape = "cell"
+size_x = 0.07
+size_y = 0.07
+[packing]
+count = 42
+packing_fraction = 0.64
+[grains]
+friction = 0.3
+[contact]
+friction_law = "mindlin"
+[protocol]
+relax_time = 0.01
+[[programme]]
+pressure = 200
+rate = 1
+[[programme]]
+stress_x = 200
+shear_xz = 0.01
+rate = 1
+[[programme]]
+stage = "hold"
+keep = "stress"
+time = 0.02
+[output]
+checkpoint_minutes = 1e-6
+[batch]
+replicas = 2
+)";
+    expect_done(mcdem(stressed("whole"), {"POCL_MAX_PTHREAD_COUNT=1"}));
+    for (const int launches : {1000, 3000}) {
+        const std::string out = "killed" + std::to_string(launches);
+        Child child(folder_.path, stressed(out), held_after(launches));
+        wait_until_held(child);
+        child.send(SIGKILL);
+        ASSERT_EQ(child.wait().signal, SIGKILL);
+        expect_done(mcdem(stressed(out, {"--resume"}), {"POCL_MAX_PTHREAD_COUNT=2"}));
+        EXPECT_TRUE(result(out) == result("whole")) << launches;
+    }
+    expect_done(mcdem(stressed("parts", {"--device", "all", "--part-replicas", "1"})));
+    EXPECT_TRUE(result("parts") == result("whole"));
+}
+
 TEST_F(InterruptionTest, TruncatedCheckpointIsRefusedOrTheOneBeforeTaken) {
     expect_done(mcdem(words("whole", false)));
     interrupt("a", SIGINT);

@@ -137,9 +137,10 @@ def cell_run(mcdem, folder):
 
 def write_cell(path, edges, strain, diameters, positions):
     x, y, z = edges * (1 - strain[:3])
+    tilts = f"{strain[3] * edges[1]:.17g} {strain[4] * edges[2]:.17g} {strain[5] * edges[2]:.17g} xy xz yz\n" if strain[3:].any() else ""
     with open(path, "w", encoding="ascii") as out:
         out.write(f"cell\n\n{len(diameters)} atoms\n1 atom types\n\n0 {x:.17g} xlo xhi\n0 {y:.17g} ylo yhi\n0 {z:.17g} zlo zhi\n"
-                  f"{strain[3] * edges[1]:.17g} {strain[4] * edges[2]:.17g} {strain[5] * edges[2]:.17g} xy xz yz\n\nAtoms\n\n")
+                  f"{tilts}\nAtoms\n\n")
         for n, (at, d) in enumerate(zip(positions, diameters), 1):
             out.write(f"{n} 1 {d:.17g} 11.5 {at[0]:.17g} {at[1]:.17g} {at[2]:.17g}\n")
 
@@ -171,6 +172,73 @@ def compare_cell(mcdem, folder):
             assert abs(mine[row, column] - other) < 3 * allowed * pressure, "stresses differ"  # frictionless grains slide in jerks
 
 
+STRESS = """[container]
+shape = "cell"
+size_x = 0.1
+size_y = 0.11
+[packing]
+count = 140
+packing_fraction = 0.64
+[grains]
+friction = 0
+restitution = 0.5
+[contact]
+model = "independent"
+[protocol]
+settle_time = 4
+relax_time = 2
+settle_unbalanced_force = 2e-4
+rate_tolerance = 0.02
+[[programme]]
+pressure = 100
+[[programme]]
+pressure = 300
+[numerics]
+precision = "double"
+[batch]
+replicas = 6
+"""
+
+
+def lammps_lengths(folder, edges, diameters, scan, pressure, modulus):
+    """Lengths of the cell [m] at which LAMMPS's barostat finds the pressure, begun with a scan; its stresses there."""
+    write_cell(folder / "cell.data", edges, scan[1], diameters, scan[0])
+    steps = 200000
+    output = execute("lmp", "stress.in", folder, {"law": LAW, "time_step": 5e-5, "skin": 0.002, "pressure": pressure, "modulus": modulus,
+                                                  "damping": 0.1, "steps": steps, "drag": DRAG})
+    rows = [line.split() for line in output.splitlines()]
+    last = numpy.array([row for row in rows if len(row) == 7 and row[0] == str(steps)][-1][1:], float)
+    return last[3:], last[:3]
+
+
+def compare_stress(mcdem, folder):
+    """The volume at a pressure, from the same packing at a lower one."""
+    (folder / "stress.toml").write_text(STRESS)
+    out = folder / "stress_run"
+    shutil.rmtree(out, ignore_errors=True)
+    subprocess.run([mcdem, "run", folder / "stress.toml", "--out", out, "--no-figures"], check=True, stdout=subprocess.DEVNULL)
+    ratios = []
+    with h5py.File(out / "run.h5") as run:
+        for name in run["observables"]:
+            scans, particles = run["observables"][name][:], run["particles"][name]
+            edges, diameters = particles["box"].attrs["edges"][:], particles["diameter"][:]
+            assert scans["settled"].all(), "not at rest"
+            for scan, pressure in zip(scans, (100, 300)):
+                assert numpy.allclose(numpy.diag(scan["stress"]), pressure, rtol=1e-3), "not the pressure that was set"
+            volumes = [numpy.prod(1 - scan["strain"][:3]) for scan in scans]
+            begin = (particles["position/value"][0], scans["strain"][0])
+            modulus = 200 / math.log(volumes[0] / volumes[1])
+            lengths, stress = lammps_lengths(folder, edges, diameters, begin, 300, modulus)
+            assert numpy.allclose(stress, 300, rtol=2e-3), f"LAMMPS has not arrived: {stress}"
+            found = numpy.prod(lengths / edges)
+            ratios.append((volumes[1] / found, math.log(volumes[0] / volumes[1]) / math.log(volumes[0] / found)))
+            print(f"cell at 300 Pa, volume over that at start: LAMMPS {found:.6f}, mcdem {volumes[1]:.6f}; compression over LAMMPS's {ratios[-1][1]:.4f}")
+    for of, values, allowed in zip(("volume", "compression from 100 Pa"), numpy.transpose(ratios), (1e-3, 0.03)):
+        error = values.std(ddof=1) / math.sqrt(len(values))
+        print(f"cell from 100 to 300 Pa, {of}, mcdem over LAMMPS: {values.mean():.5f} +- {error:.5f}")
+        assert abs(values.mean() - 1) < allowed + 3 * error and error < allowed, f"{of} differs"
+
+
 def main():
     mcdem, folder = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
     if not shutil.which("lmp"):
@@ -187,6 +255,7 @@ def main():
                 # The side's radius of curvature is LAMMPS's arithmetic mean, mcdem's geometric: 0.3 % at R = R_c/5.
                 assert math.isclose(mine, other, rel_tol=allowed + (0.004 if of == "side" else 0)), "forces differ"
     compare_cell(mcdem, folder)
+    compare_stress(mcdem, folder)
     return 0
 
 

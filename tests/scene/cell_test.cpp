@@ -78,10 +78,70 @@ TEST(Cell, RefusesStagesThatAreNotItsOwn) {
     EXPECT_THAT(problems("rate = 1\n"), ElementsAre(HasSubstr("strain must be given, or strain_x")));
     EXPECT_THAT(problems("strain = 0.1\nstrain_y = 0.1\n"),
                 ElementsAre(HasSubstr("strain_y must be left out where strain is given")));
+    EXPECT_THAT(problems("scan_at = [0.1]\nstrain = 0.1\n"),
+                ElementsAre(HasSubstr("scan_at must be left out")));
     EXPECT_THAT(problems("shear_xy = 6\n"),
                 ElementsAre(HasSubstr("shear_xy must be a number between -5 and 5")));
     EXPECT_THAT(problems_in(few + "[[programme]]\nstrain_x = 0.1\n"),
                 Contains(HasSubstr("strain_x must be left out of a stage that is a move of the plate")));
+}
+
+TEST(Cell, TakesAStrainOrAStressInEachDirection) {
+    const Replica replica =
+        read_one(cell + few + one_move +
+                 "[[programme]]\npressure = 100\nshear_xz = 0.1\n[[programme]]\nstress_x = "
+                 "50\nstrain_z = 0.2\n[[programme]]\nstage = \"hold\"\nkeep = "
+                 "\"stress\"\ntime = 1\n");
+    const auto& programme = replica.programme;
+    EXPECT_FALSE(sets_stress(programme[0]));
+    EXPECT_EQ(set_stress(programme[1]), (SetStress{100, 100, 100}));
+    EXPECT_EQ(set_stress(programme[2])[0], 50);
+    EXPECT_TRUE(std::isnan(set_stress(programme[2])[1]));
+    EXPECT_FALSE(sets_stress(programme[3])) << "a hold keeps what was set before";
+    EXPECT_EQ(controlled(programme[0]), Controlled::position);
+    for (int stage = 1; stage < 4; ++stage) EXPECT_EQ(controlled(programme[stage]), Controlled::stress);
+    const auto problems = [](const std::string& stage) {
+        return problems_in(cell + few + "[[programme]]\n" + stage);
+    };
+    EXPECT_THAT(problems("strain_x = 0.1\nstress_x = 100\n"),
+                ElementsAre(AllOf(HasSubstr("programme.1.stress_x must be left out where strain_x is given"),
+                                  HasSubstr("a direction has a strain or a stress"))));
+    EXPECT_THAT(problems("strain = 0.1\nstress_y = 100\n"),
+                ElementsAre(HasSubstr("stress_y must be left out where strain is given")));
+    EXPECT_THAT(problems("pressure = 10\nstress_y = 100\nstrain_z = 0.1\n"),
+                ElementsAre(HasSubstr("stress_y must be left out where pressure is given"),
+                            HasSubstr("strain_z must be left out where pressure is given")));
+    EXPECT_THAT(problems("strain = 0.1\npressure = 100\n"),
+                ElementsAre(HasSubstr("pressure must be left out where strain is given")));
+    EXPECT_THAT(problems("stress_z = 0\n"), ElementsAre(HasSubstr("stress_z must be a number > 0")));
+    EXPECT_THAT(problems("pressure = 1e7\n"),
+                ElementsAre(AllOf(HasSubstr("pressure must be one that the grains can bear, got 10000000"),
+                                  HasSubstr("numerics.overlap_limit"))));
+    EXPECT_THAT(problems("stress_x = 1e7\nstress_z = 100\n"),
+                ElementsAre(HasSubstr("stress_x must be one that the grains can bear")));
+    EXPECT_THAT(problems_in(few + "[[programme]]\npressure = 100\n"),
+                Contains(HasSubstr("pressure must be left out of a stage that is a move of the plate")));
+}
+
+TEST(Cell, KeepsStressesOnlyWhereTheMoveBeforeSetsThem) {
+    const auto problems = [](const std::string& stages) { return problems_in(cell + few + stages); };
+    const std::string hold = "[[programme]]\nstage = \"hold\"\ntime = 1\nkeep = ", stress = "\"stress\"\n";
+    const std::string pressure = "[[programme]]\npressure = 100\n",
+                      again = "[[programme]]\nstage = \"repeat\"\n";
+    EXPECT_THAT(problems(hold + stress), ElementsAre(HasSubstr("keep must be position in the first stage")));
+    EXPECT_THAT(
+        problems(one_move + hold + stress),
+        ElementsAre(AllOf(HasSubstr("programme.2.keep must be position where the move before sets no stress"),
+                          HasSubstr("set those to be held"))));
+    EXPECT_THAT(problems(pressure + hold + "\"force\"\n"),
+                ElementsAre(HasSubstr("keep must be position or stress in a hold of a cell, got force")));
+    EXPECT_NO_THROW(parse_scene(cell + few + pressure + hold + stress + hold + stress, "good.toml", {}));
+    EXPECT_THAT(problems(pressure + hold + stress + one_move + again + "stages = 2\n"),
+                ElementsAre(HasSubstr("programme.2.keep must be position")))
+        << "the second time it follows a strain";
+    EXPECT_THAT(problems_in("[plate]\nstart = 0.09\nend = 0.05\n" + few + "[[programme]]\nforce = 1\n" +
+                            hold + stress),
+                Contains(HasSubstr("keep must be position or force in a hold of the plate, got stress")));
 }
 
 TEST(Cell, MustKeepItsSizeToTheEndOfItsProgramme) {
@@ -96,29 +156,31 @@ TEST(Cell, MustKeepItsSizeToTheEndOfItsProgramme) {
                  InputError);
 }
 
-TEST(CellPath, GoesStraightFromMoveToMove) {
+TEST(CellMove, GoesStraightFromMoveToMove) {
     std::vector<Stage> stages(4);
     stages[0].strain = 0.1;
     stages[1].shear_xz = 0.4;
     stages[1].strain_y = 0.2;
     stages[2].kind = StageKind::hold;
     stages[3].strain_x = 0;
-    const auto legs = legs_of(stages, {});
-    const CellPath path(stages, legs);
-    EXPECT_NEAR(path.end(0), 0.1, 1e-15);
-    EXPECT_NEAR(path.end(1), 0.5, 1e-15);
-    EXPECT_EQ(path.end(2), path.end(1));
-    EXPECT_NEAR(path.end(3), 0.6, 1e-15);
-    EXPECT_EQ(path.strain(0, 0), (Strain{}));
-    EXPECT_EQ(path.strain(1, path.end(1)), (Strain{0.1, 0.2, 0.1, 0, 0.4, 0}));
-    EXPECT_EQ(path.strain(2, path.end(2)), path.strain(1, path.end(1)));
-    const Strain half = path.strain(1, 0.3);
+    std::vector<CellMove> moves;
+    for (const Stage& stage : stages)
+        moves.push_back(
+            {stage, moves.empty() ? Strain{} : moves.back().to, moves.empty() ? 0 : moves.back().end});
+    EXPECT_NEAR(moves[0].end, 0.1, 1e-15);
+    EXPECT_NEAR(moves[1].end, 0.5, 1e-15);
+    EXPECT_EQ(moves[2].end, moves[1].end);
+    EXPECT_NEAR(moves[3].end, 0.6, 1e-15);
+    EXPECT_EQ(moves[0].strain(0), (Strain{}));
+    EXPECT_EQ(moves[1].strain(moves[1].end), (Strain{0.1, 0.2, 0.1, 0, 0.4, 0}));
+    EXPECT_EQ(moves[2].strain(moves[2].end), moves[1].to);
+    const Strain half = moves[1].strain(0.3);
     EXPECT_NEAR(half[1], 0.15, 1e-15);
     EXPECT_NEAR(half[4], 0.2, 1e-15);
-    EXPECT_NEAR(path.direction(1)[1], 0.25, 1e-12);
-    EXPECT_NEAR(path.direction(3)[0], -1, 1e-12);
-    EXPECT_TRUE(path.loads(0) && path.loads(1));
-    EXPECT_FALSE(path.loads(3));
+    EXPECT_NEAR(moves[1].direction()[1], 0.25, 1e-12);
+    EXPECT_NEAR(moves[3].direction()[0], -1, 1e-12);
+    EXPECT_TRUE(moves[0].loads() && moves[1].loads());
+    EXPECT_FALSE(moves[3].loads());
     Replica replica;
     replica.box = {1, 1, ContainerShape::cell, 2};
     replica.programme = stages;

@@ -86,7 +86,7 @@ TEST(SpeciesOfAScene, VaryAndComeBackFromTheSceneText) {
 
 /// What a scene says wrongly, and what it is told.
 const std::vector<std::pair<std::string, std::string>> cases{
-    {"[[species]]\nfraction = 1\n", "s.toml:19: species.1.name must be given"},
+    {"[[species]]\nfraction = 1\n", "bad.toml:19: species.1.name must be given"},
     {"[[species]]\n", "species.1 must say what its grains are, got nothing"},
     {"[[species]]\nname = \"walls\"\n", "species.1.name must be another word"},
     {"[[species]]\nname = \"a\"\n[[species]]\nname = \"a\"\n",

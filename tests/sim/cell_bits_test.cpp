@@ -4,6 +4,16 @@
 namespace reference {
 namespace {
 
+/// To a pressure; a triaxial path; then the stresses of it are held.
+void set_stresses(std::vector<mcdem::Stage>& programme) {
+    programme[0].strain = mcdem::not_given;
+    programme[0].pressure = 250;
+    programme[1] = {};
+    programme[1].stress_x = programme[1].stress_y = 200;
+    programme[1].strain_z = 0.05;
+    programme[2].keep = mcdem::Controlled::stress;
+}
+
 Start programmed(int kind) {
     Replica replica = test_replica(all_models[(kind + 4) % 6]);
     replica.contact.friction_law = FrictionLaw::mindlin;
@@ -18,6 +28,7 @@ Start programmed(int kind) {
     programme[2].kind = mcdem::StageKind::hold;
     programme[2].time = 0.02;
     programme[3].kind = mcdem::StageKind::repeat;
+    if (kind >= 3) set_stresses(programme);
     for (auto& stage : programme) stage.rate = 2;
     return start;
 }
@@ -30,24 +41,27 @@ std::vector<Start> programmes(const std::vector<int>& kinds) {
 
 TEST(CellBits, AreTheSameAloneAndInABatch) {
     WholeRun alone(Precision::single_precision, programmes({0})),
-        three(Precision::single_precision, programmes({1, 2, 0}));
-    alone.finish();
-    three.finish();
-    expect_same(alone, 0, three, 2);
+        four(Precision::single_precision, programmes({1, 3, 2, 0})),
+        stress(Precision::single_precision, programmes({3}));
+    for (WholeRun* run : {&alone, &four, &stress}) run->finish();
+    expect_same(alone, 0, four, 3);
+    expect_same(stress, 0, four, 1);
 }
 
 TEST(CellBits, AreTheSameAfterARestart) {
-    const auto kinds = programmes({0, 1});
-    WholeRun whole(Precision::single_precision, kinds);
-    int rounds = 0;
-    while (whole.advance()) ++rounds;
-    for (const int stop : {1, rounds / 4, rounds / 2, 3 * rounds / 4}) {
-        WholeRun first(Precision::single_precision, kinds), second(Precision::single_precision, kinds);
-        first.advance(stop);
-        second.restore(first.save());
-        second.told = first.told;
-        second.finish();
-        for (int r = 0; r < 2; ++r) expect_same(whole, r, second, r);
+    for (const auto& kinds : {std::vector{0, 1}, std::vector{3}}) {
+        const auto starts = programmes(kinds);
+        WholeRun whole(Precision::single_precision, starts);
+        int rounds = 0;
+        while (whole.advance()) ++rounds;
+        for (const int stop : {1, rounds / 4, rounds / 2, 3 * rounds / 4}) {
+            WholeRun first(Precision::single_precision, starts), second(Precision::single_precision, starts);
+            first.advance(stop);
+            second.restore(first.save());
+            second.told = first.told;
+            second.finish();
+            for (int r = 0; r < static_cast<int>(kinds.size()); ++r) expect_same(whole, r, second, r);
+        }
     }
 }
 

@@ -1,4 +1,5 @@
-// A packing taken through a programme, and the plate's position and force at every interval's end.
+// A packing taken through a programme, and the plate's position and force, or the strain and stress of a
+// cell, at every interval's end.
 #pragma once
 #include "reference/test_scene.h"
 #include "scene/make_packing.h"
@@ -13,10 +14,15 @@ struct Traced {
         double time, plate_z, force;  ///< [s], [m], [N]
         int leg;
         mcdem::ProtocolState::Stage stage;
+        mcdem::Mat3 stress;  ///< of a cell [Pa]
+        mcdem::Strain strain;
     };
     struct Scanned {
         mcdem::ProtocolRunner::ScanTag tag;
         double force;  ///< [N]
+        mcdem::Mat3 stress;
+        mcdem::Strain strain;
+        mcdem::ReplicaState state = {};
     };
     std::vector<Row> rows;
     std::vector<Scanned> scans;
@@ -41,8 +47,9 @@ inline Traced trace(const mcdem::Scene& scene, int r, Packing packing) {
         plate.made(result);
         const auto scan = runner.made(result, plate.arrived(engine.max_plate_move(0)));
         const double force = result.wall_force[static_cast<int>(mcdem::Wall::plate)].z();
-        traced.rows.push_back({runner.state().time, runner.plate_z(), force, before.leg, before.stage});
-        if (scan) traced.scans.push_back({*scan, force});
+        traced.rows.push_back({runner.state().time, runner.plate_z(), force, before.leg, before.stage,
+                               result.stress, runner.strain()});
+        if (scan) traced.scans.push_back({*scan, force, result.stress, runner.strain(), engine.state(0)});
         traced.status |= result.status;
         if (result.status) break;
     }

@@ -1,0 +1,159 @@
+// Cells in the protocol: moves to strains and stresses, and holds of them.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/protocol.h"
+
+namespace mcdem::inline sim {
+namespace {
+
+using Stage = ProtocolState::Stage;
+
+/// A move that changes stresses by less keeps them.
+constexpr double min_change = 1e-3;
+
+}  // namespace
+
+bool ProtocolRunner::by_stress() const {
+    return state_.stage != Stage::relax && controlled(stage()) == Controlled::stress;
+}
+
+/// A move of a cell that changes strains, whether or not it sets stresses as well.
+bool ProtocolRunner::driven() const {
+    return cell_ && stage().kind == StageKind::move && target() > state_.leg_begin;
+}
+
+const mcdem::Stage& ProtocolRunner::last_move() const {
+    int leg = state_.leg;
+    const auto stage_of = [&] { return stages_.begin() + legs_[static_cast<std::size_t>(leg)].stage; };
+    while (leg > 0 && stage_of()->kind == StageKind::hold) --leg;
+    return *stage_of();
+}
+
+SetStress ProtocolRunner::end_stress() const { return set_stress(last_move()); }
+
+/// Stops are approached one by one, where nothing but stresses changes.
+SetStress ProtocolRunner::stress() const {
+    SetStress set = end_stress();
+    if (stage().kind == StageKind::hold || driven() || !protocol_.stop_at_scans) return set;
+    const int next = state_.level + 1, scans = scans_of(stage());
+    for (std::size_t axis = 0; next < scans && axis < 3; ++axis) {
+        const double begin = state_.cell.direction[axis].begin;
+        set[axis] = begin + (set[axis] - begin) * next / scans;
+    }
+    return set;
+}
+
+Strain ProtocolRunner::strain() const {
+    if (!cell_) return {};
+    Strain strain = move().strain(state_.plate_z);
+    const SetStress set = by_stress() ? end_stress() : no_stress;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        if (!std::isnan(set[axis])) strain[axis] = state_.cell.direction[axis].strain;
+    return strain;
+}
+
+void ProtocolRunner::deform(StepInterval& interval) const {
+    interval.strain = strain();
+    interval.strain_rate = move().direction();
+    for (double& rate : interval.strain_rate) rate *= interval.plate_velocity;
+    if (by_stress()) {
+        const Strain rates = cell_->rates(state_.cell, stress(), interval.steps * time_step_);
+        for (std::size_t axis = 0; axis < 3; ++axis) interval.strain_rate[axis] += rates[axis];
+    }
+    interval.plate_velocity = 0;
+}
+
+/// Its rates follow in deform().
+StepInterval ProtocolRunner::planned_by_stress() const {
+    double steps =
+        std::clamp(std::floor(cell_->interval(state_.cell, stress()) / time_step_), 2.0, max_steps);
+    if (state_.stage != Stage::move)
+        steps = std::clamp(static_cast<double>(max_stage_steps() - state_.stage_step), 1.0, steps);
+    double rate = 0;
+    if (state_.cell.drive > 0) {
+        const double left = waypoint() - state_.plate_z;
+        const double needed = std::max(1.0, std::ceil(left / (state_.cell.drive * time_step_) - 1e-9));
+        rate = needed <= steps ? left / (needed * time_step_) : state_.cell.drive;
+        steps = std::min(steps, needed);
+    }
+    return {static_cast<int>(steps), state_.plate_z, rate, drag()};
+}
+
+void ProtocolRunner::follow_stress(double duration) {
+    const SetStress set = stress();
+    const bool reached = CellControl::reached(state_.cell, set);
+    state_.reached_intervals = reached ? state_.reached_intervals + 1 : 0;
+    cell_->steer(state_.cell, set, duration, quasi_static_.speed(max_speed(), 1, state_.pressure),
+                 state_.stage == Stage::move && driven() && state_.plate_z != waypoint());
+    if (const auto stuck = cell_->stuck(state_.cell, set))
+        give_up(*stuck, "grains would meet their own images");
+}
+
+/// Where strains stop, so do the directions whose stress is set, and go on by themselves.
+bool ProtocolRunner::stresses_are_back() {
+    if (state_.cell.drive > 0) {
+        CellControl::rest(state_.cell);
+        state_.reached_intervals = 0;
+    }
+    give_up_late();
+    return state_.reached_intervals >= enough_intervals;
+}
+
+void ProtocolRunner::give_up(std::size_t direction, const std::string& why) {
+    const auto& there = state_.cell.direction[direction];
+    hindrance_ = fmt::format(
+        "stage {} of the programme: the stress {:.6g} Pa along {} cannot be reached: {} at a strain of "
+        "{:.6g}, "
+        "and the stress {:.6g} Pa (set stresses that the packing can bear, or take more grains)",
+        leg().stage + 1, stress()[direction], "xyz"[direction], why, there.strain, there.control.force);
+    stop();
+}
+
+long ProtocolRunner::max_steps_by_stress() const {
+    const double slowest = quasi_static_.speed(max_speed(), 1, quasi_static_.min_pressure());
+    const double way = std::max(1.0, target() - state_.leg_begin) / slowest;
+    const double approach = cell_->approach_time(state_.cell, stress());
+    return std::lround(patience * (way + protocol_.settle_time + approach) / time_step_);
+}
+
+void ProtocolRunner::end_leg_of_cell() {
+    const double end = target();
+    Strain strain = move().to;
+    const SetStress set = by_stress() ? end_stress() : no_stress;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        if (!std::isnan(set[axis])) strain[axis] = state_.cell.direction[axis].strain;
+    state_.leg_begin = end;
+    CellControl::begin_leg(state_.cell, strain);
+}
+
+/// A hold goes on with stresses as the move before left them.
+void ProtocolRunner::begin_leg_of_cell() {
+    if (state_.leg == 0) CellControl::begin_leg(state_.cell, {});
+    if (!by_stress() || stage().kind != StageKind::hold) CellControl::rest(state_.cell);
+    if (stage().kind == StageKind::hold) return;
+    const double change = by_stress() ? CellControl::change(state_.cell, end_stress()) : 0;
+    if (std::abs(change) > min_change)
+        set_phase(change > 0);
+    else if (driven())
+        set_phase(move().loads());
+}
+
+std::optional<ProtocolRunner::ScanTag> ProtocolRunner::moved_by_stress() {
+    const double next = (state_.level + 1.0) / std::max(1, scans_of(stage()));
+    const bool passed = !protocol_.stop_at_scans && !waypoint_is_end() &&
+                        CellControl::done(state_.cell, end_stress()) >= next;
+    if (passed || state_.reached_intervals >= enough_intervals) return waypoint_reached();
+    give_up_late();
+    return std::nullopt;
+}
+
+void ProtocolRunner::give_up_late() {
+    if (!by_stress() || state_.stage_step < max_stage_steps()) return;
+    give_up(CellControl::farthest(state_.cell, stress()),
+            fmt::format("after {:.3g} s it is still away from it", state_.stage_step * time_step_));
+}
+
+}  // namespace mcdem::sim

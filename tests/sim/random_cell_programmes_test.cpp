@@ -1,0 +1,143 @@
+// Programmes drawn at random in a cell that is a spring: they end, and scans have the strains and stresses
+// that were asked for.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "sim/protocol.h"
+
+namespace mcdem {
+namespace {
+
+constexpr double time_step = 1e-4, size = 0.09;
+const PackingScale scale{.diameter = 0.02,
+                         .count = 100,
+                         .volume = 4.2e-4,
+                         .mass = 4.8e-3,
+                         .density = 11.5,
+                         .modulus = 31e3,
+                         .reach = 0.028};
+
+/// Elastic and without inertia; directions press on one another, and shear on all.
+Mat3 spring_stress(const Strain& strain) {
+    Mat3 stress = Mat3::Zero();
+    const double all = strain[0] + strain[1] + strain[2],
+                 shear = strain[3] * strain[3] + strain[4] * strain[4];
+    for (int axis = 0; axis < 3; ++axis)
+        stress(axis, axis) =
+            6e3 * std::pow(std::max(0.0, 0.6 * strain[axis] + 0.4 * all / 3 + shear - 0.02), 1.5);
+    return stress;
+}
+
+class RandomProgramme {
+public:
+    explicit RandomProgramme(unsigned seed) : engine_(seed) {}
+
+    std::vector<Stage> draw() {
+        std::vector<Stage> stages;
+        for (int n = whole(1, 6); n > 0; --n) stages.push_back(stage(static_cast<int>(stages.size())));
+        return stages;
+    }
+
+private:
+    double between(double low, double high) {
+        return low + (high - low) * static_cast<double>(engine_() >> 11) * 0x1p-53;
+    }
+    int whole(int low, int high) {
+        return low + static_cast<int>(engine_() % static_cast<unsigned>(high - low + 1));
+    }
+
+    Stage stage(int number) {
+        Stage stage;
+        stage.kind = number == 0 ? StageKind::move
+                                 : std::array{StageKind::move, StageKind::hold,
+                                              StageKind::repeat}[static_cast<std::size_t>(whole(0, 2))];
+        stage.scans = whole(0, 3);
+        stage.rate = between(0.1, 1);
+        if (stage.kind == StageKind::repeat) stage.stages = 1;
+        if (stage.kind == StageKind::hold) {
+            stage.time = between(0.01, 0.3);
+            stage.keep = under_stress_ && whole(0, 1) ? Controlled::stress : Controlled::position;
+        }
+        if (stage.kind != StageKind::move) return stage;
+        if (whole(0, 2) == 0) stage.pressure = between(50, 400);
+        double* const strains[]{&stage.strain_x, &stage.strain_y, &stage.strain_z};
+        double* const stresses[]{&stage.stress_x, &stage.stress_y, &stage.stress_z};
+        for (int axis = 0; std::isnan(stage.pressure) && axis < 3; ++axis)
+            if (whole(0, 1))
+                *stresses[axis] = between(100, 400);
+            else
+                *strains[axis] = between(0.05, 0.2);
+        if (whole(0, 1)) stage.shear_xz = between(-0.1, 0.1);
+        under_stress_ = sets_stress(stage);
+        return stage;
+    }
+
+    std::mt19937_64 engine_;
+    bool under_stress_ = false;
+};
+
+/// The last scan of a leg, at rest: what the stage names is there, and strains that it leaves are as before.
+void expect_end(const Stage& stage, const Strain& begin, const Strain& after) {
+    const SetStress set = set_stress(stage);
+    const Strain wanted = strain_after(stage, begin);
+    for (std::size_t k = 0; k < 6; ++k) {
+        if (k < 3 && !std::isnan(set[k]))
+            EXPECT_NEAR(spring_stress(after)(static_cast<int>(k), static_cast<int>(k)) / set[k], 1, 1e-3);
+        else
+            EXPECT_NEAR(after[k], wanted[k], 1e-12) << k;
+    }
+}
+
+TEST(RandomCellProgrammes, EndAndScanWhereAsked) {
+    int by_stress = 0, ends = 0;
+    for (unsigned seed = 1; seed <= 60; ++seed) {
+        SCOPED_TRACE(seed);
+        Replica replica;
+        replica.box = {size, size, ContainerShape::cell, size};
+        replica.plate = {size, 0, 0.1};
+        replica.programme = RandomProgramme(seed).draw();
+        replica.protocol.stop_at_scans = seed % 3 > 0;
+        ProtocolRunner runner(replica, time_step, scale);
+        const auto legs = legs_of(replica.programme, replica.plate);
+        Strain begin{};
+        int scans = 0, leg = 0, level = 0;
+        for (int rounds = 0; !runner.finished(); ++rounds) {
+            ASSERT_LT(rounds, 400000);
+            const StepInterval interval = runner.next([](const StepInterval&) { return 60; });
+            ASSERT_GE(interval.steps, 1);
+            ASSERT_LE(interval.steps, 60);
+            IntervalResult result;
+            result.steps = interval.steps;
+            Strain strain = interval.strain;
+            for (std::size_t k = 0; k < 6; ++k)
+                strain[k] += interval.strain_rate[k] * interval.steps * time_step;
+            result.stress = spring_stress(strain);
+            for (int axis = 0; axis < 3; ++axis) ASSERT_LE(strain[static_cast<std::size_t>(axis)], 0.378);
+            if (runner.state().leg != leg) {
+                leg = runner.state().leg;
+                level = 0;
+                begin = interval.strain;
+            }
+            const Stage& stage =
+                replica.programme[static_cast<std::size_t>(legs[static_cast<std::size_t>(leg)].stage)];
+            if (!runner.made(result)) continue;
+            ++scans;
+            if (++level < stage.scans || stage.kind != StageKind::move || !replica.protocol.stop_at_scans)
+                continue;
+            expect_end(stage, begin, strain);
+            by_stress += sets_stress(stage);
+            ++ends;
+        }
+        ASSERT_EQ(runner.hindrance(), "");
+        EXPECT_EQ(scans, scan_count(replica.programme));
+        EXPECT_EQ(runner.progress(), 1);
+    }
+    EXPECT_GT(by_stress, 30);
+    EXPECT_GT(ends, by_stress);
+}
+
+}  // namespace
+}  // namespace mcdem
