@@ -6,9 +6,10 @@
 
 namespace mcdem::inline io {
 
-/// Writes `<folder>/replica_00000/grains_000000.hdf` and `contacts_000000.hdf`, .., one pair for every scan
-/// with positions that is chosen, and a README.txt that says how to look at them. Scans are read one by one.
-/// Returns the number of files. Throws InputError and RunError.
+/// Writes a folder a replica (export_name) with `grains_000000.hdf`, `contacts_000000.hdf`,
+/// `forces_000000.hdf` and `walls_000000.hdf`, .., four files for every scan with positions that is chosen,
+/// and a README.txt that says how to look at them. Scans are read one by one. Returns the number of files.
+/// Throws InputError and RunError.
 int export_vtk(const std::filesystem::path& file_or_folder, const std::filesystem::path& folder,
                const ExportChoice& choice = {});
 
@@ -26,5 +27,11 @@ void write_vtk_grains(const std::filesystem::path& file, const Recording& record
 /// Contacts as lines from the grain's centre to its partner's, or to the foot on the wall, with: grain,
 /// partner, force (on the grain; at the ends too), force_magnitude, normal_force, tangential_force, overlap.
 void write_vtk_contacts(const std::filesystem::path& file, const Recording& recording, const Scan& scan);
+
+/// The same contacts as points where they are, with the same data on points.
+void write_vtk_forces(const std::filesystem::path& file, const Recording& recording, const Scan& scan);
+
+/// vtk_walls.h with: wall (-1: an edge), force (on the whole wall by the grains).
+void write_vtk_walls(const std::filesystem::path& file, const Recording& recording, const Scan& scan);
 
 }  // namespace mcdem::io

@@ -24,15 +24,17 @@ overlap. Colour and width of the bonds can follow force_magnitude [N]. In Python
 
     from ovito.io import import_file
     from ovito.modifiers import LoadTrajectoryModifier
-    pipeline = import_file("replica_00000.xyz")
+    pipeline = import_file("NAME.xyz")
     contacts = LoadTrajectoryModifier()
-    contacts.source.load("replica_00000.contacts.dump", columns=["Particle Identifiers.1",
+    contacts.source.load("NAME.contacts.dump", columns=["Particle Identifiers.1",
         "Particle Identifiers.2", "force_magnitude", "force_x", "force_y", "force_z", "overlap"])
     pipeline.modifiers.append(contacts)
 
 Of a grain: its species as particle type, radius [m], id, coordination_number (walls counted), force_magnitude (sum of its contacts' [N]), wall_force
 (by the walls [N]). In a container that is periodic along x and y grains are where they have moved to, also out of it:
 modifier "Wrap at periodic boundaries". In a cell they are in an upright box of its lengths. Of a contact: its force on the first of the two grains [N], its overlap [m].
+
+The replicas here, each a NAME, with the scene keys that are not the same in all of the run:
 )";
 
 /// In double quotes; extended XYZ knows no way to write one.
@@ -121,8 +123,8 @@ int export_replica(RunReader& reader, std::size_t number, const std::filesystem:
         }
         return any;
     };
-    const auto grains = folder / fmt::format("replica_{:05}.xyz", number);
-    const auto contacts = folder / fmt::format("replica_{:05}.contacts.dump", number);
+    const auto grains = folder / (export_name(number, recording.label) + ".xyz");
+    const auto contacts = folder / (export_name(number, recording.label) + ".contacts.dump");
     bool any = false;
     replace_own(grains, FileKind::xyz, [&](NewFile& out) { any = write_frames(out, append_grains); });
     if (!any) {
@@ -133,9 +135,9 @@ int export_replica(RunReader& reader, std::size_t number, const std::filesystem:
     return 2;
 }
 
-void start_folder(const std::filesystem::path& folder) {
+void start_folder(const std::filesystem::path& folder, const std::string& replicas) {
     make_folder(folder);
-    replace_own(folder / "OVITO.txt", FileKind::guide, how_to_look);
+    replace_own(folder / "OVITO.txt", FileKind::guide, how_to_look + replicas);
 }
 
 }  // namespace
@@ -144,7 +146,7 @@ int export_xyz(const std::filesystem::path& file_or_folder, const std::filesyste
                const ExportChoice& choice) {
     RunReader reader(file_or_folder);
     expect_replicas(choice, reader.run());
-    start_folder(folder);
+    start_folder(folder, list_of_replicas(choice, reader.run()));
     int files = 0;
     for (std::size_t r = 0; r < reader.run().recordings.size(); ++r)
         if (choice.has_replica(r)) files += export_replica(reader, r, folder, choice);

@@ -7,7 +7,7 @@
 
 namespace mcdem::inline io {
 
-/// Writes `<folder>/replica_00000.xyz` and `replica_00000.contacts.dump`, .., one frame in each for every
+/// Writes `.xyz` and `.contacts.dump` files called by export_name, one frame in each for every
 /// chosen scan with positions, and OVITO.txt that says how to look at them; numbers with nine digits. Returns
 /// the number of files of grains and contacts: none where there are no positions. Scans are read one by one.
 /// Throws InputError and RunError.

@@ -93,12 +93,12 @@ TEST_F(CliTest, SeveralRunsAreToldApart) {
     EXPECT_THAT(drawn.out, HasSubstr("pictures/top_force.png\n"));
 }
 
-TEST_F(CliTest, ExportWritesOneFileOfGrainsAndOneOfContactsAScan) {
+TEST_F(CliTest, ExportWritesFilesOfGrainsContactsForcesAndWallsAScan) {
     expect_done(mcdem(run_words("a")));
     const auto exported = mcdem({"export", "a", "--vtk", "--out", "paraview"});
     expect_done(exported);
-    EXPECT_THAT(exported.out, testing::StartsWith("32 files in paraview; "));
-    EXPECT_TRUE(fs::exists(path("paraview/replica_00001/contacts_000007.hdf")));
+    EXPECT_THAT(exported.out, testing::StartsWith("64 files in paraview; "));
+    EXPECT_TRUE(fs::exists(path("paraview/replica_00001_mc_dem/contacts_000007.hdf")));
     expect_done(mcdem(run_words("bare", {"--set", "output.positions=false"})));
     expect_bad_input(mcdem({"export", "bare", "--vtk", "--out", "other"}), "output.positions");
 }

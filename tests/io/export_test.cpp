@@ -115,19 +115,42 @@ TEST(csv, what_is_not_the_same_in_all_replicas_has_a_column) {
     EXPECT_NE(text.find(",1.125,\"mc_dem\"\n"), std::string::npos);
 }
 
+const std::string first_name = "replica_00000_mc_dem_packing_0";
+
+TEST(export_name, holds_the_label_in_characters_that_every_shell_leaves_alone) {
+    EXPECT_EQ(export_name(3, "mc_dem, friction=0.03 #2"), "replica_00003_mc_dem_friction=0.03_2");
+    EXPECT_EQ(export_name(0, ""), "replica_00000");
+    EXPECT_EQ(export_name(0, "../$(rm -r) `x`/."), "replica_00000_.._rm_-r_x");
+    EXPECT_EQ(export_name(0, std::string(300, 'a')).size(), 13u + 1 + 80);
+}
+
+TEST(vtk, the_guide_lists_the_replicas_with_what_differs) {
+    TemporaryFolder folder;
+    auto run = synthetic_run({.replicas = 2, .scans = 1});
+    for (auto& recording : run.recordings) recording.parameters = {{"contact.gamma", "1"}, {"name", "a"}};
+    run.recordings[1].parameters["contact.gamma"] = "1.125";
+    write_run(folder / "run.h5", run);
+    export_vtk(folder / "run.h5", folder / "all");
+    export_xyz(folder / "run.h5", folder / "one", {.replicas = {1}});
+    const std::string second = "replica_00001_mc_dem_packing_1  contact.gamma = 1.125\n";
+    EXPECT_THAT(read_bytes(folder / "all/README.txt"),
+                testing::EndsWith("\n" + first_name + "  contact.gamma = 1\n" + second));
+    EXPECT_THAT(read_bytes(folder / "one/OVITO.txt"), testing::EndsWith(":\n" + second));
+}
+
 TEST(vtk, vtk_reads_grains_and_contacts) {
     TemporaryFolder folder;
     const auto run = synthetic_run({.replicas = 2, .scans = 3});
     write_run(folder / "run.h5", run);
-    EXPECT_EQ(export_vtk(folder / "run.h5", folder / "view"), 12);
+    EXPECT_EQ(export_vtk(folder / "run.h5", folder / "view"), 24);
     EXPECT_TRUE(std::filesystem::exists(folder / "view/README.txt"));
     const Scan& scan = run.recordings[1].scans[2];
     const Contact& last = scan.contacts.back();
     std::stringstream command;
     command.precision(17);
     command << "/usr/bin/python3 " << source << "/tests/io/read_vtk.py "
-            << (folder / "view/replica_00001").string() << " 000002 " << scan.position.size() << ' '
-            << scan.contacts.size() << ' ' << last.force.z() << ' ' << scan.plate_z << " species";
+            << (folder / "view/replica_00001_mc_dem_packing_1").string() << " 000002 " << scan.position.size()
+            << ' ' << scan.contacts.size() << ' ' << last.force.z() << ' ' << scan.plate_z << " species";
     const Finished finished = run_command(command.str());
     if (finished.exit_code == module_missing)
         GTEST_SKIP() << "neither python3-paraview nor python3-vtk9 is installed";
@@ -141,8 +164,8 @@ TEST(vtk, scans_without_positions_are_left_out) {
     auto results = ResultFolder::create(folder / "out");
     results.append_segment(part_of(run, 0, 2));
     results.append_segment(part_of(run, 2, 4));
-    EXPECT_EQ(export_vtk(folder / "out", folder / "a"), 6);
-    EXPECT_FALSE(std::filesystem::exists(folder / "a/replica_00000/grains_000001.hdf"));
+    EXPECT_EQ(export_vtk(folder / "out", folder / "a"), 12);
+    EXPECT_FALSE(std::filesystem::exists(folder / "a" / first_name / "grains_000001.hdf"));
 }
 
 int frames_in(const std::filesystem::path& file, const std::string& mark) {
@@ -164,8 +187,8 @@ TEST(vtk, displacements_count_from_the_first_scan_and_from_the_last) {
         for (auto& at : scans[s].position) at = scans[0].position[0] + Vec3(0.01 * s * s, 0, -0.02 * s);
     scans[0].position.assign(scans[0].position.size(), scans[0].position[0]);
     write_run(folder / "run.h5", run);
-    EXPECT_EQ(export_vtk(folder / "run.h5", folder.path(), {.scans = {2}}), 2);
-    const auto file = folder / "replica_00000/grains_000002.hdf";
+    EXPECT_EQ(export_vtk(folder / "run.h5", folder.path(), {.scans = {2}}), 4);
+    const auto file = folder / first_name / "grains_000002.hdf";
     const auto all = point_data(file, "displacement"),
                last = point_data(file, "displacement_since_last_scan");
     EXPECT_NEAR(all[0], 0.04, 1e-7);
@@ -177,11 +200,11 @@ TEST(vtk, displacements_count_from_the_first_scan_and_from_the_last) {
 TEST(vtk, only_what_is_chosen_is_written) {
     TemporaryFolder folder;
     write_run(folder / "run.h5", synthetic_run({.replicas = 2, .scans = 4}));
-    EXPECT_EQ(export_vtk(folder / "run.h5", folder / "a", {.replicas = {1}, .scans = {1, 3}}), 4);
-    EXPECT_FALSE(std::filesystem::exists(folder / "a/replica_00000"));
-    EXPECT_TRUE(std::filesystem::exists(folder / "a/replica_00001/contacts_000003.hdf"));
+    EXPECT_EQ(export_vtk(folder / "run.h5", folder / "a", {.replicas = {1}, .scans = {1, 3}}), 8);
+    EXPECT_FALSE(std::filesystem::exists(folder / "a" / first_name));
+    EXPECT_TRUE(std::filesystem::exists(folder / "a/replica_00001_mc_dem_packing_1/contacts_000003.hdf"));
     EXPECT_EQ(export_xyz(folder / "run.h5", folder / "b", {.replicas = {1}, .scans = {1, 3}}), 2);
-    EXPECT_EQ(frames_in(folder / "b/replica_00001.xyz", "Lattice="), 2);
+    EXPECT_EQ(frames_in(folder / "b/replica_00001_mc_dem_packing_1.xyz", "Lattice="), 2);
     EXPECT_THROW(export_xyz(folder / "run.h5", folder / "c", {.replicas = {2}}), InputError);
 }
 
@@ -205,14 +228,78 @@ TEST(vtk, contacts_end_at_round_walls_and_at_nearest_images) {
     run.recordings[1].scans[0].contacts[0].partner = 1;
     write_run(folder / "run.h5", run);
     export_vtk(folder / "run.h5", folder / "view");
-    const auto round = points_in(folder / "view/replica_00000/contacts_000000.hdf");
+    const auto round = points_in(folder / "view" / first_name / "contacts_000000.hdf");
     ASSERT_EQ(round.size(), 6u);
     EXPECT_NEAR(round[3], 0.05 + 0.05 * 0.6, 1e-12);
     EXPECT_NEAR(round[4], 0.05 + 0.05 * 0.8, 1e-12);
     EXPECT_EQ(round[5], 0.03);
-    const auto image = points_in(folder / "view/replica_00001/contacts_000000.hdf");
+    const auto image = points_in(folder / "view/replica_00001_mc_dem_packing_1/contacts_000000.hdf");
     EXPECT_NEAR(image[3], 0.11, 1e-12);
     EXPECT_NEAR(image[4], 0.115, 1e-12);
+}
+
+std::vector<int> cell_data(const std::filesystem::path& file, const std::string& name) {
+    return h5::File::open(file).dataset("/VTKHDF/CellData/" + name).read_all<int>();
+}
+
+TEST(vtk, forces_are_where_the_contacts_are) {
+    TemporaryFolder folder;
+    const auto run = synthetic_run({.replicas = 1, .scans = 1});
+    write_run(folder / "run.h5", run);
+    export_vtk(folder / "run.h5", folder.path());
+    const auto file = folder / first_name / "forces_000000.hdf";
+    const auto points = points_in(file), force = point_data(file, "force");
+    const auto& contacts = run.recordings[0].scans[0].contacts;
+    ASSERT_EQ(points.size(), 3 * contacts.size());
+    for (std::size_t c = 0; c < contacts.size(); ++c)
+        for (int a = 0; a < 3; ++a) {
+            EXPECT_EQ(points[3 * c + static_cast<std::size_t>(a)], contacts[c].point[a]);
+            EXPECT_EQ(force[3 * c + static_cast<std::size_t>(a)], contacts[c].force[a]);
+        }
+}
+
+/// Walls of a container 0.1 m wide, the plate at 0.08 m after a start at 0.09 m.
+std::filesystem::path walls_of(const TemporaryFolder& folder, ContainerShape shape,
+                               const Strain& strain = {}) {
+    auto run = synthetic_run({.replicas = 1, .scans = 1});
+    Recording& recording = run.recordings[0];
+    recording.box = {0.1, 0.1, shape, shape == ContainerShape::cell ? 0.1 : 0};
+    recording.plate_start = shape == ContainerShape::cell ? 0.1 : 0.09;
+    recording.scans[0].plate_z = 0.08;
+    recording.scans[0].strain = strain;
+    write_run(folder / "run.h5", run);
+    export_vtk(folder / "run.h5", folder.path());
+    return folder / first_name / "walls_000000.hdf";
+}
+
+TEST(vtk, walls_are_surfaces_with_the_forces_on_them) {
+    TemporaryFolder folder;
+    const auto file = walls_of(folder, ContainerShape::box);
+    EXPECT_THAT(cell_data(file, "wall"), testing::ElementsAre(2, 1, 3, 0, 4, 5));
+    const auto points = points_in(file);
+    ASSERT_EQ(points.size(), 6u * 4 * 3);
+    EXPECT_THAT((std::vector(points.begin() + 12, points.begin() + 24)),
+                testing::ElementsAre(0.1, 0, 0, 0.1, 0.1, 0, 0.1, 0.1, 0.09, 0.1, 0, 0.09));  // x_max
+    EXPECT_EQ(points.back(), 0.08);
+    const auto force = h5::File::open(file).dataset("/VTKHDF/CellData/force").read_all<double>();
+    EXPECT_EQ(force.back(), synthetic_run({.replicas = 1, .scans = 1}).recordings[0].scans[0].top_force());
+}
+
+TEST(vtk, a_cylinder_is_round_and_what_repeats_has_edges) {
+    TemporaryFolder round, open, cell;
+    const auto points = points_in(walls_of(round, ContainerShape::cylinder));
+    for (std::size_t n = 0; n < points.size(); n += 3)
+        EXPECT_NEAR(std::hypot(points[n] - 0.05, points[n + 1] - 0.05), 0.05, 1e-12);
+    EXPECT_THAT(cell_data(walls_of(open, ContainerShape::periodic), "wall"),
+                testing::ElementsAre(-1, -1, -1, -1, 4, 5));
+    const auto edges = walls_of(cell, ContainerShape::cell, {0.1, 0, 0.2, 0, 0.3, 0});
+    EXPECT_EQ(cell_data(edges, "wall"), std::vector<int>(12, -1));
+    const auto ends = points_in(edges);
+    for (std::size_t n = 0; n < ends.size(); n += 3) {
+        EXPECT_TRUE(ends[n] == 0 || std::fabs(ends[n] - 0.09) < 1e-15);
+        EXPECT_TRUE(ends[n + 2] == 0 || std::fabs(ends[n + 2] - 0.08) < 1e-15);
+    }
+    EXPECT_EQ(h5::File::open(edges).dataset("/VTKHDF/FieldData/shear_xz").read_all<double>().at(0), 0.3);
 }
 
 TEST(vtk, displacements_in_a_cell_are_those_beyond_its_own_motion) {
@@ -233,7 +320,7 @@ TEST(vtk, displacements_in_a_cell_are_those_beyond_its_own_motion) {
     }
     write_run(folder / "run.h5", run);
     export_vtk(folder / "run.h5", folder / "view");
-    const auto found = h5::File::open(folder / "view/replica_00000/grains_000001.hdf")
+    const auto found = h5::File::open(folder / "view" / first_name / "grains_000001.hdf")
                            .dataset("/VTKHDF/PointData/displacement")
                            .read_all<double>();
     ASSERT_EQ(found.size(), 3 * before.position.size());
@@ -246,10 +333,10 @@ TEST(vtk, a_scan_without_contacts_still_makes_files) {
     auto run = synthetic_run({.replicas = 1, .scans = 1});
     run.recordings[0].scans[0].contacts.clear();
     write_run(folder / "run.h5", run);
-    EXPECT_EQ(export_vtk(folder / "run.h5", folder / "view"), 2);
+    EXPECT_EQ(export_vtk(folder / "run.h5", folder / "view"), 4);
     std::stringstream command;
     command << "/usr/bin/python3 " << source << "/tests/io/read_vtk.py "
-            << (folder / "view/replica_00000").string() << " 000000 27 0 0 "
+            << (folder / "view" / first_name).string() << " 000000 27 0 0 "
             << run.recordings[0].scans[0].plate_z;
     const Finished finished = run_command(command.str());
     if (finished.exit_code == module_missing)
@@ -261,7 +348,7 @@ TEST(vtk, the_kind_of_grid_is_in_the_characters_that_paraview_takes) {
     TemporaryFolder folder;
     write_run(folder / "run.h5", synthetic_run({.replicas = 1, .scans = 1}));
     export_vtk(folder / "run.h5", folder.path());
-    const auto file = folder / "replica_00000/grains_000000.hdf";
+    const auto file = folder / first_name / "grains_000000.hdf";
     const hid_t id = H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
     const hid_t attribute = H5Aopen_by_name(id, "/VTKHDF", "Type", H5P_DEFAULT, H5P_DEFAULT);
     const hid_t type = H5Aget_type(attribute);
@@ -278,9 +365,9 @@ TEST(xyz, scans_without_positions_are_left_out) {
     for (Scan& scan : run.recordings[1].scans) scan.position.clear();
     write_run(folder / "run.h5", run);
     EXPECT_EQ(export_xyz(folder / "run.h5", folder / "a"), 2);
-    EXPECT_EQ(frames_in(folder / "a/replica_00000.xyz", "Lattice="), 3);
-    EXPECT_EQ(frames_in(folder / "a/replica_00000.contacts.dump", "ITEM: TIMESTEP"), 3);
-    EXPECT_FALSE(std::filesystem::exists(folder / "a/replica_00001.xyz"));
+    EXPECT_EQ(frames_in(folder / "a/replica_00000_mc_dem_packing_0.xyz", "Lattice="), 3);
+    EXPECT_EQ(frames_in(folder / "a/replica_00000_mc_dem_packing_0.contacts.dump", "ITEM: TIMESTEP"), 3);
+    EXPECT_FALSE(std::filesystem::exists(folder / "a/replica_00001_mc_dem_packing_1.xyz"));
 }
 
 TEST(xyz, a_label_cannot_end_its_quotes_or_its_line) {
@@ -289,7 +376,7 @@ TEST(xyz, a_label_cannot_end_its_quotes_or_its_line) {
     run.recordings[0].label = "a \"b\"\nc";
     write_run(folder / "run.h5", run);
     export_xyz(folder / "run.h5", folder.path());
-    EXPECT_THAT(read_bytes(folder / "replica_00000.xyz"), HasSubstr(" label=\"a 'b' c\"\nX "));
+    EXPECT_THAT(read_bytes(folder / "replica_00000_a_b_c.xyz"), HasSubstr(" label=\"a 'b' c\"\nX "));
 }
 
 TEST(xyz, what_cannot_be_written_is_an_error) {

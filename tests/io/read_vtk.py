@@ -54,3 +54,10 @@ assert line.GetCellType() == 3 and line.GetNumberOfPoints() == 2
 assert cells["partner"][-1] == -6 and ends[1][2] == plate_z and ends[0][:2] == ends[1][:2], ends
 field = arrays(grid.GetFieldData())
 assert field["plate_z"][0] == plate_z, field
+
+grid = read(f"{folder}/forces_{scan}.hdf")
+assert grid.GetNumberOfPoints() == grid.GetNumberOfCells() == contacts, grid
+assert (arrays(grid.GetPointData())["force"] == cells["force"]).all()
+grid = read(f"{folder}/walls_{scan}.hdf")
+assert [grid.GetCell(i).GetNumberOfPoints() for i in range(6)] == 6 * [4], grid
+assert grid.GetBounds()[4] == 0 and grid.GetCell(5).GetBounds()[4:] == (plate_z, plate_z), grid.GetBounds()

@@ -22,8 +22,9 @@ guide = (exported.view / "OVITO.txt").read_text()
 code = textwrap.dedent(guide.split("In Python:")[1].split("\n\nOf a")[0])
 with exported.open() as file:
     for replica in file["observables"]:
+        name, = (found.stem for found in exported.view.glob(f"{replica}*.xyz"))
         done = subprocess.run([pythons[0], str(pathlib.Path(__file__).parent / "read_ovito.py")],
-                              input=code.replace("replica_00000", replica), capture_output=True, text=True,
+                              input=code.replace("NAME", name), capture_output=True, text=True,
                               cwd=exported.view, timeout=300)
         assert done.returncode == 0, done.stdout + done.stderr
         frames = json.loads(done.stdout.splitlines()[-1])

@@ -19,21 +19,23 @@ program, source, more = arguments()
 exported = Exported(program, source, "vtk")
 picture = more[0] if more else str(exported.folder / "paraview.png")
 replica = sorted(exported.view.glob("replica_*"))[-1]
+number = replica.name[:len("replica_00000")]
 done = subprocess.run(["xvfb-run", "-a", "pvpython", str(pathlib.Path(__file__).parent / "render_paraview.py"),
                        str(replica), picture], capture_output=True, text=True, timeout=300)
 assert done.returncode == 0 and "ERR|" not in done.stdout + done.stderr, done.stdout + done.stderr
 said = json.loads(done.stdout.splitlines()[-1])
 
 with exported.open() as file:
-    scans = len(file[f"observables/{replica.name}"])
-    position, contacts, _ = scan_of(file, replica.name, scans - 1)
-    diameter = file[f"particles/{replica.name}/diameter"][:]
+    scans = len(file[f"observables/{number}"])
+    position, contacts, _ = scan_of(file, number, scans - 1)
+    diameter = file[f"particles/{number}/diameter"][:]
 assert said["scans"] == scans and said["grains"] == len(position) and said["contacts"] == len(contacts), said
 strongest = np.linalg.norm(contacts["force"].astype(float), axis=1).max()
 assert abs(said["strongest"] / strongest - 1) < 1e-6, (said, strongest)
 wide = (position[:, 0] + diameter / 2).max() - (position[:, 0] - diameter / 2).min()
 assert abs(said["spheres_wide"] / wide - 1) < 0.02, (said, wide)  # spheres of flat faces
 assert said["tubes"] >= len(contacts), said
+assert said["arrows"] == len(contacts) and said["walls"] == 6, said
 
 import matplotlib.image  # noqa: E402  after the skips
 colours = np.round(matplotlib.image.imread(picture)[:, :, :3] * 15).reshape(-1, 3)

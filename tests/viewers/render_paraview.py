@@ -20,7 +20,7 @@ def series(name):
 
 view = CreateRenderView(ViewSize=[700, 600], Background=[1, 1, 1], OrientationAxesVisibility=0,
                         UseColorPaletteForBackground=0)
-grains, contacts = series("grains"), series("contacts")
+grains, contacts, forces, walls = map(series, ("grains", "contacts", "forces", "walls"))
 view.ViewTime = grains.TimestepValues[-1]
 
 spheres = Glyph(grains, GlyphType="Sphere", OrientationArray="No orientation array", ScaleArray=["POINTS", "diameter"],
@@ -42,6 +42,16 @@ colours.RescaleTransferFunction(*contacts.PointData["force_magnitude"].GetRange(
 bar = GetScalarBar(colours, view)
 bar.TitleColor = bar.LabelColor = [0, 0, 0]
 
+arrows = Glyph(forces, GlyphType="Arrow", OrientationArray=["POINTS", "force"], ScaleArray=["POINTS", "force"],
+               GlyphMode="All Points")
+arrows.ScaleFactor = 0.02 / forces.PointData["force_magnitude"].GetRange()[1]
+shown = Show(arrows, view)
+shown.ColorArrayName = [None, ""]
+shown.DiffuseColor = shown.AmbientColor = [0.1, 0.1, 0.1]
+shown = Show(walls, view)
+shown.Opacity = 0.15
+shown.ColorArrayName = [None, ""]
+
 view.ResetCamera()
 camera = GetActiveCamera()
 camera.SetViewUp(0, 0, 1)
@@ -54,4 +64,6 @@ print(json.dumps({"scans": len(grains.TimestepValues), "grains": grains.GetDataI
                   "contacts": contacts.GetDataInformation().GetNumberOfCells(),
                   "strongest": contacts.PointData["force_magnitude"].GetRange()[1],
                   "spheres_wide": spheres.GetDataInformation().GetBounds()[1] - spheres.GetDataInformation().GetBounds()[0],
+                  "arrows": forces.GetDataInformation().GetNumberOfPoints(),
+                  "walls": walls.GetDataInformation().GetNumberOfCells(),
                   "tubes": tubes.GetDataInformation().GetNumberOfCells()}))

@@ -43,7 +43,7 @@ program, source, _ = arguments()
 exported = Exported(program, source, "xyz")
 with exported.open() as file:
     for replica in file["observables"]:
-        frames = ase.io.read(exported.view / f"{replica}.xyz", index=":")
+        frames = ase.io.read(next(exported.view.glob(f"{replica}*.xyz")), index=":")
         assert len(frames) == len(file[f"observables/{replica}"]), len(frames)
         assert frames[0].info["label"] == file[f"particles/{replica}"].attrs["label"].decode()
         for scan, frame in enumerate(frames):

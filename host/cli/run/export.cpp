@@ -29,7 +29,8 @@ void add_export(CLI::App& app, int&) {
     auto* sub = app.add_subcommand("export", "Write grains and contacts for ParaView or OVITO");
     auto command = std::make_shared<ExportCommand>();
     sub->add_option("RUN", command->run, "Result folder or file")->required();
-    sub->add_flag("--vtk", command->formats.vtk, "VTKHDF files, one of grains and one of contacts a scan");
+    sub->add_flag("--vtk", command->formats.vtk,
+                  "VTKHDF files, one of grains, contacts, forces and walls each a scan");
     sub->add_flag("--xyz", command->formats.xyz,
                   "Extended XYZ of the grains and LAMMPS dump local of the contacts, one of each a replica");
     sub->add_option("--replica", command->choice.replicas, "Numbers of replicas; without it all")
