@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/errors.h"
+#include "metrics/stress_strain.h"
 #include "metrics/top_force.h"
 
 namespace mcdem::inline metrics {
@@ -20,19 +21,6 @@ const Setting& reference_of(const std::vector<Setting>& settings, const std::opt
     std::string known;
     for (const auto& setting : settings) known += (known.empty() ? "" : ", ") + setting.label;
     throw InputError(fmt::format("reference setting: must be one of {}; got {}", known, *label));
-}
-
-/// Largest estimate where the plate is pressed with a tenth of its top force; not-a-number where there is
-/// none.
-double largest_rate_error(const Replicas& replicas) {
-    double largest = not_available;
-    for (const Recording* recording : replicas) {
-        double top = 0;
-        for (const Scan& scan : recording->scans) top = std::max(top, scan.top_force());
-        for (const Scan& scan : recording->scans)
-            if (scan.top_force() >= 0.1 * top) largest = std::fmax(largest, scan.rate_error);
-    }
-    return largest;
 }
 
 /// The largest displacement of all that did not stop early; not-a-number where all did.
@@ -51,6 +39,17 @@ double last_scan(const Levels& levels) {
 }
 
 }  // namespace
+
+double largest_rate_error(const Replicas& replicas) {
+    double largest = not_available;
+    for (const Recording* recording : replicas) {
+        double top = 0;
+        for (const Scan& scan : recording->scans) top = std::fmax(top, load(*recording, scan));
+        for (const Scan& scan : recording->scans)
+            if (load(*recording, scan) >= 0.1 * top) largest = std::fmax(largest, scan.rate_error);
+    }
+    return largest;
+}
 
 ModelTable model_table(const std::vector<Setting>& settings, const LevelOptions& options,
                        const std::optional<std::string>& reference) {

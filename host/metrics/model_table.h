@@ -27,6 +27,10 @@ struct ModelTable {
         not_available;  ///< largest that the engine estimated where a tenth of the top force is reached
 };
 
+/// Largest estimate where a tenth of the largest load (stress_strain.h) is reached; not-a-number where there
+/// is none.
+double largest_rate_error(const Replicas& replicas);
+
 /// The reference is the setting of that label; none: the first of model mc_dem, else the first.
 ModelTable model_table(const std::vector<Setting>& settings, const LevelOptions& options = {},
                        const std::optional<std::string>& reference = std::nullopt);

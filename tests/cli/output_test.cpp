@@ -112,10 +112,10 @@ TEST_F(OutputTest, FilesOfOthersAreKept) {
         EXPECT_EQ(text(file), "of mine\n");
     };
     expect_kept("1/README.txt", {"export", "a", "--vtk", "--out", "1"});
-    expect_kept("2/replica_00001_mc_dem/grains_000003.hdf", {"export", "a", "--vtk", "--out", "2"});
+    expect_kept("2/replica_00001_elastic_sphere/grains_000003.hdf", {"export", "a", "--vtk", "--out", "2"});
     expect_kept("3/OVITO.txt", {"export", "a", "--xyz", "--out", "3"});
-    expect_kept("4/replica_00000_elastic_sphere.xyz", {"export", "a", "--xyz", "--out", "4"});
-    expect_kept("5/replica_00000_elastic_sphere.contacts.dump", {"export", "a", "--xyz", "--out", "5"});
+    expect_kept("4/replica_00000_independent.xyz", {"export", "a", "--xyz", "--out", "4"});
+    expect_kept("5/replica_00000_independent.contacts.dump", {"export", "a", "--xyz", "--out", "5"});
     expect_kept("6/top_force.pdf", {"figures", "a", "--out", "6"});
     expect_kept("7/scaling.svg", {"figures", "a", "--out", "7"});
     expect_kept("8/mcdem-run.1", {"manual", "--out", "8"});

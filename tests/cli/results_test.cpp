@@ -98,7 +98,7 @@ TEST_F(CliTest, ExportWritesFilesOfGrainsContactsForcesAndWallsAScan) {
     const auto exported = mcdem({"export", "a", "--vtk", "--out", "paraview"});
     expect_done(exported);
     EXPECT_THAT(exported.out, testing::StartsWith("64 files in paraview; "));
-    EXPECT_TRUE(fs::exists(path("paraview/replica_00001_mc_dem/contacts_000007.hdf")));
+    EXPECT_TRUE(fs::exists(path("paraview/replica_00001_elastic_sphere/contacts_000007.hdf")));
     expect_done(mcdem(run_words("bare", {"--set", "output.positions=false"})));
     expect_bad_input(mcdem({"export", "bare", "--vtk", "--out", "other"}), "output.positions");
 }

@@ -5,6 +5,7 @@
 
 #include "core/errors.h"
 #include "metrics/levels.h"
+#include "metrics/synthetic.h"
 
 namespace mcdem {
 namespace {
@@ -51,6 +52,31 @@ TEST(Programmes, AreToldFromStrokes) {
     } catch (const InputError& error) {
         EXPECT_THAT(error.what(), testing::HasSubstr("got one of a [[programme]]"));
     }
+}
+
+TEST(Programmes, OfCellsHaveStressesAndStrains) {
+    const Recording one = synthetic::cell("mc_dem", 1), two = synthetic::cell("mc_dem", 2, 3);
+    EXPECT_TRUE(are_cells({&one, &two}));
+    const auto scans = mean_scans({&one, &two});
+    ASSERT_EQ(scans.size(), 4u);
+    const double gone = 1 - std::pow(0.98, 3);
+    EXPECT_NEAR(scans[2].p.value, 2e5 * gone, 1e-9);
+    EXPECT_NEAR(scans[2].p.standard_error, 1e5 * gone, 1e-9);
+    EXPECT_NEAR(scans[2].q.value, 2e4 * gone * std::sqrt(3), 1e-9);
+    EXPECT_NEAR(scans[1].q.value, 0, 1e-9);
+    EXPECT_NEAR(scans[1].volume_strain.value, gone, 1e-15);
+    EXPECT_EQ(scans[2].strain[4].value, 0.1);
+    EXPECT_GT(scans[2].shear_strain.value, 0.05);
+    EXPECT_NEAR(scans[3].packing_fraction.value, 0.62, 1e-15);
+}
+
+TEST(Programmes, KnowWhetherTheyHold) {
+    Recording held = synthetic::cell("mc_dem");
+    EXPECT_TRUE(has_hold({&held}));
+    held.parameters.erase("programme.3.stage");
+    EXPECT_FALSE(has_hold({&held}));
+    const Recording stroke = synthetic::recording({});
+    EXPECT_FALSE(are_cells({&stroke}));
 }
 
 }  // namespace

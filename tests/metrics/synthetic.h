@@ -80,6 +80,41 @@ inline Recording recording(const Law& law) {
     return made;
 }
 
+/// A cell of 0.1 m that is compressed by 2 % along all axes, then sheared by 10 % in the plane xz and held.
+/// Its stress is p = 1 kPa times volume strain over 0.01, and a shear stress of a tenth of p where it is
+/// sheared.
+inline Recording cell(const std::string& model, int seed = 1, double factor = 1) {
+    Recording made;
+    made.label = model + " #" + std::to_string(seed);
+    made.parameters = {{"contact.model", model},
+                       {"packing.seed", std::to_string(seed)},
+                       {"programme.1.stage", "\"move\""},
+                       {"programme.2.stage", "\"move\""},
+                       {"programme.3.stage", "\"hold\""}};
+    made.box = {0.1, 0.1, ContainerShape::cell, 0.1};
+    made.plate_start = 0.1;
+    made.diameter.assign(20, 0.02);
+    const Strain strains[]{{0.01, 0.01, 0.01, 0, 0, 0},
+                           {0.02, 0.02, 0.02, 0, 0, 0},
+                           {0.02, 0.02, 0.02, 0, 0.1, 0},
+                           {0.02, 0.02, 0.02, 0, 0.1, 0}};
+    for (const Strain& strain : strains) {
+        Scan scan;
+        scan.frame = static_cast<int>(made.scans.size());
+        scan.time = 0.5 + scan.frame;
+        scan.strain = strain;
+        scan.plate_z = 0.1 * (1 - strain[2]);
+        const double p = factor * 1e5 * (1 - std::pow(1 - strain[0], 3));
+        scan.stress = p * Mat3::Identity();
+        if (strain[4] > 0) scan.stress(0, 2) = scan.stress(2, 0) = -0.1 * p;
+        scan.coordination_number = 6;
+        scan.packing_fraction = 0.6 + strain[0];
+        scan.rate_error = 0.004;
+        made.scans.push_back(scan);
+    }
+    return made;
+}
+
 /// One run: `replicas` seeds of each law.
 inline Run run(const std::vector<Law>& laws, int replicas) {
     Run made;

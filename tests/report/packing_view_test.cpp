@@ -59,6 +59,25 @@ TEST(PackingView, of_a_periodic_cell_shows_grains_in_the_cell) {
     EXPECT_EQ(setting["scans"][0]["y_mm"], (Json{33.333, 100.0, 166.67}));
 }
 
+TEST(PackingView, opens_at_the_strongest_scan) {
+    auto made = row_of_grains(3, 4);
+    EXPECT_EQ((*packing_view({{"unloaded", made}}))["settings"][0]["strongest"], 0);
+    made.scans[2].wall_force[static_cast<int>(Wall::plate)] = {0, 0, 3};
+    EXPECT_EQ((*packing_view({{"loaded", made}}))["settings"][0]["strongest"], 2);
+    made.scans[0].position.clear();  // a scan that is not shown does not count
+    EXPECT_EQ((*packing_view({{"loaded", made}}))["settings"][0]["strongest"], 1);
+}
+
+TEST(PackingView, of_a_cell_tells_strains_and_mean_stress) {
+    auto made = row_of_grains(3, 1);
+    made.box = {0.1, 0.2, ContainerShape::cell, 0.1};
+    made.scans[0].strain = {0.1, 0, 0, 0, 0, 0};
+    made.scans[0].packing_fraction = 0.65;
+    made.scans[0].stress = 20e3 * Mat3::Identity();
+    EXPECT_EQ((*packing_view({{"cell", made}}))["settings"][0]["scans"][0]["title"],
+              "scan 0: volume strain 10.00 %, deviatoric strain 7.02 %, φ 0.650, p 20 kPa");
+}
+
 TEST(PackingView, needs_positions) {
     auto bare = row_of_grains(3, 2);
     for (auto& scan : bare.scans) scan.position.clear();
@@ -86,6 +105,7 @@ Recording stroke(std::size_t scans, std::size_t lowest) {
     for (std::size_t s = 0; s < scans; ++s) {
         Scan scan;
         scan.plate_z = std::abs(static_cast<double>(s) - static_cast<double>(lowest));
+        scan.wall_force[static_cast<int>(Wall::plate)] = {0, 0, 100 - scan.plate_z};
         made.scans.push_back(scan);
     }
     return made;
@@ -97,13 +117,13 @@ TEST(ScansShown, are_all_or_evenly_spread_with_both_ends) {
     limits.scans = 3;
     EXPECT_THAT(scans_shown(stroke(61, 60), 1000, limits), ElementsAre(0, 30, 60));
     limits.scans = 1;
-    EXPECT_THAT(scans_shown(stroke(61, 30), 1000, limits), ElementsAre(60));
+    EXPECT_THAT(scans_shown(stroke(61, 30), 1000, limits), ElementsAre(30));
     EXPECT_TRUE(scans_shown(stroke(0, 0), 1000).empty());
     EXPECT_EQ(scans_shown(stroke(61, 30), 60'000).size(), 10u);                    // what finds room
     EXPECT_THAT(scans_shown(stroke(61, 30), 10'000'000), ElementsAre(0, 30, 60));  // these always do
 }
 
-TEST(ScansShown, have_the_most_compressed_one_among_them) {
+TEST(ScansShown, have_the_strongest_one_among_them) {
     PackingLimits limits;
     limits.scans = 5;
     EXPECT_THAT(scans_shown(stroke(61, 28), 1000, limits), ElementsAre(0, 15, 28, 45, 60));

@@ -2,7 +2,9 @@
 #include "cli/run/results.h"
 #include "cli/shell/commands.h"
 #include "cli/shell/standard_streams.h"
+#include "core/errors.h"
 #include "metrics/programmes.h"
+#include "report/run/scan_tables.h"
 #include "report/run/tables.h"
 
 namespace mcdem::inline cli {
@@ -18,12 +20,16 @@ void print_tables(const TableCommand& command) {
     const auto loaded = load_runs(command.runs, ReadWhat::observables);
     const auto format = command.markdown ? TableFormat::markdown : TableFormat::terminal;
     const auto over = command.over.empty() ? std::nullopt : std::optional(command.over);
-    if (const auto programmes = with_programme(loaded.settings, true); !programmes.empty() && !command.csv) {
-        print_out("{}", to_text(table_of_scans(programmes), format));
-        if (programmes.size() == loaded.settings.size()) return;
-        print_out("\n");
+    const auto programmes = with_programme(loaded.settings, true);
+    const auto strokes = with_programme(loaded.settings, false);
+    if (command.csv && !programmes.empty()) {
+        if (!strokes.empty())
+            throw InputError(
+                "--csv: programmes and strokes have different columns; give the runs one by one");
+        return print_out("{}", csv_of_scans(programmes));
     }
-    const auto strokes = command.csv ? loaded.settings : with_programme(loaded.settings, false);
+    for (const TextTable& table : tables_of_scans(programmes)) print_out("{}\n", to_text(table, format));
+    if (strokes.empty()) return;
     const auto models = model_table(strokes, {}, over);
     if (command.csv) return print_out("{}", csv_of_models(models, strokes));
     print_out("{}\n", to_text(table_of_models(models), format));
@@ -33,8 +39,8 @@ void print_tables(const TableCommand& command) {
 }  // namespace
 
 void add_table(CLI::App& app, int&) {
-    auto* sub =
-        app.add_subcommand("table", "Top forces of a run's settings side by side, and the scaling law");
+    auto* sub = app.add_subcommand(
+        "table", "Top forces of a run's settings side by side and the scaling law; programmes scan by scan");
     auto command = std::make_shared<TableCommand>();
     add_runs_option(*sub, command->runs);
     sub->add_option("--over", command->over, "Label of the setting that ratios are taken over (else mc_dem)")
@@ -42,7 +48,8 @@ void add_table(CLI::App& app, int&) {
     sub->add_flag("--markdown", command->markdown, "Print Markdown");
     sub->add_flag(
         "--csv", command->csv,
-        "Print CSV: top forces and ratios, a column for each scene key that is not the same in all");
+        "Print CSV: top forces and ratios, of programmes scan by scan; a column for each scene key that is "
+        "not the same in all");
     sub->footer(
         "Ratios are over replicas that start from the same packing, where there are; ± is the standard "
         "error\n"

@@ -37,4 +37,9 @@ std::string shortened(const std::string& text, std::size_t most) {
     return characters <= most ? text : text.substr(0, end) + "…";
 }
 
+StressUnit stress_unit(double largest) {
+    if (largest >= 1e7) return {"MPa", 1e6};
+    return largest >= 1e4 ? StressUnit{"kPa", 1e3} : StressUnit{"Pa", 1};
+}
+
 }  // namespace mcdem::report

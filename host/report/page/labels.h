@@ -1,4 +1,4 @@
-// How settings are called where people read them.
+// How settings are called, and stresses told, where people read them.
 #pragma once
 #include <string>
 
@@ -13,5 +13,12 @@ std::string one_line(const std::string& text);
 
 /// The text cut to `most` characters of UTF-8, with an ellipsis where something is missing.
 std::string shortened(const std::string& text, std::size_t most);
+
+/// A unit in which the largest of some stresses has few digits.
+struct StressUnit {
+    const char* name;
+    double size;  ///< [Pa]
+};
+StressUnit stress_unit(double largest);
 
 }  // namespace mcdem::report

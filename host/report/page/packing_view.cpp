@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "core/container.h"
+#include "metrics/stress_strain.h"
 #include "report/page/labels.h"
 
 namespace mcdem::inline report {
@@ -47,7 +48,17 @@ Shown shown_grains(const Recording& recording, int most) {
     return shown;
 }
 
+/// What a scan of a cell is, without its number.
+std::string words_of_cell(const Scan& scan) {
+    const double p = mean_stress(scan.stress);
+    const StressUnit unit = stress_unit(p);
+    return fmt::format("volume strain {:.2f} %, deviatoric strain {:.2f} %, φ {:.3f}, p {:.4g} {}",
+                       100 * volume_strain(scan.strain), 100 * deviatoric_strain(scan.strain),
+                       scan.packing_fraction, p / unit.size, unit.name);
+}
+
 std::string title_of(const Recording& recording, const Scan& scan) {
+    if (is_cell(recording.box)) return fmt::format("scan {}: {}", scan.frame, words_of_cell(scan));
     return fmt::format("scan {}: {:.2f} mm, {}ing, cycle {}, top force {:.4g} N", scan.frame,
                        recording.displacement(scan) / mm, name(scan.phase), scan.cycle + 1, scan.top_force());
 }
@@ -95,6 +106,7 @@ Json setting_json(const ShownPacking& packing, const PackingLimits& limits) {
             {"top_mm", rounded(top / mm)},
             {"number", shown.grains},
             {"diameter_mm", diameters},
+            {"strongest", strongest_scan(recording).value_or(0)},
             {"scans", scans}};
 }
 
@@ -131,17 +143,17 @@ std::vector<std::size_t> scans_shown(const Recording& recording, long numbers, c
     const auto room = limits.scans ? static_cast<long>(*limits.scans)
                                    : std::max(3L, limits.max_numbers / std::max(1L, numbers));
     const auto most = std::min(count, static_cast<std::size_t>(room));
+    const auto strongest = strongest_scan(recording).value_or(count - 1);
+    if (most == 1) return {strongest};
     std::vector<std::size_t> shown;
-    for (std::size_t s = 0; s < most; ++s)
-        shown.push_back(most == 1 ? count - 1 : (s * (count - 1) + (most - 1) / 2) / (most - 1));
+    for (std::size_t s = 0; s < most; ++s) shown.push_back((s * (count - 1) + (most - 1) / 2) / (most - 1));
     if (most < 3) return shown;
-    const auto lower = [](const Scan& a, const Scan& b) { return a.plate_z < b.plate_z; };
-    const auto lowest = static_cast<std::size_t>(
-        std::min_element(recording.scans.begin(), recording.scans.end(), lower) - recording.scans.begin());
-    const auto away = [&](std::size_t scan) { return scan > lowest ? scan - lowest : lowest - scan; };
-    if (lowest > 0 && lowest + 1 < count)
+    const auto away = [&](std::size_t scan) {
+        return scan > strongest ? scan - strongest : strongest - scan;
+    };
+    if (strongest > 0 && strongest + 1 < count)
         *std::min_element(shown.begin() + 1, shown.end() - 1,
-                          [&](std::size_t a, std::size_t b) { return away(a) < away(b); }) = lowest;
+                          [&](std::size_t a, std::size_t b) { return away(a) < away(b); }) = strongest;
     return shown;
 }
 

@@ -22,8 +22,9 @@ struct PackingLimits {
     int max_grains = 20'000;                  ///< of a packing: those nearest to its middle plane
 };
 
-/// Which of a recording's scans are shown: evenly spread, the first, the last and the most compressed one
-/// among them where there is room. `numbers`: how many numbers a scan of all packings together has.
+/// Which of a recording's scans are shown: evenly spread, the first, the last and the strongest one
+/// (stress_strain.h) among them where there is room. `numbers`: how many numbers a scan of all packings
+/// together has.
 std::vector<std::size_t> scans_shown(const Recording& recording, long numbers,
                                      const PackingLimits& limits = {});
 
@@ -31,7 +32,8 @@ std::vector<std::size_t> scans_shown(const Recording& recording, long numbers,
 long numbers_of_scan(long grains, long contacts);
 
 /// What page_packing.js draws: lengths in mm, forces in mN, five digits of either; colours end at the force
-/// that all but one contact in two hundred stay below. Nothing where no scan has positions.
+/// that all but one contact in two hundred stay below; `strongest`: the scan that a page opens at. Nothing
+/// where no scan has positions.
 std::optional<Json> packing_view(const std::vector<ShownPacking>& packings, const PackingLimits& limits = {});
 
 }  // namespace mcdem::report

@@ -138,6 +138,7 @@ void Page::chart(const Chart& chart) {
     body_ += "<figure><div class=\"bar\"><h3>" + html_text(chart.title) + "</h3>";
     if (!chart.log_axes.empty())
         body_ += "<button type=\"button\" data-log=\"" + id + "\" aria-pressed=\"false\">log axes</button>";
+    body_ += "<button type=\"button\" data-svg=\"" + id + "\">SVG</button>";
     body_ += fmt::format(
         "</div>\n<div class=\"wide\"><div class=\"chart\" id=\"{}\" "
         "style=\"height:{}px;min-width:{}px\"></div></div>\n",

@@ -53,6 +53,20 @@ function addLogButtons(charts) {
   }
 }
 
+/// A chart as it would be on paper, as a file of vectors that drawing programs can edit.
+function addSvgButtons(charts) {
+  for (const button of document.querySelectorAll('button[data-svg]')) {
+    const chart = charts.find(({id}) => id === button.dataset.svg);
+    button.addEventListener('click', () => {
+      const {data, layout} = inTheme('light', () => {
+        const width = document.getElementById(chart.id).clientWidth;
+        return {data: themed(chart.data), layout: {...themed(layoutOf(chart, width)), width}};
+      });
+      Plotly.downloadImage({data, layout}, {format: 'svg', filename: chart.id, width: layout.width, height: layout.height});
+    });
+  }
+}
+
 /// Paper is bright, and as wide as it is.
 function addPrinting(charts, packings, drawAll) {
   const paper = 690;  // pixels of A4 between its margins
@@ -87,6 +101,7 @@ async function showPage() {
   screenIsDark.addEventListener('change', () => { named(); drawAll(); });
   named();
   addLogButtons(content.charts);
+  addSvgButtons(content.charts);
   addPrinting(content.charts, packings, drawAll);
   await drawAll();
   root.dataset.ready = 'yes';

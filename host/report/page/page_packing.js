@@ -45,6 +45,7 @@ class PackingView {
 
   choose(draw = true) {
     this.slider.max = this.shown.scans.length - 1;
+    if (!draw) this.slider.value = this.shown.strongest;
     const grains = this.shown.diameter_mm.length;
     this.sphere = sphereMesh(grains <= 200 ? 2 : grains <= 5000 ? 1 : 0);
     if (draw) this.draw();

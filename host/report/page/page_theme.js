@@ -15,6 +15,17 @@ function themed(value, style = getComputedStyle(root)) {
   return Object.fromEntries(Object.entries(value).map(([key, part]) => [key, themed(part, style)]));
 }
 
+/// What `work` gives while the page has that theme; nothing of it is seen.
+function inTheme(name, work) {
+  const before = root.dataset.theme;
+  root.dataset.theme = name;
+  try {
+    return work();
+  } finally {
+    if (before) root.dataset.theme = before; else delete root.dataset.theme;
+  }
+}
+
 /// Forces from weak to strong: the strong ones stand out of either background.
 function forceScale() {
   return isDark()

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "report/page/chart_parts.h"
+#include "report/run/programme_figures.h"
 
 namespace mcdem::inline report {
 namespace {
@@ -118,18 +119,36 @@ Chart scaling_chart(const Cast& cast, const RunFigure& figure) {
     return chart;
 }
 
+/// What its axes mean where that is not plain.
+std::string programme_words(const RunFigure& figure) {
+    std::string words;
+    const auto has = [&](const char* quantity) {
+        return figure.x_label.starts_with(quantity) || figure.y_label.starts_with(quantity);
+    };
+    if (has("mean stress")) words += " p: a third of the stress tensor's trace, compression positive.";
+    if (has("deviatoric stress")) words += " q = √(3/2 s:s) of its deviator s.";
+    if (has("volume strain")) words += " Volume strain: part of the volume at start that is gone.";
+    if (has("deviatoric strain"))
+        words += " Deviatoric strain: √(2/3 e:e), e the deviator of the logarithmic strain.";
+    return words;
+}
+
 /// Of a programme: one line through its scans.
 Chart programme_chart(const Cast& cast, const RunFigure& figure) {
-    const bool by_time = figure.x_label.starts_with("time"), force = figure.y_label.starts_with("top");
-    const std::string title = force ? "Force on the plate" : "Displacement of the plate";
-    auto chart = chart_of(figure, title + (by_time ? " against time" : " against displacement"),
-                          std::string("One scan after the other.") +
+    auto chart = chart_of(figure, figure.title,
+                          std::string("One scan after the other.") + programme_words(figure) +
                               (several_replicas(figure) ? " Bands: one standard error over replicas." : ""));
-    const PointWords words{by_time ? "%{x:.4g} s" : "%{x:.3f} mm", force ? "%{y:.4g} N" : "%{y:.3f} mm",
-                           force ? " ± %{customdata:.2g} N" : " ± %{customdata:.2g} mm"};
+    const auto x = unit_of(figure.x_label), y = unit_of(figure.y_label);
+    const auto with = [](const std::string& format, const std::string& unit) {
+        return unit.empty() ? format : format + " " + unit;
+    };
+    const PointWords words{with("%{x:.4g}", x), with("%{y:.4g}", y), with(" ± %{customdata:.2g}", y)};
     for (const auto& shown : figure.series)
         append(chart.data, curve_traces(*shown.series, chart_colour(cast, *shown.series),
                                         shown.curves.front().points, CurveLook::line, words, true));
+    if (figure.name == "pressure_strain") chart.log_axes = "y";
+    if (figure.name == "cell_coordination")
+        for (const char* name : {"xaxis", "yaxis"}) chart.layout[name].erase("rangemode");
     return chart;
 }
 
@@ -145,9 +164,7 @@ RunCharts run_charts(const std::vector<Setting>& settings, const std::optional<S
         if (figure.name == "top_force") made.charts.push_back(top_force_chart(cast, figure));
         if (figure.name == "force_distribution") made.charts.push_back(distribution_chart(cast, figure));
         if (figure.name == "coordination") made.charts.push_back(coordination_chart(cast, figure, options));
-        if (figure.name == "force_time" || figure.name == "displacement_time" ||
-            figure.name == "force_displacement")
-            made.charts.push_back(programme_chart(cast, figure));
+        if (!figure.title.empty()) made.charts.push_back(programme_chart(cast, figure));
         if (figure.name == "scaling") made.charts.push_back(scaling_chart(cast, figure));
     }
     return made;

@@ -9,6 +9,7 @@
 #include "metrics/programmes.h"
 #include "metrics/scaling.h"
 #include "report/page/labels.h"
+#include "report/run/programme_figures.h"
 
 namespace mcdem::inline report {
 namespace {
@@ -142,28 +143,6 @@ RunFigure scaling_figure(const Cast& cast) {
         return {&series, fmt::format("{:.0f} /m", slope), curves_of(points_of), slope * mN_m};
     });
     return figure;
-}
-
-/// Scan by scan, in their order.
-std::vector<RunFigure> programme_figures(const Cast& cast) {
-    const char *time = "time [s]", *force = "top force [N]", *displacement = "plate displacement [mm]";
-    std::vector<RunFigure> figures{{"force_time", time, force, {}, {}},
-                                   {"displacement_time", time, displacement, {}, {}},
-                                   {"force_displacement", displacement, force, {}, {}}};
-    for (const Series& series : cast.simulated) {
-        if (!is_programme(series)) continue;
-        std::vector<FigurePoint> points[3];
-        for (const MeanScan& scan : mean_scans(series.setting.replicas)) {
-            const Estimate &f = scan.top_force, &d = scan.displacement;
-            points[0].push_back({scan.time.value, f.value, f.standard_error});
-            points[1].push_back({scan.time.value, d.value / mm, d.standard_error / mm});
-            points[2].push_back({d.value / mm, f.value, f.standard_error});
-        }
-        for (std::size_t k = 0; k < figures.size(); ++k)
-            if (!points[k].empty())
-                figures[k].series.push_back({&series, "", {{Phase::load, std::move(points[k])}}});
-    }
-    return figures;
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 // The paper's four figures made ready for drawing, in the units of their axes: top force, force distribution
-// at one level, Z after thresholding, scaling law. Pages and figures for print show the same values.
+// at one level, Z after thresholding, scaling law; those of programmes: programme_figures.h. Pages and
+// figures for print show the same values.
 #pragma once
 #include <optional>
 #include <string>
@@ -65,6 +66,7 @@ struct RunFigure {
     std::vector<FigureSeries> series;
     /// Of the force distribution: its level [mm].
     std::optional<double> displacement;
+    std::string title = "";  ///< of a programme's, on a page
 };
 
 struct RunFigures {

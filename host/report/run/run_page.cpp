@@ -8,6 +8,8 @@
 #include "core/sha256.h"
 #include "metrics/programmes.h"
 #include "report/run/run_charts.h"
+#include "report/run/run_words.h"
+#include "report/run/scan_tables.h"
 #include "report/run/tables.h"
 
 namespace mcdem::inline report {
@@ -32,22 +34,20 @@ std::string species_of(const RunsOnPage& runs) {
     return names.empty() ? "" : fmt::format(" Grains of {}.", fmt::join(names, ", "));
 }
 
-std::string what_it_is(const RunsOnPage& runs) {
-    std::size_t replicas = 0;
-    for (const auto& setting : runs.settings) replicas += setting.replicas.size();
-    const auto counted = [](std::size_t count, const std::string& what) {
-        return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
-    };
-    return counted(runs.settings.size(), "setting") + ", " + counted(replicas, "replica") +
-           (runs.reference ? ", held against " + runs.reference->label : "") + "." + species_of(runs);
+/// The head's sentences.
+std::string head_of(const RunsOnPage& runs) {
+    std::string words = what_was_simulated(runs.settings) + species_of(runs);
+    if (runs.reference) words += " Held against " + runs.reference->label + ".";
+    const auto result = main_result(runs.settings, runs.figures.compare.levels);
+    return result.empty() ? words : words + " " + result;
 }
 
 void add_tables(Page& page, const RunsOnPage& runs, const std::vector<Comparison>& comparisons) {
     page.section("Metrics");
     if (!comparisons.empty())
         page.table("Against " + runs.reference->label, table_of_comparisons(comparisons));
-    if (const auto programmes = with_programme(runs.settings, true); !programmes.empty())
-        page.table("Scans", table_of_scans(programmes));
+    for (const TextTable& table : tables_of_scans(with_programme(runs.settings, true)))
+        page.table("Scans", table);
     const auto strokes = with_programme(runs.settings, false);
     if (strokes.empty()) return;
     page.table("Top force", table_of_models(model_table(strokes, runs.figures.compare.levels)));
@@ -55,7 +55,8 @@ void add_tables(Page& page, const RunsOnPage& runs, const std::vector<Comparison
 }
 
 void add_charts(Page& page, const RunsOnPage& runs, const FigureOptions& options) {
-    page.section("Forces and contacts");
+    const auto cell = [](const Setting& setting) { return are_cells(setting.replicas); };
+    page.section(std::ranges::all_of(runs.settings, cell) ? "Stresses and contacts" : "Forces and contacts");
     const auto made = run_charts(runs.settings, runs.reference, options);
     for (const auto& chart : made.charts) page.chart(chart);
     for (const auto& note : made.notes) page.paragraph(note);
@@ -115,7 +116,7 @@ void add_origin(Page& page, const RunOrigin& origin) {
 }  // namespace
 
 void add_runs(Page& page, const RunsOnPage& runs) {
-    page.lead("Simulated compression", listed_names(runs.origins), what_it_is(runs));
+    page.lead("Simulation", listed_names(runs.origins), head_of(runs));
     auto options = runs.figures;
     if (runs.reference && options.comparisons.empty())
         for (const auto& setting : runs.settings)

@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "core/parameters.h"
-#include "metrics/programmes.h"
 #include "report/page/labels.h"
 
 namespace mcdem::inline report {
@@ -15,14 +14,6 @@ const std::string dash = "–";
 
 std::string number(double value, int decimals) {
     return std::isfinite(value) ? fmt::format("{:.{}f}", value, decimals) : dash;
-}
-
-std::string csv_field(const std::string& text) {
-    const auto line = one_line(text);
-    if (line.find_first_of(",\"") == std::string::npos) return line;
-    std::string field = "\"";
-    for (char c : line) field += c == '"' ? std::string("\"\"") : std::string(1, c);
-    return field + "\"";
 }
 
 /// Notes by setting; those that all settings share once.
@@ -51,18 +42,41 @@ std::string with_error(const Estimate& estimate, int decimals, double unit) {
     return value + " ± " + number(estimate.standard_error / unit, decimals);
 }
 
-std::string rate_note(double rate_error) {
+std::string rate_note(const std::string& what, double rate_error, bool strokes) {
     constexpr double too_much = 0.02;
-    return fmt::format(
-        "plate's speed: error of forces at most {:.2g} %, estimated{}", 100 * rate_error,
-        rate_error > too_much ? "; set protocol.rate_tolerance for less, `mcdem converge` measures it" : "");
+    std::string note = fmt::format("{} at most {:.2g} %, estimated", what, 100 * rate_error);
+    if (rate_error > too_much) note += "; set protocol.rate_tolerance for less";
+    if (rate_error > too_much && strokes) note += ", `mcdem converge` measures it";
+    return note;
 }
 
-std::string beyond_note(const std::string& setting, const BeyondLaw& beyond) {
+std::string beyond_note(const std::string& setting, const std::string& from, const BeyondLaw& beyond) {
     return fmt::format(
-        "{}: from {} mm on grains overlap more than the law was tested for ({:.2f} of the sum of their "
-        "radii), by up to {:.2f}; numerics.stop_beyond_law stops there",
-        words_for(setting), number(beyond.displacement * 1e3, 2), beyond.tested, beyond.max_overlap);
+        "{}: from {} on grains overlap more than the law was tested for ({:.2f} of the sum of their radii), "
+        "by up to {:.2f}; numerics.stop_beyond_law stops there",
+        setting, from, beyond.tested, beyond.max_overlap);
+}
+
+std::string csv_field(const std::string& text) {
+    const auto line = one_line(text);
+    if (line.find_first_of(",\"") == std::string::npos) return line;
+    std::string field = "\"";
+    for (char c : line) field += c == '"' ? std::string("\"\"") : std::string(1, c);
+    return field + "\"";
+}
+
+VaryingKeys varying_keys(const std::vector<Setting>& settings) {
+    std::vector<Parameters> parameters;
+    for (const auto& setting : settings) {
+        parameters.push_back(setting.replicas.front()->parameters);
+        parameters.back().erase("packing.seed");
+    }
+    VaryingKeys varying{keys_that_vary(parameters), {}};
+    for (const auto& of_setting : parameters) {
+        auto& values = varying.values.emplace_back();
+        for (const auto& key : varying.keys) values.push_back(without_quotes(value_of(of_setting, key)));
+    }
+    return varying;
 }
 
 TextTable table_of_models(const ModelTable& models) {
@@ -84,32 +98,16 @@ TextTable table_of_models(const ModelTable& models) {
     if (std::ranges::any_of(models.rows, [](const ModelRow& row) { return row.reached.has_value(); }))
         table.notes.push_back("*: no replica reached full stroke; force and ratio are of the last scan");
     for (const auto& row : models.rows)
-        if (row.beyond) table.notes.push_back(beyond_note(row.setting, *row.beyond));
-    if (std::isfinite(models.rate_error)) table.notes.push_back(rate_note(models.rate_error));
-    return table;
-}
-
-TextTable table_of_scans(const std::vector<Setting>& settings) {
-    TextTable table;
-    table.columns = {
-        {"model", Align::left}, {"scan"}, {"phase", Align::left}, {"time [s]"}, {"displacement [mm]"},
-        {"top force [N]"},      {"Z"}};
-    for (const auto& setting : settings)
-        for (const MeanScan& scan : mean_scans(setting.replicas))
-            table.rows.push_back({words_for(setting.label), std::to_string(scan.frame),
-                                  std::string(name(scan.phase)), number(scan.time.value, 3),
-                                  with_error(scan.displacement, 3, 1e-3), with_error(scan.top_force, 4),
-                                  with_error(scan.coordination, 2)});
+        if (row.beyond)
+            table.notes.push_back(beyond_note(
+                words_for(row.setting), number(row.beyond->displacement * 1e3, 2) + " mm", *row.beyond));
+    if (std::isfinite(models.rate_error))
+        table.notes.push_back(rate_note("plate's speed: error of forces", models.rate_error));
     return table;
 }
 
 std::string csv_of_models(const ModelTable& models, const std::vector<Setting>& settings) {
-    std::vector<Parameters> parameters;
-    for (const auto& setting : settings) {
-        parameters.push_back(setting.replicas.front()->parameters);
-        parameters.back().erase("packing.seed");
-    }
-    const auto keys = keys_that_vary(parameters);
+    const auto [keys, values] = varying_keys(settings);
     const auto known = [](double value) { return std::isfinite(value) ? fmt::format("{}", value) : ""; };
     std::string text = "setting,";
     for (const auto& key : keys) text += key + ",";
@@ -119,7 +117,7 @@ std::string csv_of_models(const ModelTable& models, const std::vector<Setting>& 
     for (std::size_t r = 0; r < models.rows.size(); ++r) {
         const ModelRow& row = models.rows[r];
         text += csv_field(row.setting) + ",";
-        for (const auto& key : keys) text += csv_field(without_quotes(value_of(parameters[r], key))) + ",";
+        for (const auto& value : values[r]) text += csv_field(value) + ",";
         text += fmt::format(
             "{},{},{},{},{},{},{},{}\n", known(row.reached.value_or(models.displacement) * 1e3),
             known(row.top_force.value), known(row.top_force.standard_error), csv_field(models.reference),

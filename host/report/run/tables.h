@@ -10,11 +10,25 @@ namespace mcdem::inline report {
 /// "0.430 ± 0.012"; without its error where that is not known, a dash where there is no value.
 std::string with_error(const Estimate& estimate, int decimals, double unit = 1);
 
+/// "plate's speed: error of forces at most 0.5 %, estimated"; what to set where that is much, and, of
+/// strokes, what measures it.
+std::string rate_note(const std::string& what, double rate_error, bool strokes = true);
+
+/// `from`: the displacement or scan from which on grains overlap more than the law was tested for.
+std::string beyond_note(const std::string& setting, const std::string& from, const BeyondLaw& beyond);
+
+/// In quotes where it has to be.
+std::string csv_field(const std::string& text);
+
+/// Scene keys that are not the same in all settings, seeds left out, and each setting's values of them.
+struct VaryingKeys {
+    std::vector<std::string> keys;
+    std::vector<std::vector<std::string>> values;
+};
+VaryingKeys varying_keys(const std::vector<Setting>& settings);
+
 /// Top force at full stroke, or at its last scan with a mark, and over the reference setting's.
 TextTable table_of_models(const ModelTable& models);
-
-/// Scan by scan: time, displacement, force and Z of settings that follow a programme.
-TextTable table_of_scans(const std::vector<Setting>& settings);
 
 /// The same as table_of_models for programs: a row a setting, with a column for each scene key that is not
 /// the same in all.

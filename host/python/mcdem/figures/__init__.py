@@ -11,9 +11,13 @@ that the figure has in print, where left out. Functions return the axes, or an a
 from .challenge import confidence, confusion, power
 from .convergence import convergence
 from .diagnosis import how_far, where, which
-from .runs import coordination, displacement_time, force_displacement, force_distribution, force_time, scaling, top_force
+from .runs import (cell_coordination, coordination, displacement_time, force_displacement, force_distribution, force_time,
+                   pressure_strain, pressure_time, scaling, shear_strain_time, shear_stress_strain, shear_stress_time,
+                   stress_path, top_force, volume_time)
 from .style import COLUMN, PAGE, STYLE, new_axes, save
 from .values import read
 
-__all__ = ["COLUMN", "PAGE", "STYLE", "confidence", "confusion", "convergence", "coordination", "displacement_time",
-           "force_displacement", "force_distribution", "force_time", "how_far", "new_axes", "power", "read", "save", "scaling", "top_force", "where", "which"]
+__all__ = ["COLUMN", "PAGE", "STYLE", "cell_coordination", "confidence", "confusion", "convergence", "coordination",
+           "displacement_time", "force_displacement", "force_distribution", "force_time", "how_far", "new_axes", "power",
+           "pressure_strain", "pressure_time", "read", "save", "scaling", "shear_strain_time", "shear_stress_strain",
+           "shear_stress_time", "stress_path", "top_force", "volume_time", "where", "which"]

@@ -1,4 +1,4 @@
-"""The paper's four figures of runs, alone or against a reference, and those of programmes."""
+"""The paper's four figures of runs, alone or against a reference, and those of programmes of plates and cells."""
 import matplotlib.lines
 import matplotlib.patches
 import numpy as np
@@ -93,12 +93,62 @@ def force_displacement(source, axes=None):
     return of_programme(source, "force_displacement", axes)
 
 
-def of_programme(source, name, axes):
+@styled
+def pressure_strain(source, axes=None):
+    """Mean stress of a cell against its volume strain."""
+    return of_programme(source, "pressure_strain", axes)
+
+
+@styled
+def shear_stress_strain(source, axes=None):
+    """Deviatoric stress q of a cell against its deviatoric strain."""
+    return of_programme(source, "shear_stress_strain", axes)
+
+
+@styled
+def stress_path(source, axes=None):
+    """Deviatoric stress q against mean stress p, of cells that are distorted and of plates."""
+    return of_programme(source, "stress_path", axes)
+
+
+@styled
+def cell_coordination(source, axes=None):
+    """Contacts per grain in a cell against its packing fraction."""
+    return of_programme(source, "cell_coordination", axes, from_zero=False)
+
+
+@styled
+def pressure_time(source, axes=None):
+    """Mean stress of a cell against time."""
+    return of_programme(source, "pressure_time", axes)
+
+
+@styled
+def volume_time(source, axes=None):
+    """Volume strain of a cell against time."""
+    return of_programme(source, "volume_time", axes)
+
+
+@styled
+def shear_stress_time(source, axes=None):
+    """Deviatoric stress of a cell against time."""
+    return of_programme(source, "shear_stress_time", axes)
+
+
+@styled
+def shear_strain_time(source, axes=None):
+    """Deviatoric strain of a cell against time."""
+    return of_programme(source, "shear_strain_time", axes)
+
+
+def of_programme(source, name, axes, from_zero=True):
+    """One line a setting, scan after scan; scans are marked, since paths may come back to where they were."""
     values = read(source, name)
     shown = entries(values, phases=())
     axes = axes or keyed_axes(shown, is_crowded(shown))
-    draw_curves(axes, values)
-    axes.set_xlim(left=0)
+    draw_curves(axes, values, marker="o", markersize=1.6)
+    if from_zero and all(x >= 0 for series in values["series"] for curve in series["curves"] for x in curve["x"]):
+        axes.set_xlim(left=0)
     place_key(axes, shown, "best")
     return axes
 
@@ -113,17 +163,20 @@ def place_key(axes, shown, place):
     key(axes, shown, **({} if is_crowded(shown) else {"loc": place}))
 
 
-def draw_curves(axes, values):
-    """Lines with bands for simulations, points with bars for the reference."""
+def draw_curves(axes, values, **lines):
+    """Lines with bands for simulations, points with bars for the reference. `lines`: how lines look."""
     for series in values["series"]:
         for curve in series["curves"]:
-            (draw_points if series["is_reference"] else draw_line)(axes, series, curve)
+            if series["is_reference"]:
+                draw_points(axes, series, curve)
+            else:
+                draw_line(axes, series, curve, **lines)
     label(axes, values)
 
 
-def draw_line(axes, series, curve):
+def draw_line(axes, series, curve, **look):
     x, y, error = numbers(curve)
-    axes.plot(x, y, color=series["colour"], **SIMULATED[curve["phase"]])
+    axes.plot(x, y, color=series["colour"], **SIMULATED[curve["phase"]], **look)
     if np.isfinite(error).any():
         low = np.where(y > 0, np.maximum(y - error, y / 3), y - error)  # a band has a logarithm too
         axes.fill_between(x, low, y + error, color=series["colour"], alpha=0.18, linewidth=0)

@@ -1,0 +1,15 @@
+// Figures of programmes, scan by scan: force and displacement of a plate, stress and strain of a cell,
+// against one another and against time.
+#pragma once
+#include "report/run/run_figures.h"
+
+namespace mcdem::inline report {
+
+/// Those that have something to show. Time is shown of plates, and of cells that hold something; what belongs
+/// to distortion of cells that are distorted.
+std::vector<RunFigure> programme_figures(const Cast& cast);
+
+/// "kPa" of "pressure p [kPa]".
+std::string unit_of(const std::string& label);
+
+}  // namespace mcdem::report
