@@ -1,4 +1,4 @@
-"""A report as a reader sees it: opened in headless Chromium without a network, pointed at, moved, darkened, printed.
+"""Reports of a plate and of a cell as a reader sees them: opened in headless Chromium without a network, pointed at, moved, darkened, printed.
 
 report_page_test.py PROGRAM FOLDER; makes a run, a diagnosis and their reports in FOLDER, and leaves screenshots there.
 Exit code 77: a program or module that it needs is not there.
@@ -14,7 +14,7 @@ try:
     import h5py
     from selenium.webdriver.support.ui import WebDriverWait
 
-    from report import page_charts, page_packing, page_print, page_tables, page_truth
+    from report import page_cell, page_charts, page_packing, page_print, page_tables, page_truth
     from report.page_diagnosis import check_diagnosis_charts
     from report.page_reader import Reader, browser
 except ImportError as missing:
@@ -51,6 +51,9 @@ def make_reports(program, folder):
         subprocess.run([program, *words], cwd=folder, check=True, stdout=subprocess.DEVNULL, timeout=500)
 
     (folder / "scene.toml").write_text(SCENE)
+    (folder / "cell.toml").write_text(page_truth.CELL_SCENE)
+    mcdem("run", "cell.toml", "--out", "cell", "--no-figures")
+    mcdem("report", "cell", "--out", "cell.html")
     mcdem("run", "scene.toml", "--out", "run", "--no-figures")
     for number, (experiment, replica) in enumerate(EXPERIMENTS.items()):
         mcdem("experiment", "from-run", "run", "--replica", replica, "--seed", str(number), "--out", experiment)
@@ -106,6 +109,7 @@ def check_report(reader, program, run):
     page_charts.check_log_buttons(reader)
     page_packing.check_slider(reader, run, (0, 2))
     check_themes(reader)
+    page_cell.check_svg(reader, "top_force", ("plate displacement [mm]", "top force [N]", "MC-DEM"))
     page_print.check_print(reader)
     assert background(reader) == "rgb(22, 24, 27)", "as before printing"
 
@@ -140,6 +144,9 @@ def main():
             with Reader(folder / page) as reader:
                 check(reader, program, run)
                 reader.check_alone()
+    with h5py.File(folder / "cell/run.h5") as run, Reader(folder / "cell.html") as reader:
+        page_cell.check_cell(reader, run)
+        reader.check_alone()
 
 
 if __name__ == "__main__":

@@ -37,8 +37,9 @@ TEST_F(CliTest, AReportMixesRunsDiagnosesAndAReference) {
     expect_done(
         mcdem({"report", "a", "d", "--out", "both.html", "--against", "a", "--setting", "elastic_sphere"}));
     const auto page = page_at(path("both.html"));
-    for (const char* part : {"Simulated compression", "No detectable gap", "<h3>Against elastic_sphere</h3>",
-                             "&lt;script&gt;alert(1)&lt;/script&gt;", "experiment: d</p>"})
+    for (const char* part :
+         {"<p class=\"kicker\">Simulation</p>", "No detectable gap", "<h3>Against elastic_sphere</h3>",
+          "&lt;script&gt;alert(1)&lt;/script&gt;", "experiment: d</p>"})
         EXPECT_TRUE(page.find(part) != std::string::npos) << part;
     EXPECT_TRUE(page.find("<script>alert") == std::string::npos);
     expect_done(mcdem({"report", "d/diagnosis.json", "--out", "alone.html"}));

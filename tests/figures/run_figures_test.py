@@ -136,6 +136,40 @@ class Curves(unittest.TestCase):
         self.assertLess(axes.get_legend().get_window_extent().y1, axes.get_window_extent().y0)
 
 
+class Cells(unittest.TestCase):
+    """Stresses and strains of a cell that is compressed, sheared and held."""
+    @classmethod
+    def setUpClass(cls):
+        (folder / "cell.toml").write_text(truth.CELL_SCENE)
+        mcdem("run", "cell.toml", "--out", "cell")
+        with h5py.File(folder / "cell/run.h5") as run:
+            cls.rows = run["observables/replica_00000"][:]
+        cls.p, cls.q = truth.invariants(cls.rows)
+
+    def tearDown(self):
+        plt.close("all")
+
+    def expect_line(self, name, x, y):
+        axes = getattr(figures, name)(folder / "cell")
+        line, = drawn.lines_of(axes, "#D55E00", "-")
+        np.testing.assert_allclose(line, (x, y), rtol=1e-6, atol=1e-9)
+        return axes
+
+    def test_paths(self):
+        self.expect_line("stress_path", self.p, self.q)
+        axes = self.expect_line("cell_coordination", self.rows["packing_fraction"], self.rows["coordination_number"])
+        self.assertEqual(axes.get_xlabel(), "packing fraction φ")
+
+    def test_times(self):
+        self.expect_line("pressure_time", self.rows["time"], self.p)
+        self.expect_line("shear_stress_time", self.rows["time"], self.q)
+
+    def test_every_figure_is_drawn(self):
+        names = {file.stem for file in (folder / "cell").glob("*.pdf")}
+        self.assertEqual(names, {"pressure_strain", "shear_stress_strain", "cell_coordination", "stress_path", "pressure_time",
+                                 "volume_time", "shear_stress_time", "shear_strain_time"})
+
+
 class Files(unittest.TestCase):
     def test_every_command_leaves_three_kinds(self):
         for made in ("run", "against"):

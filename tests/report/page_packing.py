@@ -103,13 +103,16 @@ def to_full_stroke(slider, scans):
 
 
 def check_slider(reader, run, first_replicas):
-    """From scan to scan and from setting to setting; ends at full stroke, where all classes of chains are there."""
+    """Opens at the strongest scan; from scan to scan and from setting to setting; ends at full stroke, where all classes of
+    chains are there."""
     slider, largest = reader.element(".packing input"), strongest(run, first_replicas)
     scans, classes = len(run["observables/replica_00000"]), set()
     assert slider.get_attribute("max") == str(scans - 1), "all scans of so small a run are shown"
-    classes |= set(check_packing(reader, run, 0, 0, largest))
-    reader.picture("packing_first.png", ".packing")
-    for key, scan in ((Keys.ARROW_RIGHT, 1), (Keys.END, scans - 1), (Keys.HOME, 0)):
+    opened = int(run["observables/replica_00000"]["wall_force"][:, 5, 2].argmax())
+    assert 0 < opened < scans and slider.get_attribute("value") == str(opened), (slider.get_attribute("value"), opened)
+    classes |= set(check_packing(reader, run, 0, opened, largest))
+    reader.picture("packing_opened.png", ".packing")
+    for key, scan in ((Keys.HOME, 0), (Keys.ARROW_RIGHT, 1), (Keys.END, scans - 1), (Keys.HOME, 0)):
         slider.send_keys(key)
         classes |= set(check_packing(reader, run, 0, scan, largest))
     to_full_stroke(slider, scans)

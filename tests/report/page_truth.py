@@ -6,6 +6,31 @@ import tomllib
 
 import numpy as np
 
+CELL_SCENE = """
+name = "cell"
+[container]
+shape = "cell"
+size_x = 0.08
+size_y = 0.08
+[packing]
+count = 70
+packing_fraction = 0.58
+[protocol]
+relax_time = 0.02
+stop_at_scans = false
+[[programme]]
+strain = 0.05
+rate = 2
+scans = 4
+[[programme]]
+shear_xz = 0.1
+rate = 2
+scans = 2
+[[programme]]
+stage = "hold"
+time = 0.01
+"""
+
 PLATE = 5  # the wall's number in result files
 WORDS = {"independent": "Independent contacts", "mc_dem": "MC-DEM"}
 PHASES = ("load", "unload")
@@ -188,3 +213,11 @@ def threshold_near(recordings, references, shown):
     least = min(rms_of_contacts(recordings, references, tau) for tau in np.append(0, forces))
     assert error[best] <= 1.02 * least + 1e-9, (shown, error[best], least)
     return best
+
+
+def invariants(rows):
+    """p and q [Pa]."""
+    stress = (rows["stress"] + rows["stress"].transpose(0, 2, 1)) / 2
+    p = np.trace(stress, axis1=1, axis2=2) / 3
+    deviator = stress - p[:, None, None] * np.eye(3)
+    return p, np.sqrt(1.5 * (deviator ** 2).sum(axis=(1, 2)))
