@@ -106,6 +106,50 @@ TEST_F(InterruptionTest, InterruptedSaysHowToGoOn) {
     }
 }
 
+/// Scenes of programmes, cut short, by name: a plate's holds and forces, a cell's strains.
+class ProgrammeInterruptionTest : public InterruptionTest, public testing::WithParamInterface<const char*> {
+protected:
+    std::vector<std::string> programme(const std::string& out, bool resume) const {
+        const bool cell = std::string(GetParam()) == "cell";
+        std::vector<std::string> words{"run",
+                                       fmt::format("{}/scenes/{}.toml", MCDEM_SOURCE_DIR, GetParam()),
+                                       "--out",
+                                       out,
+                                       "--no-figures",
+                                       "--set",
+                                       "protocol.relax_time=0.01"};
+        words.insert(words.end(), often.begin(), often.end());
+        for (const char* set : {cell ? "programme.1.strain=0.02" : "programme.1.strain=0.05",
+                                cell ? "programme.2.shear_xz=0.05" : "programme.2.time=0.02"})
+            words.insert(words.end(), {"--set", set});
+        if (!cell) words.insert(words.end(), {"--set", "programme.2.scan_at=[0.01,0.02]"});
+        if (!cell) words.insert(words.end(), {"--set", "programme.3.force=0.3"});
+        if (!cell) words.insert(words.end(), {"--set", "programme.4.time=0.02"});
+        if (resume) words.push_back("--resume");
+        return words;
+    }
+};
+
+TEST_P(ProgrammeInterruptionTest, KilledAndResumedGivesTheSameBits) {
+    expect_done(mcdem(programme("whole", false)));
+    int kills = 0;
+    for (const int launches : {200, 400, 600, 800}) {
+        Child child(folder_.path, programme("killed", kills > 0), held_after(launches));
+        while (child.is_running() && !fs::exists(held_file(child))) std::this_thread::sleep_for(100us);
+        if (!child.is_running()) break;
+        child.send(SIGKILL);
+        EXPECT_EQ(child.wait().signal, SIGKILL);
+        ++kills;
+    }
+    EXPECT_GT(kills, 1);
+    expect_done(mcdem(programme("killed", true)));
+    EXPECT_TRUE(result("killed") == result("whole"));
+    EXPECT_EQ(bytes_of_file(path("killed/plate.csv")), bytes_of_file(path("whole/plate.csv")));
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, ProgrammeInterruptionTest, testing::Values("hold", "cell"),
+                         [](const auto& about) { return std::string(about.param); });
+
 TEST_F(InterruptionTest, OneThreadOrTwoGiveTheSameBits) {
     expect_done(mcdem(run_words("one"), {"POCL_MAX_PTHREAD_COUNT=1"}));
     expect_done(mcdem(run_words("two"), {"POCL_MAX_PTHREAD_COUNT=2"}));

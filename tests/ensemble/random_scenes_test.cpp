@@ -7,7 +7,9 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "core/container.h"
 #include "core/sha256.h"
+#include "core/stress.h"
 #include "ensemble/make_packings.h"
 #include "ensemble/random_scene.h"
 #include "ensemble/recording_bits.h"
@@ -63,6 +65,21 @@ void expect_action_is_reaction(const Scan& scan, Precision precision) {
         EXPECT_LE((from_contacts[wall] - scan.wall_force[wall]).norm(), allowed) << "wall " << wall;
 }
 
+/// The stress of a cell is what its contacts say, and the forces through its faces are area times stress.
+void expect_stress_of_contacts(const Recording& recording, const Scan& scan, Precision precision) {
+    const Mat3 stress = packing_stress(recording.box, scan);
+    double size = 0;
+    for (const Contact& contact : scan.contacts) size += contact.force.norm();
+    const Box now = deformed(recording.box, scan.strain);
+    const double allowed = (precision == Precision::double_precision ? 1e-12 : 1e-5) * size * now.size_x /
+                           (now.size_x * now.size_y * now.height);
+    EXPECT_LE((stress - scan.stress).norm(), allowed);
+    const auto forces = face_forces(now, scan.stress);
+    for (int wall = 0; wall < wall_count; ++wall)
+        EXPECT_LE((forces[wall] - scan.wall_force[wall]).norm(), 1e-6 * forces[wall].norm())
+            << "face " << wall;
+}
+
 /// What all replicas tell of a scene that has been simulated whole. `more`: also in parts and alone.
 std::string check(Device& device, unsigned seed, bool more) {
     const std::string text = RandomScene(seed).text();
@@ -86,7 +103,11 @@ std::string check(Device& device, unsigned seed, bool more) {
         EXPECT_TRUE(together[r].failure || !together[r].scans.empty());
         for (const Scan& scan : together[r].scans) {
             expect_numbers(scan);
-            if (scene.replicas[r].effects.adhesion == 0) expect_action_is_reaction(scan, scene.precision);
+            if (scene.replicas[r].effects.adhesion != 0) continue;
+            if (is_cell(together[r].box))
+                expect_stress_of_contacts(together[r], scan, scene.precision);
+            else
+                expect_action_is_reaction(scan, scene.precision);
         }
     }
     EXPECT_TRUE(told_of(together[0]) == told_of(alone[0])) << "alone: " << together[0].label;

@@ -19,7 +19,11 @@ using testing::HasSubstr;
 
 class RunPartsTest : public testing::Test {
 protected:
-    RunPartsTest() {
+    RunPartsTest() { whole_again(); }
+
+    /// The run of the scene as it is now, by one program.
+    void whole_again() {
+        fs::remove_all(folder("whole"));
         RunOptions options;
         options.folder = folder("whole");
         options.program = "test";
@@ -109,6 +113,84 @@ TEST_F(RunPartsTest, GiveTheBytesOfARunByOneProgramWhateverTheirSize) {
     EXPECT_TRUE(parts_of("parts of 4").compute(device_, 0));
     expect_like_whole("parts of 4");
 }
+
+/// Programmes of every container in one run, with species.
+class ProgrammePartsTest : public RunPartsTest, public testing::WithParamInterface<const char*> {
+protected:
+    ProgrammePartsTest() {
+        scene_ = parse_scene(std::string(R"(name = "programme"
+[packing]
+count = 90
+packing_fraction = 0.5
+[protocol]
+settle_time = 0.005
+relax_time = 0.005
+[[species]]
+name = "soft"
+[[species]]
+name = "stiff"
+youngs_modulus = 5e4
+[batch]
+replicas = 2
+[batch.vary]
+"contact.model" = ["independent", "mc_dem"]
+)") + GetParam(),
+                             "programme.toml", {});
+        whole_again();
+    }
+};
+
+const char* const plate_programme = R"([container]
+shape = "cylinder"
+radius = 0.045
+[plate]
+start = 0.16
+end = 0.11
+speed = 0.5
+[[programme]]
+position = 0.14
+scans = 2
+[[programme]]
+stage = "hold"
+time = 0.004
+scans = 2
+[[programme]]
+stage = "cycle"
+position = 0.138
+back = 0.14
+cycles = 2
+growth = 0.5
+)";
+const char* const cell_programme = R"([container]
+shape = "cell"
+size_x = 0.095
+size_y = 0.095
+[[programme]]
+strain = 0.02
+rate = 2
+scans = 2
+[[programme]]
+shear_xz = 0.05
+rate = 2
+[[programme]]
+stage = "hold"
+time = 0.004
+)";
+
+TEST_P(ProgrammePartsTest, InPartsAndInterruptedGiveTheBytesOfARunByOneProgram) {
+    for (const std::size_t size : {1, 3}) {
+        const auto name = "parts of " + std::to_string(size);
+        finish(name, size);
+        expect_like_whole(name);
+    }
+    interrupt("interrupted", 0, 2);
+    ASSERT_TRUE(fs::exists(work_folder("interrupted") / "checkpoint.h5"));
+    finish("interrupted");
+    expect_like_whole("interrupted");
+}
+
+INSTANTIATE_TEST_SUITE_P(Containers, ProgrammePartsTest, testing::Values(plate_programme, cell_programme),
+                         [](const auto& about) { return about.index == 0 ? "Cylinder" : "Cell"; });
 
 TEST_F(RunPartsTest, AreCutForAsManyWorkersAsAreKnown) {
     RunOptions options;
