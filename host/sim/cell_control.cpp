@@ -130,6 +130,15 @@ std::size_t CellControl::farthest(const State& state, const SetStress& set) {
     return farthest;
 }
 
+bool CellControl::is_possible(const State& state) {
+    bool possible = std::isfinite(state.drive);
+    for (std::size_t k = 0; k < state.begin.size(); ++k)
+        possible &= std::isfinite(state.begin[k]) && (k >= 3 || state.begin[k] < 1);
+    for (const Direction& direction : state.direction)
+        possible &= std::isfinite(direction.strain) && direction.strain < 1;
+    return possible;
+}
+
 std::optional<std::size_t> CellControl::stuck(const State& state, const SetStress& set) const {
     std::optional<std::size_t> found;
     for_each_set(set, [&](std::size_t axis) {

@@ -47,6 +47,8 @@ public:
     static double change(const State& state, const SetStress& target);
     /// The direction whose stress is farthest from the one set.
     static std::size_t farthest(const State& state, const SetStress& set);
+    /// Whether a checkpoint may say so: no length is lost.
+    static bool is_possible(const State& state);
     /// A direction that would have to become shorter, or longer, than the cell may be.
     std::optional<std::size_t> stuck(const State& state, const SetStress& set) const;
 

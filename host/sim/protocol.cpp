@@ -323,7 +323,7 @@ bool ProtocolRunner::is_possible(const ProtocolState& state) const {
     return state.step >= 0 && state.stage_step >= 0 && stage >= 0 &&
            stage <= static_cast<int>(Stage::finished) && state.cycle >= 0 && (phase == 0 || phase == 1) &&
            state.level >= 0 && state.level <= scans && state.frame >= 0 && state.settled_intervals >= 0 &&
-           state.reached_intervals >= 0;
+           state.reached_intervals >= 0 && CellControl::is_possible(state.cell);
 }
 
 }  // namespace mcdem::sim

@@ -106,8 +106,7 @@ void ProtocolRunner::give_up(std::size_t direction, const std::string& why) {
     const auto& there = state_.cell.direction[direction];
     hindrance_ = fmt::format(
         "stage {} of the programme: the stress {:.6g} Pa along {} cannot be reached: {} at a strain of "
-        "{:.6g}, "
-        "and the stress {:.6g} Pa (set stresses that the packing can bear, or take more grains)",
+        "{:.6g}, and the stress {:.6g} Pa (set stresses that the packing can bear, or take more grains)",
         leg().stage + 1, stress()[direction], "xyz"[direction], why, there.strain, there.control.force);
     stop();
 }

@@ -139,5 +139,46 @@ TEST(RandomCellProgrammes, EndAndScanWhereAsked) {
     EXPECT_GT(ends, by_stress);
 }
 
+/// A cell with one move, to a pressure of 100 Pa.
+ProtocolRunner to_pressure() {
+    Replica replica;
+    replica.box = {size, size, ContainerShape::cell, size};
+    replica.plate = {size, 0, 0.1};
+    replica.programme.resize(1);
+    replica.programme[0].pressure = 100;
+    replica.programme[0].rate = 1;
+    return ProtocolRunner(replica, time_step, scale);
+}
+
+TEST(StressOfACell, ThatNeverComesEndsTheProgramme) {
+    for (const double stress : {0.0, 150.0}) {
+        ProtocolRunner runner = to_pressure();
+        for (int rounds = 0; !runner.finished(); ++rounds) {
+            ASSERT_LT(rounds, 400000);
+            const StepInterval interval = runner.next([](const StepInterval&) { return 60; });
+            IntervalResult result;
+            result.steps = interval.steps;
+            result.stress = stress * Mat3::Identity();
+            EXPECT_FALSE(runner.made(result));
+        }
+        const char* why = stress == 0 ? "grains would meet their own images at a strain of 0.377778"
+                                      : "s it is still away from it at a strain of -";
+        EXPECT_NE(runner.hindrance().find(why), std::string::npos) << runner.hindrance();
+        EXPECT_NE(runner.hindrance().find("the stress 100 Pa along "), std::string::npos)
+            << runner.hindrance();
+    }
+}
+
+TEST(StressOfACell, OfADamagedCheckpointIsRefused) {
+    const ProtocolRunner runner = to_pressure();
+    ProtocolState state = runner.state();
+    EXPECT_TRUE(runner.is_possible(state));
+    state.cell.direction[1].strain = 1;
+    EXPECT_FALSE(runner.is_possible(state));
+    state = runner.state();
+    state.cell.begin[2] = NAN;
+    EXPECT_FALSE(runner.is_possible(state));
+}
+
 }  // namespace
 }  // namespace mcdem
