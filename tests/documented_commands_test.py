@@ -36,7 +36,8 @@ def working_folder(source, folder):
 
 
 def failures(source, program, document, folder):
-    environment = dict(os.environ, PATH=f"{program}:{os.environ['PATH']}", MPLCONFIGDIR=str(folder))
+    # Debian's modules are those of its own Python.
+    environment = dict(os.environ, PATH=f"{program}:/usr/bin:{os.environ['PATH']}", MPLCONFIGDIR=str(folder))
     for command in commands(document.read_text()):
         where = document.relative_to(source)
         if is_left_out(command):

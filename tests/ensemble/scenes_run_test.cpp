@@ -22,6 +22,7 @@ Scene beginning_of(const std::string& name) {
             replica.plate.end = std::max(replica.plate.end, replica.plate.start - 1e-3);
         replica.protocol.cycles = replica.protocol.scans_per_stroke = 1;
         replica.protocol.settle_time = replica.protocol.relax_time = 1e-3;
+        if (replica.protocol.rate_tolerance > 0) replica.protocol.rate_tolerance = 0.1;
         for (Stage& stage : replica.programme) stage.cycles = 1, stage.times = 2;
     }
     return scene;
