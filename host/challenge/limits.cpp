@@ -17,6 +17,7 @@ const std::vector<Choice> choices{
     {"reduction",    &Limits::reduction,    {0.5, 0.6, 0.7, 0.8}},
     {"over_placebo", &Limits::over_placebo, {0.1, 0.2, 0.4}},
     {"misfit",       &Limits::misfit,       {1e-4, 1e-3, 3e-3, 0.01, 0.03, 0.1}},
+    {"remainder",    &Limits::remainder,    {0.05, 0.1, 0.15, 0.2, 1}},
     {"pair_misfit",  &Limits::pair_misfit,  {0.01, 0.03, 0.05, 0.1, 0.2}},
     {"pair_remainder", &Limits::pair_remainder, {0, 0.25, 0.5, 0.7}},
     {"group",        &Limits::group,        {1, 2, 3, 5}},

@@ -15,7 +15,7 @@ struct Instrument {
     double position_bias = 0;    ///< lengths between centres are read (1 + position_bias) times too large
     double strain_offset = 0;    ///< plate positions are read too high by this [m]
     double gauge_drift = 0;      ///< after the last cycle the top force is read (1 + gauge_drift) times too
-                             ///< large; it grows with the plate's path
+                                 ///< large; it grows with the plate's path
 };
 
 /// `truth` as the instrument reads it, in the form in which read_experiment would give it: normal noise on

@@ -203,7 +203,33 @@ TEST(Decision, UnknownWhereAPlaceboDoesNearlyAsWell) {
     EXPECT_EQ(decide(f, limits).verdict, Verdict::effect);
 }
 
-TEST(Decision, ARemainderIsStatedAndRefusesNothing) {
+// What takes most of a gap away and leaves a clear part of it is not what is behind it.
+TEST(Decision, UnknownWhereMoreThanALittleRemainsThatIsNoNoise) {
+    Findings f = clear_case();
+    const Limits limits;
+    f.proposals[0].reduction = 1 - 1.01 * limits.remainder;
+    f.proposals[0].misfit_p = 0.99 * limits.misfit;
+    EXPECT_EQ(decide(f, limits).verdict, Verdict::unknown_effect);
+    EXPECT_NEAR(all_confidence(decide(f, limits)), limits.right_below, 1e-12);
+    EXPECT_EQ(explanation_of(f, decide(f, limits), limits)->needed, 1 - limits.remainder);
+    f.proposals[0].misfit_p = 1.01 * limits.misfit;
+    EXPECT_EQ(decide(f, limits).verdict, Verdict::effect);
+    EXPECT_EQ(explanation_of(f, decide(f, limits), limits)->needed, limits.reduction);
+    f.proposals[0].misfit_p = 0;
+    f.proposals[0].reduction = 1 - 0.99 * limits.remainder;
+    EXPECT_EQ(decide(f, limits).verdict, Verdict::effect);
+}
+
+// A setting of the numerics is refined first, whatever it leaves.
+TEST(Decision, NotConvergedWhateverNumericsLeave) {
+    Findings f = clear_case();
+    f.proposals[0].reduction = 0.7;
+    f.proposals[0].misfit_p = 1e-9;
+    f.numerics = {1};
+    EXPECT_EQ(decide(f, {}).verdict, Verdict::not_converged);
+}
+
+TEST(Decision, ASmallRemainderIsStatedAndRefusesNothing) {
     Findings f = clear_case();
     const Limits limits;
     f.proposals[0].confirmed_reduction = 0.97;
@@ -216,7 +242,7 @@ TEST(Decision, ARemainderIsStatedAndRefusesNothing) {
     EXPECT_TRUE(e.leaves_more_than_noise);
     EXPECT_TRUE(e.simulated);
     EXPECT_EQ(e.placebo, 0.1);
-    EXPECT_EQ(e.needed, limits.reduction);
+    EXPECT_EQ(e.needed, 1 - limits.remainder);
     f.p_value = 1;
     EXPECT_FALSE(explanation_of(f, decide(f, limits), limits)) << "no gap, nothing to explain";
 }
@@ -232,6 +258,9 @@ TEST(Decision, APairWhereOneIsNotEnough) {
     EXPECT_EQ(d.proposal, 2);
     EXPECT_THAT(d.group, ElementsAre(1, 3));
     EXPECT_THAT(contenders(f, limits), ElementsAre(0, 2));
+    EXPECT_EQ(d.confidence[1], limits.right_above) << "both are probable";
+    EXPECT_EQ(d.confidence[3], limits.right_above);
+    EXPECT_EQ(d.confidence[0], 0);
 
     Findings single_is_enough = f;
     single_is_enough.proposals[0].misfit_p = 0.5;

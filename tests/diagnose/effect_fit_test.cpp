@@ -49,6 +49,21 @@ TEST(EffectFit, ErrorIsTheScatterOfAmplitudes) {
     EXPECT_NEAR(square, 1, 0.4);  // 400 draws: 0.07; the space knows the covariance from 40 rows: some 0.2
 }
 
+// Pairs that differ by a tenth in how strongly they show the effect, and by less than chaos does.
+TEST(DrawError, IsWhatPairsDifferBy) {
+    Setting s(4);
+    Signature signature = s.world.signature("polydispersity", s.world.pattern(0.5));
+    const GapSpace space = s.space();
+    signature.reach = 1e3;  // chaos is nothing to it
+    const Eigen::Vector4d part(0.9, 1.1, 1.1, 0.9);
+    signature.slopes = part * signature.linear.transpose();
+    EXPECT_NEAR(draw_error(space, {&signature, 0, 8}, -3), 3 * std::sqrt(0.04 / 3 * (1 + 1.0 / 4)), 1e-4);
+    signature.reach = 1e-3;
+    EXPECT_EQ(draw_error(space, {&signature, 0, 8}, 3), 0);
+    signature.slopes.resize(0, signature.linear.size());
+    EXPECT_EQ(draw_error(space, {&signature, 0, 8}, 3), 0);
+}
+
 TEST(EffectFit, CurvedSignature) {
     Setting s(3);
     Signature signature = s.world.signature("stiffening", s.world.pattern(1));

@@ -64,11 +64,11 @@ void expect_same(const std::vector<Signature>& a, const std::vector<Signature>& 
     for (std::size_t k = 0; k < a.size(); ++k) {
         EXPECT_EQ(a[k].name, b[k].name);
         EXPECT_EQ(a[k].reach, b[k].reach);
-        EXPECT_EQ(a[k].pairs, b[k].pairs);
+        EXPECT_EQ(a[k].pairs(), b[k].pairs());
         expect_same(a[k].linear, b[k].linear);
         expect_same(a[k].curvature, b[k].curvature);
         expect_same(a[k].variance, b[k].variance);
-        expect_same(a[k].spread, b[k].spread);
+        expect_same(a[k].spread(), b[k].spread());
     }
 }
 
@@ -140,13 +140,18 @@ TEST_F(LibraryFile, OfOtherObservables) {
 }
 
 TEST_F(LibraryFile, WithASignatureOfAnotherLength) {
-    for (const char* part : {"linear", "curvature", "variance", "spread"}) {
+    for (const char* part : {"linear", "curvature", "variance"}) {
         replace(library_text(library));
         auto json = content();
         json["effects"][0][part].erase(0);
         replace(json.dump());
         expect_refused("signature adhesion is of another length");
     }
+    replace(library_text(library));
+    auto json = content();
+    json["effects"][0]["slopes"][0].erase(0);
+    replace(json.dump());
+    expect_refused("it has other observables than this program");
 }
 
 TEST_F(LibraryFile, WithoutReplicates) {

@@ -151,7 +151,10 @@ TEST(Confirmation, NuisancesCostTheirPrior) {
 // counts.
 TEST(Confirmation, ScatterThatTheDataDoNotShowCosts) {
     Case c({});
-    c.evidence.library.effects[1].spread.setConstant(1);
+    Signature& scattering = c.evidence.library.effects[1];
+    scattering.slopes =
+        std::sqrt(0.5) * Eigen::Vector2d(1, -1) * Eigen::RowVectorXd::Ones(scattering.linear.size());
+    ASSERT_NEAR(scattering.spread()[0], 1, 1e-12);
     Proposal p;
     p.candidates = {1};
     p.amplitudes = {5};

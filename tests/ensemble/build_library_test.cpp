@@ -55,7 +55,7 @@ TEST(BuildLibrary, BaselineEffectsAndNuisances) {
     EXPECT_EQ(library.effects[0].name, "force_bias");
     EXPECT_EQ(library.effects[1].name, "plate_tilt");
     EXPECT_EQ(library.effects[1].reach, 0.015);
-    EXPECT_EQ(library.effects[1].pairs, 2);
+    EXPECT_EQ(library.effects[1].pairs(), 2);
     ASSERT_EQ(library.nuisances.size(), plan.nuisances.size());
     EXPECT_EQ(library.nuisances[0].name, "modulus");
     EXPECT_EQ(library.nuisances[0].reach, plan.nuisances[0].sigma);
@@ -91,7 +91,7 @@ TEST(BuildLibrary, SeveralPackings) {
     plan.candidates = {"force_bias"};
     const Library library = build_library(device, small.question, plan, small.store, {});
     EXPECT_EQ(library.packing, (std::vector{0, 0, 1, 1}));
-    EXPECT_EQ(library.effects[0].pairs, 2);  // one of each packing
+    EXPECT_EQ(library.effects[0].pairs(), 2);  // one of each packing
     EXPECT_TRUE(library.nuisances.empty());
     EXPECT_FALSE(same(library.baseline.row(0), library.baseline.row(2)));
 }

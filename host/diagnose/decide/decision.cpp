@@ -49,6 +49,11 @@ bool takes_the_gap_away(const Proposal& proposal, const Findings& findings, cons
     return proposal.best_reduction() >= needed_reduction(findings, limits);
 }
 
+/// More than noise, and more than a little: something else is behind the gap, or in its place.
+bool leaves_too_much(const Proposal& proposal, const Limits& limits) {
+    return proposal.best_misfit() < limits.misfit && 1 - proposal.best_reduction() > limits.remainder;
+}
+
 /// Two instead of one: where one leaves more than noise, and two leave noise or little of what one does.
 bool is_better(const Proposal& pair, const Proposal& single, const Limits& limits) {
     return single.best_misfit() < limits.misfit &&
@@ -58,6 +63,7 @@ bool is_better(const Proposal& pair, const Proposal& single, const Limits& limit
 
 /// Probability that an explanation is right, by the part of the gap that it takes away.
 double trust(const Proposal& proposal, const Findings& findings, const Limits& limits) {
+    if (leaves_too_much(proposal, limits)) return limits.right_below;
     const double low = needed_reduction(findings, limits) - limits.reduction_error;
     const double high = std::max(limits.certain, low + 2 * limits.reduction_error);
     const double above = std::clamp((proposal.best_reduction() - low) / (high - low), 0.0, 1.0);
@@ -116,7 +122,7 @@ bool suspected(Decision& decision, const Findings& findings, Verdict verdict, Is
     return true;
 }
 
-void name_it(Decision& decision, const Findings& findings) {
+void name_it(Decision& decision, const Findings& findings, const Limits& limits) {
     const bool pair = findings.proposals[static_cast<std::size_t>(decision.proposal)].candidates.size() == 2;
     if (suspected(decision, findings, Verdict::not_converged,
                   [&](std::size_t c) { return findings.is_numerical(c); }))
@@ -124,7 +130,10 @@ void name_it(Decision& decision, const Findings& findings) {
     if (!pair && suspected(decision, findings, Verdict::calibration_suspect,
                            [&](std::size_t c) { return findings.is_nuisance(c); }))
         return;
-    decision.verdict = !pair && decision.group.size() > 1 ? Verdict::group : Verdict::effect;
+    if (leaves_too_much(findings.proposals[static_cast<std::size_t>(decision.proposal)], limits))
+        decision.verdict = Verdict::unknown_effect;
+    else
+        decision.verdict = !pair && decision.group.size() > 1 ? Verdict::group : Verdict::effect;
 }
 
 /// Verdict, proposal and group.
@@ -140,7 +149,7 @@ Decision chosen(const Findings& findings, int single, std::vector<std::size_t> g
         if (takes_the_gap_away(two, findings, limits) && is_better(two, leader, limits)) {
             decision.proposal = pair;
             decision.group = two.candidates;
-            name_it(decision, findings);
+            name_it(decision, findings, limits);
             return decision;
         }
     }
@@ -149,7 +158,7 @@ Decision chosen(const Findings& findings, int single, std::vector<std::size_t> g
         return decision;
     }
     keep_those_that_do(decision.group, findings, limits);
-    name_it(decision, findings);
+    name_it(decision, findings, limits);
     return decision;
 }
 
@@ -163,8 +172,14 @@ Decision decide(const Findings& findings, const Limits& limits) {
     const double best = leader.best_gain(), margin = std::max(limits.group, limits.group_share * best);
     Decision decision = chosen(findings, single, group_of(leader.candidates[0], gains, best, margin), limits);
     const Proposal& decided = findings.proposals[static_cast<std::size_t>(decision.proposal)];
+    const double right = trust(decided, findings, limits);
+    if (decided.candidates.size() == 2) {  // both of them: what one alone gains is not compared
+        decision.confidence.assign(findings.gain.size(), 0.0);
+        for (const std::size_t c : decided.candidates) decision.confidence[c] = right;
+        return decision;
+    }
     decision.confidence = shares(gains, best, margin, limits);
-    for (double& p : decision.confidence) p *= trust(decided, findings, limits);
+    for (double& p : decision.confidence) p *= right;
     return decision;
 }
 
@@ -182,13 +197,18 @@ std::optional<Explanation> explanation_of(const Findings& findings, const Decisi
                                           const Limits& limits) {
     if (decision.verdict == Verdict::no_gap || decision.proposal < 0) return std::nullopt;
     const Proposal& decided = findings.proposals[static_cast<std::size_t>(decision.proposal)];
-    return Explanation{.reduction = decided.best_reduction(),
-                       .simulated = decided.confirmed_reduction.has_value(),
-                       .held_out = findings.held_out,
-                       .placebo = findings.placebo,
-                       .needed = needed_reduction(findings, limits),
-                       .remainder_p = decided.best_misfit(),
-                       .leaves_more_than_noise = decided.best_misfit() < limits.misfit};
+    const bool more_than_noise = decided.best_misfit() < limits.misfit;
+    const bool suspect =
+        decision.verdict == Verdict::not_converged || decision.verdict == Verdict::calibration_suspect;
+    const double needed = needed_reduction(findings, limits);
+    return Explanation{
+        .reduction = decided.best_reduction(),
+        .simulated = decided.confirmed_reduction.has_value(),
+        .held_out = findings.held_out,
+        .placebo = findings.placebo,
+        .needed = more_than_noise && !suspect ? std::max(needed, 1 - limits.remainder) : needed,
+        .remainder_p = decided.best_misfit(),
+        .leaves_more_than_noise = more_than_noise};
 }
 
 }  // namespace mcdem::diagnose

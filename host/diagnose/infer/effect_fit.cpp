@@ -45,6 +45,20 @@ private:
 
 }  // namespace
 
+double draw_error(const GapSpace& space, const Candidate& candidate, double amplitude) {
+    const Signature& signature = *candidate.signature;
+    const int pairs = signature.pairs();
+    const Eigen::VectorXd slope = space.whiten(signature.slope(amplitude));
+    const double information = slope.squaredNorm();
+    if (pairs < 2 || !(information > 1e-300)) return 0;
+    Eigen::VectorXd of_pair(pairs);  // the amplitude that stands for 1 in the mean
+    for (int p = 0; p < pairs; ++p)
+        of_pair[p] = slope.dot(space.whiten(signature.slopes.row(p))) / information;
+    const double variance = (of_pair.array() - of_pair.mean()).square().sum() / (pairs - 1);
+    const double chaos = 2 / (information * signature.reach * signature.reach);
+    return std::abs(amplitude) * std::sqrt(std::max(0.0, variance - chaos) * (1 + 1.0 / pairs));
+}
+
 EffectFit fit_effect(const GapSpace& space, const Candidate& candidate, const Eigen::VectorXd& gap) {
     const Misfit misfit(space, *candidate.signature, gap);
     const double step = (candidate.high - candidate.low) / coarse_steps;

@@ -18,6 +18,10 @@ struct EffectFit {
     bool at_bound = false;
 };
 
+/// One sigma of an amplitude by what packings differ in the effect and what its random draws do (the slopes
+/// of the pairs, as the fit weighs cells), without the scatter that chaos makes in them.
+double draw_error(const GapSpace& space, const Candidate& candidate, double amplitude);
+
 /// `gap`: observed less model, all cells.
 EffectFit fit_effect(const GapSpace& space, const Candidate& candidate, const Eigen::VectorXd& gap);
 

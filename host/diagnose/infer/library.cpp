@@ -16,7 +16,24 @@ namespace mcdem::inline diagnose {
 namespace {
 
 using nlohmann::json;
-constexpr int library_format = 2;
+constexpr int library_format = 3;
+
+json rows_json(const Eigen::MatrixXd& rows) {
+    json list = json::array();
+    for (const auto& row : rows.rowwise()) list.push_back(numbers_json(row));
+    return list;
+}
+
+Eigen::MatrixXd rows_of(const json& list, Eigen::Index cells) {
+    Eigen::MatrixXd rows(static_cast<Eigen::Index>(list.size()), cells);
+    for (std::size_t r = 0; r < list.size(); ++r) {
+        const Eigen::VectorXd row = numbers_of(list[r]);
+        if (row.size() != cells)
+            throw json::other_error::create(501, "it has other observables than this program", &list);
+        rows.row(static_cast<Eigen::Index>(r)) = row;
+    }
+    return rows;
+}
 
 json signature_json(const Signature& s) {
     return {{"name", s.name},
@@ -24,8 +41,7 @@ json signature_json(const Signature& s) {
             {"linear", numbers_json(s.linear)},
             {"curvature", numbers_json(s.curvature)},
             {"variance", numbers_json(s.variance)},
-            {"spread", numbers_json(s.spread)},
-            {"pairs", s.pairs}};
+            {"slopes", rows_json(s.slopes)}};
 }
 
 Signature signature_of(const json& j, Eigen::Index cells) {
@@ -34,10 +50,8 @@ Signature signature_of(const json& j, Eigen::Index cells) {
                 numbers_of(j.at("linear")),
                 numbers_of(j.at("curvature")),
                 numbers_of(j.at("variance")),
-                numbers_of(j.at("spread")),
-                j.at("pairs")};
-    if (s.linear.size() != cells || s.curvature.size() != cells || s.variance.size() != cells ||
-        s.spread.size() != cells)
+                rows_of(j.at("slopes"), cells)};
+    if (s.linear.size() != cells || s.curvature.size() != cells || s.variance.size() != cells)
         throw json::other_error::create(501, "signature " + s.name + " is of another length than the cells",
                                         &j);
     return s;
@@ -63,14 +77,9 @@ Library library_of(const json& j) {
     library.packing = j.at("packing").get<std::vector<int>>();
     if (library.packing.empty()) throw json::other_error::create(501, "it has no replicates", &j);
     const auto cells = static_cast<Eigen::Index>(cells_of(library.grid).size());
-    library.baseline.resize(static_cast<Eigen::Index>(library.packing.size()), cells);
-    const json& rows = j.at("baseline");
-    for (std::size_t r = 0; r < library.packing.size(); ++r) {
-        const Eigen::VectorXd row = numbers_of(rows.at(r));
-        if (row.size() != cells)
-            throw json::other_error::create(501, "it has other observables than this program", &j);
-        library.baseline.row(static_cast<Eigen::Index>(r)) = row;
-    }
+    library.baseline = rows_of(j.at("baseline"), cells);
+    if (library.baseline.rows() != static_cast<Eigen::Index>(library.packing.size()))
+        throw json::other_error::create(501, "it has another number of replicates than packings", &j);
     for (const json& s : j.at("effects")) library.effects.push_back(signature_of(s, cells));
     for (const json& s : j.at("nuisances")) library.nuisances.push_back(signature_of(s, cells));
     library.provenance = j.at("provenance").get<std::map<std::string, std::string>>();
@@ -108,9 +117,7 @@ Eigen::MatrixXd scatter(const Library& library) {
 }
 
 std::string library_text(const Library& library) {
-    json rows = json::array(), effects = json::array(), nuisances = json::array();
-    for (Eigen::Index r = 0; r < library.baseline.rows(); ++r)
-        rows.push_back(numbers_json(library.baseline.row(r)));
+    json effects = json::array(), nuisances = json::array();
     for (const Signature& s : library.effects) effects.push_back(signature_json(s));
     for (const Signature& s : library.nuisances) nuisances.push_back(signature_json(s));
     json text{{"format", library_format},
@@ -123,7 +130,7 @@ std::string library_text(const Library& library) {
               {"packing", library.packing},
               {"effects", effects},
               {"nuisances", nuisances},
-              {"baseline", rows}};
+              {"baseline", rows_json(library.baseline)}};
     text["sha256"] = digest_of_content(text);
     return text.dump();
 }

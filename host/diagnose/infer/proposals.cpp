@@ -38,7 +38,7 @@ Eigen::VectorXd effect_scatter(const GapData& data, const Proposal& proposal) {
     for (std::size_t k = 0; k < proposal.candidates.size(); ++k) {
         const Signature& signature = *data.candidates[proposal.candidates[k]].signature;
         const double a = proposal.amplitudes[k], part = std::min(1.0, std::abs(a) / signature.reach);
-        extra += (a * a * signature.spread - part * part * chaos).cwiseMax(0);
+        extra += (a * a * signature.spread() - part * part * chaos).cwiseMax(0);
     }
     return extra;
 }
@@ -72,7 +72,8 @@ Proposal fit_pair(const GapSpace& space, const GapData& data, const Eigen::Vecto
             const EffectFit fit =
                 fit_effect(space, data.candidates[pair.candidates[k]], without(gap, data, pair, k));
             pair.amplitudes[k] = fit.amplitude;
-            pair.errors[k] = fit.error;
+            pair.errors[k] =
+                std::hypot(fit.error, draw_error(space, data.candidates[pair.candidates[k]], fit.amplitude));
         }
     pair.gain = 0.5 * (omnibus - space.whiten(without(gap, data, pair)).squaredNorm());
     return pair;
@@ -126,7 +127,7 @@ std::vector<Proposal> propose(const GapSpace& space, const GapData& data, const 
         Proposal& proposal = proposals.emplace_back();
         proposal.candidates = {c};
         proposal.amplitudes = {fit.amplitude};
-        proposal.errors = {fit.error};
+        proposal.errors = {std::hypot(fit.error, draw_error(space, data.candidates[c], fit.amplitude))};
         proposal.gain = fit.score;
     }
     if (proposals.empty()) return proposals;

@@ -43,6 +43,11 @@ Eigen::VectorXd Signature::slope(double amplitude) const {
     return linear + 2 * std::clamp(amplitude, -reach, reach) * curvature;
 }
 
+Eigen::VectorXd Signature::spread() const {
+    if (pairs() == 0) return Eigen::VectorXd::Zero(linear.size());
+    return moments(slopes).variance * pairs();
+}
+
 namespace {
 
 /// Through the pairs of one amplitude.
@@ -54,8 +59,7 @@ Signature straight_signature(const std::string& name, double amplitude, const Ei
     s.linear = kept(line) * line.mean;
     s.curvature = Eigen::VectorXd::Zero(at.cols());
     s.variance = line.variance;
-    s.spread = line.variance * static_cast<double>(at.rows());
-    s.pairs = static_cast<int>(at.rows());
+    s.slopes = at / amplitude;
     return s;
 }
 
@@ -76,8 +80,7 @@ Signature parabola_signature(const std::string& name, double first, double secon
     s.linear = seen * linear.mean;
     s.curvature = bent * curvature.mean;
     s.variance = linear.variance;
-    s.spread = moments(at_second / second).variance * static_cast<double>(at_second.rows());
-    s.pairs = static_cast<int>(at_first.rows());
+    s.slopes = at_second / second;
     return s;
 }
 
@@ -88,7 +91,7 @@ Signature continued_from(const Signature& signature, double done) {
     Signature s = signature;
     s.linear = left * signature.slope(done);
     s.variance *= left * left;
-    s.spread *= left * left;
+    s.slopes *= left;
     if (done < signature.reach) {
         s.curvature *= left * left;
         s.reach = (signature.reach - done) / left;
@@ -112,7 +115,7 @@ Signature learn_signature(const std::string& name, double first, double second,
     if (holds_first.size() >= needed)
         return straight_signature(name, first, at_first(holds_first, Eigen::all));
     const Eigen::VectorXd none = Eigen::VectorXd::Constant(at_first.cols(), not_available);
-    return {name, std::max(std::abs(first), std::abs(second)), none, none, none, none, 0};
+    return {name, std::max(std::abs(first), std::abs(second)), none, none, none, {}};
 }
 
 }  // namespace mcdem::diagnose

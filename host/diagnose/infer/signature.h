@@ -13,12 +13,14 @@ struct Signature {
     Eigen::VectorXd linear;     ///< per unit amplitude
     Eigen::VectorXd curvature;  ///< per unit amplitude squared
     Eigen::VectorXd variance;   ///< of `linear`, from the scatter over pairs
-    Eigen::VectorXd spread;     ///< variance over pairs at the second amplitude, over its square: how much
-                                ///< packings (and random draws of the effect) differ in it, chaos included
-    int pairs = 0;
+    Eigen::MatrixXd slopes;     ///< row: pair; the difference at the second amplitude, over it
 
     Eigen::VectorXd at(double amplitude) const;
     Eigen::VectorXd slope(double amplitude) const;  ///< d mu / d a
+    int pairs() const { return static_cast<int>(slopes.rows()); }
+    /// Variance over pairs of `slopes`: how much packings (and random draws of the effect) differ in it,
+    /// chaos included.
+    Eigen::VectorXd spread() const;
 };
 
 /// The signature of a part `b` of what is left of a setting once a part `done` was taken off it: of the
