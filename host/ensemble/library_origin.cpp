@@ -145,7 +145,7 @@ double load(const Grid& grid, const Eigen::MatrixXd& baseline) {
 
 void expect_alike_loads(const Library& library, const Eigen::MatrixXd& baseline,
                         const std::filesystem::path& file) {
-    constexpr double alike = 1.35;  // packings of one kind scatter by a twentieth
+    constexpr double alike = 1.6;  // packings of one kind, with grains 2 % larger, carry 1.5 times as much
     const double times = load(library.grid, baseline) / load(library.grid, library.baseline);
     if (!(std::max(times, 1 / times) > alike)) return;
     throw InputError(
