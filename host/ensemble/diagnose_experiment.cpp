@@ -9,6 +9,7 @@
 #include <memory>
 #include <numeric>
 
+#include "core/atomic_file.h"
 #include "core/errors.h"
 #include "ensemble/library_origin.h"
 #include "ensemble/paper_metrics.h"
@@ -90,6 +91,7 @@ private:
     Evidence gather() {
         Evidence evidence;
         evidence.seed = options_.seed;
+        if (options_.library) remove_temporaries_of(*options_.library);  // of a diagnosis that was cut short
         const bool ready = options_.library && std::filesystem::exists(*options_.library);
         if (ready) {  // before any work
             evidence.library = read_library(*options_.library);

@@ -149,6 +149,19 @@ TEST_F(DiagnoseTest, ACandidateWhoseRunsFailCostsItselfAtMost) {
     EXPECT_GT(told["cells"].size(), 100u);
 }
 
+// Cut short after the library was put in place, before its other name was gone.
+TEST_F(DiagnoseTest, WhatACutLeavesBesideALibraryGoesWithTheNext) {
+    experiment({});
+    const Words options{"--replicates",    "8", "--pairs",      "2",       "--library", "library.json",
+                        "--confirmations", "0", "--candidates", "friction"};
+    const auto first = diagnosis(options);
+    const auto left = path("library.json.0123456789abcdef.tmp");
+    std::filesystem::create_hard_link(path("library.json"), left);
+    EXPECT_EQ(diagnosis(options)["verdict"], first["verdict"]);
+    EXPECT_FALSE(std::filesystem::exists(left));
+    EXPECT_TRUE(std::filesystem::exists(path("library.json")));
+}
+
 TEST_F(DiagnoseTest, WithItsLibraryInPartsIsTheSame) {
     experiment({"grains.friction=0.3"});
     const Words options{"--replicates",    "8", "--pairs",      "2",
