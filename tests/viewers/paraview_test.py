@@ -20,8 +20,10 @@ exported = Exported(program, source, "vtk")
 picture = more[0] if more else str(exported.folder / "paraview.png")
 replica = sorted(exported.view.glob("replica_*"))[-1]
 number = replica.name[:len("replica_00000")]
-done = subprocess.run(["xvfb-run", "-a", "pvpython", str(pathlib.Path(__file__).parent / "render_paraview.py"),
-                       str(replica), picture], capture_output=True, text=True, timeout=300)
+# -noreset: without clients the server would start anew, and refuse who comes in between.
+done = subprocess.run(["xvfb-run", "-a", "--server-args=-screen 0 1280x1024x24 -noreset", "pvpython",
+                       str(pathlib.Path(__file__).parent / "render_paraview.py"), str(replica), picture],
+                      capture_output=True, text=True, timeout=300)
 assert done.returncode == 0 and "ERR|" not in done.stdout + done.stderr, done.stdout + done.stderr
 said = json.loads(done.stdout.splitlines()[-1])
 
