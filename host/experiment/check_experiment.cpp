@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <numeric>
 
@@ -26,11 +27,18 @@ std::string Tally::text() const {
                        first_, example_);
 }
 
-std::vector<Wall> walls_of(const Box& box) {
-    std::vector<Wall> walls;
-    for (int wall = 0; wall < wall_count; ++wall)
-        if (has_wall(box, static_cast<Wall>(wall))) walls.push_back(static_cast<Wall>(wall));
-    return walls;
+const std::vector<Wall>& walls_of(const Box& box) {
+    static const auto by_shape = [] {
+        std::array<std::vector<Wall>, Names<ContainerShape>::list.size()> lists;
+        for (std::size_t shape = 0; shape < lists.size(); ++shape)
+            for (int wall = 0; wall < wall_count; ++wall) {
+                Box any;
+                any.shape = static_cast<ContainerShape>(shape);
+                if (has_wall(any, static_cast<Wall>(wall))) lists[shape].push_back(static_cast<Wall>(wall));
+            }
+        return lists;
+    }();
+    return by_shape[static_cast<std::size_t>(box.shape)];
 }
 
 std::string container_words(const Box& box) {

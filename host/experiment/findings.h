@@ -47,8 +47,8 @@ inline const Vec3& at(const std::vector<Vec3>& position, int grain) {
 inline double radius_of(const Recording& recording, int grain) {
     return 0.5 * recording.diameter[static_cast<std::size_t>(grain)];
 }
-std::vector<Wall> walls_of(const Box& box);
-std::string container_words(const Box& box);  ///< "box of 165 by 166 mm"
+const std::vector<Wall>& walls_of(const Box& box);  ///< those that are there
+std::string container_words(const Box& box);        ///< "box of 165 by 166 mm"
 double mean_diameter(const Recording& recording);
 double median(std::vector<double> values);  ///< not-a-number of none
 std::optional<double> material(const Experiment& experiment, const std::string& key);

@@ -92,7 +92,7 @@ def lammps(folder, shape, size, diameters, positions, plate, moving, resting, ti
     return -float(last[2]), float(last[3])
 
 
-CELL = """[container]
+FRICTIONLESS = """[container]
 shape = "cell"
 size_x = 0.1
 size_y = 0.11
@@ -107,7 +107,8 @@ model = "independent"
 [protocol]
 settle_time = 4
 relax_time = 2
-settle_unbalanced_force = 5e-4
+"""
+CELL = FRICTIONLESS + """settle_unbalanced_force = 5e-4
 [[programme]]
 strain = 0.06
 rate = 0.1
@@ -172,22 +173,7 @@ def compare_cell(mcdem, folder):
             assert abs(mine[row, column] - other) < 3 * allowed * pressure, "stresses differ"  # frictionless grains slide in jerks
 
 
-STRESS = """[container]
-shape = "cell"
-size_x = 0.1
-size_y = 0.11
-[packing]
-count = 140
-packing_fraction = 0.64
-[grains]
-friction = 0
-restitution = 0.5
-[contact]
-model = "independent"
-[protocol]
-settle_time = 4
-relax_time = 2
-settle_unbalanced_force = 2e-4
+STRESS = FRICTIONLESS + """settle_unbalanced_force = 2e-4
 rate_tolerance = 0.02
 [[programme]]
 pressure = 100

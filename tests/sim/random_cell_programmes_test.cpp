@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 
 #include "sim/protocol.h"
+#include "sim/random_draws.h"
 
 namespace mcdem {
 namespace {
@@ -31,9 +31,9 @@ Mat3 spring_stress(const Strain& strain) {
     return stress;
 }
 
-class RandomProgramme {
+class RandomProgramme : RandomDraws {
 public:
-    explicit RandomProgramme(unsigned seed) : engine_(seed) {}
+    using RandomDraws::RandomDraws;
 
     std::vector<Stage> draw() {
         std::vector<Stage> stages;
@@ -42,13 +42,6 @@ public:
     }
 
 private:
-    double between(double low, double high) {
-        return low + (high - low) * static_cast<double>(engine_() >> 11) * 0x1p-53;
-    }
-    int whole(int low, int high) {
-        return low + static_cast<int>(engine_() % static_cast<unsigned>(high - low + 1));
-    }
-
     Stage stage(int number) {
         Stage stage;
         stage.kind = number == 0 ? StageKind::move
@@ -74,8 +67,6 @@ private:
         under_stress_ = sets_stress(stage);
         return stage;
     }
-
-    std::mt19937_64 engine_;
     bool under_stress_ = false;
 };
 

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <random>
 
 #include "sim/protocol.h"
+#include "sim/random_draws.h"
 
 namespace mcdem {
 namespace {
@@ -24,9 +24,9 @@ const PackingScale scale{.diameter = 0.02,
 /// Hertz between the plate and a floor of grains, elastic and without inertia [N].
 double spring_force(double plate_z) { return 500 * std::pow(std::max(0.0, touching - plate_z), 1.5); }
 
-class RandomProgramme {
+class RandomProgramme : RandomDraws {
 public:
-    explicit RandomProgramme(unsigned seed) : engine_(seed) {}
+    using RandomDraws::RandomDraws;
 
     std::vector<Stage> draw() {
         std::vector<Stage> stages;
@@ -35,13 +35,6 @@ public:
     }
 
 private:
-    double between(double low, double high) {
-        return low + (high - low) * static_cast<double>(engine_() >> 11) * 0x1p-53;
-    }
-    int whole(int low, int high) {
-        return low + static_cast<int>(engine_() % static_cast<unsigned>(high - low + 1));
-    }
-
     Stage stage(int number) {
         Stage stage;
         stage.kind = static_cast<StageKind>(whole(0, number > 0 ? 3 : 0));
@@ -70,8 +63,6 @@ private:
         if (whole(0, 1)) stage.speed = between(0.01, 0.2);
         return stage;
     }
-
-    std::mt19937_64 engine_;
     bool forced_ = false;
 };
 

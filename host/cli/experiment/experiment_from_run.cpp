@@ -197,8 +197,7 @@ void add_instrument_options(CLI::App& sub, Instrument& instrument) {
         "Not stated: plate positions are read higher by this [m]", CLI::Range(-1.0, 1.0));
     add("--gauge-drift", instrument.gauge_drift, "PART",
         "Not stated: after the last cycle the top force is read larger by this part, before in proportion to "
-        "the "
-        "plate's path",
+        "the plate's path",
         bias);
 }
 

@@ -72,8 +72,7 @@ Proposal fit_pair(const GapSpace& space, const GapData& data, const Eigen::Vecto
             const EffectFit fit =
                 fit_effect(space, data.candidates[pair.candidates[k]], without(gap, data, pair, k));
             pair.amplitudes[k] = fit.amplitude;
-            pair.errors[k] =
-                std::hypot(fit.error, draw_error(space, data.candidates[pair.candidates[k]], fit.amplitude));
+            pair.errors[k] = fit.error;
         }
     pair.gain = 0.5 * (omnibus - space.whiten(without(gap, data, pair)).squaredNorm());
     return pair;
@@ -127,7 +126,7 @@ std::vector<Proposal> propose(const GapSpace& space, const GapData& data, const 
         Proposal& proposal = proposals.emplace_back();
         proposal.candidates = {c};
         proposal.amplitudes = {fit.amplitude};
-        proposal.errors = {std::hypot(fit.error, draw_error(space, data.candidates[c], fit.amplitude))};
+        proposal.errors = {fit.error};
         proposal.gain = fit.score;
     }
     if (proposals.empty()) return proposals;
@@ -139,8 +138,13 @@ std::vector<Proposal> propose(const GapSpace& space, const GapData& data, const 
             if (tried.gain > pair.gain) pair = tried;
         }
     if (pair.gain > best + pair_gain) proposals.push_back(pair);
-    for (Proposal& proposal : proposals)
+    for (Proposal& proposal : proposals) {
         proposal.misfit_p = signature_misfit(data, null, data.gap, proposal, mean_of);
+        for (std::size_t k = 0; k < proposal.candidates.size(); ++k)
+            proposal.errors[k] = std::hypot(
+                proposal.errors[k],
+                draw_error(space, data.candidates[proposal.candidates[k]], proposal.amplitudes[k]));
+    }
     return proposals;
 }
 
