@@ -14,6 +14,13 @@ using Stage = ProtocolState::Stage;
 /// A move that changes stresses by less keeps them.
 constexpr double min_change = 1e-3;
 
+/// With the strains to which the directions with a stress have come.
+Strain with_controlled(Strain strain, const SetStress& set, const CellControl::State& cell) {
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        if (!std::isnan(set[axis])) strain[axis] = cell.direction[axis].strain;
+    return strain;
+}
+
 }  // namespace
 
 bool ProtocolRunner::by_stress() const {
@@ -48,11 +55,8 @@ SetStress ProtocolRunner::stress() const {
 
 Strain ProtocolRunner::strain() const {
     if (!cell_) return {};
-    Strain strain = move().strain(state_.plate_z);
-    const SetStress set = by_stress() ? end_stress() : no_stress;
-    for (std::size_t axis = 0; axis < 3; ++axis)
-        if (!std::isnan(set[axis])) strain[axis] = state_.cell.direction[axis].strain;
-    return strain;
+    return with_controlled(move().strain(state_.plate_z), by_stress() ? end_stress() : no_stress,
+                           state_.cell);
 }
 
 void ProtocolRunner::deform(StepInterval& interval) const {
@@ -120,10 +124,7 @@ long ProtocolRunner::max_steps_by_stress() const {
 
 void ProtocolRunner::end_leg_of_cell() {
     const double end = target();
-    Strain strain = move().to;
-    const SetStress set = by_stress() ? end_stress() : no_stress;
-    for (std::size_t axis = 0; axis < 3; ++axis)
-        if (!std::isnan(set[axis])) strain[axis] = state_.cell.direction[axis].strain;
+    const Strain strain = with_controlled(move().to, by_stress() ? end_stress() : no_stress, state_.cell);
     state_.leg_begin = end;
     CellControl::begin_leg(state_.cell, strain);
 }
