@@ -48,6 +48,8 @@ std::string observation_name(const std::string& simulation, const Question& ques
                               instrument.position_bias,
                               instrument.strain_offset,
                               instrument.gauge_drift,
+                              instrument.zero_drift,
+                              instrument.force_saturation,
                               m.youngs_modulus,
                               m.poisson_ratio,
                               m.wall_youngs_modulus,

@@ -10,10 +10,17 @@
 namespace mcdem::inline experiment {
 namespace {
 
+double highest_top_force(const Recording& recording) {
+    double highest = 0;
+    for (const Scan& scan : recording.scans) highest = std::max(highest, scan.top_force());
+    return highest;
+}
+
 class Reading {
 public:
     Reading(const Recording& truth, const Instrument& instrument, std::uint64_t seed)
         : instrument_(instrument),
+          highest_(highest_top_force(truth)),
           centre_(0.5 * truth.box.size_x, 0.5 * truth.box.size_y, 0),
           grains_(truth.diameter.size()),
           position_noise_(seed, Stream::measured_positions),
@@ -27,7 +34,8 @@ public:
         scan.phase = truth.phase;
         scan.plate_z = truth.plate_z + instrument_.strain_offset;
         scan.wall_force[static_cast<std::size_t>(Wall::plate)].z() =
-            (1 + instrument_.gauge_drift * path) * truth.top_force();
+            (1 + instrument_.gauge_drift * path) * truth.top_force() +
+            instrument_.zero_drift * path * highest_;
         const auto shift = shifts(frame);
         scan.position.reserve(truth.position.size());
         for (std::size_t i = 0; i < truth.position.size(); ++i)
@@ -57,7 +65,7 @@ private:
     void add(const Contact& truth, std::size_t frame, const std::vector<Vec3>& shift,
              std::vector<Contact>& seen) const {
         Contact contact = truth;
-        contact.force *= gain(contact, frame);
+        contact.force *= gain(contact, frame) / (1 + instrument_.force_saturation * truth.force.norm());
         if (contact.force.norm() < instrument_.stated.force_threshold + instrument_.threshold_shift) return;
         const Vec3& of_grain = shift[static_cast<std::size_t>(contact.grain)];
         contact.point = stretched(truth.point) + of_grain;
@@ -79,6 +87,7 @@ private:
     }
 
     const Instrument& instrument_;
+    double highest_;  ///< top force [N]
     Vec3 centre_;
     std::size_t grains_;
     KeyedNormal position_noise_, force_noise_;

@@ -10,12 +10,14 @@ namespace mcdem::inline experiment {
 /// What the instrument states of itself, and where it is wrong without knowing.
 struct Instrument {
     Measurement stated;
-    double force_bias = 0;       ///< contact forces are read (1 + force_bias) times too large
-    double threshold_shift = 0;  ///< true force threshold less the stated one [N]
-    double position_bias = 0;    ///< lengths between centres are read (1 + position_bias) times too large
-    double strain_offset = 0;    ///< plate positions are read too high by this [m]
-    double gauge_drift = 0;      ///< after the last cycle the top force is read (1 + gauge_drift) times too
-                                 ///< large; it grows with the plate's path
+    double force_bias = 0;        ///< contact forces are read (1 + force_bias) times too large
+    double threshold_shift = 0;   ///< true force threshold less the stated one [N]
+    double position_bias = 0;     ///< lengths between centres are read (1 + position_bias) times too large
+    double strain_offset = 0;     ///< plate positions are read too high by this [m]
+    double gauge_drift = 0;       ///< after the last cycle the top force is read (1 + gauge_drift) times too
+                                  ///< large; it grows with the plate's path
+    double zero_drift = 0;        ///< .. and larger by zero_drift of the highest, whatever it is; grows alike
+    double force_saturation = 0;  ///< a contact force f is read as f/(1 + force_saturation f) [1/N]
 };
 
 /// `truth` as the instrument reads it, in the form in which read_experiment would give it: normal noise on

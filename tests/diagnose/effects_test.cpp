@@ -59,6 +59,8 @@ std::map<std::string, double> numbers_of(const Model& m) {
             {"position_bias", i.position_bias},
             {"strain_offset", i.strain_offset},
             {"gauge_drift", i.gauge_drift},
+            {"zero_drift", i.zero_drift},
+            {"force_saturation", i.force_saturation},
             {"mean_diameter", m.mean_diameter}};
 }
 
@@ -91,6 +93,8 @@ const std::map<std::string, std::set<std::string>> moves{
     {"plate_compliance", {"plate_compliance"}},
     {"force_bias", {"force_bias"}},
     {"gauge_drift", {"gauge_drift"}},
+    {"zero_drift", {"zero_drift"}},
+    {"force_saturation", {"force_saturation"}},
     {"force_threshold", {"threshold_shift"}},
     {"position_bias", {"position_bias"}},
     {"plate_speed", {"plate.speed"}},
@@ -127,6 +131,8 @@ Model full_model() {
                              .plate_compliance = 1e-4};
     model.instrument.force_bias = 0.05;
     model.instrument.gauge_drift = 0.02;
+    model.instrument.zero_drift = 0.01;
+    model.instrument.force_saturation = 0.5;
     model.instrument.threshold_shift = 1e-3;
     model.instrument.position_bias = 1e-3;
     return model;

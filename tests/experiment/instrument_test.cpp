@@ -236,6 +236,38 @@ TEST(measured, gauge_drift_is_alike_where_a_recording_ends_early) {
     for (int s = 0; s < 7; ++s) EXPECT_EQ(cut.scans[s].top_force(), whole.scans[s].top_force());
 }
 
+TEST(measured, zero_drifts_by_a_part_of_the_highest_force) {
+    Recording real = truth();
+    const double path[] = {0, 0.01, 0.03, 0.04};  // down, down, up
+    const double height[] = {0.1, 0.09, 0.07, 0.08}, force[] = {0, 0.5, 2, 0.25};
+    real.plate_start = 0.1;
+    real.scans.resize(4, real.scans.back());
+    for (int s = 0; s < 4; ++s) {
+        real.scans[s].plate_z = height[s];
+        real.scans[s].cycle = 0;
+        real.scans[s].wall_force[static_cast<std::size_t>(Wall::plate)].z() = force[s];
+    }
+    Instrument drifting;
+    drifting.zero_drift = -0.03;
+    const Recording seen = measured(real, drifting, 1);
+    for (int s = 0; s < 4; ++s)
+        EXPECT_DOUBLE_EQ(seen.scans[s].top_force(), force[s] - 0.03 * 2 * path[s] / 0.06);
+}
+
+TEST(measured, strong_contact_forces_saturate) {
+    const Recording real = truth();
+    Instrument saturating;
+    saturating.force_saturation = 0.7;
+    saturating.force_bias = 0.1;
+    const Recording seen = measured(real, saturating, 1);
+    for (std::size_t c = 0; c < real.scans[1].contacts.size(); ++c) {
+        const Vec3& force = real.scans[1].contacts[c].force;
+        const Vec3 expected = 1.1 * force / (1 + 0.7 * force.norm());
+        EXPECT_LT((seen.scans[1].contacts[c].force - expected).norm(), 1e-15);
+    }
+    EXPECT_EQ(seen.scans[1].top_force(), real.scans[1].top_force());
+}
+
 TEST(measured, threshold_is_the_true_one_and_counts_what_is_read) {
     const Recording real = truth();
     for (const double shift : {-0.05, 0.0, 0.05}) {

@@ -193,6 +193,8 @@ LIBRARY = {
     "plate_compliance": Hidden(2e-5, 1.5e-4, "[m/N]", reading=plate_compliance),
     "force_bias": Hidden(0.05, 0.15, "contact forces read too large", signed=True, reading=force_bias),
     "gauge_drift": Hidden(0.05, 0.15, "gain of the gauge, in the end", signed=True, reading=gauge_drift),
+    "force_saturation": Hidden(0.3, 2, "1/f0 of f/(1 + f/f0) [1/N]", reading=force_saturation),
+    "zero_drift": Hidden(0.01, 0.05, "of the gauge, over the highest force", signed=True, reading=zero_drift),
     "position_bias": Hidden(0.0015, 0.0045, "lengths read too large", signed=True, reading=position_bias),
 }
 
@@ -207,10 +209,8 @@ OUTSIDE = {
     "missing_grains": Hidden(0.03, 0.1, "part of the grains not found", reading=missing_grains),
     "missing_contacts": Hidden(0.08, 0.25, "part of the contacts overlooked", reading=missing_contacts),
     "dim_walls": Hidden(0.08, 0.3, "part of the forces at walls that is not seen", reading=dim_walls),
-    "force_saturation": Hidden(0.3, 2, "1/f0 of f/(1 + f/f0) [1/N]", reading=force_saturation),
     "late_force": Hidden(0.2, 0.6, "lateness of the gauge over the time between scans", reading=late_force),
     "gauge_hysteresis": Hidden(0.1, 0.4, "of the gauge", reading=gauge_hysteresis),
-    "zero_drift": Hidden(0.01, 0.05, "of the gauge, over the highest force", signed=True, reading=zero_drift),
     "backlash": Hidden(4e-4, 1.5e-3, "plate read too high on the way up [m]", signed=True, reading=backlash),
 }
 

@@ -199,6 +199,10 @@ void add_instrument_options(CLI::App& sub, Instrument& instrument) {
         "Not stated: after the last cycle the top force is read larger by this part, before in proportion to "
         "the plate's path",
         bias);
+    add("--zero-drift", instrument.zero_drift, "PART",
+        "Not stated: .. and larger by this part of the highest top force, whatever it is", bias);
+    add("--force-saturation", instrument.force_saturation, "PER_N",
+        "Not stated: a in f/(1 + a f), what is read of a contact force f [1/N]", CLI::NonNegativeNumber);
 }
 
 }  // namespace

@@ -27,6 +27,9 @@ double excess_density(const Model& m) {
 }
 double friction_scale(const Model& m) { return std::max(m.replica.grains.friction, 0.02); }
 double wall_friction_scale(const Model& m) { return std::max(m.replica.walls.friction, 0.02); }
+double inverse_force(const Model& m) {
+    return 1 / (m.replica.grains.youngs_modulus * m.mean_diameter * m.mean_diameter);
+}
 double threshold_scale(const Model& m) { return m.instrument.stated.force_threshold; }
 
 /// A part `a` of what `share` leaves of the whole.
@@ -133,6 +136,10 @@ const Effect table[] = {
      -0.5, 0.8, -0.1, 0.1, one, [](Model& m, double a) { m.instrument.force_bias += a; }, nothing},
     {"gauge_drift", "relative", "top force read too large after the last cycle by this part, before in proportion to the plate's path", "measurement",
      -0.5, 0.8, -0.1, 0.1, one, [](Model& m, double a) { m.instrument.gauge_drift += a; }, nothing},
+    {"zero_drift", "relative", "top force read too large after the last cycle by this part of the highest, before in proportion to the plate's path", "measurement",
+     -0.5, 0.5, -0.03, 0.03, one, [](Model& m, double a) { m.instrument.zero_drift += a; }, nothing},
+    {"force_saturation", "1/N", "a in f/(1 + a f), what is read of a contact force f", "measurement",
+     0, 50, 2, 6, inverse_force, [](Model& m, double a) { m.instrument.force_saturation += a; }, nothing},
     {"force_threshold", "N", "true less stated threshold of contact forces", "measurement",
      -1, 8, -0.5, 1.5, threshold_scale, [](Model& m, double a) { m.instrument.threshold_shift += a; }, no_threshold},
     {"position_bias", "relative", "lengths read too large by this part", "measurement",

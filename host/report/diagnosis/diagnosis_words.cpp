@@ -29,7 +29,9 @@ const std::map<std::string, std::string>& special_words() {
         {"plate_tilt_y", "tilt of the plate along y"},
         {"plate_compliance", "compliance of the plate"},
         {"force_bias", "bias of contact forces"},
-        {"gauge_drift", "drift of the plate's gauge"},
+        {"gauge_drift", "drift of the load cell's gain"},
+        {"zero_drift", "drift of the load cell's zero"},
+        {"force_saturation", "saturation of contact forces"},
         {"force_threshold", "shifted force threshold"},
         {"position_bias", "bias of positions"},
         {"strain_offset", "zero of the displacement"},
@@ -89,6 +91,7 @@ const std::map<std::string, Directions>& directions() {
         {"plate_tilt_y", {"rising along y", "falling along y"}},
         {"force_bias", read},
         {"gauge_drift", read},
+        {"zero_drift", read},
         {"position_bias", read},
     };
     return all;
