@@ -4,6 +4,7 @@
 
 #include "cl/kernel.h"
 #include "reference/test_scene.h"
+#include "sim/device_types.h"
 
 namespace reference {
 
@@ -16,6 +17,33 @@ inline cl::Program with_kernel(const std::string& text, const KernelBuild& kerne
                     kernels.lanes, kernels.slots, kernels.block())
             .c_str());
     return program;
+}
+
+/// What the OpenCL text `body` makes of rows of numbers, a work-item a row: it reads `in`, writes `out`, and
+/// knows `replica`. `in`: a multiple of `read` numbers; returns `written` numbers for each row.
+inline std::vector<float> mapped_rows(const std::string& body, const mcdem::f32::Replica& replica,
+                                      const std::vector<float>& in, int read, int written) {
+    const cl::Program program = with_kernel(
+        fmt::format("kernel void map_rows(global const Replica* replica, global const real* all_in, "
+                    "global real* all_out) {{\n"
+                    "global const real* in = all_in + get_global_id(0) * {};\n"
+                    "global real* out = all_out + get_global_id(0) * {};\n{}\n}}",
+                    read, written, body),
+        build(Precision::single_precision));
+    struct Replicas;
+    struct In;
+    struct Out;
+    const std::size_t rows = in.size() / static_cast<std::size_t>(read);
+    mcdem::Field<Replicas> of(device(), 1, sizeof replica);
+    mcdem::Field<In> from(device(), in.size(), sizeof(float));
+    mcdem::Field<Out> to(device(), rows * static_cast<std::size_t>(written), sizeof(float));
+    of.write(&replica);
+    from.write(in.data());
+    mcdem::Kernel<mcdem::Field<Replicas>, mcdem::Field<In>, mcdem::Field<Out>>(device(), program, "map_rows",
+                                                                               1)(rows, of, from, to);
+    std::vector<float> found(rows * static_cast<std::size_t>(written));
+    to.read(found.data());
+    return found;
 }
 
 }  // namespace reference

@@ -1,0 +1,108 @@
+// The stress of a cell, summed over its contacts: branch vectors across the ends of a leaning cell.
+#include "kernels/test_kernel.h"
+
+namespace reference {
+namespace {
+
+constexpr int slots = 16;
+
+struct Contact {
+    int grain, partner;
+    Vec3 force;  ///< on `grain` [N]
+};
+
+/// Of grains at these listed positions, a slot for each contact: sums of force times branch [N m].
+Eigen::Matrix3d moments(const mcdem::f32::Replica& replica, const std::vector<Vec3>& position,
+                        const std::vector<Contact>& contacts) {
+    struct Replicas;
+    struct Portions;
+    struct Steps;
+    struct Grains;
+    struct Partner;
+    struct Force;
+    struct Moments;
+    const std::size_t rows = position.size() * slots;
+    std::vector<float> motion(position.size() * 12, 0);
+    for (std::size_t i = 0; i < position.size(); ++i)
+        for (int axis = 0; axis < 3; ++axis)
+            motion[12 * i + static_cast<std::size_t>(axis)] = static_cast<float>(position[i][axis]);
+    std::vector<int> partner(rows, NO_PARTNER), used(position.size(), 0);
+    std::array<std::vector<float>, 3> force;
+    for (auto& component : force) component.assign(rows, 0);
+    for (const Contact& c : contacts) {
+        const auto grain = static_cast<std::size_t>(c.grain);
+        const std::size_t slot = grain * slots + static_cast<std::size_t>(used[grain]++);
+        partner[slot] = c.partner;
+        for (int axis = 0; axis < 3; ++axis)
+            force[static_cast<std::size_t>(axis)][slot] = static_cast<float>(c.force[axis]);
+    }
+    const mcdem::Portion portion{0, 0};
+    const int step = 0;
+    mcdem::Field<Replicas> replicas(device(), 1, sizeof replica);
+    mcdem::Field<Portions> portions(device(), 1, sizeof portion);
+    mcdem::Field<Steps> steps(device(), 1, sizeof step);
+    mcdem::Field<Grains> grains(device(), position.size(), 12 * sizeof(float));
+    mcdem::Field<Partner> partners(device(), rows, sizeof(int));
+    mcdem::Field<Force> x(device(), rows, sizeof(float)), y(device(), rows, sizeof(float)),
+        z(device(), rows, sizeof(float));
+    mcdem::Field<Moments> out(device(), 9, sizeof(float));
+    replicas.write(&replica);
+    portions.write(&portion);
+    steps.write(&step);
+    grains.write(motion.data());
+    partners.write(partner.data());
+    x.write(force[0].data());
+    y.write(force[1].data());
+    z.write(force[2].data());
+    const cl::Program program = with_kernel("", build(Precision::single_precision));
+    mcdem::Kernel<mcdem::Field<Replicas>, mcdem::Field<Portions>, mcdem::Field<Steps>, mcdem::Field<Grains>,
+                  mcdem::Field<Partner>, mcdem::Field<Force>, mcdem::Field<Force>, mcdem::Field<Force>,
+                  mcdem::Field<Moments>>(device(), program, "cell_stress", 64)(
+        1, replicas, portions, steps, grains, partners, x, y, z, out);
+    Eigen::Matrix<float, 3, 3, Eigen::RowMajor> sums;
+    out.read(sums.data());
+    return sums.cast<double>();
+}
+
+mcdem::f32::Replica leaning_cell(int grains) {
+    mcdem::f32::Replica replica{};
+    replica.container = CONTAINER_CELL;
+    replica.grain_count = grains;
+    const float f[] = {0.8F, 1.1F, 0.7F, 0.4F, -0.3F, 0.2F};
+    std::copy_n(f, 6, replica.deformation);
+    replica.wall_position[1] = replica.wall_position[3] = replica.wall_position[5] = 1;
+    return replica;
+}
+const Eigen::Matrix3d leaning = (Eigen::Matrix3d() << 0.8, 0.4, -0.3, 0, 1.1, 0.2, 0, 0, 0.7).finished();
+
+TEST(CellStress, IsForceTimesBranchAcrossTheEnds) {
+    const Vec3 here(0.95, 0.1, 0.5), there(0.05, 0.95, 0.55), force(1, -2, 3);
+    const Vec3 branch = leaning * Vec3(0.1, -0.15, 0.05);
+    const auto found = moments(leaning_cell(2), {here, there}, {{0, 1, -force}, {1, 0, force}});
+    EXPECT_LT((found - branch * force.transpose()).norm(), 1e-6);
+}
+
+TEST(CellStress, SumsAllGrains) {
+    Uniform uniform(9);
+    std::vector<Vec3> position;
+    std::vector<Contact> contacts;
+    Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+    for (int i = 0; i < 301; ++i) position.push_back(Vec3::Constant(0.5) + uniform.vector(0.1));
+    for (int i = 0; i < 300; ++i) {
+        const Vec3 force = uniform.vector(1);
+        contacts.push_back({i, i + 1, -force});
+        contacts.push_back({i + 1, i, force});
+        sum += leaning * (position[static_cast<std::size_t>(i) + 1] - position[static_cast<std::size_t>(i)]) *
+               force.transpose();
+    }
+    EXPECT_LT((moments(leaning_cell(301), position, contacts) - sum).norm(), 1e-5 * sum.norm() + 1e-5);
+}
+
+TEST(CellStress, IsNothingInAnotherContainer) {
+    auto replica = leaning_cell(2);
+    replica.container = CONTAINER_PERIODIC;
+    EXPECT_EQ(moments(replica, {Vec3::Zero(), Vec3::Constant(0.1)}, {{0, 1, Vec3::Ones()}}).norm(), 0);
+}
+
+}  // namespace
+}  // namespace reference

@@ -1,0 +1,103 @@
+// Sums over the grains of a replica: every portion's, whatever the number of grains.
+#include "kernels/test_kernel.h"
+
+namespace reference {
+namespace {
+
+constexpr int slots = 16;
+
+struct Grains {
+    explicit Grains(int count, unsigned seed) : status(static_cast<std::size_t>(count), 0) {
+        Uniform uniform(seed);
+        for (int i = 0; i < count; ++i) {
+            for (int k = 0; k < 4; ++k) energy.push_back(static_cast<float>(uniform(0, 1)));
+            frequency.push_back(static_cast<float>(uniform(0, 1)));
+            for (int slot = 0; slot < slots; ++slot) {
+                partner.push_back(slot < 6 ? WALL_PARTNER(slot) : slot < 9 ? i / 2 : NO_PARTNER);
+                for (auto& component : force) component.push_back(static_cast<float>(uniform(-1, 1)));
+            }
+        }
+    }
+    std::vector<float> energy, frequency;
+    std::vector<int> partner, status;
+    std::array<std::vector<float>, 3> force;
+};
+
+mcdem::f32::Report reduced(const Grains& grains, const mcdem::Portion& portion) {
+    struct Replicas;
+    struct Portions;
+    struct Partner;
+    struct Force;
+    struct Energy;
+    struct Frequency;
+    struct Status;
+    struct Reports;
+    mcdem::f32::Replica replica{};
+    replica.grain_count = static_cast<int>(grains.status.size());
+    mcdem::Field<Replicas> replicas(device(), 1, sizeof replica);
+    mcdem::Field<Portions> portions(device(), 1, sizeof portion);
+    mcdem::Field<Partner> partner(device(), grains.partner.size(), sizeof(int));
+    mcdem::Field<Force> x(device(), grains.partner.size(), sizeof(float)),
+        y(device(), grains.partner.size(), sizeof(float)), z(device(), grains.partner.size(), sizeof(float));
+    mcdem::Field<Energy> energy(device(), grains.status.size(), 4 * sizeof(float));
+    mcdem::Field<Frequency> frequency(device(), grains.status.size(), sizeof(float));
+    mcdem::Field<Status> status(device(), grains.status.size(), sizeof(int));
+    mcdem::Field<Reports> reports(device(), 1, sizeof(mcdem::f32::Report));
+    replicas.write(&replica);
+    portions.write(&portion);
+    partner.write(grains.partner.data());
+    x.write(grains.force[0].data());
+    y.write(grains.force[1].data());
+    z.write(grains.force[2].data());
+    energy.write(grains.energy.data());
+    frequency.write(grains.frequency.data());
+    status.write(grains.status.data());
+    const cl::Program program = with_kernel("", build(Precision::single_precision));
+    mcdem::Kernel<mcdem::Field<Replicas>, mcdem::Field<Portions>, mcdem::Field<Partner>, mcdem::Field<Force>,
+                  mcdem::Field<Force>, mcdem::Field<Force>, mcdem::Field<Energy>, mcdem::Field<Frequency>,
+                  mcdem::Field<Status>, mcdem::Field<Reports>>(device(), program, "reduce", 64)(
+        1, replicas, portions, partner, x, y, z, energy, frequency, status, reports);
+    mcdem::f32::Report report;
+    reports.read(&report);
+    return report;
+}
+
+TEST(Reduce, SumsAndMaximaAreThoseOfAllGrains) {
+    for (const int count : {1, 63, 64, 65, 500}) {
+        SCOPED_TRACE(count);
+        const Grains grains(count, 5);
+        const auto report = reduced(grains, {0, 0});
+        double kinetic = 0, elastic = 0, moved = 0, deepest = 0, fastest = 0;
+        std::array<double, 18> walls{};
+        for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+            kinetic += grains.energy[4 * i];
+            elastic += grains.energy[4 * i + 1];
+            moved = std::max<double>(moved, grains.energy[4 * i + 2]);
+            deepest = std::max<double>(deepest, grains.energy[4 * i + 3]);
+            fastest = std::max<double>(fastest, grains.frequency[i]);
+            for (std::size_t wall = 0; wall < 6; ++wall)
+                for (std::size_t axis = 0; axis < 3; ++axis)
+                    walls[3 * wall + axis] -= grains.force[axis][slots * i + wall];
+        }
+        EXPECT_NEAR(report.kinetic_energy, kinetic, 1e-5 * kinetic);
+        EXPECT_NEAR(report.elastic_energy, elastic, 1e-5 * elastic);
+        EXPECT_EQ(report.moved_squared, static_cast<float>(moved));
+        EXPECT_EQ(report.deepest_overlap, static_cast<float>(deepest));
+        EXPECT_EQ(report.frequency, static_cast<float>(fastest));
+        for (std::size_t q = 0; q < 18; ++q) EXPECT_NEAR(report.wall_force[q], walls[q], 1e-6 * count) << q;
+        EXPECT_EQ(report.status, 0);
+        EXPECT_EQ(report.failed_grain, -1);
+    }
+}
+
+TEST(Reduce, TellsTheFirstGrainThatFailedAndAllStates) {
+    Grains grains(300, 6);
+    grains.status[250] = 1;
+    grains.status[137] = 4;
+    const auto report = reduced(grains, {0, 0});
+    EXPECT_EQ(report.failed_grain, 137);
+    EXPECT_EQ(report.status, 5);
+}
+
+}  // namespace
+}  // namespace reference
