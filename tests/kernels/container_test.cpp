@@ -58,8 +58,8 @@ TEST(Container, DeformationIsLinearInTime) {
     EXPECT_EQ(found, (std::vector<float>{1, 1.5F, 2, 1.5F, 2, 2.5F}));
 }
 
-// The image nearest in the deformed cell, wherever it is nearer than half of the shortest distance of two
-// opposite faces: of 11 x 11 x 11 images none is nearer.
+// Right for all that is nearer than half of each of the cell's lengths, however far it leans: of 11 x 11 x 11
+// images none is nearer.
 TEST(Container, NearestImageInADeformedCellIsTheNearest) {
     const Vec3 lengths(0.06, 0.05, 0.07);
     const auto replica = deformed_cell(lengths, leaning);
@@ -68,8 +68,7 @@ TEST(Container, NearestImageInADeformedCellIsTheNearest) {
         "const Deformation f = deformation(replica, R(0));"
         "vstore3(deformed(f, nearest_in_cell(replica, f, vload3(0, in))), 0, out);",
         replica, in, 3, 3);
-    const double half =
-        0.5 * (leaning * lengths.asDiagonal()).inverse().rowwise().norm().cwiseInverse().minCoeff();
+    const double half = 0.5 * (leaning.diagonal().cwiseProduct(lengths)).minCoeff();
     int compared = 0;
     for (std::size_t i = 0; i < 4000; ++i) {
         Vec3 nearest = Vec3::Constant(1);
