@@ -3,11 +3,13 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <map>
 #include <numbers>
 #include <set>
 
 #include "core/container.h"
 #include "experiment/findings.h"
+#include "scene/programme_text.h"
 
 namespace mcdem::inline experiment {
 namespace {
@@ -28,6 +30,20 @@ void describe_plate(const Recording& recording, Findings& findings) {
                     loading, static_cast<long>(scans.size()) - loading, scans.front().cycle,
                     scans.back().cycle, high->plate_z, low->plate_z, 1e3 * recording.displacement(*high),
                     1e3 * recording.displacement(*low), weak->top_force(), strong->top_force()));
+}
+
+void describe_programme(const Recording& recording, Findings& findings) {
+    const auto programme = programme_of(recording.parameters);
+    if (programme.empty()) return;
+    std::map<Controlled, std::vector<std::string>> holds;
+    for (const Stage& stage : programme)
+        if (stage.kind == StageKind::hold) holds[stage.keep].push_back(fmt::format("{:.4g}", stage.time));
+    std::string text = fmt::format("a programme of {} stages in {:.4g} s", programme.size(),
+                                   recording.scans.back().time - recording.scans.front().time);
+    for (const auto& [keep, times] : holds)
+        text += fmt::format("; {} held for {} s, which shows {}", name(keep), fmt::join(times, ", "),
+                            keep == Controlled::force ? "creep" : "relaxation");
+    findings.note(plate_file, text);
 }
 
 void describe_grains(const Recording& recording, Findings& findings) {
@@ -82,6 +98,7 @@ void describe_settings(const Experiment& experiment, Findings& findings) {
 
 void describe(const Experiment& experiment, Findings& findings) {
     describe_plate(experiment.recording, findings);
+    describe_programme(experiment.recording, findings);
     describe_grains(experiment.recording, findings);
     describe_contacts(experiment.recording, findings);
     describe_settings(experiment, findings);

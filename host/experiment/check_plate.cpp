@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "experiment/findings.h"
+#include "scene/programme_text.h"
 
 namespace mcdem::inline experiment {
 namespace {
@@ -12,8 +13,17 @@ namespace {
 constexpr double clear_load = 10;  // over the threshold of a contact
 constexpr double falls = 0.5;      // the force at the end of loading over the largest before
 
+/// Whether a frame was taken while something was held: under a force the plate goes either way.
+std::vector<bool> held_frames(const Recording& recording) {
+    std::vector<bool> held(recording.scans.size(), false);
+    const auto places = scan_places(programme_of(recording.parameters), {recording.plate_start, 0});
+    for (std::size_t k = 0; k < places.size() && k + 1 < held.size(); ++k) held[k + 1] = places[k].held;
+    return held;
+}
+
 void check_course(const Recording& recording, Findings& findings) {
     Tally wrong_way, unload_first, left_out;
+    const std::vector<bool> held = held_frames(recording);
     for (std::size_t s = 0; s < recording.scans.size(); ++s) {
         const Scan& scan = recording.scans[s];
         const Scan* before = s > 0 ? &recording.scans[s - 1] : nullptr;
@@ -26,7 +36,7 @@ void check_course(const Recording& recording, Findings& findings) {
                    : before->phase == Phase::unload && scan.phase == Phase::load)
             unload_first.add(scan,
                              [&] { return fmt::format("{} of cycle {}", name(scan.phase), scan.cycle); });
-        if (begins || before->phase != scan.phase) continue;
+        if (begins || before->phase != scan.phase || held[s]) continue;
         const double down = before->plate_z - scan.plate_z;
         if ((scan.phase == Phase::load ? down : -down) < 0)
             wrong_way.add(scan, [&] {

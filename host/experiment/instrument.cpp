@@ -23,6 +23,7 @@ public:
           highest_(highest_top_force(truth)),
           centre_(0.5 * truth.box.size_x, 0.5 * truth.box.size_y, 0),
           grains_(truth.diameter.size()),
+          has_times_(truth.parameters.contains("programme.1.stage")),
           position_noise_(seed, Stream::measured_positions),
           force_noise_(seed, Stream::measured_forces) {}
 
@@ -32,6 +33,7 @@ public:
         scan.frame = static_cast<int>(frame);
         scan.cycle = truth.cycle;
         scan.phase = truth.phase;
+        if (has_times_) scan.time = truth.time;
         scan.plate_z = truth.plate_z + instrument_.strain_offset;
         scan.wall_force[static_cast<std::size_t>(Wall::plate)].z() =
             (1 + instrument_.gauge_drift * path) * truth.top_force() +
@@ -90,6 +92,7 @@ private:
     double highest_;  ///< top force [N]
     Vec3 centre_;
     std::size_t grains_;
+    bool has_times_;  ///< of strokes displacements count, not times
     KeyedNormal position_noise_, force_noise_;
 };
 

@@ -28,7 +28,7 @@ void read_tables(const fs::path& folder, std::uintmax_t largest, Experiment& exp
                             "must hold plate.csv or plate.csv.gz: the plate's position and force by frame");
     const auto modulus = experiment.materials.find("grains.youngs_modulus");
     const double stiffness = modulus == experiment.materials.end() ? infinity : modulus->second;
-    Table plate_table(*plate, plate_columns(), largest, problems);
+    Table plate_table(*plate, plate_columns(), largest, problems, plate_columns_of_programmes());
     read_plate(plate_table, stiffness, recording);
     if (recording.scans.empty()) return;
     if (grains) {

@@ -31,10 +31,38 @@ const std::vector<std::string>& plate_columns() {
     return columns;
 }
 
+const std::vector<std::string>& plate_columns_of_programmes() {
+    static const std::vector<std::string> columns{"set_force_N", "time_s"};
+    return columns;
+}
+
+namespace {
+
+constexpr std::size_t set_force_column = 5, time_column = 6;
+
+void read_time(Table& table, const std::vector<Scan>& before, Scan& scan) {
+    if (!table.has(time_column)) return;
+    const auto time = table.number(time_column);
+    if (time && !before.empty() && !(*time > before.back().time))
+        table.problem(fmt::format("time_s must rise from row to row, got {} after {}: sort the rows by time",
+                                  *time, before.back().time));
+    scan.time = time.value_or(before.empty() ? 0 : before.back().time);
+}
+
+PlateRow row_of(Table& table) {
+    PlateRow row{table.line(), {}};
+    if (table.has(set_force_column) && !table.text(set_force_column).empty())
+        row.set_force = table.number(set_force_column);
+    return row;
+}
+
+}  // namespace
+
 void read_plate(Table& table, double youngs_modulus, Recording& recording) {
     const double width = std::max(recording.box.size_x, recording.box.size_y);
     const double largest_force = youngs_modulus * recording.box.size_x * recording.box.size_y;
     int cycle_before = 0;
+    std::vector<PlateRow> rows;
     for (int row = 0; table.next(); ++row) {
         if (row == max_frames) {
             table.problem(fmt::format("must have at most {} frames", max_frames));
@@ -75,8 +103,11 @@ void read_plate(Table& table, double youngs_modulus, Recording& recording) {
                             *force, youngs_modulus));
         scan.plate_z = plate_z.value_or(1);
         scan.wall_force[static_cast<std::size_t>(Wall::plate)].z() = force.value_or(0);
+        read_time(table, recording.scans, scan);
+        rows.push_back(row_of(table));
         recording.scans.push_back(scan);
     }
+    if (table.complete()) check_programme(table, rows, recording);
 }
 
 }  // namespace mcdem::experiment

@@ -5,12 +5,19 @@
 
 #include <cmath>
 #include <limits>
+#include <map>
+#include <set>
 #include <span>
 #include <sstream>
 
 #include "core/container.h"
 #include "core/input_file.h"
+#include "scene/assign.h"
+#include "scene/list_tables.h"
 #include "scene/packing_fields.h"
+#include "scene/problems.h"
+#include "scene/programme_checks.h"
+#include "scene/programme_text.h"
 
 namespace mcdem::inline experiment {
 namespace {
@@ -71,6 +78,7 @@ public:
         for (std::size_t i = 0; i < std::size(errors); ++i)
             *errors[i] = number(root, measurements[i]).value_or(0);
         for (const Setting& setting : materials) read_sigma(root, setting, experiment);
+        read_programme(root, experiment);
         report_unknown(root, "");
     }
 
@@ -151,6 +159,52 @@ private:
         for (const std::string& name : names)
             if (const auto sigma = number(root, {name, 0, infinity, false, setting.unit}))
                 experiment.uncertainty[std::string(setting.key)] = *sigma;
+    }
+
+    /// Stages as a scene has them; into the recording's parameters, as a simulation's are.
+    void read_programme(const toml::table& root, Experiment& experiment) {
+        known("programme");
+        const toml::node* node = root.get("programme");
+        if (!node) return;
+        const toml::array* list = node->as_array();
+        if (!list || list->empty() || list->size() > max_stages || !list->is_homogeneous<toml::table>())
+            return problem(
+                *node, fmt::format("programme must be a list of 1 to {} stages ([[programme]])", max_stages));
+        const long before = problems_.count();
+        Settings settings;
+        std::map<std::string, const toml::node*> nodes;
+        for (std::size_t n = 0; n < list->size(); ++n)
+            read_stage(*list->get_as<toml::table>(n), static_cast<int>(n), settings, nodes);
+        Recording& recording = experiment.recording;
+        if (std::isnan(recording.plate_start))
+            problem(*node,
+                    "plate.start must be stated beside [[programme]]: its strains are over that height");
+        if (problems_.count() > before) return;
+        settings.packing_file = experiment.name;  // grains that are there
+        settings.replica.box = recording.box;
+        settings.replica.plate = {recording.plate_start, 0};
+        std::set<std::string> said;
+        for (const auto& [key, value] : nodes) said.insert(key);
+        for (const CrossProblem& found : programme_problems(settings, said, {}))
+            problem(nodes.contains(found.key) ? *nodes[found.key] : *node,
+                    fmt::format("{} {}", found.key, found.what));
+        if (problems_.count() == before)
+            recording.parameters.merge(programme_parameters(settings.replica.programme));
+    }
+
+    void read_stage(const toml::table& table, int number, Settings& settings,
+                    std::map<std::string, const toml::node*>& nodes) {
+        element(settings.replica.programme, static_cast<std::size_t>(number));
+        for (const auto& [field, value] : table) {
+            const std::string name = fmt::format("programme.{}.{}", number + 1, field.str());
+            const Key* key = find_key(name);
+            nodes[name] = &value;
+            if (!key)
+                problem(value, fmt::format("{} must be a key of a stage, got an unknown one{}",
+                                           shortened(name), suggestion(name)));
+            else if (const auto wrong = assign(*key, value, settings))
+                problem(value, fmt::format("{} {}", name, *wrong));
+        }
     }
 
     void report_unknown(const toml::table& table, const std::string& prefix) {
@@ -263,6 +317,8 @@ std::string settings_text(const Experiment& experiment) {
     else
         root.insert("box", toml::table{{"size", toml::array{box.size_x, box.size_y}}});
     if (box.shape != ContainerShape::box) root.insert("container", container);
+    if (const auto programme = programme_of(recording.parameters); !programme.empty())
+        root.insert("programme", programme_tables(programme));
     std::stringstream text;
     text << root << '\n';
     return text.str();

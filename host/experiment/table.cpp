@@ -14,6 +14,7 @@
 #include <cerrno>
 #include <cstring>
 #include <new>
+#include <span>
 
 #include "core/input_file.h"
 #include "scene/packing_fields.h"
@@ -135,12 +136,14 @@ private:
 };
 
 Table::Table(const fs::path& file, const std::vector<std::string>& columns, std::uintmax_t largest,
-             ExperimentProblems& problems)
+             ExperimentProblems& problems, const std::vector<std::string>& optional)
     : name_(file.string()),
       columns_(columns),
+      needed_(columns.size()),
       problems_(problems),
       lines_(std::make_unique<Lines>(file, largest)) {
-    words_.resize(columns.size());
+    columns_.insert(columns_.end(), optional.begin(), optional.end());
+    words_.resize(columns_.size());
     read_header();
 }
 
@@ -154,25 +157,28 @@ void Table::read_header() {
     if (!lines_->failure().empty())
         problems_.add(name_, lines_->failure());
     else if (!header)
-        problems_.add(name_,
-                      fmt::format("is empty: it must begin with the header {}", fmt::join(columns_, ",")));
+        problems_.add(name_, fmt::format("is empty: it must begin with the header {}",
+                                         fmt::join(std::span(columns_).first(needed_), ",")));
     line_ = lines_->number();
     if (header && names.size() == 1 && header->find_first_of(";\t") != std::string_view::npos) {
         problem("columns must be separated by commas: export the table with commas, and decimal points");
         names.clear();
     }
-    for (const auto& column : columns_) {
-        if (names.empty()) break;
-        const auto times = std::count(names.begin(), names.end(), column);
-        if (times != 1)
-            problem(fmt::format("the header must name {} once, got it {} times: the columns are {}", column,
-                                times, fmt::join(columns_, ",")));
+    for (std::size_t c = 0; c < columns_.size() && !names.empty(); ++c) {
+        const auto times = std::count(names.begin(), names.end(), columns_[c]);
+        if (times != 1 && (c < needed_ || times != 0))
+            problem(fmt::format("the header must name {} once, got it {} times: the columns are {}",
+                                columns_[c], times, fmt::join(columns_, ",")));
     }
     for (std::string_view name : names) {
         const auto found = std::find(columns_.begin(), columns_.end(), name);
         column_of_word_.push_back(found == columns_.end() ? -1 : static_cast<int>(found - columns_.begin()));
     }
     if (problems_.count() > problems_before) lines_.reset();
+}
+
+bool Table::has(std::size_t column) const {
+    return std::ranges::find(column_of_word_, static_cast<int>(column)) != column_of_word_.end();
 }
 
 bool Table::next() {

@@ -19,15 +19,18 @@ std::optional<std::filesystem::path> find_table(const std::filesystem::path& fol
 
 class Table {
 public:
-    /// Opens the file and reads its header, which must name all `columns`, in any order; others are left
-    /// aside. Reading ends with a problem at a byte that no text has, and after `largest` unpacked bytes.
+    /// Opens the file and reads its header, which must name all `columns` and may name the `optional` ones,
+    /// which count on from them, in any order; others are left aside. Reading ends with a problem at a byte
+    /// that no text has, and after `largest` unpacked bytes.
     Table(const std::filesystem::path& file, const std::vector<std::string>& columns, std::uintmax_t largest,
-          ExperimentProblems& problems);
+          ExperimentProblems& problems, const std::vector<std::string>& optional = {});
     ~Table();
     /// Goes on to the next row that has as many columns as the header; false at the end or where the header
     /// is unusable; none at all is a problem. Lines that are empty or start with # are skipped.
     bool next();
 
+    /// Whether the header names the column.
+    bool has(std::size_t column) const;
     std::string_view text(std::size_t column) const { return words_[column]; }
     /// The number in a column; anything else is reported, and nothing given.
     std::optional<double> number(std::size_t column);
@@ -43,12 +46,15 @@ public:
         problems_.add_once(name_ + topic, where(), what);
     }
     std::string name() const { return name_; }
+    /// Whether nothing was wrong with it so far.
+    bool complete() const { return problems_.empty(); }
 
 private:
     class Lines;
     void read_header();
     std::string name_;
     std::vector<std::string> columns_;
+    std::size_t needed_;  ///< of them, the first
     ExperimentProblems& problems_;
     std::unique_ptr<Lines> lines_;
     std::vector<int> column_of_word_;  ///< by word of a line; -1: left aside

@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 #include <zlib.h>
 
+#include <algorithm>
 #include <iterator>
 
 #include "core/atomic_file.h"
@@ -18,14 +19,6 @@ namespace mcdem::inline experiment {
 namespace {
 
 // "{}" prints the shortest digits that read back as the same number.
-
-std::string plate_rows(const Recording& recording) {
-    fmt::memory_buffer text;
-    for (const Scan& scan : recording.scans)
-        fmt::format_to(std::back_inserter(text), "{},{},{},{},{}\n", &scan - recording.scans.data(),
-                       scan.cycle, name(scan.phase), scan.plate_z, scan.top_force());
-    return fmt::to_string(text);
-}
 
 std::string grain_rows(const Recording& recording) {
     fmt::memory_buffer text;
@@ -81,6 +74,25 @@ void add_table(std::map<std::string, std::string>& files, const std::string& nam
         files[name] = text;
 }
 
+void add_plate_table(std::map<std::string, std::string>& files, const Recording& recording, Packed packed) {
+    const auto set_force = set_forces(recording);
+    const bool has_times = recording.parameters.contains("programme.1.stage");
+    const bool sets_force = std::ranges::any_of(set_force, &std::optional<double>::has_value);
+    std::vector<std::string> columns = plate_columns();
+    if (sets_force) columns.push_back(plate_columns_of_programmes()[0]);
+    if (has_times) columns.push_back(plate_columns_of_programmes()[1]);
+    std::string text;
+    for (std::size_t s = 0; s < recording.scans.size(); ++s) {
+        const Scan& scan = recording.scans[s];
+        text +=
+            fmt::format("{},{},{},{},{}", s, scan.cycle, name(scan.phase), scan.plate_z, scan.top_force());
+        if (sets_force) text += set_force[s] ? fmt::format(",{}", *set_force[s]) : ",";
+        if (has_times) text += fmt::format(",{}", scan.time);
+        text += '\n';
+    }
+    add_table(files, "plate.csv", columns, text, packed);
+}
+
 }  // namespace
 
 std::map<std::string, std::string> experiment_files(const Experiment& experiment, Packed packed) {
@@ -88,7 +100,7 @@ std::map<std::string, std::string> experiment_files(const Experiment& experiment
     std::map<std::string, std::string> files;
     add_table(files, "contacts.csv", contact_columns(), contact_rows(recording), packed);
     add_table(files, "grains.csv", grain_columns(), grain_rows(recording), packed);
-    add_table(files, "plate.csv", plate_columns(), plate_rows(recording), packed);
+    add_plate_table(files, recording, packed);
     files["experiment.toml"] = settings_text(experiment);
     return files;
 }

@@ -28,23 +28,28 @@ std::vector<Stage> stages_of(const Replica& replica) {
     return {strokes};
 }
 
-void expect_plain_strokes(const Scene& scene, const std::string& what) {
-    for (const Replica& replica : scene.replicas)
+void expect_plate(const Scene& scene, const std::string& what) {
+    for (const Replica& replica : scene.replicas) {
         if (is_cell(replica.box))
             throw InputError(fmt::format(
                 "container.shape: must be one with a plate for {}, got cell: it compares strokes of a "
                 "plate",
                 what));
-        else if (!replica.programme.empty())
-            throw InputError(
-                fmt::format("programme: must be left out of a scene for {}, which compares the strokes of "
-                            "[plate] and [protocol] only",
-                            what));
-    for (const Replica& replica : scene.replicas)
         if (!replica.species.empty())
             throw InputError(fmt::format(
                 "species: must be left out of a scene for {}, which knows grains of one material only",
                 what));
+    }
+}
+
+void expect_plain_strokes(const Scene& scene, const std::string& what) {
+    expect_plate(scene, what);
+    for (const Replica& replica : scene.replicas)
+        if (!replica.programme.empty())
+            throw InputError(
+                fmt::format("programme: must be left out of a scene for {}, which compares the strokes of "
+                            "[plate] and [protocol] only",
+                            what));
 }
 
 SetStress set_stress(const Stage& stage) {

@@ -28,8 +28,11 @@ double sum_over_legs(const std::vector<Stage>& stages, const std::function<doubl
 double leg_count(const std::vector<Stage>& stages);
 double scan_count(const std::vector<Stage>& stages);
 
-/// Throws InputError where a replica is a cell or has a programme or species: `what` ("a diagnosis") knows
-/// the strokes of a plate on grains of one material only.
+/// Throws InputError where a replica is a cell or has species: `what` ("a diagnosis") knows a plate on grains
+/// of one material only.
+void expect_plate(const Scene& scene, const std::string& what);
+
+/// The same, and where a replica has a programme: `what` knows strokes only.
 void expect_plain_strokes(const Scene& scene, const std::string& what);
 
 /// Of a cell's directions x, y and z [Pa]; not-a-number where a stage does not set a stress.

@@ -76,6 +76,59 @@ TEST_F(ExperimentCommandTest, APerfectInstrumentGivesTheRunBack) {
     }
 }
 
+/// Stages with a hold of the position and one of the force that is then there.
+constexpr auto stages = R"(
+[[programme]]
+strain = 0.1
+scans = 3
+[[programme]]
+stage = "hold"
+time = 0.02
+scan_at = [0.01, 0.02]
+[[programme]]
+force = 0.2
+scans = 2
+[[programme]]
+stage = "hold"
+keep = "force"
+time = 0.02
+)";
+
+TEST_F(ExperimentCommandTest, AProgrammeGoesAlongFromTheRunThroughAnImport) {
+    std::string scene = bytes_of_file(path("small.toml"));
+    for (const char* key : {"scans_per_stroke", "cycles"})  // of strokes
+        if (const auto at = scene.find(key); at != scene.npos) scene.erase(at, scene.find('\n', at) - at);
+    std::ofstream(path("small.toml")) << scene << stages;
+    run("a", {"--set", "contact.model=independent", "--set", "plate.end=0.06"});
+    expect_done(from_run("e", {}));
+    const Recording seen = read_experiment(path("e")).recording, truth = read_run(path("a")).recordings[0];
+    ASSERT_EQ(seen.scans.size(), 9u);
+    for (std::size_t s = 0; s < seen.scans.size(); ++s) EXPECT_EQ(seen.scans[s].time, truth.scans[s].time);
+    EXPECT_THAT(bytes_of_file(path("e/plate.csv")),
+                testing::AllOf(HasSubstr("top_force_N,set_force_N,time_s\n0,0,load,"), HasSubstr(",0.2,0.")));
+    const auto checked = mcdem({"experiment", "check", "e"});
+    EXPECT_THAT(checked.out, HasSubstr("what looks odd: nothing"));
+    EXPECT_THAT(checked.out, HasSubstr("a programme of 4 stages in"));
+    expect_done(mcdem({"verify", "e"}));
+    expect_done(mcdem({"experiment", "import", "e/contacts.csv", "e/plate.csv", "e/grains.csv", "--metadata",
+                       "e/experiment.toml", "--out", "i"}));
+    const Recording imported = read_experiment(path("i")).recording;
+    EXPECT_EQ(imported.parameters, seen.parameters);
+    for (std::size_t s = 0; s < seen.scans.size(); ++s) EXPECT_EQ(imported.scans[s].time, seen.scans[s].time);
+}
+
+TEST_F(ExperimentCommandTest, OfAProgrammeEachFrameIsAScan) {
+    std::string scene = bytes_of_file(path("small.toml"));
+    for (const char* key : {"scans_per_stroke", "cycles"})
+        if (const auto at = scene.find(key); at != scene.npos) scene.erase(at, scene.find('\n', at) - at);
+    std::ofstream(path("small.toml")) << scene << stages;
+    expect_done(mcdem(run_words("a", {"--set", "contact.model=independent", "--set", "plate.end=0.06"})));
+    expect_bad_input(
+        from_run("e", {}),
+        "the run must have the 8 scans of its programme and one before them, at rest, got 8: run "
+        "it to its end, with protocol.scan_at_start = true");
+}
+
 TEST_F(ExperimentCommandTest, TheSeedDecidesTheNoise) {
     run("a");
     for (const auto& [out, seed] : {std::pair{"e", "3"}, std::pair{"same", "3"}, std::pair{"other", "4"}})

@@ -17,6 +17,7 @@
 #include "io/results.h"
 #include "metrics/programmes.h"
 #include "scene/packing_fields.h"
+#include "scene/programme_text.h"
 
 namespace mcdem::inline cli {
 namespace {
@@ -100,11 +101,19 @@ void expect_small_errors(const Measurement& errors, const Recording& truth) {
     if (!problems.empty()) throw InputError(problems);
 }
 
+/// The stages of an experiment say which scan each of its frames is.
+void expect_all_scans(const Recording& truth) {
+    const auto scans =
+        scan_places(programme_of(truth.parameters), {truth.plate_start, 0}).size();  // and one at rest
+    if (truth.scans.size() == scans + 1) return;
+    throw InputError(fmt::format(
+        "the run must have the {} scans of its programme and one before them, at rest, got {}: run it to its "
+        "end, with protocol.scan_at_start = true",
+        scans, truth.scans.size()));
+}
+
 void warn_of_start(const Recording& truth) {
-    if (follows_programme(truth))
-        throw InputError(
-            "the run must be one of the strokes of [plate] and [protocol], got one of a [[programme]]: "
-            "experiments state strokes only");
+    if (follows_programme(truth)) expect_all_scans(truth);
     if (!truth.species_names.empty())
         throw InputError(
             "the run must be one of grains of one material, got one of [[species]]: experiments state one "

@@ -91,6 +91,7 @@ std::vector<std::string> words_of(const ImportCommand& command, const Experiment
     add("--poisson-ratio", material("grains.poisson_ratio"));
     add("--voxel-size", command.voxel_size);
     if (command.gzip) words.push_back("--gzip");
+    if (recording.parameters.contains("programme.1.stage")) words.push_back("--programme");
     if (!command.mapping.empty()) words.push_back("--mapping=" + command.mapping);
     for (const std::string& problem : settings.lines()) words.push_back("--settings-problem=" + problem);
     words.push_back("--");

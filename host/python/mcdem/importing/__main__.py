@@ -23,6 +23,7 @@ def arguments_of(words):
     parser.add_argument("--mapping")
     parser.add_argument("--settings-problem", action="append", default=[])
     parser.add_argument("--gzip", action="store_true")
+    parser.add_argument("--programme", action="store_true", help="experiment.toml states one")
     for name in ("--box-x", "--box-y", "--plate-start", "--youngs-modulus", "--poisson-ratio", "--voxel-size"):
         parser.add_argument(name, type=float)
     parser.add_argument("tables", nargs="*")
@@ -31,7 +32,8 @@ def arguments_of(words):
 
 def known_of(arguments):
     stated = {name: getattr(arguments, name) for name in ("plate_start", "youngs_modulus", "poisson_ratio", "voxel_size")}
-    return Known(box=(arguments.box_x or 0.0, arguments.box_y or 0.0), **{name: value for name, value in stated.items() if value is not None})
+    return Known(box=(arguments.box_x or 0.0, arguments.box_y or 0.0), programme=arguments.programme,
+                 **{name: value for name, value in stated.items() if value is not None})
 
 
 def print_entry(key, of):

@@ -25,6 +25,7 @@ class Known:
     youngs_modulus: float = np.nan  # of the grains [Pa]
     poisson_ratio: float = 0.4
     voxel_size: float = np.nan  # [m]
+    programme: bool = False  # rows have times
 
 
 @dataclass
@@ -71,7 +72,7 @@ class _Assembly:
             self.problems.add(table.map.files[0], "displacements count downwards from plate.start, which must be given [m]: --set "
                               "plate.start=..")
         else:
-            self.plate = import_plate(table, self.known.plate_start, self.problems)
+            self.plate = import_plate(table, self.known.plate_start, self.problems, self.known.programme)
 
     def place_grains(self, by):
         grains = self.grains
@@ -180,6 +181,10 @@ class _Assembly:
         plate_table = pd.DataFrame({"frame": rows - first, "cycle": plate.cycle[rows] - (plate.cycle[first] if len(rows) else 0),
                                     "phase": np.where(plate.phase[rows] == 0, "load", "unload"), "plate_z_m": plate.z[rows],
                                     "top_force_N": plate.force[rows]})
+        if self.known.programme:
+            if np.isfinite(plate.set_force).any():
+                plate_table["set_force_N"] = plate.set_force[rows]
+            plate_table["time_s"] = plate.time[rows]
         of_frames = [pd.DataFrame({"frame": row - first, "grain": np.arange(len(position)), **dict(zip(("x_m", "y_m", "z_m"), position.T)),
                                    "diameter_m": grains.diameter})
                      for row, position in sorted(zip(grains.row or [], grains.position), key=lambda one: one[0])]

@@ -1,9 +1,9 @@
 """Role and columns of a table by the names of its columns, with the units that they state."""
 from .mapping import UNCLEAR, guess, signed_column
-from .names import FORCES, LENGTH_WORDS, VOXEL, column_name, columns_by_key
+from .names import COUNTED, FORCES, LENGTH_WORDS, VOXEL, column_name, columns_by_key, is_among
 
 LENGTH_KEYS = ("x", "y", "z", "diameter", "radius", "plate_z", "displacement")
-FORCE_KEYS = ("fx", "fy", "fz", "force", "top_force")
+FORCE_KEYS = ("fx", "fy", "fz", "force", "top_force", "set_force")
 
 
 def _role_of(columns):
@@ -84,6 +84,9 @@ def guess_by_names(table):
     if role == "unused":
         return
     found = columns_by_key(role, columns)
+    if role == "plate":
+        if times := [name for name in found.get("frame", []) if is_among(column_name(name).base, COUNTED["time"])]:
+            found["time"] = times
     if "plate_z" in found:
         found.pop("displacement", None)
     if "diameter" in found:

@@ -56,6 +56,8 @@ KEYS = {
         Key("plate_z", "quantity", "height of the plate; this or displacement; with a - before its name where it counts downwards"),
         Key("displacement", "quantity", "how far the plate has gone down from plate.start; with a - where it counts upwards"),
         Key("top_force", "quantities", "force on the plate"),
+        Key("time", "column", "when the row was measured [s where the column names no unit]; needed where [[programme]] is stated"),
+        Key("set_force", "quantity", "the force that was set, in rows where one was; others are empty there"),
         Key("length_unit", "word", "", _LENGTHS),
         *_LENGTH_KEYS,
         Key("origin_z", "number", "where the floor is, as plate_z's column counts; 0 where left out"),

@@ -29,6 +29,7 @@ WORDS = {
         ("phase", "phase direction richtung loading"),
         ("plate_z", "platez zplate plateheight height z gap plateposition position pos hoehe h platte top ztop topz lid piston"),
         ("displacement", "displacement disp stroke travel weg hub verschiebung compression"),
+        ("set_force", "setforce fset forceset setpoint sollkraft targetforce"),
         ("top_force", "topforce force load f fz kraft last ftop forcez plateforce normalforce loadcell platefz fplate3"),
     ],
     "grains": [

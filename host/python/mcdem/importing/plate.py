@@ -2,7 +2,7 @@
 import numpy as np
 
 from .mapping import signed_column
-from .names import column_name
+from .names import TIMES, column_name
 from .problems import number_text, quoted
 from .rows import FrameIndex, Rows
 
@@ -16,6 +16,7 @@ class PlateRows:
     def __init__(self, z=(), force=(), keys=(), keyed=False):
         self.z, self.force = np.asarray(z, float), np.asarray(force, float)  # [m], upward force on it [N]
         self.keys, self.keyed, self.index = np.asarray(keys, float), keyed, FrameIndex(keys)
+        self.time = self.set_force = np.full(len(self.z), np.nan)  # [s], [N]; of a programme
         self.phase = np.zeros(len(self.z), int)
         self.cycle = np.zeros(len(self.z), int)
 
@@ -78,23 +79,35 @@ def _read_phases(rows, plate, problems):
         plate.cycle = np.cumsum(np.diff(plate.phase, prepend=LOAD) == LOAD - UNLOAD)
 
 
-def import_plate(table, start, problems):
-    """Heights need `start` [m] where the table states displacements; not-a-number where it is not known."""
+def _read_programme(rows, mapped, plate, sign):
+    """Times and the forces set, those where one was."""
+    plate.time = rows.number("time") * TIMES.get(column_name(mapped.word("time")).unit, 1)
+    if "set_force" in rows:
+        stated = np.array([rows.text(i, "set_force").strip() != "" for i in range(len(rows))])
+        plate.set_force = np.where(stated, rows.number("set_force", stated) * mapped.force_factor() * sign, np.nan)
+
+
+def import_plate(table, start, problems, programme=False):
+    """Heights need `start` [m] where the table states displacements; not-a-number where it is not known. Rows of a programme need
+    times."""
     mapped, rows = table.map, Rows(table, problems)
     goes_down = "displacement" in rows
-    for key in ("top_force", "displacement" if goes_down else "plate_z"):
+    for key in ("top_force", "displacement" if goes_down else "plate_z", *(("time",) if programme else ())):
         if key not in rows:
             problems.add(mapped.files[0], f"must have a column for {key}, got none: name it in the mapping")
             return PlateRows()
     keys = rows.key if rows.keyed else np.arange(len(rows), dtype=float)
     place = rows.number("displacement" if goes_down else "plate_z")
-    force = rows.number("top_force") * mapped.force_factor() * (-1 if mapped.word("force_sign", "+") == "-" else 1)
+    sign = -1 if mapped.word("force_sign", "+") == "-" else 1
+    force = rows.number("top_force") * mapped.force_factor() * sign
     origin = mapped.number("origin_z") * signed_column(mapped.word("plate_z"))[0]
     z = start - mapped.length_factor() * place if goes_down else mapped.length_factor() * (place - origin)
     plate = PlateRows(z, force, keys, rows.keyed)
     if not len(plate):
         return plate
     _check_order(rows, keys)
+    if programme:
+        _read_programme(rows, mapped, plate, sign)
     if np.isfinite(z).any():
         _check_heights(rows, plate, start, goes_down)
     _read_phases(rows, plate, problems)

@@ -1,0 +1,125 @@
+// The rows of plate.csv as the scans of a programme.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "experiment/measurements.h"
+#include "scene/programme_text.h"
+
+namespace mcdem::inline experiment {
+namespace {
+
+/// Farther from what the programme sets a row is that of another scan: of the stroke, the force, the hold.
+constexpr double far_position = 0.25, far_force = 0.5, far_time = 0.1;
+constexpr double other_force = 0.01;  // of the force set
+
+struct Programme {
+    std::vector<Stage> stages;
+    std::vector<ScanPlace> places;
+};
+Programme programme_in(const Recording& recording) {
+    Programme programme{programme_of(recording.parameters), {}};
+    programme.places = scan_places(programme.stages, {recording.plate_start, 0});
+    return programme;
+}
+
+class Rows {
+public:
+    Rows(Table& table, const std::vector<PlateRow>& rows, const Recording& recording)
+        : table_(table), rows_(rows), recording_(recording), programme_(programme_in(recording)) {
+        for (const Scan& scan : recording.scans) stroke_ = std::max(stroke_, recording.displacement(scan));
+    }
+
+    void check() {
+        if (rows_.size() != programme_.places.size() + 1)
+            return table_.problem_at(
+                table_.name(),
+                fmt::format("must have {} rows, one of the packing at rest and one for each of the {} scans "
+                            "of [[programme]] in experiment.toml, got {}: state the scans of its stages as "
+                            "they were measured (scans, scan_at)",
+                            programme_.places.size() + 1, programme_.places.size(), rows_.size()));
+        for (std::size_t k = 0; k < programme_.places.size(); ++k) {
+            const ScanPlace& place = programme_.places[k];
+            if (place.by == Controlled::force)
+                check_force(k + 1, place);
+            else
+                check_position(k + 1, place);
+            if (place.held && k > 0 && programme_.places[k - 1].leg == place.leg) check_time(k + 1, place);
+        }
+    }
+
+private:
+    void problem(std::size_t row, const std::string& what) {
+        table_.problem_at(table_.where(rows_[row].line), what);
+    }
+    static std::string stage_words(const ScanPlace& place) {
+        return fmt::format("stage {} of [[programme]] in experiment.toml", place.stage + 1);
+    }
+
+    void check_position(std::size_t row, const ScanPlace& place) {
+        const double z = recording_.scans[row].plate_z;
+        if (rows_[row].set_force)
+            problem(row, fmt::format("set_force_N must be empty, got {}: {} sets a position",
+                                     *rows_[row].set_force, stage_words(place)));
+        if (std::abs(z - place.set) > far_position * stroke_)
+            problem(row, fmt::format("plate_z_m must be near {:.6g} m, which {} sets, got {}: state the "
+                                     "stages in their order, with their scans",
+                                     place.set, stage_words(place), z));
+    }
+
+    void check_force(std::size_t row, const ScanPlace& place) {
+        const double top = recording_.scans[row].top_force(), set = rows_[row].set_force.value_or(place.set);
+        if (std::abs(set - place.set) > other_force * place.set)
+            problem(row, fmt::format("set_force_N must be {:.6g} N, which {} sets, got {}: state the stages "
+                                     "in their order, with their scans",
+                                     place.set, stage_words(place), set));
+        else if (std::abs(top - set) > far_force * set)
+            problem(row, fmt::format("top_force_N must be near {:.6g} N, which {} sets, got {}: state the "
+                                     "stages in their order, with their scans",
+                                     set, stage_words(place), top));
+    }
+
+    void check_time(std::size_t row, const ScanPlace& place) {
+        const double time = recording_.scans[row].time - recording_.scans[row - 1].time;
+        const double set = place.time - programme_.places[row - 2].time;
+        const double whole = programme_.stages[static_cast<std::size_t>(place.stage)].time;
+        if (std::abs(time - set) > far_time * whole)
+            problem(row, fmt::format("time_s must be {:.6g} s after the row before, as {} holds, got {:.6g} "
+                                     "s: state when the hold was scanned (time, scans, scan_at)",
+                                     set, stage_words(place), time));
+    }
+
+    Table& table_;
+    const std::vector<PlateRow>& rows_;
+    const Recording& recording_;
+    Programme programme_;
+    double stroke_ = 0;  ///< [m]
+};
+
+}  // namespace
+
+std::vector<std::optional<double>> set_forces(const Recording& recording) {
+    std::vector<std::optional<double>> forces(recording.scans.size());
+    const Programme programme = programme_in(recording);
+    double before = not_given;  // what a hold that sets no force of its own keeps
+    for (std::size_t k = 0; k < programme.places.size() && k + 1 < forces.size(); ++k) {
+        const ScanPlace& place = programme.places[k];
+        const bool begins = k == 0 || programme.places[k - 1].leg != place.leg;
+        if (begins) before = recording.scans[k].top_force();
+        if (place.by != Controlled::force) continue;
+        if (!std::isnan(place.set) || place.held) forces[k + 1] = std::isnan(place.set) ? before : place.set;
+    }
+    return forces;
+}
+
+void check_programme(Table& table, const std::vector<PlateRow>& rows, const Recording& recording) {
+    if (!recording.parameters.contains("programme.1.stage")) return;
+    if (std::isnan(recording.scans.front().time))
+        return table.problem_at(table.where(1),
+                                "the header must name time_s where experiment.toml states a [[programme]]: "
+                                "when each row was measured [s]");
+    Rows(table, rows, recording).check();
+}
+
+}  // namespace mcdem::experiment

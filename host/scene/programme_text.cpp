@@ -1,0 +1,98 @@
+#include "scene/programme_text.h"
+
+#include <cmath>
+
+#include "core/parameters.h"
+#include "scene/assign.h"
+#include "scene/list_tables.h"
+
+namespace mcdem::inline scene {
+namespace {
+
+/// As TOML; a text that is none is a word.
+toml::table value_of_text(const std::string& text) {
+    try {
+        return toml::parse("value = " + text);
+    } catch (const toml::parse_error&) {
+        return toml::table{{"value", without_quotes(text)}};
+    }
+}
+
+/// The value of a text that the table of keys has written.
+void assign_text(const Key& key, const std::string& text, Settings& settings) {
+    if (text.empty()) return;  // not given
+    const toml::table table = value_of_text(text);
+    assign(key, *table.get("value"), settings);
+}
+
+}  // namespace
+
+std::map<std::string, std::string> programme_parameters(const std::vector<Stage>& programme) {
+    Settings settings;
+    settings.replica.programme = programme;
+    std::map<std::string, std::string> all;
+    for (std::size_t n = 0; n < programme.size(); ++n)
+        for (const Key& key : stage_keys(static_cast<int>(n)))
+            all[std::string(key.name)] = value_text(key, settings);
+    return all;
+}
+
+std::vector<Stage> programme_of(const std::map<std::string, std::string>& parameters) {
+    Settings settings;
+    for (int n = 0; n < max_stages && parameters.contains(std::string(stage_keys(n).front().name)); ++n) {
+        settings.replica.programme.emplace_back();
+        for (const Key& key : stage_keys(n))
+            assign_text(key, value_of(parameters, std::string(key.name)), settings);
+    }
+    return settings.replica.programme;
+}
+
+toml::array programme_tables(const std::vector<Stage>& programme) {
+    toml::array tables;
+    for (const Stage& stage : programme) {
+        Settings settings, defaults;
+        settings.replica.programme = {stage};
+        defaults.replica.programme = {{}};
+        toml::table table;
+        for (const Key& key : stage_keys(0)) {
+            const std::string text = value_text(key, settings);
+            if (text == value_text(key, defaults) || text.empty()) continue;
+            const toml::table value = value_of_text(text);
+            value.get("value")->visit([&](const auto& concrete) {
+                table.insert(key.name.substr(key.name.rfind('.') + 1), concrete);
+            });
+        }
+        tables.push_back(table);
+    }
+    return tables;
+}
+
+std::vector<ScanPlace> scan_places(const std::vector<Stage>& programme, const Plate& plate) {
+    std::vector<ScanPlace> places;
+    double position = plate.start, force = not_given;  // where the leg before has ended
+    const std::vector<Leg> legs = legs_of(programme, plate);
+    for (std::size_t l = 0; l < legs.size(); ++l) {
+        const Stage& stage = programme[static_cast<std::size_t>(legs[l].stage)];
+        const bool held = stage.kind == StageKind::hold, by_force = controlled(stage) == Controlled::force;
+        const double from = by_force ? force : position;
+        const double end = held ? stage.time : legs[l].target;
+        for (int n = 1; n <= scans_of(stage); ++n) {
+            const bool listed = !stage.scan_at.empty();
+            const double told = listed ? stage.scan_at[static_cast<std::size_t>(n - 1)] : 0;
+            double at = 0;
+            if (held)
+                at = listed ? told : end * n / stage.scans;
+            else
+                at = listed            ? in_si(stage, told, plate)
+                     : n < stage.scans ? from + (end - from) * n / stage.scans
+                                       : end;
+            places.push_back({legs[l].stage, static_cast<int>(l), held, at == end, controlled(stage),
+                              held ? from : at, held ? at : 0});
+        }
+        if (!held) (by_force ? force : position) = end;
+        (by_force ? position : force) = not_given;
+    }
+    return places;
+}
+
+}  // namespace mcdem::scene
