@@ -26,7 +26,8 @@ void without_conditional_observables(Evidence& evidence) {
 }
 
 void top_force_alone(Evidence& evidence) {
-    observe_only(evidence, [](const Observable& o) { return o.needs == Needs::plate; });
+    observe_only(evidence,
+                 [](const Observable& o) { return o.needs == Needs::plate || o.needs == Needs::programme; });
 }
 
 void without_nuisances(Evidence& evidence) { evidence.nuisances.clear(); }

@@ -15,7 +15,7 @@
 #include "ensemble/paper_metrics.h"
 #include "ensemble/parts/library_parts.h"
 #include "scene/keys.h"
-#include "scene/legs.h"
+#include "scene/programme_text.h"
 
 namespace mcdem::inline ensemble {
 namespace {
@@ -81,7 +81,8 @@ public:
         diagnosis.refinements = refinements_;
         if (auto first = change_of_the_scene(diagnosis))
             diagnosis.next.insert(diagnosis.next.begin(), *first);
-        if (diagnosis.gap_reduction && options_.paper_metrics && options_.confirmations > 0)
+        const bool strokes = model().replica.programme.empty();  // whose levels the paper's metrics compare
+        if (diagnosis.gap_reduction && options_.paper_metrics && options_.confirmations > 0 && strokes)
             add_paper_metrics(*diagnosis.gap_reduction, experiments_.front().recording,
                               before_after(*builder));
         return diagnosis;
@@ -345,6 +346,12 @@ Model model_of(const Scene& scene, const Experiment& experiment) {
                           static_cast<double>(std::max<std::size_t>(1, recording.diameter.size()));
     double lowest = recording.plate_start;
     for (const Scan& scan : recording.scans) lowest = std::min(lowest, scan.plate_z);
+    model.replica.programme = programme_of(recording.parameters);
+    if (model.replica.programme.empty() && !scene.replicas.front().programme.empty())
+        throw InputError(fmt::format(
+            "{}: experiment.toml must state the [[programme]] that it was taken through, and plate.csv its "
+            "time_s, for a scene that has one",
+            experiment.name));
     // A scan before the stroke is no level of it, even where the plate's zero is a little off.
     const double begun = 0.02 * (recording.plate_start - lowest);
     int loading = 0, cycles = 1;
@@ -355,17 +362,21 @@ Model model_of(const Scene& scene, const Experiment& experiment) {
     if (loading == 0 || !(lowest < recording.plate_start))
         throw InputError(experiment.name + ": plate.csv must have loading frames below plate.start");
     model.replica.plate.start = recording.plate_start;
+    model.replica.protocol.scan_at_start = true;
+    if (!model.replica.programme.empty()) {  // under a force the plate may go on where the scene lets it
+        model.replica.plate.end = std::min(scene.replicas.front().plate.end, lowest);
+        return model;
+    }
     model.replica.plate.end = lowest;
     model.replica.protocol.scans_per_stroke = loading;
     model.replica.protocol.cycles =
         std::min(cycles, std::max(model.replica.protocol.cycles, model.replica.protocol.discard + 1));
-    model.replica.protocol.scan_at_start = true;
     return model;
 }
 
 Diagnosis diagnose_experiment(Device& device, const Scene& scene, const std::vector<Experiment>& experiments,
                               const DiagnoseOptions& options) {
-    expect_plain_strokes(scene, "a diagnosis");
+    expect_plate(scene, "a diagnosis");
     const auto begin = std::chrono::steady_clock::now();
     Diagnosis diagnosis =
         DiagnosisRunner(device, plan_of(scene, experiments, options), experiments, options).run();

@@ -12,6 +12,7 @@
 #include "core/sha256.h"
 #include "scene/keys.h"
 #include "scene/packing_fields.h"
+#include "scene/programme_text.h"
 
 namespace mcdem::inline ensemble {
 namespace {
@@ -68,6 +69,7 @@ std::map<std::string, std::string> library_origin(const Question& question, cons
         if ((key.scope == Scope::replica && !key.name.starts_with("packing.")) ||
             key.name == "numerics.precision")
             origin[std::string(key.name)] = value_text(key, settings);
+    origin.merge(programme_parameters(model.replica.programme));
     const Measurement& stated = model.instrument.stated;
     origin["measurement.position_error"] = fmt::format("{}", stated.position_error);
     origin["measurement.diameter_error"] = fmt::format("{}", stated.diameter_error);
@@ -118,7 +120,8 @@ void expect_library_of(const Library& library, const Grid& grid, const LibraryPl
     for (const std::string& name : plan.candidates) expect(library.effects, name);
     for (const Nuisance& nuisance : plan.nuisances) expect(library.nuisances, nuisance.name);
     constexpr double alike = 0.1;  // a shifted zero of strain is for the diagnosis to find
-    if (std::abs(library.grid.stroke - grid.stroke) > alike * grid.stroke)
+    const bool by_force = !library.grid.force.empty();  // then the stroke is what effects change
+    if (!by_force && std::abs(library.grid.stroke - grid.stroke) > alike * grid.stroke)
         problems.push_back(fmt::format("{}: was made for a stroke of {:.4g} mm, the experiment has {:.4g} mm",
                                        file.string(), 1e3 * library.grid.stroke, 1e3 * grid.stroke));
     if (!problems.empty()) throw InputError(problems);

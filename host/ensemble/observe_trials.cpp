@@ -1,5 +1,7 @@
 #include "ensemble/observe_trials.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <map>
 #include <numeric>
@@ -10,6 +12,7 @@
 #include "metrics/estimate.h"
 #include "scene/keys.h"
 #include "scene/make_packing.h"
+#include "scene/programme_text.h"
 #include "scene/random.h"
 #include "sim/simulation.h"
 
@@ -29,6 +32,8 @@ std::string simulation_name(const std::string& device, const Question& question,
         if (key.scope == Scope::replica && !is_generator_key(key.name) && key.name != "packing.file" &&
             key.name != "packing.frame")
             digest.add(key.name).add("=").add(value_text(key, settings)).add("\n");
+    for (const auto& [key, value] : programme_parameters(trial.model.replica.programme))
+        digest.add(key).add("=").add(value).add("\n");
     for (const Vec3& position : trial.packing.position) digest.add(std::span(position.data(), 3));
     digest.add(trial.packing.diameter);
     const double jitter[] = {trial.jitter, trial.diameter_jitter};
@@ -59,9 +64,12 @@ std::string observation_name(const std::string& simulation, const Question& ques
                               m.weight_density,
                               m.force_threshold,
                               question.grid.width,
+                              question.grid.force_width,
                               static_cast<double>(question.discard)};
     Sha256 digest;
-    digest.add(simulation).add(numbers).add(question.grid.displacement);
+    digest.add(simulation).add(numbers).add(question.grid.displacement).add(question.grid.force);
+    for (const HoldScans& hold : question.grid.holds)
+        digest.add(fmt::format("{}-{}-{} at {};", hold.begin, hold.first, hold.end, hold.displacement));
     for (const Observable& observable : observables()) digest.add(observable.name).add(";");
     return digest.hex();
 }
@@ -192,6 +200,7 @@ private:
     /// Whether the plate has left the cells on its last way back: no later scan counts, and a plate that
     /// follows the load is slowest there. Recordings that are kept are whole.
     bool has_left_cells(const Job& job, const Replica& replica, const Recording& recording) const {
+        if (!replica.programme.empty()) return false;  // its plate may come back
         const Scan& last = recording.scans.back();
         if (last.phase != Phase::unload || last.cycle + 1 < replica.protocol.cycles) return false;
         const double left = std::ranges::min(question_.grid.displacement) - question_.grid.width;

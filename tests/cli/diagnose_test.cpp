@@ -9,6 +9,7 @@ namespace mcdem {
 namespace {
 
 using testing::HasSubstr;
+namespace fs = std::filesystem;
 
 class DiagnoseTest : public CliTest {
 protected:
@@ -188,6 +189,48 @@ TEST_F(DiagnoseTest, WithItsLibraryInPartsIsTheSame) {
         return std::distance(std::filesystem::directory_iterator(path(folder) / "simulations"), {});
     };
     EXPECT_EQ(simulations("parts"), simulations("d"));
+}
+
+/// A scene of scenes/ in place of the tiny one, and three candidates.
+class DiagnoseHoldTest : public DiagnoseTest {
+protected:
+    void take(const char* scene) {
+        fs::copy_file(fs::path(MCDEM_SOURCE_DIR) / "scenes" / scene, path("tiny.toml"),
+                      fs::copy_options::overwrite_existing);
+    }
+    nlohmann::json verdict_on(const std::string& folder, const Words& change) {
+        experiment(change, folder, 7);
+        return diagnosis({"--replicates", "16", "--pairs", "4", "--confirmations", "4", "--candidates",
+                          "viscoelasticity,plasticity,friction", "--library", "l.json"},
+                         {folder});
+    }
+};
+
+TEST_F(DiagnoseHoldTest, RelaxingGrainsAreToldFromPlasticOnes) {
+    take("relaxation.toml");
+    EXPECT_EQ(verdict_on("plain", {})["verdict"], "no_gap");
+    for (const std::string effect : {"viscoelasticity", "plasticity"}) {
+        const auto told = verdict_on(effect, {"effects." + effect + "=0.2"});
+        EXPECT_EQ(told["verdict"], "effect") << told["sentence"];
+        EXPECT_EQ(told["causes"][0]["effect"], effect);
+        EXPECT_EQ(told["causes"][0]["group"].size(), 1u) << told["causes"][0];
+    }
+}
+
+TEST_F(DiagnoseHoldTest, UnderSetForcesGrainsThatCreepAreNamed) {
+    take("creep.toml");
+    EXPECT_EQ(verdict_on("plain", {})["verdict"], "no_gap");
+    const auto told = verdict_on("creeping", {"effects.viscoelasticity=0.25"});
+    EXPECT_EQ(told["verdict"], "effect") << told["sentence"];
+    EXPECT_EQ(told["causes"][0]["effect"], "viscoelasticity");
+}
+
+TEST_F(DiagnoseTest, AProgrammeOfTheSceneMustBeTheExperiments) {
+    experiment({});
+    fs::copy_file(fs::path(MCDEM_SOURCE_DIR) / "scenes/relaxation.toml", path("tiny.toml"),
+                  fs::copy_options::overwrite_existing);
+    expect_bad_input(mcdem({"diagnose", "tiny.toml", "--experiment", "e", "--out", "d"}),
+                     "experiment.toml must state the [[programme]] that it was taken through, and plate.csv");
 }
 
 }  // namespace

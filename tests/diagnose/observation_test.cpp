@@ -1,11 +1,13 @@
 // Recordings as vectors: local lines through the scans near a cell.
 #include "diagnose/observe/observation.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "diagnose/synthetic_scan.h"
+#include "scene/programme_text.h"
 
 namespace mcdem {
 namespace {
@@ -149,6 +151,93 @@ TEST(Grid, FollowsTheStrokeAndTheScans) {
         EXPECT_NEAR(fine.width, 0.12 * stroke, 1e-12);
         EXPECT_NEAR(grid_of(strokes(8, cycles)).width, 1.6 / 8 * stroke, 1e-12);  // three scans wide
     }
+}
+
+/// Down in three scans, held at 20 mm, up again.
+Recording held_recording(const std::string& keep) {
+    Stage down, hold, up;
+    down.position = start - 0.02;
+    up.position = start;
+    hold.kind = StageKind::hold;
+    hold.keep = keep == "force" ? Controlled::force : Controlled::position;
+    hold.time = 2;
+    down.scans = up.scans = 3;
+    hold.scans = 2;
+    Recording recording =
+        recording_of({plate_scan(0, -9), plate_scan(0.01, 0), plate_scan(0.015, 0.5), plate_scan(0.02, 1),
+                      plate_scan(0.0205, 0.9), plate_scan(0.021, 0.7), plate_scan(0.019, 0, Phase::unload),
+                      plate_scan(0.01, -1, Phase::unload), plate_scan(0, -2, Phase::unload)});
+    recording.parameters = programme_parameters({down, hold, up});
+    return recording;
+}
+
+/// Of one observable: loading at all displacements, then unloading.
+Eigen::VectorXd values_of(const Recording& recording, const Grid& g, Eigen::Index observable) {
+    const auto each = static_cast<Eigen::Index>(2 * g.displacement.size());
+    return observe(recording, g, soft_material()).segment(observable * each, each);
+}
+
+TEST(Observation, AHoldOfThePositionShowsRelaxationWhereItIs) {
+    const Recording recording = held_recording("position");
+    const Grid g = grid_of(recording);
+    ASSERT_EQ(g.holds.size(), 1u);
+    EXPECT_NEAR(g.holds[0].displacement, 0.02, 1e-12);
+    EXPECT_EQ(g.holds[0], (HoldScans{3, 4, 5, Controlled::position, Phase::load, g.holds[0].displacement}));
+    const Eigen::VectorXd relaxation = values_of(recording, g, index_of(OfProgramme::relaxation));
+    for (Eigen::Index k = 0; k < relaxation.size(); ++k)
+        EXPECT_EQ(std::isfinite(relaxation[k]), k == 3) << k;  // 98 % of the stroke, loading
+    EXPECT_NEAR(relaxation[3], 1 - 0.7, 1e-12);
+    EXPECT_FALSE(values_of(recording, g, index_of(OfProgramme::creep)).array().isFinite().any());
+    EXPECT_FALSE(values_of(recording, g, index_of(OfProgramme::displacement)).array().isFinite().any());
+}
+
+TEST(Observation, AHoldOfTheForceShowsCreep) {
+    const Recording recording = held_recording("force");
+    const Eigen::VectorXd creep = values_of(recording, grid_of(recording), index_of(OfProgramme::creep));
+    EXPECT_NEAR(creep[3], 0.001 / 0.021, 1e-12);
+}
+
+// What was measured while the plate stood still belongs to no stroke.
+TEST(Observation, ScansOfAHoldAreNoneOfTheStroke) {
+    Recording recording = held_recording("position");
+    const Grid g = grid_of(recording);
+    const Eigen::VectorXd before = values_of(recording, g, 0);
+    for (const std::size_t held : {4u, 5u}) recording.scans[held].wall_force.back().z() *= 7;
+    const Eigen::VectorXd after = values_of(recording, g, 0);
+    for (Eigen::Index k = 0; k < before.size(); ++k)
+        EXPECT_TRUE(before[k] == after[k] || (std::isnan(before[k]) && std::isnan(after[k])));
+}
+
+TEST(Observation, AHoldWithoutAScanBeforeItBeginsWithItsFirst) {
+    Recording recording = held_recording("position");
+    recording.parameters["programme.1.scan_at"] = fmt::format("[{}]", start - 0.01);
+    std::erase_if(recording.scans, [](const Scan& scan) {
+        return scan.phase == Phase::load && (scan.plate_z < start - 0.0105 && scan.plate_z > start - 0.0203);
+    });
+    const Grid g = grid_of(recording);
+    ASSERT_EQ(g.holds.size(), 1u);
+    EXPECT_EQ(g.holds[0].begin, 2);
+    EXPECT_EQ(g.holds[0].end, 3);
+}
+
+// Under set forces the displacement is what differs, at forces that loading has at the displacements.
+TEST(Observation, WhereForcesAreSetDisplacementsAreCompared) {
+    Recording recording = recording_of({});
+    for (double d = 0; d <= stroke; d += stroke / 30) {
+        recording.scans.push_back(plate_scan(d, std::log(100 * d)));
+        recording.scans.push_back(plate_scan(d, std::log(80 * d), Phase::unload));
+    }
+    Stage load;
+    load.force = 3;
+    load.scans = static_cast<int>(recording.scans.size()) - 1;
+    recording.parameters = programme_parameters({load});
+    const Grid g = grid_of(recording);
+    ASSERT_EQ(g.force.size(), g.displacement.size());
+    for (std::size_t k = 0; k < g.force.size(); ++k) EXPECT_NEAR(g.force[k], 100 * g.displacement[k], 1e-9);
+    const Eigen::VectorXd way = values_of(recording, g, index_of(OfProgramme::displacement));
+    EXPECT_NEAR(way[1], g.displacement[1] / g.stroke, 1e-9);
+    EXPECT_NEAR(way[5], 1.25 * g.displacement[1] / g.stroke, 1e-9);
+    EXPECT_FALSE(values_of(recording, g, 0).array().isFinite().any());
 }
 
 }  // namespace

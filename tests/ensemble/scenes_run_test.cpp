@@ -48,7 +48,9 @@ TEST_P(ScenesRun, Begins) {
     const auto run = read_run(options.folder, ReadWhat::observables);
     for (const auto& recording : run.recordings) {
         EXPECT_FALSE(recording.failure) << recording.label << ": " << recording.failure->cause;
-        EXPECT_EQ(static_cast<double>(recording.scans.size()), scan_count(stages_of(scene.replicas.front())))
+        const Replica& replica = scene.replicas.front();
+        EXPECT_EQ(static_cast<double>(recording.scans.size()),
+                  scan_count(stages_of(replica)) + (replica.protocol.scan_at_start ? 1 : 0))
             << recording.label;
     }
 }

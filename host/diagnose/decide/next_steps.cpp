@@ -134,15 +134,18 @@ std::vector<NextStep> sharpening(const std::vector<Measurement>& measurements, c
 }
 
 /// What sets effects apart that one slow stroke down and up does not.
-void add_other_protocols(const GapData& data, const Decision& decision, std::vector<NextStep>& steps) {
+void add_other_protocols(const Evidence& evidence, const GapData& data, const Decision& decision,
+                         std::vector<NextStep>& steps) {
     const auto named = [&](const char* name) {
         return std::ranges::any_of(decision.group, [&](std::size_t c) { return data.name(c) == name; });
     };
     if (named("viscoelasticity") || named("plate_speed") || named("inertia"))
-        steps.push_back(
-            {"hold the plate at full stroke for some time, or press at another speed: what relaxes or "
-             "depends on speed is no matter of geometry or friction",
-             {}});
+        steps.push_back({std::string(evidence.library.grid.holds.empty()
+                                         ? "hold the plate at full stroke for some time, or press"
+                                         : "press") +
+                             " at another speed: what relaxes or depends on speed is no matter of geometry "
+                             "or friction",
+                         {}});
     if (named("plasticity"))
         steps.push_back({"press a second cycle: what stays after the first is plastic", {}});
 }
@@ -160,7 +163,7 @@ std::vector<NextStep> next_measurements(const Evidence& evidence, const GapData&
                                          : sharpening(measurements, evidence, data, findings, decision);
     std::ranges::stable_sort(steps, std::greater(), [](const NextStep& s) { return s.power.value_or(0); });
     if (steps.size() > max_steps) steps.resize(max_steps);
-    if (decision.verdict != Verdict::no_gap) add_other_protocols(data, decision, steps);
+    if (decision.verdict != Verdict::no_gap) add_other_protocols(evidence, data, decision, steps);
     return steps;
 }
 

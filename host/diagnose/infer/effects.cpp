@@ -41,9 +41,13 @@ void take_off(const std::vector<NumericalSetting>& settings, double part) {
     for (const NumericalSetting& setting : settings) *setting.value *= std::max(1 - part, 1 / max_slowdown);
 }
 std::vector<NumericalSetting> plate_speed(Model& m) {
-    const NumericalSetting speed{"plate.speed", &m.replica.plate.speed};
-    if (m.replica.protocol.rate_tolerance == 0) return {speed};
-    return {{"protocol.rate_tolerance", &m.replica.protocol.rate_tolerance}, speed};
+    std::vector<NumericalSetting> all;
+    if (m.replica.protocol.rate_tolerance > 0)
+        all.push_back({"protocol.rate_tolerance", &m.replica.protocol.rate_tolerance});
+    all.push_back({"plate.speed", &m.replica.plate.speed});
+    for (Stage& stage : m.replica.programme)
+        if (!std::isnan(stage.speed)) all.push_back({"plate.speed", &stage.speed});
+    return all;
 }
 std::vector<NumericalSetting> density(Model& m) { return {{"grains.density", &m.replica.grains.density}}; }
 std::vector<NumericalSetting> time_step(Model& m) {

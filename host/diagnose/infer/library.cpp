@@ -16,7 +16,7 @@ namespace mcdem::inline diagnose {
 namespace {
 
 using nlohmann::json;
-constexpr int library_format = 3;
+constexpr int library_format = 4;
 
 json rows_json(const Eigen::MatrixXd& rows) {
     json list = json::array();
@@ -57,6 +57,36 @@ Signature signature_of(const json& j, Eigen::Index cells) {
     return s;
 }
 
+json holds_json(const std::vector<HoldScans>& holds) {
+    json list = json::array();
+    for (const HoldScans& hold : holds)
+        list.push_back({{"begin", hold.begin},
+                        {"first", hold.first},
+                        {"end", hold.end},
+                        {"keep", name(hold.keep)},
+                        {"phase", name(hold.phase)},
+                        {"displacement", hold.displacement}});
+    return list;
+}
+
+std::vector<HoldScans> holds_of(const json& list) {
+    std::vector<HoldScans> holds;
+    for (const json& j : list) {
+        const auto keep = parse<Controlled>(j.at("keep").get<std::string>());
+        const auto phase = parse<Phase>(j.at("phase").get<std::string>());
+        const HoldScans hold{j.at("begin"),
+                             j.at("first"),
+                             j.at("end"),
+                             keep.value_or(Controlled::position),
+                             phase.value_or(Phase::load),
+                             j.at("displacement")};
+        if (!keep || !phase || hold.begin < 0 || hold.begin > hold.first || hold.first > hold.end)
+            throw json::other_error::create(501, "it has a hold that cannot be", &j);
+        holds.push_back(hold);
+    }
+    return holds;
+}
+
 std::string digest_of(const std::map<std::string, std::string>& origin) {
     Sha256 digest;
     for (const auto& [name, value] : origin) digest.add(name).add("=").add(value).add("\n");
@@ -73,7 +103,10 @@ Library library_of(const json& j) {
     if (j.at("format") != library_format)
         throw json::other_error::create(501, "it is of another version", &j);
     Library library;
-    library.grid = {j.at("displacement"), j.at("width"), j.at("stroke")};
+    library.grid = {j.at("displacement"), j.at("width"),       j.at("stroke"),
+                    j.at("force"),        j.at("force_width"), holds_of(j.at("holds"))};
+    if (!library.grid.force.empty() && library.grid.force.size() != library.grid.displacement.size())
+        throw json::other_error::create(501, "it has another number of forces than displacements", &j);
     library.packing = j.at("packing").get<std::vector<int>>();
     if (library.packing.empty()) throw json::other_error::create(501, "it has no replicates", &j);
     const auto cells = static_cast<Eigen::Index>(cells_of(library.grid).size());
@@ -127,6 +160,9 @@ std::string library_text(const Library& library) {
               {"displacement", library.grid.displacement},
               {"width", library.grid.width},
               {"stroke", library.grid.stroke},
+              {"force", library.grid.force},
+              {"force_width", library.grid.force_width},
+              {"holds", holds_json(library.grid.holds)},
               {"packing", library.packing},
               {"effects", effects},
               {"nuisances", nuisances},

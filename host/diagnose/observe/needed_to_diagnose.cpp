@@ -14,6 +14,7 @@ namespace {
 std::string missing_forces(const Recording& recording) {
     Recording plate;
     plate.plate_start = recording.plate_start;
+    plate.parameters = recording.parameters;
     for (const Scan& scan : recording.scans) {
         Scan& one = plate.scans.emplace_back(scan);
         one.position.clear();

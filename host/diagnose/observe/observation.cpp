@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "metrics/estimate.h"
+#include "scene/programme_text.h"
 
 namespace mcdem::inline diagnose {
 namespace {
@@ -44,17 +45,78 @@ private:
 
 }  // namespace
 
+namespace {
+
+/// Each hold with a scan at its beginning: the last one before it, where that is taken at the end of its leg.
+std::vector<HoldScans> holds_of(const Recording& recording, const std::vector<ScanPlace>& places) {
+    std::vector<HoldScans> holds;
+    for (std::size_t k = 0; k < places.size() && k + 1 < recording.scans.size(); ++k) {
+        if (!places[k].held) continue;
+        const int scan = static_cast<int>(k) + 1;
+        const bool begins = k == 0 || places[k - 1].leg != places[k].leg;
+        if (begins) {
+            const bool just_before = k == 0 || places[k - 1].at_end;
+            holds.push_back({just_before ? scan - 1 : scan, scan, scan, places[k].by, Phase::load, 0});
+        }
+        holds.back().end = scan;
+    }
+    for (HoldScans& hold : holds) {
+        const Scan& begin = recording.scans[static_cast<std::size_t>(hold.begin)];
+        hold.phase = recording.scans[static_cast<std::size_t>(hold.first)].phase;
+        hold.displacement = recording.displacement(begin);
+    }
+    return holds;
+}
+
+bool is_held(const Grid& grid, std::size_t scan) {
+    const int number = static_cast<int>(scan);
+    return std::ranges::any_of(
+        grid.holds, [&](const HoldScans& hold) { return number >= hold.first && number <= hold.end; });
+}
+
+/// The forces that loading has at the displacements, between its scans.
+void set_forces(const Recording& recording, Grid& grid) {
+    std::vector<std::pair<double, double>> curve;  // displacement, force: the first time that it comes there
+    for (std::size_t s = 0; s < recording.scans.size(); ++s) {
+        const Scan& scan = recording.scans[s];
+        const double displacement = recording.displacement(scan);
+        if (scan.phase == Phase::load && !is_held(grid, s) &&
+            (curve.empty() || displacement > curve.back().first))
+            curve.emplace_back(displacement, scan.top_force());
+    }
+    double highest = 0;
+    for (const double wanted : grid.displacement) {
+        const auto above = std::ranges::find_if(curve, [&](auto& at) { return at.first >= wanted; });
+        if (above == curve.end() || above == curve.begin()) continue;
+        const auto below = above - 1;
+        const double part = (wanted - below->first) / (above->first - below->first);
+        grid.force.push_back(below->second + part * (above->second - below->second));
+    }
+    if (grid.force.size() < grid.displacement.size()) return grid.force.clear();
+    for (const auto& [displacement, force] : curve) highest = std::max(highest, force);
+    grid.force_width = grid.width / grid.stroke * highest;
+}
+
+}  // namespace
+
 Grid grid_of(const Recording& experiment) {
     Grid grid;
+    const auto programme = programme_of(experiment.parameters);
+    grid.holds = holds_of(experiment, scan_places(programme, {experiment.plate_start, 0}));
     int loading = 0, cycles = 0;
-    for (const Scan& scan : experiment.scans) {
+    for (std::size_t s = 0; s < experiment.scans.size(); ++s) {
+        const Scan& scan = experiment.scans[s];
         grid.stroke = std::max(grid.stroke, experiment.displacement(scan));
-        loading += scan.phase == Phase::load ? 1 : 0;
+        loading += scan.phase == Phase::load && !is_held(grid, s) ? 1 : 0;
         cycles = std::max(cycles, scan.cycle + 1);
     }
     const double spacing = grid.stroke * cycles / std::max(1, loading);
     grid.width = std::max(width_of_stroke * grid.stroke, 1.6 * spacing);
     for (const double part : parts_of_stroke) grid.displacement.push_back(part * grid.stroke);
+    if (std::ranges::any_of(programme, [](const Stage& stage) {
+            return stage.kind != StageKind::hold && controlled(stage) == Controlled::force;
+        }))
+        set_forces(experiment, grid);
     return grid;
 }
 
@@ -67,21 +129,68 @@ std::vector<Cell> cells_of(const Grid& grid) {
     return cells;
 }
 
+namespace {
+
+/// Observables of a scan in a stroke; of displacement and force the one that is not sought by.
+Eigen::VectorXd stroke_observables(const Recording& recording, const Scan& scan, const Grid& grid,
+                                   const ReferenceMaterial& material) {
+    Eigen::VectorXd values = scan_observables(recording, scan, material);
+    if (!grid.force.empty()) {
+        values[0] = not_available;  // the force on the plate
+        values[index_of(OfProgramme::displacement)] = recording.displacement(scan) / grid.stroke;
+    }
+    return values;
+}
+
+/// Distance of a scan from a place of the grid, over the width.
+double offset_of(const Recording& recording, const Scan& scan, const Grid& grid, std::size_t place) {
+    if (grid.force.empty()) return (recording.displacement(scan) - grid.displacement[place]) / grid.width;
+    return (scan.top_force() - grid.force[place]) / grid.force_width;
+}
+
+std::size_t nearest_place(const Grid& grid, double displacement) {
+    const auto nearest = std::ranges::min_element(
+        grid.displacement, {}, [&](double place) { return std::abs(place - displacement); });
+    return static_cast<std::size_t>(nearest - grid.displacement.begin());
+}
+
+/// What holds show, each where it is nearest: the mean, where there are several.
+void add_holds(const Recording& recording, const Grid& grid, int discard, std::vector<LocalLine>& lines) {
+    for (const HoldScans& hold : grid.holds) {
+        if (static_cast<std::size_t>(hold.end) >= recording.scans.size() || hold.begin == hold.end) continue;
+        const Scan& begin = recording.scans[static_cast<std::size_t>(hold.begin)];
+        const Scan& end = recording.scans[static_cast<std::size_t>(hold.end)];
+        if (end.cycle < discard) continue;
+        Eigen::VectorXd values =
+            Eigen::VectorXd::Constant(static_cast<Eigen::Index>(observables().size()), not_available);
+        if (hold.keep == Controlled::force)
+            values[index_of(OfProgramme::creep)] = (begin.plate_z - end.plate_z) / grid.stroke;
+        else if (begin.top_force() > 0 && end.top_force() > 0)
+            values[index_of(OfProgramme::relaxation)] = std::log(begin.top_force() / end.top_force());
+        const std::size_t place = nearest_place(grid, hold.displacement);
+        lines[(hold.phase == Phase::load ? 0 : grid.displacement.size()) + place].add(0, values);
+    }
+}
+
+}  // namespace
+
 Eigen::VectorXd observe(const Recording& recording, const Grid& grid, const ReferenceMaterial& material,
                         int discard) {
     const auto count = static_cast<Eigen::Index>(observables().size());
     const std::size_t places = grid.displacement.size();
     std::vector<LocalLine> lines(std::size(phases) * places, LocalLine(count));
-    for (const Scan& scan : recording.scans) {
-        if (scan.cycle < discard) continue;
+    for (std::size_t s = 0; s < recording.scans.size(); ++s) {
+        const Scan& scan = recording.scans[s];
+        if (scan.cycle < discard || is_held(grid, s)) continue;
         Eigen::VectorXd values;
         for (std::size_t place = 0; place < places; ++place) {
-            const double offset = (recording.displacement(scan) - grid.displacement[place]) / grid.width;
-            if (std::abs(offset) >= 1) continue;
-            if (values.size() == 0) values = scan_observables(recording, scan, material);
+            const double offset = offset_of(recording, scan, grid, place);
+            if (!(std::abs(offset) < 1)) continue;
+            if (values.size() == 0) values = stroke_observables(recording, scan, grid, material);
             lines[(scan.phase == Phase::load ? 0 : places) + place].add(offset, values);
         }
     }
+    add_holds(recording, grid, discard, lines);
     Eigen::VectorXd result(count * static_cast<Eigen::Index>(lines.size()));
     for (Eigen::Index q = 0, next = 0; q < count; ++q)
         for (const LocalLine& line : lines) result[next++] = line.at_middle(q);

@@ -53,6 +53,10 @@ constexpr Observable table[] = {
     {"plate_overlap_offset", Needs::positions, 0.0005, "plate", "", "implied less measured overlap at the plate, mean"},
     {"plate_overlap_tilt_x", Needs::positions, 0.0005, "plate", "", ".. its slope along x, in R over half the box"},
     {"plate_overlap_tilt_y", Needs::positions, 0.0005, "plate", "", ".. its slope along y, in R over half the box"},
+
+    {"displacement", Needs::programme, 0.002, "plate", "", "displacement of the plate over the stroke, where the force on it is set"},
+    {"relaxation", Needs::programme, 0.003, "plate", "", "log of the force on the plate at the beginning of a hold of its position, less that at the end"},
+    {"creep", Needs::programme, 0.002, "plate", "", "way of the plate down during a hold of its force, over the stroke"},
 };
 // clang-format on
 constexpr std::size_t count = std::size(table);
@@ -74,6 +78,11 @@ private:
 }  // namespace
 
 std::span<const Observable> observables() { return table; }
+
+Eigen::Index index_of(OfProgramme observable) {
+    constexpr Eigen::Index of_programmes = 3;
+    return static_cast<Eigen::Index>(count) - of_programmes + static_cast<Eigen::Index>(observable);
+}
 
 Eigen::VectorXd scan_observables(const Recording& recording, const Scan& scan,
                                  const ReferenceMaterial& material) {

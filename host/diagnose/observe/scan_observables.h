@@ -11,7 +11,7 @@
 
 namespace mcdem::inline diagnose {
 
-enum class Needs { plate, contacts, positions };  ///< positions: contacts too
+enum class Needs { plate, contacts, positions, programme };  ///< positions: contacts too
 
 struct Observable {
     std::string_view name;
@@ -24,6 +24,10 @@ struct Observable {
 
 /// The order of the vectors that scan_observables returns.
 std::span<const Observable> observables();
+
+/// Those that take more than one scan, or the stroke: the last ones of the list (observation.cpp).
+enum class OfProgramme { displacement, relaxation, creep };
+Eigen::Index index_of(OfProgramme observable);
 
 /// Not-a-number where the scan does not tell.
 Eigen::VectorXd scan_observables(const Recording& recording, const Scan& scan,

@@ -6,6 +6,7 @@
 #include "diagnose/observe/needed_to_diagnose.h"
 #include "ensemble/parts/manifest.h"
 #include "io/folder_lock.h"
+#include "scene/programme_text.h"
 
 namespace mcdem::inline ensemble {
 namespace {
@@ -79,6 +80,12 @@ void expect_alike(const std::vector<Experiment>& experiments, const Grid& grid) 
             problems.push_back(
                 fmt::format("{}: experiment.toml must state the same [measurement] and "
                             "[uncertainty] as that of {}, to be diagnosed with it",
+                            other.name, first.name));
+        if (programme_parameters(programme_of(other.recording.parameters)) !=
+            programme_parameters(programme_of(first.recording.parameters)))
+            problems.push_back(
+                fmt::format("{}: experiment.toml must state the same [[programme]] as that of {}, to be "
+                            "diagnosed with it",
                             other.name, first.name));
         if (const double stroke = grid_of(other.recording).stroke; stroke > (1 + alike) * grid.stroke)
             problems.push_back(
