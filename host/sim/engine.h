@@ -2,6 +2,7 @@
 // replica's own, with the plate at constant velocity; between intervals the host may look and decide.
 #pragma once
 #include <array>
+#include <functional>
 #include <map>
 #include <string>
 #include <variant>
@@ -66,6 +67,10 @@ public:
 
     /// Positions and contacts as the last interval of `replica` left them.
     ReplicaState state(int replica) const;
+    /// Calls use(i, state of replicas[i]) for every i, on all cores and in no order. `replicas` ascend; those
+    /// that stand side by side in the batch are read together.
+    void for_each_state(const std::vector<int>& replicas,
+                        const std::function<void(std::size_t, ReplicaState)>& use) const;
     /// For tests: sets velocities by the user's grain numbers.
     void set_velocities(int replica, const std::vector<Vec3>& velocity,
                         const std::vector<Vec3>& angular_velocity);
@@ -81,6 +86,12 @@ private:
         std::vector<int> replicas, blocks;
         std::vector<Portion> portions;
     };
+    /// What states are made of, of replicas side by side: rows of grains and of slots as the device has them.
+    struct Readings {
+        std::size_t first_grain;
+        std::vector<std::byte> motion, force_x, force_y, force_z, overlap, arm;
+        std::vector<int> partner;
+    };
     Part part(const std::vector<char>& wanted) const;
     void upload_materials();
     void upload_packings(const std::vector<Packing>& packings);
@@ -94,10 +105,18 @@ private:
     std::vector<IntervalResult> read_reports(const std::vector<StepInterval>& intervals);
     IntervalResult result_of(int replica, const double* reals, int status, int failed_place) const;
     template <class Quantity>
+    std::vector<std::byte> read_bytes(const Field<Quantity>& field, std::size_t first,
+                                      std::size_t count) const;
+    template <class Quantity>
     std::vector<double> read_reals(const Field<Quantity>& field, std::size_t first, std::size_t count) const;
     template <class Quantity>
     void write_reals(Field<Quantity>& field, std::size_t first, const std::vector<double>& values);
-    std::vector<Contact> contacts(int replica, const std::vector<Vec3>& position) const;
+    std::vector<double> reals(const std::vector<std::byte>& bytes, std::size_t first,
+                              std::size_t count) const;
+    Readings readings(int first_replica, int last_replica) const;
+    ReplicaState state(int replica, const Readings& readings) const;
+    std::vector<Contact> contacts(int replica, const std::vector<Vec3>& position,
+                                  const Readings& readings) const;
 
     KernelBuild build_;
     std::vector<Replica> replicas_;

@@ -6,6 +6,7 @@
 
 #include "core/container.h"
 #include "core/errors.h"
+#include "core/in_parallel.h"
 #include "scene/plate_face.h"
 #include "sim/device_replica.h"
 #include "sim/engine.h"
@@ -59,18 +60,33 @@ void refuse_checkpoint(const std::string& what) {
     throw InputError("the checkpoint is damaged: " + what + ": start the run anew in another folder");
 }
 
+std::vector<double> Engine::reals(const std::vector<std::byte>& bytes, std::size_t first,
+                                  std::size_t count) const {
+    std::vector<double> values(count);
+    if (build_.precision == Precision::double_precision) {
+        std::memcpy(values.data(), bytes.data() + first * sizeof(double), count * sizeof(double));
+    } else {
+        std::vector<float> floats(count);
+        std::memcpy(floats.data(), bytes.data() + first * sizeof(float), count * sizeof(float));
+        values.assign(floats.begin(), floats.end());
+    }
+    return values;
+}
+
+/// `count` reals of a field from the `first` on, as bytes.
+template <class Quantity>
+std::vector<std::byte> Engine::read_bytes(const Field<Quantity>& field, std::size_t first,
+                                          std::size_t count) const {
+    const std::size_t size = build_.precision == Precision::double_precision ? sizeof(double) : sizeof(float);
+    std::vector<std::byte> bytes(count * size);
+    field.read(bytes.data(), first * size, bytes.size());
+    return bytes;
+}
+
 template <class Quantity>
 std::vector<double> Engine::read_reals(const Field<Quantity>& field, std::size_t first,
                                        std::size_t count) const {
-    std::vector<double> values(count);
-    if (build_.precision == Precision::double_precision) {
-        field.read(values.data(), first * sizeof(double), count * sizeof(double));
-    } else {
-        std::vector<float> reals(count);
-        field.read(reals.data(), first * sizeof(float), count * sizeof(float));
-        values.assign(reals.begin(), reals.end());
-    }
-    return values;
+    return reals(read_bytes(field, first, count), 0, count);
 }
 
 template <class Quantity>
@@ -86,38 +102,70 @@ void Engine::write_reals(Field<Quantity>& field, std::size_t first, const std::v
 template std::vector<double> Engine::read_reals(const Field<CellMoments>&, std::size_t, std::size_t) const;
 template void Engine::write_reals(Field<Motion>&, std::size_t, const std::vector<double>&);
 
-ReplicaState Engine::state(int replica) const {
+Engine::Readings Engine::readings(int first_replica, int last_replica) const {
+    const auto first = static_cast<std::size_t>(layout_.first_grain[first_replica]);
+    const auto grains = static_cast<std::size_t>(layout_.first_grain[last_replica + 1]) - first;
+    const auto slots = static_cast<std::size_t>(build_.slots);
+    const auto of_slots = [&](const auto& field) { return read_bytes(field, first * slots, grains * slots); };
+    Readings read{first,
+                  read_bytes(fields_.motion.copies[0], reals_of_motion * first, reals_of_motion * grains),
+                  of_slots(fields_.force_x),
+                  of_slots(fields_.force_y),
+                  of_slots(fields_.force_z),
+                  of_slots(fields_.overlap),
+                  of_slots(fields_.arm),
+                  std::vector<int>(grains * slots)};
+    fields_.partner.read(read.partner.data(), first * slots * sizeof(int), grains * slots * sizeof(int));
+    return read;
+}
+
+ReplicaState Engine::state(int replica) const { return state(replica, readings(replica, replica)); }
+
+void Engine::for_each_state(const std::vector<int>& replicas,
+                            const std::function<void(std::size_t, ReplicaState)>& use) const {
+    constexpr int most_grains = 1 << 18;  // that are read together: some 100 MB
+    for (std::size_t begin = 0, end; begin < replicas.size(); begin = end) {
+        end = begin + 1;
+        while (end < replicas.size() && replicas[end] == replicas[end - 1] + 1 &&
+               layout_.first_grain[replicas[end] + 1] - layout_.first_grain[replicas[begin]] <= most_grains)
+            ++end;
+        const Readings read = readings(replicas[begin], replicas[end - 1]);
+        in_parallel(end - begin, [&](std::size_t i) { use(begin + i, state(replicas[begin + i], read)); });
+    }
+}
+
+ReplicaState Engine::state(int replica, const Readings& read) const {
     const auto& order = layout_.order[replica];
-    const auto motion =
-        read_reals(fields_.motion.copies[0], reals_of_motion * std::size_t(layout_.first_grain[replica]),
-                   reals_of_motion * order.size());
+    const auto first = static_cast<std::size_t>(layout_.first_grain[replica]) - read.first_grain;
+    const auto motion = reals(read.motion, reals_of_motion * first, reals_of_motion * order.size());
     ReplicaState state;
     state.position = by_grain(motion, 0, order);
     if (is_cell(replicas_[replica].box))
         for (Vec3& x : state.position) x = deformation(strain_[replica]) * x;
     state.velocity = by_grain(motion, 4, order);
     state.angular_velocity = by_grain(motion, 8, order);
-    state.contacts = contacts(replica, state.position);
+    state.contacts = contacts(replica, state.position, read);
     return state;
 }
 
-std::vector<Contact> Engine::contacts(int replica, const std::vector<Vec3>& position) const {
+std::vector<Contact> Engine::contacts(int replica, const std::vector<Vec3>& position,
+                                      const Readings& read) const {
     const auto& order = layout_.order[replica];
-    const std::size_t first = std::size_t(layout_.first_grain[replica]) * build_.slots;
-    const std::size_t count = order.size() * build_.slots;
-    const auto x = read_reals(fields_.force_x, first, count), y = read_reals(fields_.force_y, first, count),
-               z = read_reals(fields_.force_z, first, count),
-               overlap = read_reals(fields_.overlap, first, count),
-               arm = read_reals(fields_.arm, first, count);
-    std::vector<int> partner(count);
-    fields_.partner.read(partner.data(), first * sizeof(int), count * sizeof(int));
+    const auto slots = static_cast<std::size_t>(build_.slots);
+    const std::size_t first =
+        (static_cast<std::size_t>(layout_.first_grain[replica]) - read.first_grain) * slots;
+    const std::size_t count = order.size() * slots;
+    const auto x = reals(read.force_x, first, count), y = reals(read.force_y, first, count),
+               z = reals(read.force_z, first, count), overlap = reals(read.overlap, first, count),
+               arm = reals(read.arm, first, count);
+    const int* const partner = read.partner.data() + first;
     const PlateFace plate = plate_face(replicas_[replica], plate_z_[replica]);
     const Box box = deformed(replicas_[replica].box, strain_[replica]);
     std::vector<Contact> found;
     for (std::size_t slot = 0; slot < count; ++slot) {
         if (!(overlap[slot] > 0)) continue;
         Contact contact;
-        contact.grain = order[slot / build_.slots];
+        contact.grain = order[slot / slots];
         Vec3 direction;
         if (partner[slot] < NO_PARTNER) {
             const int wall = WALL_PARTNER(0) - partner[slot];

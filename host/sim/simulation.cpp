@@ -124,20 +124,25 @@ bool Simulation::advance(const ScanSink& on_scan, const FailureSink& on_failure)
     }
     if (!any) return false;
     const auto results = engine_.advance(intervals);
+    std::map<int, ProtocolRunner::ScanTag> due;
     for (int r = 0; r < engine_.replicas(); ++r) {
         if (intervals[r].steps == 0) continue;
         grain_steps_ += static_cast<long>(results[r].steps) * static_cast<long>(diameter_[r].size());
         plates_[r].made(results[r]);
         const auto tag = runners_[r].made(results[r], plates_[r].arrived(engine_.max_plate_move(r)));
+        if (tag && !results[r].status) due[r] = *tag;
+    }
+    std::map<int, Scan> recorded = scans(due, results);
+    for (int r = 0; r < engine_.replicas(); ++r) {
+        if (intervals[r].steps == 0) continue;
         if (results[r].status) {
             on_failure(r, failure(r, results[r]));
             runners_[r].stop();
             continue;
         }
-        if (tag) {
-            Scan recorded = scan(r, *tag, results[r]);
-            const std::string beyond = beyond_law(scene_.replicas[r], recorded);
-            on_scan(r, std::move(recorded));
+        if (const auto found = recorded.find(r); found != recorded.end()) {
+            const std::string beyond = beyond_law(scene_.replicas[r], found->second);
+            on_scan(r, std::move(found->second));
             if (!beyond.empty()) {
                 on_failure(r, {runners_[r].state().step, -1, beyond});
                 runners_[r].stop();
@@ -150,7 +155,22 @@ bool Simulation::advance(const ScanSink& on_scan, const FailureSink& on_failure)
     return true;
 }
 
-Scan Simulation::scan(int replica, const ProtocolRunner::ScanTag& tag, const IntervalResult& result) const {
+std::map<int, Scan> Simulation::scans(const std::map<int, ProtocolRunner::ScanTag>& due,
+                                      const std::vector<IntervalResult>& results) const {
+    std::vector<int> replicas;
+    for (const auto& [replica, _] : due) replicas.push_back(replica);
+    std::vector<Scan> found(replicas.size());
+    engine_.for_each_state(replicas, [&](std::size_t i, ReplicaState state) {
+        const int r = replicas[i];
+        found[i] = scan(r, due.at(r), results[r], std::move(state));
+    });
+    std::map<int, Scan> all;
+    for (std::size_t i = 0; i < replicas.size(); ++i) all[replicas[i]] = std::move(found[i]);
+    return all;
+}
+
+Scan Simulation::scan(int replica, const ProtocolRunner::ScanTag& tag, const IntervalResult& result,
+                      ReplicaState state) const {
     Scan scan;
     scan.frame = tag.frame;
     scan.cycle = tag.cycle;
@@ -164,7 +184,6 @@ Scan Simulation::scan(int replica, const ProtocolRunner::ScanTag& tag, const Int
     scan.wall_force = result.wall_force;
     scan.kinetic_energy = result.kinetic_energy;
     scan.elastic_energy = result.elastic_energy;
-    auto state = engine_.state(replica);
     scan.position = std::move(state.position);
     scan.contacts = std::move(state.contacts);
     if (is_cell(spec.box)) bring_into_cell(deformed(spec.box, scan.strain), scan);

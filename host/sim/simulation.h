@@ -34,7 +34,11 @@ public:
     void restore(const std::map<std::string, std::vector<std::byte>>& saved);
 
 private:
-    Scan scan(int replica, const ProtocolRunner::ScanTag& tag, const IntervalResult& result) const;
+    /// The scans that are due, by replica.
+    std::map<int, Scan> scans(const std::map<int, ProtocolRunner::ScanTag>& due,
+                              const std::vector<IntervalResult>& results) const;
+    Scan scan(int replica, const ProtocolRunner::ScanTag& tag, const IntervalResult& result,
+              ReplicaState state) const;
     Failure failure(int replica, const IntervalResult& result) const;
 
     Scene scene_;

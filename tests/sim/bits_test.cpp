@@ -55,6 +55,23 @@ TEST(Bits, AReplicaIsTheSameAloneAndInAnyBatch) {
     }
 }
 
+TEST(Bits, StatesReadTogetherAreThoseReadAlone) {
+    Batch batch(build(Precision::single_precision), starts({0, 1, 2, 3, 4, 5, 6}));
+    batch.advance(40);
+    for (const std::vector<int>& replicas :
+         {std::vector{0, 1, 2, 3, 4, 5, 6}, std::vector{1, 2, 5}, std::vector{6}, std::vector<int>{}}) {
+        std::vector<mcdem::ReplicaState> found(replicas.size());
+        batch.engine().for_each_state(
+            replicas, [&](std::size_t i, mcdem::ReplicaState state) { found[i] = std::move(state); });
+        for (std::size_t i = 0; i < replicas.size(); ++i) {
+            const auto alone = batch.engine().state(replicas[i]);
+            EXPECT_TRUE(same_bits(found[i], alone)) << replicas[i];
+            EXPECT_EQ(found[i].contacts.size(), alone.contacts.size());
+            EXPECT_FALSE(alone.contacts.empty());
+        }
+    }
+}
+
 TEST(Bits, TwoFreshRunsAreTheSame) {
     WholeRun one(Precision::single_precision, starts({0, 1, 2, 3})),
         other(Precision::single_precision, starts({0, 1, 2, 3}));

@@ -68,7 +68,9 @@ void expect_stress(const Traced::Scanned& scan, const mcdem::SetStress& set) {
     EXPECT_LT((scan.stress - scan.stress.transpose()).cwiseAbs().maxCoeff() / pressure, allowed);
     EXPECT_TRUE(scan.tag.settled);
     for (int axis = 0; axis < 3; ++axis)
-        if (!std::isnan(set[axis])) EXPECT_NEAR(scan.stress(axis, axis) / set[axis], 1, 1e-3) << axis;
+        if (!std::isnan(set[axis])) {
+            EXPECT_NEAR(scan.stress(axis, axis) / set[axis], 1, 1e-3) << axis;
+        }
 }
 
 TEST(StressOfACrystal, UnderPressureIsHertz) {
