@@ -7,13 +7,13 @@ namespace mcdem::inline cli {
 
 void add_challenge(CLI::App& app, int& exit_code) {
     auto* sub =
-        app.add_subcommand("challenge", "Test diagnoses on simulated experiments whose effects are withheld");
+        app.add_subcommand("challenge", "Test the diagnosis on simulated experiments with hidden effects");
     sub->require_subcommand(1);
     for (const auto add : {add_challenge_make, add_challenge_run, add_challenge_score}) add(*sub, exit_code);
     sub->footer(
-        "`make` draws realities and seals the answers in a file; `run` diagnoses the realities without that "
-        "file;\n"
-        "`score` opens it and holds the diagnoses against it.\n"
+        "`make` simulates experiments with hidden effects and writes the answers to a file; `run` diagnoses "
+        "the\n"
+        "experiments without that file; `score` compares the diagnoses with it.\n"
         "Example:\n"
         "  mcdem challenge make scenes/challenge.toml --out out/challenge\n"
         "  mcdem challenge run out/challenge --scene scenes/challenge.toml --library out/library.json --out "

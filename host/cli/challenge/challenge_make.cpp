@@ -45,14 +45,13 @@ void add_sizes(CLI::App& sub, ChallengeSize& size) {
     const auto add = [&](const char* option, int& value, const char* help) {
         sub.add_option(option, value, help)->capture_default_str()->type_name("N");
     };
-    add("--none", size.none, "Realities without an effect");
-    add("--per-effect", size.per_effect, "Realities with each effect of the library");
-    add("--pairs", size.pairs, "Realities with two of them");
-    add("--unknown", size.unknown,
-        "Realities with an effect that the library of their diagnosis does not have");
+    add("--none", size.none, "Number of experiments without an effect");
+    add("--per-effect", size.per_effect, "Number of experiments with each effect of the library");
+    add("--pairs", size.pairs, "Number of experiments with two effects of the library");
+    add("--unknown", size.unknown, "Number of experiments with an effect that the library does not have");
     add("--outside", size.outside_prior,
-        "Realities with modulus or strain zero far outside their uncertainty");
-    add("--packings", size.packings, "Different packings; an even number");
+        "Number of experiments with modulus or strain zero far outside their uncertainty");
+    add("--packings", size.packings, "Number of different packings; even");
 }
 
 void add_measurement(CLI::App& sub, Measurement& measurement) {
@@ -60,33 +59,33 @@ void add_measurement(CLI::App& sub, Measurement& measurement) {
     const auto add = [&](const char* option, double& value, const char* help) {
         sub.add_option(option, value, help)->capture_default_str()->check(CLI::NonNegativeNumber);
     };
-    add("--position-error", measurement.position_error, "One sigma of measured coordinates [m]");
-    add("--diameter-error", measurement.diameter_error, "One sigma of measured diameters [m]");
-    add("--force-error", measurement.force_error, "One sigma of measured contact forces, relative");
-    add("--force-threshold", measurement.force_threshold, "Weaker contact forces are not seen [N]");
+    add("--position-error", measurement.position_error, "Standard error of measured coordinates [m]");
+    add("--diameter-error", measurement.diameter_error, "Standard error of measured diameters [m]");
+    add("--force-error", measurement.force_error, "Relative standard error of measured contact forces");
+    add("--force-threshold", measurement.force_threshold, "Contact forces below this are not measured [N]");
 }
 
 }  // namespace
 
 void add_challenge_make(CLI::App& challenge, int& exit_code) {
     auto* sub = challenge.add_subcommand(
-        "make", "Simulate realities and write them as experiments; seal the answers");
+        "make", "Simulate experiments with hidden effects, and write the answers to a file of their own");
     auto command = std::make_shared<MakeCommand>();
     add_scene_options(*sub, command->scene);
     sub->add_option("--out", command->out, "Folder for the challenge")->required()->type_name("DIR");
-    sub->add_option("--truth", command->truth, "File for the answers; DIR/truth.json where left out")
+    sub->add_option("--truth", command->truth, "File for the answers; default: DIR/truth.json")
         ->type_name("FILE");
     sub->add_option("--seed", command->options.seed,
-                    "Everything is drawn from it; where left out it is known to nobody")
+                    "Seed of all draws; default: drawn at random and not shown")
         ->type_name("S");
-    sub->add_option("--effects", command->options.effects, "Effects to try, instead of a dozen of all kinds")
+    sub->add_option("--effects", command->options.effects, "Effects to hide; default: a dozen of all kinds")
         ->delimiter(',')
         ->type_name("NAME,..");
     add_sizes(*sub, command->options.size);
     add_measurement(*sub, command->options.measurement);
     add_device_option(*sub, command->device);
     sub->footer(
-        "The same command goes on where an interrupted one stopped.\n"
+        "The same command continues where an interrupted one stopped.\n"
         "Example:\n"
         "  mcdem challenge make scenes/challenge.toml --out out/challenge --truth out/truth.json");
     sub->callback([command, &exit_code] { make(*command, exit_code); });

@@ -105,39 +105,39 @@ void add_numbers(CLI::App& sub, ChallengeRunOptions& options) {
     const auto add = [&](const char* option, int& value, const char* help) {
         sub.add_option(option, value, help)->capture_default_str()->type_name("N");
     };
-    add("--replicates", options.replicates, "Simulations of each experiment as it is");
-    add("--confirmations", options.confirmations, "Simulations of each diagnosis with its cause");
-    add("--library-packings", options.library.packings, "Packings of a new library");
-    add("--library-replicates", options.library.replicates, "Its simulations a packing");
-    add("--library-pairs", options.library.pairs, "Of them, those repeated with every effect");
-    sub.add_option("--candidates", options.library.candidates, "Effects of a new library, instead of all")
+    add("--replicates", options.replicates,
+        "Number of simulations of each experiment with the unchanged scene");
+    add("--confirmations", options.confirmations, "Number of confirming simulations of each diagnosis");
+    add("--library-packings", options.library.packings, "Number of packings of a new library");
+    add("--library-replicates", options.library.replicates, "Simulations per packing of a new library");
+    add("--library-pairs", options.library.pairs,
+        "Simulations of a new library that are repeated with every effect");
+    sub.add_option("--candidates", options.library.candidates, "Effects of a new library; default: all")
         ->delimiter(',')
         ->type_name("NAME,..");
-    sub.add_option("--seed", options.seed, "Of everything that is random in the diagnoses")
+    sub.add_option("--seed", options.seed, "Seed of all random numbers of the diagnoses")
         ->capture_default_str();
 }
 
 }  // namespace
 
 void add_challenge_run(CLI::App& challenge, int& exit_code) {
-    auto* sub =
-        challenge.add_subcommand("run", "Diagnose every reality of a challenge from its experiment alone");
+    auto* sub = challenge.add_subcommand("run", "Diagnose every experiment of a challenge");
     auto command = std::make_shared<RunChallengeCommand>();
     sub->add_option("CHALLENGE", command->challenge, "Folder of the challenge")->required();
     sub->add_option("--scene", command->scene, "Scene that the challenge was made with")->required();
-    sub->add_option("--set", command->overrides, "Overrides a key of the scene; may come several times")
+    sub->add_option("--set", command->overrides, "Override a scene key; may be repeated")
         ->type_name("KEY=VALUE")
         ->allow_extra_args(false);
-    sub->add_option("--library", command->library, "Signature library; made where the file is missing")
+    sub->add_option("--library", command->library, "Signature library; made if the file does not exist")
         ->required()
         ->type_name("FILE");
     sub->add_option("--out", command->out, "Folder for the diagnoses")->required()->type_name("DIR");
     add_numbers(*sub, command->options);
     add_sharing_options(*sub, command->sharing, command->device);
     sub->footer(
-        "The same command goes on where an interrupted one stopped.\n"
-        "Its parts, for many devices or nodes, are the cases, and before them the simulations of the "
-        "library. "
+        "The same command continues where an interrupted one stopped.\n"
+        "Many devices or nodes compute it in parts: the simulations of the library, then the cases.\n"
         "Example:\n"
         "  mpirun -n 4 mcdem challenge run out/challenge --scene scenes/challenge.toml \\\n"
         "      --library out/library.json --out out/answers --mpi");

@@ -56,16 +56,16 @@ void score(const ScoreCommand& command) {
 }  // namespace
 
 void add_challenge_score(CLI::App& challenge, int&) {
-    auto* sub = challenge.add_subcommand("score", "Open the answers and hold the diagnoses against them");
+    auto* sub = challenge.add_subcommand("score", "Compare the diagnoses with the answers");
     auto command = std::make_shared<ScoreCommand>();
     sub->add_option("CHALLENGE", command->challenge, "Folder of the challenge")->required();
-    sub->add_option("ANSWERS", command->out, "Folder of the diagnoses; the score is written there too")
+    sub->add_option("ANSWERS", command->out, "Folder of the diagnoses; the score is written to it")
         ->required();
-    sub->add_option("--truth", command->truth, "File with the truth; CHALLENGE/truth.json where left out")
+    sub->add_option("--truth", command->truth, "File with the answers; default: CHALLENGE/truth.json")
         ->type_name("FILE");
-    sub->add_flag("--no-figures", command->no_figures, "Draw no figures");
+    sub->add_flag("--no-figures", command->no_figures, "Do not draw figures");
     sub->footer(
-        "Truth of another SHA-256 than challenge.json says is refused.\n"
+        "Answers whose SHA-256 is not the one in challenge.json are refused.\n"
         "Example:\n"
         "  mcdem challenge score out/challenge out/answers");
     sub->callback([command] { score(*command); });

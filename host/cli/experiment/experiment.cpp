@@ -49,8 +49,8 @@ std::string wrapped(const std::string& head, const std::string& text) {
 }
 
 void add_experiment(CLI::App& app, int& exit_code) {
-    auto* sub = app.add_subcommand("experiment",
-                                   "Check an experiment's folder, or make one of tables or of a simulation");
+    auto* sub = app.add_subcommand(
+        "experiment", "Check an experiment folder, or make one from tables or from a simulation");
     sub->require_subcommand(1);
     add_experiment_check(*sub);
     add_experiment_import(*sub, exit_code);

@@ -43,13 +43,13 @@ void print_check(const std::string& folder) {
 }  // namespace
 
 void add_experiment_check(CLI::App& experiment) {
-    auto* sub =
-        experiment.add_subcommand("check", "Say what an experiment holds, lacks, and what looks odd in it");
+    auto* sub = experiment.add_subcommand(
+        "check", "Report what an experiment contains, what is missing and what looks wrong");
     auto folder = std::make_shared<std::string>();
     sub->add_option("DIR", *folder, "Experiment folder")->required();
     sub->footer(
-        "Says last what must be added before `mcdem diagnose` takes it, which refuses it in the same words.\n"
-        "The exit code is 0 where the folder can be read, odd or not, and 2 where it cannot.\n"
+        "The last lines say what must be added before `mcdem diagnose` accepts the folder.\n"
+        "The exit code is 0 if the folder can be read, and 2 if it cannot.\n"
         "Example:\n"
         "  mcdem experiment check data/hydrogel");
     sub->callback([folder] { print_check(*folder); });

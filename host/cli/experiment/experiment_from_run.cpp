@@ -190,51 +190,57 @@ void add_instrument_options(CLI::App& sub, Instrument& instrument) {
     };
     const CLI::Range relative(0.0, 1.0), bias(-0.5, 0.5);
     Measurement& stated = instrument.stated;
-    add("--position-error", stated.position_error, "M", "Sigma of each coordinate of a centre [m]",
+    add("--position-error", stated.position_error, "M", "Standard error of each coordinate of a centre [m]",
         CLI::NonNegativeNumber);
-    add("--diameter-error", stated.diameter_error, "M", "Sigma of a diameter [m]", CLI::NonNegativeNumber);
-    add("--force-error", stated.force_error, "PART", "Sigma of a contact force over the force", relative);
-    add("--force-threshold", stated.force_threshold, "N", "Weaker contacts are not seen [N]",
+    add("--diameter-error", stated.diameter_error, "M", "Standard error of a diameter [m]",
+        CLI::NonNegativeNumber);
+    add("--force-error", stated.force_error, "PART", "Relative standard error of a contact force", relative);
+    add("--force-threshold", stated.force_threshold, "N", "Contacts below this force are not measured [N]",
         CLI::NonNegativeNumber);
     add("--force-bias", instrument.force_bias, "PART",
-        "Not stated: contact forces are read larger by this part", bias);
+        "Unstated error: contact forces are read too large by this fraction", bias);
     add("--threshold-shift", instrument.threshold_shift, "N",
-        "Not stated: the true threshold is higher by this [N]", CLI::Range(-1.0, 1.0));
+        "Unstated error: the true force threshold is higher by this [N]", CLI::Range(-1.0, 1.0));
     add("--position-bias", instrument.position_bias, "PART",
-        "Not stated: lengths are read larger by this part", CLI::Range(-0.05, 0.05));
+        "Unstated error: lengths are read too large by this fraction", CLI::Range(-0.05, 0.05));
     add("--strain-offset", instrument.strain_offset, "M",
-        "Not stated: plate positions are read higher by this [m]", CLI::Range(-1.0, 1.0));
+        "Unstated error: plate positions are read too high by this [m]", CLI::Range(-1.0, 1.0));
     add("--gauge-drift", instrument.gauge_drift, "PART",
-        "Not stated: after the last cycle the top force is read larger by this part, before in proportion to "
-        "the plate's path",
+        "Unstated error: drift of the load cell's gain, by this fraction at the end of the last cycle, "
+        "before in proportion to the plate's path",
         bias);
     add("--zero-drift", instrument.zero_drift, "PART",
-        "Not stated: .. and larger by this part of the highest top force, whatever it is", bias);
+        "Unstated error: drift of the load cell's zero, by this fraction of the highest top force at the end "
+        "of the last cycle, before in proportion to the plate's path",
+        bias);
     add("--force-saturation", instrument.force_saturation, "PER_N",
-        "Not stated: a in f/(1 + a f), what is read of a contact force f [1/N]", CLI::NonNegativeNumber);
+        "Unstated error: a contact force f is read as f/(1 + a f), with this a [1/N]",
+        CLI::NonNegativeNumber);
 }
 
 }  // namespace
 
 void add_experiment_from_run(CLI::App& experiment) {
-    auto* sub = experiment.add_subcommand("from-run", "Write a simulation as an experiment that measured it");
+    auto* sub =
+        experiment.add_subcommand("from-run", "Write a simulation as an experiment with measurement errors");
     auto command = std::make_shared<FromRunCommand>();
     sub->add_option("RUN", command->run, "Result folder or file")->required();
-    sub->add_option("--out", command->out, "Folder to be made")->required()->type_name("DIR");
+    sub->add_option("--out", command->out, "Folder to create")->required()->type_name("DIR");
     sub->add_option("--replica", command->replica,
-                    "Label or number, from 0, of the replica; needed where there are several")
+                    "Label or number (from 0) of the replica; required where there are several")
         ->type_name("REPLICA");
-    sub->add_option("--name", command->name, "Name of the experiment (else the run's and the replica's)")
+    sub->add_option("--name", command->name,
+                    "Name of the experiment (default: that of the run and the replica)")
         ->type_name("TEXT");
     add_instrument_options(*sub, command->instrument);
     sub->add_option("--uncertainty", command->uncertainty,
-                    "What is stated of a material's sigma, such as grains.youngs_modulus=500")
+                    "Stated standard error of a material parameter, such as grains.youngs_modulus=500")
         ->type_name("KEY=SIGMA")
         ->allow_extra_args(false);
-    sub->add_option("--seed", command->seed, "Of the noise")->capture_default_str();
-    sub->add_flag("--gzip", command->gzip, "Pack the tables");
+    sub->add_option("--seed", command->seed, "Seed of the noise")->capture_default_str();
+    sub->add_flag("--gzip", command->gzip, "Compress the tables with gzip");
     sub->footer(
-        "Materials are stated as the run has them; the effects that it was simulated with are not.\n"
+        "Materials are stated as in the run; the effects it was simulated with are not.\n"
         "Examples:\n"
         "  mcdem run scenes/small.toml --out out/begun --set protocol.scan_at_start=true\n"
         "  mcdem experiment from-run out/begun --replica mc_dem --out out/reality");

@@ -204,41 +204,41 @@ int run_import(const ImportCommand& command) {
 }  // namespace
 
 void add_experiment_import(CLI::App& experiment, int& exit_code) {
-    auto* sub = experiment.add_subcommand("import",
-                                          "Make an experiment of a laboratory's or another program's tables");
+    auto* sub = experiment.add_subcommand(
+        "import", "Make an experiment from the tables of a laboratory or another program");
     auto command = std::make_shared<ImportCommand>();
     sub->add_option(
         "TABLE", command->tables,
         "Tables of the plate, the grains and the contacts: text, dumps of LAMMPS and LIGGGHTS, text "
         "and VTK of Yade, extended xyz, regions of scikit-image, trackpy's and SPAM's tables; any may be "
         "packed with gzip");
-    sub->add_option("--out", command->out, "Folder to be made")->required()->type_name("DIR");
+    sub->add_option("--out", command->out, "Folder to create")->required()->type_name("DIR");
     sub->add_option("--mapping", command->mapping,
-                    "What the columns are: the mapping.toml that an import without it has written, corrected")
+                    "Meaning of the columns: the mapping.toml written by an import without this option, "
+                    "corrected by hand")
         ->type_name("FILE");
     sub->add_option("--set", command->settings,
-                    "What the tables do not tell, by the keys of experiment.toml, such as "
-                    "'box.size=[0.165, 0.166]'; may come several times")
+                    "Set a key of experiment.toml that the tables do not contain, such as 'box.size=[0.165, "
+                    "0.166]'; may be repeated")
         ->type_name("KEY=VALUE")
         ->allow_extra_args(false);
-    sub->add_option("--metadata", command->metadata, "The same as a file like experiment.toml")
+    sub->add_option("--metadata", command->metadata, "The same from a file in the format of experiment.toml")
         ->type_name("FILE");
     sub->add_option("--voxel-size", command->voxel_size,
-                    "Edge of a voxel [m], where tables of images count in voxels")
+                    "Edge length of a voxel [m], for tables of images in voxels")
         ->type_name("LENGTH");
     sub->add_option("--name", command->name,
-                    "Name of the experiment (else that of the metadata, or of the folder)")
+                    "Name of the experiment (default: that of the metadata, or of the folder)")
         ->type_name("TEXT");
-    sub->add_flag("--gzip", command->gzip, "Pack the tables");
+    sub->add_flag("--gzip", command->gzip, "Compress the tables with gzip");
     sub->footer(
-        "Without --mapping it guesses what the columns are and in which units, says so, and writes the guess "
-        "as\n"
-        "DIR/mapping.toml. Where a guess is not safe, nothing is imported (exit code 2): the lines with a "
-        "question mark\n"
-        "are to be corrected, and the import repeated with --mapping. Tables given beside --mapping take the "
-        "place of\n"
-        "those it names: one mapping serves all experiments of a laboratory. The box must be given.\n"
-        "z is upwards: in the mapping a minus before a column's name turns it round, z = \"-depth\".\n"
+        "Without --mapping the meaning and units of the columns are guessed, reported and written to\n"
+        "DIR/mapping.toml. Where a guess is not safe, nothing is imported (exit code 2): correct the lines "
+        "with a\n"
+        "question mark and repeat the import with --mapping. Tables given with --mapping replace those it "
+        "names, so one\n"
+        "mapping serves all experiments of a laboratory. The box must be given.\n"
+        "z points upwards; in the mapping a minus sign before a column's name reverses it: z = \"-depth\".\n"
         "Examples:\n"
         "  mcdem experiment import data/plate.csv data/grains.csv data/contacts.csv --set 'box.size=[0.165, "
         "0.166]' \\\n"

@@ -25,23 +25,22 @@ int run(const DistributeCommand& command) {
 }  // namespace
 
 void add_distribute(CLI::App& app, int& exit_code) {
-    auto* sub = app.add_subcommand("distribute", "Compute the parts of a command's work by Dask");
+    auto* sub = app.add_subcommand("distribute", "Compute the parts of a command's work with Dask");
     auto command = std::make_shared<DistributeCommand>();
-    sub->add_option(
-           "--scheduler", command->scheduler,
-           "Address (tcp://..) or file of a Dask scheduler that runs; without it one of this machine, with "
-           "a worker for each of its devices")
+    sub->add_option("--scheduler", command->scheduler,
+                    "Address (tcp://..) or file of a running Dask scheduler; default: a scheduler on this "
+                    "machine with one worker per device")
         ->type_name("ADDRESS");
-    sub->add_option("--tries", command->tries, "Of a part that fails")
+    sub->add_option("--tries", command->tries, "Number of attempts for a part that fails")
         ->check(CLI::Range(1, 100))
         ->capture_default_str();
     sub->prefix_command();
     sub->footer(
-        "COMMAND is `run`, `challenge run` or `diagnose`, with its options. Its parts are Dask's tasks: "
+        "COMMAND is `run`, `challenge run` or `diagnose`, with its options. Its parts become Dask tasks: "
         "those of a lost\n"
-        "worker are computed again, the dashboard whose address is printed shows how far they are, and the "
-        "same\n"
-        "command goes on with what is missing. The result is that of one process to the last bit. Needs\n"
+        "worker are computed again, the dashboard at the printed address shows the progress, and the same "
+        "command\n"
+        "continues with what is missing. The result equals that of one process bit for bit. Needs\n"
         "python3-distributed. From Python: mcdem.distributed (host/python/README.md).\n"
         "Examples:\n"
         "  mcdem distribute run scenes/replicas.toml --out out/replicas\n"

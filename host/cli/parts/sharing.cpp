@@ -204,18 +204,19 @@ void add_part_options(CLI::App& command, SharingOptions& options, std::string& d
             "Number or part of the name of a device, as `mcdem devices` lists them; all: every device of "
             "one kind")
         ->type_name("DEVICE");
-    command.add_option("--part", options.part, "Compute this part of the work alone")
+    command.add_option("--part", options.part, "Compute only this part of the work")
         ->type_name("K")
         ->group(group);
-    command.add_flag("--missing", options.missing, "Print the numbers of parts that can be computed now")
+    command.add_flag("--missing", options.missing, "Print the numbers of the parts that can be computed now")
         ->group(group)
         ->excludes("--part");
-    command.add_flag("--merge", options.merge, "Put the parts together, or say which are missing")
+    command.add_flag("--merge", options.merge, "Merge the parts, or list those that are missing")
         ->group(group)
         ->excludes("--part")
         ->excludes("--missing");
     command
-        .add_option("--workers", options.workers, "Processes that the work is cut for, where it is not known")
+        .add_option("--workers", options.workers,
+                    "Number of processes to divide the work for, where it cannot be detected")
         ->check(CLI::Range(1, 100'000))
         ->type_name("N")
         ->group(group);
@@ -223,24 +224,28 @@ void add_part_options(CLI::App& command, SharingOptions& options, std::string& d
 
 void add_sharing_options(CLI::App& command, SharingOptions& options, std::string& device) {
     add_part_options(command, options, device);
-    auto* mpi =
-        command.add_flag("--mpi", options.mpi, "This is one of the ranks that mpirun or srun started");
+    auto* mpi = command.add_flag("--mpi", options.mpi, "Run as one of the ranks that mpirun or srun started");
     auto* slurm = command.add_flag("--slurm", options.slurm,
-                                   "Submit a Slurm job array, a task a part, and wait for it");
+                                   "Submit a Slurm job array with one task per part, and wait for it");
     for (auto* way : {mpi, slurm})
         way->group(group)->excludes("--part")->excludes("--missing")->excludes("--merge");
     mpi->excludes(slurm);
     for (auto* option :
-         {command.add_option("--slurm-tasks", options.slurm_tasks, "Tasks of the array that run at a time")
+         {command
+              .add_option("--slurm-tasks", options.slurm_tasks,
+                          "Number of array tasks that run at the same time")
               ->capture_default_str()
               ->check(CLI::Range(1, 100'000))
               ->type_name("N"),
-          command.add_option("--slurm-partition", options.slurm_partition, "Partition")->type_name("NAME"),
+          command.add_option("--slurm-partition", options.slurm_partition, "Slurm partition")
+              ->type_name("NAME"),
           command.add_option("--slurm-time", options.slurm_time, "Time limit of a task, as sbatch takes it")
               ->type_name("TIME"),
-          command.add_option("--slurm-lines", options.slurm_lines, "Lines for the top of the job script")
+          command
+              .add_option("--slurm-lines", options.slurm_lines,
+                          "File with further lines for the top of the job script")
               ->type_name("FILE"),
-          command.add_flag("--no-wait", options.no_wait, "Submit, and do not wait")})
+          command.add_flag("--no-wait", options.no_wait, "Submit the job and return at once")})
         option->needs(slurm)->group(group);
 }
 

@@ -137,8 +137,7 @@ void add_search_options(CLI::App& sub, CalibrateOptions& options) {
 
 void add_calibrate(CLI::App& app, int&) {
     auto* sub = app.add_subcommand(
-        "calibrate",
-        "Find the gamma of MC-DEM, or the E of another model, that gives an experiment's top force");
+        "calibrate", "Fit gamma of MC-DEM, or E of another model, to the top force of an experiment");
     auto command = std::make_shared<CalibrateCommand>();
     add_scene_options(*sub, command->scene);
     add_reference_options(

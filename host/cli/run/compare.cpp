@@ -68,15 +68,16 @@ void print_figures(const CompareCommand& command) {
 
 void add_compare(CLI::App& app, int&) {
     auto* sub =
-        app.add_subcommand("compare", "Hold runs against an experiment or another run: the paper's table");
+        app.add_subcommand("compare", "Compare runs with an experiment or another run: the paper's table");
     auto command = std::make_shared<CompareCommand>();
     add_runs_option(*sub, command->runs);
     add_reference_options(*sub, command->reference, "--against",
-                          "Experiment folder or run; several are taken together");
+                          "Experiment folder or run; several are used together");
     sub->get_option("--against")->required();
-    sub->add_option("--out", command->out, "Folder for the four figures; none: no figures")->type_name("DIR");
+    sub->add_option("--out", command->out, "Folder for the four figures; without it no figures are drawn")
+        ->type_name("DIR");
     sub->add_option("--touch-force", command->touch_force,
-                    "errf leaves out levels where the reference's top force is not above it [N]")
+                    "Leave levels out of errf where the reference's top force is not above this [N]")
         ->type_name("N");
     add_figure_options(*sub, command->figures);
     sub->add_flag("--markdown", command->markdown, "Print Markdown");
@@ -91,8 +92,8 @@ void add_compare(CLI::App& app, int&) {
 }
 
 void add_figures(CLI::App& app, int&) {
-    auto* sub =
-        app.add_subcommand("figures", "Draw the paper's four figures of runs, or the three of a diagnosis");
+    auto* sub = app.add_subcommand(
+        "figures", "Draw the four figures of the paper from runs, or the three of a diagnosis");
     auto command = std::make_shared<CompareCommand>();
     sub->add_option("RUN|DIAGNOSIS", command->runs,
                     "Result folders or files, or the folder of a diagnosis or its diagnosis.json")

@@ -67,42 +67,44 @@ int run(ConvergeCommand& command) {
 }  // namespace
 
 void add_converge(CLI::App& app, int& exit_code) {
-    auto* sub =
-        app.add_subcommand("converge", "What speed, inertia, time step and settling do to a scene's answers");
+    auto* sub = app.add_subcommand(
+        "converge", "Measure how plate speed, inertia, time step and settling change a scene's results");
     auto command = std::make_shared<ConvergeCommand>();
     add_scene_options(*sub, command->scene);
-    sub->add_option("--out", command->out,
-                    "Folder for the table, the figure, and every simulation made for them")
+    sub->add_option("--out", command->out, "Folder for the table, the figure and the simulations")
         ->required()
         ->type_name("DIR");
-    sub->add_option("--replicas", command->options.replicas, "Jittered copies of the packing, paired")
+    sub->add_option("--replicas", command->options.replicas,
+                    "Number of jittered copies of the packing; comparisons are paired")
         ->check(CLI::Range(8, 10000))
         ->capture_default_str();
     sub->add_option("--jitter", command->options.jitter,
-                    "Standard deviation of what sets the copies apart; 0: half a per cent of a diameter [m]")
+                    "Standard deviation of the jitter [m]; 0: half a per cent of a diameter")
         ->check(CLI::Range(0.0, 1.0))
         ->capture_default_str();
-    sub->add_option("--force-limit", command->options.limits.force, "Largest relative error of forces")
+    sub->add_option("--force-limit", command->options.limits.force,
+                    "Largest relative error allowed in forces")
         ->check(CLI::PositiveNumber)
         ->capture_default_str();
     sub->add_option("--sd-limit", command->options.limits.deviations,
-                    "Largest error of all else, in standard deviations of the packing's copies")
+                    "Largest error allowed in other observables, in standard deviations over the copies")
         ->check(CLI::PositiveNumber)
         ->capture_default_str();
-    sub->add_option("--seed", command->options.seed, "Of the jitter")->capture_default_str();
+    sub->add_option("--seed", command->options.seed, "Seed of the jitter")->capture_default_str();
     add_device_option(*sub, command->device);
     sub->footer(
         "Runs the scene as it stands and with the plate 2, 4 and 8 times slower, a quarter of the density, "
         "half\n"
         "the time step, stricter settling, double precision and wider neighbour lists, all from the same "
         "jittered\n"
-        "packings, and extrapolates each to its limit: for every observable that diagnosis uses, the error "
-        "with\n"
-        "its standard error, what it is due to, what would bring it below the limit and how much longer "
-        "runs\n"
-        "get. Where jittered copies hardly differ, every replica is a packing drawn anew. A scene with\n"
-        "protocol.rate_tolerance is also run with less of it. Simulations are kept in DIR/simulations: an\n"
-        "interrupted command goes on where it stopped.\n"
+        "packings, and extrapolates each to its limit. Reports for every observable of the diagnosis the "
+        "error with its\n"
+        "standard error, its cause, the setting that brings it below the limit and how much longer runs "
+        "get.\n"
+        "Where jittered copies hardly differ, every replica is a new random packing. A scene with\n"
+        "protocol.rate_tolerance is also run with less of it. Simulations are kept in DIR/simulations: the "
+        "same\n"
+        "command continues an interrupted one.\n"
         "Example:\n"
         "  mcdem converge scenes/small.toml --set contact.model=mc_dem --out out/converge --replicas 8");
     sub->callback([command, &exit_code] { exit_code = run(*command); });

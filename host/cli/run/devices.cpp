@@ -29,14 +29,13 @@ void print_devices() {
 }  // namespace
 
 void add_devices(CLI::App& app, int&) {
-    auto* command = app.add_subcommand("devices", "List the OpenCL devices that a run can use");
+    auto* command = app.add_subcommand("devices", "List the OpenCL devices");
     command->footer(
-        "The number in the first column, or a part of the name, is what --device takes:\n"
-        "  mcdem run scenes/small.toml --out out/small --device 0\n"
-        "Where nothing is said, a run uses MCDEM_DEVICE, else the first GPU, else the first device.");
+        "--device takes the number in the first column, or part of the name:\n  mcdem run scenes/small.toml "
+        "--out out/small --device 0\nWithout --device, a run uses MCDEM_DEVICE, else the first GPU, else the "
+        "first device.");
     auto alike = std::make_shared<bool>(false);
-    command->add_flag("--alike", *alike,
-                      "Print the numbers of those that `--device all` takes, and nothing else");
+    command->add_flag("--alike", *alike, "Print only the numbers of the devices that `--device all` uses");
     command->callback([alike] {
         if (!*alike) return print_devices();
         for (const int device : alike_devices("")) print_out("{}\n", device);

@@ -144,61 +144,59 @@ int run(DiagnoseCommand& command) {
 }  // namespace
 
 void add_diagnose(CLI::App& app, int& exit_code) {
-    auto* sub =
-        app.add_subcommand("diagnose", "Where a scene and an experiment part, and which effect is to blame");
+    auto* sub = app.add_subcommand(
+        "diagnose", "Find where a simulation and an experiment differ, and which effect explains it");
     auto command = std::make_shared<DiagnoseCommand>();
     add_scene_options(*sub, command->scene);
     sub->add_option("--experiment", command->experiments,
-                    "Experiment folder; may come several times, for packings that are diagnosed together")
+                    "Experiment folder; may be repeated to diagnose several packings together")
         ->required()
         ->allow_extra_args(false)
         ->type_name("DIR");
-    sub->add_option("--out", command->out,
-                    "Folder for the verdict, the page, and every simulation made for them")
+    sub->add_option("--out", command->out, "Folder for the verdict, the page and the simulations")
         ->required()
         ->type_name("DIR");
-    sub->add_option("--candidates", command->candidates, "Effects that may be to blame; all where left out")
+    sub->add_option("--candidates", command->candidates, "Candidate effects; default: all")
         ->delimiter(',')
         ->type_name("A,B,..");
-    sub->add_option("--replicates", command->replicates, "Runs of the scene as it stands: the noise floor")
+    sub->add_option("--replicates", command->replicates,
+                    "Number of runs of the unchanged scene; their scatter is the noise floor")
         ->check(CLI::Range(8, 10000))
         ->capture_default_str();
-    sub->add_option("--pairs", command->pairs, "Runs of each effect at each of its two amplitudes")
+    sub->add_option("--pairs", command->pairs, "Number of runs of each effect at each of its two amplitudes")
         ->check(CLI::Range(2, 10000))
         ->capture_default_str();
-    sub->add_option("--confirmations", command->confirmations, "Real runs of each proposed cause; 0: none")
+    sub->add_option("--confirmations", command->confirmations,
+                    "Number of confirming runs of each proposed cause; 0: none")
         ->check(CLI::Range(0, 10000))
         ->capture_default_str();
-    sub->add_option(
-           "--refine", command->refine,
-           "Where the gap is the simulation's own (not_converged), by how many times plate.speed, "
-           "grains.density or numerics.time_step is lowered at most before it is diagnosed again, runs "
-           "getting as much longer; 1: never")
+    sub->add_option("--refine", command->refine,
+                    "Where the scene is not converged, the largest factor by which plate.speed, "
+                    "grains.density or numerics.time_step is lowered before the diagnosis is repeated (runs "
+                    "take that much longer); 1: never")
         ->check(CLI::Range(1.0, 64.0))
         ->capture_default_str();
-    sub->add_option("--seed", command->seed, "Of everything drawn at random")->capture_default_str();
+    sub->add_option("--seed", command->seed, "Seed of all random numbers")->capture_default_str();
     sub->add_option("--library", command->library,
-                    "File of signatures: read where it is there, else made and written")
+                    "Signature library: read if the file exists, otherwise made and written")
         ->type_name("FILE");
     add_part_options(*sub, command->sharing, command->device);
     sub->footer(
-        "The scene is the simulation as it stands; box, plate and scans are the experiment's. Prints the "
+        "The scene describes the simulation; box, plate and scans are taken from the experiment. Prints the "
         "verdict in\n"
-        "six lines and writes diagnosis.json and diagnosis.html, with its figures, into DIR. Simulations "
-        "are kept\n"
-        "in DIR/simulations: nothing is computed twice, and an interrupted diagnosis goes on with the same "
-        "command.\n"
-        "The simulations of its library are parts that many devices or nodes compute; the rest of the "
-        "diagnosis is "
-        "done by\n"
-        "--merge (`mcdem distribute diagnose ..` does both).\n"
-        "Several packings of one experiment (--experiment A --experiment B) get one verdict, one amplitude, "
-        "and how\nwell each agrees with the others; each takes as long as a diagnosis of its own.\n"
+        "six lines, and writes diagnosis.json, diagnosis.html and figures to DIR. Simulations are kept in\n"
+        "DIR/simulations: nothing is computed twice, and the same command continues an interrupted "
+        "diagnosis.\n"
+        "Many devices or nodes can compute the simulations of the library in parts; --merge then does the "
+        "rest of the\n"
+        "diagnosis (`mcdem distribute diagnose ..` does both).\n"
+        "Several packings of one experiment (--experiment A --experiment B) get one verdict and one "
+        "amplitude, and a\n"
+        "check of how well they agree. Each packing takes as long as a diagnosis of its own.\n"
         "Verdicts: no_gap, effect, group (effects that these data cannot tell apart), unknown_effect (none "
         "of the\n"
-        "library), not_converged (the simulation's own numerics), calibration_suspect. `mcdem experiment "
-        "check DIR` tells beforehand what the data can "
-        "carry.\n"
+        "library), not_converged (the simulation's own numerics), calibration_suspect.\n"
+        "`mcdem experiment check DIR` reports beforehand what the data are sufficient for.\n"
         "Example:\n"
         "  mcdem diagnose scenes/small.toml --experiment out/reality --out out/diagnosis");
     sub->callback([command, &exit_code] { exit_code = run(*command); });

@@ -30,15 +30,16 @@ void add_export(CLI::App& app, int&) {
     auto command = std::make_shared<ExportCommand>();
     sub->add_option("RUN", command->run, "Result folder or file")->required();
     sub->add_flag("--vtk", command->formats.vtk,
-                  "VTKHDF files, one of grains, contacts, forces and walls each a scan");
+                  "Write VTKHDF files: grains, contacts, forces and walls, one file of each per scan");
     sub->add_flag("--xyz", command->formats.xyz,
-                  "Extended XYZ of the grains and LAMMPS dump local of the contacts, one of each a replica");
-    sub->add_option("--replica", command->choice.replicas, "Numbers of replicas; without it all")
+                  "Write extended XYZ of the grains and a LAMMPS local dump of the contacts, one file of "
+                  "each per replica");
+    sub->add_option("--replica", command->choice.replicas, "Numbers of the replicas to export; default: all")
         ->type_name("N");
     sub->add_option("--scan", command->choice.scans,
-                    "Numbers of scans (column frame of plate.csv); without it all")
+                    "Numbers of the scans to export (column frame of plate.csv); default: all")
         ->type_name("N");
-    sub->add_option("--out", command->out, "Folder for the files")->required()->type_name("DIR");
+    sub->add_option("--out", command->out, "Folder for the exported files")->required()->type_name("DIR");
     sub->footer(
         "Needs positions and contacts in the run (output.positions, output.contacts: both on by default).\n"
         "Examples:\n"

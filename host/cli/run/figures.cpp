@@ -80,12 +80,13 @@ std::vector<fs::path> draw_run(const fs::path& folder) {
 void add_figure_options(CLI::App& command, FigureOptions& figures) {
     command
         .add_option("--displacement", figures.distribution_displacement,
-                    "Force distribution at the level nearest to this plate displacement [m]")
+                    "Draw the force distribution at the level nearest to this plate displacement [m]")
         ->type_name("M")
         ->capture_default_str();
     command
         .add_option("--threshold", figures.threshold,
-                    "Contact forces below it do not count in the figure of Z, without a reference [N]")
+                    "Contact force below which contacts are not counted in the figure of Z, where there is "
+                    "no reference [N]")
         ->type_name("N")
         ->capture_default_str();
 }

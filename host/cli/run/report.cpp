@@ -68,29 +68,28 @@ int write_report(const ReportCommand& command) {
 }  // namespace
 
 void add_report(CLI::App& app, int& exit_code) {
-    auto* sub =
-        app.add_subcommand("report", "One page of runs and diagnoses: charts, packing in space, tables");
+    auto* sub = app.add_subcommand(
+        "report", "Write an HTML page of runs and diagnoses: charts, packings in 3D, tables");
     auto command = std::make_shared<ReportCommand>();
     sub->add_option("RUN|DIAGNOSIS", command->sources,
-                    "Result folders or files, finished or still running, and folders of diagnoses")
+                    "Result folders or files, of finished or running simulations, and diagnosis folders")
         ->required();
-    sub->add_option("--out", command->out, "The page, an HTML file")->required()->type_name("FILE");
-    add_reference_options(
-        *sub, command->reference, "--against",
-        "Experiment folder or run that the runs are held against; several are taken together");
+    sub->add_option("--out", command->out, "HTML file to write")->required()->type_name("FILE");
+    add_reference_options(*sub, command->reference, "--against",
+                          "Experiment folder or run to compare the runs with; several are used together");
     add_figure_options(*sub, command->figures);
-    sub->add_option("--scans", command->limits.scans,
-                    "Most scans of a packing to show in space; as many as fit into about 3 MB where left out")
+    sub->add_option(
+           "--scans", command->limits.scans,
+           "Maximum number of scans of a packing shown in 3D; default: as many as fit into about 3 MB")
         ->type_name("N")
         ->check(CLI::Range(1, 100000));
     sub->footer(
-        "The page needs no network and nothing beside it: send it as it is. It holds top force, force "
-        "distribution,\n"
-        "contacts per grain and scaling law with values to point at, the packing with its force chains and a "
-        "slider\n"
-        "over scans, of a diagnosis where, which and how far, the metrics, and the scenes with versions and "
-        "hashes.\n"
-        "The first replica of every setting is shown in space. Charts need a browser of 2023 or later.\n"
+        "The page is one file and needs no network. It shows top force, force distribution, coordination "
+        "number and\n"
+        "scaling law as interactive charts, the packing with its force chains and a slider over scans, the "
+        "results of\n"
+        "diagnoses, the metrics, and the scenes with versions and hashes.\n"
+        "The first replica of every setting is shown in 3D. Charts need a browser of 2023 or later.\n"
         "Examples:\n"
         "  mcdem report out/small --out out/small.html\n"
         "  mcdem report out/small out/diagnosis --out out/both.html --against out/reality");

@@ -66,7 +66,8 @@ LoadedReference load_reference(const ReferenceOptions& options, ReadWhat what) {
 }
 
 void add_runs_option(CLI::App& command, std::vector<std::string>& paths) {
-    command.add_option("RUN", paths, "Result folders or files, finished or still running")->required();
+    command.add_option("RUN", paths, "Result folders or files, of finished or running simulations")
+        ->required();
 }
 
 void add_reference_options(CLI::App& command, ReferenceOptions& options, const std::string& name,
@@ -74,11 +75,12 @@ void add_reference_options(CLI::App& command, ReferenceOptions& options, const s
     command.add_option(name, options.paths, help)->type_name("DIR")->allow_extra_args(false);
     command
         .add_option("--setting", options.setting,
-                    "Which setting of the reference run, where it has several (else mc_dem)")
+                    "Setting of the reference run to compare with, where it has several (default: mc_dem)")
         ->type_name("LABEL");
     command
-        .add_option("--discard", options.discard,
-                    "First cycles of the experiment to leave out; runs bring their own protocol.discard")
+        .add_option(
+            "--discard", options.discard,
+            "Number of first cycles of the experiment to leave out; runs state their own as protocol.discard")
         ->type_name("CYCLES")
         ->check(CLI::NonNegativeNumber);
 }

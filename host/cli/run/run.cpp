@@ -169,31 +169,28 @@ int run(const RunCommand& command) {
 }  // namespace
 
 void add_run(CLI::App& app, int& exit_code) {
-    auto* sub = app.add_subcommand("run", "Run a scene into a result folder");
+    auto* sub = app.add_subcommand("run", "Run a scene and write the results to a folder");
     auto command = std::make_shared<RunCommand>();
     add_scene_options(*sub, command->scene);
-    sub->add_option("--out", command->out, "Folder for the results; made where it is missing")
-        ->required()
-        ->type_name("DIR");
-    sub->add_flag("--resume", command->resume, "Go on with the interrupted run in DIR");
-    sub->add_flag("--no-figures", command->no_figures, "Draw no figures at the end");
+    sub->add_option("--out", command->out, "Result folder; created if missing")->required()->type_name("DIR");
+    sub->add_flag("--resume", command->resume, "Continue the interrupted run in DIR");
+    sub->add_flag("--no-figures", command->no_figures, "Do not draw figures at the end");
     add_sharing_options(*sub, command->sharing, command->device);
     sub->add_option("--part-replicas", command->cut.part_replicas,
-                    "Replicas of a part; without it enough to fill a device, and two parts a process")
+                    "Replicas per part; default: enough to fill a device, with two parts per process")
         ->check(CLI::Range(1, 10'000))
         ->type_name("N")
         ->group("Many devices and nodes");
     sub->footer(
         "Writes run.h5 (everything, HDF5), plate.csv (forces and averages) and figures into DIR. A replica "
         "that\n"
-        "cannot go on is named and recorded; the others go on. The exit code is 1 only where all failed.\n"
-        "Interrupted by Ctrl-C, a crash or a power cut, a run loses no more than the time since its last\n"
-        "checkpoint (output.checkpoint_minutes) and ends, resumed, with the same bits.\n"
-        "Computed in parts by many devices or nodes, the result is the same to the last bit; parts that were "
-        "lost are\n"
-        "computed again, and the same command goes on with what is missing. `mcdem distribute` gives parts "
-        "to "
-        "Dask.\n"
+        "fails is reported and recorded; the others continue. The exit code is 1 only where all failed.\n"
+        "A run that is interrupted (Ctrl-C, crash, power cut) loses at most the time since its last "
+        "checkpoint\n"
+        "(output.checkpoint_minutes); resumed, it gives the same results bit for bit.\n"
+        "So does a run computed in parts by many devices or nodes. Lost parts are computed again, and the "
+        "same command\n"
+        "continues with what is missing. `mcdem distribute` gives parts to Dask.\n"
         "Examples:\n"
         "  mcdem run scenes/small.toml --out out/small\n"
         "  mcdem run scenes/compression.toml --out out/soft --set grains.youngs_modulus=10e3\n"

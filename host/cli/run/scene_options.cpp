@@ -11,7 +11,7 @@ Scene SceneOptions::read() const { return read_scene(file, overrides); }
 void add_scene_options(CLI::App& command, SceneOptions& options) {
     command.add_option("SCENE", options.file, "Scene file (TOML; scenes/README.md explains every key)")
         ->required();
-    command.add_option("--set", options.overrides, "Overrides a key of the scene; may come several times")
+    command.add_option("--set", options.overrides, "Override a scene key; may be repeated")
         ->type_name("KEY=VALUE")
         ->allow_extra_args(false);
 }
@@ -19,7 +19,7 @@ void add_scene_options(CLI::App& command, SceneOptions& options) {
 void add_device_option(CLI::App& command, std::string& choice) {
     command
         .add_option("--device", choice,
-                    "Number or part of the name of a device, as `mcdem devices` lists them")
+                    "Number or part of the name of a device, as listed by `mcdem devices`")
         ->type_name("DEVICE");
 }
 

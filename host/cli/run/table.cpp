@@ -40,20 +40,18 @@ void print_tables(const TableCommand& command) {
 
 void add_table(CLI::App& app, int&) {
     auto* sub = app.add_subcommand(
-        "table", "Top forces of a run's settings side by side and the scaling law; programmes scan by scan");
+        "table", "Show the top force of each setting, ratios and the scaling law; programmes scan by scan");
     auto command = std::make_shared<TableCommand>();
     add_runs_option(*sub, command->runs);
-    sub->add_option("--over", command->over, "Label of the setting that ratios are taken over (else mc_dem)")
+    sub->add_option("--over", command->over, "Label of the setting that ratios refer to (default: mc_dem)")
         ->type_name("LABEL");
     sub->add_flag("--markdown", command->markdown, "Print Markdown");
-    sub->add_flag(
-        "--csv", command->csv,
-        "Print CSV: top forces and ratios, of programmes scan by scan; a column for each scene key that is "
-        "not the same in all");
+    sub->add_flag("--csv", command->csv,
+                  "Print CSV: top forces and ratios, for programmes scan by scan, with a column for each "
+                  "scene key that varies");
     sub->footer(
-        "Ratios are over replicas that start from the same packing, where there are; ± is the standard "
-        "error\n"
-        "over replicas. *: no replica reached full stroke; the last scan and its displacement stand there.\n"
+        "Ratios are paired by packing where replicas start from the same one; ± is the standard error over\n"
+        "replicas. *: no replica reached full stroke; the last scan and its displacement are shown.\n"
         "Examples:\n"
         "  mcdem table out/small\n"
         "  mcdem table out/small --over independent --markdown\n"

@@ -82,14 +82,14 @@ void print_scene(const SceneOptions& options, const std::string& choice) {
 }  // namespace
 
 void add_validate(CLI::App& app, int&) {
-    auto* command = app.add_subcommand("validate", "Check a scene and say what it would run");
+    auto* command = app.add_subcommand("validate", "Check a scene and report what it would run");
     auto options = std::make_shared<SceneOptions>();
     auto choice = std::make_shared<std::string>();
     add_scene_options(*command, *options);
     add_device_option(*command, *choice);
     command->footer(
-        "Checks the scene, and whether the device has the memory for it.\n"
-        "All problems are listed, each as `file:line: key must be .., got ..`; then the exit code is 2.\n"
+        "Checks the scene, and whether it fits into the device's memory.\n"
+        "All problems are listed as `file:line: key must be .., got ..`; the exit code is then 2.\n"
         "Examples:\n"
         "  mcdem validate scenes/compression.toml\n"
         "  mcdem validate scenes/small.toml --set grains.friction=0.1 --set contact.model=elastic_sphere");

@@ -21,7 +21,7 @@ int print_verified(const std::vector<std::string>& paths) {
 }  // namespace
 
 void add_verify(CLI::App& app, int& exit_code) {
-    auto* sub = app.add_subcommand("verify", "Whether files are still what was written, by their digests");
+    auto* sub = app.add_subcommand("verify", "Check files against their SHA-256 digests");
     auto paths = std::make_shared<std::vector<std::string>>();
     sub->add_option(
            "FOLDER", *paths,

@@ -16,22 +16,21 @@ namespace mcdem::inline cli {
 namespace {
 
 const char* const about =
-    "Simulates dense packings of soft elastic grains whose contacts feel one another (MC-DEM),\n"
-    "on any OpenCL device.";
+    "Simulates dense packings of soft grains with multi-contact forces (MC-DEM) on any OpenCL device.";
 
 const char* const first_steps =
     "First steps:\n"
-    "  mcdem devices                                      what it can run on\n"
-    "  mcdem run scenes/small.toml --out out/small        a first run, done in seconds\n"
+    "  mcdem devices                                      list the devices\n"
+    "  mcdem run scenes/small.toml --out out/small        a first run, takes seconds\n"
     "  mcdem run scenes/compression.toml --out out/first  the experiment, seven contact models\n"
-    "  mcdem table out/first                              the models side by side, again\n"
-    "  mcdem report out/small --out out/small.html        a page to look at, and to send\n"
-    "  mcdem COMMAND --help                               more on a command, with examples\n"
+    "  mcdem table out/first                              the table of models again\n"
+    "  mcdem report out/small --out out/small.html        a page to read and to send\n"
+    "  mcdem COMMAND --help                               help on a command, with examples\n"
     "\n"
-    "Exit codes: 0 done, 1 failed (also where the output cannot be written), 2 bad input, 130 interrupted "
-    "(go on\n"
-    "with --resume).\n"
-    "Environment: MCDEM_DEVICE chooses the device where --device does not.";
+    "Exit codes: 0 success, 1 failure (also where output cannot be written), 2 invalid input, 130 "
+    "interrupted\n"
+    "(continue with --resume).\n"
+    "Environment: MCDEM_DEVICE chooses the device where --device is not given.";
 
 /// What is wrong with the command line, and where to read how it should be.
 int report_usage(const CLI::App& app, const CLI::ParseError& error) {

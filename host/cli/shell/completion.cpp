@@ -263,13 +263,13 @@ std::string completion_script(const std::vector<CommandEntry>& tree, const std::
 }
 
 void add_completion(CLI::App& app, int&) {
-    auto* sub = app.add_subcommand("completion", "Print the completion script of a shell");
+    auto* sub = app.add_subcommand("completion", "Print a shell completion script");
     auto shell = std::make_shared<std::string>();
     sub->add_option("SHELL", *shell, "bash, zsh or fish")
         ->required()
         ->check(CLI::IsMember({"bash", "zsh", "fish"}));
     sub->footer(
-        "Installed by `cmake --install`; without installing, for this session:\n"
+        "Installed by `cmake --install`. Without installing, for the current shell:\n"
         "  source <(mcdem completion bash)");
     sub->callback([&app, shell] {
         std::vector<std::string> names;

@@ -97,13 +97,13 @@ std::map<std::string, std::string> manual_pages(const std::vector<CommandEntry>&
 }
 
 void add_manual(CLI::App& app, int&) {
-    auto* sub = app.add_subcommand("manual", "Write the manual pages of all commands into a folder");
+    auto* sub = app.add_subcommand("manual", "Write the manual pages of all commands to a folder");
     auto folder = std::make_shared<std::string>();
-    sub->add_option("--out", *folder, "Folder for the pages; made where it is missing")
+    sub->add_option("--out", *folder, "Folder for the pages; created if missing")
         ->required()
         ->type_name("DIR");
     sub->footer(
-        "Installed by `cmake --install`; read one without installing:\n"
+        "Installed by `cmake --install`. To read one without installing:\n"
         "  mcdem manual --out out/manual\n"
         "  man -l out/manual/mcdem-run.1");
     sub->callback([&app, folder] {
