@@ -81,8 +81,7 @@ public:
         diagnosis.refinements = refinements_;
         if (auto first = change_of_the_scene(diagnosis))
             diagnosis.next.insert(diagnosis.next.begin(), *first);
-        const bool strokes = model().replica.programme.empty();  // whose levels the paper's metrics compare
-        if (diagnosis.gap_reduction && options_.paper_metrics && options_.confirmations > 0 && strokes)
+        if (diagnosis.gap_reduction && paper_metrics() && options_.confirmations > 0)
             add_paper_metrics(*diagnosis.gap_reduction, experiments_.front().recording,
                               before_after(*builder));
         return diagnosis;
@@ -101,7 +100,7 @@ private:
                           *options_.library);
             expect_library_of(evidence.library, question_.grid, plan_, *options_.library);
         }
-        if (options_.paper_metrics)  // first: what is kept whole is not simulated again
+        if (paper_metrics())  // first: what is kept whole is not simulated again
             recorded(baseline_trials(plan_), options_.replicates);
         if (ready) {
             question_.grid = evidence.library.grid;
@@ -236,7 +235,7 @@ private:
         }
         while (const auto k = builder.wants_held_out()) {
             const std::vector<Trial> trials = held_out_trials(builder, *k);
-            if (options_.paper_metrics) recorded(trials, options_.confirmations);
+            if (paper_metrics()) recorded(trials, options_.confirmations);
             const Eigen::MatrixXd runs =
                 observe_trials(device_, question_, trials, store_, stage(options_, "held-out confirmation"));
             builder.confirm_held_out(*k, mean_over_packings(runs, packings()));
@@ -305,6 +304,9 @@ private:
             plan_.nuisances[static_cast<std::size_t>(k)].apply(model, shifts[k]);
         return model;
     }
+
+    /// They compare the levels of strokes.
+    bool paper_metrics() const { return options_.paper_metrics && model().replica.programme.empty(); }
 
     /// The first packing's.
     const Model& model() const { return plan_.specimens.front().model; }

@@ -31,6 +31,9 @@ protected:
         library.effects[0].variance = world.noise();  // not-a-number beyond the first cells
         library.provenance = {{"program", "0.1"}, {"device", "\"any\""}};
         library.origin = {{"grains.friction", "0.03"}};
+        library.grid.force.assign(library.grid.displacement.size(), 0.1);
+        library.grid.force_width = 1.0 / 7;
+        library.grid.holds = {{3, 4, 5, Controlled::force, Phase::unload, 0.01 / 3}};
         write_library(file(), library);
     }
     ~LibraryFile() override { std::filesystem::remove_all(folder_); }
@@ -77,6 +80,9 @@ TEST_F(LibraryFile, RoundTrip) {
     EXPECT_EQ(back.grid.displacement, library.grid.displacement);
     EXPECT_EQ(back.grid.width, library.grid.width);
     EXPECT_EQ(back.grid.stroke, library.grid.stroke);
+    EXPECT_EQ(back.grid.force, library.grid.force);
+    EXPECT_EQ(back.grid.force_width, library.grid.force_width);
+    EXPECT_EQ(back.grid.holds, library.grid.holds);
     EXPECT_EQ(back.packing, library.packing);
     EXPECT_EQ(back.provenance, library.provenance);
     EXPECT_EQ(back.origin, library.origin);
