@@ -53,7 +53,7 @@ INLINE Pressed press(Grain at, const int effects, Neighbours seen, Displaced b, 
         c->approach = plastic_approach(c->approach, replica->plasticity, seen.occupied, &memory->deepest);
     c->touching = AS_MASK(c->approach > R(0)) & seen.occupied;
     c->overlap = WHERE(c->touching, c->approach, R(0));
-    SelfCompliance self = {R(0), R(0)};
+    SelfCompliance self = {R(0), R(0), R(0)};
     if (replica->finite_contacts) {
         const ComplianceRatio ratio = {effects ? R(1) + excess_compliance : R(1),
                                        effects ? R(1) + seen.excess_compliance : (lanes)(R(1))};

@@ -22,8 +22,10 @@ typedef struct {
     real sphere_point[POINT_TERMS]; /* P: a point force moves the surface by P(s)/s, s = sin(theta/2) */
     real sphere_size[SIZE_TERMS];   /* T: contact radii add (2/5 a_k^2 + 2/3 a_c^2)/R^2 T(s)/s^3 */
     real sphere_self[SELF_TERMS];   /* S0 + S1 ln(a/R) + S2 a/R + ..: the loaded contact itself */
-    real confinement_coupling;      /* finite strain of the grain as a whole (confinement.h) */
+    real confinement_hertz;         /* finite strain of the grain as a whole (confinement.h) */
+    real confinement_coupling;
     real confinement_volume;
+    real confinement_bulk[3];
     real grain_compliance; /* (1 - nu^2) / E [1/Pa] */
     real shear_compliance; /* (2 - nu) / G [1/Pa] */
 } Material;

@@ -17,8 +17,7 @@ INLINE lanes elastic_energy(Grain at, int effects, Neighbours seen, Contacts c) 
     const real radius = at.now.position.w;
     lanes displaced = R(0.5) * c.elastic * c.displacement;
     if (replica->finite_contacts) /* by itself; others' in surface_energy */
-        displaced =
-            c.elastic * c.elastic * self_work(at.material, c.radius / radius) * (own_compliance(at) / radius);
+        displaced = replica->confinement ? (lanes)(R(0)) : own_work(at, c.elastic, c.radius);
     lanes energy = c.elastic * (WHERE(seen.wall, R(0.4), R(0.2)) * c.overlap - c.displacement) + displaced;
     if (effects) energy += WHERE(seen.wall, R(1), R(0.5)) * c.energy;
     return energy;
@@ -27,7 +26,7 @@ INLINE lanes elastic_energy(Grain at, int effects, Neighbours seen, Contacts c) 
 /* The integral of what the contacts of a grain displace at one another, spheres only [J]. */
 INLINE real surface_energy(Grain at, EXCHANGE ContactTable* table) {
     SYNCHRONISE();
-    for (int v = 0; v < VECTORS; ++v) tabulate_work(surface_displacement(at, table, v), v, table);
+    for (int v = 0; v < VECTORS; ++v) tabulate_work(at, surface_displacement(at, table, v), v, table);
     SYNCHRONISE();
     return confined_work(at, confined(at, table));
 }

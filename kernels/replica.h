@@ -38,7 +38,7 @@ typedef struct {
     int steps_before;    /* this interval, modulo 4: turns the ring of surface displacements */
     int surface;         /* SURFACE_* below */
     int finite_contacts; /* 1: the spheres' size and self terms are not zero */
-    int confinement;     /* 1: coupling or volume of some species are not zero */
+    int confinement;     /* 1: coupling of some species is not zero */
     int mindlin;         /* 1: friction with history, all or a share */
     int memory_rows;     /* of a grain's contacts (contact_memory.h); springs take the first three */
     int deepest_row;     /* among them, of plasticity */

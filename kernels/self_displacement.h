@@ -3,7 +3,7 @@
 
 #define SMALLEST_RADIUS R(1e-3)
 #define LARGEST_RADIUS R(0.64)
-#define SATURATED_RADIUS R(1) /* with confinement, larger contacts move themselves no further */
+#define SATURATED_RADIUS R(0.4)
 
 /* S0 to S4 of one side's materials and 1/E [1/Pa]. */
 typedef struct {
@@ -24,14 +24,22 @@ INLINE SelfTerms self_terms_here(Grain at) {
 }
 
 /* In F/(E R); `relative` is a/R. */
-INLINE lanes self_displacement(Grain at, SelfTerms t, lanes relative) {
+INLINE lanes whole_self_displacement(Grain at, SelfTerms t, lanes relative) {
     const lanes x = clamp(relative, (lanes)(SMALLEST_RADIUS), (lanes)(LARGEST_RADIUS));
     const lanes value = t.s0 + x * (t.s2 + x * (t.s3 + x * t.s4));
     const bool has_log = SPECIES > 1 || at.material->sphere_self[1] != R(0);
-    const lanes whole = has_log ? value + t.s1 * log(x) : value;
-    if (!at.replica->confinement) return whole;
-    const lanes share = SATURATED_RADIUS / fmax(relative, (lanes)(SATURATED_RADIUS));
-    return whole * share * share * share; /* the force goes with the cube */
+    return has_log ? value + t.s1 * log(x) : value;
+}
+
+/* With confinement, the part of it that is known at once; the rest follows a step later. The force goes with
+   the cube of the radius, so that the part tends to a constant displacement. */
+INLINE lanes known_share(Grain at, lanes relative) {
+    if (!at.replica->confinement) return R(1);
+    const lanes x = relative / SATURATED_RADIUS;
+    return R(1) / (R(1) + x * x * x);
+}
+INLINE lanes self_displacement(Grain at, SelfTerms t, lanes relative) {
+    return whole_self_displacement(at, t, relative) * known_share(at, relative);
 }
 
 /* Its integral over the force, in F^2/(E R): the force goes with the cube of the radius. */
@@ -42,9 +50,10 @@ INLINE lanes self_work(global const Material* restrict material, lanes relative)
     return s[1] != R(0) ? value + s[1] * (R(0.5) * log(x) - R(1) / R(12)) : value;
 }
 
-/* What a force moves the contact by on this side and on the other, per newton [m/N]. */
+/* What a force moves the contact by on this side and on the other, per newton, and more force moves both by
+   [m/N]. */
 typedef struct {
-    lanes here, there;
+    lanes here, there, slope;
 } SelfCompliance;
 
 /* E over a grain's own Young's modulus, on both sides. */
@@ -57,10 +66,10 @@ typedef struct {
 INLINE SelfCompliance self_compliance(Grain at, SelfTerms here, SelfTerms there, ComplianceRatio ratio,
                                       lanes contact_radius, real inverse_radius, lanes inverse_there) {
     SelfCompliance c;
-    c.here = self_displacement(at, here, contact_radius * inverse_radius) *
-             (here.scale * inverse_radius * ratio.here);
-    c.there = self_displacement(at, there, contact_radius * inverse_there) *
-              (there.scale * inverse_there * ratio.there);
+    const lanes x = contact_radius * inverse_radius, x_there = contact_radius * inverse_there;
+    c.here = self_displacement(at, here, x) * (here.scale * inverse_radius * ratio.here);
+    c.there = self_displacement(at, there, x_there) * (there.scale * inverse_there * ratio.there);
+    c.slope = add_alike(c.here * known_share(at, x), c.there * known_share(at, x_there));
     return c;
 }
 
@@ -83,8 +92,9 @@ INLINE SelfConsistent self_consistent(Grain at, Neighbours seen, ComplianceRatio
     for (int step = 0; step < 3; ++step) {
         const lanes a = sqrt(reduced_radius * s.overlap);
         s.compliance = self_compliance(at, here, there, ratio, a, inverse_radius, inverse_there);
-        const lanes slope = add_alike(s.compliance.here, s.compliance.there) * R(2) * modulus * a;
-        const lanes excess = given + (R(2) / R(3)) * slope * s.overlap - s.overlap;
+        const lanes stiffness = R(2) * modulus * a, slope = s.compliance.slope * stiffness;
+        const lanes moved = add_alike(s.compliance.here, s.compliance.there) * stiffness;
+        const lanes excess = given + (R(2) / R(3)) * moved * s.overlap - s.overlap;
         s.overlap += fmax(excess / fmax(R(1) - slope, (lanes)(R(0.25))), R(-0.5) * s.overlap);
     }
     return s;

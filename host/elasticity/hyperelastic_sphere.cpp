@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <numbers>
 
 namespace mcdem::inline elasticity {
 namespace {
@@ -15,11 +17,11 @@ struct Coefficients {
 };
 
 // Printed by tests/truth/fit_hyperelastic_sphere.py.
-constexpr double coupling = 1.6889;
+constexpr double coupling = 1.2697, hertz = 0.8501;
 constexpr std::array<Coefficients, 3> fitted{{
-    {0.30, {0.0132, 0.1263, -0.3425}, 0.0530},
-    {0.40, {0.0258, -0.0629, -0.1109}, 0.3439},
-    {0.49, {-0.0136, 0.0702, -0.2360}, 0.5832},
+    {0.30, {-0.0123, 0.3868, -0.6846}, 0.3074},
+    {0.40, {0.0029, 0.1592, -0.3801}, 0.2208},
+    {0.49, {0.0092, 0.0246, -0.1721}, 0.1576},
 }};
 
 /// Linear between the two fitted Poisson ratios around.
@@ -32,18 +34,30 @@ double between(double poisson_ratio, auto&& value) {
     return (1 - inside) * value(fitted[i]) + inside * value(fitted[i + 1]);
 }
 
+/// Overlap by uniform compression, in powers of P: P/K = (1 - J) J^(2/3) solved for 1 - J^(1/3), the third
+/// power for P/K to 0.3 and flat contacts.
+std::array<double, 3> uniform_compression(double poisson_ratio, double share) {
+    const double compressibility = 3 * (1 - 2 * poisson_ratio);  // E/K
+    return {compressibility / 3, share * std::pow(compressibility, 2) / 3,
+            share * 0.7 * std::pow(compressibility, 3)};
+}
+
 }  // namespace
 
 void add_finite_strain(SurfaceLaw& law, double poisson_ratio, double share) {
     const auto own = [&](std::size_t n) {
         return share * between(poisson_ratio, [n](const Coefficients& c) { return c.own[n]; });
     };
-    // `self` is outward and has the logarithm second.
-    law.self[0] -= own(0);
+    // `self` is outward and has the logarithm second. Every force moves every point inward by uniform
+    // compression.
+    const double uniform = (1 - 2 * poisson_ratio) / (4 * std::numbers::pi);
+    law.self[0] += uniform - own(0);
     law.self[2] -= own(1);
     law.self[3] -= own(2);
-    law.confinement = {share * coupling,
-                       share * between(poisson_ratio, [](const Coefficients& c) { return c.volume; })};
+    law.point[1] += uniform;
+    law.confinement = {share * hertz, share * coupling,
+                       share * between(poisson_ratio, [](const Coefficients& c) { return c.volume; }),
+                       uniform_compression(poisson_ratio, share)};
 }
 
 }  // namespace mcdem::elasticity

@@ -14,11 +14,14 @@ inline constexpr int self_terms = 5;
 /// Which of the kernels' three families a model belongs to (SURFACE_* of kernels/replica.h).
 enum class SurfaceShape { rigid = 0, half_space = 1, sphere = 2 };
 
-/// What a grain's mean pressure P = sum F/(4 pi E R^2) changes at finite strain: W, the energy of all pairs
-/// of contacts over E R^3, goes over into g W - 4 pi volume P^3 g^2 with g = 1/(1 + coupling P).
+/// What a grain's mean pressure P = sum F/(4 pi E R^2) changes at finite strain (kernels/confinement.h). Zero
+/// at small strain.
 struct Confinement {
-    double coupling = 0;  ///< zero at small strain, as is `volume`
-    double volume = 0;
+    double hertz = 0;     ///< stiffens Hertz's part
+    double coupling = 0;  ///< stiffens what contacts do to themselves beyond Hertz and to one another
+    double volume = 0;    ///< q
+    std::array<double, 3>
+        bulk{};  ///< uniform compression in powers of P, which `point` and `self` are without
 };
 
 /// A contact model for one Poisson ratio, as the kernels evaluate it. Sphere: with s = sin(theta / 2) and

@@ -59,8 +59,10 @@ void set_surface(Material& m, const Replica& replica, const GrainMaterial& g) {
     std::copy(surface.point.begin(), surface.point.end(), m.sphere_point);
     std::copy(surface.size.begin(), surface.size.end(), m.sphere_size);
     std::copy(surface.self.begin(), surface.self.end(), m.sphere_self);
+    m.confinement_hertz = surface.confinement.hertz;
     m.confinement_coupling = surface.confinement.coupling;
     m.confinement_volume = surface.confinement.volume;
+    std::copy(surface.confinement.bulk.begin(), surface.confinement.bulk.end(), m.confinement_bulk);
 }
 
 template <class Material>

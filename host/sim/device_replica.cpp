@@ -59,7 +59,7 @@ void set_contact_law(DeviceReplica& d, const Replica& replica) {
                                          replica.effects.finite_strain);
         d.surface = static_cast<int>(surface.shape);
         d.finite_contacts |= surface.self[0] != 0;
-        d.confinement |= surface.confinement.coupling != 0 || surface.confinement.volume != 0;
+        d.confinement |= surface.confinement.coupling != 0;
     }
 }
 

@@ -27,33 +27,46 @@ struct Load {
     std::vector<double> force;
 };
 
-/// A plate and its mirror images about x = 0 and y = 0, and about z = 0 where the arrangement is not random.
-std::vector<Vec3> images(const Vec3& normal, bool about_z) {
+/// How many axes an arrangement is symmetric along, x first.
+int mirrors_of(const std::string& name) {
+    return name.starts_with("asymmetric") ? 0 : name.starts_with("random") ? 2 : 3;
+}
+
+/// A plate and its images by so many mirrors, at x = 0, y = 0 and z = 0.
+std::vector<Vec3> images(const Vec3& normal, int mirrors) {
     std::vector<Vec3> all;
-    for (double x : {1, -1})
-        for (double y : {1, -1})
-            for (double z : {1, -1}) {
-                const Vec3 image(x * normal.x(), y * normal.y(), z * normal.z());
-                const auto is_image = [&](const Vec3& known) { return (known - image).norm() < 1e-9; };
-                if ((z == 1 || about_z) && std::ranges::none_of(all, is_image)) all.push_back(image);
-            }
+    for (int signs = 0; signs < 1 << mirrors; ++signs) {
+        Vec3 image = normal;
+        for (int axis = 0; axis < mirrors; ++axis)
+            if (signs >> axis & 1) image[axis] *= -1;
+        const auto is_image = [&](const Vec3& known) { return (known - image).norm() < 1e-9; };
+        if (std::ranges::none_of(all, is_image)) all.push_back(image);
+    }
+    return all;
+}
+
+/// The lines of a table of tests/truth, cell by cell.
+std::vector<std::vector<std::string>> cells_of(const std::string& name, std::size_t columns) {
+    std::ifstream table(MCDEM_SOURCE_DIR "/tests/truth/" + name);
+    std::vector<std::vector<std::string>> all;
+    std::string line, cell;
+    for (std::getline(table, line); std::getline(table, line);) {
+        all.emplace_back();
+        for (std::stringstream cells(line); std::getline(cells, cell, ',');) all.back().push_back(cell);
+        if (all.back().size() != columns) throw std::runtime_error(name + ": " + line);
+    }
     return all;
 }
 
 std::vector<Load> finite_elements() {
-    std::ifstream table(MCDEM_SOURCE_DIR "/tests/truth/neo_hookean_plates.csv");
     std::map<std::string, Load> loads;
-    std::string line, cell;
-    for (std::getline(table, line); std::getline(table, line);) {
-        std::vector<std::string> c;
-        for (std::stringstream cells(line); std::getline(cells, cell, ',');) c.push_back(cell);
-        if (c.size() != 10) throw std::runtime_error("neo_hookean_plates.csv: " + line);
+    for (const auto& c : cells_of("neo_hookean_plates.csv", 10)) {
         if (c[3] == "equator") continue;
         Load& load = loads[c[0] + c[1] + ' ' + c[2]];
         load.name = c[0];
         load.poisson_ratio = std::stod(c[1]);
         const Vec3 normal(std::stod(c[5]), std::stod(c[6]), std::stod(c[7]));
-        for (const Vec3& image : images(normal, !c[0].starts_with("random"))) {
+        for (const Vec3& image : images(normal, mirrors_of(c[0]))) {
             load.plates.push_back({image, std::stod(c[8])});
             load.force.push_back(std::stod(c[9]));
         }
@@ -75,14 +88,34 @@ std::optional<reference::PlateSolution> forces(ContactModel model, double poisso
     return solve_plates(surface_law(model, poisson_ratio, 1), poisson_ratio, plates);
 }
 
-/// The worst relative error of a model's force up to overlap/R 0.10, 0.15 and 0.20, by arrangement. Loads at
-/// which the grain nearly fills its cell (mean pressure above 0.12 E) are left out: there an overlap decides
-/// on any force.
-std::map<std::string, std::array<double, 3>> worst_errors(ContactModel model) {
-    std::map<std::string, std::array<double, 3>> worst;
+/// Seen from where the forces of a model on the sphere cancel, near where those of finite elements do.
+std::optional<reference::PlateSolution> forces_at_rest(ContactModel model, double poisson_ratio,
+                                                       std::vector<Plate> plates) {
+    for (int iteration = 0;; ++iteration) {
+        const auto solution = forces(model, poisson_ratio, plates);
+        Vec3 sum = Vec3::Zero();
+        double stiffness = 0, total = 0;
+        for (std::size_t c = 0; solution && c < plates.size(); ++c) {
+            sum += solution->force[c] * plates[c].direction;
+            stiffness += solution->force[c] / std::max(plates[c].overlap, 0.01);
+            total += solution->force[c];
+        }
+        if (!solution || sum.norm() < 1e-6 * total || iteration == 500) return solution;
+        for (Plate& plate : plates) plate.overlap -= plate.direction.dot(sum) / stiffness;
+    }
+}
+
+using WorstErrors = std::map<std::string, std::array<double, 3>>;
+
+/// The worst relative error of a model's force up to overlap/R 0.10, 0.15 and 0.20, by arrangement, of loads
+/// whose mean pressure over E is in a range. From 0.12 on the grain nearly fills its cell, where an overlap
+/// decides on any force.
+WorstErrors worst_errors(ContactModel model, double least_pressure, double most_pressure) {
+    WorstErrors worst;
     for (const Load& load : finite_elements()) {
-        if (mean_pressure(load) > 0.12) continue;
-        const auto solution = forces(model, load.poisson_ratio, load.plates);
+        if (mean_pressure(load) <= least_pressure || mean_pressure(load) > most_pressure) continue;
+        const auto solution = mirrors_of(load.name) ? forces(model, load.poisson_ratio, load.plates)
+                                                    : forces_at_rest(model, load.poisson_ratio, load.plates);
         for (std::size_t c = 0; c < load.plates.size(); ++c) {
             const double overlap = load.plates[c].overlap;
             if (overlap < 0.03 || overlap > 0.2005) continue;  // below, the mesh of the finite elements shows
@@ -93,19 +126,33 @@ std::map<std::string, std::array<double, 3>> worst_errors(ContactModel model) {
     return worst;
 }
 
+void print(const char* what, const WorstErrors& worst) {
+    fmt::print("worst error of the force [%], overlap/R to 0.10, 0.15, 0.20: {}\n", what);
+    for (const auto& [name, error] : worst)
+        fmt::print("{:19}{:6.1f}{:6.1f}{:6.1f}\n", name, 100 * error[0], 100 * error[1], 100 * error[2]);
+}
+
 TEST(HyperelasticSphere, FollowsFiniteElementsInEveryArrangement) {
-    const auto worst = worst_errors(ContactModel::hyperelastic_sphere);
-    const auto small_strain = worst_errors(ContactModel::elastic_sphere);
-    ASSERT_EQ(worst.size(), 14u);
-    fmt::print("worst error of the force [%], overlap/R to 0.10, 0.15, 0.20; elastic sphere\n");
+    print("elastic sphere, P to 0.12", worst_errors(ContactModel::elastic_sphere, 0, 0.12));
+    const auto worst = worst_errors(ContactModel::hyperelastic_sphere, 0, 0.12);
+    print("P to 0.12", worst);
+    ASSERT_EQ(worst.size(), 19u);
     for (const auto& [name, error] : worst) {
-        const auto& other = small_strain.at(name);
-        fmt::print("{:19}{:6.1f}{:6.1f}{:6.1f}  {:6.1f}{:6.1f}{:6.1f}\n", name, 100 * error[0],
-                   100 * error[1], 100 * error[2], 100 * other[0], 100 * other[1], 100 * other[2]);
-        EXPECT_LT(error[0], name == "fourteen" ? 0.045 : 0.03) << name;
+        EXPECT_LT(error[0], name == "fourteen" ? 0.045 : 0.035) << name;
         EXPECT_LT(error[1], 0.04) << name;
-        EXPECT_LT(error[2], 0.055) << name;
+        EXPECT_LT(error[2], 0.07) << name;
     }
+}
+
+// Forces there are steep: d ln F / d ln overlap is 3 to 10.
+TEST(HyperelasticSphere, FollowsFiniteElementsWhereCellsAreNearlyFilled) {
+    const auto nearly = worst_errors(ContactModel::hyperelastic_sphere, 0.12, 0.3);
+    print("P 0.12 to 0.3", nearly);
+    for (const auto& [name, error] : nearly)
+        EXPECT_LT(std::ranges::max(error), name == "fourteen" ? 0.11 : 0.075) << name;
+    const auto filled = worst_errors(ContactModel::hyperelastic_sphere, 0.3, 1);
+    print("P 0.3 to 1", filled);
+    for (const auto& [name, error] : filled) EXPECT_LT(std::ranges::max(error), 0.2) << name;
 }
 
 TEST(HyperelasticSphere, IsTheElasticSphereAtSmallOverlaps) {
@@ -154,6 +201,114 @@ TEST(HyperelasticSphere, DoesNoWorkAroundAClosedPath) {
         << "the half space has no potential";
 }
 
+/// Hertz's contact of two grains, or of one and a plate (other radius 0).
+struct Touch {
+    double overlap, radius;
+};
+
+Touch touch(double poisson_ratio, double force, double radius, double other_radius) {
+    const double modulus = 1 / (1 - poisson_ratio * poisson_ratio) / (other_radius > 0 ? 2 : 1);
+    const double reduced = other_radius > 0 ? radius * other_radius / (radius + other_radius) : radius;
+    const double overlap = std::pow(force / (4.0 / 3 * modulus * std::sqrt(reduced)), 2.0 / 3);
+    return {overlap, std::sqrt(reduced * overlap)};
+}
+
+/// How far plates come nearer to two spheres in a row, or to the middle one of three between four plates
+/// more.
+class Row {
+public:
+    Row(ContactModel model, double poisson_ratio)
+        : law_(surface_law(model, poisson_ratio, 1)), poisson_ratio_(poisson_ratio) {}
+
+    /// Two spheres between two plates.
+    double of_two(double force, double radius) const {
+        const Touch between = touch(poisson_ratio_, force, 1, radius);
+        return between.overlap + end(force, 1, between) + end(force, radius, between);
+    }
+    /// Of three equal ones, at an end and at a side.
+    std::pair<double, double> of_three(double force, double side_force) const {
+        const Touch between = touch(poisson_ratio_, force, 1, 1),
+                    side = touch(poisson_ratio_, side_force, 1, 0);
+        reference::Grain middle{1, 1, poisson_ratio_, {}};
+        for (double sign : {1, -1}) {
+            middle.slots.push_back({sign * Vec3::UnitZ(), 1, force, between.radius});
+            for (const Vec3& axis : {Vec3(1, 0, 0), Vec3(0, 1, 0)})
+                middle.slots.push_back({sign * axis, 1, side_force, side.radius});
+        }
+        const auto moved = reference::surface_displacement(law_, middle);
+        return {between.overlap + end(force, 1, between) - moved[0], side.overlap - moved[1]};
+    }
+
+private:
+    /// Of the sphere at an end, beside the Hertzian overlap with the next one.
+    double end(double force, double radius, const Touch& between) const {
+        const Touch plate = touch(poisson_ratio_, force, radius, 0);
+        const reference::Grain grain{
+            radius,
+            1,
+            poisson_ratio_,
+            {{Vec3::UnitZ(), radius, force, between.radius}, {-Vec3::UnitZ(), radius, force, plate.radius}}};
+        const auto moved = reference::surface_displacement(law_, grain);
+        return plate.overlap - moved[0] - moved[1];
+    }
+    SurfaceLaw law_;
+    double poisson_ratio_;
+};
+
+double solve_force(double least, double most, auto&& excess) {
+    for (int halving = 0; halving < 60; ++halving) {
+        const double middle = (least + most) / 2;
+        (excess(middle) > 0 ? most : least) = middle;
+    }
+    return least;
+}
+
+// The contact of two spheres of unequal radii, and of equal ones under unequal loads, is neither flat nor
+// shared alike.
+TEST(HyperelasticSphere, APlateStandsForAGrain) {
+    const auto rows = cells_of("neo_hookean_chain.csv", 7);
+    EXPECT_GE(rows.size(), 12u);
+    for (const auto& cells : rows) {
+        std::vector<double> c;
+        for (std::size_t i = 1; i < cells.size(); ++i) c.push_back(std::stod(cells[i]));
+        const auto [nu, parameter, overlap, force, side, side_force] =
+            std::tuple(c[0], c[1], c[2], c[3], c[4], c[5]);
+        const Row law(ContactModel::hyperelastic_sphere, nu);
+        if (overlap < 0.08) continue;  // the mesh shows
+        const std::string where = fmt::format("{} nu {} overlap {}", cells[0], nu, overlap);
+        if (cells[0] == "unequal") {
+            const double found = solve_force(force / 3, 3 * force,
+                                             [&](double f) { return law.of_two(f, parameter) - overlap; });
+            EXPECT_NEAR(found / force, 1, 0.015) << where;
+            continue;
+        }
+        const auto force_at = [&](double f_side) {
+            return solve_force(force / 3, 3 * force,
+                               [&](double f) { return law.of_three(f, f_side).first - overlap; });
+        };
+        const double found_side = solve_force(side_force / 3, 3 * side_force, [&](double f) {
+            return law.of_three(force_at(f), f).second - side;
+        });
+        EXPECT_NEAR(force_at(found_side) / force, 1, 0.025) << where;
+        EXPECT_NEAR(found_side / side_force, 1, 0.025) << where;
+    }
+}
+
+// Two plates push the equator out: a third one is met that far from the sphere.
+TEST(HyperelasticSphere, FirstContactByBulgingWithinThreePerCent) {
+    int judged = 0;
+    for (const auto& c : cells_of("neo_hookean_plates.csv", 10)) {
+        const double nu = std::stod(c[1]), load = std::stod(c[2]);
+        if (c[3] != "equator" || load < 0.04) continue;
+        const auto solution = forces(ContactModel::hyperelastic_sphere, nu,
+                                     {{Vec3::UnitZ(), load}, {-Vec3::UnitZ(), load}, {Vec3::UnitX(), -0.5}});
+        ASSERT_TRUE(solution);
+        EXPECT_NEAR(solution->displacement[2] / -std::stod(c[8]), 1, 0.03) << nu << ' ' << load;
+        ++judged;
+    }
+    EXPECT_EQ(judged, 21);
+}
+
 // Grains among twelve equal neighbours, pressed far past the volume they have: forces grow on and on, none
 // runs away.
 TEST(HyperelasticSphere, GrowsWithoutRunningAway) {
@@ -162,7 +317,7 @@ TEST(HyperelasticSphere, GrowsWithoutRunningAway) {
         for (double overlap = 0.02; overlap < 0.14; overlap += 0.02) {
             std::vector<Plate> plates;
             for (const Vec3& e : {Vec3(1, 1, 0), Vec3(1, 0, 1), Vec3(0, 1, 1)})
-                for (const Vec3& image : images(e.normalized(), true)) plates.push_back({image, overlap});
+                for (const Vec3& image : images(e.normalized(), 3)) plates.push_back({image, overlap});
             const auto solution = forces(ContactModel::hyperelastic_sphere, nu, plates);
             ASSERT_TRUE(solution) << nu << ' ' << overlap;
             EXPECT_GT(solution->force[0], 1.2 * before);

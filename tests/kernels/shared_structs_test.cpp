@@ -34,7 +34,7 @@ kernel void write_offsets(global int* offsets) {
     MEMBER(density) MEMBER(relative_density) MEMBER(weight_density) MEMBER(modulus) MEMBER(shear) \
     MEMBER(damping) MEMBER(friction) MEMBER(half_space_scale) MEMBER(half_space_normal) \
     MEMBER(half_space_shear) MEMBER(sphere_scale) MEMBER(sphere_point) MEMBER(sphere_size) \
-    MEMBER(sphere_self) MEMBER(confinement_coupling) MEMBER(confinement_volume) \
+    MEMBER(sphere_self) MEMBER(confinement_hertz) MEMBER(confinement_coupling) MEMBER(confinement_volume) MEMBER(confinement_bulk) \
     MEMBER(grain_compliance) MEMBER(shear_compliance)
 #define MEMBERS_OF_EFFECTS(MEMBER) \
     MEMBER(plate_tilt_x) MEMBER(plate_tilt_y) \
@@ -97,7 +97,7 @@ TEST(SharedStructs, AreListedWhole) {
     const std::size_t replica_words = (sizeof(mcdem::f32::Replica) - sizeof(mcdem::f32::Material)) / 4 + 1 -
                                       3 * (6 - 1) - (3 - 1),
                       material_words = sizeof(mcdem::f32::Material) / 4 - 4 * MAX_SPECIES -
-                                       (POINT_TERMS - 1) - (SIZE_TERMS - 1) - (SELF_TERMS - 1),
+                                       (POINT_TERMS - 1) - (SIZE_TERMS - 1) - (SELF_TERMS - 1) - (3 - 1),
                       report_words = sizeof(mcdem::f32::Report) / 4 - 17;
     EXPECT_EQ(host.size() - 3, replica_words + material_words + report_words);
 }

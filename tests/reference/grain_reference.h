@@ -74,59 +74,102 @@ inline double sphere_displacement(const SurfaceLaw& law, const Grain& grain, con
     return power_sum(law.point, s) / s + spread(grain, k, c) * power_sum(law.size, s) / (s * s * s);
 }
 
-inline bool is_confined(const SurfaceLaw& law) {
-    return law.confinement.coupling != 0 || law.confinement.volume != 0;
-}
+inline bool is_confined(const SurfaceLaw& law) { return law.confinement.coupling != 0; }
 
-/// With confinement it grows no further once the contact radius is R.
-inline double self_displacement(const SurfaceLaw& law, const Grain& grain, const Slot& c) {
+inline double whole_self_displacement(const SurfaceLaw& law, const Grain& grain, const Slot& c) {
     const double x = relative_radius(grain, c);
     const auto& S = law.self;
-    const double whole = S[0] + S[1] * std::log(x) + S[2] * x + S[3] * x * x + S[4] * x * x * x;
-    return is_confined(law) ? whole * std::min(1.0, std::pow(grain.radius / c.contact_radius, 3)) : whole;
+    return S[0] + S[1] * std::log(x) + S[2] * x + S[3] * x * x + S[4] * x * x * x;
 }
 
-/// Energy of all pairs of contacts at small strain over E R^3: less than zero where they push surfaces out.
-/// The part of finite contacts is of the power 8/3 in the forces, so that their derivative has the spread
-/// above.
-inline double pair_energy(const SurfaceLaw& law, const Grain& grain) {
-    double energy = 0;
-    for (const Slot& c : grain.slots)
+/// What a step knows at once; with confinement the rest of large contacts follows with the others'.
+inline double self_displacement(const SurfaceLaw& law, const Grain& grain, const Slot& c) {
+    const double whole = whole_self_displacement(law, grain, c);
+    return is_confined(law) ? whole / (1 + std::pow(c.contact_radius / (0.4 * grain.radius), 3)) : whole;
+}
+
+/// Outward works of a grain's contacts over E R^3: Hertz's, what contacts displace at themselves beyond and,
+/// as points, at one another, what their sizes add; and the mean pressure over E.
+struct Works {
+    double hertz = 0, points = 0, sizes = 0, pressure = 0;
+};
+
+inline double hertz_share(const Grain& grain, const Slot& c) {
+    if (c.force == 0) return 0;
+    return 0.75 * c.force / c.contact_radius * (1 - std::pow(grain.poisson_ratio, 2)) / grain.youngs_modulus;
+}
+
+/// Forces go with the cube of the radius, so that F^2 x^n has the integral F^2 x^n/(2 + n/3).
+inline double own_work(const SurfaceLaw& law, const Grain& grain, const Slot& c) {
+    const double x = relative_radius(grain, c);
+    const auto& S = law.self;
+    return S[0] / 2 + S[1] * (std::log(x) / 2 - 1.0 / 12) + 3.0 / 7 * S[2] * x + 3.0 / 8 * S[3] * x * x +
+           S[4] / 3 * x * x * x;
+}
+
+inline Works works(const SurfaceLaw& law, const Grain& grain) {
+    const double area = grain.youngs_modulus * grain.radius * grain.radius;
+    Works w;
+    for (const Slot& c : grain.slots) {
+        const double force = c.force / area;
+        w.pressure += force / (4 * std::numbers::pi);
+        w.hertz += 0.6 * force * hertz_share(grain, c) / grain.radius;
+        if (force != 0) w.points += force * force * own_work(law, grain, c);
         for (const Slot& k : grain.slots) {
             if (&c == &k) continue;
             const double s = sine_of_half_angle(k, c), relative = k.contact_radius / grain.radius;
-            energy -= c.force * k.force *
-                      (power_sum(law.point, s) / s / 2 +
-                       2.0 / 5 * relative * relative * power_sum(law.size, s) / (s * s * s));
+            w.points += force * k.force / area * power_sum(law.point, s) / s / 2;
+            w.sizes +=
+                force * k.force / area * 2 / 5 * relative * relative * power_sum(law.size, s) / (s * s * s);
         }
-    return energy / std::pow(grain.youngs_modulus * grain.radius * grain.radius, 2);
+    }
+    return w;
 }
 
-/// What confinement makes of the energy W of all pairs at the mean pressure P.
-inline double confined_energy(const mcdem::Confinement& c, double W, double P) {
-    const double g = 1 / (1 + c.coupling * P);
-    return g * W - 4 * std::numbers::pi * c.volume * std::pow(P, 3) * g * g;
+/// What confinement makes of the works at a mean pressure P.
+inline double confined_work(const mcdem::Confinement& c, const Works& w, double P) {
+    const double e = std::pow(1 + c.hertz * P, -2.0 / 3), g = 1 / (1 + c.coupling * P);
+    const double p = c.bulk[0] > 0 ? std::min(P, 0.1 / c.bulk[0]) : P;  // straight beyond P/K = 0.3
+    const double overlap = c.bulk[0] * p + c.bulk[1] * p * p + c.bulk[2] * std::pow(p, 3);
+    const double slope = c.bulk[0] + 2 * c.bulk[1] * p + 3 * c.bulk[2] * p * p;
+    const double bulk = c.bulk[0] * p * p / 2 + c.bulk[1] * std::pow(p, 3) / 3 +
+                        c.bulk[2] * std::pow(p, 4) / 4 + overlap * (P - p) + slope * (P - p) * (P - p) / 2;
+    return (1 - e) * w.hertz + g * w.points + std::pow(g, 5.0 / 3) * w.sizes +
+           4 * std::numbers::pi * (c.volume * std::pow(P, 3) * g * g - bulk);
 }
 
-/// Outward displacement of every slot [m] from that of small strain: less the derivative of the energy by the
-/// slot's force, by W exactly, by P as a central difference.
-inline void confine(const SurfaceLaw& law, const Grain& grain, std::vector<double>& displacement) {
+/// Displacement of a slot outward [m]: the derivative of the work by its force; at a given P exactly, by P as
+/// a central difference.
+inline double confined_displacement(const SurfaceLaw& law, const Grain& grain, const Works& w,
+                                    const Slot& c) {
     constexpr double step = 1e-4;
-    double P = 0;
-    for (const Slot& slot : grain.slots)
-        P += slot.force / (4 * std::numbers::pi * grain.youngs_modulus * grain.radius * grain.radius);
-    const double W = pair_energy(law, grain);
-    const auto at = [&](double change) { return confined_energy(law.confinement, W, P + change); };
+    const auto at = [&](double change) { return confined_work(law.confinement, w, w.pressure + change); };
     const double by_pressure = (8 * (at(step) - at(-step)) - (at(2 * step) - at(-2 * step))) / (12 * step);
-    for (double& b : displacement)
-        b = b / (1 + law.confinement.coupling * P) - grain.radius * by_pressure / (4 * std::numbers::pi);
+    const double e = std::pow(1 + law.confinement.hertz * w.pressure, -2.0 / 3);
+    const double g = 1 / (1 + law.confinement.coupling * w.pressure);
+    const double per_force = 1 / (grain.youngs_modulus * grain.radius);
+    double sum = (1 - e) * hertz_share(grain, c) + grain.radius * by_pressure / (4 * std::numbers::pi);
+    if (c.force != 0) sum += g * per_force * c.force * whole_self_displacement(law, grain, c);
+    for (const Slot& k : grain.slots) {
+        if (&k == &c) continue;
+        const double s = sine_of_half_angle(k, c);
+        sum += per_force * k.force *
+               (g * power_sum(law.point, s) / s +
+                std::pow(g, 5.0 / 3) * spread(grain, k, c) * power_sum(law.size, s) / (s * s * s));
+    }
+    return sum;
 }
 
 /// Displacement of every slot outward [m], as the kernels should have it: with the law's polynomials.
 inline std::vector<double> surface_displacement(const SurfaceLaw& law, const Grain& grain) {
-    std::vector<double> result, own;
+    std::vector<double> result;
     const double per_force = 1 / (grain.youngs_modulus * grain.radius);
+    const Works w = is_confined(law) ? works(law, grain) : Works{};
     for (const Slot& c : grain.slots) {
+        if (is_confined(law)) {
+            result.push_back(confined_displacement(law, grain, w, c));
+            continue;
+        }
         double sum = 0;
         for (const Slot& k : grain.slots) {
             if (&k == &c || k.force == 0 || law.shape == SurfaceShape::rigid) continue;
@@ -134,12 +177,10 @@ inline std::vector<double> surface_displacement(const SurfaceLaw& law, const Gra
                        ? half_space_displacement(grain, law.gamma, k, c)
                        : per_force * k.force * sphere_displacement(law, grain, k, c);
         }
-        result.push_back(sum);
         const bool moves_itself = c.force != 0 && law.shape == SurfaceShape::sphere;
-        own.push_back(moves_itself ? per_force * c.force * self_displacement(law, grain, c) : 0);
+        if (moves_itself) sum += per_force * c.force * self_displacement(law, grain, c);
+        result.push_back(sum);
     }
-    if (is_confined(law)) confine(law, grain, result);
-    for (std::size_t c = 0; c < own.size(); ++c) result[c] += own[c];
     return result;
 }
 

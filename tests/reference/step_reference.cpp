@@ -274,13 +274,14 @@ std::vector<Seen> StepReference::neighbours() const {
 /// b(t + dt) = (10 b(t) - 5 b(t - 2 dt) + b(t - 4 dt)) / 6.
 void StepReference::displace_surfaces(const std::vector<std::vector<Seen>>& seen) {
     for (std::size_t i = 0; i < seen.size(); ++i) {
-        mcdem::SurfaceLaw by_others = law_[i];
-        by_others.self.fill(0);  // a contact's own term is part of its overlap
         Grain grain{radius_[i], youngs_modulus_[i], material_[i].poisson_ratio, {}};
         for (const Seen& c : seen[i])
             grain.slots.push_back({c.direction, c.arm, c.elastic, c.contact_radius});
-        const auto moved = surface_displacement(by_others, grain);
+        auto moved = surface_displacement(law_[i], grain);
         for (std::size_t c = 0; c < moved.size(); ++c) {
+            if (seen[i][c].elastic > 0)  // a contact's own term is part of its overlap
+                moved[c] -= self_displacement(law_[i], grain, grain.slots[c]) * seen[i][c].elastic /
+                            (grain.youngs_modulus * grain.radius);
             Memory& m = memory[i].at(seen[i][c].partner);
             m.predicted = (10 * moved[c] - 5 * m.past[1] + m.past[3]) / 6;
             m.past = {moved[c], m.past[0], m.past[1], m.past[2]};

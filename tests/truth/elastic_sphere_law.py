@@ -55,6 +55,8 @@ class Law:
     """Overlaps of contacts in the directions `normals`."""
 
     def __init__(self, poisson_ratio, normals, self_term):
+        self.poisson_ratio = poisson_ratio
+        self.uniform = (1 - 2 * poisson_ratio) / (4 * np.pi)  # a unit force moves every point inward by that besides the shear
         self.modulus = 4 / 3 / (1 - poisson_ratio**2)
         self.self_term = self_term
         others = ~np.eye(len(normals), dtype=bool)
@@ -78,3 +80,10 @@ class Law:
         points = -self.point @ force
         sizes = -(2 / 5 * self.size @ (force * a2) + 2 / 3 * a2 * (self.size @ force))
         return points + sizes, force @ points / 2 + 3 / 8 * force @ sizes
+
+    def shear_by_others(self, force):
+        """Overlaps without uniform compression, by contacts as points and by their sizes, and the energies of both."""
+        a2 = self.radius(force)**2
+        points = -self.point @ force - self.uniform * (force.sum() - force)
+        sizes = -(2 / 5 * self.size @ (force * a2) + 2 / 3 * a2 * (self.size @ force))
+        return points, sizes, force @ points / 2, 3 / 8 * force @ sizes

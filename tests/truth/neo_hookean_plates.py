@@ -6,6 +6,7 @@ import itertools
 import sys
 
 import numpy as np
+from scipy.optimize import minimize
 
 from neo_hookean_sphere import Mesh, Sphere
 
@@ -32,6 +33,9 @@ RANDOM = {
     'random_eight': ((0, 2, 1), 4),
     'random_nine': ((1, 0, 2), 5),
 }
+# Drawn at random without any symmetry: how many plates, and the seed.
+ASYMMETRIC = {f'asymmetric_{name}': (count, seed) for seed, (name, count) in
+              enumerate((('five', 5), ('six', 6), ('seven', 7), ('eight', 8), ('nine', 9)), 11)}
 OVERLAPS = (.025, .05, .075, .1, .125, .15, .175, .2)
 POISSON_RATIOS = (.3, .4, .49)
 
@@ -54,6 +58,33 @@ def random_plates(kinds, seed):
             return normals, overlaps / overlaps.max()
 
 
+def asymmetric_plates(count, seed):
+    """Plates more than 45 degrees apart, none of them another's mirror image, and their overlaps over the largest."""
+    random = np.random.default_rng(seed)
+    while True:
+        normals = random.normal(size=(count, 3))
+        normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+        ways = random.normal(size=(400, 3))
+        ways /= np.linalg.norm(ways, axis=1, keepdims=True)
+        if (normals @ normals.T - 2 * np.eye(count)).max() < np.cos(np.pi / 4) and (ways @ normals.T).max(1).min() > .2:
+            overlaps = balanced(normals, random.uniform(.5, 1, count))
+            if overlaps.min() > .25 * overlaps.max():
+                return normals, overlaps / overlaps.max()
+
+
+def balanced(normals, overlaps):
+    """As seen from where Hertz's forces on the sphere cancel: it need not move far to its place between the plates."""
+    def energy(move):
+        return (np.maximum(overlaps - normals @ move, 0)**2.5).sum()
+
+    return overlaps - normals @ minimize(energy, np.zeros(3)).x
+
+
+def mirrors_of(name):
+    """Axes that the arrangement is symmetric along."""
+    return () if name.startswith('asymmetric') else (0, 1) if name.startswith('random') else (0, 1, 2)
+
+
 def images(normal, mirrors):
     """All plates that the mirrors make of one."""
     signs = itertools.product(*((1, -1) if axis in mirrors else (1,) for axis in range(3)))
@@ -62,9 +93,11 @@ def images(normal, mirrors):
 
 def cases():
     for name, (normals, shares) in SYMMETRIC.items():
-        yield name, (0, 1, 2), np.array(normals, float) / np.linalg.norm(normals, axis=1, keepdims=True), np.array(shares)
+        yield name, np.array(normals, float) / np.linalg.norm(normals, axis=1, keepdims=True), np.array(shares)
     for name, of in RANDOM.items():
-        yield name, (0, 1), *random_plates(*of)
+        yield name, *random_plates(*of)
+    for name, of in ASYMMETRIC.items():
+        yield name, *asymmetric_plates(*of)
 
 
 def load(sphere, normals, shares, start, overlap):
@@ -73,7 +106,7 @@ def load(sphere, normals, shares, start, overlap):
     while start < overlap - 1e-9:
         before = sphere.u
         to = min(start + step, overlap)
-        if sphere.solve([(n, 1 - to * s) for n, s in zip(normals, shares)]):
+        if sphere.press([(n, 1 - to * s) for n, s in zip(normals, shares)]):
             start = to
             continue
         sphere.u = before
@@ -111,10 +144,10 @@ def main():
     arguments = parser.parse_args()
     table = csv.writer(sys.stdout, lineterminator='\n')
     table.writerow(['case', 'poisson_ratio', 'load', 'plate', 'count', 'x', 'y', 'z', 'overlap', 'force'])
-    for name, mirrors, normals, shares in cases():
+    for name, normals, shares in cases():
         if arguments.case and name not in arguments.case:
             continue
-        mesh = Mesh(arguments.bricks, arguments.bricks, mirrors)
+        mesh = Mesh(arguments.bricks, arguments.bricks, mirrors_of(name))
         for nu in arguments.nu:
             table.writerows(rows_of(mesh, name, normals, shares, nu, arguments.linear, arguments.overlaps))
             sys.stdout.flush()

@@ -237,18 +237,37 @@ class Sphere:
 
     hold = 1e-7  # spring of every node to its place: fixes what turns freely
 
+    def _newton_step(self, gradient, matrix):
+        """Downhill; where the second derivative is not positive definite, with as much of the unit matrix as makes it so."""
+        for more in (0, 1e-5, 1e-4, 1e-3, 1e-2):
+            data = matrix.data + more * (matrix.row == matrix.col)
+            lower = cvxopt.spmatrix(cvxopt.matrix(data), matrix.row.tolist(), matrix.col.tolist(), (self.size, self.size))
+            step = cvxopt.matrix(-gradient)
+            try:
+                cvxopt.cholmod.linsolve(lower, step)
+                return np.array(step).ravel()
+            except ArithmeticError:
+                continue
+        return None
+
+    def press(self, plates):
+        """As `solve`; a sphere that no mirror holds finds its place between softer plates first."""
+        if len(self.mesh.mirrors) < 2:
+            stiff, self.spring = self.spring, .03 * self.spring
+            found = self.solve(plates, 60)
+            self.spring = stiff
+            if not found:
+                return False
+        return self.solve(plates)
+
     def solve(self, plates, most=40, tolerance=1e-7):
         """Newton's method from the present displacements; True where it converged."""
         value = self.energy(plates, self.u)
         for _ in range(most):
             gradient, matrix = self.system(plates, self.u)
-            lower = cvxopt.spmatrix(cvxopt.matrix(matrix.data), matrix.row.tolist(), matrix.col.tolist(), (self.size, self.size))
-            step = cvxopt.matrix(-gradient)
-            try:
-                cvxopt.cholmod.linsolve(lower, step)
-            except ArithmeticError:  # not positive definite
+            step = self._newton_step(gradient, matrix)
+            if step is None:
                 return False
-            step = np.array(step).ravel()
             slope = gradient @ step
             full = np.zeros(self.u.size)
             full[self.free] = step
