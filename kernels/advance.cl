@@ -33,16 +33,13 @@ INLINE RowSums row_forces(Grain at, const int effects, Batch batch, EXCHANGE Con
 
 /* Where the contacts of this step push the surface at every slot. */
 INLINE void surface_displacements(Grain at, EXCHANGE ContactTable* table, lanes* restrict displacement) {
-    const bool is_confined = at.replica->confinement;
     SurfaceDisplacement b[VECTORS];
     for (int v = 0; v < VECTORS; ++v) {
         b[v] = surface_displacement(at, table, v);
         displacement[v] = b[v].point + b[v].size;
-        if (is_confined) tabulate_work(at, b[v], v, table);
     }
-    if (!is_confined) return;
-    SYNCHRONISE();
-    const Confined grain = confined(at, table);
+    if (!at.replica->confinement) return;
+    const Confined grain = confined(at, b, table);
     for (int v = 0; v < VECTORS; ++v) displacement[v] = confined_displacement(at, grain, b[v], v, table);
 }
 

@@ -28,16 +28,21 @@ INLINE lanes own_work(Grain at, lanes force, lanes contact_radius) {
     return force * force * self_work(at.material, contact_radius / radius) * (own_compliance(at) / radius);
 }
 
-/* The part of points goes with the square of the forces, that of finite contacts with the power 8/3. */
+/* Work of slots v, as points into x and by size into y: no direction is asked for any more. The part of
+   points goes with the square of the forces, that of finite contacts with the power 8/3. */
 INLINE void tabulate_work(Grain at, SurfaceDisplacement b, int v, EXCHANGE ContactTable* table) {
     const lanes force = LOAD_LANES(table->elastic, v), contact_radius = LOAD_LANES(table->radius, v);
     lanes work = R(0.5) * force * b.point;
     if (at.replica->confinement) work += own_work(at, force, contact_radius);
-    STORE_LANES(work, table->work, v);
-    STORE_LANES(R(0.375) * force * b.size, table->size_work, v);
+    STORE_LANES(work, table->x, v);
+    STORE_LANES(R(0.375) * force * b.size, table->y, v);
 }
 
-INLINE Confined confined(Grain at, EXCHANGE const ContactTable* table) {
+/* `b`: what its contacts displace at all slots, VECTORS of them. */
+INLINE Confined confined(Grain at, const SurfaceDisplacement* b, EXCHANGE ContactTable* table) {
+    SYNCHRONISE();
+    for (int v = 0; v < VECTORS; ++v) tabulate_work(at, b[v], v, table);
+    SYNCHRONISE();
     const real radius = at.now.position.w, compliance = own_compliance(at);
     real force = R(0);
     Confined c = {R(0), R(0), R(0), R(0)};
@@ -45,8 +50,8 @@ INLINE Confined confined(Grain at, EXCHANGE const ContactTable* table) {
         const real own = table->elastic[k];
         force += own;
         if (own > R(0)) c.hertz += own * own / table->radius[k];
-        c.work += table->work[k];
-        c.size_work += table->size_work[k];
+        c.work += table->x[k];
+        c.size_work += table->y[k];
     }
     const real per_energy = compliance / (radius * radius * radius);
     c.pressure = force * compliance / (R(4) * PI * radius * radius);

@@ -26,9 +26,9 @@ INLINE lanes elastic_energy(Grain at, int effects, Neighbours seen, Contacts c) 
 /* The integral of what the contacts of a grain displace at one another, spheres only [J]. */
 INLINE real surface_energy(Grain at, EXCHANGE ContactTable* table) {
     SYNCHRONISE();
-    for (int v = 0; v < VECTORS; ++v) tabulate_work(at, surface_displacement(at, table, v), v, table);
-    SYNCHRONISE();
-    return confined_work(at, confined(at, table));
+    SurfaceDisplacement b[VECTORS];
+    for (int v = 0; v < VECTORS; ++v) b[v] = surface_displacement(at, table, v);
+    return confined_work(at, confined(at, b, table));
 }
 
 INLINE void add_contact_sums(Grain at, Neighbours seen, Displaced b, Contacts c, ContactSums* restrict sums) {

@@ -3,11 +3,10 @@
 
 /* The contacts of one grain as every slot of it must see them. */
 typedef struct {
-    real x[SLOTS], y[SLOTS], z[SLOTS];  /* direction e */
-    real arm[SLOTS];                    /* distance of the contact or probed point [m] */
-    real elastic[SLOTS];                /* force, zero where there is no contact [N] */
-    real radius[SLOTS];                 /* of the contact [m] */
-    real work[SLOTS], size_work[SLOTS]; /* displacing as points and by size, where asked [J] */
+    real x[SLOTS], y[SLOTS], z[SLOTS]; /* direction e; x and y then serve confinement */
+    real arm[SLOTS];                   /* distance of the contact or probed point [m] */
+    real elastic[SLOTS];               /* force, zero where there is no contact [N] */
+    real radius[SLOTS];                /* of the contact [m] */
 #if LANES == 1
     real padding[16]; /* grains side by side in a work-group begin in different banks of local memory */
 #endif
