@@ -9,6 +9,8 @@ std::string value_of(const Parameters& parameters, const std::string& key) {
     return found == parameters.end() ? "" : found->second;
 }
 
+bool has_programme(const Parameters& parameters) { return parameters.contains("programme.1.stage"); }
+
 std::string without_quotes(const std::string& text) {
     const bool quoted = text.size() >= 2 && text.front() == '"' && text.back() == '"';
     return quoted ? text.substr(1, text.size() - 2) : text;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/parameters.h"
 #include "experiment/measurements.h"
 #include "scene/random.h"
 
@@ -23,7 +24,7 @@ public:
           highest_(highest_top_force(truth)),
           centre_(0.5 * truth.box.size_x, 0.5 * truth.box.size_y, 0),
           grains_(truth.diameter.size()),
-          has_times_(truth.parameters.contains("programme.1.stage")),
+          has_times_(has_programme(truth.parameters)),
           position_noise_(seed, Stream::measured_positions),
           force_noise_(seed, Stream::measured_forces) {}
 

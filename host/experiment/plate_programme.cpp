@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/parameters.h"
 #include "experiment/measurements.h"
 #include "scene/programme_text.h"
 
@@ -114,7 +115,7 @@ std::vector<std::optional<double>> set_forces(const Recording& recording) {
 }
 
 void check_programme(Table& table, const std::vector<PlateRow>& rows, const Recording& recording) {
-    if (!recording.parameters.contains("programme.1.stage")) return;
+    if (!has_programme(recording.parameters)) return;
     if (std::isnan(recording.scans.front().time))
         return table.problem_at(table.where(1),
                                 "the header must name time_s where experiment.toml states a [[programme]]: "

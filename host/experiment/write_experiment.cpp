@@ -9,6 +9,7 @@
 #include "core/container.h"
 #include "core/errors.h"
 #include "core/make_folder.h"
+#include "core/parameters.h"
 #include "core/sha256.h"
 #include "experiment/experiment.h"
 #include "experiment/experiment_files.h"
@@ -76,7 +77,7 @@ void add_table(std::map<std::string, std::string>& files, const std::string& nam
 
 void add_plate_table(std::map<std::string, std::string>& files, const Recording& recording, Packed packed) {
     const auto set_force = set_forces(recording);
-    const bool has_times = recording.parameters.contains("programme.1.stage");
+    const bool has_times = has_programme(recording.parameters);
     const bool sets_force = std::ranges::any_of(set_force, &std::optional<double>::has_value);
     std::vector<std::string> columns = plate_columns();
     if (sets_force) columns.push_back(plate_columns_of_programmes()[0]);

@@ -10,9 +10,7 @@
 
 namespace mcdem::inline metrics {
 
-bool follows_programme(const Recording& recording) {
-    return recording.parameters.contains("programme.1.stage");
-}
+bool follows_programme(const Recording& recording) { return has_programme(recording.parameters); }
 
 bool follows_programme(const Replicas& replicas) {
     return std::ranges::any_of(replicas,

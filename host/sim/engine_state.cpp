@@ -123,11 +123,11 @@ ReplicaState Engine::state(int replica) const { return state(replica, readings(r
 
 void Engine::for_each_state(const std::vector<int>& replicas,
                             const std::function<void(std::size_t, ReplicaState)>& use) const {
-    constexpr int most_grains = 1 << 18;  // that are read together: some 100 MB
+    constexpr int max_grains = 1 << 18;  // that are read together: some 100 MB
     for (std::size_t begin = 0, end; begin < replicas.size(); begin = end) {
         end = begin + 1;
         while (end < replicas.size() && replicas[end] == replicas[end - 1] + 1 &&
-               layout_.first_grain[replicas[end] + 1] - layout_.first_grain[replicas[begin]] <= most_grains)
+               layout_.first_grain[replicas[end] + 1] - layout_.first_grain[replicas[begin]] <= max_grains)
             ++end;
         const Readings read = readings(replicas[begin], replicas[end - 1]);
         in_parallel(end - begin, [&](std::size_t i) { use(begin + i, state(replicas[begin + i], read)); });

@@ -17,6 +17,7 @@
 #include "core/errors.h"
 #include "core/input_file.h"
 #include "core/make_folder.h"
+#include "core/parameters.h"
 #include "experiment/settings.h"
 #include "io/output_folder.h"
 
@@ -91,7 +92,7 @@ std::vector<std::string> words_of(const ImportCommand& command, const Experiment
     add("--poisson-ratio", material("grains.poisson_ratio"));
     add("--voxel-size", command.voxel_size);
     if (command.gzip) words.push_back("--gzip");
-    if (recording.parameters.contains("programme.1.stage")) words.push_back("--programme");
+    if (has_programme(recording.parameters)) words.push_back("--programme");
     if (!command.mapping.empty()) words.push_back("--mapping=" + command.mapping);
     for (const std::string& problem : settings.lines()) words.push_back("--settings-problem=" + problem);
     words.push_back("--");
