@@ -77,6 +77,17 @@ int scans_of(const Stage& stage) {
     return stage.scan_at.empty() ? stage.scans : static_cast<int>(stage.scan_at.size());
 }
 
+double scan_level(const Stage& stage, int number, double from, double target, const Plate& plate) {
+    if (!stage.scan_at.empty())
+        return in_si(stage, stage.scan_at[static_cast<std::size_t>(number - 1)], plate);
+    return from + (target - from) * number / stage.scans;
+}
+
+double scan_time(const Stage& stage, int number) {
+    return stage.scan_at.empty() ? stage.time * number / stage.scans
+                                 : stage.scan_at[static_cast<std::size_t>(number - 1)];
+}
+
 std::vector<Leg> legs_of(const std::vector<Stage>& stages, const Plate& plate) {
     std::vector<Leg> all;
     std::vector<std::size_t> begin;  // of each stage in `all`

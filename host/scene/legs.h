@@ -52,5 +52,9 @@ double in_si(const Stage& stage, double value, const Plate& plate);
 
 /// Of one leg of the stage.
 int scans_of(const Stage& stage);
+/// Where scan `number`, from 1, of a move from `from` to `target` is taken: position [m] or force [N].
+double scan_level(const Stage& stage, int number, double from, double target, const Plate& plate);
+/// When scan `number`, from 1, of a hold is taken, since the hold's beginning [s].
+double scan_time(const Stage& stage, int number);
 
 }  // namespace mcdem::scene

@@ -77,15 +77,10 @@ std::vector<ScanPlace> scan_places(const std::vector<Stage>& programme, const Pl
         const double from = by_force ? force : position;
         const double end = held ? stage.time : legs[l].target;
         for (int n = 1; n <= scans_of(stage); ++n) {
-            const bool listed = !stage.scan_at.empty();
-            const double told = listed ? stage.scan_at[static_cast<std::size_t>(n - 1)] : 0;
-            double at = 0;
-            if (held)
-                at = listed ? told : end * n / stage.scans;
-            else
-                at = listed            ? in_si(stage, told, plate)
-                     : n < stage.scans ? from + (end - from) * n / stage.scans
-                                       : end;
+            const bool at_target = stage.scan_at.empty() && n == stage.scans;  // to the last bit
+            const double at = held        ? scan_time(stage, n)
+                              : at_target ? end
+                                          : scan_level(stage, n, from, end, plate);
             places.push_back({legs[l].stage, static_cast<int>(l), held, at == end, controlled(stage),
                               held ? from : at, held ? at : 0});
         }

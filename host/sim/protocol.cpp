@@ -58,9 +58,7 @@ double ProtocolRunner::max_speed() const {
 
 /// Where a move is to be scanned.
 double ProtocolRunner::level_value(int level) const {
-    if (!stage().scan_at.empty())
-        return in_si(stage(), stage().scan_at[static_cast<std::size_t>(level - 1)], plate_);
-    return state_.leg_begin + (target() - state_.leg_begin) * level / stage().scans;
+    return scan_level(stage(), level, state_.leg_begin, target(), plate_);
 }
 
 /// The next scan, or the end of the move.
@@ -76,10 +74,8 @@ bool ProtocolRunner::waypoint_is_end() const {
 
 /// From the hold's beginning to its next scan or its end [s].
 double ProtocolRunner::hold_time() const {
-    const int next = state_.level + 1, scans = scans_of(stage());
-    if (next > scans) return stage().time;
-    return stage().scan_at.empty() ? stage().time * next / scans
-                                   : stage().scan_at[static_cast<std::size_t>(next - 1)];
+    const int next = state_.level + 1;
+    return next > scans_of(stage()) ? stage().time : scan_time(stage(), next);
 }
 
 long ProtocolRunner::max_stage_steps() const {
