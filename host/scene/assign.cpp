@@ -17,20 +17,20 @@ struct Assign {
     const toml::node& value;
     Settings& settings;
 
-    bool operator()(double& (*get)(Settings&)) const {
+    bool operator()(MemberOf<double> get) const {
         const auto number = value.is_number() ? value.value<double>() : std::nullopt;
         if (!number || !key.range.contains(*number)) return false;
         get(settings) = *number;
         return true;
     }
-    bool operator()(int& (*get)(Settings&)) const { return whole(get); }
-    bool operator()(std::uint64_t& (*get)(Settings&)) const { return whole(get); }
-    bool operator()(bool& (*get)(Settings&)) const {
+    bool operator()(MemberOf<int> get) const { return whole(get); }
+    bool operator()(MemberOf<std::uint64_t> get) const { return whole(get); }
+    bool operator()(MemberOf<bool> get) const {
         if (!value.is_boolean()) return false;
         get(settings) = value.as_boolean()->get();
         return true;
     }
-    bool operator()(std::string& (*get)(Settings&)) const {
+    bool operator()(MemberOf<std::string> get) const {
         constexpr std::size_t longest = 4096;
         if (!value.is_string()) return false;
         const std::string& text = value.as_string()->get();
@@ -39,7 +39,7 @@ struct Assign {
         get(settings) = text;
         return true;
     }
-    bool operator()(std::vector<double>& (*get)(Settings&)) const {
+    bool operator()(MemberOf<std::vector<double>> get) const {
         constexpr std::size_t longest = 10000;
         const toml::array* list = value.as_array();
         if (!list || list->empty() || list->size() > longest) return false;
@@ -53,7 +53,7 @@ struct Assign {
         return true;
     }
     template <class Enum>
-    bool operator()(Enum& (*get)(Settings&)) const {
+    bool operator()(MemberOf<Enum> get) const {
         const auto word = value.is_string() ? parse<Enum>(value.as_string()->get()) : std::nullopt;
         if (word) get(settings) = *word;
         return word.has_value();
@@ -61,7 +61,7 @@ struct Assign {
 
 private:
     template <class Whole>
-    bool whole(Whole& (*get)(Settings&)) const {
+    bool whole(MemberOf<Whole> get) const {
         if (!value.is_integer()) return false;
         const std::int64_t number = value.as_integer()->get();
         if (!key.range.contains(static_cast<double>(number))) return false;

@@ -12,9 +12,6 @@
 namespace mcdem::inline scene {
 namespace {
 
-template <class Value>
-using Get = Value& (*)(Settings&);
-
 std::string number(double value, bool whole) {
     if (whole) return fmt::format("{}", static_cast<long long>(value));
     return fmt::format("{:g}", value);
@@ -32,14 +29,14 @@ std::string numbers(const Range& range, bool whole) {
 
 struct Describe {
     const Range& range;
-    std::string operator()(Get<double>) const { return numbers(range, false); }
-    std::string operator()(Get<int>) const { return numbers(range, true); }
-    std::string operator()(Get<std::uint64_t>) const { return numbers(range, true); }
-    std::string operator()(Get<bool>) const { return "true or false"; }
-    std::string operator()(Get<std::string>) const { return "text"; }
-    std::string operator()(Get<std::vector<double>>) const { return "a list of numbers"; }
+    std::string operator()(MemberOf<double>) const { return numbers(range, false); }
+    std::string operator()(MemberOf<int>) const { return numbers(range, true); }
+    std::string operator()(MemberOf<std::uint64_t>) const { return numbers(range, true); }
+    std::string operator()(MemberOf<bool>) const { return "true or false"; }
+    std::string operator()(MemberOf<std::string>) const { return "text"; }
+    std::string operator()(MemberOf<std::vector<double>>) const { return "a list of numbers"; }
     template <class Enum>
-    std::string operator()(Get<Enum>) const {
+    std::string operator()(MemberOf<Enum>) const {
         return "one of " + all_names<Enum>();
     }
 };
@@ -73,12 +70,9 @@ std::size_t distance(std::string_view a, std::string_view b) {
     return row.back();
 }
 
-std::string_view last_part(std::string_view name) {
-    const auto dot = name.rfind('.');
-    return dot == name.npos ? name : name.substr(dot + 1);
-}
-
 }  // namespace
+
+std::string_view last_part(std::string_view name) { return name.substr(name.rfind('.') + 1); }
 
 std::string description(const Key& key) {
     std::string text = std::visit(Describe{key.range}, key.member);

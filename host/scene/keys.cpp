@@ -2,14 +2,17 @@
 
 #include <algorithm>
 
+#include "scene/key_rows.h"
 #include "scene/list_tables.h"
 
 namespace mcdem::inline scene {
 namespace {
 
+using namespace rows;
+
 /// The member at the end of a path of pointers to members, starting from Settings.
 template <auto... path>
-auto& follow(Settings& settings) {
+auto& follow(Settings& settings, std::size_t /*element*/) {
     return (settings.*....*path);
 }
 
@@ -21,18 +24,6 @@ template <auto member>
 constexpr auto effect = &follow<&Settings::replica, &Replica::effects, member>;
 template <auto member>
 constexpr auto generated = &follow<&Settings::generated, member>;
-
-constexpr Range above_zero_to(double high) { return {0, high, Range::Low::excluded}; }
-constexpr Range between(double low, double high) { return {low, high, Range::Low::included}; }
-constexpr Range none{};
-
-// Limits are wide: they keep out what is impossible or would overflow, not what is unusual.
-constexpr Range length = above_zero_to(1000), stiffness = above_zero_to(1e13),
-                mass_density = above_zero_to(1e5);
-constexpr Range poisson = between(0, 0.5), friction = between(0, 10), bounce = above_zero_to(1);
-constexpr Range grain_size = between(1e-7, 10), duration = above_zero_to(1e6);
-
-constexpr Scope one_run = Scope::run, each = Scope::replica;
 
 // clang-format off
 const Key table[] = {

@@ -35,13 +35,23 @@ struct Range {
     bool contains(double value) const;
 };
 
-/// Where a key's value is kept; its type is the key's type.
+/// Where a key's value is kept.
+template <class Value>
+struct MemberOf {
+    using Reach = Value& (*)(Settings& settings, std::size_t element);
+    constexpr MemberOf(Reach reach) : reach(reach) {}
+    Value& operator()(Settings& settings) const { return reach(settings, element); }
+
+    Reach reach;
+    std::size_t element = 0;  ///< of which of the tables that a scene has several of (scene/list_tables.h)
+};
+template <class... Values>
+using MemberOfOne = std::variant<MemberOf<Values>...>;
+
+/// Its type is the key's type.
 using Member =
-    std::variant<double& (*)(Settings&), int& (*)(Settings&), std::uint64_t& (*)(Settings&),
-                 bool& (*)(Settings&), std::string& (*)(Settings&), ContactModel& (*)(Settings&),
-                 FrictionLaw& (*)(Settings&), Precision& (*)(Settings&), ContainerShape& (*)(Settings&),
-                 StageKind& (*)(Settings&), Controlled& (*)(Settings&), SizeLaw& (*)(Settings&),
-                 FractionsBy& (*)(Settings&), std::vector<double>& (*)(Settings&)>;
+    MemberOfOne<double, int, std::uint64_t, bool, std::string, std::vector<double>, ContactModel, FrictionLaw,
+                Precision, ContainerShape, StageKind, Controlled, SizeLaw, FractionsBy>;
 
 /// Whether the replicas of one run may differ in it.
 enum class Scope { run, replica };
@@ -82,6 +92,9 @@ bool is_generator_key(std::string_view name);
 
 /// " (did you mean ..?)", or nothing where no key (or table) comes near.
 std::string suggestion(std::string_view unknown);
+
+/// "friction" of "grains.friction".
+std::string_view last_part(std::string_view name);
 
 /// What the key takes: "a number > 0 and <= 10 [m]", "one of saturated, mindlin".
 std::string description(const Key& key);

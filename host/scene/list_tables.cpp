@@ -1,5 +1,7 @@
 #include "scene/list_tables.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <charconv>
 
@@ -24,6 +26,16 @@ const ListTable* find_list_table(std::string_view name) {
     const auto tables = list_tables();
     const auto found = std::ranges::find(tables, name, &ListTable::name);
     return found == tables.end() ? nullptr : &*found;
+}
+
+ListKeys::ListKeys(std::string_view table, int most, std::span<const Key> rows) {
+    for (std::size_t n = 0; n < static_cast<std::size_t>(most); ++n) {
+        std::vector<Key>& keys = keys_.emplace_back(rows.begin(), rows.end());
+        for (Key& key : keys) {
+            key.name = names_.emplace_back(fmt::format("{}.{}.{}", table, n + 1, key.name));
+            std::visit([&](auto& member) { member.element = n; }, key.member);
+        }
+    }
 }
 
 std::optional<ListElement> list_element(std::string_view name) {

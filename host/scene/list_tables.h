@@ -1,12 +1,11 @@
 // Tables that a scene has several of, in order, such as [[programme]]. A key of the second [[species]] is
 // called species.2.density.
 #pragma once
-#include <array>
+#include <deque>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "scene/keys.h"
@@ -44,29 +43,15 @@ Element& element(std::vector<Element>& list, std::size_t n) {
     return list[n];
 }
 
-/// The same rows for every element, with their whole names, which live as long as the program.
-/// Rows::of<n>() gives those of element n.
-template <class Rows, int most>
+/// The same rows for every element, with their whole names.
 class ListKeys {
 public:
-    explicit ListKeys(std::string_view table) { fill(table, std::make_index_sequence<most>()); }
+    ListKeys(std::string_view table, int most, std::span<const Key> rows);
     std::span<const Key> of(int element) const { return keys_[static_cast<std::size_t>(element)]; }
 
 private:
-    template <std::size_t... n>
-    void fill(std::string_view table, std::index_sequence<n...>) {
-        (fill<n>(table), ...);
-    }
-    template <std::size_t n>
-    void fill(std::string_view table) {
-        keys_[n] = Rows::template of<n>();
-        for (const Key& key : keys_[n])
-            names_[n].push_back(std::string(table) + "." + std::to_string(n + 1) + "." +
-                                std::string(key.name));
-        for (std::size_t k = 0; k < keys_[n].size(); ++k) keys_[n][k].name = names_[n][k];
-    }
-    std::array<std::vector<Key>, most> keys_;
-    std::array<std::vector<std::string>, most> names_;
+    std::vector<std::vector<Key>> keys_;
+    std::deque<std::string> names_;
 };
 
 }  // namespace mcdem::scene

@@ -17,7 +17,7 @@
 namespace mcdem::inline scene {
 namespace {
 
-constexpr std::size_t max_problems = 10;
+constexpr std::size_t max_outside = 10;
 
 double median(std::vector<double> values) {
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -106,14 +106,14 @@ std::vector<std::string> packing_problems(const Packing& packing, const Box& box
     std::size_t outside = 0;
     for (std::size_t i = 0; i < packing.size(); ++i) {
         const Vec3& p = packing.position[i];
-        if (is_inside(box, plate, p) || ++outside > max_problems) continue;
+        if (is_inside(box, plate, p) || ++outside > max_outside) continue;
         problems.push_back(
             fmt::format("{}: the centre of grain {} must be in the {} below the plate at {} m, "
                         "got {}, {}, {}",
                         source, i, described(box), plate.height(p), p.x(), p.y(), p.z()));
     }
-    if (outside > max_problems)
-        problems.push_back(fmt::format("{}: .. and {} more grains outside", source, outside - max_problems));
+    if (outside > max_outside)
+        problems.push_back(fmt::format("{}: .. and {} more grains outside", source, outside - max_outside));
     return problems;
 }
 

@@ -14,13 +14,13 @@ namespace mcdem::inline scene {
 namespace {
 
 // Words are read as text: the library's own numbers are not rounded to the nearest double.
-using Reader = io::CSVReader<7, io::trim_chars<' ', '\t'>, io::no_quote_escape<','>, io::throw_on_overflow,
-                             io::single_and_empty_line_comment<'#'>>;
+using PackingReader = io::CSVReader<7, io::trim_chars<' ', '\t'>, io::no_quote_escape<','>,
+                                    io::throw_on_overflow, io::single_and_empty_line_comment<'#'>>;
 
 /// The rows of one frame; a file without frames is one.
 class RowReader {
 public:
-    RowReader(Reader& reader, std::optional<long> wanted, FileProblems& problems)
+    RowReader(PackingReader& reader, std::optional<long> wanted, FileProblems& problems)
         : reader_(reader), wanted_(wanted), has_frames_(reader.has_column("frame")), problems_(problems) {}
 
     Packing read() {
@@ -75,7 +75,7 @@ private:
         return frame == wanted_;
     }
 
-    Reader& reader_;
+    PackingReader& reader_;
     std::optional<long> wanted_;
     const bool has_frames_;
     FileProblems& problems_;
@@ -89,7 +89,7 @@ Packing read_csv_packing(std::istream& input, const std::string& source, std::op
     FileProblems problems(source);
     Packing packing;
     try {
-        Reader reader(source, input);
+        PackingReader reader(source, input);
         reader.read_header(io::ignore_extra_column | io::ignore_missing_column, "x_m", "y_m", "z_m",
                            "diameter_m", "frame", "species", "type");
         for (const char* column : {"x_m", "y_m", "z_m", "diameter_m"})

@@ -15,14 +15,12 @@
 namespace mcdem::inline scene {
 namespace {
 
-std::string_view last_part(std::string_view name) { return name.substr(name.rfind('.') + 1); }
-
 /// Words stand for themselves, numbers need their key; its table too where two keys would look the same.
 std::string label_part(const Key& key, const Settings& settings, const std::vector<Variation>& variations) {
     const std::string value = value_text(key, settings);
-    if (std::holds_alternative<ContactModel& (*)(Settings&)>(key.member) ||
-        std::holds_alternative<FrictionLaw& (*)(Settings&)>(key.member) ||
-        std::holds_alternative<ContainerShape& (*)(Settings&)>(key.member))
+    if (std::holds_alternative<MemberOf<ContactModel>>(key.member) ||
+        std::holds_alternative<MemberOf<FrictionLaw>>(key.member) ||
+        std::holds_alternative<MemberOf<ContainerShape>>(key.member))
         return value;
     if (key.name == "packing.file") return std::filesystem::path(value).filename().string();
     const auto alike = std::ranges::count_if(variations, [&](const Variation& other) {

@@ -20,10 +20,10 @@
 namespace mcdem::inline scene {
 namespace {
 
-using Reader = io::CSVReader<1, io::trim_chars<' ', '\t'>, io::no_quote_escape<','>, io::throw_on_overflow,
-                             io::single_and_empty_line_comment<'#'>>;
+using DiameterReader = io::CSVReader<1, io::trim_chars<' ', '\t'>, io::no_quote_escape<','>,
+                                     io::throw_on_overflow, io::single_and_empty_line_comment<'#'>>;
 
-void read_rows(Reader& reader, std::vector<double>& diameters, FileProblems& problems) {
+void read_rows(DiameterReader& reader, std::vector<double>& diameters, FileProblems& problems) {
     const char* word = nullptr;
     while (!problems.full() && reader.read_row(word)) {
         const auto number = to_number(word);
@@ -76,7 +76,7 @@ std::vector<double> read_diameters(const std::string& file) {
     if (!input)
         throw InputError(file + ": must be a CSV with a column diameter_m, got no file that can be read");
     try {
-        Reader reader(file, input);
+        DiameterReader reader(file, input);
         reader.read_header(io::ignore_extra_column, "diameter_m");
         read_rows(reader, diameters, problems);
     } catch (const io::error::base& error) {

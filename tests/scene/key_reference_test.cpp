@@ -112,8 +112,8 @@ TEST(Keys, AcceptTheirOwnDefaults) {
     for (const Key& key : keys()) {
         std::string text = value_text(key, defaults);
         if (text.empty()) continue;  // no default
-        if (!std::holds_alternative<double& (*)(Settings&)>(key.member) && text != "true" &&
-            text != "false" && text.find_first_not_of("-0123456789") != text.npos)
+        if (!std::holds_alternative<MemberOf<double>>(key.member) && text != "true" && text != "false" &&
+            text.find_first_not_of("-0123456789") != text.npos)
             text = '"' + text + '"';
         const toml::table parsed = toml::parse("value = " + text);
         Settings settings;

@@ -1,0 +1,8 @@
+// Constants of nature that several floors use.
+#pragma once
+
+namespace mcdem::inline core {
+
+constexpr double gravity = 9.81;  // [m/s2]
+
+}  // namespace mcdem::core
