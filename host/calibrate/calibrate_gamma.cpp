@@ -12,7 +12,6 @@
 namespace mcdem::inline calibrate {
 namespace {
 
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t points_for_an_error = 6;  ///< fewer tell the scatter about a fit too badly to stop
 
 void check(double target, const Bracket& bracket, const CalibrationOptions& options) {

@@ -7,7 +7,6 @@
 namespace mcdem::inline calibrate {
 namespace {
 
-constexpr double none = std::numeric_limits<double>::quiet_NaN();
 constexpr int points_for_parabola = 6;
 
 /// y - target = c0 + c1 t + c2 t^2 with t from -1 to 1 over the window.

@@ -1,8 +1,12 @@
 // A line or parabola through the points near a root, and where it crosses a target.
 #pragma once
+#include <limits>
 #include <vector>
 
 namespace mcdem::inline calibrate {
+
+/// What a fit does not tell.
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
 struct Point {
     double x = 0;

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "core/errors.h"
+#include "core/parameters.h"
 #include "ensemble/make_packings.h"
 #include "ensemble/simulate.h"
 #include "metrics/top_force.h"
@@ -15,19 +16,6 @@ namespace mcdem::inline ensemble {
 namespace {
 
 const std::set<std::string> left_aside{"contact.model", "contact.gamma", "packing.seed"};
-
-/// The keys whose values differ between two replicas of the scene, without those left aside.
-std::set<std::string> keys_that_vary(const Scene& scene) {
-    std::set<std::string> keys;
-    const auto& first = scene.replicas.front().parameters;
-    for (const auto& replica : scene.replicas)
-        for (const auto& [key, value] : replica.parameters) {
-            const auto found = first.find(key);
-            if (!left_aside.contains(key) && (found == first.end() || found->second != value))
-                keys.insert(key);
-        }
-    return keys;
-}
 
 /// All values and all packings go through one simulation, so that a device is filled.
 class ValueBatch {
@@ -100,12 +88,14 @@ private:
 }  // namespace
 
 std::vector<Replica> calibration_replicas(const Scene& scene, ContactModel model) {
+    std::vector<Parameters> all;
+    for (const Replica& replica : scene.replicas) all.push_back(replica.parameters);
     std::vector<std::string> problems;
-    for (const auto& key : keys_that_vary(scene))
-        problems.push_back(
-            fmt::format("calibrate: {} must be the same for all replicas: give one value with "
-                        "--set {}=..",
-                        key, key));
+    for (const auto& key : keys_that_vary(all))
+        if (!left_aside.contains(key))
+            problems.push_back(fmt::format(
+                "calibrate: {} must be the same for all replicas: give one value with --set {}=..", key,
+                key));
     if (!problems.empty()) throw InputError(problems);
     std::vector<Replica> chosen;
     std::set<std::uint64_t> seeds;

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <optional>
 
+#include "core/constants.h"
 #include "core/in_parallel.h"
 #include "core/sha256.h"
 #include "metrics/estimate.h"
@@ -279,7 +280,6 @@ std::vector<Recording> kept_recordings(const Device& device, const Question& que
 }
 
 ReferenceMaterial reference_material(const Model& model) {
-    constexpr double gravity = 9.81;
     const auto& grains = model.replica.grains;
     const auto& walls = model.replica.walls;
     return {grains.youngs_modulus,

@@ -5,13 +5,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/constants.h"
 #include "core/container.h"
 #include "experiment/findings.h"
 
 namespace mcdem::inline experiment {
 namespace {
 
-constexpr double gravity = 9.81;       // [m/s2]
 constexpr double near_wall = 1.25;     // centres nearer than this many radii may touch a wall
 constexpr double min_error = 0.02;     // of a force, where none is stated
 constexpr double unseen_contacts = 2;  // of a grain, each up to the threshold

@@ -14,7 +14,7 @@ namespace {
 constexpr double max_apart = 0.15;      // gap over the mean diameter: as far as simulations look for contacts
 constexpr double max_pulling = 0.2;     // of the contacts that are not weak
 constexpr double gauge_range = 1.5;     // plate contacts over the gauge's force, either way
-constexpr double clear_load = 4;        // over the threshold times the plate's contacts
+constexpr double clear_sum = 4;         // over the threshold times the plate's contacts
 constexpr std::size_t min_pairs = 20;   // for a typical force
 constexpr double clear_overlap = 0.02;  // over R*
 constexpr double hertz_range = 5;       // force over Hertz's, either way: a modulus or unit, no effect
@@ -123,7 +123,7 @@ void check_gauge(const Recording& recording, double force_threshold, Findings& f
             sum -= contact.force.z();
             unseen += force_threshold;
         }
-        if (unseen > 0 && scan.top_force() > clear_load * unseen) ratios.push_back(sum / scan.top_force());
+        if (unseen > 0 && scan.top_force() > clear_sum * unseen) ratios.push_back(sum / scan.top_force());
     }
     const double ratio = median(ratios);
     if (ratio < 1 / gauge_range || ratio > gauge_range)

@@ -10,7 +10,6 @@
 namespace mcdem::inline experiment {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr std::uintmax_t largest_settings = 1'000'000;  // bytes
 
 namespace fs = std::filesystem;
@@ -27,7 +26,8 @@ void read_tables(const fs::path& folder, std::uintmax_t largest, Experiment& exp
         return problems.add(folder.string(),
                             "must hold plate.csv or plate.csv.gz: the plate's position and force by frame");
     const auto modulus = experiment.materials.find("grains.youngs_modulus");
-    const double stiffness = modulus == experiment.materials.end() ? infinity : modulus->second;
+    const double stiffness =
+        modulus == experiment.materials.end() ? std::numeric_limits<double>::infinity() : modulus->second;
     Table plate_table(*plate, plate_columns(), largest, problems, plate_columns_of_programmes());
     read_plate(plate_table, stiffness, recording);
     if (recording.scans.empty()) return;

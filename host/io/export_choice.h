@@ -1,14 +1,11 @@
-// Which replicas and scans of a run are exported.
+// Which replicas and scans of a run are exported, and where to.
 #pragma once
-#include <fmt/format.h>
-
-#include <algorithm>
+#include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
-#include "core/errors.h"
-#include "core/parameters.h"
-#include "core/recording.h"
+#include "io/results.h"
 
 namespace mcdem::inline io {
 
@@ -16,55 +13,27 @@ namespace mcdem::inline io {
 struct ExportChoice {
     std::vector<int> replicas = {}, scans = {};
 
-    bool has_replica(std::size_t number) const { return has(replicas, static_cast<int>(number)); }
-    bool has_scan(int frame) const { return has(scans, frame); }
-
-private:
-    static bool has(const std::vector<int>& list, int number) {
-        return list.empty() || std::ranges::find(list, number) != list.end();
-    }
+    bool has_replica(std::size_t number) const;
+    bool has_scan(int frame) const;
 };
-
-/// Throws InputError where a replica is chosen that the run has not.
-inline void expect_replicas(const ExportChoice& choice, const Run& run) {
-    for (const int number : choice.replicas)
-        if (number < 0 || number >= static_cast<int>(run.recordings.size()))
-            throw InputError(
-                fmt::format("--replica: must be one of 0 to {}, got {}", run.recordings.size() - 1, number));
-}
 
 /// What a replica's files or folder are called: its number and its label, of which only characters are taken
 /// that every file system and shell leaves alone: "replica_00003_mc_dem_friction=0.03_2".
-inline std::string export_name(std::size_t number, const std::string& label) {
-    constexpr std::size_t most = 80;  // characters of the label
-    std::string words;
-    for (const char c : label) {
-        const bool plain = (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') ||
-                           c == '.' || c == '=' || c == '-' || c == '+';
-        if (plain)
-            words += c;
-        else if (!words.empty() && words.back() != '_')
-            words += '_';
-    }
-    words.resize(std::min(words.size(), most));
-    while (words.ends_with('_') || words.ends_with('.')) words.pop_back();
-    return fmt::format("replica_{:05}{}{}", number, words.empty() ? "" : "_", words);
-}
+std::string export_name(std::size_t number, const std::string& label);
 
-/// A line for each replica that is chosen: its name and every scene key that is not the same in all.
-inline std::string list_of_replicas(const ExportChoice& choice, const Run& run) {
-    std::vector<Parameters> all;
-    for (const Recording& recording : run.recordings) all.push_back(recording.parameters);
-    std::string lines;
-    const auto keys = keys_that_vary(all);
-    for (std::size_t r = 0; r < run.recordings.size(); ++r) {
-        if (!choice.has_replica(r)) continue;
-        lines += export_name(r, run.recordings[r].label);
-        for (const std::string& key : keys)
-            lines += fmt::format("  {} = {}", key, value_of(run.recordings[r].parameters, key));
-        lines += "\n";
-    }
-    return lines;
-}
+/// A text file that says how to look at an export; what replicas are there is added to it.
+struct ExportGuide {
+    const char* name;
+    const char* text;
+};
+/// Writes the files of one replica into a folder; returns how many.
+using ExportReplica = std::function<int(RunReader& reader, std::size_t replica,
+                                        const std::filesystem::path& folder, const ExportChoice& choice)>;
+
+/// Exports the replicas of a choice, the guide beside them; returns the number of files, guide not counted.
+/// Throws InputError where a replica is chosen that the run has not.
+int export_replicas(const std::filesystem::path& file_or_folder, const std::filesystem::path& folder,
+                    const ExportChoice& choice, const ExportGuide& guide,
+                    const ExportReplica& export_replica);
 
 }  // namespace mcdem::io

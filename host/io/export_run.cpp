@@ -1,5 +1,6 @@
 #include "io/export_run.h"
 
+#include "core/errors.h"
 #include "io/output_folder.h"
 #include "io/result_folder.h"
 #include "io/vtk.h"

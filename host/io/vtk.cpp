@@ -85,8 +85,8 @@ private:
     Seen first_, last_;
 };
 
-int export_replica(RunReader& reader, std::size_t replica, const std::filesystem::path& folder,
-                   const ExportChoice& choice) {
+int export_vtk_replica(RunReader& reader, std::size_t replica, const std::filesystem::path& folder,
+                       const ExportChoice& choice) {
     const Recording& recording = reader.run().recordings[replica];
     const auto sub = folder / export_name(replica, recording.label);
     std::optional<FolderLock> lock;  // for what a killed export has left there
@@ -111,11 +111,6 @@ int export_replica(RunReader& reader, std::size_t replica, const std::filesystem
         files += 4;
     }
     return files;
-}
-
-void start_folder(const std::filesystem::path& folder, const std::string& replicas) {
-    make_folder(folder);
-    replace_own(folder / "README.txt", FileKind::guide, readme + replicas);
 }
 
 /// What is known of contacts, a row each.
@@ -236,13 +231,7 @@ void write_vtk_walls(const std::filesystem::path& file, const Recording& recordi
 
 int export_vtk(const std::filesystem::path& file_or_folder, const std::filesystem::path& folder,
                const ExportChoice& choice) {
-    RunReader reader(file_or_folder);
-    expect_replicas(choice, reader.run());
-    start_folder(folder, list_of_replicas(choice, reader.run()));
-    int files = 0;
-    for (std::size_t r = 0; r < reader.run().recordings.size(); ++r)
-        if (choice.has_replica(r)) files += export_replica(reader, r, folder, choice);
-    return files;
+    return export_replicas(file_or_folder, folder, choice, {"README.txt", readme}, export_vtk_replica);
 }
 
 }  // namespace mcdem::io

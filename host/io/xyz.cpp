@@ -107,8 +107,8 @@ void append_contacts(fmt::memory_buffer& text, const Recording& recording, const
 }
 
 /// Both files of one replica, its scans read one after the other.
-int export_replica(RunReader& reader, std::size_t number, const std::filesystem::path& folder,
-                   const ExportChoice& choice) {
+int export_xyz_replica(RunReader& reader, std::size_t number, const std::filesystem::path& folder,
+                       const ExportChoice& choice) {
     const Recording& recording = reader.run().recordings[number];
     const auto write_frames = [&](NewFile& out, auto append) {
         bool any = false;
@@ -135,22 +135,11 @@ int export_replica(RunReader& reader, std::size_t number, const std::filesystem:
     return 2;
 }
 
-void start_folder(const std::filesystem::path& folder, const std::string& replicas) {
-    make_folder(folder);
-    replace_own(folder / "OVITO.txt", FileKind::guide, how_to_look + replicas);
-}
-
 }  // namespace
 
 int export_xyz(const std::filesystem::path& file_or_folder, const std::filesystem::path& folder,
                const ExportChoice& choice) {
-    RunReader reader(file_or_folder);
-    expect_replicas(choice, reader.run());
-    start_folder(folder, list_of_replicas(choice, reader.run()));
-    int files = 0;
-    for (std::size_t r = 0; r < reader.run().recordings.size(); ++r)
-        if (choice.has_replica(r)) files += export_replica(reader, r, folder, choice);
-    return files;
+    return export_replicas(file_or_folder, folder, choice, {"OVITO.txt", how_to_look}, export_xyz_replica);
 }
 
 }  // namespace mcdem::io

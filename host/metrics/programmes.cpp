@@ -53,7 +53,10 @@ MeanScan mean_of(int frame, const std::vector<Seen>& scans) {
     const auto of_scan = [&](const auto& quantity) {
         return mean([&](const Recording&, const Scan& scan) { return quantity(scan); });
     };
-    MeanScan means{.frame = frame, .cycle = scans.front().scan->cycle, .phase = scans.front().scan->phase};
+    MeanScan means;
+    means.frame = frame;
+    means.cycle = scans.front().scan->cycle;
+    means.phase = scans.front().scan->phase;
     means.time = of_scan([](const Scan& scan) { return scan.time; });
     means.displacement = mean([](const Recording& r, const Scan& scan) { return r.displacement(scan); });
     means.top_force = of_scan([](const Scan& scan) { return scan.top_force(); });

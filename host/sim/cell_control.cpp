@@ -8,7 +8,7 @@ namespace {
 
 /// The strains of a move stand still while a stress is farther than this from the one set, relative.
 constexpr double still = 0.02;
-constexpr double min_strain = -10, rounding = 1e-12;
+constexpr double min_strain = -10, strain_rounding = 1e-12;
 
 template <class Action>
 void for_each_set(const SetStress& set, const Action& action) {
@@ -145,9 +145,10 @@ std::optional<std::size_t> CellControl::stuck(const State& state, const SetStres
         const Direction& direction = state.direction[axis];
         if (ForceControl::reached(direction.control, set[axis])) return;
         const bool shorter = direction.control.force < set[axis];
-        if (shorter && direction.control.velocity < 0 && direction.strain >= max_strain_[axis] - rounding)
+        if (shorter && direction.control.velocity < 0 &&
+            direction.strain >= max_strain_[axis] - strain_rounding)
             found = axis;
-        if (!shorter && direction.control.velocity > 0 && direction.strain <= min_strain + rounding)
+        if (!shorter && direction.control.velocity > 0 && direction.strain <= min_strain + strain_rounding)
             found = axis;
     });
     return found;

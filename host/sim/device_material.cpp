@@ -4,14 +4,14 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/constants.h"
 #include "core/container.h"
 #include "elasticity/surface_displacement.h"
 
 namespace mcdem::inline sim {
 namespace {
 
-constexpr double gravity = 9.81;  // [m/s2]
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 static_assert(max_species == MAX_SPECIES);
 
 double shear_modulus(double youngs_modulus, double poisson_ratio) {

@@ -16,7 +16,7 @@
 namespace mcdem::inline sim {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 double mean_radius(const Packing& packing) {
     return 0.5 * std::accumulate(packing.diameter.begin(), packing.diameter.end(), 0.0) /

@@ -18,7 +18,7 @@ constexpr double pressure_share = 0.2;
 /// once; before the first stroke grains still have some way to fall.
 constexpr double max_drag = 0.5, max_relax_drag = 0.02;
 /// Closer than this to a level, over the plate's start or a strain of one, the plate has arrived.
-constexpr double rounding = 1e-12;
+constexpr double position_rounding = 1e-12;
 
 double force_along_z(const IntervalResult& result, Wall wall) {
     return result.wall_force[static_cast<std::size_t>(wall)].z();
@@ -159,7 +159,7 @@ void ProtocolRunner::follow_force(double duration) {
     state_.reached_intervals = reached ? state_.reached_intervals + 1 : 0;
     force_control_.steer(state_.control, set, duration,
                          quasi_static_.speed(max_speed(), state_.plate_z, state_.pressure));
-    const double edge = rounding * plate_.start;
+    const double edge = position_rounding * plate_.start;
     const bool at_end = state_.plate_z <= plate_.end + edge && state_.control.force < set,
                at_start = state_.plate_z >= plate_.start - edge && state_.control.force > set;
     const bool stuck = (at_end && state_.control.velocity < 0) || (at_start && state_.control.velocity > 0);
@@ -243,7 +243,7 @@ std::optional<ProtocolRunner::ScanTag> ProtocolRunner::made(const IntervalResult
 }
 
 std::optional<ProtocolRunner::ScanTag> ProtocolRunner::moved() {
-    if (std::abs(waypoint() - state_.plate_z) > rounding * scale_) {
+    if (std::abs(waypoint() - state_.plate_z) > position_rounding * scale_) {
         give_up_late();
         return std::nullopt;
     }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/constants.h"
 #include "core/container.h"
 #include "scene/true_grains.h"
 #include "sim/device_replica.h"
@@ -11,7 +12,6 @@
 namespace mcdem::inline sim {
 namespace {
 
-constexpr double gravity = 9.81;
 constexpr double min_pressure_over_modulus = 1e-5;
 
 double sphere_volume(double diameter) { return std::numbers::pi / 6 * std::pow(diameter, 3); }

@@ -99,7 +99,7 @@ std::string_view no_threshold(const Model& m) {
 }
 
 // clang-format off
-const Effect table[] = {
+const Effect all_effects[] = {
     {"cross_contact", "", "gamma of the paper's Eq. 1: each contact moves the whole surface of its grains", "Brodu, Dijksman & Behringer 2015",
      0, 1.8, 0.5, 1.0, one, [](Model& m, double a) { m.replica.contact.model = ContactModel::mc_dem; m.replica.contact.gamma = a; }, interacting_already},
     {"bulge_contacts", "", "part of the bulges that makes no contact where spheres do not overlap by themselves", "Brodu, Dijksman & Behringer 2015",
@@ -164,11 +164,11 @@ constexpr double strain_zero_sigma = 0.01;  // over the mean diameter
 
 }  // namespace
 
-std::span<const Effect> effects() { return table; }
+std::span<const Effect> effects() { return all_effects; }
 
 const Effect* find_effect(std::string_view name) {
-    const auto found = std::ranges::find(table, name, &Effect::name);
-    return found == std::end(table) ? nullptr : found;
+    const auto found = std::ranges::find(all_effects, name, &Effect::name);
+    return found == std::end(all_effects) ? nullptr : found;
 }
 
 bool is_numerical(std::string_view name) {

@@ -11,7 +11,7 @@ namespace mcdem::inline diagnose {
 namespace {
 
 // clang-format off
-constexpr Observable table[] = {
+constexpr Observable all_observables[] = {
     {"top_force", Needs::plate, 0.003, "plate", "", "log of the force on the plate"},
 
     {"floor_force", Needs::contacts, 0.003, "floor", "", "force on the floor over that on the plate"},
@@ -59,7 +59,7 @@ constexpr Observable table[] = {
     {"creep", Needs::programme, 0.002, "plate", "", "way of the plate down during a hold of its force, over the stroke"},
 };
 // clang-format on
-constexpr std::size_t count = std::size(table);
+constexpr std::size_t count = std::size(all_observables);
 
 /// Takes one group of numbers after the other, in the order of the table.
 class Row {
@@ -77,7 +77,7 @@ private:
 
 }  // namespace
 
-std::span<const Observable> observables() { return table; }
+std::span<const Observable> observables() { return all_observables; }
 
 Eigen::Index index_of(OfProgramme observable) {
     constexpr Eigen::Index of_programmes = 3;

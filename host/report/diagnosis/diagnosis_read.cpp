@@ -4,13 +4,12 @@
 
 #include "core/errors.h"
 #include "report/diagnosis/diagnosis_json.h"
+#include "report/page/labels.h"
 
 namespace mcdem::inline report {
 namespace {
 
-using Json = nlohmann::json;
-
-constexpr double mm = 1e-3;
+using Json = nlohmann::ordered_json;
 
 /// null stands for what is not finite or not known.
 double number(const Json& json, double otherwise = std::numeric_limits<double>::quiet_NaN()) {

@@ -7,15 +7,15 @@
 #include <span>
 
 #include "report/diagnosis/diagnosis_words.h"
+#include "report/page/labels.h"
 
 namespace mcdem::inline report {
 namespace {
 
-const std::string dash = "–";
-constexpr std::size_t max_entries = 20;  // of "where"
+constexpr std::size_t max_rows = 20;  // of "where"
 
 std::string number(double value, const char* format = "{:.3g}") {
-    return std::isfinite(value) ? fmt::format(fmt::runtime(format), value) : dash;
+    return std::isfinite(value) ? fmt::format(fmt::runtime(format), value) : no_number;
 }
 
 /// The group without the effect itself, in words.
@@ -23,7 +23,7 @@ std::string others(const std::vector<std::string>& group, const std::string& eff
     std::vector<std::string> words;
     for (const auto& name : group)
         if (name != effect) words.push_back(words_of(name));
-    return words.empty() ? dash : listed(words);
+    return words.empty() ? no_number : listed(words);
 }
 
 /// Region and force class that the entry is about.
@@ -72,7 +72,7 @@ TextTable table_of_causes(const Diagnosis& diagnosis) {
         table.rows.push_back(
             {words_of(cause.effect), amount(cause.amplitude, cause.amplitude_error, cause.unit),
              percent(cause.confidence), percent(cause.explained), number(cause.score, "{:.1f}"),
-             cause.confirmed_score ? number(*cause.confirmed_score, "{:.1f}") : dash,
+             cause.confirmed_score ? number(*cause.confirmed_score, "{:.1f}") : no_number,
              others(cause.group, cause.effect)});
     return table;
 }
@@ -89,12 +89,12 @@ TextTable table_of_where(const Diagnosis& diagnosis) {
     std::stable_sort(entries.begin(), entries.end(), [](const WhereEntry& a, const WhereEntry& b) {
         return std::fabs(a.z_score) > std::fabs(b.z_score);
     });
-    for (const auto& entry : std::span(entries).first(std::min(entries.size(), max_entries)))
+    for (const auto& entry : std::span(entries).first(std::min(entries.size(), max_rows)))
         table.rows.push_back({words_of(entry.observable), part_words(entry), phase_words(entry.phase),
                               displacement_words(entry.displacement), number(entry.z_score, "{:.1f}"),
                               number(entry.z_score_refitted, "{:.1f}")});
-    if (entries.size() > max_entries)
-        table.notes.push_back(fmt::format("and {} more, in diagnosis.json", entries.size() - max_entries));
+    if (entries.size() > max_rows)
+        table.notes.push_back(fmt::format("and {} more, in diagnosis.json", entries.size() - max_rows));
     return table;
 }
 
@@ -123,7 +123,7 @@ TextTable table_of_nuisances(const Diagnosis& diagnosis) {
     for (const auto& fit : diagnosis.nuisances)
         table.rows.push_back({words_of(fit.name), amount(fit.value, fit.error, fit.unit, Sign::always),
                               "± " + amount(fit.prior, fit.unit),
-                              fit.prior > 0 ? number(fit.value / fit.prior, "{:+.1f}") : dash,
+                              fit.prior > 0 ? number(fit.value / fit.prior, "{:+.1f}") : no_number,
                               fit.at_bound ? "further than its stated error allows" : ""});
     return table;
 }

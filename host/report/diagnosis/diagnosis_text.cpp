@@ -12,7 +12,7 @@
 namespace mcdem::inline report {
 namespace {
 
-constexpr std::size_t max_entries = 2;  // of "where"
+constexpr std::size_t most_places = 2;  // of "where"
 constexpr std::size_t max_limits = 5;
 constexpr std::size_t max_remark_length = 160;
 
@@ -155,7 +155,7 @@ std::string where_line(const Diagnosis& diagnosis) {
         if (std::find(observables.begin(), observables.end(), entry.observable) != observables.end())
             continue;
         observables.push_back(entry.observable);
-        if (parts.size() < max_entries) parts.push_back(where_words(entry));
+        if (parts.size() < most_places) parts.push_back(where_words(entry));
     }
     auto text = parts.front();
     for (std::size_t i = 1; i < parts.size(); ++i) text += "; " + parts[i];

@@ -9,9 +9,9 @@
 namespace mcdem::inline report {
 namespace {
 
-constexpr int row_height = 22, above_rows = 64, below_rows = 56;  // [pixels]
-constexpr int beside_columns = 300, min_column = 30;              // [pixels]
-constexpr std::size_t max_numbers = 16;                           // columns in which numbers find room
+constexpr int where_row_height = 22, where_above_rows = 64, where_below_rows = 56;  // [pixels]
+constexpr int beside_columns = 300, min_column = 30;                                // [pixels]
+constexpr std::size_t max_numbers = 16;  // columns in which numbers find room
 
 /// Columns of the trace: those of the map, and an empty one where the phase changes.
 struct Grid {
@@ -178,7 +178,7 @@ std::optional<Chart> where_chart(const Diagnosis& diagnosis) {
                     "Orange: the experiment lies above the simulation, blue: below. Time runs from left to "
                     "right. Left: parameters as stated; right: after they were fitted within their "
                     "uncertainty.",
-                .height = above_rows + below_rows + row_height * rows,
+                .height = where_above_rows + where_below_rows + where_row_height * rows,
                 .min_width = beside_columns + 2 * min_column * static_cast<int>(map.columns.size())};
     if (diagnosis.where_threshold > 0)
         chart.caption +=
@@ -186,7 +186,7 @@ std::optional<Chart> where_chart(const Diagnosis& diagnosis) {
                         diagnosis.where_threshold);
     Json names = Json::array();
     for (const auto& observable : map.observables) names.push_back(plot_text(words_of(observable)));
-    chart.layout = {{"margin", {{"l", 60}, {"r", 16}, {"t", above_rows}, {"b", below_rows}}},
+    chart.layout = {{"margin", {{"l", 60}, {"r", 16}, {"t", where_above_rows}, {"b", where_below_rows}}},
                     {"shapes", Json::array()},
                     {"annotations", Json::array()},
                     {"xaxis", columns_axis(map, 0, 0.485)},

@@ -10,7 +10,7 @@
 namespace mcdem::inline report {
 namespace {
 
-constexpr int row_height = 26, above_rows = 44, below_rows = 56;  // [pixels]
+constexpr int which_row_height = 26, which_above_rows = 44, which_below_rows = 56;  // [pixels]
 
 std::string colour_of(const Diagnosis& diagnosis, const Cause& cause) {
     return named_effects(diagnosis).contains(cause.effect) ? diagnosis_colour::named
@@ -139,7 +139,7 @@ std::optional<Chart> which_chart(const Diagnosis& diagnosis) {
             "cannot be told apart by these data. Middle: amplitudes with 90 % intervals, over the smallest "
             "that these data can detect (dashed line); without a dot: never shows. Right: amplitude with one "
             "standard error, probability among the candidates.",
-        .height = above_rows + below_rows + row_height * rows,
+        .height = which_above_rows + which_below_rows + which_row_height * rows,
         .min_width = 760};
     Json names = Json::array(), places = Json::array();
     for (int i = 0; i < rows; ++i) {
@@ -147,7 +147,7 @@ std::optional<Chart> which_chart(const Diagnosis& diagnosis) {
         places.push_back(i);
     }
     chart.data = {scores(diagnosis), confirmations(ranking), amplitudes(diagnosis)};
-    chart.layout = {{"margin", {{"l", 60}, {"r", 16}, {"t", above_rows}, {"b", below_rows}}},
+    chart.layout = {{"margin", {{"l", 60}, {"r", 16}, {"t", which_above_rows}, {"b", which_below_rows}}},
                     {"bargap", 0.3},
                     {"annotations", annotations_of(ranking)},
                     {"xaxis", axis("gain in log likelihood", 0, 0.3)},

@@ -10,8 +10,6 @@
 namespace mcdem::inline report {
 namespace {
 
-const std::string dash = "–";
-
 const std::map<std::string, std::string>& special_words() {
     static const std::map<std::string, std::string> words{
         {"cross_contact", "cross-contact deformation"},
@@ -120,13 +118,13 @@ std::string listed(const std::vector<std::string>& parts, std::size_t most) {
 }
 
 std::string amount(double value, const std::string& unit) {
-    if (!std::isfinite(value)) return dash;
+    if (!std::isfinite(value)) return no_number;
     const auto& [_, factor, shown] = shown_unit(unit);
     return with_unit(fmt::format("{:.3g}", value * factor), shown);
 }
 
 std::string amount(double value, double error, const std::string& unit, Sign sign) {
-    if (!std::isfinite(value) || std::isinf(error)) return dash;
+    if (!std::isfinite(value) || std::isinf(error)) return no_number;
     const auto& [_, factor, shown] = shown_unit(unit);
     const auto plus = sign == Sign::always && value > 0 ? "+" : "";
     if (!(error > 0) || !std::isfinite(error)) return fmt::format("{}{}", plus, amount(value, unit));
@@ -136,13 +134,13 @@ std::string amount(double value, double error, const std::string& unit, Sign sig
 }
 
 std::string percent(double fraction) {
-    if (!std::isfinite(fraction)) return dash;
+    if (!std::isfinite(fraction)) return no_number;
     if (fraction > 0 && fraction < 0.005) return "< 1 %";
     return fmt::format("{:.0f} %", std::round(fraction * 100) + 0.0);  // no minus before a zero
 }
 
 std::string p_words(double p) {
-    if (!std::isfinite(p)) return "p = " + dash;
+    if (!std::isfinite(p)) return "p = " + no_number;
     return p < 1e-4 ? "p < 0.0001" : fmt::format("p = {:.2g}", p);
 }
 

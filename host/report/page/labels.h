@@ -4,6 +4,12 @@
 
 namespace mcdem::inline report {
 
+/// Stands where a number is not known.
+inline const std::string no_number = "–";
+
+/// Of numbers that are told in millimetres and millinewtons.
+constexpr double mm = 1e-3, mN = 1e-3;
+
 /// Contact models in words ("mc_dem, gamma = 1" becomes "MC-DEM, gamma = 1"); other labels as they are.
 std::string words_for(const std::string& label);
 

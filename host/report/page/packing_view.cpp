@@ -13,8 +13,6 @@
 namespace mcdem::inline report {
 namespace {
 
-constexpr double mm = 1e-3, mN = 1e-3;
-
 /// Five digits: less than a pixel, and half the size of the page.
 double rounded(double value) {
     if (value == 0 || !std::isfinite(value)) return value;

@@ -14,7 +14,7 @@
 namespace mcdem::inline report {
 namespace {
 
-constexpr double mm = 1e-3, mN = 1e-3, mN_m = 1e-3;
+constexpr double mN_m = 1e-3;
 constexpr std::size_t key_characters = 44;  ///< a longer label would leave no room for the curves
 
 std::optional<Comparison> comparison_of(const Setting& setting, const std::optional<Setting>& reference,

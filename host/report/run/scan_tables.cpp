@@ -44,7 +44,7 @@ double largest(const std::vector<Told>& told, const Quantity& quantity) {
 }
 
 /// So many that the largest number has four digits.
-int decimals_for(double largest) {
+int four_digits(double largest) {
     return largest > 0 ? std::clamp(3 - static_cast<int>(std::floor(std::log10(largest))), 0, 6) : 1;
 }
 
@@ -86,7 +86,7 @@ std::vector<Quantity> cell_quantities(const std::vector<Told>& told, bool all_st
     for (Quantity* stress : {&p, &q}) {
         stress->title += fmt::format(" [{}]", unit.name);
         stress->unit = unit.size;
-        stress->decimals = decimals_for(most / unit.size);
+        stress->decimals = four_digits(most / unit.size);
         columns.push_back(*stress);
     }
     columns.push_back({"Z", "coordination_number", &MeanScan::coordination, 1, 2});

@@ -10,10 +10,8 @@
 namespace mcdem::inline report {
 namespace {
 
-const std::string dash = "–";
-
 std::string number(double value, int decimals) {
-    return std::isfinite(value) ? fmt::format("{:.{}f}", value, decimals) : dash;
+    return std::isfinite(value) ? fmt::format("{:.{}f}", value, decimals) : no_number;
 }
 
 /// Notes by setting; those that all settings share once.
@@ -36,7 +34,7 @@ std::vector<std::string> notes_of(const std::vector<Comparison>& comparisons) {
 }  // namespace
 
 std::string with_error(const Estimate& estimate, int decimals, double unit) {
-    if (!estimate.available()) return dash;
+    if (!estimate.available()) return no_number;
     const auto value = number(estimate.value / unit, decimals);
     if (!std::isfinite(estimate.standard_error)) return value;
     return value + " ± " + number(estimate.standard_error / unit, decimals);
