@@ -32,6 +32,8 @@ Step slower(double factor) {
     return {factor, [factor](Scene&, Replica& replica) {
                 replica.plate.speed *= factor;
                 replica.protocol.rate_tolerance *= factor;
+                for (Stage& stage : replica.programme)
+                    stage.speed *= factor;  // stays not-a-number where it is
             }};
 }
 
@@ -40,10 +42,9 @@ std::string speed_remedy(const Replica& replica) {
         return fmt::format("protocol.rate_tolerance = {:.2g} / {{0:.2g}}, runs {{0:.2g}} times as long",
                            replica.protocol.rate_tolerance);
     return fmt::format(
-        "plate.speed = {:.2g} / {{0:.2g}}, runs {{0:.2g}} times as long, or protocol.rate_tolerance, which "
-        "is "
-        "slow only where it must be",
-        replica.plate.speed);
+        "plate.speed = {:.2g} / {{0:.2g}}{}, runs {{0:.2g}} times as long, or protocol.rate_tolerance, which "
+        "is slow only where it must be",
+        replica.plate.speed, replica.programme.empty() ? "" : " and the speeds of stages likewise");
 }
 
 constexpr const char* without_stops =
@@ -89,7 +90,7 @@ public:
         packings_.assign(static_cast<std::size_t>(options.replicas), make_packing(replica));
         for (const double diameter : packings_[0].diameter)
             mean_diameter_ += diameter / static_cast<double>(packings_[0].size());
-        grid_ = grid_of_stroke(replica);
+        grid_ = replica.programme.empty() ? grid_of_stroke(replica) : grid_of_programme();
     }
 
     Convergence all() {
@@ -141,20 +142,44 @@ private:
         return grid_of(levels);
     }
 
-    Eigen::MatrixXd observe(const std::string& cause, const Scene& scene, const Replica& replica) {
+    /// .. for an experiment that does what the first copy does.
+    Grid grid_of_programme() {
+        const Replica& replica = scene_.replicas.front();
+        Trial trial = trial_of(replica, 0, 0);
+        trial.keep_recording = true;
+        const Question question = question_of(scene_, trial.model);
+        observe_trials(device_, question, {trial}, store_, trial_options("the programme's displacements"));
+        const Recording recording = kept_recordings(device_, question, {trial}, store_).front();
+        if (recording.failure || recording.scans.empty())
+            throw InputError(fmt::format(
+                "{}: the first replica does not come to the end of the programme: `mcdem run` with the same "
+                "settings says why",
+                scene_.name));
+        return grid_of(recording);
+    }
+
+    Trial trial_of(const Replica& replica, int copy, double jitter) const {
         Model model{replica, {}, mean_diameter_};
         model.instrument.stated.force_threshold = replica.protocol.force_threshold;
+        return {model, packings_[static_cast<std::size_t>(copy)], jitter, 0,
+                options_.seed + static_cast<std::uint64_t>(copy)};
+    }
+
+    Question question_of(const Scene& scene, const Model& model) const {
+        return {scene, grid_, reference_material(model), model.replica.protocol.discard, options_.program};
+    }
+
+    TrialOptions trial_options(const std::string& cause) const {
+        return {[this, cause](double fraction) { options_.on_progress(cause, fraction); },
+                options_.stop_wanted};
+    }
+
+    Eigen::MatrixXd observe(const std::string& cause, const Scene& scene, const Replica& replica) {
         const double jitter = options_.jitter > 0 ? options_.jitter : jitter_of_diameter * mean_diameter_;
         std::vector<Trial> trials;
-        for (int r = 0; r < options_.replicas; ++r)
-            trials.push_back({model, packings_[static_cast<std::size_t>(r)], jitter, 0,
-                              options_.seed + static_cast<std::uint64_t>(r)});
-        TrialOptions trial_options;
-        trial_options.on_progress = [&](double fraction) { options_.on_progress(cause, fraction); };
-        trial_options.stop_wanted = options_.stop_wanted;
-        const Question question{scene, grid_, reference_material(model), replica.protocol.discard,
-                                options_.program};
-        return observe_trials(device_, question, trials, store_, trial_options);
+        for (int r = 0; r < options_.replicas; ++r) trials.push_back(trial_of(replica, r, jitter));
+        return observe_trials(device_, question_of(scene, trials.front().model), trials, store_,
+                              trial_options(cause));
     }
 
     /// Copies that do not rearrange scatter less than their observables resolve, and are one packing over and
@@ -203,7 +228,7 @@ private:
 }  // namespace
 
 Convergence converge_scene(Device& device, const Scene& scene, const ConvergeOptions& options) {
-    expect_plain_strokes(scene, "mcdem converge");
+    expect_plate(scene, "mcdem converge");
     return Converging(device, scene, options).all();
 }
 

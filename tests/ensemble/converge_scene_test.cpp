@@ -2,9 +2,11 @@
 // is named.
 #include "ensemble/converge_scene.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <set>
 
 #include "core/errors.h"
@@ -15,16 +17,14 @@ namespace {
 
 using testing::HasSubstr;
 
-Scene pressed(const std::vector<std::string>& more) {
-    std::vector<std::string> settings{"packing.count=18",
-                                      "packing.packing_fraction=0.52",
-                                      "plate.start=0.06",
-                                      "plate.end=0.05",
-                                      "protocol.relax_time=0.2",
-                                      "protocol.scans_per_stroke=4",
-                                      "protocol.stop_at_scans=false"};
+Scene pressed(const std::vector<std::string>& more, const std::string& programme = "") {
+    std::vector<std::string> settings{"packing.count=18",        "packing.packing_fraction=0.52",
+                                      "plate.start=0.06",        "plate.end=0.05",
+                                      "protocol.relax_time=0.2", "protocol.stop_at_scans=false"};
     settings.insert(settings.end(), more.begin(), more.end());
-    return small_scene(settings);
+    std::string text = small_scene_text;
+    if (!programme.empty()) text.erase(text.find("scans_per_stroke"), std::strlen("scans_per_stroke = 4\n"));
+    return parse_scene(text + programme, "small.toml", settings);
 }
 
 struct ConvergeScene : testing::Test {
@@ -52,6 +52,48 @@ TEST_F(ConvergeScene, BlamesAFastPlate) {
     EXPECT_THAT(causes,
                 testing::IsSupersetOf({"plate speed", "inertia", "time step", "precision", "list margin"}));
     EXPECT_THAT(of(fast, "plate speed").remedy, HasSubstr("plate.speed = 2"));
+}
+
+std::string programme_at(double speed) {
+    return fmt::format(R"(
+[[programme]]
+position = 0.046
+speed = {0}
+scans = 6
+[[programme]]
+stage = "hold"
+time = 0.1
+scans = 2
+[[programme]]
+position = 0.06
+speed = {0}
+scans = 6
+)",
+                       speed);
+}
+
+// The speeds of a programme's stages are refined, and what a hold shows is looked at.
+TEST_F(ConvergeScene, AProgramme) {
+    const Convergence fast = converge(pressed({"plate.end=0.046"}, programme_at(1)));
+    EXPECT_GE(fast.worst_beyond(of(fast, "plate speed")), 0);
+    EXPECT_THAT(of(fast, "plate speed").remedy, HasSubstr("speeds of stages"));
+    EXPECT_THAT(causes, testing::Contains("the programme's displacements"));
+    const auto relaxation = static_cast<int>(index_of(OfProgramme::relaxation));
+    const int worst = fast.worst_cell(of(fast, "plate speed"), relaxation);
+    ASSERT_GE(worst, 0);
+    const CellError error = of(fast, "plate speed").cells[static_cast<std::size_t>(worst)];
+    EXPECT_GT(error.value, 2 * error.standard_error)
+        << "grains at rest relax less than those that a plate has thrown";
+    EXPECT_GT(fast.mean[worst], error.value);
+}
+
+TEST_F(ConvergeScene, AProgrammeThatStopsIsToldAtOnce) {
+    try {
+        converge(pressed({"plate.end=0.015"}, "[[programme]]\nposition = 0.015\n"));
+        FAIL();
+    } catch (const InputError& error) {
+        EXPECT_THAT(error.what(), HasSubstr("does not come to the end of the programme"));
+    }
 }
 
 // One grain between floor and plate: whatever its place, the force is the same, and copies tell nothing.
