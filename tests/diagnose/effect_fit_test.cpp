@@ -77,6 +77,37 @@ TEST(EffectFit, CurvedSignature) {
     EXPECT_NEAR(fit.error, 1 / s.space().whiten(signature.slope(fit.amplitude)).norm(), 1e-9);
 }
 
+// Least squares of two: amplitudes, errors and gain in closed form, also where signatures are alike to 0.98.
+TEST(EffectFit, TwoAtOnceInClosedForm) {
+    Setting s(5);
+    for (const double apart : {3.0, 0.2}) {
+        const Signature first = s.world.signature("friction", s.world.pattern(0.5));
+        const Signature second = s.world.signature("adhesion", first.linear + s.world.pattern(0.5 * apart));
+        const Eigen::VectorXd gap = 3 * first.linear - 2 * second.linear + s.world.noise();
+        const GapSpace space = s.space();
+        Eigen::MatrixXd columns(static_cast<Eigen::Index>(space.cells().size()), 2);
+        columns << space.whiten(first.linear), space.whiten(second.linear);
+        const Eigen::MatrixXd covariance = (columns.transpose() * columns).inverse();
+        const Eigen::VectorXd moment = columns.transpose() * space.whiten(gap), best = covariance * moment;
+        const JointFit fit = fit_effects(space, {{&first, -60, 60}, {&second, -60, 60}}, gap);
+        for (const int k : {0, 1}) {
+            const auto at = static_cast<std::size_t>(k);
+            EXPECT_NEAR(fit.errors[at], std::sqrt(covariance(k, k)), 1e-6 * fit.errors[at]);
+            EXPECT_NEAR(fit.amplitudes[at], best[k], 0.05 * fit.errors[at]);  // where the search stops
+        }
+        EXPECT_NEAR(fit.score, 0.5 * moment.dot(best), 2e-3 * fit.score);
+    }
+}
+
+// Effects that do the same cannot be told apart: their sum fits, no amplitude is known.
+TEST(EffectFit, TwoThatAreOne) {
+    Setting s(6);
+    const Signature one = s.world.signature("friction", s.world.pattern(0.5));
+    const JointFit fit = fit_effects(s.space(), {{&one, -8, 8}, {&one, -8, 8}}, 3 * one.linear);
+    EXPECT_NEAR(fit.amplitudes[0] + fit.amplitudes[1], 3, 1e-3);
+    EXPECT_TRUE(std::isinf(fit.errors[0]) && std::isinf(fit.errors[1]));
+}
+
 TEST(EffectFit, StaysWithinItsBounds) {
     Setting s(4);
     const Signature signature = s.world.signature("plasticity", s.world.pattern(1));

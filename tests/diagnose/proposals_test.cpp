@@ -66,6 +66,28 @@ TEST(Proposals, TwoEffectsTogether) {
                 1e-6 * pair.gain);
 }
 
+// One cancels most of what the other does, so that a third effect, which looks like what is left, leads
+// alone.
+TEST(Proposals, TwoEffectsOfWhichNeitherLeads) {
+    Case c({});
+    const Eigen::VectorXd large = c.world.pattern(3), small = c.world.pattern(0.5),
+                          decoy = c.world.pattern(0.2);
+    auto& effects = c.evidence.library.effects;
+    effects[1].linear = large;
+    effects[3].linear = -large + small;
+    effects[0].linear = small + decoy;
+    const Eigen::VectorXd gap = 8 * (effects[1].linear + effects[3].linear);
+    const GapStatistics statistics = [&] {
+        c.data.gap = gap;
+        return gap_statistics(c.space, c.data, gap);
+    }();
+    ASSERT_EQ(statistics.best, 0u);
+    const auto list = propose(c.space, c.data, c.null, statistics, replicates);
+    ASSERT_THAT(list.back().candidates, UnorderedElementsAre(1, 3));
+    EXPECT_NEAR(list.back().amplitudes[0], 8, 4 * list.back().errors[0]);
+    EXPECT_NEAR(list.back().amplitudes[1], 8, 4 * list.back().errors[1]);
+}
+
 /// What is proposed for a gap in the first effect's direction, where `others` gain 1, 2, .. less and the
 /// nuisance beyond its prior `behind` less.
 std::vector<std::size_t> singles_with_nuisance(Case& c, double behind) {
@@ -76,7 +98,6 @@ std::vector<std::size_t> singles_with_nuisance(Case& c, double behind) {
     }
     statistics.fits.back().score = 50 - behind;
     statistics.directed = 50;
-    statistics.omnibus = 0;  // no pair gains
     std::vector<std::size_t> list;
     for (const Proposal& p : propose(c.space, c.data, c.null, statistics, replicates))
         if (p.candidates.size() == 1) list.push_back(p.candidates[0]);

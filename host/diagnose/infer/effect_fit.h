@@ -1,4 +1,5 @@
-// The amplitude of one effect that fits a gap best, and what it gains over no effect.
+// The amplitudes of one effect, or of several together, that fit a gap best, and what they gain over no
+// effect.
 #pragma once
 #include "diagnose/infer/gap_space.h"
 
@@ -22,7 +23,16 @@ struct EffectFit {
 /// of the pairs, as the fit weighs cells), without the scatter that chaos makes in them.
 double draw_error(const GapSpace& space, const Candidate& candidate, double amplitude);
 
+/// Of several effects at once. An error counts that the other amplitudes are not known either; it is infinite
+/// for all where the data do not show one of them or cannot tell them apart.
+struct JointFit {
+    std::vector<double> amplitudes, errors;  ///< one a candidate
+    double score = 0;                        ///< as EffectFit::score
+};
+
 /// `gap`: observed less model, all cells.
+JointFit fit_effects(const GapSpace& space, const std::vector<Candidate>& candidates,
+                     const Eigen::VectorXd& gap);
 EffectFit fit_effect(const GapSpace& space, const Candidate& candidate, const Eigen::VectorXd& gap);
 
 }  // namespace mcdem::diagnose

@@ -29,14 +29,10 @@ public:
     }
 
     PartialFit fit(const Eigen::VectorXd& gap, const std::vector<Candidate>& candidates) const {
-        std::vector<double> amplitudes(candidates.size(), 0);
+        const std::vector<double> amplitudes = fit_effects(space_, candidates, gap).amplitudes;
         Eigen::VectorXd left = gap;
-        for (int round = 0; round < (candidates.size() > 1 ? 6 : 1); ++round)
-            for (std::size_t k = 0; k < candidates.size(); ++k) {
-                left += candidates[k].signature->at(amplitudes[k]);
-                amplitudes[k] = fit_effect(space_, candidates[k], left).amplitude;
-                left -= candidates[k].signature->at(amplitudes[k]);
-            }
+        for (std::size_t k = 0; k < candidates.size(); ++k)
+            left -= candidates[k].signature->at(amplitudes[k]);
         return {amplitudes, space_.fit_nuisances(left)};
     }
 

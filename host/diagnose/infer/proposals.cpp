@@ -18,14 +18,12 @@ constexpr double far_behind = 8, far_behind_share = 0.25;
 constexpr double pair_gain = 4;
 /// Part by which a signature may be wrong, cell by cell.
 constexpr double signature_error = 0.1;
-constexpr int rounds = 6;
 constexpr Eigen::Index min_runs = 2;
 
-Eigen::VectorXd without(const Eigen::VectorXd& gap, const GapData& data, const Proposal& proposal,
-                        std::size_t but = SIZE_MAX) {
+Eigen::VectorXd without(const Eigen::VectorXd& gap, const GapData& data, const Proposal& proposal) {
     Eigen::VectorXd left = gap;
     for (std::size_t k = 0; k < proposal.candidates.size(); ++k)
-        if (k != but) left -= data.candidates[proposal.candidates[k]].signature->at(proposal.amplitudes[k]);
+        left -= data.candidates[proposal.candidates[k]].signature->at(proposal.amplitudes[k]);
     return left;
 }
 
@@ -60,22 +58,21 @@ double signature_misfit(const GapData& data, const NullDistribution& null, const
     return null.misfit_p(space, without(gap, data, proposal));
 }
 
-/// Both amplitudes, one after the other until neither moves.
-Proposal fit_pair(const GapSpace& space, const GapData& data, const Eigen::VectorXd& gap, double omnibus,
-                  std::size_t first, std::size_t second, double first_amplitude) {
-    Proposal pair;
-    pair.candidates = {first, second};
-    pair.amplitudes = {first_amplitude, 0};
-    pair.errors = {0, 0};
-    for (int round = 0; round < rounds; ++round)
-        for (const std::size_t k : {1, 0}) {
-            const EffectFit fit =
-                fit_effect(space, data.candidates[pair.candidates[k]], without(gap, data, pair, k));
-            pair.amplitudes[k] = fit.amplitude;
-            pair.errors[k] = fit.error;
+/// The two candidates that fit the gap best together. Neither need lead alone: what two do to one cell may
+/// cancel.
+Proposal best_pair(const GapSpace& space, const GapData& data, const std::vector<std::size_t>& order) {
+    Proposal best;
+    for (std::size_t i = 0; i < order.size(); ++i)
+        for (std::size_t j = i + 1; j < order.size(); ++j) {
+            JointFit fit =
+                fit_effects(space, {data.candidates[order[i]], data.candidates[order[j]]}, data.gap);
+            if (!(fit.score > best.gain)) continue;
+            best.candidates = {order[i], order[j]};
+            best.amplitudes = std::move(fit.amplitudes);
+            best.errors = std::move(fit.errors);
+            best.gain = fit.score;
         }
-    pair.gain = 0.5 * (omnibus - space.whiten(without(gap, data, pair)).squaredNorm());
-    return pair;
+    return best;
 }
 
 /// Of nuisances that the runs were made with, in log likelihood.
@@ -130,14 +127,8 @@ std::vector<Proposal> propose(const GapSpace& space, const GapData& data, const 
         proposal.gain = fit.score;
     }
     if (proposals.empty()) return proposals;
-    Proposal pair;
-    for (const std::size_t second : order)
-        if (second != order[0]) {
-            const Proposal tried = fit_pair(space, data, data.gap, statistics.omnibus, order[0], second,
-                                            statistics.fits[order[0]].amplitude);
-            if (tried.gain > pair.gain) pair = tried;
-        }
-    if (pair.gain > best + pair_gain) proposals.push_back(pair);
+    if (Proposal pair = best_pair(space, data, order); pair.gain > best + pair_gain)
+        proposals.push_back(std::move(pair));
     for (Proposal& proposal : proposals) {
         proposal.misfit_p = signature_misfit(data, null, data.gap, proposal, mean_of);
         for (std::size_t k = 0; k < proposal.candidates.size(); ++k)
