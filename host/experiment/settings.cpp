@@ -18,6 +18,7 @@
 #include "scene/problems.h"
 #include "scene/programme_checks.h"
 #include "scene/programme_text.h"
+#include "scene/toml_text.h"
 
 namespace mcdem::inline experiment {
 namespace {
@@ -50,7 +51,8 @@ constexpr Setting measurements[] = {
 constexpr Setting plate_start{"plate.start", 0, 100, true, "m"};
 constexpr Setting plate_speed{"plate.speed", 0, 1000, true, "m/s"};
 constexpr Setting container_radius{"container.radius", 0, 10, true, "m"};
-constexpr double largest_box = 20;  // [m]; a larger one was given in millimetres
+constexpr std::size_t longest_key = 1000;  // in --set
+constexpr double largest_box = 20;         // [m]; a larger one was given in millimetres
 
 std::string range_text(const Setting& setting) {
     return fmt::format("a number {} {}{}{}", setting.low_excluded ? ">" : ">=", setting.low,
@@ -245,12 +247,12 @@ void override_key(toml::table& root, const std::string& word, ExperimentProblems
     const auto equals = word.find('=');
     std::string_view path = std::string_view(word).substr(0, std::min(equals, word.size()));
     if (equals == word.npos || path.empty() || path.front() == '.' || path.back() == '.' ||
-        path.find("..") != path.npos)
+        path.find("..") != path.npos || path.size() > longest_key)
         return problems.add("--set", fmt::format("must be KEY=VALUE such as box.size=[0.165,0.166], got {}",
                                                  quoted(std::string_view(word))));
     toml::table value;
     try {
-        value = toml::parse("value = " + word.substr(equals + 1));
+        value = parse_toml("value = " + word.substr(equals + 1), {}, 100);
     } catch (const toml::parse_error&) {
         value.insert("value", word.substr(equals + 1));
     }
@@ -271,7 +273,7 @@ void override_key(toml::table& root, const std::string& word, ExperimentProblems
 void parse_settings(std::string_view text, const std::string& file, const std::vector<std::string>& overrides,
                     Experiment& experiment, ExperimentProblems& problems) {
     try {
-        toml::table root = toml::parse(text, file);
+        toml::table root = parse_toml(text, file);
         for (const std::string& word : overrides) override_key(root, word, problems);
         Reader(file, problems).read(root, experiment);
     } catch (const toml::parse_error& error) {

@@ -27,6 +27,7 @@ double sum_over_legs(const std::vector<Stage>& stages, const std::function<doubl
 /// How many legs there are, and scans on all of them.
 double leg_count(const std::vector<Stage>& stages);
 double scan_count(const std::vector<Stage>& stages);
+inline constexpr double max_legs = 100'000, max_scans = 1'000'000;
 
 /// Throws InputError where a replica is a cell or has species: `what` ("a diagnosis") knows a plate on grains
 /// of one material only.

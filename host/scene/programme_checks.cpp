@@ -12,7 +12,6 @@
 namespace mcdem::inline scene {
 namespace {
 
-constexpr double max_legs = 100'000, max_scans = 1'000'000;
 /// Contacts under a load are stiffer than Hertz where displaced surfaces, stiffening or finite strain add to
 /// them.
 constexpr double beyond_hertz = 10;

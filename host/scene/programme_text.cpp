@@ -1,10 +1,14 @@
 #include "scene/programme_text.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
+#include "core/errors.h"
 #include "core/parameters.h"
 #include "scene/assign.h"
 #include "scene/list_tables.h"
+#include "scene/toml_text.h"
 
 namespace mcdem::inline scene {
 namespace {
@@ -12,7 +16,7 @@ namespace {
 /// As TOML; a text that is none is a word.
 toml::table value_of_text(const std::string& text) {
     try {
-        return toml::parse("value = " + text);
+        return parse_toml("value = " + text, {}, 100);
     } catch (const toml::parse_error&) {
         return toml::table{{"value", without_quotes(text)}};
     }
@@ -23,6 +27,21 @@ void assign_text(const Key& key, const std::string& text, Settings& settings) {
     if (text.empty()) return;  // not given
     const toml::table table = value_of_text(text);
     assign(key, *table.get("value"), settings);
+}
+
+/// Stages of a file that others may have written.
+void expect_legs(const std::vector<Stage>& programme) {
+    int before = 0;
+    for (const Stage& stage : programme)
+        if (const int number = before++; stage.kind == StageKind::repeat && stage.stages > number)
+            throw InputError(fmt::format(
+                "programme.{}.stages: must be at most the {} stages before it, got {}: the parameters are "
+                "damaged",
+                number + 1, number, stage.stages));
+    if (leg_count(programme) > max_legs || scan_count(programme) > max_scans)
+        throw InputError(fmt::format(
+            "programme: must have at most {} moves and holds and {} scans: the parameters are damaged",
+            max_legs, max_scans));
 }
 
 }  // namespace
@@ -44,6 +63,7 @@ std::vector<Stage> programme_of(const std::map<std::string, std::string>& parame
         for (const Key& key : stage_keys(n))
             assign_text(key, value_of(parameters, std::string(key.name)), settings);
     }
+    expect_legs(settings.replica.programme);
     return settings.replica.programme;
 }
 

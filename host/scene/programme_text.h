@@ -13,7 +13,8 @@ namespace mcdem::inline scene {
 /// "programme.1.stage" and the other keys of all stages with their values.
 std::map<std::string, std::string> programme_parameters(const std::vector<Stage>& programme);
 
-/// The stages in a recording's parameters; none where it was taken through strokes.
+/// The stages in a recording's parameters; none where it was taken through strokes. Throws
+/// InputError where they are none that a scene can have said.
 std::vector<Stage> programme_of(const std::map<std::string, std::string>& parameters);
 
 /// [[programme]]: of each stage what it says beyond the defaults.

@@ -9,29 +9,12 @@
 
 #include "core/errors.h"
 #include "scene/list_tables.h"
+#include "scene/toml_text.h"
 
 namespace mcdem::inline scene {
 namespace {
 
 constexpr std::size_t largest_text = 1 << 20;
-
-/// Dots that may be of dotted names rather than of decimal numbers. The parser recurses over the parts of a
-/// name, so that a few hundred thousand would overflow the stack.
-std::size_t dots_of_names(std::string_view text) {
-    const auto digit = [&](std::size_t i) { return i < text.size() && text[i] >= '0' && text[i] <= '9'; };
-    std::size_t count = 0;
-    bool in_number = false;  // since the dot before there were digits only
-    for (std::size_t i = 0; i < text.size(); ++i) {
-        if (text[i] == '.') {
-            const bool decimal = i > 0 && digit(i - 1) && digit(i + 1) && !in_number;
-            if (!decimal) ++count;
-            in_number = true;
-        } else if (!digit(i)) {
-            in_number = false;
-        }
-    }
-    return count;
-}
 
 /// [[programme]] or another such table with a number of elements that can be.
 bool is_list_table(std::string_view name, const toml::node& node) {
@@ -60,9 +43,9 @@ std::string bare(std::string key) {
 /// The value of an override as TOML; a bare word stands for itself. Nothing where it is neither.
 std::optional<toml::table> parse_override(const std::string& value) {
     const bool one_line = std::ranges::none_of(value, [](unsigned char c) { return c < 32 || c == 127; });
-    if (!one_line || dots_of_names(value) > 100) return std::nullopt;
+    if (!one_line) return std::nullopt;
     try {
-        return toml::parse("value = " + value);
+        return parse_toml("value = " + value, {}, 100);
     } catch (const toml::parse_error&) {
         if (value.empty() || value.find_first_of("\"'[]{}=#,") != value.npos) return std::nullopt;
         return toml::table{{"value", value}};
@@ -85,12 +68,8 @@ void SceneDocument::parse(std::string_view text) {
     if (text.size() > largest_text)
         throw InputError(fmt::format("{}: a scene must be at most {} bytes long, got {}", source_,
                                      largest_text, text.size()));
-    constexpr std::size_t max_dots = 5000;
-    if (const std::size_t dots = dots_of_names(text); dots > max_dots)
-        throw InputError(fmt::format("{}: a scene must have at most {} dots besides those of numbers, got {}",
-                                     source_, max_dots, dots));
     try {
-        tables_.push_back(toml::parse(text, source_));
+        tables_.push_back(parse_toml(text, source_));
     } catch (const toml::parse_error& error) {
         const auto& at = error.source().begin;
         throw InputError(fmt::format("{}:{}:{}: must be TOML, got: {}", source_, at.line, at.column,

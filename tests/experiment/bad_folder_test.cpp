@@ -185,6 +185,10 @@ TEST(bad_folder, settings_that_are_no_settings_are_told) {
         folder["experiment.toml"] = text;
         EXPECT_THAT(folder.error(), StartsWith("experiment.toml:")) << text.substr(0, 20);
     }
+    std::string nested = "a";
+    for (int depth = 0; depth < 300'000; ++depth) nested += ".a";
+    folder["experiment.toml"] = nested + " = 1";
+    EXPECT_THAT(folder.error(), StartsWith("experiment.toml:1: must have at most 5000 dots"));
     folder["experiment.toml"] = std::string(1'000'001, '\n');
     EXPECT_THAT(folder.error(), StartsWith("experiment.toml: must be a text of at most 1 MB"));
 }

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "scene/legs.h"
+#include "scene/programme_text.h"
 #include "scene/read_scene.h"
 #include "scene_test_tools.h"
 
@@ -191,6 +192,25 @@ TEST(Programme, ProblemsOfAStageAreToldOnce) {
                             "[\"independent\", \"mc_dem\"]\n"),
                 ElementsAre(HasSubstr(
                     "programme.toml:12: programme.1.back must be left out of a stage that is a move")));
+}
+
+TEST(Programme, OfADamagedFileIsRefused) {
+    const auto programme =
+        read("[[programme]]\nforce = 1\n[[programme]]\nstage = \"repeat\"\n").replicas.front().programme;
+    auto parameters = programme_parameters(programme);
+    EXPECT_EQ(programme_of(parameters).size(), 2u);
+    parameters["programme.2.stages"] = "100";
+    EXPECT_THAT(
+        problems_of([&] { programme_of(parameters); }),
+        ElementsAre(HasSubstr("programme.2.stages: must be at most the 1 stages before it, got 100")));
+    parameters = programme_parameters(programme);
+    parameters["programme.1.scans"] = parameters["programme.2.times"] = "10000";
+    EXPECT_THAT(problems_of([&] { programme_of(parameters); }), ElementsAre(HasSubstr("and 1000000 scans")));
+    std::string nested = "1\na";
+    for (int depth = 0; depth < 300'000; ++depth) nested += ".a";
+    parameters = programme_parameters(programme);
+    parameters["programme.1.speed"] = nested + " = 1";
+    EXPECT_EQ(programme_of(parameters).size(), 2u);
 }
 
 }  // namespace
