@@ -1,6 +1,7 @@
 """Tables and mappings changed at random, the same every time: imported, or told as bad input; never a traceback."""
 import random
 import sys
+import time
 import unittest
 import warnings
 
@@ -106,6 +107,16 @@ class Hostile(ImportCase):
                     self.imported(self.by_mapping(changed))
                 except InputError as error:
                     self.expect_told(error)
+
+
+    def test_long_mappings_are_refused_in_seconds(self):
+        for text in ("a" + ".a" * 200_000 + "=1", "[" + "a." * 200_000 + "a]", "".join(f"k{n}=1\n" for n in range(40_000)),
+                     "x=1" + "0" * 500_000):
+            with self.subTest(text[:10]):
+                start = time.monotonic()
+                with self.assertRaises(InputError):
+                    parse_mapping(text, "mapping.toml")
+                self.assertLess(time.monotonic() - start, 10)
 
 
 if __name__ == "__main__":

@@ -1,4 +1,5 @@
 """mapping.toml as the user has left it."""
+import collections
 import os
 import re
 import tomllib
@@ -9,11 +10,15 @@ from .problems import Problems, quoted, to_number
 from .text import Form
 
 LARGEST = 1_000_000  # bytes
+MOST_DOTS = 100  # in a line: the parser takes the square of their number in time
 
 
 class _Reader:
     def __init__(self, text, file, problems):
         self.lines, self.file, self.problems = text.split("\n"), file, problems
+        self.places = collections.defaultdict(list)  # lines by what stands before their "="
+        for n, line in enumerate(self.lines, 1):
+            self.places[line.partition("=")[0].strip()].append(n)
         self.headers = [n for n, line in enumerate(self.lines, 1) if re.match(r"\s*\[\[\s*table\s*\]\]", line)]
 
     def wrong(self, line, what):
@@ -23,8 +28,8 @@ class _Reader:
         """Where the key stands in the table: TOML's reader does not say."""
         first = self.headers[table] if table is not None and table < len(self.headers) else 0
         last = self.headers[table + 1] - 1 if table is not None and table + 1 < len(self.headers) else len(self.lines)
-        names = {key, toml_text(key), f"'{key}'"}
-        return next((n for n in range(first + 1, last + 1) if self.lines[n - 1].partition("=")[0].strip() in names), max(first, 1))
+        found = [n for name in (key, toml_text(key), f"'{key}'") for n in self.places.get(name, []) if first < n <= last]
+        return min(found, default=max(first, 1))
 
     def read(self, root):
         for key, value in root.items():
@@ -134,9 +139,12 @@ class _Reader:
 
 def parse_mapping(text, file):
     problems, tables = Problems(), []
+    for number, line in enumerate(text.split("\n"), 1):
+        if (dots := re.sub(r'"[^"]*"', "", line).count(".")) > MOST_DOTS:
+            raise InputError(f"{file}:{number}: must have at most {MOST_DOTS} dots outside texts, got {dots}")
     try:
         root = tomllib.loads(text)
-    except (tomllib.TOMLDecodeError, RecursionError) as error:
+    except (ValueError, RecursionError) as error:
         line = re.search(r"at line (\d+)", str(error))
         problems.add(f"{file}:{line[1] if line else text.count(chr(10)) + 1}", f"must be TOML, got: {error}")
     else:
