@@ -27,7 +27,7 @@ constexpr double finite_size_term = 1 + 12 + 4;             // spread, polynomia
 constexpr double self_term = 1 + 3 * (2 + 21 + 4 + 4 + 6);  // three Newton steps
 constexpr double extrapolation = 1 + 5;
 constexpr double reductions = 7 * 15;  // per grain: seven sums over 16 lanes
-constexpr double integration = 50;     // per grain
+constexpr double integration = 85;     // per grain, 35 of it the rotation
 
 double surface_term(ContactModel model) {
     switch (model) {
@@ -51,11 +51,11 @@ StepCost step_cost(ContactModel model, FrictionLaw friction, Precision precision
     const bool bulging = model != ContactModel::independent;
     const bool springs = friction == FrictionLaw::mindlin;
 
-    // Reals: position, velocity and spin come and go (4 each), the listed position comes. Per slot, the
-    // predicted displacement and those of two and four steps before come, the next prediction and this step's
-    // displacement go; the three spring components come and go. Integers: partner, and partner slot where
-    // surfaces move. What neighbours hold is read by themselves anyway and counts as cached.
-    const double reals = 2 * 3 * 4 + 4 + slots * ((bulging ? 5 : 0) + (springs ? 6 : 0));
+    // Reals: position, velocity, spin and rotation come and go (4 each), the listed position comes. Per slot,
+    // the predicted displacement and those of two and four steps before come, the next prediction and this
+    // step's displacement go; the three spring components come and go. Integers: partner, and partner slot
+    // where surfaces move. What neighbours hold is read by themselves anyway and counts as cached.
+    const double reals = 2 * 4 * 4 + 4 + slots * ((bulging ? 5 : 0) + (springs ? 6 : 0));
     const double integers = slots * (bulging ? 2 : 1);
 
     const double friction_flops = springs ? mindlin : saturated;

@@ -96,8 +96,8 @@ kernel void advance(const int step, const int slot_count, global const Replica* 
                     global const Motion* restrict motion, global Motion* restrict motion_next,
                     global const int* restrict partner, global const int* restrict partner_slot,
                     global const real* restrict displacement, global real* restrict displacement_next,
-                    global real* restrict history, global real* restrict memory,
-                    global const real4* restrict listed_position, global int* restrict status) {
+                    global real* restrict history, global real* restrict memory, global Track* restrict track,
+                    global int* restrict status) {
     GRAIN_OF_WORK_ITEM
     const int r = replica_of_block[block];
     global const Replica* restrict replica = replicas + r;
@@ -127,7 +127,9 @@ kernel void advance(const int step, const int slot_count, global const Replica* 
         motion_next[index] = after;
         const int bits = trouble_status(total.force.w) | motion_status(at, after);
         if (bits) status[index] |= bits;
-        expect_listed(at, after, bits, listed_position[index].xyz, step, stop_at + r);
+        track[index].rotation =
+            turned(track[index].rotation, after.angular_velocity.xyz * replica->time_step);
+        expect_listed(at, after, bits, track[index].listed_position.xyz, step, stop_at + r);
     }
     /* Without it PoCL lets padding grains into the block above, where work-groups that are done have left
      * before barriers. */

@@ -27,6 +27,14 @@ INLINE Motion integrate(Grain at, real3 force, real3 torque) {
     return after;
 }
 
+/* A rotation turned further by a small angle, `by` along the laboratory's axes. */
+INLINE real4 turned(real4 rotation, real3 by) {
+    const real3 half_angle = R(0.5) * by, v = rotation.xyz;
+    const real4 q =
+        (real4)(v + rotation.w * half_angle + cross(half_angle, v), rotation.w - dot(half_angle, v));
+    return q * (R(1.5) - R(0.5) * dot(q, q)); /* of length one: a step of Newton's method */
+}
+
 INLINE int motion_status(Grain at, Motion after) {
     global const Replica* restrict replica = at.replica;
     const real4 x = after.position, w = after.angular_velocity;

@@ -69,7 +69,7 @@ kernel void measure(global const Replica* restrict replicas, global const Materi
                     global const int* restrict steps, global const Motion* restrict motion,
                     global const int* restrict partner, global const int* restrict partner_slot,
                     global const real* restrict displacement, global real* restrict memory,
-                    global const real4* restrict listed_position, global real* restrict force_x,
+                    global const Track* restrict track, global real* restrict force_x,
                     global real* restrict force_y, global real* restrict force_z,
                     global real* restrict overlap, global real* restrict arm, global real4* restrict energy,
                     global real* restrict frequency) {
@@ -102,7 +102,7 @@ kernel void measure(global const Replica* restrict replicas, global const Materi
     SYNCHRONISE();
     if (IS_LEADER && at.now.position.w > R(0)) {
         const real3 moved =
-            deformed_way(replica, at.elapsed, at.now.position.xyz - listed_position[index].xyz);
+            deformed_way(replica, at.elapsed, at.now.position.xyz - track[index].listed_position.xyz);
         energy[index] = (real4)(kinetic_energy(at), sum_slots(sums.stored, 0, scratch) + surfaces,
                                 dot(moved, moved), max_slots(sums.deepest, 1, scratch));
         frequency[index] =

@@ -7,6 +7,12 @@ typedef struct {
 } Motion;
 #define MOTION_VECTORS 3 /* the real4 of one grain */
 
+/* What a step keeps of a grain that no neighbour looks at. */
+typedef struct {
+    real4 listed_position; /* where it was when its neighbours were listed [m] */
+    real4 rotation;        /* since the start: a quaternion, its real part is w */
+} Track;
+
 /* One quantity of grains, lane by lane; `vector` counts the real4 of a Motion. */
 INLINE lanes4 gather_motion(global const Motion* restrict motion, slots grain, int vector) {
     return gather4((global const real4*)motion + vector, grain * MOTION_VECTORS);

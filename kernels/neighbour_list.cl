@@ -84,13 +84,13 @@ kernel void list_neighbours(const int block_count, const int slot_count,
                             global const int* restrict cell_head, global const int* restrict cell_next,
                             global int* restrict partner, global real* restrict displacement,
                             global real* restrict history, global real* restrict memory,
-                            global real4* restrict listed_position, global int* restrict status) {
+                            global Track* restrict track, global int* restrict status) {
     const int grain = listed_grain(blocks, block_count);
     if (grain < 0) return;
     global const Replica* restrict replica = replicas + replica_of_block[grain / BLOCK];
     const size_t row = (size_t)grain * SLOTS;
     const real4 own = motion[grain].position;
-    listed_position[grain] = own;
+    track[grain].listed_position = own;
     if (!(own.w > R(0))) return;
 
     int before[SLOTS], after[SLOTS];

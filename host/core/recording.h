@@ -59,6 +59,7 @@ struct Scan {
     Mat3 stress = unknown_tensor();  ///< of the packing, compression positive (core/stress.h) [Pa]
     Mat3 fabric = unknown_tensor();  ///< mean n n of contacts between grains
     std::vector<Vec3> position;      ///< by grain [m]
+    std::vector<Vec3> rotation;  ///< .. since the start: axis times angle, at most pi [rad]; empty: not known
     std::vector<Contact> contacts;
 
     /// Upward force on the plate [N].

@@ -23,7 +23,8 @@ double seconds_since(Clock::time_point start) {
 constexpr std::size_t max_bytes_held = std::size_t{256} << 20;
 
 std::size_t bytes_of(const Scan& scan) {
-    return sizeof(Scan) + scan.position.size() * sizeof(Vec3) + scan.contacts.size() * sizeof(Contact);
+    return sizeof(Scan) + (scan.position.size() + scan.rotation.size()) * sizeof(Vec3) +
+           scan.contacts.size() * sizeof(Contact);
 }
 
 /// A run under way: the simulation, its folder, and what was recorded since the last segment.

@@ -10,7 +10,7 @@ namespace mcdem::inline io {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr long checkpoint_format = 1;
+constexpr long checkpoint_format = 2;
 
 fs::path newest(const fs::path& folder) { return folder / "checkpoint.h5"; }
 fs::path previous(const fs::path& folder) { return folder / "checkpoint.previous.h5"; }

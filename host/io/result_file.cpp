@@ -100,21 +100,24 @@ std::vector<Scan> ResultFile::scans(const Recording& recording, std::size_t repl
     scans.reserve(rows.size());
     for (const ScanRow& row : rows) scans.push_back(scan_of(row, table.where()));
     const std::size_t grains = recording.diameter.size();
-    if (what == ReadWhat::positions || what == ReadWhat::everything) read_positions(scans, grains, replica);
+    if (what == ReadWhat::positions || what == ReadWhat::everything) {
+        read_vectors(scans, &Scan::position, grains, particles_path(replica) + "/position");
+        read_vectors(scans, &Scan::rotation, grains, particles_path(replica) + "/rotation");
+    }
     if (what == ReadWhat::contacts || what == ReadWhat::everything) read_contacts(scans, grains, replica);
     return scans;
 }
 
 namespace {
 
-std::vector<Vec3> positions(const double* value, std::size_t grains, const std::string& where) {
-    std::vector<Vec3> position(grains);
-    for (std::size_t i = 0; i < grains; ++i) {
-        position[i] = Eigen::Map<const Vec3>(value + 3 * i);
-        if (!position[i].allFinite())
-            throw InputError(fmt::format("{}: grain {} has a position that is no number", where, i));
-    }
-    return position;
+/// Row `row` of a table with one vector a grain.
+std::vector<Vec3> vectors_in(const h5::Dataset& table, std::size_t row, std::size_t grains) {
+    std::vector<Vec3> vectors(grains);
+    table.read(h5::number_type<double>(), vectors.data()->data(), row, 1);
+    for (std::size_t i = 0; i < grains; ++i)
+        if (!vectors[i].allFinite())
+            throw InputError(fmt::format("{}: grain {} has a value that is no number", table.where(), i));
+    return vectors;
 }
 
 template <class Real>
@@ -130,20 +133,23 @@ std::vector<Contact> read_contact_rows(const h5::Dataset& table, std::size_t gra
 
 }  // namespace
 
-void ResultFile::read_positions(std::vector<Scan>& scans, std::size_t grains, std::size_t replica) const {
-    if (grains == 0) return;
-    const std::string group = particles_path(replica) + "/position";
+/// Files of earlier versions have no rotations.
+bool ResultFile::has_vectors(std::size_t grains, const std::string& group) const {
+    return grains > 0 && (!group.ends_with("/rotation") || file_.exists(group));
+}
+
+void ResultFile::read_vectors(std::vector<Scan>& scans, std::vector<Vec3> Scan::*vectors, std::size_t grains,
+                              const std::string& group) const {
+    if (!has_vectors(grains, group)) return;
     const h5::Dataset table = file_.dataset(group + "/value");
     table.expect_row({grains, 3});
     const auto step = file_.dataset(group + "/step").read_all<long>();
     if (step.size() != table.rows()) throw InputError(table.where() + ": must have one row for each of step");
-    std::vector<double> value(3 * grains);
     for (std::size_t k = 0; k < step.size(); ++k) {
         if (step[k] < 0 || step[k] >= static_cast<long>(scans.size()))
             throw InputError(fmt::format("{}: step {} must be the row of a scan, 0 to {}", table.where(),
                                          step[k], static_cast<long>(scans.size()) - 1));
-        table.read(h5::number_type<double>(), value.data(), k, 1);
-        scans[static_cast<std::size_t>(step[k])].position = positions(value.data(), grains, table.where());
+        scans[static_cast<std::size_t>(step[k])].*vectors = vectors_in(table, k, grains);
     }
 }
 
@@ -179,23 +185,26 @@ void ResultFile::fill(Scan& scan, std::size_t grains, std::size_t replica, std::
     if (bounds[0] < 0 || bounds[1] < bounds[0] || bounds[1] > static_cast<long>(contacts.rows()))
         throw InputError(offset.where() + ": must rise from 0 to the number of contacts");
     scan.contacts = contact_rows(contacts, grains, bounds[0], bounds[1]);
-    scan.position.clear();
-    if (grains == 0) return;
-    const std::string group = particles_path(replica) + "/position";
+    scan.position = vectors_at(row, grains, particles_path(replica) + "/position");
+    scan.rotation = vectors_at(row, grains, particles_path(replica) + "/rotation");
+}
+
+std::vector<Vec3> ResultFile::vectors_at(std::size_t row, std::size_t grains,
+                                         const std::string& group) const {
+    if (!has_vectors(grains, group)) return {};
     const auto step = file_.dataset(group + "/step").read_all<long>();
     const auto found = std::find(step.begin(), step.end(), static_cast<long>(row));
-    if (found == step.end()) return;
+    if (found == step.end()) return {};
     const h5::Dataset table = file_.dataset(group + "/value");
     table.expect_row({grains, 3});
-    std::vector<double> value(3 * grains);
-    table.read(h5::number_type<double>(), value.data(), static_cast<hsize_t>(found - step.begin()), 1);
-    scan.position = positions(value.data(), grains, table.where());
+    return vectors_in(table, static_cast<std::size_t>(found - step.begin()), grains);
 }
 
 void ResultFile::expect_whole() const { file_.expect_whole(); }
 
 void ResultFile::expect_whole(std::size_t replica) const {
     file_.expect_whole(particles_path(replica) + "/position/");
+    file_.expect_whole(particles_path(replica) + "/rotation/");
     file_.expect_whole(contacts_path(replica) + "/");
 }
 

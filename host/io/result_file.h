@@ -34,7 +34,7 @@ public:
 private:
     struct Tables {
         h5::Dataset scans, contacts, contact_offset;
-        std::vector<h5::Dataset> position;  ///< value, step, time; none where there are no grains
+        std::vector<h5::Dataset> position, rotation;  ///< value, step, time; none where there are no grains
         std::size_t grains = 0;
         std::string label;
         long contact_count = 0;
@@ -43,8 +43,10 @@ private:
     Tables make_tables(std::size_t replica, const Recording& recording);
     void flush(Tables& tables);
     void flush_scans(Tables& tables);
+    /// Of positions or rotations: value, step and time, an element of H5MD.
+    std::vector<h5::Dataset> make_vectors(const std::string& group, const char* unit, std::size_t grains);
     template <class Real>
-    void flush_positions(Tables& tables);
+    void flush_vectors(std::vector<h5::Dataset>& tables, std::vector<Vec3> Scan::*vectors, long first_row);
     template <class Real>
     void flush_contacts(Tables& tables);
 
@@ -65,7 +67,7 @@ public:
     /// Provenance and recordings, without scans.
     Run header() const;
     std::vector<Scan> scans(const Recording& recording, std::size_t replica, ReadWhat what) const;
-    /// Fills in positions and contacts of the scan in row `row`.
+    /// Fills in positions, rotations and contacts of the scan in row `row`.
     void fill(Scan& scan, std::size_t grains, std::size_t replica, std::size_t row) const;
     /// False in files of programs that kept none.
     bool has_digests() const { return !file_.digests().empty(); }
@@ -77,7 +79,12 @@ public:
 private:
     Recording recording_header(std::size_t replica) const;
     void read_species(Recording& recording, const std::string& particles) const;
-    void read_positions(std::vector<Scan>& scans, std::size_t grains, std::size_t replica) const;
+    /// Positions or rotations, from an element of H5MD.
+    void read_vectors(std::vector<Scan>& scans, std::vector<Vec3> Scan::*vectors, std::size_t grains,
+                      const std::string& group) const;
+    /// .. at one scan; empty where there are none.
+    std::vector<Vec3> vectors_at(std::size_t row, std::size_t grains, const std::string& group) const;
+    bool has_vectors(std::size_t grains, const std::string& group) const;
     void read_contacts(std::vector<Scan>& scans, std::size_t grains, std::size_t replica) const;
     std::vector<Contact> contact_rows(const h5::Dataset& table, std::size_t grains, long first,
                                       long last) const;

@@ -84,29 +84,38 @@ ResultWriter::Tables ResultWriter::make_tables(std::size_t replica, const Record
                   file_.create_rows(contacts + "/contact", packed(contact_row_), {}),
                   file_.create_rows(contacts + "/offset", h5::number_type<long>(), {}),
                   {},
+                  {},
                   grains,
                   recording.label,
                   0};
     if (grains > 0) {
-        const h5::Handle real = is_double_ ? h5::number_type<double>() : h5::number_type<float>();
-        tables.position.push_back(file_.create_rows(particles + "/position/value", real, {grains, 3}));
-        tables.position.push_back(
-            file_.create_rows(particles + "/position/step", h5::number_type<long>(), {}));
-        tables.position.push_back(
-            file_.create_rows(particles + "/position/time", h5::number_type<double>(), {}));
-        file_.set_attribute(particles + "/position/value", "unit", std::string_view("m"));
-        file_.set_attribute(particles + "/position/time", "unit", std::string_view("s"));
+        tables.position = make_vectors(particles + "/position", "m", grains);
+        tables.rotation = make_vectors(particles + "/rotation", "rad", grains);
     }
     const long none = 0;
     tables.contact_offset.append(h5::number_type<long>(), &none, 1);
     return tables;
 }
 
+std::vector<h5::Dataset> ResultWriter::make_vectors(const std::string& group, const char* unit,
+                                                    std::size_t grains) {
+    const h5::Handle real = is_double_ ? h5::number_type<double>() : h5::number_type<float>();
+    std::vector<h5::Dataset> tables;
+    tables.push_back(file_.create_rows(group + "/value", real, {grains, 3}));
+    tables.push_back(file_.create_rows(group + "/step", h5::number_type<long>(), {}));
+    tables.push_back(file_.create_rows(group + "/time", h5::number_type<double>(), {}));
+    file_.set_attribute(group + "/value", "unit", std::string_view(unit));
+    file_.set_attribute(group + "/time", "unit", std::string_view("s"));
+    return tables;
+}
+
 void ResultWriter::append(std::size_t replica, Scan scan) {
     Tables& tables = tables_.at(replica);
-    if (!scan.position.empty() && scan.position.size() != tables.grains)
-        throw RunError(fmt::format("{}: '{}', frame {}: {} positions for {} grains", file_.path().string(),
-                                   tables.label, scan.frame, scan.position.size(), tables.grains));
+    for (const auto* vectors : {&scan.position, &scan.rotation})
+        if (!vectors->empty() && vectors->size() != tables.grains)
+            throw RunError(fmt::format("{}: '{}', frame {}: {} positions or rotations for {} grains",
+                                       file_.path().string(), tables.label, scan.frame, vectors->size(),
+                                       tables.grains));
     pending_.push_back(std::move(scan));
     if (pending_.size() >= std::clamp<std::size_t>(block_grains / (tables.grains + 1), 1, 256)) flush(tables);
 }
@@ -121,11 +130,14 @@ void ResultWriter::end(std::size_t replica, const std::optional<Failure>& failur
 }
 
 void ResultWriter::flush(Tables& tables) {
+    const long first_row = static_cast<long>(tables.scans.rows());
     if (is_double_) {
-        flush_positions<double>(tables);
+        flush_vectors<double>(tables.position, &Scan::position, first_row);
+        flush_vectors<double>(tables.rotation, &Scan::rotation, first_row);
         flush_contacts<double>(tables);
     } else {
-        flush_positions<float>(tables);
+        flush_vectors<float>(tables.position, &Scan::position, first_row);
+        flush_vectors<float>(tables.rotation, &Scan::rotation, first_row);
         flush_contacts<float>(tables);
     }
     flush_scans(tables);
@@ -139,22 +151,22 @@ void ResultWriter::flush_scans(Tables& tables) {
 }
 
 template <class Real>
-void ResultWriter::flush_positions(Tables& tables) {
+void ResultWriter::flush_vectors(std::vector<h5::Dataset>& tables, std::vector<Vec3> Scan::*vectors,
+                                 long first_row) {
     std::vector<Real> value;
     std::vector<double> time;
     std::vector<long> step;
-    const long first = static_cast<long>(tables.scans.rows());
     for (std::size_t s = 0; s < pending_.size(); ++s) {
-        if (pending_[s].position.empty()) continue;
-        for (const Vec3& x : pending_[s].position)
+        if ((pending_[s].*vectors).empty()) continue;
+        for (const Vec3& x : pending_[s].*vectors)
             for (double coordinate : x) value.push_back(static_cast<Real>(coordinate));
-        step.push_back(first + static_cast<long>(s));
+        step.push_back(first_row + static_cast<long>(s));
         time.push_back(pending_[s].time);
     }
     if (step.empty()) return;
-    tables.position[0].append(h5::number_type<Real>(), value.data(), step.size());
-    tables.position[1].append(h5::number_type<long>(), step.data(), step.size());
-    tables.position[2].append(h5::number_type<double>(), time.data(), time.size());
+    tables[0].append(h5::number_type<Real>(), value.data(), step.size());
+    tables[1].append(h5::number_type<long>(), step.data(), step.size());
+    tables[2].append(h5::number_type<double>(), time.data(), time.size());
 }
 
 template <class Real>
@@ -174,7 +186,8 @@ void ResultWriter::close() {
     for (Tables& tables : tables_) {
         for (h5::Dataset* table : {&tables.scans, &tables.contacts, &tables.contact_offset})
             file_.finish(*table);
-        for (h5::Dataset& table : tables.position) file_.finish(table);
+        for (auto* vectors : {&tables.position, &tables.rotation})
+            for (h5::Dataset& table : *vectors) file_.finish(table);
     }
     file_.write_digests();
     file_.close();

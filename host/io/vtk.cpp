@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -47,31 +48,44 @@ file carries frame, time, plate_z and top_force as field data, and the strains o
 floor, plate. The side of a cylinder is partner -1. In a container that is periodic along x and y grains are where they
 have moved to, also out of it; in a cell they are in an upright box of its lengths, and displacements are those beyond
 the cell's own motion. Contacts end at a partner's nearest image. The force of `walls` is that of all grains on the
-wall, the same on each of its surfaces.
+wall, the same on each of its surfaces. `rotation` of a grain is since the start of the run, before the packing relaxes, as
+axis times angle in radians.
 
 The replicas here, with the scene keys that are not the same in all of the run:
 )";
 
 void add(std::vector<double>& values, const Vec3& v) { values.insert(values.end(), {v.x(), v.y(), v.z()}); }
 
-/// Positions at the first scan that has them and at the last one seen.
+/// Where grains were at the first scan with positions and at the last one seen.
 class Track {
 public:
     explicit Track(const Box& box) : box_(box) {}
 
     Displacements see(const Scan& scan) {
-        const Seen now{scan.position, scan.strain};
+        const Seen now{scan.position, scan.rotation, scan.strain};
         if (first_.position.empty()) first_ = last_ = now;
-        const Displacements moved{since(last_, now), since(first_, now)};
+        const Displacements moved{since(last_, now), since(first_, now),
+                                  turned(last_.rotation, now.rotation)};
         last_ = now;
         return moved;
     }
 
 private:
     struct Seen {
-        std::vector<Vec3> position;
+        std::vector<Vec3> position, rotation;
         Strain strain{};
     };
+    static std::vector<Vec3> turned(const std::vector<Vec3>& before, const std::vector<Vec3>& now) {
+        const auto matrix = [](const Vec3& turn) {
+            return Eigen::AngleAxisd(turn.norm(), turn.stableNormalized()).toRotationMatrix();
+        };
+        std::vector<Vec3> turns;
+        for (std::size_t i = 0; i < std::min(before.size(), now.size()); ++i) {
+            const Eigen::AngleAxisd turn(Mat3(matrix(now[i]) * matrix(before[i]).transpose()));
+            turns.push_back(turn.angle() * turn.axis());
+        }
+        return turns;
+    }
     std::vector<Vec3> since(const Seen& before, const Seen& now) const {
         const Mat3 motion = deformation(now.strain) * inverse_deformation(before.strain);
         const Box box = deformed(box_, now.strain);
@@ -148,13 +162,15 @@ void write_vtk_grains(const std::filesystem::path& file, const Recording& record
     const std::size_t grains = scan.position.size();
     const std::vector<GrainLoad> loads = grain_loads(scan);
     VtkCells points;
-    std::vector<double> force(grains), stress, pressure, since_start, since_last_scan;
+    std::vector<double> force(grains), stress, pressure, since_start, since_last_scan, rotation, turned;
     for (const Mat3& tensor : grain_stress(recording.box, recording.diameter, scan)) {
         stress.insert(stress.end(), tensor.data(), tensor.data() + tensor.size());
         pressure.push_back(tensor.trace() / 3);
     }
     for (const Vec3& by : moved.since_start) add(since_start, by);
     for (const Vec3& by : moved.since_last_scan) add(since_last_scan, by);
+    for (const Vec3& by : scan.rotation) add(rotation, by);
+    for (const Vec3& by : moved.turned_since_last_scan) add(turned, by);
     std::vector<int> number(grains), contacts(grains);
     for (std::size_t i = 0; i < grains; ++i) {
         points.add(VtkCell::vertex, {scan.position[i]});
@@ -173,6 +189,8 @@ void write_vtk_grains(const std::filesystem::path& file, const Recording& record
         grid.point_data("pressure", pressure);
         grid.point_data("displacement", since_start, {3});
         grid.point_data("displacement_since_last_scan", since_last_scan, {3});
+        if (rotation.size() == since_start.size()) grid.point_data("rotation", rotation, {3});
+        if (turned.size() == since_start.size()) grid.point_data("rotation_since_last_scan", turned, {3});
         grid.close_with(scan, recording.box);
     });
 }

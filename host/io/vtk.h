@@ -17,10 +17,13 @@ int export_vtk(const std::filesystem::path& file_or_folder, const std::filesyste
 /// cell, beyond the cell's own motion.
 struct Displacements {
     std::vector<Vec3> since_last_scan, since_start;  ///< of scans with positions
+    std::vector<Vec3> turned_since_last_scan;        ///< axis times angle [rad]; empty where not recorded
 };
 
 /// Grains as points with: grain, diameter, coordination_number, force_magnitude (sum of |force| [N]), stress
-/// (core/stress.h), pressure (a third of its trace), displacement and displacement_since_last_scan.
+/// (core/stress.h), pressure (a third of its trace), displacement and
+/// displacement_since_last_scan; rotation (since the start, before the packing relaxes) and
+/// rotation_since_last_scan where they are known, axis times angle [rad].
 void write_vtk_grains(const std::filesystem::path& file, const Recording& recording, const Scan& scan,
                       const Displacements& moved);
 

@@ -112,10 +112,18 @@ py::array diameter_array(const Recording& recording, py::handle owner) {
     return rows(recording.diameter, py::dtype::of<double>(), owner);
 }
 
-py::array position_array(const Scan& scan, py::handle owner) {
-    return view(py::dtype::of<double>(), {static_cast<py::ssize_t>(scan.position.size()), 3},
-                {sizeof(Vec3), sizeof(double)}, scan.position.data(), owner);
+namespace {
+
+py::array vector_array(const std::vector<Vec3>& vectors, py::handle owner) {
+    return view(py::dtype::of<double>(), {static_cast<py::ssize_t>(vectors.size()), 3},
+                {sizeof(Vec3), sizeof(double)}, vectors.data(), owner);
 }
+
+}  // namespace
+
+py::array position_array(const Scan& scan, py::handle owner) { return vector_array(scan.position, owner); }
+
+py::array rotation_array(const Scan& scan, py::handle owner) { return vector_array(scan.rotation, owner); }
 
 py::array contact_array(const Scan& scan, py::handle owner) {
     return rows(scan.contacts, contact_type(), owner);

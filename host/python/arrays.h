@@ -16,6 +16,7 @@ pybind11::array tensor_array(const Recording& recording, Mat3 Scan::*tensor, pyb
 pybind11::array diameter_array(const Recording& recording, pybind11::handle owner);
 pybind11::array species_array(const Recording& recording, pybind11::handle owner);
 pybind11::array position_array(const Scan& scan, pybind11::handle owner);
+pybind11::array rotation_array(const Scan& scan, pybind11::handle owner);
 pybind11::array contact_array(const Scan& scan, pybind11::handle owner);
 
 /// [N][3][3], memory of its own.

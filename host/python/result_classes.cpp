@@ -131,6 +131,11 @@ void bind_recording(py::module_& module) {
             "[N][3][3] stress of each grain at a scan, over its own volume; compression is positive [Pa].")
         .def("positions", array_of_scan(position_array), py::arg("scan"),
              "[N][3] centres [m] at a scan; [0][3] where they were not recorded.")
+        .def("rotations", array_of_scan(rotation_array), py::arg("scan"),
+             "[N][3] rotation of each grain since the start of the run, before the packing relaxes: axis "
+             "times "
+             "angle, at most pi [rad]; [0][3] where positions were not recorded and in files of earlier "
+             "versions.")
         .def("contacts", array_of_scan(contact_array), py::arg("scan"),
              "[C] contacts at a scan: grain, partner (a grain, or -1 to -6: x_min, x_max, y_min, y_max, "
              "floor, plate), "

@@ -113,6 +113,9 @@ void Engine::upload_packings(const std::vector<Packing>& packings) {
             at[11] = static_cast<double>(packings[r].species_of(grain));
         }
     for (auto& copy : fields_.motion.copies) write_reals(copy, 0, values);
+    std::vector<double> tracks(reals_of_track * layout_.grains(), 0.0);
+    for (std::size_t real = 7; real < tracks.size(); real += reals_of_track) tracks[real] = 1;  // not turned
+    write_reals(fields_.tracks, 0, tracks);
 }
 
 double Engine::time_step(int replica) const { return shortened(time_step_[replica], shortening_[replica]); }
@@ -211,7 +214,7 @@ void Engine::find_neighbours(const std::vector<char>& active) {
                         f.cell_head, f.cell_next);
     kernels_.list_neighbours(groups, blocks, f.slot_count, f.replicas, f.rebuilt_blocks, f.replica_of_block,
                              f.motion.now(0), f.cell_head, f.cell_next, f.partner, f.displacement.now(0),
-                             f.displacement_history, f.memory_of_contacts, f.listed_position, f.status);
+                             f.displacement_history, f.memory_of_contacts, f.tracks, f.status);
     if (f.has_displacements())
         kernels_.link_partner_slots(groups, blocks, f.slot_count, f.rebuilt_blocks, f.partner,
                                     f.partner_slot);
@@ -230,7 +233,7 @@ void Engine::make_steps(int steps) {
         kernels_.advance(working_.blocks.size(), s, f.slot_count, f.replicas, f.materials, f.blocks,
                          f.replica_of_block, f.stop_at, f.motion.now(p), f.motion.next(p), f.partner,
                          f.partner_slot, f.displacement.now(p), f.displacement.next(p),
-                         f.displacement_history, f.memory_of_contacts, f.listed_position, f.status);
+                         f.displacement_history, f.memory_of_contacts, f.tracks, f.status);
     }
 }
 
@@ -238,8 +241,7 @@ void Engine::measure() {
     auto& f = fields_;
     kernels_.measure(working_.blocks.size(), f.replicas, f.materials, f.blocks, f.replica_of_block, f.stop_at,
                      f.motion.now(0), f.partner, f.partner_slot, f.displacement.now(0), f.memory_of_contacts,
-                     f.listed_position, f.force_x, f.force_y, f.force_z, f.overlap, f.arm, f.energy,
-                     f.frequency);
+                     f.tracks, f.force_x, f.force_y, f.force_z, f.overlap, f.arm, f.energy, f.frequency);
     kernels_.reduce(working_.portions.size(), f.replicas, f.portions, f.partner, f.force_x, f.force_y,
                     f.force_z, f.energy, f.frequency, f.status, f.reports);
     if (f.has_cells())

@@ -42,6 +42,7 @@ struct IntervalResult {
 /// out of it, and velocities are those beyond the cell's own motion.
 struct ReplicaState {
     std::vector<Vec3> position, velocity, angular_velocity;
+    std::vector<Vec3> rotation;  ///< since the start, axis times angle, at most pi [rad]
     std::vector<Contact> contacts;
 };
 
@@ -89,7 +90,7 @@ private:
     /// What states are made of, of replicas side by side: rows of grains and of slots as the device has them.
     struct Readings {
         std::size_t first_grain;
-        std::vector<std::byte> motion, force_x, force_y, force_z, overlap, arm;
+        std::vector<std::byte> motion, tracks, force_x, force_y, force_z, overlap, arm;
         std::vector<int> partner;
     };
     Part part(const std::vector<char>& wanted) const;

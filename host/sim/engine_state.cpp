@@ -1,6 +1,7 @@
 // What the host reads of a replica between intervals, and what a restart needs.
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cstring>
 
@@ -21,6 +22,16 @@ std::vector<Vec3> by_grain(const std::vector<double>& motion, std::size_t first,
     for (std::size_t k = 0; k < order.size(); ++k) {
         const double* at = &motion[reals_of_motion * k + first];
         vectors[order[k]] = {at[0], at[1], at[2]};
+    }
+    return vectors;
+}
+
+/// Rotations from their quaternions.
+std::vector<Vec3> rotations(const std::vector<double>& tracks, const std::vector<int>& order) {
+    std::vector<Vec3> vectors(order.size());
+    for (std::size_t k = 0; k < order.size(); ++k) {
+        const Eigen::AngleAxisd turn(Eigen::Quaterniond(&tracks[reals_of_track * k + 4]));
+        vectors[order[k]] = turn.angle() * turn.axis();
     }
     return vectors;
 }
@@ -101,6 +112,7 @@ void Engine::write_reals(Field<Quantity>& field, std::size_t first, const std::v
 
 template std::vector<double> Engine::read_reals(const Field<CellMoments>&, std::size_t, std::size_t) const;
 template void Engine::write_reals(Field<Motion>&, std::size_t, const std::vector<double>&);
+template void Engine::write_reals(Field<Tracks>&, std::size_t, const std::vector<double>&);
 
 Engine::Readings Engine::readings(int first_replica, int last_replica) const {
     const auto first = static_cast<std::size_t>(layout_.first_grain[first_replica]);
@@ -109,6 +121,7 @@ Engine::Readings Engine::readings(int first_replica, int last_replica) const {
     const auto of_slots = [&](const auto& field) { return read_bytes(field, first * slots, grains * slots); };
     Readings read{first,
                   read_bytes(fields_.motion.copies[0], reals_of_motion * first, reals_of_motion * grains),
+                  read_bytes(fields_.tracks, reals_of_track * first, reals_of_track * grains),
                   of_slots(fields_.force_x),
                   of_slots(fields_.force_y),
                   of_slots(fields_.force_z),
@@ -144,6 +157,8 @@ ReplicaState Engine::state(int replica, const Readings& read) const {
         for (Vec3& x : state.position) x = deformation(strain_[replica]) * x;
     state.velocity = by_grain(motion, 4, order);
     state.angular_velocity = by_grain(motion, 8, order);
+    state.rotation =
+        rotations(reals(read.tracks, reals_of_track * first, reals_of_track * order.size()), order);
     state.contacts = contacts(replica, state.position, read);
     return state;
 }

@@ -34,7 +34,7 @@ void Fields::visit_extents(const FieldExtents& extents, Make make) {
     make(rebuilt_blocks, extents.blocks, sizeof(int));
     make(replica_of_block, extents.blocks, sizeof(int));
     make_pair(motion, extents.grains, reals_of_motion * real);
-    make(listed_position, extents.grains, 4 * real);
+    make(tracks, extents.grains, reals_of_track * real);
     make(status, extents.grains, sizeof(int));
     make(energy, extents.grains, 4 * real);
     make(frequency, extents.grains, real);

@@ -24,7 +24,7 @@ struct PartnerSlot;
 struct SurfaceDisplacement;
 struct DisplacementHistory;
 struct ContactMemory;
-struct ListedPosition;
+struct Tracks;
 struct Status;
 struct CellHead;
 struct CellNext;
@@ -49,6 +49,9 @@ struct Pair {
 /// Reals of a grain in the field Motion: position, radius, velocity, excess compliance, angular velocity,
 /// species.
 inline constexpr std::size_t reals_of_motion = 12;
+
+/// .. and in the field Tracks: position when its neighbours were listed and one more, rotation.
+inline constexpr std::size_t reals_of_track = 8;
 
 /// Which of the optional fields a batch needs.
 struct FieldNeeds {
@@ -95,7 +98,7 @@ struct Fields {
     Field<Blocks> blocks, rebuilt_blocks;  ///< blocks in work
     Field<ReplicaOfBlock> replica_of_block;
     Pair<Motion> motion;
-    Field<ListedPosition> listed_position;
+    Field<Tracks> tracks;
     Field<Status> status;
     Field<Energy> energy;
     Field<Frequency> frequency;
@@ -116,7 +119,7 @@ struct Fields {
     template <class Visit>
     void visit_state(Visit visit) {
         visit("motion", motion.copies[0]);
-        visit("listed_position", listed_position);
+        visit("tracks", tracks);
         visit("status", status);
         visit("partner", partner);
         visit("partner_slot", partner_slot);
@@ -150,17 +153,17 @@ struct Kernels {
         fill_cells;
     Kernel<int, int, Field<Constants>, Field<Blocks>, Field<ReplicaOfBlock>, Now<Motion>, Field<CellHead>,
            Field<CellNext>, Field<Partner>, Now<SurfaceDisplacement>, Field<DisplacementHistory>,
-           Field<ContactMemory>, Field<ListedPosition>, Field<Status>>
+           Field<ContactMemory>, Field<Tracks>, Field<Status>>
         list_neighbours;
     Kernel<int, int, Field<Blocks>, Field<Partner>, Field<PartnerSlot>> link_partner_slots;
     Kernel<int, int, Field<Constants>, Field<Materials>, Field<Blocks>, Field<ReplicaOfBlock>, Field<StopAt>,
            Now<Motion>, Next<Motion>, Field<Partner>, Field<PartnerSlot>, Now<SurfaceDisplacement>,
-           Next<SurfaceDisplacement>, Field<DisplacementHistory>, Field<ContactMemory>, Field<ListedPosition>,
+           Next<SurfaceDisplacement>, Field<DisplacementHistory>, Field<ContactMemory>, Field<Tracks>,
            Field<Status>>
         advance;
     Kernel<Field<Constants>, Field<Materials>, Field<Blocks>, Field<ReplicaOfBlock>, Field<StopAt>,
            Now<Motion>, Field<Partner>, Field<PartnerSlot>, Now<SurfaceDisplacement>, Field<ContactMemory>,
-           Field<ListedPosition>, Field<ForceX>, Field<ForceY>, Field<ForceZ>, Field<Overlap>, Field<Arm>,
+           Field<Tracks>, Field<ForceX>, Field<ForceY>, Field<ForceZ>, Field<Overlap>, Field<Arm>,
            Field<Energy>, Field<Frequency>>
         measure;
     Kernel<Field<Constants>, Field<Portions>, Field<Partner>, Field<ForceX>, Field<ForceY>, Field<ForceZ>,

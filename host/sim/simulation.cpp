@@ -185,10 +185,11 @@ Scan Simulation::scan(int replica, const ProtocolRunner::ScanTag& tag, const Int
     scan.kinetic_energy = result.kinetic_energy;
     scan.elastic_energy = result.elastic_energy;
     scan.position = std::move(state.position);
+    scan.rotation = std::move(state.rotation);
     scan.contacts = std::move(state.contacts);
     if (is_cell(spec.box)) bring_into_cell(deformed(spec.box, scan.strain), scan);
     fill_averages(scan, spec.box, diameter_[replica], spec.protocol.force_threshold);
-    if (!scene_.output.positions) scan.position.clear();
+    if (!scene_.output.positions) scan.position.clear(), scan.rotation.clear();
     if (!scene_.output.contacts) scan.contacts.clear();
     return scan;
 }

@@ -32,7 +32,7 @@ grid = read(f"{folder}/grains_{scan}.hdf")
 assert grid.GetNumberOfPoints() == grid.GetNumberOfCells() == grains, grid
 points = arrays(grid.GetPointData())
 assert set(points) == {"grain", "diameter", "coordination_number", "force_magnitude", "stress", "pressure", "displacement",
-                       "displacement_since_last_scan"} | of_species, points
+                       "displacement_since_last_scan", "rotation", "rotation_since_last_scan"} | of_species, points
 assert not of_species or (points["species"] == [grain % 2 for grain in range(grains)]).all()
 stress = points["stress"].reshape(grains, 3, 3)
 assert abs(points["pressure"] - stress.trace(axis1=1, axis2=2) / 3).max() <= 1e-12 * abs(stress).max()

@@ -3,12 +3,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest-spi.h>
 #include <gtest/gtest.h>
+#include <hdf5.h>
 
 #include <chrono>
 #include <cmath>
 #include <thread>
 
 #include "core/errors.h"
+#include "io/hdf5.h"
 #include "io/synthetic_run.h"
 
 namespace mcdem::test {
@@ -82,10 +84,28 @@ TEST(results, ragged_and_missing_parts_come_back) {
     run.recordings[3].parameters.clear();
     for (auto& scan : run.recordings[3].scans) {
         scan.position.clear();
+        scan.rotation.clear();
         scan.contacts.clear();
     }
     write_run(folder / "run.h5", run);
     expect_same(run, read_run(folder / "run.h5"));
+}
+
+TEST(results, files_of_earlier_versions_have_no_rotations) {
+    TemporaryFolder folder;
+    auto run = synthetic_run();
+    write_run(folder / "run.h5", run);
+    {
+        const h5::Handle file(H5Fopen((folder / "run.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose);
+        H5Ldelete(file, "/digests", H5P_DEFAULT);
+        for (std::size_t r = 0; r < run.recordings.size(); ++r)
+            H5Ldelete(file, ("/particles/replica_0000" + std::to_string(r) + "/rotation").c_str(),
+                      H5P_DEFAULT);
+    }
+    for (auto& recording : run.recordings)
+        for (auto& scan : recording.scans) scan.rotation.clear();
+    expect_same(run, read_run(folder / "run.h5"));
+    EXPECT_TRUE(RunReader(folder / "run.h5").read_scan(0, 1).rotation.empty());
 }
 
 TEST(results, empty_run_comes_back) {
@@ -102,7 +122,10 @@ TEST(results, light_reading_leaves_out_what_was_not_asked_for) {
         auto expected = run;
         for (auto& recording : expected.recordings)
             for (auto& scan : recording.scans) {
-                if (what != ReadWhat::positions) scan.position.clear();
+                if (what != ReadWhat::positions) {
+                    scan.position.clear();
+                    scan.rotation.clear();
+                }
                 if (what != ReadWhat::contacts) scan.contacts.clear();
             }
         expect_same(expected, read_run(folder / "run.h5", what));

@@ -39,6 +39,8 @@ Recording synthetic_recording(const Size& size, int replica) {
         for (int i = 0; i < size.grains; ++i)
             scan.position.emplace_back((i % side + 0.5) * spacing, (i / side % side + 0.5) * spacing,
                                        (i / side / side + 0.5) * spacing - 1e-4 * depth + 1e-5 * replica);
+        for (int i = 0; i < size.grains && replica % 3 != 2; ++i)  // measured ones have none
+            scan.rotation.emplace_back(0.01 * i, -0.02 * depth, 0.1 / (1 + replica));
         for (int i = 0; i < size.grains; ++i) {
             Contact contact;
             contact.grain = i;
@@ -88,6 +90,9 @@ std::string scan_difference(const Scan& a, const Scan& b, double tolerance) {
     if (a.position.size() != b.position.size()) return "number of positions";
     for (std::size_t i = 0; i < a.position.size(); ++i)
         if (!same(a.position[i], b.position[i], tolerance)) return "position of grain " + std::to_string(i);
+    if (a.rotation.size() != b.rotation.size()) return "number of rotations";
+    for (std::size_t i = 0; i < a.rotation.size(); ++i)
+        if (!same(a.rotation[i], b.rotation[i], tolerance)) return "rotation of grain " + std::to_string(i);
     if (a.contacts.size() != b.contacts.size()) return "number of contacts";
     for (std::size_t c = 0; c < a.contacts.size(); ++c) {
         const Contact &x = a.contacts[c], &y = b.contacts[c];

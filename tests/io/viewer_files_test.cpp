@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <hdf5.h>
 
+#include <numbers>
 #include <sstream>
 
 #include "core/container.h"
@@ -100,6 +101,31 @@ TEST(vtk, displacements_count_from_the_first_scan_and_from_the_last) {
     EXPECT_NEAR(all[2], -0.04, 1e-7);
     EXPECT_NEAR(last[0], 0.03, 1e-7);
     EXPECT_NEAR(last[2], -0.02, 1e-7);
+}
+
+TEST(vtk, rotations_count_from_the_start_and_from_the_last_scan) {
+    TemporaryFolder folder;
+    auto run = synthetic_run({.replicas = 1, .scans = 3});
+    auto& scans = run.recordings[0].scans;
+    scans[1].rotation.assign(scans[1].rotation.size(), {0.5, 0, 0});
+    scans[2].rotation.assign(scans[2].rotation.size(), {0.8, 0, 0});
+    scans[2].rotation[1] =
+        2 * std::numbers::pi / 3 * Vec3(1, 1, -1).normalized();  // a quarter about x, then y
+    scans[1].rotation[1] = {std::numbers::pi / 2, 0, 0};
+    write_run(folder / "run.h5", run);
+    EXPECT_EQ(export_vtk(folder / "run.h5", folder.path(), {.scans = {2}}), 4);
+    const auto file = folder / first_name / "grains_000002.hdf";
+    const auto all = point_data(file, "rotation"), last = point_data(file, "rotation_since_last_scan");
+    EXPECT_NEAR(all[0], 0.8, 1e-7);
+    EXPECT_NEAR(last[0], 0.3, 1e-7);
+    EXPECT_NEAR(last[3], 0, 1e-6);
+    EXPECT_NEAR(last[4], std::numbers::pi / 2, 1e-6);
+    EXPECT_NEAR(last[5], 0, 1e-6);
+    for (Scan& scan : scans) scan.rotation.clear();
+    write_run(folder / "measured.h5", run);
+    export_vtk(folder / "measured.h5", folder / "measured", {.scans = {2}});
+    EXPECT_THROW(point_data(folder / "measured" / first_name / "grains_000002.hdf", "rotation"),
+                 std::exception);
 }
 
 TEST(vtk, only_what_is_chosen_is_written) {

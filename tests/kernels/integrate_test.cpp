@@ -74,6 +74,7 @@ TEST(Motion, SlidesThenRolls) {
         const double lost = friction * gravity * half_way * dt;
         EXPECT_NEAR((v0 - state.velocity[0].x()) / lost, 1, 0.01) << name(law);
         EXPECT_NEAR(state.angular_velocity[0].y() * radius / (2.5 * lost), 1, 0.01) << name(law);
+        EXPECT_NEAR(state.rotation[0].y() * radius / (1.25 * lost * half_way * dt), 1, 0.01) << name(law);
         batch.advance(6 * half_way);
         state = batch.engine().state(0);
         EXPECT_NEAR(state.velocity[0].x() / v0, 5.0 / 7, 0.003) << name(law);
@@ -103,6 +104,44 @@ TEST(Motion, SpinAboutTheNormalStays) {
     const auto state = batch.engine().state(0);
     EXPECT_NEAR(state.angular_velocity[0].z(), 30, 1e-4);
     EXPECT_NEAR(state.velocity[0].head<2>().norm(), 0, 1e-6);
+}
+
+/// A grain that nothing touches, spun for so many steps about one axis after the other.
+Vec3 turned_by(const std::vector<Vec3>& spins, int steps) {
+    Replica replica = test_replica();
+    replica.grains.drag = replica.grains.excess_density = 0;
+    Batch batch(build(finest()), single_grain(replica, 0.5));
+    for (const Vec3& spin : spins) {
+        batch.engine().set_velocities(0, {Vec3::Zero()}, {spin});
+        batch.advance(steps);
+    }
+    return batch.engine().state(0).rotation[0];
+}
+
+double step_length() {
+    return Batch(build(finest()), single_grain(test_replica(), 0.5)).engine().time_step(0);
+}
+
+TEST(Motion, RotationIsSpinTimesTime) {
+    const double dt = step_length(), rounding = has_double() ? 1e-12 : 1e-5;
+    for (const Vec3& spin : {Vec3(12, 0, 0), Vec3(-5, 10, 2), Vec3(0, 0, 0)}) {
+        const Vec3 angle = 100 * dt * spin;
+        const double step = dt * spin.norm();  // its arc tangent is taken for it
+        EXPECT_LT((turned_by({spin}, 100) - angle).norm(), step * step * angle.norm() / 12 + rounding);
+    }
+}
+
+// A quarter about x, then one about y, is a third of a turn about (1, 1, -1); the other way round about (1,
+// 1, 1).
+TEST(Motion, RotationsAreAboutTheLaboratorysAxes) {
+    const int steps = 1000;
+    const double quarter = std::numbers::pi / 2, spin = quarter / steps / step_length();
+    const Vec3 x(spin, 0, 0), y(0, spin, 0), third = 2 * std::numbers::pi / 3 * Vec3(1, 1, 1).normalized();
+    const double error = 1e-5;  // of so long steps, and of single precision
+    EXPECT_LT((turned_by({x, y}, steps) - third.cwiseProduct(Vec3(1, 1, -1))).norm(), error);
+    EXPECT_LT((turned_by({y, x}, steps) - third).norm(), error);
+    const Vec3 around = turned_by({x, x, x}, steps);  // three quarters one way are one the other way
+    EXPECT_LT((around - Vec3(-quarter, 0, 0)).norm(), error);
 }
 
 }  // namespace

@@ -140,6 +140,9 @@ class Arrays(unittest.TestCase):
         between = contacts["partner"] >= 0
         distance = np.linalg.norm(position[contacts["grain"][between]] - position[contacts["partner"][between]], axis=1)
         self.assertLess(distance.max(), recording.diameter.max() * 1.05)
+        rotation = recording.rotations(last)
+        self.assertEqual(rotation.shape, (30, 3))
+        self.assertTrue((np.linalg.norm(rotation, axis=1) > 0).all() and (np.abs(rotation) <= np.pi).all())
         self.assertTrue(np.array_equal(recording.positions(-1), recording.positions(len(recording) - 1)))
 
     def test_scans_are_a_pandas_table(self):
