@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <mutex>
 
 #include "cl/kernel_cache.h"
 #include "cl/process_limits.h"
@@ -51,6 +52,8 @@ void expect_not_forked() {
 
 std::vector<Found> find_devices() {
     expect_not_forked();
+    static std::mutex one_at_a_time;  // PoCL starts its devices at the first call, for one thread only
+    const std::lock_guard lock(one_at_a_time);
     expect_enough_open_files();
     prepare_kernel_cache();
     std::vector<Found> found;

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "core/container.h"
+#include "core/errors.h"
 
 namespace mcdem::inline core {
 namespace {
@@ -38,6 +39,10 @@ Vec3 direction(const Box& box, const Scan& scan, const Contact& contact) {
 }  // namespace
 
 std::vector<Mat3> grain_stress(const Box& box, const std::vector<double>& diameter, const Scan& scan) {
+    if (scan.position.size() != diameter.size())
+        throw InputError(
+            "the stress of grains needs the grains' positions: run with output.positions = true, and read "
+            "everything");
     std::vector<Mat3> stress = moments(deformed(box, scan.strain), scan);
     for (std::size_t i = 0; i < stress.size(); ++i)
         stress[i] /= std::numbers::pi / 6 * std::pow(diameter[i], 3);

@@ -18,7 +18,12 @@ namespace py = pybind11;
 /// A run, or what lies at a path.
 SharedRun reference_of(const py::object& reference, int discard, ReadWhat what) {
     if (py::isinstance<Run>(reference)) return reference.cast<SharedRun>();
-    const auto path = reference.cast<std::filesystem::path>();
+    std::filesystem::path path;
+    try {
+        path = reference.cast<std::filesystem::path>();
+    } catch (const py::cast_error&) {
+        throw py::type_error("the reference must be a Run, or the path of a result or an experiment");
+    }
     const py::gil_scoped_release others_go_on;
     return std::make_shared<Run>(read_reference(path, discard, what));
 }
@@ -103,8 +108,8 @@ int export_files(const std::filesystem::path& path, const std::filesystem::path&
 
 void bind_comparison(py::module_& module) {
     module.def(
-        "compare", &compare_run, py::arg("run"), py::arg("reference"), py::kw_only(), py::arg("setting") = "",
-        py::arg("discard") = 0, py::arg("touch_force") = py::none(),
+        "compare", &compare_run, py::arg("run").none(false), py::arg("reference"), py::kw_only(),
+        py::arg("setting") = "", py::arg("discard") = 0, py::arg("touch_force") = py::none(),
         "The paper's metrics of every setting of a run against a reference, a dict a setting, as `mcdem "
         "compare`\nprints them: Rtop, errf [N], errZ, bhat and tau [N] with standard errors, None where not "
         "known.\n`reference`: a run, a result folder, or the folder of an experiment; `setting` chooses one "

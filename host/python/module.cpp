@@ -1,5 +1,6 @@
 // The extension module mcdem._engine; mcdem/__init__.py is what users import.
 #include <fmt/format.h>
+#include <pybind11/numpy.h>
 
 #include "cl/opencl.h"
 #include "core/errors.h"
@@ -24,11 +25,20 @@ void translate(std::exception_ptr error) {
     }
 }
 
+/// Before there are threads: two that need NumPy's functions for the first time would wait for each other.
+void find_numpy() {
+    try {
+        pybind11::dtype::of<double>();
+    } catch (const pybind11::error_already_set&) {  // said where an array is asked for
+    }
+}
+
 }  // namespace
 }  // namespace mcdem::python
 
 PYBIND11_MODULE(_engine, module) {
     pybind11::register_exception_translator(mcdem::translate);
+    mcdem::find_numpy();
     module.attr("__version__") = mcdem::version_text;
     mcdem::read_run_packing = mcdem::packing_of_run;
     mcdem::bind_scene(module);

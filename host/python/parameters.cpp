@@ -19,15 +19,20 @@ py::object typed(const std::string& text) {
     if (std::uint64_t whole = 0; is_all(text, whole)) return py::int_(whole);
     if (std::int64_t whole = 0; is_all(text, whole)) return py::int_(whole);
     if (double number = 0; is_all(text, number)) return py::float_(number);
-    return py::str(text);
+    return python_text(text);
 }
 
 }  // namespace
 
+py::str python_text(const std::string& text) {
+    return py::reinterpret_steal<py::str>(
+        PyUnicode_DecodeUTF8(text.data(), static_cast<py::ssize_t>(text.size()), "surrogateescape"));
+}
+
 py::dict typed_parameters(const std::map<std::string, std::string>& parameters) {
     py::dict all;
     for (const auto& [key, text] : parameters)
-        all[py::str(key)] = key == "packing.file" && !text.empty() ? py::str(text) : typed(text);
+        all[py::str(key)] = key == "packing.file" && !text.empty() ? python_text(text) : typed(text);
     return all;
 }
 

@@ -1,7 +1,9 @@
 // A long call on behalf of Python: progress is told, Ctrl-C heard, and what the callbacks raise is kept until
 // the call has ended in good order.
 #pragma once
+#include <cxxabi.h>
 #include <pybind11/pybind11.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <exception>
@@ -46,13 +48,18 @@ private:
     template <class Ask>
     void ask_python(Ask ask) {
         if (stop_) return;
-        const pybind11::gil_scoped_acquire gil;
-        if (stop_) return;  // another thread has raised meanwhile
         try {
-            ask();
-        } catch (pybind11::error_already_set&) {
-            error_ = std::current_exception();
-            stop_ = true;
+            const pybind11::gil_scoped_acquire gil;
+            if (stop_) return;  // another thread has raised meanwhile
+            try {
+                ask();
+            } catch (pybind11::error_already_set&) {
+                error_ = std::current_exception();
+                stop_ = true;
+            }
+        } catch (abi::__forced_unwind&) {
+            // Python ends, and ends this daemon thread, which could not be unwound through what runs in it.
+            while (true) pause();
         }
     }
 
