@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/errors.h"
 #include "python/arrays.h"
 #include "python/bindings.h"
 #include "python/parameters.h"
@@ -72,33 +73,9 @@ void bind_failure(py::module_& module) {
         });
 }
 
-void bind_recording(py::module_& module) {
-    py::class_<OneRecording>(module, "Recording",
-                             "One packing taken through its protocol: S scans of N grains.\n\n"
-                             "Arrays are the recording's own memory: read-only, not copied, and good for as "
-                             "long as one of them is held.")
-        .def_property_readonly("label", [](const OneRecording& self) { return self.get().label; })
-        .def_property_readonly(
-            "parameters", [](const OneRecording& self) { return typed_parameters(self.get().parameters); },
-            "Every scene key and its value for this replica; None where the key does not apply.")
-        .def_property_readonly(
-            "box",
-            [](const OneRecording& self) { return std::pair(self.get().box.size_x, self.get().box.size_y); },
-            "Size along x and y [m]; of a cylinder its diameter, twice.")
-        .def_property_readonly(
-            "container", [](const OneRecording& self) { return std::string(name(self.get().box.shape)); },
-            "\"box\", \"cylinder\", \"periodic\" or \"cell\". Its walls: the side of a cylinder is x_min, "
-            "and "
-            "what is not there carries no force; those of a cell are its faces.")
-        .def_property_readonly(
-            "plate_start", [](const OneRecording& self) { return self.get().plate_start; },
-            "Plate position that counts as displacement zero [m].")
-        .def_property_readonly("failure", [](const OneRecording& self) { return self.get().failure; })
-        .def_property_readonly("diameter", array_property(diameter_array), "[N] diameters [m].")
-        .def_property_readonly(
-            "species", array_property(species_array),
-            "[N] species of each grain, a place in species_names; empty without [[species]].")
-        .def_property_readonly("species_names", [](const OneRecording& r) { return r.get().species_names; })
+/// What a recording has of every scan.
+void bind_scan_arrays(py::class_<OneRecording>& recording) {
+    recording
         .def_property_readonly(
             "scans", array_property(scans_array),
             "[S] rows with the fields of /observables in run.h5: frame, cycle, phase (0 load, 1 "
@@ -121,11 +98,21 @@ void bind_recording(py::module_& module) {
             "[S][3][3] stress of the packing, from contact forces and branch vectors; compression is "
             "positive [Pa]. Not-a-number in files of earlier versions.")
         .def_property_readonly("fabric", array_property(fabric_array),
-                               "[S][3][3] mean of n n, n the direction of a contact between grains.")
+                               "[S][3][3] mean of n n, n the direction of a contact between grains.");
+}
+
+/// What a recording has of every grain or contact at one scan.
+void bind_single_scans(py::class_<OneRecording>& recording) {
+    recording
         .def(
             "grain_stress",
             [](const OneRecording& self, py::ssize_t scan) {
-                return grain_stress_array(self.get(), scan_at(self, scan));
+                const Scan& at = scan_at(self, scan);
+                if (at.contacts.empty() && at.coordination_number > 0)
+                    throw InputError(
+                        "the stress of grains needs the contacts: run with output.contacts = true, and read "
+                        "everything");
+                return grain_stress_array(self.get(), at);
             },
             py::arg("scan"),
             "[N][3][3] stress of each grain at a scan, over its own volume; compression is positive [Pa].")
@@ -139,7 +126,39 @@ void bind_recording(py::module_& module) {
         .def("contacts", array_of_scan(contact_array), py::arg("scan"),
              "[C] contacts at a scan: grain, partner (a grain, or -1 to -6: x_min, x_max, y_min, y_max, "
              "floor, plate), "
-             "point [3] [m], force [3] on grain [N], overlap [m].")
+             "point [3] [m], force [3] on grain [N], overlap [m].");
+}
+
+void bind_recording(py::module_& module) {
+    py::class_<OneRecording> recording(
+        module, "Recording",
+        "One packing taken through its protocol: S scans of N grains.\n\n"
+        "Arrays are the recording's own memory: read-only, not copied, and good for as "
+        "long as one of them is held.");
+    bind_scan_arrays(recording);
+    bind_single_scans(recording);
+    recording.def_property_readonly("label", [](const OneRecording& self) { return self.get().label; })
+        .def_property_readonly(
+            "parameters", [](const OneRecording& self) { return typed_parameters(self.get().parameters); },
+            "Every scene key and its value for this replica; None where the key does not apply.")
+        .def_property_readonly(
+            "box",
+            [](const OneRecording& self) { return std::pair(self.get().box.size_x, self.get().box.size_y); },
+            "Size along x and y [m]; of a cylinder its diameter, twice.")
+        .def_property_readonly(
+            "container", [](const OneRecording& self) { return std::string(name(self.get().box.shape)); },
+            "\"box\", \"cylinder\", \"periodic\" or \"cell\". Its walls: the side of a cylinder is x_min, "
+            "and "
+            "what is not there carries no force; those of a cell are its faces.")
+        .def_property_readonly(
+            "plate_start", [](const OneRecording& self) { return self.get().plate_start; },
+            "Plate position that counts as displacement zero [m].")
+        .def_property_readonly("failure", [](const OneRecording& self) { return self.get().failure; })
+        .def_property_readonly("diameter", array_property(diameter_array), "[N] diameters [m].")
+        .def_property_readonly(
+            "species", array_property(species_array),
+            "[N] species of each grain, a place in species_names; empty without [[species]].")
+        .def_property_readonly("species_names", [](const OneRecording& r) { return r.get().species_names; })
         .def("__len__", [](const OneRecording& self) { return self.get().scans.size(); })
         .def("__repr__", [](const OneRecording& self) {
             return fmt::format("<mcdem.Recording {}: {} scans of {} grains>", self.get().label,

@@ -28,6 +28,8 @@ class Hostile(unittest.TestCase):
             for run in (mcdem.read(folder + "/bare"), mcdem.read(folder + "/whole", what="contacts")):
                 with self.assertRaisesRegex(ValueError, "needs the grains' positions"):
                     run[0].grain_stress(2)
+            with self.assertRaisesRegex(ValueError, "needs the contacts"):
+                mcdem.read(folder + "/whole", what="positions")[0].grain_stress(2)
 
     def test_paths_that_are_no_utf8_are_read(self):
         with tempfile.TemporaryDirectory() as folder:
