@@ -62,6 +62,8 @@ struct Scan {
     std::vector<Vec3> rotation;  ///< .. since the start: axis times angle, at most pi [rad]; empty: not known
     std::vector<Contact> contacts;
 
+    /// False where there are contacts and none is listed: they were not recorded, or not read.
+    bool knows_contacts() const { return !contacts.empty() || !(coordination_number > 0); }
     /// Upward force on the plate [N].
     double top_force() const { return wall_force[static_cast<int>(Wall::plate)].z(); }
 };

@@ -49,7 +49,7 @@ floor, plate. The side of a cylinder is partner -1. In a container that is perio
 have moved to, also out of it; in a cell they are in an upright box of its lengths, and displacements are those beyond
 the cell's own motion. Contacts end at a partner's nearest image. The force of `walls` is that of all grains on the
 wall, the same on each of its surfaces. `rotation` of a grain is since the start of the run, before the packing relaxes, as
-axis times angle in radians.
+axis times angle in radians. Without output.contacts grains have no coordination_number, force_magnitude, stress and pressure.
 
 The replicas here, with the scene keys that are not the same in all of the run:
 )";
@@ -183,10 +183,12 @@ void write_vtk_grains(const std::filesystem::path& file, const Recording& record
         grid.point_data("grain", number);
         grid.point_data("diameter", recording.diameter);
         if (!recording.species.empty()) grid.point_data("species", recording.species);
-        grid.point_data("coordination_number", contacts);
-        grid.point_data("force_magnitude", force);
-        grid.point_data("stress", stress, {9});
-        grid.point_data("pressure", pressure);
+        if (scan.knows_contacts()) {
+            grid.point_data("coordination_number", contacts);
+            grid.point_data("force_magnitude", force);
+            grid.point_data("stress", stress, {9});
+            grid.point_data("pressure", pressure);
+        }
         grid.point_data("displacement", since_start, {3});
         grid.point_data("displacement_since_last_scan", since_last_scan, {3});
         if (rotation.size() == since_start.size()) grid.point_data("rotation", rotation, {3});

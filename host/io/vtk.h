@@ -20,8 +20,8 @@ struct Displacements {
     std::vector<Vec3> turned_since_last_scan;        ///< axis times angle [rad]; empty where not recorded
 };
 
-/// Grains as points with: grain, diameter, coordination_number, force_magnitude (sum of |force| [N]), stress
-/// (core/stress.h), pressure (a third of its trace), displacement and
+/// Grains as points with: grain, diameter, where contacts are known coordination_number, force_magnitude (sum
+/// of |force| [N]), stress (core/stress.h), pressure (a third of its trace), displacement and
 /// displacement_since_last_scan; rotation (since the start, before the packing relaxes) and
 /// rotation_since_last_scan where they are known, axis times angle [rad].
 void write_vtk_grains(const std::filesystem::path& file, const Recording& recording, const Scan& scan,

@@ -108,7 +108,7 @@ void bind_single_scans(py::class_<OneRecording>& recording) {
             "grain_stress",
             [](const OneRecording& self, py::ssize_t scan) {
                 const Scan& at = scan_at(self, scan);
-                if (at.contacts.empty() && at.coordination_number > 0)
+                if (!at.knows_contacts())
                     throw InputError(
                         "the stress of grains needs the contacts: run with output.contacts = true, and read "
                         "everything");

@@ -275,6 +275,16 @@ TEST(vtk, a_scan_without_contacts_still_makes_files) {
     EXPECT_EQ(finished.exit_code, 0) << finished.output;
 }
 
+TEST(vtk, grains_that_touch_nothing_have_no_stress_but_zero) {
+    TemporaryFolder folder;
+    auto run = synthetic_run({.replicas = 1, .scans = 1});
+    run.recordings[0].scans[0].contacts.clear();
+    run.recordings[0].scans[0].coordination_number = 0;
+    write_run(folder / "run.h5", run);
+    export_vtk(folder / "run.h5", folder.path());
+    EXPECT_THAT(point_data(folder / first_name / "grains_000000.hdf", "stress"), testing::Each(0));
+}
+
 TEST(vtk, the_kind_of_grid_is_in_the_characters_that_paraview_takes) {
     TemporaryFolder folder;
     write_run(folder / "run.h5", synthetic_run({.replicas = 1, .scans = 1}));
