@@ -128,7 +128,7 @@ kernel void advance(const int step, const int slot_count, global const Replica* 
         const int bits = trouble_status(total.force.w) | motion_status(at, after);
         if (bits) status[index] |= bits;
         track[index].rotation =
-            turned(track[index].rotation, after.angular_velocity.xyz * replica->time_step);
+            rotated(track[index].rotation, after.angular_velocity.xyz * replica->time_step);
         expect_listed(at, after, bits, track[index].listed_position.xyz, step, stop_at + r);
     }
     /* Without it PoCL lets padding grains into the block above, where work-groups that are done have left

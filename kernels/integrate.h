@@ -27,8 +27,8 @@ INLINE Motion integrate(Grain at, real3 force, real3 torque) {
     return after;
 }
 
-/* A rotation turned further by a small angle, `by` along the laboratory's axes. */
-INLINE real4 turned(real4 rotation, real3 by) {
+/* A rotation, and then one more by a small angle, `by` along the laboratory's axes. */
+INLINE real4 rotated(real4 rotation, real3 by) {
     const real3 half_angle = R(0.5) * by, v = rotation.xyz;
     const real4 q =
         (real4)(v + rotation.w * half_angle + cross(half_angle, v), rotation.w - dot(half_angle, v));

@@ -43,6 +43,9 @@ std::vector<Mat3> grain_stress(const Box& box, const std::vector<double>& diamet
         throw InputError(
             "the stress of grains needs the grains' positions: run with output.positions = true, and read "
             "everything");
+    if (!scan.knows_contacts())
+        throw InputError(
+            "the stress of grains needs the contacts: run with output.contacts = true, and read everything");
     std::vector<Mat3> stress = moments(deformed(box, scan.strain), scan);
     for (std::size_t i = 0; i < stress.size(); ++i)
         stress[i] /= std::numbers::pi / 6 * std::pow(diameter[i], 3);

@@ -11,7 +11,7 @@ namespace mcdem::inline core {
 /// Stress of each grain [Pa]: minus the sum over its contacts of (contact point - centre) times force on the
 /// grain, over the volume of the undeformed sphere (Love 1927, Weber 1966). Row: direction of the branch;
 /// column: of the force. Compression is positive. Throws
-/// InputError where the scan has no positions.
+/// InputError where the scan has no positions, or its contacts are not known.
 std::vector<Mat3> grain_stress(const Box& box, const std::vector<double>& diameter, const Scan& scan);
 
 /// The same sum over all grains, over the volume between floor and plate, or that of a cell [Pa]. At rest and

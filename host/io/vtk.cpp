@@ -65,7 +65,7 @@ public:
         const Seen now{scan.position, scan.rotation, scan.strain};
         if (first_.position.empty()) first_ = last_ = now;
         const Displacements moved{since(last_, now), since(first_, now),
-                                  turned(last_.rotation, now.rotation)};
+                                  rotation_since(last_.rotation, now.rotation)};
         last_ = now;
         return moved;
     }
@@ -75,7 +75,7 @@ private:
         std::vector<Vec3> position, rotation;
         Strain strain{};
     };
-    static std::vector<Vec3> turned(const std::vector<Vec3>& before, const std::vector<Vec3>& now) {
+    static std::vector<Vec3> rotation_since(const std::vector<Vec3>& before, const std::vector<Vec3>& now) {
         const auto matrix = [](const Vec3& turn) {
             return Eigen::AngleAxisd(turn.norm(), turn.stableNormalized()).toRotationMatrix();
         };
@@ -162,15 +162,17 @@ void write_vtk_grains(const std::filesystem::path& file, const Recording& record
     const std::size_t grains = scan.position.size();
     const std::vector<GrainLoad> loads = grain_loads(scan);
     VtkCells points;
-    std::vector<double> force(grains), stress, pressure, since_start, since_last_scan, rotation, turned;
-    for (const Mat3& tensor : grain_stress(recording.box, recording.diameter, scan)) {
-        stress.insert(stress.end(), tensor.data(), tensor.data() + tensor.size());
-        pressure.push_back(tensor.trace() / 3);
-    }
+    std::vector<double> force(grains), stress, pressure, since_start, since_last_scan, rotation,
+        rotation_since_last_scan;
+    if (scan.knows_contacts())
+        for (const Mat3& tensor : grain_stress(recording.box, recording.diameter, scan)) {
+            stress.insert(stress.end(), tensor.data(), tensor.data() + tensor.size());
+            pressure.push_back(tensor.trace() / 3);
+        }
     for (const Vec3& by : moved.since_start) add(since_start, by);
     for (const Vec3& by : moved.since_last_scan) add(since_last_scan, by);
     for (const Vec3& by : scan.rotation) add(rotation, by);
-    for (const Vec3& by : moved.turned_since_last_scan) add(turned, by);
+    for (const Vec3& by : moved.rotation_since_last_scan) add(rotation_since_last_scan, by);
     std::vector<int> number(grains), contacts(grains);
     for (std::size_t i = 0; i < grains; ++i) {
         points.add(VtkCell::vertex, {scan.position[i]});
@@ -192,7 +194,8 @@ void write_vtk_grains(const std::filesystem::path& file, const Recording& record
         grid.point_data("displacement", since_start, {3});
         grid.point_data("displacement_since_last_scan", since_last_scan, {3});
         if (rotation.size() == since_start.size()) grid.point_data("rotation", rotation, {3});
-        if (turned.size() == since_start.size()) grid.point_data("rotation_since_last_scan", turned, {3});
+        if (rotation_since_last_scan.size() == since_start.size())
+            grid.point_data("rotation_since_last_scan", rotation_since_last_scan, {3});
         grid.close_with(scan, recording.box);
     });
 }

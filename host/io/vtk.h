@@ -17,7 +17,7 @@ int export_vtk(const std::filesystem::path& file_or_folder, const std::filesyste
 /// cell, beyond the cell's own motion.
 struct Displacements {
     std::vector<Vec3> since_last_scan, since_start;  ///< of scans with positions
-    std::vector<Vec3> turned_since_last_scan;        ///< axis times angle [rad]; empty where not recorded
+    std::vector<Vec3> rotation_since_last_scan;      ///< axis times angle [rad]; empty where not recorded
 };
 
 /// Grains as points with: grain, diameter, where contacts are known coordination_number, force_magnitude (sum

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "core/errors.h"
 #include "python/arrays.h"
 #include "python/bindings.h"
 #include "python/parameters.h"
@@ -107,12 +106,7 @@ void bind_single_scans(py::class_<OneRecording>& recording) {
         .def(
             "grain_stress",
             [](const OneRecording& self, py::ssize_t scan) {
-                const Scan& at = scan_at(self, scan);
-                if (!at.knows_contacts())
-                    throw InputError(
-                        "the stress of grains needs the contacts: run with output.contacts = true, and read "
-                        "everything");
-                return grain_stress_array(self.get(), at);
+                return grain_stress_array(self.get(), scan_at(self, scan));
             },
             py::arg("scan"),
             "[N][3][3] stress of each grain at a scan, over its own volume; compression is positive [Pa].")

@@ -46,7 +46,7 @@ py::object plain(py::handle value) {
 
 /// Tables and lists in one another. A dictionary that holds itself would have no end.
 constexpr int deepest = 32;
-constexpr std::size_t longest = 1'000'000;  ///< list; a scene has at most a MiB of text
+constexpr std::size_t max_items = 1'000'000;  ///< list; a scene has at most a MiB of text
 
 void expect_shallow(int depth, const std::string& where) {
     if (depth <= deepest) return;
@@ -64,8 +64,9 @@ std::string value_text(py::handle value, const std::string& where, int depth);
 std::string list_text(py::handle value, const std::string& where, int depth) {
     std::vector<std::string> items;
     for (const py::handle item : value) {
-        if (items.size() == longest)
-            throw InputError(fmt::format("{} must be a list of at most {} values, got more", where, longest));
+        if (items.size() == max_items)
+            throw InputError(
+                fmt::format("{} must be a list of at most {} values, got more", where, max_items));
         items.push_back(value_text(item, where, depth + 1));
     }
     return fmt::format("[{}]", fmt::join(items, ", "));

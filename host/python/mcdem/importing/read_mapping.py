@@ -10,7 +10,7 @@ from .problems import Problems, quoted, to_number
 from .text import Form
 
 LARGEST = 1_000_000  # bytes
-MOST_DOTS = 100  # in a line: the parser takes the square of their number in time
+MAX_DOTS = 100  # in a line: the parser takes the square of their number in time
 
 
 class _Reader:
@@ -140,8 +140,8 @@ class _Reader:
 def parse_mapping(text, file):
     problems, tables = Problems(), []
     for number, line in enumerate(text.split("\n"), 1):
-        if (dots := re.sub(r'"[^"]*"', "", line).count(".")) > MOST_DOTS:
-            raise InputError(f"{file}:{number}: must have at most {MOST_DOTS} dots outside texts, got {dots}")
+        if (dots := re.sub(r'"[^"]*"', "", line).count(".")) > MAX_DOTS:
+            raise InputError(f"{file}:{number}: must have at most {MAX_DOTS} dots outside texts, got {dots}")
     try:
         root = tomllib.loads(text)
     except (ValueError, RecursionError) as error:
