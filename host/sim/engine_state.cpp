@@ -30,7 +30,7 @@ std::vector<Vec3> by_grain(const std::vector<double>& motion, std::size_t first,
 std::vector<Vec3> rotations(const std::vector<double>& tracks, const std::vector<int>& order) {
     std::vector<Vec3> vectors(order.size());
     for (std::size_t k = 0; k < order.size(); ++k) {
-        const Eigen::AngleAxisd turn(Eigen::Quaterniond(&tracks[reals_of_track * k + 4]));
+        const Eigen::AngleAxisd turn{Eigen::Quaterniond{&tracks[reals_of_track * k + 4]}};
         vectors[order[k]] = turn.angle() * turn.axis();
     }
     return vectors;

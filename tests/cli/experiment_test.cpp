@@ -260,6 +260,7 @@ TEST_F(ExperimentCommandTest, ARunWithoutGrainsIsNone) {
     bare.recordings[0].diameter.clear();
     for (Scan& scan : bare.recordings[0].scans) {
         scan.position.clear();
+        scan.rotation.clear();
         scan.contacts.clear();
     }
     write_run(path("bare.h5"), bare);
