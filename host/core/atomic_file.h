@@ -1,4 +1,4 @@
-// Files that are whole or not there: written beside their place, then put into it in one move.
+// Atomic file writes: a file is written under a temporary name in the same folder and then renamed.
 #pragma once
 #include <filesystem>
 #include <functional>
@@ -6,8 +6,8 @@
 
 namespace mcdem::inline core {
 
-/// A file on its way: written under a random name beside its place, which nobody can foresee and no link is
-/// followed from. Goes with its owner unless it was put into place. Every failing operation throws RunError.
+/// A temporary file with an unpredictable name in the folder of `place`; symbolic links are not followed. The
+/// destructor removes it unless put_in_place was called. Every failing operation throws RunError.
 class NewFile {
 public:
     explicit NewFile(std::filesystem::path place);
@@ -16,41 +16,41 @@ public:
     NewFile& operator=(const NewFile&) = delete;
 
     const std::filesystem::path& place() const { return place_; }
-    /// Where it lies until then.
+    /// Path until put_in_place.
     const std::filesystem::path& temporary() const { return temporary_; }
-    /// Open for reading and writing until it is closed.
+    /// Open for reading and writing until close or put_in_place.
     int descriptor() const { return descriptor_; }
     void write(std::string_view bytes);
-    /// Forces it to the disk.
+    /// Flushes to disk and closes.
     void close();
-    /// Closes it and moves it to its place.
+    /// Closes it and renames it to `place`.
     void put_in_place();
 
 private:
     std::filesystem::path place_, temporary_;
     int descriptor_ = -1;
-    int lock_ = -1;  ///< keeps the file locked until it is in its place
+    int lock_ = -1;  ///< keeps the file locked until it is in place
 };
 
-/// Lets `write` fill a new file and puts it in place of `file`. A reader sees the old file or the new one,
-/// even after a crash or power cut. When `write` throws, the old file stays.
+/// Creates a new file, lets `write` fill it, and replaces `file` with it. A reader sees the old or the new
+/// file, even after a crash or a power failure. If `write` throws, the old file is kept.
 void replace_file(const std::filesystem::path& file, const std::function<void(NewFile& out)>& write);
 
-/// The same for a text that is at hand. Several programs may write one file at a time: the last one stays.
+/// The same for a given text. Several programs may write one file at the same time; the last one wins.
 void replace_file(const std::filesystem::path& file, std::string_view text);
 
-/// Puts the text into the file, whole, unless there is such a file: false where there is one, be it that
-/// another program was quicker by a moment.
+/// Creates the file with this text, atomically. Returns false if the file exists, also if another program
+/// creates it at the same moment.
 bool create_file(const std::filesystem::path& file, std::string_view text);
 
-/// Moves `from` to `to` (same folder) in one step and forces the folder to the disk.
+/// Renames `from` to `to` (same folder) and flushes the folder to disk.
 void move_file(const std::filesystem::path& from, const std::filesystem::path& to);
 
-/// Removes what programs that were killed have left of a new file on its way to this place. Files that
-/// another program is still writing are locked (flock) and stay.
+/// Removes temporary files that killed programs have left for this path. Files that another program is still
+/// writing are locked (flock) and are kept.
 void remove_temporaries_of(const std::filesystem::path& file);
 
-/// The same of all files in the folder, not below it; nothing where there is no such folder.
+/// The same for all files in the folder, without subfolders; does nothing if the folder does not exist.
 void remove_temporaries(const std::filesystem::path& folder);
 
 }  // namespace mcdem::core

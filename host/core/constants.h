@@ -1,4 +1,4 @@
-// Constants of nature that several floors use.
+// Physical constants.
 #pragma once
 
 namespace mcdem::inline core {

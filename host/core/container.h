@@ -1,4 +1,4 @@
-// Containers of every shape: which walls they have and where, and what is near whom in a periodic one.
+// Container shapes: which walls exist and where, and distances in periodic containers.
 #pragma once
 #include <cmath>
 #include <numbers>
@@ -9,8 +9,8 @@
 
 namespace mcdem::inline core {
 
-/// A cylinder's curved wall has the number of x_min; its other three and a periodic cell's four are not
-/// there.
+/// The curved wall of a cylinder has the number of x_min. Its other three side walls do not exist; neither do
+/// the four of a periodic cell.
 inline constexpr Wall curved_wall = Wall::x_min;
 
 constexpr bool is_cell(const Box& box) { return box.shape == ContainerShape::cell; }
@@ -24,12 +24,12 @@ constexpr bool has_wall(const Box& box, Wall wall) {
     return is_cylinder(box) && wall == curved_wall;
 }
 
-/// As words for readers have it: "side" in a cylinder.
+/// Name in messages and files: "side" for a cylinder's curved wall.
 constexpr std::string_view wall_name(const Box& box, Wall wall) {
     return is_cylinder(box) && wall == curved_wall ? "side" : name(wall);
 }
 
-/// The wall that readers call so, where it is there.
+/// Inverse of wall_name; nothing if the container has no such wall.
 inline std::optional<Wall> find_wall(const Box& box, std::string_view words) {
     for (int wall = 0; wall < wall_count; ++wall)
         if (has_wall(box, static_cast<Wall>(wall)) && words == wall_name(box, static_cast<Wall>(wall)))
@@ -42,16 +42,16 @@ constexpr double cylinder_radius(const Box& box) { return box.size_x / 2; }
 /// Area of the floor over size_x size_y.
 constexpr double floor_share(const Box& box) { return is_cylinder(box) ? std::numbers::pi / 4 : 1; }
 
-/// [m2]
+/// Area of the floor [m2].
 constexpr double floor_area(const Box& box) { return box.size_x * box.size_y * floor_share(box); }
 
-/// The horizontal vector from a cylinder's axis [m].
+/// Horizontal vector from a cylinder's axis to the point [m].
 inline Vec3 from_axis(const Box& box, const Vec3& point) {
     return {point.x() - box.size_x / 2, point.y() - box.size_y / 2, 0};
 }
 
-/// The whole edges of a periodic cell that are taken off a point to bring it between 0 and 1 of them; a cell
-/// leans, so that the edge along z goes first.
+/// Subtracts whole edges of a periodic cell from a point; `whole` rounds a coordinate in units of the edge. A
+/// cell may be tilted, so the edge along z is subtracted first.
 template <class Whole>
 inline Vec3 less_whole_edges(const Box& box, Vec3 point, const Whole& whole) {
     if (is_cell(box)) point -= whole(point.z() / box.height) * Vec3(box.tilt_xz, box.tilt_yz, box.height);
@@ -60,15 +60,15 @@ inline Vec3 less_whole_edges(const Box& box, Vec3 point, const Whole& whole) {
     return point;
 }
 
-/// From one point to another, or to its nearest image in a periodic cell [m].
+/// Vector between two points; in a periodic cell to the nearest image [m].
 inline Vec3 apart(const Box& box, const Vec3& from, const Vec3& to) {
     const Vec3 apart = to - from;
     if (!is_periodic(box)) return apart;
     return less_whole_edges(box, apart, [](double edges) { return std::nearbyint(edges); });
 }
 
-/// The image of a point that lies in the periodic cell itself; the point in others. A cell that leans is
-/// taken for the upright one of the same lengths, which repeats with it.
+/// The image of a point inside the periodic cell; in other containers the point itself. For a tilted cell the
+/// equivalent upright cell with the same lengths is used.
 inline Vec3 into_cell(const Box& box, Vec3 point) {
     if (!is_periodic(box)) return point;
     point = less_whole_edges(box, point, [](double edges) { return std::floor(edges); });
@@ -78,7 +78,7 @@ inline Vec3 into_cell(const Box& box, Vec3 point) {
     return point;
 }
 
-/// How a strain moves points of a cell: upper triangular.
+/// Deformation gradient of a strain: upper triangular.
 inline Mat3 deformation(const Strain& strain) {
     Mat3 f;
     f << 1 - strain[0], strain[3], strain[4], 0, 1 - strain[1], strain[5], 0, 0, 1 - strain[2];
@@ -89,12 +89,12 @@ inline Mat3 inverse_deformation(const Strain& strain) {
     return deformation(strain).triangularView<Eigen::Upper>().solve(Mat3::Identity());
 }
 
-/// Of a cell's own motion: how velocity changes from place to place [1/s].
+/// Velocity gradient of a cell's own motion [1/s].
 inline Mat3 velocity_gradient(const Strain& strain, const Strain& rate) {
     return (deformation(rate) - Mat3::Identity()) * inverse_deformation(strain);
 }
 
-/// A cell that is `box` at start; others as they are.
+/// The cell with initial shape `box` at this strain; other containers are returned unchanged.
 inline Box deformed(const Box& box, const Strain& strain) {
     if (!is_cell(box)) return box;
     Box now = box;
@@ -107,7 +107,7 @@ inline Box deformed(const Box& box, const Strain& strain) {
     return now;
 }
 
-/// The unit vector from a point inside to a wall that is there, at right angles to it.
+/// Unit normal from a point inside towards an existing wall.
 inline Vec3 towards_wall(const Box& box, Wall wall, const Vec3& point) {
     if (is_cylinder(box) && wall == curved_wall) {
         const Vec3 out = from_axis(box, point);
@@ -117,7 +117,7 @@ inline Vec3 towards_wall(const Box& box, Wall wall, const Vec3& point) {
     return (number % 2 ? 1 : -1) * Vec3::Unit(number / 2);
 }
 
-/// The foot of the perpendicular on a wall that is there, the plate level at plate_z.
+/// Foot of the perpendicular on an existing wall; the plate is level at plate_z.
 inline Vec3 wall_foot(const Box& box, Wall wall, double plate_z, const Vec3& point) {
     if (is_cylinder(box) && wall == curved_wall)
         return point + (cylinder_radius(box) - from_axis(box, point).norm()) * towards_wall(box, wall, point);
@@ -127,14 +127,14 @@ inline Vec3 wall_foot(const Box& box, Wall wall, double plate_z, const Vec3& poi
     return foot;
 }
 
-/// R* of a sphere at a wall that is there [m]. Inside a cylinder 1/R* = sqrt(1/R (1/R - 1/R_c)), the
+/// R* of a sphere at an existing wall [m]. Inside a cylinder 1/R* = sqrt(1/R (1/R - 1/R_c)), the
 /// geometric mean of both directions (Johnson 1985, section 4.2).
 inline double reduced_radius(const Box& box, Wall wall, double radius) {
     if (!(is_cylinder(box) && wall == curved_wall)) return radius;
     return radius / std::sqrt(1 - radius / cylinder_radius(box));
 }
 
-/// From a wall to a point inside, negative outside [m].
+/// Distance of a point from a wall, negative outside [m].
 inline double wall_distance(const Box& box, Wall wall, double plate_z, const Vec3& point) {
     if (is_cylinder(box) && wall == curved_wall) return cylinder_radius(box) - from_axis(box, point).norm();
     const int number = static_cast<int>(wall);

@@ -1,4 +1,4 @@
-// The errors that reach a user. Everything else is a defect and ends the program.
+// Errors that are reported to the user. All other exceptions are defects and end the program.
 #pragma once
 #include <stdexcept>
 #include <string>
@@ -6,8 +6,8 @@
 
 namespace mcdem::inline core {
 
-/// What the user gave is wrong: a scene, a packing, an experiment, an option (exit code 2).
-/// Carries every problem found, each as `where: what must be, what was got`.
+/// Invalid user input: a scene, a packing, an experiment, an option (exit code 2).
+/// Contains all problems found, each as `where: what must be, what was got`.
 class InputError : public std::runtime_error {
 public:
     explicit InputError(std::vector<std::string> problems)
@@ -24,7 +24,7 @@ private:
     std::vector<std::string> problems_;
 };
 
-/// The work could not be done although the input was good: no device, disk full (exit code 1).
+/// The work failed although the input was valid: no device, disk full (exit code 1).
 class RunError : public std::runtime_error {
     using std::runtime_error::runtime_error;
 };

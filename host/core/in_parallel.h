@@ -1,4 +1,4 @@
-// Independent pieces of work on all cores.
+// Parallel loop over independent tasks.
 #pragma once
 #include <algorithm>
 #include <atomic>
@@ -9,8 +9,8 @@
 
 namespace mcdem::inline core {
 
-/// Calls work(i) for i below `count` on as many threads as there are cores. Where one throws, no further ones
-/// begin, and the first exception is thrown again once all threads have ended.
+/// Calls work(i) for i below `count` on as many threads as there are cores. If a call throws, no further
+/// calls start, and the first exception is rethrown when all threads have ended.
 template <class Work>
 void in_parallel(std::size_t count, Work work) {
     std::atomic<std::size_t> next{0};

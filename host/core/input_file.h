@@ -1,4 +1,5 @@
-// Files that are read: what is wrong with the file is told from what is wrong with the system at the moment.
+// Reading files. Errors of the file (InputError) are distinguished from temporary errors of the system
+// (RunError).
 #pragma once
 #include <filesystem>
 #include <functional>
@@ -7,23 +8,23 @@
 
 namespace mcdem::inline core {
 
-/// Descriptor of a file opened for reading. Throws InputError where there is no such file or it is a folder,
-/// pipe, device or socket (which are not waited for), RunError where the system refuses.
+/// Descriptor of a file opened for reading. Throws InputError if it does not exist or is a folder, pipe,
+/// device or socket (without waiting for it), RunError if the system refuses.
 int open_input(const std::filesystem::path& file);
 
-/// Hands over the file's bytes from its beginning to its end; throws like open_input.
+/// Passes the bytes of the file to `take`, in order; throws like open_input.
 void read_blocks(const std::filesystem::path& file, const std::function<void(std::string_view block)>& take);
 
 /// All bytes of the file; throws like open_input.
 std::string read_file(const std::filesystem::path& file);
 
-/// Likewise; where there is no such file, the InputError says `if_missing` of it.
+/// The same; if the file does not exist, the message of the InputError is `if_missing`.
 std::string read_file(const std::filesystem::path& file, std::string_view if_missing);
 
-/// Throws like open_input, and leaves the file alone.
+/// Throws like open_input; does not read the file.
 void expect_input(const std::filesystem::path& file);
 
-/// RunError: the system has refused `what` with this errno, which says nothing of the file's content.
+/// Throws RunError: the system refused `what` with this errno. This says nothing about the file's content.
 [[noreturn]] void fail_reading(const std::string& what, int error);
 
 }  // namespace mcdem::core

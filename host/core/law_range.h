@@ -1,4 +1,4 @@
-// How far the laws of contact models were held against finite elements of a soft grain.
+// Range in which contact models were compared with finite elements of a soft grain.
 #pragma once
 #include <optional>
 
@@ -6,12 +6,12 @@
 
 namespace mcdem::inline core {
 
-/// Geometric overlap of two grains over the sum of their radii up to which the law of a model meets finite
-/// elements (tests/truth/README.md); none for models that do not.
+/// Largest geometric overlap of two grains over the sum of their radii at which the model agrees with finite
+/// elements (tests/truth/README.md); none for models that do not agree.
 constexpr std::optional<double> tested_overlap(ContactModel model) {
     switch (model) {
         case ContactModel::elastic_sphere:
-            return 0.10;  // there finite strain adds 7 % to the force of six plates at nu = 0.49
+            return 0.10;  // finite strain adds 7 % to the force of six plates at nu = 0.49 there
         case ContactModel::hyperelastic_sphere:
             return 0.20;
         default:

@@ -3,14 +3,14 @@
 
 namespace mcdem::inline core {
 
-/// A folder to write into, with the folders above it; there may be one already. Throws RunError that names it
-/// where it cannot be made or written to: asked before long work, not after.
+/// Creates a folder and its parents, if necessary. Throws RunError with the path if that fails or the folder
+/// is not writable. Called before long work, not after it.
 void make_folder(const std::filesystem::path& folder);
 
-/// The folder of a file to be written, likewise.
+/// The same for the folder of an output file.
 void make_folder_of(const std::filesystem::path& file);
 
-/// The second half: it must be there.
+/// Throws RunError unless the folder exists and is writable.
 void expect_writable(const std::filesystem::path& folder);
 
 }  // namespace mcdem::core

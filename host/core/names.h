@@ -1,5 +1,5 @@
-// The closed sets of words that scenes, results and pictures share: contact models, friction laws,
-// containers, walls, phases, sizes. One table each; `name` and `parse` read the same table.
+// Enumerations of scenes and results (contact models, friction laws, containers, walls, phases, sizes) with
+// their names. `name` and `parse` use the same table.
 #pragma once
 #include <array>
 #include <optional>
@@ -21,15 +21,15 @@ enum class ContactModel {
 
 enum class FrictionLaw {
     saturated,  ///< |F_t| = mu F_n against the sliding velocity
-    mindlin,    ///< tangential spring with history, cut at mu F_n
+    mindlin,    ///< tangential spring with history, limited to mu F_n
 };
 
-/// What keeps grains together at the sides, between floor and plate.
+/// Boundary at the sides, between floor and plate.
 enum class ContainerShape {
     box,       ///< four walls
     cylinder,  ///< one upright wall
-    periodic,  ///< none: the packing repeats along x and y
-    cell,      ///< neither walls nor floor nor plate: the packing repeats along x, y and z
+    periodic,  ///< no side walls: periodic along x and y
+    cell,      ///< no walls, floor or plate: periodic along x, y and z
 };
 
 enum class Wall { x_min, x_max, y_min, y_max, floor, plate };
@@ -37,15 +37,15 @@ inline constexpr int wall_count = 6;
 
 enum class Phase { load, unload };
 
-/// How the diameters of a species are distributed.
+/// Distribution of the diameters of a species.
 enum class SizeLaw {
-    normal,     ///< cut below and above
-    lognormal,  ///< .. likewise
-    single,     ///< all alike
-    table,      ///< of the diameters in a file, all equally likely
+    normal,     ///< truncated below and above
+    lognormal,  ///< truncated below and above
+    single,     ///< all equal
+    table,      ///< drawn from the diameters in a file with equal probability
 };
 
-/// What fractions of species are fractions of.
+/// Measure of the fractions of species.
 enum class FractionsBy { number, volume };
 
 enum class Precision { single_precision, double_precision };
@@ -88,13 +88,13 @@ struct Names<Precision> {
     static constexpr std::array<std::string_view, 2> list{"float", "double"};
 };
 
-/// The word that stands for `value` in scenes, files and pictures.
+/// The name of `value` in scenes, files and figures.
 template <class Enum>
 constexpr std::string_view name(Enum value) {
     return Names<Enum>::list[static_cast<std::size_t>(value)];
 }
 
-/// The value that `word` stands for, if any.
+/// The value with the name `word`, if any.
 template <class Enum>
 std::optional<Enum> parse(std::string_view word) {
     for (std::size_t i = 0; i < Names<Enum>::list.size(); ++i)
@@ -102,7 +102,7 @@ std::optional<Enum> parse(std::string_view word) {
     return std::nullopt;
 }
 
-/// All words of a set, for messages: "a, b, c".
+/// All names of an enumeration, for messages: "a, b, c".
 template <class Enum>
 std::string all_names() {
     std::string text;

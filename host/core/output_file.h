@@ -1,7 +1,7 @@
-// What mcdem may replace: a file that it wrote itself as what it writes now, told by what the file holds. A
-// laboratory's table, a scene, a run.h5, or a figure of another program are none of these, whatever
-// their names and however the path is spelled. No command reads what it writes, so that its inputs are safe
-// too.
+// Protection of existing files. mcdem replaces only files that it wrote itself with the same kind of content,
+// recognised by their content. It never replaces a laboratory's table, a scene, a run.h5 or a figure of
+// another program, whatever the file name and however the path is spelled. No command reads its own output,
+// so inputs are safe as well.
 #pragma once
 #include <filesystem>
 #include <functional>
@@ -11,7 +11,7 @@ namespace mcdem::inline core {
 
 class NewFile;
 
-/// Files that are written anew by a command that is given again.
+/// Files that a command writes again when it is run again.
 enum class FileKind {
     run_table,
     page,
@@ -30,8 +30,8 @@ enum class FileKind {
     job_script
 };
 
-/// Throws InputError unless nothing, an empty file, or a file of this kind lies there. Asked before long
-/// work, and again by those below.
+/// Throws InputError unless the path is free, or holds an empty file or a file of this kind. Called before
+/// long work, and again by the functions below.
 void expect_replaceable(const std::filesystem::path& file, FileKind kind);
 
 /// replace_file, after expect_replaceable.
@@ -39,13 +39,13 @@ void replace_own(const std::filesystem::path& file, FileKind kind, std::string_v
 void replace_own(const std::filesystem::path& file, FileKind kind,
                  const std::function<void(NewFile& out)>& write);
 
-/// A folder of the answers to a challenge holds this one.
+/// A folder with the answers to a challenge contains this subfolder.
 inline constexpr const char* answers_folder = "evidence";
 
-/// Throws InputError for the folder of the answers to a challenge.
+/// Throws InputError if the folder contains the answers to a challenge.
 void expect_no_answers(const std::filesystem::path& folder);
 
-/// Throws InputError for the folder of an experiment: nothing else is written there.
+/// Throws InputError if the folder is an experiment folder, where no other output is written.
 void expect_no_experiment(const std::filesystem::path& folder);
 
 }  // namespace mcdem::core

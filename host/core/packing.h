@@ -1,4 +1,4 @@
-// A packing: where the grains are and how large. Index in the vectors = the user's grain number.
+// A packing: positions and diameters of grains. The index in the vectors is the user's grain number.
 #pragma once
 #include <array>
 #include <string>
@@ -10,30 +10,31 @@
 namespace mcdem::inline core {
 
 struct Packing {
-    std::vector<Vec3> position;     ///< centres [m]
-    std::vector<double> diameter;   ///< [m]
-    std::vector<int> species = {};  ///< from 0; empty where all grains are alike or nothing is known of it
-    std::vector<std::string> species_names = {};  ///< as a file has them, names or numbers
+    std::vector<Vec3> position;                   ///< centres [m]
+    std::vector<double> diameter;                 ///< [m]
+    std::vector<int> species = {};                ///< from 0; empty if there is one species, or it is unknown
+    std::vector<std::string> species_names = {};  ///< names or numbers, as in the file
     std::size_t size() const { return position.size(); }
     std::size_t species_of(std::size_t grain) const {
         return species.empty() ? 0 : static_cast<std::size_t>(species[grain]);
     }
 };
 
-/// What holds the grains: floor z = 0, the plate above, and at the sides what `shape` says. A box has walls
-/// at x = 0 and size_x, y = 0 and size_y. A cylinder touches these four planes: both sizes are its diameter.
-/// A periodic cell repeats with these sizes; a `cell` along z too, with edges (size_x, 0, 0), (tilt_xy,
-/// size_y, 0) and (tilt_xz, tilt_yz, height). What has which walls: core/container.h.
+/// The container: floor at z = 0, the plate above, and at the sides as `shape` says. A box has walls at x = 0
+/// and size_x, y = 0 and size_y. A cylinder touches these four planes: both sizes are its diameter. A
+/// periodic cell has these sizes as periods; a `cell` is also periodic along z, with edges (size_x, 0, 0),
+/// (tilt_xy, size_y, 0) and (tilt_xz, tilt_yz, height). core/container.h says which walls exist. size_y, 0)
+/// and (tilt_xz, tilt_yz, height). What has which walls: core/container.h.
 struct Box {
     double size_x = 0;  ///< [m]
     double size_y = 0;  ///< [m]
     ContainerShape shape = ContainerShape::box;
-    double height = 0;                             ///< of a cell alone, as are tilts [m]
+    double height = 0;                             ///< only of a cell, as are the tilts [m]
     double tilt_xy = 0, tilt_xz = 0, tilt_yz = 0;  ///< [m]
 };
 
-/// Of a cell, over its lengths at start: compression along x, y and z, then the shears xy, xz and yz, where
-/// xy moves what is higher along y towards x.
+/// Strain of a cell relative to its initial lengths: compression along x, y and z, then the shears xy, xz and
+/// yz. A positive xy moves points with larger y towards +x.
 using Strain = std::array<double, 6>;
 
 }  // namespace mcdem::core

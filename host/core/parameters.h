@@ -1,4 +1,4 @@
-// The scene keys of recordings with their values, as text.
+// Scene keys of a recording with their values, as text.
 #pragma once
 #include <map>
 #include <string>
@@ -8,16 +8,16 @@ namespace mcdem::inline core {
 
 using Parameters = std::map<std::string, std::string>;
 
-/// The value of a key; empty where there is none.
+/// The value of a key; empty if it is missing.
 std::string value_of(const Parameters& parameters, const std::string& key);
 
-/// Whether the recording was taken through a [[programme]].
+/// Whether the recording followed a [[programme]].
 bool has_programme(const Parameters& parameters);
 
-/// TOML writes words in quotes; parameters may hold them either way.
+/// Removes the quotes of a TOML string; parameters may contain them or not.
 std::string without_quotes(const std::string& text);
 
-/// Keys whose value is not the same in all, in alphabetical order.
+/// Keys with different values among these, in alphabetical order.
 std::vector<std::string> keys_that_vary(const std::vector<Parameters>& all);
 
 }  // namespace mcdem::core

@@ -1,4 +1,4 @@
-// SHA-256 (FIPS 180-4): names that stand for what went into a result.
+// SHA-256 (FIPS 180-4), used to identify the inputs of a result.
 #pragma once
 #include <memory>
 #include <span>
@@ -13,7 +13,7 @@ public:
     ~Sha256();
     Sha256& add(std::string_view text);
     Sha256& add(std::span<const double> numbers);
-    /// 64 hexadecimal digits of what was added; nothing may be added after.
+    /// 64 hexadecimal digits of the digest. Do not call add afterwards.
     std::string hex();
 
 private:

@@ -1,4 +1,4 @@
-// Double-precision vectors and tensors of the host side.
+// Double-precision vectors and tensors on the host.
 #pragma once
 #include <Eigen/Core>
 
