@@ -1,4 +1,4 @@
-// OpenCL devices as users choose them, and the one context and queue that a program works on.
+// Selection of OpenCL devices, and the context and queue of a program.
 #pragma once
 #include <string>
 #include <vector>
@@ -9,7 +9,7 @@
 namespace mcdem::inline opencl {
 
 struct DeviceInfo {
-    int index = 0;  ///< what `--device` takes
+    int index = 0;  ///< number for `--device`
     std::string name;
     std::string platform;
     std::string version;  ///< of device and driver
@@ -17,25 +17,25 @@ struct DeviceInfo {
     bool double_precision = false;
     int compute_units = 0;
     std::size_t memory = 0;              ///< [bytes]
-    std::size_t largest_allocation = 0;  ///< of memory in one piece [bytes]
+    std::size_t largest_allocation = 0;  ///< size of the largest single buffer [bytes]
     int largest_work_group = 0;          ///< work-items
 };
 
-/// What to say where there is none.
+/// The error if there is no device.
 RunError no_device();
 
-/// Every OpenCL device, GPUs first (the order of `--device`).
+/// All OpenCL devices, GPUs first, in the order of `--device`.
 std::vector<DeviceInfo> list_devices();
 
-/// The numbers of all devices that give the same bits as the one that `choice` means (see Device): of its
-/// name, platform and driver. A choice by number means that one alone.
+/// Numbers of all devices that give the same bits as the one selected by `choice` (see Device): those with
+/// the same name, platform and driver. A choice by number selects only that device.
 std::vector<int> alike_devices(const std::string& choice);
 
 /// One device with its context and in-order queue.
 class Device {
 public:
-    /// `choice`: empty (environment variable MCDEM_DEVICE, else the first GPU, else the first device), an
-    /// index, or part of a name. Throws InputError naming the devices there are when nothing matches.
+    /// `choice`: empty (environment variable MCDEM_DEVICE, otherwise the first GPU, otherwise the first
+    /// device), an index, or part of a name. Throws InputError with the list of devices if nothing matches.
     explicit Device(const std::string& choice = "");
 
     const DeviceInfo& info() const { return info_; }

@@ -1,4 +1,4 @@
-// Device memory with its quantity in the type, so that a swapped kernel argument does not compile.
+// Device memory with its quantity in the type, so that swapped kernel arguments do not compile.
 #pragma once
 #include <cstring>
 #include <vector>
@@ -7,14 +7,14 @@
 
 namespace mcdem::inline opencl {
 
-/// Memory on the device that holds `Quantity`, a type that only names. Elements may be reals of either
-/// precision: the bytes of one element are fixed when the field is made.
+/// Device memory for `Quantity`, which is only a tag type. Elements may be reals of either precision; the
+/// size of an element is set in the constructor.
 template <class Quantity>
 class Field {
 public:
     Field() = default;
-    /// `count` elements of `element_size` bytes, all bytes zero. At least one element is allocated, since
-    /// OpenCL has no empty memory.
+    /// `count` elements of `element_size` bytes, zero-initialised. At least one element is allocated, because
+    /// OpenCL has no empty buffers.
     Field(Device& device, std::size_t count, std::size_t element_size)
         : queue_(device.queue()), bytes_(std::max<std::size_t>(count, 1) * element_size) {
         buffer_ = cl::Buffer(device.context(), CL_MEM_READ_WRITE, bytes_);
@@ -24,10 +24,10 @@ public:
     std::size_t bytes() const { return bytes_; }
     const cl::Buffer& buffer() const { return buffer_; }
 
-    /// Whole field from / to host memory of exactly bytes(); returns when done.
+    /// Copies the whole field from or to host memory of bytes() bytes; returns when done.
     void write(const void* data) { queue_.enqueueWriteBuffer(buffer_, CL_TRUE, 0, bytes_, data); }
     void read(void* data) const { queue_.enqueueReadBuffer(buffer_, CL_TRUE, 0, bytes_, data); }
-    /// `size` bytes from `offset`.
+    /// Copies `size` bytes from `offset`.
     void read(void* data, std::size_t offset, std::size_t size) const {
         if (size > 0) queue_.enqueueReadBuffer(buffer_, CL_TRUE, offset, size, data);
     }

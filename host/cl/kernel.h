@@ -1,4 +1,4 @@
-// A kernel whose argument types are checked when the host is compiled.
+// A kernel whose argument types are checked at compile time of the host.
 #pragma once
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 
 namespace mcdem::inline opencl {
 
-/// Of a quantity that is kept twice: the copy that a step reads, and the one that it writes.
+/// The two copies of a double-buffered quantity: the one that a step reads, and the one that it writes.
 template <class Quantity>
 struct Now {
     Field<Quantity>& field;
@@ -17,15 +17,15 @@ struct Next {
     Field<Quantity>& field;
 };
 
-/// Throws InputError where the device cannot run work-groups of that many work-items of this kernel.
+/// Throws InputError if the device cannot run work-groups of this size with this kernel.
 void expect_launchable(const Device& device, const cl::Kernel& kernel, int work_items);
 
-/// `Arguments`: int, Field<..>, Now<..> or Next<..>, in the kernel's order.
+/// `Arguments`: int, Field<..>, Now<..> or Next<..>, in the order of the kernel.
 template <class... Arguments>
 class Kernel {
 public:
     Kernel() = default;
-    /// `name` must outlive the kernel; `work_items`: of a work-group.
+    /// `name` must outlive the kernel; `work_items`: size of a work-group.
     Kernel(Device& device, const cl::Program& program, const char* name, int work_items)
         : queue_(device.queue()), kernel_(program, name), name_(name), work_items_(work_items) {
         expect_launchable(device, kernel_, work_items);

@@ -1,19 +1,18 @@
-// The folder in which PoCL keeps compiled kernels between runs. Without one that it can write, PoCL finds no
-// device; from files cut short by a power cut it ends the program.
+// The folder in which PoCL caches compiled kernels. PoCL finds no device if it cannot write this folder, and
+// crashes on files truncated by a power failure.
 #pragma once
 #include <filesystem>
 
 namespace mcdem::inline opencl {
 
-/// Called when OpenCL has started: drivers change what signals do.
+/// Called after OpenCL has started, because drivers change signal handlers.
 inline void (*opencl_started)() = [] {};
 
-/// Where PoCL keeps them, as its environment variables say.
+/// PoCL's cache folder according to its environment variables.
 std::filesystem::path kernel_cache_folder();
 
-/// To be called before OpenCL is first used. Where the folder cannot be written, sets POCL_CACHE_DIR to one
-/// of this user's alone among the temporary files; removes files that are cut short, which are then made
-/// anew.
+/// Must be called before OpenCL is first used. If the folder is not writable, sets POCL_CACHE_DIR to a
+/// private folder in the temporary directory. Removes truncated files; PoCL then compiles them again.
 void prepare_kernel_cache();
 
 }  // namespace mcdem::opencl

@@ -1,4 +1,4 @@
-// The text of every file in kernels/, put into the program at build time.
+// The files of kernels/, embedded at build time.
 #pragma once
 #include <map>
 #include <string>

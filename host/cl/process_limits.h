@@ -1,12 +1,12 @@
-// Limits of this process (ulimit) under which OpenCL drivers end the program instead of reporting an error.
+// Process limits (ulimit) under which OpenCL drivers crash instead of reporting an error.
 #pragma once
 
 namespace mcdem::inline opencl {
 
-/// Raises the limit of open files as far as the system lets it. Throws RunError where that is too few.
+/// Raises the limit of open files to the maximum that the system allows. Throws RunError if that is too low.
 void expect_enough_open_files();
 
-/// Throws RunError where compiled kernels are larger than a file may be.
+/// Throws RunError if compiled kernels exceed the limit of the file size.
 void expect_room_for_kernels();
 
 }  // namespace mcdem::opencl

@@ -1,5 +1,4 @@
-// Where a device's time goes: with MCDEM_PROFILE=1 every launch leaves an event, and a run ends with the
-// sums.
+// Device profile: with MCDEM_PROFILE=1 every launch has an event, and a run prints the sums at its end.
 #pragma once
 #include <string>
 #include <vector>
@@ -8,14 +7,14 @@
 
 namespace mcdem::inline opencl {
 
-/// MCDEM_PROFILE is 1.
+/// Whether MCDEM_PROFILE is 1.
 bool is_profiling();
 
-/// Takes note of a launch. What is noted is summed up, and waited for, a thousand launches at a time.
+/// Records a launch. Events are awaited and summed once every thousand launches.
 void profile_launch(const char* kernel, const cl::Event& event);
 
-/// A table of kernels: launches, time, and the share of the time from the first launch to the last end; then
-/// the share in which the device waited. Empty where nothing was noted.
+/// Table of kernels: launches, time, and fraction of the time from the first launch to the last end; then the
+/// fraction in which the device waited. Empty if nothing was recorded.
 std::string profile_text();
 
 }  // namespace mcdem::opencl

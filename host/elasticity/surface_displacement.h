@@ -1,4 +1,4 @@
-// delta_kc of the contact models: how a force at one contact moves the surface of a grain elsewhere.
+// delta_kc of the contact models: displacement of a grain's surface by a force at one of its contacts.
 #pragma once
 #include <array>
 
@@ -11,17 +11,18 @@ inline constexpr int point_terms = 9;
 inline constexpr int size_terms = 7;
 inline constexpr int self_terms = 5;
 
-/// Which of the kernels' three families a model belongs to (SURFACE_* of kernels/replica.h).
+/// The three families of contact models in the kernels (SURFACE_* of kernels/replica.h).
 enum class SurfaceShape { rigid = 0, half_space = 1, sphere = 2 };
 
-/// What a grain's mean pressure P = sum F/(4 pi E R^2) changes at finite strain (kernels/confinement.h). Zero
-/// at small strain.
+/// Effect of a grain's mean pressure P = sum F/(4 pi E R^2) at finite strain (kernels/confinement.h). Zero at
+/// small strain.
 struct Confinement {
-    double hertz = 0;     ///< stiffens Hertz's part
-    double coupling = 0;  ///< stiffens what contacts do to themselves beyond Hertz and to one another
-    double volume = 0;    ///< q
+    double hertz = 0;  ///< stiffens the Hertz part
+    double coupling =
+        0;  ///< stiffens the displacement of contacts by themselves beyond Hertz, and by one another
+    double volume = 0;  ///< q
     std::array<double, 3>
-        bulk{};  ///< uniform compression in powers of P, which `point` and `self` are without
+        bulk{};  ///< uniform compression in powers of P; `point` and `self` do not include it
 };
 
 /// A contact model for one Poisson ratio, as the kernels evaluate it. Sphere: with s = sin(theta / 2) and
@@ -32,19 +33,18 @@ struct SurfaceLaw {
     SurfaceShape shape = SurfaceShape::rigid;
     double gamma = 0;                         ///< half space: prefactor of Eq. 1
     std::array<double, point_terms> point{};  ///< P, lowest order first
-    std::array<double, size_terms> size{};    ///< T, zero where contacts count as points
-    std::array<double, self_terms>
-        self{};  ///< S0..S4, zero where a contact does not move itself beyond Hertz
+    std::array<double, size_terms> size{};    ///< T; zero if contacts are points
+    std::array<double, self_terms> self{};    ///< S0..S4; zero without self term
     Confinement confinement;
 };
 
-/// `gamma` is used by mc_dem only, `finite_strain` (share of what hyperelastic_sphere adds) by
-/// elastic_sphere.
+/// `gamma` is used by mc_dem only; `finite_strain` (weight of the extension to hyperelastic_sphere) by
+/// elastic_sphere only.
 SurfaceLaw surface_law(ContactModel model, double poisson_ratio, double gamma, double finite_strain = 0);
 
-/// Outward radial displacement, in F/(E R), of a free elastic sphere under a point force, at angle theta
-/// [rad] from it; the load is balanced by a uniform body force and the centre is held. By the Legendre
-/// series with its two slowest parts summed in closed form.
+/// Outward radial displacement, in F/(E R), of a free elastic sphere at angle theta [rad] from a point force.
+/// The load is balanced by a uniform body force, and the centre is fixed. Legendre series with its two
+/// slowest parts summed in closed form.
 double point_force_on_sphere(double poisson_ratio, double theta);
 
 }  // namespace mcdem::elasticity

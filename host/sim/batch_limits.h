@@ -1,4 +1,4 @@
-// What a batch asks of its device and of the integers that count it, known before anything is allocated.
+// Memory and integer ranges that a batch needs, computed before anything is allocated.
 #pragma once
 #include <vector>
 
@@ -11,26 +11,25 @@ namespace mcdem::inline sim {
 /// "3.78 MB"
 std::string memory_text(std::uint64_t bytes);
 
-/// Device memory that the batch needs at most: its cell lists may turn out smaller.
+/// Upper limit of the device memory of the batch; its cell lists may be smaller.
 FieldMemory memory_needed(Precision precision, int slots, const std::vector<Replica>& replicas,
                           const std::vector<PackingSize>& sizes);
 
-/// Which optional fields a batch of these needs.
+/// Optional fields that a batch of these replicas needs.
 FieldNeeds field_needs(const std::vector<Replica>& replicas);
 
-/// All fields of a batch. `cells`: of all replicas.
+/// Extents of all fields of a batch. `cells`: total over all replicas.
 FieldExtents field_extents(const KernelBuild& build, const std::vector<Replica>& replicas,
                            const std::vector<PackingSize>& sizes, std::uint64_t cells);
 
-/// Throws InputError where the device has not the memory for a batch, or a number that counts something in it
-/// would overflow.
+/// Throws InputError if the device does not have enough memory for the batch, or if a counter would overflow.
 void expect_within_limits(const DeviceInfo& device, const KernelBuild& build,
                           const std::vector<Replica>& replicas, const std::vector<PackingSize>& sizes);
 
-/// Throws InputError for a protocol of more steps than can be counted, or of steps too short.
+/// Throws InputError if the protocol has too many steps to count, or the steps are too short.
 void expect_countable_steps(const Replica& replica, double time_step);
 
-/// Both, as far as can be told before packings are made.
+/// Both checks, as far as possible before packings are generated.
 void expect_runnable(const Device& device, const Scene& scene);
 
 }  // namespace mcdem::sim

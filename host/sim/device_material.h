@@ -1,4 +1,4 @@
-// The materials of a replica's grains in the form the kernels read.
+// Materials of grains in the format of the kernels.
 #pragma once
 #include <vector>
 
@@ -7,18 +7,19 @@
 
 namespace mcdem::inline sim {
 
-/// Of waves along the surface of a material, sqrt(G / rho) (0.163 nu + 0.8766) [m/s].
+/// Speed of Rayleigh waves, sqrt(G / rho) (0.163 nu + 0.8766) [m/s].
 double rayleigh_speed(const GrainMaterial& material);
 
-/// 2 sqrt(5/6) beta with beta = -ln e / sqrt(ln^2 e + pi^2): constant restitution with a Hertz contact.
+/// 2 sqrt(5/6) beta with beta = -ln e / sqrt(ln^2 e + pi^2), which gives a constant restitution for Hertz
+/// contacts.
 double damping_factor(double restitution);
 
-/// Materials of each replica in the field of materials: MAX_SPECIES where some replica has several species,
-/// else one, which is not read.
+/// Number of materials per replica in the field of materials: MAX_SPECIES if a replica has several species,
+/// otherwise one, which is not read.
 int materials_kept(const std::vector<Replica>& replicas);
 
-/// Material: f32::Material or f64::Material. `kept` of each replica, replica after replica; those beyond its
-/// species are zero.
+/// Material: f32::Material or f64::Material. `kept` materials for each replica, replica after replica; unused
+/// ones are zero.
 template <class Material>
 std::vector<Material> device_materials(const std::vector<Replica>& replicas, int kept);
 

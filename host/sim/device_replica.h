@@ -1,4 +1,4 @@
-// A replica's parameters in the form the kernels read: every constant of the contact law worked out once.
+// Parameters of a replica in the format of the kernels, with all constants of the contact law precomputed.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -8,50 +8,50 @@
 
 namespace mcdem::inline sim {
 
-/// Fraction of the shortest Rayleigh time of a grain, pi R / rayleigh_speed [s].
+/// Time step: a fraction of the shortest Rayleigh time of a grain, pi R / rayleigh_speed [s].
 double time_step(const Replica& replica, const Packing& packing);
 
-/// The same of a grain of the smallest `radius` and mean stiffness, of whatever species is fastest [s].
+/// The same for a grain with the smallest `radius` and mean stiffness, of the fastest species [s].
 double time_step(const Replica& replica, double radius);
 
-/// The same shortened to what delayed surface displacements stand where contacts have stiffened, for the
-/// frequency of a report [rad/s]: as a number of times by which it is shortened by the eighth root of two.
-/// Goes back to longer steps only where they may be half as long again.
+/// Shortening of the time step that keeps delayed surface displacements stable when contacts stiffen, for the
+/// `frequency` of a report [rad/s]: the number of factors of the eighth root of two. `now` is the current
+/// number. It decreases only if steps may be half as long again.
 int shortening(const Replica& replica, double time_step, double frequency, int now);
 double shortened(double time_step, int shortening);
 inline constexpr int max_shortening = 40;
 
-/// How far centres may be apart in a neighbour list, at most [m].
+/// Largest distance between centres in a neighbour list [m].
 double list_reach(const Replica& replica, const Packing& packing);
 
-/// How much of the friction force is that of a Mindlin spring, the rest being saturated.
+/// Fraction of the friction force from a Mindlin spring; the rest is saturated friction.
 double mindlin_share(const Replica& replica);
 
-/// Where a replica lies in the device's arrays.
+/// Position of a replica in the device's arrays.
 struct Place {
     int first_grain = 0;
     int grain_count = 0;
     int first_cell = 0;
 };
 
-/// DeviceReplica: f32::Replica or f64::Replica. The plate stands still at its start.
+/// DeviceReplica: f32::Replica or f64::Replica. The plate is at rest at its start.
 template <class DeviceReplica>
 DeviceReplica device_replica(const Replica& replica, const Packing& packing, const Place& place);
 
-/// Everything of the replica that depends on its time step [s].
+/// Sets everything that depends on the time step [s].
 template <class DeviceReplica>
 void set_time_step(DeviceReplica& device_replica, const Replica& replica, double time_step);
 
-/// The deformation of a cell at the interval's start and its rate; with `reach` > 0 [m] the grid to find
-/// neighbours by as well.
+/// Sets the deformation of a cell at the start of the interval and its rate; with `reach` > 0 [m] also the
+/// grid for the neighbour search.
 template <class DeviceReplica>
 void set_strain(DeviceReplica& device_replica, const Replica& replica, const Strain& strain,
                 const Strain& strain_rate, double reach);
 
-/// Cells of a replica's grid at most: a grid that would have more repeats itself.
+/// Maximum number of cells of a replica's grid; a grid that would have more is repeated.
 constexpr std::uint64_t max_cells(std::uint64_t grains) { return 8 * grains + 64; }
 
-/// Cells of one replica's grid.
+/// Number of cells of a replica's grid.
 template <class DeviceReplica>
 int cell_count(const DeviceReplica& replica) {
     return replica.cells_x * replica.cells_y * replica.cells_z;

@@ -1,4 +1,4 @@
-// The structs that host and device share, once for each precision of the kernels.
+// Structs shared by host and device, once for each precision of the kernels.
 #pragma once
 
 namespace mcdem::inline sim {

@@ -1,5 +1,6 @@
-// Advances a batch of replicas on a device, interval by interval. An interval is a number of steps, each
-// replica's own, with the plate at constant velocity; between intervals the host may look and decide.
+// Advances a batch of replicas on a device, interval by interval. In an interval each replica makes its own
+// number of steps with the plate at constant velocity; between intervals the host can read the state and
+// decide.
 #pragma once
 #include <array>
 #include <functional>
@@ -15,31 +16,31 @@
 
 namespace mcdem::inline sim {
 
-/// What a replica is to do next.
+/// Next interval of a replica.
 struct StepInterval {
-    int steps = 0;              ///< 0: nothing, the replica is left as it is
-    double plate_z = 0;         ///< when the interval begins [m]
+    int steps = 0;              ///< 0: the replica is not changed
+    double plate_z = 0;         ///< at the start of the interval [m]
     double plate_velocity = 0;  ///< [m/s]
-    double settle_drag = 0;     ///< of velocities, on top of the scene's, and of spins [1/s]
-    Strain strain{};            ///< of a cell, when the interval begins
+    double settle_drag = 0;     ///< drag on velocities in addition to the scene's, and on spins [1/s]
+    Strain strain{};            ///< of a cell, at the start of the interval
     Strain strain_rate{};       ///< [1/s]
 };
 
-/// What became of it.
+/// Result of an interval.
 struct IntervalResult {
-    int steps = 0;               ///< made; fewer than asked for where the neighbour list had to be made anew
+    int steps = 0;               ///< steps made; fewer than requested if the neighbour list had to be rebuilt
     double kinetic_energy = 0;   ///< [J]
     double elastic_energy = 0;   ///< [J]
     double deepest_overlap = 0;  ///< corrected overlap over the sum of radii
-    double frequency = 0;        ///< upper estimate of the fastest mode's (kernels/measure.cl) [rad/s]
+    double frequency = 0;  ///< upper estimate of the highest vibration frequency (kernels/measure.cl) [rad/s]
     std::array<Vec3, wall_count> wall_force = no_wall_forces();  ///< on the walls [N]
     Mat3 stress = unknown_tensor();  ///< of a cell, compression positive (core/stress.h) [Pa]
     int status = 0;                  ///< STATUS_* bits
     int failed_grain = -1;           ///< the user's grain number
 };
 
-/// A replica as it stands: by the user's grain numbers. In a cell grains are where they have moved to, also
-/// out of it, and velocities are those beyond the cell's own motion.
+/// State of a replica, in order of the user's grain numbers. In a cell positions are not wrapped, and
+/// velocities are those beyond the cell's own motion.
 struct ReplicaState {
     std::vector<Vec3> position, velocity, angular_velocity;
     std::vector<Vec3> rotation;  ///< since the start, axis times angle, at most pi [rad]
@@ -53,41 +54,42 @@ public:
            std::vector<Packing> packings);
 
     int replicas() const { return layout_.replicas(); }
-    /// Of the next interval [s].
+    /// Time step of the next interval [s].
     double time_step(int replica) const;
-    /// The most steps that the interval may have with its velocity of the plate, or its strain rate, so that
-    /// these do not outrun the neighbour list.
+    /// Maximum number of steps of the interval for its plate velocity or strain rate, so that the neighbour
+    /// list remains valid.
     int max_interval(int replica, const StepInterval& interval) const;
-    /// How far the plate may move in one interval of more than one step [m].
+    /// Maximum displacement of the plate in an interval of more than one step [m].
     double max_plate_move(int replica) const;
     /// Device memory in use [bytes].
     FieldMemory memory() const { return fields_.memory(); }
 
-    /// One interval of every replica; returns when done.
+    /// Runs one interval of every replica; returns when done.
     std::vector<IntervalResult> advance(const std::vector<StepInterval>& intervals);
 
-    /// Positions and contacts as the last interval of `replica` left them.
+    /// Positions and contacts after the last interval of `replica`.
     ReplicaState state(int replica) const;
-    /// Calls use(i, state of replicas[i]) for every i, on all cores and in no order. `replicas` ascend; those
-    /// that stand side by side in the batch are read together.
+    /// Calls use(i, state of replicas[i]) for every i, on all cores and in any order. `replicas` must be
+    /// ascending; adjacent replicas are read together.
     void for_each_state(const std::vector<int>& replicas,
                         const std::function<void(std::size_t, ReplicaState)>& use) const;
     /// For tests: sets velocities by the user's grain numbers.
     void set_velocities(int replica, const std::vector<Vec3>& velocity,
                         const std::vector<Vec3>& angular_velocity);
 
-    /// Everything that continues the run bit for bit, as named bytes.
+    /// Everything that is needed to continue the run bit for bit, as named byte arrays.
     std::map<std::string, std::vector<std::byte>> save();
-    /// Throws RunError when `saved` does not belong to this batch.
+    /// Throws RunError if `saved` does not belong to this batch.
     void restore(const std::map<std::string, std::vector<std::byte>>& saved);
 
 private:
-    /// Some replicas of the batch and the blocks that hold their grains.
+    /// A subset of the replicas, and the blocks of their grains.
     struct Part {
         std::vector<int> replicas, blocks;
         std::vector<Portion> portions;
     };
-    /// What states are made of, of replicas side by side: rows of grains and of slots as the device has them.
+    /// Raw data of adjacent replicas from which states are computed: rows of grains and of slots in the
+    /// device's order.
     struct Readings {
         std::size_t first_grain;
         std::vector<std::byte> motion, tracks, force_x, force_y, force_z, overlap, arm;
@@ -122,24 +124,24 @@ private:
     KernelBuild build_;
     std::vector<Replica> replicas_;
     Layout layout_;
-    std::vector<double> time_step_;                       ///< the scene's [s]
-    std::vector<int> shortening_;                         ///< of it (device_replica.h)
+    std::vector<double> time_step_;                       ///< of the scene [s]
+    std::vector<int> shortening_;                         ///< of the time step (device_replica.h)
     std::vector<double> skin_;                            ///< [m]
     std::vector<std::vector<double>> excess_compliance_;  ///< E/E_i - 1 by the user's grain numbers
-    std::vector<char> rebuild_;                           ///< 1: the neighbour list is to be made anew
-    std::vector<double> reach_;                           ///< of the list, between centres, at most [m]
-    std::vector<double> plate_moved_;  ///< since the list was made; or a cell at its ends [m]
-    std::vector<double> plate_z_;      ///< where the last interval left it [m]
-    std::vector<Strain> strain_;       ///< of a cell, the same
+    std::vector<char> rebuild_;                           ///< 1: the neighbour list must be rebuilt
+    std::vector<double> reach_;        ///< largest distance between centres in the list [m]
+    std::vector<double> plate_moved_;  ///< since the list was built; for a cell, at its ends [m]
+    std::vector<double> plate_z_;      ///< at the end of the last interval [m]
+    std::vector<Strain> strain_;       ///< of a cell, at the end of the last interval
     std::vector<long> steps_made_;
-    std::vector<char> active_;  ///< the replicas of working_
-    Part working_;              ///< in work, as the device's lists have it
+    std::vector<char> active_;  ///< whether a replica is in working_
+    Part working_;              ///< the active replicas, as uploaded to the device
     std::variant<std::vector<f32::Replica>, std::vector<f64::Replica>> device_replicas_;
     Fields fields_;
     Kernels kernels_;
 };
 
-/// Throws InputError: `what` a checkpoint holds cannot be.
+/// Throws InputError: the value `what` in a checkpoint is invalid.
 [[noreturn]] void refuse_checkpoint(const std::string& what);
 
 }  // namespace mcdem::sim

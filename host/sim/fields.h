@@ -1,4 +1,4 @@
-// The device memory of a batch, one field a quantity, and the kernels that work on it.
+// Device memory of a batch, one field per quantity, and the kernels that use it.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace mcdem::inline sim {
 
-// Quantities: names only.
+// Tag types of the quantities.
 struct Constants;
 struct Materials;
 struct Blocks;
@@ -38,7 +38,7 @@ struct Frequency;
 struct Reports;
 struct CellMoments;
 
-/// Two copies of what neighbours read while a step writes: `now` and `next` change places every step.
+/// Double-buffered field: a step reads `now` of the neighbours and writes `next`; then they are swapped.
 template <class Quantity>
 struct Pair {
     Field<Quantity> copies[2];
@@ -46,14 +46,15 @@ struct Pair {
     Next<Quantity> next(int parity) { return {copies[1 - parity]}; }
 };
 
-/// Reals of a grain in the field Motion: position, radius, velocity, excess compliance, angular velocity,
-/// species.
+/// Number of reals of a grain in the field Motion: position, radius, velocity, excess compliance, angular
+/// velocity, species.
 inline constexpr std::size_t reals_of_motion = 12;
 
-/// .. and in the field Tracks: position when its neighbours were listed and one more, rotation.
+/// Number of reals of a grain in the field Tracks: position at the last list rebuild and one unused,
+/// rotation.
 inline constexpr std::size_t reals_of_track = 8;
 
-/// Which of the optional fields a batch needs.
+/// Optional fields that a batch needs.
 struct FieldNeeds {
     bool displacements = false;  ///< some replica has interacting contacts
     bool springs = false;        ///< some replica has friction with history
@@ -62,17 +63,18 @@ struct FieldNeeds {
     bool cells = false;          ///< some replica is a cell
 };
 
-/// Rows of a grain's contact memory (kernels/contact_memory.h): springs, where kept, take the first three.
+/// Number of rows of a grain's contact memory (kernels/contact_memory.h). Springs, if present, use the first
+/// three.
 struct MemoryRows {
     int count = 0, deepest = 0, relaxed = 0;
 };
 MemoryRows memory_rows(const FieldNeeds& needs);
 
-/// How many there are of what fields have one value of, in a batch.
+/// Extents of the fields of a batch.
 struct FieldExtents {
     std::uint64_t replicas = 0, blocks = 0, portions = 0, grains = 0, cells = 0;  ///< grains: padded
-    std::uint64_t slots = 0;                                                      ///< of one grain
-    std::uint64_t species = 1;  ///< materials kept of a replica
+    std::uint64_t slots = 0;                                                      ///< per grain
+    std::uint64_t species = 1;                                                    ///< materials per replica
     Precision precision = Precision::single_precision;
     FieldNeeds needs;
 };
@@ -82,40 +84,40 @@ struct FieldMemory {
     std::uint64_t all = 0, largest_field = 0;
 };
 
-/// Fields of a grain (padded, all replicas) unless another extent is named.
+/// Fields have one element per grain (padded, all replicas) unless a comment says otherwise.
 struct Fields {
     Fields(Device& device, const FieldExtents& extents, const Layout& layout);
 
-    /// What fields of these extents will take, without a device.
+    /// Memory of fields with these extents, computed without a device.
     static FieldMemory memory_of(const FieldExtents& extents);
 
-    Field<Constants> replicas;             ///< a replica
-    Field<Materials> materials;            ///< a species of a replica
-    Field<StopAt> stop_at;                 ///< a replica: steps it makes in this interval
-    Field<Reports> reports;                ///< a portion in work
-    Field<CellMoments> cell_moments;       ///< the same, 9 reals each
-    Field<Portions> portions, rebuilt;     ///< portions in work
-    Field<Blocks> blocks, rebuilt_blocks;  ///< blocks in work
+    Field<Constants> replicas;             ///< per replica
+    Field<Materials> materials;            ///< per species of a replica
+    Field<StopAt> stop_at;                 ///< per replica: steps in this interval
+    Field<Reports> reports;                ///< per active portion
+    Field<CellMoments> cell_moments;       ///< per active portion, 9 reals each
+    Field<Portions> portions, rebuilt;     ///< per active portion
+    Field<Blocks> blocks, rebuilt_blocks;  ///< per active block
     Field<ReplicaOfBlock> replica_of_block;
     Pair<Motion> motion;
     Field<Tracks> tracks;
     Field<Status> status;
     Field<Energy> energy;
     Field<Frequency> frequency;
-    Field<Partner> partner;                           ///< a slot, as all below
-    Field<PartnerSlot> partner_slot;                  ///< into displacement; slot_count where there is none
-    Pair<SurfaceDisplacement> displacement;           ///< and one more, always zero, at slot_count
-    Field<DisplacementHistory> displacement_history;  ///< a slot, for each of the last four steps
-    Field<ContactMemory> memory_of_contacts;          ///< rows of a grain, side by side
+    Field<Partner> partner;                  ///< per slot, like all fields below
+    Field<PartnerSlot> partner_slot;         ///< index into displacement; slot_count if there is none
+    Pair<SurfaceDisplacement> displacement;  ///< with one more element at slot_count, always zero
+    Field<DisplacementHistory> displacement_history;  ///< per slot, for each of the last four steps
+    Field<ContactMemory> memory_of_contacts;          ///< rows of a grain, contiguous
     Field<ForceX> force_x;
     Field<ForceY> force_y;
     Field<ForceZ> force_z;
     Field<Overlap> overlap;
     Field<Arm> arm;
-    Field<CellHead> cell_head;  ///< a cell
+    Field<CellHead> cell_head;  ///< per cell
     Field<CellNext> cell_next;
 
-    /// Calls visit(name, field) for every field that a restart must bring back.
+    /// Calls visit(name, field) for every field that a checkpoint must contain.
     template <class Visit>
     void visit_state(Visit visit) {
         visit("motion", motion.copies[0]);
@@ -128,14 +130,14 @@ struct Fields {
         visit("contact_memory", memory_of_contacts);
     }
     FieldMemory memory() const { return memory_; }
-    /// Some replica's surfaces move; else no partner slot is ever looked up.
+    /// Whether the surfaces of any replica move; otherwise partner slots are not used.
     bool has_displacements() const { return slot_count > 1; }
     bool has_cells() const { return has_cells_; }
-    int slot_count = 0;  ///< of all grains that have surface displacements; 1 if none
+    int slot_count = 0;  ///< total over all grains with surface displacements; 1 if none
 
 private:
     Fields() = default;
-    /// Calls make(field, count, bytes of an element) for every field.
+    /// Calls make(field, count, bytes per element) for every field.
     template <class Make>
     void visit_extents(const FieldExtents& extents, Make make);
 
@@ -143,7 +145,7 @@ private:
     bool has_cells_ = false;
 };
 
-/// The kernels, with the quantities that each works on, in the kernels' order.
+/// The kernels, with the types of their arguments.
 struct Kernels {
     Kernels(Device& device, const KernelBuild& build);
 

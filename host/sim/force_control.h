@@ -1,9 +1,9 @@
-// A plate that goes to a force and stays there. It knows the force at interval ends only and nothing of the
-// packing, so that it acts on rates: the speed changes until the force approaches the one set at a rate in
-// proportion to what is left. How stiff the packing is decides how fast the speed changes, not where it ends.
-// A cell's direction goes to a stress in the same way: stress in place of force [Pa], the rate of the cell's
-// length over that at start in place of the plate's velocity [1/s].
-#pragma once
+// Control of a plate that moves to a force and keeps it. The controller knows only the force at the ends of
+// intervals and nothing about the packing. It works with rates: the speed is changed until the force
+// approaches the target at a rate proportional to the remaining difference. The stiffness of the packing
+// determines how fast the speed changes, not the final state. A direction of a cell with a prescribed stress
+// is controlled in the same way, with stress in place of force [Pa] and the rate of the cell's length over
+// its initial length in place of the plate's velocity [1/s].
 #include "scene/scene.h"
 #include "sim/engine.h"
 #include "sim/quasi_static.h"
@@ -12,31 +12,31 @@ namespace mcdem::inline sim {
 
 class ForceControl {
 public:
-    /// Plain values, so that a checkpoint can hold them.
+    /// Plain values, stored in checkpoints.
     struct State {
-        double force = 0;     ///< on the plate at the end of the last interval, upward [N]
-        double rate = 0;      ///< of the force in it [N/s]
+        double force = 0;     ///< rate of the force in the last interval [N/s]
+        double rate = 0;      ///< next velocity of the plate, upward [m/s]
         double velocity = 0;  ///< of the plate from now on, upward [m/s]
     };
 
     static ForceControl of_plate(const Replica& replica, const PackingScale& scale);
-    /// One for every direction.
+    /// One controller for each direction.
     static ForceControl of_cell(const Replica& replica, const PackingScale& scale);
 
-    /// Takes note of an interval: `force` at its end [N], its `duration` [s].
+    /// Records an interval: the `force` at its end [N] and its `duration` [s].
     static void observe(State& state, double force, double duration);
-    /// Chooses the velocity towards `set` [N], at most `max_speed` [m/s].
+    /// Chooses the velocity towards the target `set` [N], at most `max_speed` [m/s].
     void steer(State& state, double set, double duration, double max_speed) const;
     /// A new target: the plate starts from rest.
     static void rest(State& state) { state.velocity = state.rate = 0; }
 
-    /// How long an interval may be, so that the plate hears of the force in time [s].
+    /// Maximum duration of an interval, so that the plate reacts to the force in time [s].
     double interval(const State& state, double set) const;
-    /// So near that grains' motion is drag's to end: the drag [1/s], or 0.
+    /// Drag on the grains near the target [1/s], otherwise 0.
     double drag(const State& state, double set) const;
-    /// In which what is left shrinks to 1/e, near the force [s].
+    /// Time in which the remaining difference decreases to 1/e near the target [s].
     double approach_time(const State& state, double set) const;
-    /// Within half of what is asked for.
+    /// Whether the force is within half of the tolerance.
     static bool reached(const State& state, double set);
 
 private:
@@ -47,11 +47,12 @@ private:
     double response_time(const State& state, double set) const;
 
     double inertia_ = 0;       ///< mass of all grains [kg]; of a cell times length squared over volume
-    double quiet_ = 0;         ///< relative distance of a force from which on there is drag
-    double layers_ = 1;        ///< of grains between floor and plate; of a cell, in a metre
-    double rigid_layers_ = 1;  ///< the fewest that may deform
-    double layer_ = 0;  ///< of the Hertz law of all grains of a layer [N/m^(3/2)]; of a cell, over its area
-    double stiffest_layer_ = 0;  ///< .. were all of the stiffest species
+    double quiet_ = 0;         ///< relative distance from the target below which there is drag
+    double layers_ = 1;        ///< layers of grains between floor and plate; of a cell, per metre
+    double rigid_layers_ = 1;  ///< smallest number of layers that may deform
+    double layer_ =
+        0;  ///< coefficient in Hertz's law of a full layer of grains [N/m^(3/2)]; of a cell, over its area
+    double stiffest_layer_ = 0;  ///< the same if all grains were of the stiffest species
 };
 
 }  // namespace mcdem::sim

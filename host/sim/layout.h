@@ -1,5 +1,5 @@
-// Where the grains of all replicas lie in the device's arrays: replica after replica, each padded to whole
-// blocks, neighbours in space close in memory.
+// Positions of the grains of all replicas in the device's arrays: replica after replica, each padded to whole
+// blocks; grains that are close in space are close in memory.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -10,22 +10,22 @@
 namespace mcdem::inline sim {
 
 struct Layout {
-    int block = 16;                ///< grains a block
-    std::vector<int> first_grain;  ///< of each replica; one more for the end of the last
+    int block = 16;                ///< grains per block
+    std::vector<int> first_grain;  ///< of each replica, plus the end of the last one
     std::vector<int> grain_count;  ///< of each replica
     std::vector<int> replica_of_block;
-    std::vector<std::vector<int>> order;  ///< replica, place -> the user's grain number
+    std::vector<std::vector<int>> order;  ///< replica, position in the array -> the user's grain number
 
     int replicas() const { return static_cast<int>(grain_count.size()); }
     int grains() const { return first_grain.back(); }  ///< padded, all replicas
     int first_block(int replica) const { return first_grain[replica] / block; }
-    /// What the grains of a replica are divided into where work-groups sum them up.
+    /// Portions of a replica's grains for sums by work-groups.
     std::vector<Portion> portions(int replica) const;
-    /// Where each of the user's grains is within its replica: the inverse of order.
+    /// Position of each of the user's grains within its replica: the inverse of order.
     std::vector<int> places(int replica) const;
 };
 
-/// Portions of so many grains.
+/// Number of portions of that many grains.
 std::uint64_t portion_count(std::uint64_t grains);
 
 Layout make_layout(const std::vector<Packing>& packings, int block);

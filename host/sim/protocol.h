@@ -1,6 +1,6 @@
-// The experiment of one replica as a sequence of intervals: relax, then the moves and holds of its programme
-// with scans on the way. Of a cell, the plate's position is the place on its way (scene/cell_path.h). It
-// depends on its own replica's results only, so that a replica does the same alone and in any batch.
+// The experiment of one replica as a sequence of intervals: relax, then the moves and holds of its programme,
+// with scans. For a cell, the plate's position is the position along its strain path (scene/cell_path.h). The
+// protocol depends only on the results of its own replica, so a replica does the same alone and in any batch.
 #pragma once
 #include <optional>
 #include <string>
@@ -15,25 +15,25 @@
 
 namespace mcdem::inline sim {
 
-/// The plate's programme and how far it has come: plain values, so that a checkpoint can hold them.
+/// State of the protocol: plain values, stored in checkpoints.
 struct ProtocolState {
     long step = 0;        ///< since the start
-    long stage_step = 0;  ///< since this stage began
+    long stage_step = 0;  ///< since the start of this stage
     enum class Stage : int { relax, move, settle, hold, finished };
     Stage stage = Stage::relax;
     int cycle = 0;
     Phase phase = Phase::load;
-    int leg = 0;                ///< under way
-    int level = 0;              ///< scans of this leg taken or under way
+    int leg = 0;                ///< the current one
+    int level = 0;              ///< scans of this leg, including the current one
     int frame = 0;              ///< scans taken
-    int settled_intervals = 0;  ///< in a row that met the settling criterion
-    int reached_intervals = 0;  ///< in a row with the force or the stresses that are set
+    int settled_intervals = 0;  ///< consecutive ones that met the settling criterion
+    int reached_intervals = 0;  ///< consecutive ones at the prescribed force or stresses
     double plate_z = 0;         ///< [m]
     double pressure = 0;        ///< smoothed over some intervals [Pa]
-    double rate_error = 0;      ///< estimated, of the last move
+    double rate_error = 0;      ///< estimate for the last move
     double leg_begin = 0;       ///< position [m] or force [N] from which scans of this leg are counted
     double time = 0;            ///< since the start [s]
-    double hold_begin = 0;      ///< the time at which it began [s]
+    double hold_begin = 0;      ///< time at which the hold began [s]
     ForceControl::State control;
     CellControl::State cell;
 };
@@ -46,7 +46,7 @@ public:
     /// `time_step` [s]
     ProtocolRunner(const Replica& replica, double time_step, const PackingScale& scale);
 
-    /// What to do next, at most `longest(interval)` steps; no steps when finished or stopped.
+    /// The next interval, with at most `longest(interval)` steps; no steps if finished or stopped.
     template <class Longest>
     StepInterval next(Longest longest) const {
         if (state_.stage == ProtocolState::Stage::finished) return {};
@@ -56,37 +56,38 @@ public:
         return interval;
     }
 
-    /// A scan to be taken of the state that an interval has led to.
+    /// A scan to be taken in the state after an interval.
     struct ScanTag {
         int frame, cycle;
         Phase phase;
         double plate_z, time, rate_error;
         bool settled;
     };
-    /// Takes note of an interval. Nothing counts as settled while the plate is still on its way.
+    /// Records an interval. The packing does not count as settled while the plate still moves.
     std::optional<ScanTag> made(const IntervalResult& result, bool plate_arrived = true);
 
-    /// Of the steps that follow [s].
+    /// Time step of the next intervals [s].
     void set_time_step(double time_step) { time_step_ = time_step; }
     void stop() { state_.stage = ProtocolState::Stage::finished; }
     bool finished() const { return state_.stage == ProtocolState::Stage::finished; }
-    /// Why the programme could not go on in the last interval, with what to do; else empty.
+    /// Reason why the programme could not continue in the last interval, with a remedy; otherwise empty.
     const std::string& hindrance() const { return hindrance_; }
     double plate_z() const { return state_.plate_z; }  ///< now [m]
     Strain strain() const;                             ///< of a cell, now
-    double progress() const;                           ///< part of the protocol that is done, 0 to 1
+    double progress() const;                           ///< fraction of the protocol that is done, 0 to 1
     const ProtocolState& state() const { return state_; }
     void set_state(const ProtocolState& state) { state_ = state; }
-    /// Whether a checkpoint may say so.
+    /// Whether the state can come from a valid checkpoint.
     bool is_possible(const ProtocolState& state) const;
 
 private:
-    /// Intervals in a row below the limit: a packing that passes through rest at the turning point of an
-    /// oscillation is not taken for one at rest, and a force that passes the one set not for one that stays.
+    /// Number of consecutive intervals below the limit. One is not enough: an oscillating packing passes
+    /// through rest at its turning points, and a force can pass through its target.
     static constexpr int enough_intervals = 2;
     static constexpr double max_steps = 1e6;
-    /// A force must be reached in this many times what the slowest plate takes for its whole way, a scan to
-    /// settle and the approach; a stress in that many times a strain of one.
+    /// A force must be reached within this multiple of the time that the slowest plate needs for its whole
+    /// range, a scan to settle and the approach; a stress within this multiple of the time for a strain of
+    /// one.
     static constexpr double patience = 10;
 
     const Stage& stage() const { return stages_[static_cast<std::size_t>(leg().stage)]; }
@@ -112,7 +113,7 @@ private:
     StepInterval planned_by_force() const;
     StepInterval planned_by_stress() const;
     void deform(StepInterval& interval) const;
-    double drag() const;  ///< besides the grains' own [1/s]
+    double drag() const;  ///< in addition to the grains' own [1/s]
     void take_note(const IntervalResult& result);
     void follow_force(double duration);
     void follow_stress(double duration);
@@ -139,10 +140,10 @@ private:
     Protocol protocol_;
     std::vector<mcdem::Stage> stages_;
     std::vector<Leg> legs_;
-    std::optional<CellControl> cell_;  ///< of a cell
-    double scale_;                     ///< of positions: the plate's start [m], 1 in a cell
-    double time_step_;                 ///< now [s]
-    double longest_time_step_;         ///< before contacts stiffen [s]
+    std::optional<CellControl> cell_;  ///< only for a cell
+    double scale_;                     ///< scale of positions: the plate's start [m], 1 for a cell
+    double time_step_;                 ///< current one [s]
+    double longest_time_step_;         ///< without shortening [s]
     QuasiStatic quasi_static_;
     ForceControl force_control_;
     ProtocolState state_;

@@ -1,5 +1,5 @@
-// A whole batch from its first packing to its last scan. Knows nothing of files: scans go to the caller,
-// and the state between two rounds can be taken out and put back as bytes.
+// A complete batch, from the initial packings to the last scan. It does not know about files: scans are
+// passed to the caller, and the state between two rounds can be saved and restored as bytes.
 #pragma once
 #include <functional>
 #include <map>
@@ -14,16 +14,16 @@ namespace mcdem::inline sim {
 
 class Simulation {
 public:
-    /// `packings[r]` is where `scene.replicas[r]` starts.
+    /// `packings[r]` is the initial packing of `scene.replicas[r]`.
     Simulation(Device& device, const Scene& scene, std::vector<Packing> packings);
 
     using ScanSink = std::function<void(int replica, Scan scan)>;
     using FailureSink = std::function<void(int replica, const Failure& failure)>;
 
-    /// One interval of every replica that is not finished. Returns false when none is left.
+    /// Runs one interval of every unfinished replica. Returns false if none is left.
     bool advance(const ScanSink& on_scan, const FailureSink& on_failure);
 
-    /// Ends a replica: nothing more is asked of it. `on_scan` may call it.
+    /// Ends a replica. `on_scan` may call it.
     void end(int replica) { runners_[static_cast<std::size_t>(replica)].stop(); }
 
     double progress() const;                           ///< mean over the replicas, 0 to 1
@@ -34,7 +34,7 @@ public:
     void restore(const std::map<std::string, std::vector<std::byte>>& saved);
 
 private:
-    /// The scans that are due, by replica.
+    /// Takes the scans that are due, by replica.
     std::map<int, Scan> scans(const std::map<int, ProtocolRunner::ScanTag>& due,
                               const std::vector<IntervalResult>& results) const;
     Scan scan(int replica, const ProtocolRunner::ScanTag& tag, const IntervalResult& result,
@@ -42,7 +42,7 @@ private:
     Failure failure(int replica, const IntervalResult& result) const;
 
     Scene scene_;
-    std::vector<std::vector<double>> diameter_;  ///< as stated [m]
+    std::vector<std::vector<double>> diameter_;  ///< as stated in the scene [m]
     std::vector<PackingScale> scale_;
     Engine engine_;
     std::vector<ProtocolRunner> runners_;
@@ -50,7 +50,7 @@ private:
     long grain_steps_ = 0;
 };
 
-/// A recording of replica `r` without scans yet.
+/// The recording of replica `r`, still without scans.
 Recording begin_recording(const Replica& replica, const Packing& packing);
 
 }  // namespace mcdem::sim
