@@ -1,4 +1,4 @@
-// From a TOML value to the member that a key stands for.
+// Assigns TOML values to the members of keys.
 #pragma once
 #include <toml++/toml.h>
 
@@ -9,10 +9,10 @@
 
 namespace mcdem::inline scene {
 
-/// Sets the key's member. Returns "must be .., got .." where the value is not what the key takes.
+/// Sets the member of the key. Returns "must be .., got .." if the value is invalid.
 std::optional<std::string> assign(const Key& key, const toml::node& value, Settings& settings);
 
-/// A TOML value as it may stand in a message: `0.5`, `"abc"`, `a table`.
+/// A TOML value as text for messages: `0.5`, `"abc"`, `a table`.
 std::string shown(const toml::node& value);
 
 }  // namespace mcdem::scene

@@ -1,4 +1,4 @@
-// Which grain of a packing is of which species.
+// Assigns a species to each grain of a packing.
 #pragma once
 #include <string>
 
@@ -6,9 +6,10 @@
 
 namespace mcdem::inline scene {
 
-/// Of a packing read from a file: its words for species, where it has some, become places in the replica's
-/// list, by name or by number from 1. A file of one word or none goes by the species' fractions, at random
-/// with the packing's seed. In a replica without species the words are dropped. Throws InputError.
+/// For a packing read from a file. Species names in the file become indices into the replica's list, by name
+/// or by number from 1. If the file has no species, or only one word, species are drawn at random according
+/// to their fractions, with the packing's seed. If the replica has no species, those of the file are ignored.
+/// Throws InputError.
 void assign_species(Packing& packing, const Replica& replica, const std::string& source);
 
 }  // namespace mcdem::scene

@@ -1,4 +1,4 @@
-// Pairs of near spheres in a container, by a cell list.
+// Pairs of neighbouring spheres in a container, found with a cell list.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -9,11 +9,11 @@
 
 namespace mcdem::inline scene {
 
-/// Grains sorted by the cubic cell that holds their centre.
+/// Grains sorted by the cubic cell that contains their centre.
 class CellList {
 public:
-    /// `edge`: the longest distance asked for; cells are larger where they would far outnumber the grains.
-    /// The list goes up to `height`. Of a periodic cell, positions are those in the cell.
+    /// `edge`: maximum distance of a pair; cells are larger if they would far outnumber the grains. The list
+    /// extends up to `height`. In a periodic cell, positions must be inside it.
     CellList(const std::vector<Vec3>& position, const Box& box, double height, double edge)
         : repeats_{is_periodic(box), is_periodic(box), is_cell(box)} {
         const double size[]{box.size_x, box.size_y, height};
@@ -22,17 +22,17 @@ public:
         edge = std::max(edge, std::cbrt(volume / enough));
         for (int axis = 0; axis < 3; ++axis)
             cells_[axis] = static_cast<int>(std::clamp(size[axis] / edge, 1.0, 1e9));
-        // In a box flatter or thinner than `edge` the volume alone does not keep them few.
+        // In a box flatter or thinner than `edge`, the volume alone does not limit the number of cells.
         while (static_cast<double>(cells_[0]) * cells_[1] * cells_[2] > 16 * enough)
             *std::ranges::max_element(cells_) /= 2;
-        // Around the ends of fewer than three cells, two would meet twice.
+        // With fewer than three cells along a periodic axis, pairs of cells would be visited twice.
         for (int axis = 0; axis < 3; ++axis)
             if (repeats_[axis] && cells_[axis] < 3) cells_[axis] = 1;
         for (int axis = 0; axis < 3; ++axis) edge_[axis] = size[axis] / cells_[axis];
         sort(position);
     }
 
-    /// Calls `visit(i, j)` once for every two grains of the same or touching cells.
+    /// Calls `visit(i, j)` once for every pair of grains in the same or adjacent cells.
     template <class Visit>
     void for_each_pair(const Visit& visit) const {
         for (int z = 0; z < cells_[2]; ++z)
@@ -64,7 +64,7 @@ private:
             sorted_[next[index(cell_of(position[i]))]++] = static_cast<int>(i);
     }
 
-    /// False past an end that does not repeat, or back in the same layer.
+    /// False beyond a non-periodic end, or for the same layer again.
     bool wrap(Cell& cell) const {
         for (std::size_t axis = 0; axis < 3; ++axis) {
             const bool past = cell[axis] < 0 || cell[axis] >= cells_[axis];
@@ -76,7 +76,7 @@ private:
 
     template <class Visit>
     void visit_cell(const Cell& cell, const Visit& visit) const {
-        // Half of the 26 neighbours, so that each pair of cells comes once.
+        // Half of the 26 neighbours, so that each pair of cells is visited once.
         static constexpr int half[13][3] = {{1, 0, 0},  {-1, 1, 0}, {0, 1, 0},  {1, 1, 0}, {-1, -1, 1},
                                             {0, -1, 1}, {1, -1, 1}, {-1, 0, 1}, {0, 0, 1}, {1, 0, 1},
                                             {-1, 1, 1}, {0, 1, 1},  {1, 1, 1}};

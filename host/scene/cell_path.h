@@ -1,30 +1,30 @@
-// The way of a cell through its programme: each move goes straight from the strains before it to those that
-// it names, while the directions whose stress it sets find their own strains.
+// Strain path of a cell in its programme: each move is a straight line between the strains before and after
+// it. Directions with a prescribed stress have their own strains.
 #pragma once
 #include "scene/legs.h"
 
 namespace mcdem::inline scene {
 
-/// One move, from `from` on. Places on it are told by its length, the largest of the changes of the six
-/// strains, and count from `begin`.
+/// One move that starts at `from`. Positions along it are measured by the largest change of the six strains
+/// and start at `begin`.
 struct CellMove {
     CellMove(const Stage& stage, const Strain& before, double begin);
 
-    /// At a place on it.
+    /// Strain at a position along the move.
     Strain strain(double place) const;
-    /// How strains change along it.
+    /// Change of the strain per position.
     Strain direction() const;
-    /// The volume shrinks, or, where it stays, the shears grow.
+    /// True if the volume decreases, or is constant while shear increases.
     bool loads() const;
 
     Strain from, to;
     double begin, end;
 };
 
-/// The cell with the shortest lengths that the strains of the replica's programme give it, upright.
+/// The cell with the smallest lengths in the replica's programme, upright.
 Box smallest_cell(const Replica& replica);
 
-/// What a move's strains are, those that it does not name as they were.
+/// Strains after a move; those that it does not name do not change.
 Strain strain_after(const Stage& stage, Strain before);
 
 }  // namespace mcdem::scene

@@ -1,4 +1,4 @@
-// Grains from the rows of a table whose columns have names.
+// Grains from the rows of a table with named columns.
 #pragma once
 #include <optional>
 #include <string>
@@ -9,25 +9,25 @@
 
 namespace mcdem::inline scene {
 
-/// Where a row has its grain.
+/// Column numbers of a grain's values.
 struct GrainColumns {
     std::size_t x, y, z, size;
-    double diameters = 1;  ///< of what `size` states: 2 for a radius
+    double diameters = 1;  ///< diameters per `size`: 2 for a radius
     std::optional<std::size_t> id, species;
 
-    /// Of columns x, y, z (or xu, yu, zu) and diameter, radius or r, perhaps id and species or type. Throws
-    /// InputError.
+    /// For columns x, y, z (or xu, yu, zu) and diameter, radius or r, optionally id and species or type.
+    /// Throws InputError.
     static GrainColumns named(const std::vector<std::string>& names, const std::string& file);
 };
 
-/// The grains of one frame, in the order of their ids where there are any, else of the rows.
+/// The grains of one frame, ordered by id if there are ids, otherwise by row.
 class GrainRows {
 public:
     GrainRows(GrainColumns columns, std::vector<std::string> names, FileProblems& problems)
         : columns_(columns), names_(std::move(names)), problems_(problems) {}
     void add(const std::vector<std::string_view>& words, long line);
     std::size_t size() const { return packing_.size(); }
-    /// Throws InputError where there was any problem.
+    /// Throws InputError if there were any problems.
     Packing packing() const;
 
 private:

@@ -4,7 +4,7 @@
 
 namespace mcdem::inline scene {
 
-/// Every key with what it takes, its default and its meaning: Markdown, one table for each TOML table.
+/// Every key with its type, default and meaning: Markdown, one table for each TOML table.
 std::string key_reference();
 
 }  // namespace mcdem::scene

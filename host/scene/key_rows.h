@@ -1,4 +1,4 @@
-// Ranges and scopes as the rows of the key tables name them.
+// Ranges and scopes for the rows of the key tables.
 #pragma once
 #include "scene/keys.h"
 
@@ -8,7 +8,7 @@ constexpr Range above_zero_to(double high) { return {0, high, Range::Low::exclud
 constexpr Range between(double low, double high) { return {low, high, Range::Low::included}; }
 constexpr Range none{};
 
-// Limits are wide: they keep out what is impossible or would overflow, not what is unusual.
+// Limits are wide: they exclude impossible values and overflow, not unusual values.
 constexpr Range length = above_zero_to(1000), stiffness = above_zero_to(1e13),
                 mass_density = above_zero_to(1e5);
 constexpr Range poisson = between(0, 0.5), friction = between(0, 10), bounce = above_zero_to(1);

@@ -1,5 +1,5 @@
-// The table of scene keys. Reading, checking, defaults, what results say of a replica, and the reference
-// in scenes/README.md all come from it: a new key is one row, and a member in scene.h.
+// The table of scene keys. Reading, checking, defaults, parameters in results and the reference in
+// scenes/README.md all use it. A new key needs one row, and a member in scene.h.
 #pragma once
 #include <limits>
 #include <span>
@@ -12,20 +12,20 @@
 
 namespace mcdem::inline scene {
 
-/// Everything that keys can set, before copies are made: the run, and one replica of it.
+/// Everything that keys can set, before copies are made: the run, and one replica.
 struct Settings {
     Scene run;
     Replica replica;
     GeneratedPacking generated;
     std::string packing_file;  ///< empty: generated
-    int packing_frame = -1;    ///< timestep of a dump; -1: its last
+    int packing_frame = -1;    ///< timestep of a dump; -1: the last one
     int copies = 1;
-    double cylinder_radius = 0.0827;  ///< of a cylinder, [m]: sets the sizes of its box
+    double cylinder_radius = 0.0827;  ///< of a cylinder [m]; sets the sizes of its box
     double cell_height =
-        not_given;  ///< of a cell, [m]: sets its box and the start of a plate that is not there
+        not_given;  ///< of a cell [m]; sets the height of its box and plate.start, which is otherwise unused
 };
 
-/// What a number may be.
+/// Allowed range of a number.
 struct Range {
     enum class Low { included, excluded };
     double low = 0;
@@ -35,7 +35,7 @@ struct Range {
     bool contains(double value) const;
 };
 
-/// Where a key's value is kept.
+/// Location of a key's value.
 template <class Value>
 struct MemberOf {
     using Reach = Value& (*)(Settings& settings, std::size_t element);
@@ -43,17 +43,18 @@ struct MemberOf {
     Value& operator()(Settings& settings) const { return reach(settings, element); }
 
     Reach reach;
-    std::size_t element = 0;  ///< of which of the tables that a scene has several of (scene/list_tables.h)
+    std::size_t element =
+        0;  ///< index of the table, for tables that a scene can have several of (scene/list_tables.h)
 };
 template <class... Values>
 using MemberOfOne = std::variant<MemberOf<Values>...>;
 
-/// Its type is the key's type.
+/// The alternative determines the key's type.
 using Member =
     MemberOfOne<double, int, std::uint64_t, bool, std::string, std::vector<double>, ContactModel, FrictionLaw,
                 Precision, ContainerShape, StageKind, Controlled, SizeLaw, FractionsBy>;
 
-/// Whether the replicas of one run may differ in it.
+/// Whether the replicas of a run may have different values.
 enum class Scope { run, replica };
 
 struct Key {
@@ -65,41 +66,41 @@ struct Key {
     std::string_view meaning;
 };
 
-/// Without those of tables that a scene can have several of (scene/list_tables.h).
+/// All keys, except those of tables that a scene can have several of (scene/list_tables.h).
 std::span<const Key> keys();
 
-/// The keys of one stage of a programme, from 0: "programme.1.force".
+/// The keys of one stage of a programme, counted from 0: "programme.1.force".
 std::span<const Key> stage_keys(int stage);
 
-/// The key of that name, those of stages and species included, or null.
+/// The key with this name, including those of stages and species, or null.
 const Key* find_key(std::string_view name);
 
-/// True for "grains", "packing" and the other tables that keys live in, "batch.vary", "programme.1" and
-/// "species.2" included.
+/// True for "grains", "packing" and the other tables of keys, including "batch.vary", "programme.1" and
+/// "species.2".
 bool is_table(std::string_view name);
 
 /// The other name of the key box.size_x or box.size_y; null for other keys.
 const Key* same_key(std::string_view name);
 
-/// False for the sizes of containers of other shapes than this one.
+/// False for the sizes of other container shapes.
 bool is_key_of(ContainerShape shape, std::string_view name);
 
-/// The stage, from 0, that a name such as "programme.2" or "programme.2.force" is about; -1 where none is.
+/// The stage, from 0, in a name such as "programme.2" or "programme.2.force"; -1 if there is none.
 int stage_of(std::string_view name);
 
-/// True for the keys of a generated packing, which a packing file replaces.
+/// True for the keys of a generated packing, which a packing file overrides.
 bool is_generator_key(std::string_view name);
 
-/// " (did you mean ..?)", or nothing where no key (or table) comes near.
+/// " (did you mean ..?)", or nothing if no key or table is similar.
 std::string suggestion(std::string_view unknown);
 
 /// "friction" of "grains.friction".
 std::string_view last_part(std::string_view name);
 
-/// What the key takes: "a number > 0 and <= 10 [m]", "one of saturated, mindlin".
+/// Allowed values of the key: "a number > 0 and <= 10 [m]", "one of saturated, mindlin".
 std::string description(const Key& key);
 
-/// The key's value as text; numbers so that they read back exactly.
+/// The key's value as text; numbers are exact when read back.
 std::string value_text(const Key& key, const Settings& settings);
 
 }  // namespace mcdem::scene

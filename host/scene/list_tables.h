@@ -1,5 +1,5 @@
-// Tables that a scene has several of, in order, such as [[programme]]. A key of the second [[species]] is
-// called species.2.density.
+// Tables that a scene can have several of, in order, such as [[programme]]. A key of the second [[species]]
+// is called species.2.density.
 #pragma once
 #include <deque>
 #include <optional>
@@ -15,16 +15,16 @@ namespace mcdem::inline scene {
 struct ListTable {
     std::string_view name;  ///< "species"
     int most;
-    std::string_view elements;  ///< "species"; "stages" of a programme
-    std::string_view says;      ///< what an element must say: "what the plate does"
-    std::string_view remedy;    ///< .. and how
+    std::string_view elements;  ///< name of the elements in messages: "species"; "stages" of a programme
+    std::string_view says;      ///< what an element must specify: "what the plate does"
+    std::string_view remedy;    ///< keys that specify it
     std::span<const Key> (*keys)(int element);
     std::size_t (*size)(const Replica& replica);
 };
 std::span<const ListTable> list_tables();
 const ListTable* find_list_table(std::string_view name);
 
-/// Which element of which table a name such as "species.2" or "species.2.density" is about, from 0.
+/// Table and index (from 0) in a name such as "species.2" or "species.2.density".
 struct ListElement {
     const ListTable* table;
     int number;
@@ -36,14 +36,14 @@ std::optional<ListElement> list_element(std::string_view name);
 std::span<const Key> species_keys(int species);
 std::span<const Key> pair_keys(int pair);
 
-/// Element `n`, which is there from now on.
+/// Element `n`; creates it if necessary.
 template <class Element>
 Element& element(std::vector<Element>& list, std::size_t n) {
     if (list.size() <= n) list.resize(n + 1);
     return list[n];
 }
 
-/// The same rows for every element, with their whole names.
+/// The rows of a key table repeated for every element, with full names.
 class ListKeys {
 public:
     ListKeys(std::string_view table, int most, std::span<const Key> rows);

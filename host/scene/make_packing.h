@@ -1,4 +1,4 @@
-// The packing that a replica starts from.
+// The initial packing of a replica.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -10,30 +10,30 @@
 
 namespace mcdem::inline scene {
 
-/// What is known of a packing before it is made.
+/// Size of a packing before it is made.
 struct PackingSize {
     std::size_t grains = 0;
-    double smallest = 0;  ///< diameter, or a limit below it [m]
+    double smallest = 0;  ///< smallest diameter, or a lower limit [m]
 };
 PackingSize size_of(const Packing& packing);
-/// Of each replica. Reads packing files, each once.
+/// For each replica. Reads packing files, each once.
 std::vector<PackingSize> packing_sizes(const std::vector<Replica>& replicas);
 
-/// A wider box may have been given in millimetres [m].
+/// A wider box was probably given in millimetres [m].
 inline constexpr double widest_box = 20;
 
-/// Read or generated, then jittered; in a periodic cell every centre in the cell itself. Throws InputError
-/// where the file is bad or a grain is out of the container.
+/// Reads or generates the packing and applies the jitter. In a periodic cell all centres are wrapped into the
+/// cell. Throws InputError if the file is invalid or a grain is outside the container.
 Packing make_packing(const Replica& replica);
 
-/// Moves every coordinate of every centre by a normal random length with standard deviation `sd` [m].
+/// Adds normal noise with standard deviation `sd` [m] to every coordinate of every centre.
 void apply_jitter(Packing& packing, double sd, std::uint64_t seed);
 
-/// How far centres may be apart in a neighbour list, at most [m].
+/// Largest distance between centres in a neighbour list [m].
 double list_reach(const Numerics& numerics, double mean_diameter, double largest_diameter);
 
-/// Where the container is too small for its grains: the key to blame, and what it must be. A periodic cell
-/// must keep every two grains from meeting twice, over both ends, and a grain from meeting itself.
+/// If the container is too small for its grains: the key to change and its required value. A periodic cell
+/// must be large enough that no two grains touch through both of its ends, and no grain touches itself.
 struct TooSmall {
     std::string_view key;
     std::string what;
@@ -41,11 +41,11 @@ struct TooSmall {
 std::optional<TooSmall> too_small_container(const Box& box, const Numerics& numerics, double mean_diameter,
                                             double largest_diameter);
 
-/// Of the true grains of a replica. Throws InputError.
+/// For the true grains of a replica. Throws InputError.
 void expect_room(const Replica& replica, const Packing& packing);
 
-/// What is wrong with a packing in this container, below this plate: centres outside, sizes that cannot be
-/// metres. Each is `source: ..`; empty where all is well.
+/// Problems of a packing in this container below this plate: centres outside, sizes that cannot be in metres.
+/// Each is `source: ..`; empty if there are none.
 std::vector<std::string> packing_problems(const Packing& packing, const Box& box, const PlateFace& plate,
                                           const std::string& source);
 

@@ -1,4 +1,4 @@
-// What stands for a number that a scene says nothing of.
+// Marker for numbers that a scene does not specify.
 #pragma once
 #include <limits>
 

@@ -1,5 +1,5 @@
-// Spheres in a container that push each other apart where they overlap: each pair and each wall stores
-// half the square of its overlap, and the sum is minimised with FIRE. No weight, no friction.
+// Relaxation of overlapping spheres in a container. The energy of each pair and each wall contact is half the
+// square of its overlap; the sum is minimised with FIRE. No weight, no friction.
 #pragma once
 #include <vector>
 
@@ -7,17 +7,16 @@
 
 namespace mcdem::inline scene {
 
-/// Largest overlap of any two grains, or of a grain with a wall, over the radius of the
-/// smaller grain.
+/// Largest overlap of any two grains, or of a grain with a wall, over the radius of the smaller grain.
 double largest_overlap(const Packing& packing, const Box& box, double height);
 
 class OverlapRelaxation {
 public:
-    /// The packing's diameters are the final ones; its positions are the start.
+    /// The packing has the final diameters and the initial positions.
     OverlapRelaxation(const Packing& packing, const Box& box, double height);
 
-    /// Minimises with all radii multiplied by `scale`, until the overlaps are gone (below a thousandth
-    /// of the mean radius), or forces balance, or `iterations` are spent. Returns the iterations used.
+    /// Minimises with all radii multiplied by `scale`, until the overlaps are gone (below a thousandth of the
+    /// mean radius), forces balance, or `iterations` are used up. Returns the number of iterations.
     int relax(double scale, int iterations);
 
     const std::vector<Vec3>& position() const { return position_; }
@@ -30,8 +29,8 @@ private:
         double power = 0;         ///< force . velocity
         double force_square = 0;  ///< of net forces
         double speed_square = 0;
-        double largest = 0;         ///< overlap
-        double overlap_square = 0;  ///< of every pair and wall
+        double largest = 0;         ///< largest overlap
+        double overlap_square = 0;  ///< sum over all pairs and walls
     };
 
     Sums push_apart(double scale);
@@ -45,7 +44,7 @@ private:
     Box box_;
     double height_;  ///< of the box [m]
     double mean_radius_ = 0;
-    double margin_ = 0;  ///< gap up to which pairs are listed [m]
+    double margin_ = 0;  ///< largest gap of listed pairs [m]
     std::vector<Vec3> position_, velocity_, force_, listed_position_;
     std::vector<Pair> pairs_;
 };

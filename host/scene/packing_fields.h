@@ -1,4 +1,4 @@
-// What the packing readers share: numbers from words, and a list of problems that does not grow without end.
+// Shared code of the packing readers: numbers from words, and a list of problems of limited length.
 #pragma once
 #include <optional>
 #include <string>
@@ -9,14 +9,14 @@
 
 namespace mcdem::inline scene {
 
-/// The whole word as a number; nothing where anything is left over or it is not finite.
+/// The whole word as a number; nothing if characters remain or it is not finite.
 std::optional<double> to_number(std::string_view word);
 std::optional<long> to_whole_number(std::string_view word);
 
-/// A word as it may stand in a message: short, without control characters.
+/// A word for use in messages: short, without control characters.
 std::string quoted(std::string_view word);
 
-/// Problems of one file, up to a number beyond which more would not help.
+/// Problems of one file, up to a maximum number.
 class FileProblems {
 public:
     explicit FileProblems(std::string source) : source_(std::move(source)) {}
@@ -26,7 +26,7 @@ public:
     void add_at(const std::string& where, const std::string& what);
     bool full() const;
     bool empty() const { return problems_.empty(); }
-    /// Throws InputError where there are any.
+    /// Throws InputError if there are problems.
     void report() const;
 
 private:
@@ -34,11 +34,11 @@ private:
     std::vector<std::string> problems_;
 };
 
-/// Reads the four numbers of a grain, reporting whichever is wrong, and appends it to the packing.
+/// Reads the four numbers of a grain, reports invalid ones, and appends the grain to the packing.
 void add_grain(Packing& packing, std::string_view x, std::string_view y, std::string_view z,
                std::string_view diameter, long line, FileProblems& problems);
 
-/// Appends what a file calls the species of a grain.
+/// Appends the name of the grain's species in the file.
 void add_species(Packing& packing, std::string_view word);
 
 }  // namespace mcdem::scene

@@ -1,4 +1,4 @@
-// What the stages of a programme demand.
+// Checks of the stages of a programme.
 #pragma once
 #include <set>
 #include <string>
@@ -9,14 +9,14 @@
 
 namespace mcdem::inline scene {
 
-/// `said`: the keys that the scene gives or varies. Keys in `bad` had problems of their own; stages that have
-/// one are not checked.
+/// `said`: the keys that the scene sets or varies. Stages with keys in `bad`, which already have problems,
+/// are not checked.
 std::vector<CrossProblem> programme_problems(const Settings& settings, const std::set<std::string>& said,
                                              const std::set<std::string, std::less<>>& bad);
 
-/// Beyond this force on the plate [N] every contact under it would be deeper than numerics.overlap_limit.
+/// Force on the plate [N] above which the contacts under it would exceed numerics.overlap_limit.
 double max_plate_force(const Settings& settings, double smallest_diameter);
-/// The same of a stress of a cell [Pa].
+/// The same for the stress of a cell [Pa].
 double max_cell_stress(const Settings& settings);
 
 }  // namespace mcdem::scene

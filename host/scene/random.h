@@ -1,5 +1,5 @@
-// Random numbers that are the same with every standard library: the standard fixes the engine
-// (mt19937_64) but not the distributions, so those are written here.
+// Random numbers that do not depend on the standard library: the C++ standard defines the engine (mt19937_64)
+// but not the distributions, so those are implemented here.
 #pragma once
 #include <cmath>
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace mcdem::inline scene {
 
-/// What a stream of random numbers is for: streams of one seed do not repeat one another.
+/// Purpose of a stream of random numbers; streams with the same seed are independent.
 enum class Stream : std::uint64_t {
     diameters = 1,
     positions = 2,
@@ -28,7 +28,7 @@ enum class Stream : std::uint64_t {
     challenge = 24,
 };
 
-/// splitmix64 (Steele, Lea & Flood 2014): neighbouring numbers become unrelated ones.
+/// splitmix64 (Steele, Lea & Flood 2014): hash that makes consecutive numbers independent.
 constexpr std::uint64_t scattered(std::uint64_t x) {
     x += 0x9e3779b97f4a7c15u;
     x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
@@ -62,7 +62,7 @@ public:
         return normal_of(a, uniform());
     }
 
-    /// Fisher & Yates.
+    /// Fisher-Yates shuffle.
     template <class T>
     void shuffle(std::vector<T>& values) {
         for (std::size_t i = values.size(); i > 1; --i) {
@@ -75,8 +75,8 @@ private:
     std::mt19937_64 engine_;
 };
 
-/// Standard normal numbers by key, not by order: what two packings have in common gets the same number,
-/// however much else one of them has.
+/// Standard normal numbers that depend on a key and not on the order of calls: what two packings have in
+/// common gets the same numbers, whatever else they contain.
 class KeyedNormal {
 public:
     KeyedNormal(std::uint64_t seed, Stream stream)
@@ -91,12 +91,12 @@ private:
     std::uint64_t base_;
 };
 
-/// A normal distribution cut to [low, high], by its quantiles.
+/// Normal distribution truncated to [low, high], by its quantiles.
 struct TruncatedNormal {
-    double mean, sd;  ///< of the normal distribution before the cut
+    double mean, sd;  ///< before truncation
     double low, high;
 
-    /// The value below which a share `share` in (0, 1) lies: bisection, to the last bit.
+    /// The value below which a fraction `share` in (0, 1) lies; by bisection, to the last bit.
     double quantile(double share) const {
         if (sd == 0) return mean;
         const auto below = [&](double x) { return 0.5 * std::erfc((mean - x) / (sd * std::numbers::sqrt2)); };

@@ -1,4 +1,4 @@
-// From one setting to the replicas of a run: the variations, times the copies.
+// Creates the replicas of a run: combinations of the variations, times the copies.
 #pragma once
 #include <toml++/toml.h>
 
@@ -9,30 +9,30 @@
 
 namespace mcdem::inline scene {
 
-/// The most replicas in a run, and grains in all of them.
+/// Maximum number of replicas in a run, and of grains in all of them.
 inline constexpr double max_replicas = 10'000;
 inline constexpr double max_grains = 10'000'000;
 
-/// One line of [batch.vary], its values checked.
+/// One line of [batch.vary], with checked values.
 struct Variation {
     const Key* key;
     std::vector<const toml::node*> values;
 };
 
-/// One point of the variations' product.
+/// One combination of the varied values.
 struct Combination {
     Settings settings;
-    std::string label;  ///< "mc_dem, friction=0.03"; empty where nothing varies
+    std::string label;  ///< "mc_dem, friction=0.03"; empty if nothing varies
 };
 
-/// How many combinations there are, without making them.
+/// Number of combinations, computed without creating them.
 double combination_count(const std::vector<Variation>& variations);
 
-/// All combinations, the first variation changing slowest.
+/// All combinations; the first variation changes slowest.
 std::vector<Combination> combinations(const Settings& base, const std::vector<Variation>& variations);
 
-/// The copies of every combination, copy n of each with the same packing seed, so that settings can be
-/// compared in pairs.
+/// The copies of every combination. Copy n has the same packing seed in all combinations, so that settings
+/// can be compared on equal packings.
 std::vector<Replica> make_replicas(const std::vector<Combination>& combinations);
 
 }  // namespace mcdem::scene

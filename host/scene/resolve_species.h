@@ -1,4 +1,4 @@
-// Species as scenes give them, filled in with what they leave to [grains] and [packing].
+// Fills in the values that species take from [grains] and [packing].
 #pragma once
 #include <map>
 #include <memory>
@@ -9,7 +9,7 @@
 
 namespace mcdem::inline scene {
 
-/// Tables of diameters, each read once; null where a file cannot be read.
+/// Tables of diameters, each read once; null if a file cannot be read.
 class SizeTables {
 public:
     std::shared_ptr<const std::vector<double>> of(const std::string& file);
@@ -18,13 +18,13 @@ private:
     std::map<std::string, std::shared_ptr<const std::vector<double>>> tables_;
 };
 
-/// Fills in materials, sizes and fractions. With a packing file fractions stay not given where the scene
-/// gives none: the file says which grain is of which species. The sizes of all species become those of the
-/// generated packing, its smallest, largest and mean diameter. What cannot be filled in stays as it was;
-/// species_problems says why.
+/// Fills in materials, sizes and fractions. With a packing file, fractions that the scene does not set remain
+/// unset, because the file assigns species to grains. Smallest, largest and mean diameter of the generated
+/// packing are set from all species. Values that cannot be filled in are not changed; species_problems
+/// reports them.
 void resolve_species(Settings& settings, SizeTables& tables);
 
-/// False where some species has no sizes, or fractions, that hold together.
+/// False if a species has no consistent sizes or fractions.
 bool has_sizes(const Replica& replica);
 
 }  // namespace mcdem::scene

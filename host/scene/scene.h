@@ -1,4 +1,4 @@
-// A scene as plain values: what to simulate, in SI units. A test can build one without a file.
+// A scene as plain values in SI units. Tests can build one without a file.
 #pragma once
 #include <cstdint>
 #include <map>
@@ -17,7 +17,7 @@ namespace mcdem::inline scene {
 struct WallMaterial {
     double youngs_modulus = 50e6;  ///< [Pa]
     double poisson_ratio = 0.5;
-    double friction = 0.03;     ///< mu, grain on wall
+    double friction = 0.03;     ///< mu between grain and wall
     double restitution = 0.95;  ///< e
 };
 
@@ -25,90 +25,93 @@ struct ContactLaw {
     ContactModel model = ContactModel::mc_dem;
     double gamma = 1.125;  ///< prefactor of Eq. 1, used by mc_dem only
     FrictionLaw friction_law = FrictionLaw::saturated;
-    double sliding_velocity = 1e-3;  ///< below it saturated friction fades to zero [m/s]
+    double sliding_velocity = 1e-3;  ///< below it saturated friction decreases to zero [m/s]
 };
 
-/// Read from a LIGGGHTS/LAMMPS data file or dump, Yade's text, a CSV (x_m,y_m,z_m,diameter_m) or a run.h5.
+/// Read from a LIGGGHTS/LAMMPS data file or dump, a Yade text file, a CSV (x_m,y_m,z_m,diameter_m) or a
+/// run.h5.
 struct PackingFile {
     std::string path;
-    std::optional<long> step = std::nullopt;  ///< or frame, as read_packing takes it
+    std::optional<long> step = std::nullopt;  ///< timestep or frame, see read_packing
 };
 
-/// Drawn at random: truncated normal diameters, grown and relaxed without weight or friction.
+/// Random packing: truncated normal diameters, grown and relaxed without weight or friction.
 struct GeneratedPacking {
     int count = 514;
     double diameter_mean = 21.490e-3;  ///< [m]
     double diameter_sd = 1.199e-3;     ///< [m]
     double diameter_min = 18.167e-3;   ///< [m]
     double diameter_max = 24.561e-3;   ///< [m]
-    double packing_fraction = 0.59;    ///< fills the box up to the height that gives this
+    double packing_fraction = 0.59;    ///< determines the height of the packing in the box
 };
 
 struct PackingSource {
     std::variant<PackingFile, GeneratedPacking> source = GeneratedPacking{};
-    double position_jitter = 0;  ///< sd of a normal displacement of every coordinate [m]
-    std::uint64_t seed = 1;      ///< of generation, jitter and which grain is of which species
+    double position_jitter = 0;  ///< standard deviation of a normal displacement of every coordinate [m]
+    std::uint64_t seed = 1;      ///< for generation, jitter and assignment of species
     FractionsBy fractions_by = FractionsBy::number;
 };
 
 struct Plate {
     double start = 0.167643;  ///< highest position of its lower face [m]
     double end = 0.137517;    ///< lowest position [m]
-    double speed = 0.1;       ///< at most [m/s]
+    double speed = 0.1;       ///< maximum [m/s]
 };
 
 struct Protocol {
     int cycles = 1;
-    int discard = 0;            ///< first cycles left out of metrics
+    int discard = 0;            ///< number of first cycles that metrics ignore
     int scans_per_stroke = 30;  ///< equally spaced; the last of each stroke at its end
-    bool stop_at_scans = true;  ///< false: one continuous stroke, recorded in passing
+    bool stop_at_scans = true;  ///< false: scans are recorded without stopping
     double rate_tolerance =
-        0;  ///< largest estimated error of forces by the plate's speed; 0: always plate.speed
+        0;  ///< maximum estimated relative error of forces caused by the plate's speed; 0: always plate.speed
     double settle_unbalanced_force = 1e-3;  ///< a scan is taken when the net forces on grains fall below this
-    double settle_time = 0.5;               ///< .. or, marked unsettled, after this long [s]
-    double settle_drag =
-        1e6;  ///< of velocities and spins while the plate stands still, at most half of both a step [1/s]
-    double relax_time = 1.0;     ///< longest relaxation before the first stroke [s]
-    bool scan_at_start = false;  ///< a scan, frame 0, of the relaxed packing before the first stroke
-    double force_threshold = 0;  ///< contacts below it do not count in Z and <f> [N]
+    double settle_time = 0.5;  ///< a scan is taken after this time at the latest, marked as unsettled [s]
+    double settle_drag = 1e6;  ///< on velocities and spins while the plate stands still; removes at most half
+                               ///< of both per step [1/s]
+    double relax_time = 1.0;   ///< maximum relaxation time before the first stroke [s]
+    bool scan_at_start = false;  ///< record a scan (frame 0) of the relaxed packing before the first stroke
+    double force_threshold = 0;  ///< contacts with smaller forces are ignored in Z and <f> [N]
 };
 
 struct Numerics {
-    double time_step = 0.1;   ///< fraction of the Rayleigh time of the smallest grain
-    double skin = 0.2;        ///< neighbour list margin, over the mean radius
-    double probe_gap = 0.15;  ///< gap up to which surfaces are probed, over the mean radius
-    double overlap_limit =
-        0.5;  ///< corrected overlap over the sum of radii beyond which no static solution is assumed
-    bool stop_beyond_law = false;  ///< at the first scan beyond core/law_range.h
+    double time_step = 0.1;  ///< maximum, over the Rayleigh time of the smallest grain
+    double skin = 0.2;       ///< margin of the neighbour list over the mean radius
+    double probe_gap =
+        0.15;  ///< maximum gap at which surface displacements can create contacts, over the mean radius
+    double overlap_limit = 0.5;    ///< corrected overlap over the sum of radii beyond which the replica stops
+    bool stop_beyond_law = false;  ///< stop at the first scan beyond the range in core/law_range.h
 };
 
-/// Effects that the plain model leaves out: each off, and at no cost, at its default.
+/// Effects beyond the plain model. At its default each is off and costs nothing.
 struct Effects {
-    double adhesion = 0;           ///< work of adhesion w of two grains [J/m2]
-    double viscoelasticity = 0;    ///< part of the Hertz force that relaxes at constant overlap
-    double relaxation_time = 0.1;  ///< of that part [s]
+    double adhesion = 0;           ///< work of adhesion w between grains [J/m2]
+    double viscoelasticity = 0;    ///< fraction of the Hertz force that relaxes at constant overlap
+    double relaxation_time = 0.1;  ///< relaxation time of that fraction [s]
     double stiffening =
-        0;  ///< c: Hertz force times 1 + c overlap / R*, or over 1 - c overlap / R* where c < 0
+        0;  ///< c: Hertz force times 1 + c overlap / R*; for c < 0 divided by 1 - c overlap / R*
     double finite_strain =
-        0;  ///< share of what hyperelastic_sphere adds to elastic_sphere; unused by other models
-    double plasticity = 0;      ///< part of the largest overlap that stays after unloading
-    double bulge_contacts = 1;  ///< part of the bulges that counts where grains do not overlap by themselves
-    double friction_history = 0;    ///< share of the friction law that contact.friction_law does not name
+        0;  ///< weight of the difference between hyperelastic_sphere and elastic_sphere; elastic_sphere only
+    double plasticity = 0;  ///< fraction of the largest overlap that remains after unloading
+    double bulge_contacts =
+        1;  ///< fraction of the surface displacement that counts where undeformed grains do not overlap
+    double friction_history = 0;    ///< weight of the friction law that contact.friction_law does not name
     double rolling_resistance = 0;  ///< mu_r: resisting torque = mu_r R* F_n
-    double modulus_scatter = 0;     ///< sd of ln E from grain to grain
-    double diameter_error = 0;      ///< true less stated diameter, all grains alike [m]
-    double polydispersity = 0;      ///< sd of true less stated diameter, grain by grain [m]
+    double modulus_scatter = 0;     ///< standard deviation of ln E between grains
+    double diameter_error = 0;      ///< true minus stated diameter, the same for all grains [m]
+    double polydispersity = 0;      ///< standard deviation of true minus stated diameter [m]
     double plate_tilt_x = 0;        ///< slope of the plate along x
-    double plate_tilt_y = 0;        ///< .. along y
-    double plate_compliance = 0;    ///< how far the plate gives way per newton [m/N]
+    double plate_tilt_y = 0;        ///< the same along y
+    double plate_compliance = 0;    ///< displacement of the plate per newton [m/N]
 };
 
-/// Everything that one replica is made of.
+/// All inputs of one replica.
 struct Replica {
-    std::string label;                              ///< what sets it apart, e.g. "mc_dem #3"
-    std::map<std::string, std::string> parameters;  ///< every scene key and its value here, as text
+    std::string label;  ///< distinguishes it within its run, e.g. "mc_dem #3"
+    std::map<std::string, std::string>
+        parameters;  ///< every scene key with its value for this replica, as text
     Box box{0.165191, 0.165834};
-    GrainMaterial grains;          ///< of all, or what species say nothing of
+    GrainMaterial grains;          ///< of all grains, or defaults of the species
     std::vector<Species> species;  ///< empty: one material
     std::vector<SpeciesPair> pairs;
     WallMaterial walls;
@@ -129,7 +132,7 @@ struct Output {
 
 struct Scene {
     std::string name = "scene";
-    std::string text;  ///< TOML with overrides applied: what a result file keeps
+    std::string text;  ///< TOML with overrides, stored in result files
     Precision precision = Precision::single_precision;
     int slots = 16;  ///< neighbour slots per grain: 16, 32, 48 or 64
     Output output;

@@ -1,4 +1,4 @@
-// What keys demand of each other.
+// Checks that involve several keys.
 #pragma once
 #include <map>
 #include <optional>
@@ -12,27 +12,27 @@
 namespace mcdem::inline scene {
 
 struct CrossProblem {
-    std::string key;   ///< to blame, and begins the message
+    std::string key;   ///< the key to change; begins the message
     std::string what;  ///< "must be .., got .."
 };
 
-/// Packing files that were read for checking, by path and frame: each is read once.
+/// Packing files that were read for checks, by path and frame; each is read once.
 struct CheckedFile {
     std::size_t count = 0;
     double smallest = 0;  ///< diameter [m]
     Packing packing;
-    std::vector<std::string> problems;  ///< of reading, each with its own place
+    std::vector<std::string> problems;  ///< problems when reading, each with its place
 };
 using CheckedFiles = std::map<std::pair<std::string, int>, CheckedFile>;
 
-/// Checks one setting. Keys in `bad` had problems of their own: what they demand of others is not checked.
+/// Checks one setting. Keys in `bad` already have problems; conditions that involve them are not checked.
 std::vector<CrossProblem> cross_problems(const Settings& settings,
                                          const std::set<std::string, std::less<>>& bad);
 
-/// Reads the packing file of the setting, if any, and checks that it fits. Problems name the file's lines.
+/// Reads the packing file of the setting, if any, and checks that it fits. Problems name lines of the file.
 std::vector<std::string> packing_file_problems(const Settings& settings, CheckedFiles& files);
 
-/// Grains of one replica.
+/// Number of grains of one replica.
 std::size_t grain_count(const Settings& settings, const CheckedFiles& files);
 
 }  // namespace mcdem::scene

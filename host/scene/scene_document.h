@@ -1,4 +1,4 @@
-// A scene's TOML text and overrides as a flat list of dotted keys, each with its value and its place.
+// The TOML text of a scene and its overrides as a flat list of dotted keys, each with its value and place.
 #pragma once
 #include <toml++/toml.h>
 
@@ -23,20 +23,20 @@ struct Entry {
 
 class SceneDocument {
 public:
-    /// Throws InputError where the text is not TOML. Bad overrides are added to `problems`.
+    /// Throws InputError if the text is not TOML. Invalid overrides are added to `problems`.
     SceneDocument(std::string_view text, std::string source, const std::vector<std::string>& overrides,
                   Problems& problems);
     SceneDocument(const SceneDocument&) = delete;
     SceneDocument& operator=(const SceneDocument&) = delete;
 
-    /// In the order of the file, overrides last.
+    /// In order of the file, followed by the overrides.
     const std::vector<Entry>& entries() const { return entries_; }
-    /// Where the key, or its variation, was said; the whole file where it was not.
+    /// Place where the key or its variation is set; the whole file if it is not set.
     Place place_of(std::string_view key) const;
-    /// The place of one value of a list.
+    /// Place of one value of a list.
     Place place_of(const Entry& entry, const toml::node& element) const;
-    /// The text as given, or, where overrides or files' full paths change it, TOML that says the same
-    /// without its comments.
+    /// The text as given, or, if overrides or full paths of files change it, equivalent TOML without
+    /// comments.
     std::string text() const;
 
 private:
@@ -53,7 +53,7 @@ private:
     std::string source_;
     std::string text_;
     bool changed_ = false;
-    std::deque<toml::table> tables_;  ///< the file's, then one an override
+    std::deque<toml::table> tables_;  ///< that of the file, then one for each override
     std::vector<Entry> entries_;
 };
 

@@ -13,30 +13,30 @@ namespace mcdem::inline scene {
 struct Replica;
 
 inline constexpr int max_species = 8;
-inline constexpr int max_pairs = 44;  ///< of eight species, and of each with the walls
+inline constexpr int max_pairs = 44;  ///< between eight species, and of each with the walls
 inline constexpr std::string_view walls_name = "walls";
 
 struct GrainMaterial {
     double youngs_modulus = 23.3e3;  ///< E [Pa]
     double poisson_ratio = 0.5;      ///< nu
     double density = 11.5;           ///< inertial [kg/m3]
-    double excess_density = 11.5;    ///< over the fluid, gives the weight [kg/m3]
-    double friction = 0.03;          ///< mu, grain on grain
+    double excess_density = 11.5;    ///< density minus that of the fluid; determines the weight [kg/m3]
+    double friction = 0.03;          ///< mu between grains
     double restitution = 0.95;       ///< e
     double drag = 0;                 ///< background drag, force = -drag * mass * velocity [1/s]
 };
 
 struct Sizes {
     SizeLaw law = SizeLaw::normal;
-    double mean = not_given;  ///< of the diameter, before it is cut [m]
-    double sd = not_given;    ///< .. likewise [m]
-    double min = not_given;   ///< where it is cut [m]
+    double mean = not_given;  ///< of the diameter, before truncation [m]
+    double sd = not_given;    ///< of the diameter, before truncation [m]
+    double min = not_given;   ///< limits of truncation [m]
     double max = not_given;
     std::string file;                                       ///< of a table
     std::shared_ptr<const std::vector<double>> table = {};  ///< its diameters, sorted [m]
 };
 
-/// Read from a scene, what is not given is filled in from [grains] and [packing] (scene/resolve_species.h).
+/// As read from a scene, with missing values filled in from [grains] and [packing] (scene/resolve_species.h).
 struct Species {
     std::string name;
     GrainMaterial material{not_given, not_given, not_given, not_given, not_given, not_given, 0};
@@ -44,17 +44,17 @@ struct Species {
     Sizes sizes = {};
 };
 
-/// Two species, or a species and the walls, that slide or rebound on each other in a way of their own.
+/// Friction and restitution between two species, or a species and the walls.
 struct SpeciesPair {
     std::string first, second;
     double friction = not_given;
     double restitution = not_given;
 };
 
-/// One for each species; that of [grains] where none are named.
+/// One material per species; that of [grains] if there are no species.
 std::vector<GrainMaterial> materials(const Replica& replica);
 
-/// Of largest E/(1 - nu^2), and of smallest.
+/// The materials with the largest and the smallest E/(1 - nu^2).
 GrainMaterial stiffest(const Replica& replica);
 GrainMaterial softest(const Replica& replica);
 
@@ -67,9 +67,9 @@ constexpr double plane_modulus(const GrainMaterial& material) {
 struct PairLaw {
     double friction, restitution;
 };
-/// Of two species: what their [[pair]] says, else the smaller of both.
+/// Law between two species: from their [[pair]], otherwise the smaller of both values.
 PairLaw pair_law(const Replica& replica, std::size_t first, std::size_t second);
-/// Of a species and the walls: what their [[pair]] says, else what [walls] says.
+/// Law between a species and the walls: from their [[pair]], otherwise from [walls].
 PairLaw wall_law(const Replica& replica, std::size_t species);
 
 }  // namespace mcdem::scene

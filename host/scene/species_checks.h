@@ -1,4 +1,4 @@
-// What is wrong with the species and pairs of one setting.
+// Checks of the species and pairs of one setting.
 #pragma once
 #include <set>
 #include <string>
@@ -8,8 +8,8 @@
 
 namespace mcdem::inline scene {
 
-/// Of a setting whose species are resolved. `said`: keys that the scene gives or varies; those in `bad` had
-/// problems of their own.
+/// The setting's species must be resolved. `said`: keys that the scene sets or varies. Conditions on keys in
+/// `bad`, which already have problems, are not checked.
 std::vector<CrossProblem> species_problems(const Settings& settings, const std::set<std::string>& said,
                                            const std::set<std::string, std::less<>>& bad);
 

@@ -1,4 +1,4 @@
-// A text at hand, line by line.
+// Iteration over the lines of a text.
 #pragma once
 #include <algorithm>
 #include <optional>
@@ -10,7 +10,7 @@ namespace mcdem::inline scene {
 class TextLines {
 public:
     explicit TextLines(std::string_view text) : rest_(text) {}
-    /// The next line without its end, Windows' included; nothing after the last.
+    /// The next line without its line end (Unix or Windows); nothing after the last one.
     std::optional<std::string_view> next() {
         if (rest_.empty()) return std::nullopt;
         const std::size_t end = std::min(rest_.find('\n'), rest_.size());
@@ -34,7 +34,7 @@ inline std::string_view without_blanks(std::string_view text) {
     return text.substr(first, text.find_last_not_of(blank) - first + 1);
 }
 
-/// The words between blanks.
+/// Splits a line at blanks.
 inline void split_at_blanks(std::string_view line, std::vector<std::string_view>& words) {
     constexpr std::string_view blank = " \t\r";
     words.clear();

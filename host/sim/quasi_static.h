@@ -30,8 +30,8 @@ class QuasiStatic {
 public:
     QuasiStatic(const Replica& replica, const PackingScale& scale);
 
-    /// Pressure between floor and plate, at least the larger of the packing's weight over the floor's area and a
-    /// hundred-thousandth of Young's modulus of the softest grains [Pa].
+    /// Pressure between floor and plate, at least the larger of the packing's weight over the floor's area
+    /// and a hundred-thousandth of Young's modulus of the softest grains [Pa].
     double pressure(double plate_force, double floor_force) const;
     /// The same for a cell: one third of the trace of its stress.
     double pressure(const Mat3& stress) const;
