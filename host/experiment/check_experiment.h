@@ -1,4 +1,4 @@
-// What an experiment holds, lacks and where it contradicts itself: said before anything is concluded from it.
+// Checks what an experiment contains, what is missing, and where it is inconsistent.
 #pragma once
 #include <string>
 #include <vector>
@@ -8,9 +8,9 @@
 namespace mcdem::inline experiment {
 
 enum class Severity {
-    note,     ///< what is there
-    missing,  ///< what is not, and what could be told with it
-    odd,      ///< what can hardly be so: a slip in the tables, or a packing that the model does not describe
+    note,     ///< available data
+    missing,  ///< missing data, and what could be diagnosed with them
+    odd,      ///< implausible data: an error in the tables, or a packing that the model does not describe
 };
 
 struct Finding {
@@ -20,12 +20,12 @@ struct Finding {
 };
 
 struct ExperimentCheck {
-    std::vector<Finding> findings;                         ///< by severity in the order above
-    std::vector<std::string> of(Severity severity) const;  ///< their texts
+    std::vector<Finding> findings;                         ///< by severity, in the order above
+    std::vector<std::string> of(Severity severity) const;  ///< texts of one severity
 };
 
-/// Finds nothing odd in what `measured` gives of a simulation that has settled at every scan, its stated
-/// diameters and moduli true. What an experiment lacks (severity missing) limits every conclusion from it.
+/// Finds nothing odd in the result of `measured` for a simulation that settled at every scan and whose stated
+/// diameters and moduli are true. Missing data limit all conclusions.
 ExperimentCheck check_experiment(const Experiment& experiment);
 
 }  // namespace mcdem::experiment

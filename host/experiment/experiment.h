@@ -1,5 +1,5 @@
-// Measured compressions: a folder with experiment.toml, plate.csv and, where measured, grains.csv and
-// contacts.csv (README.md beside this file), read into the same form as simulations.
+// Measured compressions: a folder with experiment.toml, plate.csv and optionally grains.csv and contacts.csv
+// (README.md in this folder), read into the same form as simulations.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -11,40 +11,40 @@
 
 namespace mcdem::inline experiment {
 
-/// How well it was measured; a simulation seen through the same instrument is comparable.
+/// Accuracy of the measurement; simulations are measured with the same instrument before they are compared.
 struct Measurement {
     double position_error = 0;   ///< sigma of every coordinate of a centre [m]
     double diameter_error = 0;   ///< sigma [m]
     double force_error = 0;      ///< relative sigma of a contact force
-    double force_threshold = 0;  ///< contact forces below it are not seen [N]
+    double force_threshold = 0;  ///< weaker contacts are not detected [N]
     bool operator==(const Measurement&) const = default;
 };
 
 struct Experiment {
     std::string name;
-    /// Positions, contacts, top force by scan. Z, <f> and <b> come from the contacts above the force
-    /// threshold; what was not measured is not-a-number or empty.
+    /// Positions, contacts and top force of each scan. Z, <f> and <b> are computed from the contacts above
+    /// the force threshold; unmeasured values are NaN or empty.
     Recording recording;
     std::map<std::string, double> materials;    ///< scene keys that were measured: "grains.youngs_modulus"
-    std::map<std::string, double> uncertainty;  ///< one sigma of some of them, by the same key
+    std::map<std::string, double> uncertainty;  ///< one sigma of some of them, by key
     Measurement measurement;
-    std::optional<double> plate_speed = {};  ///< [m/s]; nothing: slow
+    std::optional<double> plate_speed = {};  ///< [m/s]; empty: slow
 };
 
-/// The scene keys that `materials` and `uncertainty` may hold.
+/// The scene keys that `materials` and `uncertainty` may contain.
 const std::vector<std::string>& material_keys();
 
-/// Bytes of one table, unpacked, that are read [1 GiB: some 12 million contacts]. Memory needed is about the
-/// tables' size.
+/// Maximum uncompressed size of one table [bytes]: 1 GiB, about 12 million contacts. Reading needs about as
+/// much memory as the tables have bytes.
 inline constexpr std::uintmax_t largest_table = std::uintmax_t{1} << 30;
 
-/// Throws InputError with every problem found (the first 20), each as file:line and what to do.
+/// Throws InputError with all problems (at most 20), each as file:line and a remedy.
 Experiment read_experiment(const std::filesystem::path& folder, std::uintmax_t largest = largest_table);
 
 enum class Packed { plain, gzip };
 
-/// Writes the folder, so that read_experiment gives back what it holds, numbers to the last digit. Averages
-/// are left to the reader, and what an instrument would not have seen to `measured` (instrument.h).
+/// Writes the folder so that read_experiment returns the same content, with exact numbers. Averages are not
+/// written; `measured` (instrument.h) must remove what an instrument would not see.
 void write_experiment(const std::filesystem::path& folder, const Experiment& experiment,
                       Packed packed = Packed::plain);
 

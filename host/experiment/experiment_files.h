@@ -1,4 +1,4 @@
-// The files of an experiment before they are written, and the digests that they are checked by later.
+// Contents of the files of an experiment before they are written, and their digests.
 #pragma once
 #include <map>
 #include <string>
@@ -7,13 +7,13 @@
 
 namespace mcdem::inline experiment {
 
-/// Bytes by file name.
+/// Contents by file name.
 std::map<std::string, std::string> experiment_files(const Experiment& experiment, Packed packed);
 
-/// SHA-256 and name of each, as `sha256sum -c` reads them.
+/// SHA-256 and name of each file, in the format of `sha256sum -c`.
 std::string sums_text(const std::map<std::string, std::string>& files);
 
-/// The file of an experiment that holds them.
+/// The file of an experiment with these sums.
 inline constexpr const char* sums_file = "SHA256SUMS";
 
 }  // namespace mcdem::experiment

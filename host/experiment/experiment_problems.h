@@ -1,4 +1,4 @@
-// Everything wrong with one experiment folder, up to a number beyond which more would not help.
+// Problems of one experiment folder, up to a maximum number.
 #pragma once
 #include <set>
 #include <string>
@@ -10,16 +10,16 @@ class ExperimentProblems {
 public:
     /// `where` is a file, or file:line.
     void add(const std::string& where, const std::string& what);
-    /// The same, told once for each `topic`: a column in millimetres is one problem, not one for each line.
+    /// Adds only one problem for each `topic`: a column in millimetres is one problem, not one for each line.
     void add_once(const std::string& topic, const std::string& where, const std::string& what);
-    /// Further ones are only counted.
+    /// True at the maximum; further problems are only counted.
     bool full() const;
     bool was_told(const std::string& topic) const { return told_.contains(topic); }
     bool empty() const { return count_ == 0; }
     long count() const { return count_; }
-    /// Each problem, and how many more there are.
+    /// All problems, and the number of further ones.
     std::vector<std::string> lines() const;
-    /// Throws InputError where there are any.
+    /// Throws InputError if there are problems.
     void report() const;
 
 private:

@@ -1,4 +1,4 @@
-// The parts of check_experiment, each in a file of its name.
+// The parts of check_experiment, each in the file of its name.
 #pragma once
 #include <functional>
 #include <optional>
@@ -21,10 +21,10 @@ private:
     std::vector<Finding> all_;
 };
 
-/// Things of one kind that were found in the frames: how many, and an example.
+/// Counts findings of one kind over the frames and keeps an example.
 class Tally {
 public:
-    /// `example` is asked only once.
+    /// `example` is called only once.
     void add(const Scan& scan, const std::function<std::string()>& example);
     long count() const { return count_; }
     /// "3 in 2 frames, first in frame 7: <example>"
@@ -47,10 +47,10 @@ inline const Vec3& at(const std::vector<Vec3>& position, int grain) {
 inline double radius_of(const Recording& recording, int grain) {
     return 0.5 * recording.diameter[static_cast<std::size_t>(grain)];
 }
-const std::vector<Wall>& walls_of(const Box& box);  ///< those that are there
+const std::vector<Wall>& walls_of(const Box& box);  ///< existing walls
 std::string container_words(const Box& box);        ///< "box of 165 by 166 mm"
 double mean_diameter(const Recording& recording);
-double median(std::vector<double> values);  ///< not-a-number of none
+double median(std::vector<double> values);  ///< NaN if empty
 std::optional<double> material(const Experiment& experiment, const std::string& key);
 
 void describe(const Experiment& experiment, Findings& findings);

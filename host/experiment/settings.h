@@ -1,15 +1,15 @@
-// experiment.toml: what the tables do not say.
+// Reader of experiment.toml.
 #pragma once
 #include "experiment/experiment.h"
 #include "experiment/experiment_problems.h"
 
 namespace mcdem::inline experiment {
 
-/// Reads name, box, materials, uncertainty, measurement and, where given, plate_start (else not-a-number).
+/// Reads name, box, materials, uncertainty, measurement and plate_start (NaN if missing).
 void read_settings(const std::filesystem::path& file, Experiment& experiment, ExperimentProblems& problems);
 
-/// The same of a TOML text, or none, and of overrides "grains.youngs_modulus=23300", which count before it.
-/// A name that is not stated stays as it is.
+/// The same from TOML text (may be empty) and overrides "grains.youngs_modulus=23300", which have precedence.
+/// If there is no name, the present one is kept.
 void parse_settings(std::string_view text, const std::string& file, const std::vector<std::string>& overrides,
                     Experiment& experiment, ExperimentProblems& problems);
 

@@ -1,4 +1,4 @@
-// One CSV table of an experiment, plain or packed with gzip, read row by row.
+// One CSV table of an experiment, plain or compressed with gzip, read row by row.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -12,41 +12,41 @@
 
 namespace mcdem::inline experiment {
 
-/// `<folder>/<name>` or `<name>.gz`; nothing where neither is there. Problems: both (which counts?), one that
-/// is no ordinary file, one of more than `largest` bytes.
+/// `<folder>/<name>` or `<name>.gz`; nothing if neither exists. Problems: both exist, the file is not a
+/// regular file, or it has more than `largest` bytes.
 std::optional<std::filesystem::path> find_table(const std::filesystem::path& folder, const std::string& name,
                                                 std::uintmax_t largest, ExperimentProblems& problems);
 
 class Table {
 public:
-    /// Opens the file and reads its header, which must name all `columns` and may name the `optional` ones,
-    /// which count on from them, in any order; others are left aside. Reading ends with a problem at a byte
-    /// that no text has, and after `largest` unpacked bytes.
+    /// Opens the file and reads its header, in any order of columns. It must contain all `columns` and may
+    /// contain the `optional` ones, which are numbered after them; others are ignored. Reading ends with a
+    /// problem at an invalid byte, and after `largest` uncompressed bytes.
     Table(const std::filesystem::path& file, const std::vector<std::string>& columns, std::uintmax_t largest,
           ExperimentProblems& problems, const std::vector<std::string>& optional = {});
     ~Table();
-    /// Goes on to the next row that has as many columns as the header; false at the end or where the header
-    /// is unusable; none at all is a problem. Lines that are empty or start with # are skipped.
+    /// Advances to the next row with as many columns as the header. Returns false at the end or if the header
+    /// is unusable; a table without rows is a problem. Empty lines and lines that start with # are skipped.
     bool next();
 
-    /// Whether the header names the column.
+    /// Whether the header contains the column.
     bool has(std::size_t column) const;
     std::string_view text(std::size_t column) const { return words_[column]; }
-    /// The number in a column; anything else is reported, and nothing given.
+    /// The number in a column; anything else is reported, and nothing is returned.
     std::optional<double> number(std::size_t column);
     std::optional<long> whole_number(std::size_t column, long least);
     long line() const { return line_; }
-    /// "plate.csv:12", the present row or another.
+    /// "plate.csv:12", for the current row or another one.
     std::string where() const { return where(line_); }
     std::string where(long line) const;
     void problem(const std::string& what) { problem_at(where(), what); }
     void problem_at(const std::string& where, const std::string& what) { problems_.add(where, what); }
-    /// The same, told once for each topic in this table.
+    /// Reports only one problem for each topic in this table.
     void problem_once(const std::string& topic, const std::string& what) {
         problems_.add_once(name_ + topic, where(), what);
     }
     std::string name() const { return name_; }
-    /// Whether nothing was wrong with it so far.
+    /// Whether there are no problems so far.
     bool complete() const { return problems_.empty(); }
 
 private:
@@ -54,10 +54,10 @@ private:
     void read_header();
     std::string name_;
     std::vector<std::string> columns_;
-    std::size_t needed_;  ///< of them, the first
+    std::size_t needed_;  ///< number of required columns, which come first
     ExperimentProblems& problems_;
     std::unique_ptr<Lines> lines_;
-    std::vector<int> column_of_word_;  ///< by word of a line; -1: left aside
+    std::vector<int> column_of_word_;  ///< by word of a line; -1: ignored
     std::vector<std::string_view> words_;
     long line_ = 1, rows_ = 0;
 };

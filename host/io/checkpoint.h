@@ -1,4 +1,4 @@
-// Restart points: named blocks of bytes, whose meaning is their writer's, kept whole and checksummed.
+// Checkpoints: named byte arrays with checksums; only the writer knows their meaning.
 #pragma once
 #include <cstddef>
 #include <filesystem>
@@ -10,26 +10,26 @@
 namespace mcdem::inline io {
 
 struct Checkpoint {
-    std::string scene_text;  ///< scene of the run, overrides applied
-    std::string device;      ///< bits repeat only on the same device
-    int segments = 0;        ///< result segments that came before it; later ones are dropped on resuming
+    std::string scene_text;  ///< scene of the run, with overrides
+    std::string device;      ///< results are bit-identical only on the same device
+    int segments = 0;        ///< number of result segments before it; later ones are discarded on resuming
     std::map<std::string, std::vector<std::byte>> fields;
-    std::string warning;  ///< set on reading: why an older checkpoint had to be taken; empty otherwise
+    std::string warning;  ///< set on reading: why an older checkpoint was used; otherwise empty
 };
 
-/// Writes `<folder>/checkpoint.h5` and keeps the one before as checkpoint.previous.h5.
+/// Writes `<folder>/checkpoint.h5` and keeps the previous one as checkpoint.previous.h5.
 void write_checkpoint(const std::filesystem::path& folder, const Checkpoint& checkpoint);
 
-/// The newest checkpoint that is whole; none where none was written. Throws InputError when there are some
-/// and all are damaged.
+/// The newest undamaged checkpoint; none if none was written. Throws InputError if all existing ones are
+/// damaged.
 std::optional<Checkpoint> read_checkpoint(const std::filesystem::path& folder);
 
-/// Throws InputError where the file is no checkpoint or does not have its checksum.
+/// Throws InputError if the file is not a checkpoint or its checksum is wrong.
 void expect_whole_checkpoint(const std::filesystem::path& file);
 
 bool has_checkpoint(const std::filesystem::path& folder);
 
-/// Removes what write_checkpoint wrote: a finished run needs none.
+/// Removes the files of write_checkpoint when a run is finished.
 void remove_checkpoints(const std::filesystem::path& folder);
 
 }  // namespace mcdem::io

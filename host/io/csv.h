@@ -1,4 +1,4 @@
-// Summaries as CSV, for spreadsheets.
+// Summaries as CSV.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -7,9 +7,9 @@
 
 namespace mcdem::inline io {
 
-/// The text of `plate.csv`: one row per replica and scan, without positions and contacts.
-/// A column for each scene key that is not the same in all replicas comes last.
-/// Wall forces are the components that press the wall outwards; what is not known is `nan`.
+/// The text of `plate.csv`: one row per replica and scan, without positions and contacts. The last columns
+/// are the scene keys that differ between replicas. Wall forces are the components that press the wall
+/// outwards; unknown values are `nan`.
 std::string csv_text(const Run& run);
 
 /// Writes it to `<folder>/plate.csv`.

@@ -1,4 +1,4 @@
-// A run's grains and contacts as files of other programs.
+// Export of a run's grains and contacts for other programs.
 #pragma once
 #include <filesystem>
 
@@ -10,8 +10,8 @@ struct ExportFormats {
     bool vtk = false, xyz = false;
 };
 
-/// Exports a result folder or file into a folder, which it makes. Returns the number of files of grains and
-/// contacts. Throws InputError where no format is chosen, or nothing that could be exported; RunError.
+/// Exports a result folder or file into a folder, which is created. Returns the number of files of grains and
+/// contacts. Throws InputError if no format is selected or there is nothing to export; RunError.
 int export_run(const std::filesystem::path& run, const std::filesystem::path& folder,
                const ExportFormats& formats, const ExportChoice& choice);
 

@@ -1,18 +1,18 @@
-// The lock on a result folder: one program writes there alone, or several share it.
+// Lock on a result folder, exclusive or shared.
 #pragma once
 #include <filesystem>
 
 namespace mcdem::inline io {
 
-/// Held as long as this lives, and given back by the system where its process is killed.
+/// Held during the lifetime of the object; the system releases it if the process is killed.
 class FolderLock {
 public:
     enum class Use { alone, shared };
 
-    /// Does not wait: throws InputError where programs at work in the folder do not go with this use,
-    /// RunError where it cannot be opened. One that is alone removes what killed programs left of new files
-    /// there (of the folder itself, not those below it). Network disks may have no locks, or only among the
-    /// programs of one machine: goes on without.
+    /// Does not wait. Throws InputError if other programs in the folder are incompatible with this use,
+    /// RunError if the folder cannot be opened. An exclusive owner removes temporary files of killed programs
+    /// (in the folder itself, not in its subfolders). Network file systems may have no locks, or only between
+    /// programs on one machine; then work continues without a lock.
     FolderLock(const std::filesystem::path& folder, Use use);
     FolderLock(FolderLock&& other) noexcept;
     ~FolderLock();

@@ -1,4 +1,4 @@
-// What the contacts of a scan are to each of its grains.
+// Sums over the contacts of each grain in a scan.
 #pragma once
 #include <vector>
 
@@ -7,12 +7,12 @@
 namespace mcdem::inline io {
 
 struct GrainLoad {
-    int contacts = 0;                ///< walls counted
-    double force_magnitude = 0;      ///< sum over them [N]
-    Vec3 wall_force = Vec3::Zero();  ///< by the walls [N]
+    int contacts = 0;                ///< including walls
+    double force_magnitude = 0;      ///< sum over all contacts [N]
+    Vec3 wall_force = Vec3::Zero();  ///< total force by walls [N]
 };
 
-/// By grain; all zero where contacts were not recorded.
+/// By grain; all zero if contacts were not recorded.
 std::vector<GrainLoad> grain_loads(const Scan& scan);
 
 }  // namespace mcdem::io

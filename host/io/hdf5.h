@@ -1,7 +1,6 @@
-// HDF5 files as this program uses them: rows appended to checksummed tables, small attributes. Every
-// failing call becomes an error that names file and object: RunError in a file being written and where the
-// system fails, InputError where the content of one being read is wrong (a damaged or foreign file is
-// something the user handed in).
+// HDF5 files: tables with checksums to which rows are appended, and small attributes. Every failing call
+// becomes an error with the names of file and object: RunError for a file that is being written and for
+// failures of the system, InputError for invalid content of a file that is being read (damaged or foreign).
 #pragma once
 #include <hdf5.h>
 
@@ -21,7 +20,7 @@
 
 namespace mcdem::inline io::h5 {
 
-/// An HDF5 identifier, closed with its owner.
+/// An HDF5 identifier that is closed by its owner.
 class Handle {
 public:
     using Close = herr_t (*)(hid_t);
@@ -35,7 +34,7 @@ public:
     }
     ~Handle() { close(); }
     operator hid_t() const { return id_; }
-    /// What the library says of it: cached data may be written only now.
+    /// Returns the result of the library: cached data may be written only now.
     herr_t close() {
         const hid_t id = std::exchange(id_, -1);
         return id >= 0 && close_ ? close_(id) : 0;
@@ -62,14 +61,15 @@ template <>
 Handle number_type<long>();
 template <>
 Handle number_type<unsigned char>();
-/// Text of exactly `length` bytes (at least 1), padded with zeros. Not of variable length: those live in a
-/// part of the file that has no checksum.
+/// Text of exactly `length` bytes (at least 1), padded with zeros. Variable-length text would be stored in a
+/// part of the file without checksum.
 Handle text_type(std::size_t length);
 
-/// Throws the error described above, with the reason: the system's, else the library's own innermost one.
+/// Throws the error described above with its reason: that of the system, otherwise the innermost one of the
+/// library.
 [[noreturn]] void fail(const FileBelow& file, const std::string& where, const std::string& what);
 
-/// A table of rows; the first dimension grows. Must not outlive its file.
+/// A table that grows along its first dimension. Must not outlive its file.
 class Dataset {
 public:
     Dataset(Handle id, const FileBelow& file, std::string where)
@@ -79,30 +79,30 @@ public:
     Handle type() const;
     const std::string& where() const { return where_; }
 
-    /// Adds `rows` rows, converted from `memory_type`.
+    /// Appends `rows` rows, converted from `memory_type`.
     void append(hid_t memory_type, const void* data, hsize_t rows);
     /// Reads rows first .. first + rows into `data`, converted to `memory_type`.
     void read(hid_t memory_type, void* data, hsize_t first, hsize_t rows) const;
     template <class Number>
     std::vector<Number> read_all() const;
-    /// Throws unless the dataset has `rank` dimensions, of which those after the first are `row`.
+    /// Throws unless the dataset has `rank` dimensions and those after the first are `row`.
     void expect_row(const Extent& row) const;
-    /// Of a table that is written: from the first row on.
+    /// For a table that is written: computes the digest of its rows. Call before the first row.
     void keep_digest() { digest_ = std::make_unique<TableDigest>(); }
-    /// Of the rows appended; nothing may be appended after.
+    /// Digest of the appended rows. Do not append afterwards.
     std::string digest() const;
-    /// What its rows must have: looked at when they are read in order, from the first to the last.
+    /// Expected digest of the rows; checked if they are read in order from first to last.
     void expect_digest(const std::string& digest);
-    /// Reads all rows. Throws InputError where they do not have the digest.
+    /// Reads all rows. Throws InputError if their digest is wrong.
     void expect_whole() const;
-    /// Of a table that was written: all of it is in the file then, or this throws.
+    /// For a table that was written: returns only if all of it is in the file, otherwise throws.
     void close();
-    /// Throws as `h5::fail`.
+    /// Throws like `h5::fail`.
     [[noreturn]] void fail(const std::string& what) const { h5::fail(*file_, where_, what); }
 
 private:
     Handle select(hsize_t first, hsize_t rows) const;
-    /// Values in `rows` rows.
+    /// Number of values in `rows` rows.
     std::size_t values_in(hsize_t rows) const;
     void write_rows(hid_t memory_type, const void* data, hsize_t rows);
     void read_rows(hid_t memory_type, void* data, hsize_t first, hsize_t rows) const;
@@ -111,17 +111,17 @@ private:
     Handle id_;
     const FileBelow* file_;
     std::string where_;
-    mutable std::unique_ptr<TableDigest> digest_;  ///< of what was appended, or read so far
+    mutable std::unique_ptr<TableDigest> digest_;  ///< of the rows appended or read so far
 };
 
 class File {
 public:
-    /// Fills the new file, whose owner closes it after this.
+    /// Writes into the new file, whose owner closes it afterwards.
     static File create(NewFile& out);
     static File open(const std::filesystem::path& file);
     File(File&&) = default;
     ~File();
-    /// Writes everything out; errors such as a full disk show here at the latest.
+    /// Flushes everything; errors such as a full disk are detected here at the latest.
     void close();
 
     void make_group(const std::string& object);
@@ -129,20 +129,20 @@ public:
     /// Names of the objects in a group, sorted.
     std::vector<std::string> members(const std::string& group) const;
 
-    /// A new table whose rows have the extent `row` (empty: one value a row). Groups on the way are made.
-    /// With `rows_expected` a small table takes no more room than it needs.
+    /// Creates a table whose rows have the extent `row` (empty: one value per row), and its parent groups.
+    /// With `rows_expected` a small table takes only the necessary space.
     Dataset create_rows(const std::string& object, hid_t file_type, const Extent& row,
                         Storage storage = Storage::compressed, hsize_t rows_expected = 0);
     Dataset dataset(const std::string& object) const;
-    /// From now on every new table has a digest; `write_digests` puts those of the finished ones into the
+    /// From now on every new table has a digest; `write_digests` writes those of the finished tables to the
     /// file.
     void keep_digests() { keeps_digests_ = true; }
     void finish(Dataset& table);
     void write_digests();
-    /// By the table's name. Empty in files of programs that kept none.
+    /// By table name. Empty in files without digests.
     const std::map<std::string, std::string>& digests() const;
-    /// Reads all tables that have a digest and whose name begins so. Throws InputError where one is not there
-    /// or does not have its digest.
+    /// Reads all tables with a digest whose names begin with `beginning`. Throws InputError if one is missing
+    /// or its digest is wrong.
     void expect_whole(const std::string& beginning = "/") const;
     template <class Number>
     void write(const std::string& object, const std::vector<Number>& values, const Extent& row = {});
@@ -167,10 +167,10 @@ private:
     [[noreturn]] void fail(const std::string& where, const std::string& what) const {
         h5::fail(*below_, where, what);
     }
-    /// The library's answer to a question of what is there. Throws RunError where it is none because the
-    /// system refused to read.
+    /// Result of a query of the library. Throws RunError if the query failed because the system refused to
+    /// read.
     int answered(int answer, const std::string& object) const;
-    /// Refuses links to other places, inside the file or out of it.
+    /// Refuses links to other objects, inside or outside the file.
     void expect_inside(const std::string& object) const;
     Handle object(const std::string& object) const;
     /// The library may write an object only when it is closed.
@@ -178,7 +178,7 @@ private:
     Handle attribute(const std::string& object, const std::string& name) const;
     void write_attribute(const std::string& object, const std::string& name, hid_t type, hid_t space,
                          const void* data);
-    std::unique_ptr<FileBelow> below_;  ///< used by id_ to its end
+    std::unique_ptr<FileBelow> below_;  ///< used by id_ until it is closed
     std::filesystem::path path_;
     Handle id_;
     bool keeps_digests_ = false;

@@ -1,7 +1,7 @@
-// What lies below the HDF5 library: plain reads and writes of one open file. The library loses what fails
-// while it closes an object, and is left half closed. So a write that failed is remembered here, all after it
-// is kept in memory alone, and the library goes on to its end as if nothing had happened; the file's owner
-// then asks.
+// File driver below the HDF5 library: plain reads and writes of one open file. The library loses errors that
+// occur while it closes an object, and is left in an inconsistent state. Therefore a failed write is recorded
+// here and all later writes are kept in memory, so that the library finishes as if nothing had happened. The
+// owner of the file then checks for the error.
 #pragma once
 #include <hdf5.h>
 
@@ -13,7 +13,7 @@ namespace mcdem::inline io::h5 {
 
 enum class Access { read, write };
 
-/// One open file and what the system said of it. One that is read is closed with this, one that is written by
+/// One open file and its first error. A file for reading is closed with this object, a file for writing by
 /// its owner.
 class FileBelow {
 public:
@@ -23,15 +23,15 @@ public:
     FileBelow& operator=(const FileBelow&) = delete;
 
     Access access() const { return access_; }
-    /// The first error of the system, a number as in errno; 0: none.
+    /// First error of the system as in errno; 0: none.
     int error() const { return error_; }
 
-    /// False where the file cannot be read; behind its end lie zeros.
+    /// False if the file cannot be read; beyond its end it reads zeros.
     bool read(haddr_t first, std::size_t size, std::byte* to);
     void write(haddr_t first, std::size_t size, const std::byte* from);
     void set_size(haddr_t size);
     haddr_t size();
-    /// Nothing is read or written any more: where the library could not let go of it.
+    /// Ignores all further reads and writes, for files that the library could not close.
     void forget_file();
 
 private:
@@ -43,10 +43,10 @@ private:
     int descriptor_;
     Access access_;
     int error_ = 0;
-    std::vector<Piece> unwritten_;  ///< what was to be written since the first error, in order
+    std::vector<Piece> unwritten_;  ///< writes since the first error, in order
 };
 
-/// Makes the library use `file`, whatever name it is given; `file` must outlive the library's.
+/// Makes the library use `file` for any file name; `file` must outlive the library's file.
 void use_file(hid_t access_properties, FileBelow& file);
 
 }  // namespace mcdem::io::h5

@@ -1,13 +1,13 @@
-// The folder that a command writes into.
+// The output folder of a command.
 #pragma once
 #include "io/folder_lock.h"
 
 namespace mcdem::inline io {
 
-/// Makes the folder where it is missing, and keeps other programs from writing there as long as the lock
-/// lives. Removes what killed programs left of new files there and among its simulations. Throws InputError
-/// for a file, for the folder of an experiment, and where another program is at work; RunError where it
-/// cannot be made or written to.
+/// Creates the folder if necessary and locks it against other programs for the lifetime of the lock. Removes
+/// temporary files of killed programs there and in its simulations. Throws InputError for a file, for the
+/// folder of an experiment, and if another program uses the folder; RunError if it cannot be created or
+/// written.
 FolderLock open_output_folder(const std::filesystem::path& folder);
 
 }  // namespace mcdem::io

@@ -1,5 +1,4 @@
-// The results of a run that was computed in parts, put together into the file that one program would have
-// written.
+// Merges the results of a distributed run into the file that a single process would have written.
 #pragma once
 #include <filesystem>
 #include <stdexcept>
@@ -7,18 +6,17 @@
 
 namespace mcdem::inline io {
 
-/// Where the parts of the run in `folder` lie until they are merged.
+/// Folder of the parts of the run in `folder` until they are merged.
 std::filesystem::path parts_folder(const std::filesystem::path& folder);
 
-/// A part that cannot be read to its end, and must be made again.
+/// A part that cannot be read completely and must be computed again.
 struct DamagedPart : std::runtime_error {
     DamagedPart(std::size_t number, const std::string& why) : std::runtime_error(why), part(number) {}
     std::size_t part;
 };
 
-/// Writes the replicas of all parts, one part after the other, into `merged`: to the last bit what one
-/// program writes for the whole scene. Holds one replica in memory. Throws DamagedPart, and RunError where
-/// `merged` cannot be written.
+/// Writes the replicas of all parts in order into `merged`; the file is bit-identical to that of a single
+/// process. Holds one replica in memory. Throws DamagedPart, and RunError if `merged` cannot be written.
 void merge_parts(const std::vector<std::filesystem::path>& parts, const std::filesystem::path& merged);
 
 }  // namespace mcdem::io

@@ -1,4 +1,4 @@
-// The folder of a run: segments while it runs, one file when it is done.
+// The folder of a run: segments while it runs, one file at the end.
 #pragma once
 #include <filesystem>
 #include <vector>
@@ -8,41 +8,42 @@
 
 namespace mcdem::inline io {
 
-/// `<folder>/run.h5`: the whole run, there once it is done.
+/// `<folder>/run.h5`: the complete run; exists when the run is finished.
 std::filesystem::path run_file(const std::filesystem::path& folder);
 
-/// The segments of a run in progress in order. Throws InputError when one is missing among them.
+/// The segments of an unfinished run, in order. Throws InputError if one is missing.
 std::vector<std::filesystem::path> segment_files(const std::filesystem::path& folder);
 
-/// What `read_run` reads for `file_or_folder`: the file itself, run.h5, or all segments.
+/// The files that `read_run` reads for `file_or_folder`: the file itself, run.h5, or all segments.
 std::vector<std::filesystem::path> result_files(const std::filesystem::path& file_or_folder);
 
-/// A file of a run in the folder, of any state; an empty path where there is none.
+/// A file of a run in any state in the folder; an empty path if there is none.
 std::filesystem::path file_of_a_run(const std::filesystem::path& folder);
 
-/// Throws InputError for a file where the folder of a run is to be.
+/// Throws InputError if a file exists at the path of the folder.
 void expect_no_file(const std::filesystem::path& folder);
 
-/// make_folder, but for a file in its place: InputError.
+/// Like make_folder, but a file at this path is an InputError.
 void make_result_folder(const std::filesystem::path& folder);
 
-/// Owns a result folder while a run is written to it alone; other programs are refused.
+/// Exclusive owner of a result folder while a run is written; other programs are refused.
 class ResultFolder {
 public:
-    /// Makes the folder. Refuses one in which another run lies.
+    /// Creates the folder. Refuses one that contains another run.
     static ResultFolder create(const std::filesystem::path& folder);
-    /// Takes up the folder of a run that was interrupted (or is done: see is_finished).
+    /// Opens the folder of a run that was interrupted, or is finished (see is_finished).
     static ResultFolder open_for_resume(const std::filesystem::path& folder);
 
     const std::filesystem::path& path() const { return folder_; }
     int segments() const { return segments_; }
     bool is_finished() const;
 
-    /// Writes the scans since the last segment, with all else about the run; returns the segment's number.
+    /// Writes the scans since the last segment, with the provenance of the run; returns the number of the
+    /// segment.
     int append_segment(const Run& scans_since_last);
-    /// Forgets segment `index` and all later ones: they are newer than the checkpoint.
+    /// Discards segment `index` and all later ones, which are newer than the checkpoint.
     void drop_segments_from(int index);
-    /// Reads all segments. Throws InputError that says which is damaged and what to do.
+    /// Reads all segments. Throws InputError with the damaged one and a remedy.
     void expect_whole_segments() const;
     /// Merges all segments into run.h5 and removes them. Needs memory for one segment.
     void finish();
@@ -53,7 +54,7 @@ private:
     void remove_segments();
     std::filesystem::path folder_;
     FolderLock lock_;
-    int segments_ = 0;  ///< the next segment's number
+    int segments_ = 0;  ///< number of the next segment
 };
 
 }  // namespace mcdem::io

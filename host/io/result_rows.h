@@ -1,4 +1,4 @@
-// The rows of the tables in a result file, and where each of their fields lies in memory.
+// Rows of the tables in a result file, and the offsets of their fields in memory.
 #pragma once
 #include "core/recording.h"
 #include "io/hdf5.h"
@@ -17,7 +17,7 @@ struct ScanRow {
     double strain[6];
 };
 
-/// Real is what the file keeps, float or double: rows go to and from it without conversion.
+/// Real is the type in the file, float or double: rows are read and written without conversion.
 template <class Real>
 struct ContactRow {
     int grain, partner;
@@ -25,7 +25,7 @@ struct ContactRow {
 };
 
 ScanRow scan_row(const Scan& scan);
-/// Throws InputError naming `where` when the row says what cannot be.
+/// Throws InputError with `where` if the row contains impossible values.
 Scan scan_of(const ScanRow& row, const std::string& where);
 template <class Real>
 ContactRow<Real> contact_row(const Contact& contact);
@@ -36,10 +36,10 @@ Contact contact_of(const ContactRow<Real>& row, std::size_t grains, const std::s
 h5::Handle scan_row_type();
 template <class Real>
 h5::Handle contact_row_type();
-/// The same fields as a file keeps them: without gaps.
+/// The same fields as stored in the file, without gaps.
 h5::Handle packed(const h5::Handle& row_type);
-/// Throws unless the table has every field of `row_type` but the optional ones: what is missing is left as it
-/// was.
+/// Throws unless the table has every field of `row_type` except the optional ones. Missing fields of a row
+/// keep their values.
 void expect_fields(const h5::Dataset& table, const h5::Handle& row_type,
                    std::initializer_list<std::string_view> optional = {});
 

@@ -1,4 +1,4 @@
-// Results of a run as HDF5, laid out like H5MD (README.md beside this file describes every table).
+// Results of a run as HDF5, with a layout similar to H5MD (README.md in this folder describes every table).
 #pragma once
 #include <filesystem>
 #include <memory>
@@ -7,13 +7,13 @@
 
 namespace mcdem::inline io {
 
-/// How much of a run to read: the scans' scalars are always read, positions and contacts are the bulk.
+/// Data to read: scalars of the scans are always read; positions and contacts are most of the data.
 enum class ReadWhat { observables, positions, contacts, everything };
 
-/// Writes the run whole or, on any error, not at all.
+/// Writes the complete run, or, after an error, nothing.
 void write_run(const std::filesystem::path& file, const Run& run);
 
-/// Reads a result file, or a result folder: its run.h5, else the segments of a run in progress.
+/// Reads a result file, or a result folder: its run.h5, otherwise the segments of an unfinished run.
 Run read_run(const std::filesystem::path& file_or_folder, ReadWhat what = ReadWhat::everything);
 
 /// Reads a run scan by scan, for runs larger than memory.
@@ -23,7 +23,7 @@ public:
     ~RunReader();
     /// The run without positions and contacts.
     const Run& run() const { return run_; }
-    /// One scan with everything recorded.
+    /// One scan with all recorded data.
     Scan read_scan(std::size_t replica, std::size_t scan);
 
 private:

@@ -1,4 +1,4 @@
-// A recorded run's packing, as scenes may start from it.
+// The packing of a recorded run as initial packing of a scene.
 #pragma once
 #include <filesystem>
 #include <optional>
@@ -7,7 +7,7 @@
 
 namespace mcdem::inline io {
 
-/// Of a run of one replica: frame `frame`, or the first with positions. Throws InputError.
+/// From a run of one replica: frame `frame`, or the first one with positions. Throws InputError.
 Packing packing_of_run(const std::filesystem::path& file, std::optional<long> frame);
 
 }  // namespace mcdem::io

@@ -11,13 +11,13 @@ namespace mcdem::inline io {
 /// Cell types of VTK.
 enum class VtkCell : unsigned char { vertex = 1, line = 3, polygon = 7 };
 
-/// Points, and cells of any of them one after the other.
+/// Points, and cells of any type in sequence.
 struct VtkCells {
     std::vector<double> points;  ///< three numbers each
     std::vector<long> offsets{0};
     std::vector<unsigned char> types;
 
-    /// Points that are the cell's alone.
+    /// Adds a cell with points of its own.
     void add(VtkCell type, const std::vector<Vec3>& corners);
 };
 
@@ -33,7 +33,7 @@ public:
     void cell_data(const std::string& name, const std::vector<Number>& values, const h5::Extent& row = {}) {
         file_.write("/VTKHDF/CellData/" + name, values, row);
     }
-    /// What the scan is, as field data.
+    /// Writes the properties of the scan as field data and closes the file.
     void close_with(const Scan& scan, const Box& box);
 
 private:

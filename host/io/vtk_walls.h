@@ -1,4 +1,4 @@
-// A container's walls as surfaces, and the edges of a periodic one.
+// Walls of a container as surfaces, and the edges of a periodic container.
 #pragma once
 #include <vector>
 
@@ -7,8 +7,8 @@
 
 namespace mcdem::inline io {
 
-/// Cells with the wall that each belongs to; -1: an edge of a cell that repeats. Side walls reach from the
-/// floor to where the plate started; a cell is the upright one that grains are in.
+/// Cells with the wall of each; -1: an edge of a periodic container. Side walls extend from the floor to the
+/// initial height of the plate; a `cell` is drawn as the upright cell that contains the positions.
 struct VtkWalls {
     VtkCells cells;
     std::vector<int> wall;

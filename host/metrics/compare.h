@@ -1,4 +1,5 @@
-// The paper's table: one setting's replicas against reference recordings, measured or simulated.
+// The comparison table of the paper: replicas of one setting against reference recordings, measured or
+// simulated.
 #pragma once
 #include "metrics/contact_forces.h"
 #include "metrics/levels.h"
@@ -10,20 +11,20 @@ struct CompareOptions {
     WallContacts walls_in_coordination = WallContacts::counted;
     WallContacts walls_in_distribution = WallContacts::left_out;  ///< the paper: "interparticle" forces
     std::optional<double>
-        touch_force;  ///< errf leaves out levels where the reference's force is not above it [N]
+        touch_force;  ///< errf ignores levels at which the reference's force does not exceed this [N]
 };
 
 struct Comparison {
     std::string setting;
-    Estimate Rtop;  ///< top force at maximum compression over the reference's
+    Estimate Rtop;  ///< top force at maximum compression over that of the reference
     Estimate errf;  ///< RMS error of the top force over all levels [N]
     Estimate errZ;  ///< RMS error of Z over all levels, at tau
     Estimate tau;   ///< force below which contacts are ignored, chosen to minimise errZ [N]
-    Estimate bhat;  ///< -log of the mean over levels of Bhattacharyya's coefficient
+    Estimate bhat;  ///< -log of the mean over levels of the Bhattacharyya coefficient
     int replicas = 0;
     int reference_levels = 0;
-    int levels_errf = 0, levels_errZ = 0, levels_bhat = 0;  ///< of those levels, how many were used
-    std::vector<std::string> notes;  ///< what was not available, and what was done instead
+    int levels_errf = 0, levels_errZ = 0, levels_bhat = 0;  ///< number of levels used for each
+    std::vector<std::string> notes;                         ///< unavailable data, and what was done instead
 };
 
 Comparison compare(const Setting& simulated, const Replicas& reference, const CompareOptions& options = {});

@@ -1,4 +1,4 @@
-// The magnitudes of the contact forces in scans, as the metrics on contacts need them.
+// Magnitudes of the contact forces in scans.
 #pragma once
 #include <vector>
 
@@ -6,17 +6,16 @@
 
 namespace mcdem::inline metrics {
 
-/// Whether a grain's contact with a wall is one of its contacts.
+/// Whether contacts with walls are included.
 enum class WallContacts { counted, left_out };
 
-/// An empty list of contacts means that there were none only where Z was found to be zero; else that
-/// they were not recorded.
+/// An empty list of contacts means "no contacts" only if Z is zero; otherwise contacts were not recorded.
 bool contacts_known(const Scan& scan);
 
 struct ForceLists {
     std::vector<double> grain_grain;  ///< |f| [N]
-    std::vector<double> grain_wall;   ///< |f| [N]; empty where walls are left out
-    int scans = 0;                    ///< scans with known contacts that they come from
+    std::vector<double> grain_wall;   ///< |f| [N]; empty if walls are left out
+    int scans = 0;                    ///< number of scans with known contacts
 };
 ForceLists contact_forces(const std::vector<const Scan*>& scans, WallContacts walls);
 

@@ -1,5 +1,5 @@
-// A number with its standard error, and the two ways of getting one from replicas: the spread of a
-// mean, and leaving one replica out at a time (jackknife) for metrics that are no plain mean.
+// Estimates with standard errors over replicas, from the scatter of a mean, or by the jackknife (leaving one
+// replica out at a time) for other metrics.
 #pragma once
 #include <cmath>
 #include <limits>
@@ -13,51 +13,51 @@ namespace mcdem::inline metrics {
 
 inline constexpr double not_available = std::numeric_limits<double>::quiet_NaN();
 
-/// `standard_error` is over replicas; not-a-number where fewer than two tell it.
+/// `standard_error` is over replicas; NaN if there are fewer than two.
 struct Estimate {
     double value = not_available;
     double standard_error = not_available;
-    int count = 0;  ///< replicas it rests on
+    int count = 0;  ///< number of replicas
     bool available() const { return std::isfinite(value); }
 };
 
-/// Mean of what is finite, with its standard error.
+/// Mean of the finite values, with its standard error.
 Estimate mean_over_replicas(std::span<const double> values);
 
-/// One number a replica, with the packing seed it comes from (empty where there is none).
+/// One value per replica with its packing seed (empty if there is none).
 struct Sample {
     std::vector<std::string> seed;
-    std::vector<double> value;  ///< not-a-number where the replica does not have it
+    std::vector<double> value;  ///< NaN if the replica has no value
 };
 
-/// Positions (in a, in b) of the replicas that share a seed. None where the two sets of seeds differ,
-/// a seed is missing or comes twice: then the two samples are independent.
+/// Index pairs (in a, in b) of replicas with the same seed. Empty if the two sets of seeds differ, or a seed
+/// is missing or repeated: then the two samples are independent.
 using Pairs = std::vector<std::pair<int, int>>;
 std::optional<Pairs> pair_by_seed(const std::vector<std::string>& a, const std::vector<std::string>& b);
 
-/// mean(above) / mean(below). Where seeds pair up, over the pairs both of which have a value, and the
-/// error takes in that they are correlated; else errors add in quadrature (one replica has none).
+/// mean(above) / mean(below). If seeds pair up, only pairs with both values are used and the error includes
+/// their correlation; otherwise errors add in quadrature (a single replica has none).
 Estimate ratio_of_means(const Sample& above, const Sample& below);
 
-/// One way to leave replicas out: the index of the one left out, or -1.
+/// Index of the replica that is left out, or -1.
 struct Omission {
     int simulated = -1;
     int reference = -1;
 };
 
-/// Leaves out one replica at a time on either side; pairs of one seed go together.
+/// Leaves out one replica at a time on either side; pairs with the same seed are left out together.
 class Jackknife {
 public:
     Jackknife(const std::vector<std::string>& simulated_seeds,
               const std::vector<std::string>& reference_seeds);
-    /// The first leaves nothing out.
+    /// The first one leaves nothing out.
     const std::vector<Omission>& omissions() const { return omissions_; }
-    /// From the metric's value under each omission.
+    /// Estimate from the metric's value under each omission.
     Estimate estimate(std::span<const double> value_by_omission) const;
 
 private:
     std::vector<Omission> omissions_{Omission{}};
-    std::vector<std::size_t> group_sizes_;  ///< omissions that belong together, after the first
+    std::vector<std::size_t> group_sizes_;  ///< numbers of omissions in each group, after the first omission
 };
 
 }  // namespace mcdem::metrics

@@ -1,4 +1,4 @@
-// Where grains overlap more than their contact model was tested for.
+// Overlaps beyond the tested range of a contact model.
 #pragma once
 #include <optional>
 
@@ -6,14 +6,14 @@
 
 namespace mcdem::inline metrics {
 
-/// Overlaps are those of two grains over the sum of their radii.
+/// Overlaps of two grains over the sum of their radii.
 struct BeyondLaw {
     double tested = 0;        ///< overlap (core/law_range.h)
-    double displacement = 0;  ///< least at which an overlap is larger [m]
+    double displacement = 0;  ///< smallest displacement with a larger overlap [m]
     double max_overlap = 0;
 };
 
-/// None where no scan's overlap is larger, where it is not known, and for models that were not tested.
+/// None if no overlap is larger, overlaps are unknown, or the model was not tested.
 std::optional<BeyondLaw> beyond_law(const Replicas& replicas);
 
 }  // namespace mcdem::metrics

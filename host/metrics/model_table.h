@@ -1,5 +1,5 @@
-// Top force of each setting at full stroke over a reference setting's: the paper's Rtop column without
-// measured data.
+// Top force of each setting at full stroke over that of a reference setting: the Rtop column of the paper
+// without measured data.
 #pragma once
 #include "metrics/law_range.h"
 #include "metrics/levels.h"
@@ -10,28 +10,27 @@ struct ModelRow {
     std::string setting;
     std::optional<ContactModel> model;
     Estimate top_force;  ///< at full stroke, or at `reached` [N]
-    Estimate ratio;      ///< over the reference setting's; paired over packing seeds where they match
+    Estimate ratio;      ///< over the reference setting; paired by packing seed if seeds match
     int replicas = 0;
     int failed = 0;  ///< replicas that stopped before the end of their protocol
-    /// Displacement of the last scan where no replica reached full stroke [m].
+    /// Displacement of the last scan, if no replica reached full stroke [m].
     std::optional<double> reached = std::nullopt;
     std::optional<BeyondLaw> beyond = std::nullopt;
 };
 
 struct ModelTable {
-    std::vector<ModelRow> rows;           ///< in the order of the settings
-    std::string reference;                ///< label of the setting that ratios are taken over
+    std::vector<ModelRow> rows;           ///< in order of the settings
+    std::string reference;                ///< label of the reference setting
     double displacement = not_available;  ///< full stroke of the reference setting, or the largest that any
-                                          ///< setting reached where the reference stopped early [m]
+                                          ///< setting reached if the reference stopped early [m]
     double rate_error =
-        not_available;  ///< largest that the engine estimated where a tenth of the top force is reached
+        not_available;  ///< largest estimate of the engine at or above a tenth of the top force
 };
 
-/// Largest estimate where a tenth of the largest load (stress_strain.h) is reached; not-a-number where there
-/// is none.
+/// Largest estimate at or above a tenth of the largest load (stress_strain.h); NaN if there is none.
 double largest_rate_error(const Replicas& replicas);
 
-/// The reference is the setting of that label; none: the first of model mc_dem, else the first.
+/// The reference is the setting with that label; default: the first with model mc_dem, otherwise the first.
 ModelTable model_table(const std::vector<Setting>& settings, const LevelOptions& options = {},
                        const std::optional<std::string>& reference = std::nullopt);
 

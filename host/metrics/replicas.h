@@ -1,4 +1,4 @@
-// Replicas of one setting: recordings that differ in nothing but the seed of their packing.
+// Replicas of one setting: recordings that differ only in the seed of their packing.
 #pragma once
 #include <optional>
 #include <string>
@@ -8,27 +8,27 @@
 
 namespace mcdem::inline metrics {
 
-/// Views: they hold as long as the recordings they came from.
+/// Pointers into recordings, which must outlive them.
 using Replicas = std::vector<const Recording*>;
 
 struct Setting {
-    std::string label;  ///< what sets it apart from the run's other settings, e.g. "mc_dem" or "gamma=1.2"
+    std::string label;  ///< distinguishes it from the run's other settings, e.g. "mc_dem" or "gamma=1.2"
     Replicas replicas;
 };
 
 Replicas replicas_of(const std::vector<Recording>& recordings);
 
-/// The run's settings in the order in which they first come.
+/// The run's settings in order of first appearance.
 std::vector<Setting> group_by_setting(const Run& run);
 
-/// Parameter `packing.seed`; empty where it is not known (measured data).
+/// Parameter `packing.seed`; empty if unknown (measured data).
 std::string seed_of(const Recording& recording);
 std::vector<std::string> seeds_of(const Replicas& replicas);
 
-/// Parameter `contact.model` where it is known and the same for all.
+/// Parameter `contact.model`, if it is known and the same for all.
 std::optional<ContactModel> model_of(const Replicas& replicas);
 
-/// Parameter `protocol.discard`: the recording's first cycles that metrics leave out; 0 where not known.
+/// Parameter `protocol.discard`: number of first cycles that metrics ignore; 0 if unknown.
 int discard_of(const Recording& recording);
 
 }  // namespace mcdem::metrics

@@ -1,10 +1,10 @@
-// The scaling law F ~ <Z><phi><b><f> between the force on the plate and the averages over the packing.
+// The scaling law F ~ <Z><phi><b><f> between the force on the plate and averages over the packing.
 #pragma once
 #include "metrics/levels.h"
 
 namespace mcdem::inline metrics {
 
-/// One level: averages over cycles first, then their product.
+/// One level: the product of averages over cycles.
 struct ScalingPoint {
     Phase phase = Phase::load;
     double displacement = 0;  ///< [m]
@@ -12,14 +12,15 @@ struct ScalingPoint {
     Estimate product;         ///< <Z><phi><b><f> [N m]
 };
 
-/// Levels where every factor is known.
+/// Levels with all factors known.
 std::vector<ScalingPoint> scaling_points(const Levels& levels);
 
 struct ScalingFit {
-    double coefficient = not_available;  ///< F = coefficient * product, least squares through zero [1/m]
-    double r_squared = not_available;    ///< 1 - residual / spread about the mean force
-    /// With F = a x + b x^2 fitted through zero: the share b x^2 / (a x + b x^2) of the square at the
-    /// largest product. 0: straight; positive: bends upwards.
+    double coefficient =
+        not_available;                 ///< F = coefficient * product, least squares through the origin [1/m]
+    double r_squared = not_available;  ///< 1 - residual / scatter about the mean force
+    /// With F = a x + b x^2 fitted through the origin: the contribution b x^2 / (a x + b x^2) of the square
+    /// at the largest product. 0: linear; positive: superlinear.
     double curvature = not_available;
     int points = 0;
 };
