@@ -1,4 +1,4 @@
-// What the numerics of a scene do to its observables: paired runs with finer numerics, extrapolated to their
+// Influence of a scene's numerics on its observables: paired runs with refined numerics, extrapolated to the
 // limit.
 #pragma once
 #include <string>
@@ -8,21 +8,21 @@
 
 namespace mcdem::inline diagnose {
 
-/// Runs of the scene with one kind of numerics refined step by step.
+/// Runs of the scene with one numerical setting refined step by step.
 struct RefinedRuns {
-    std::string cause;   ///< "plate speed"
-    std::string remedy;  ///< what brings the error down by a factor, with {} for it; empty: nothing to set
-    std::vector<double>
-        remaining;  ///< part of the error that each step leaves, by the method's order: 1/2, 1/4, ..
+    std::string cause;              ///< "plate speed"
+    std::string remedy;             ///< setting that reduces the error by the factor {}; empty: there is none
+    std::vector<double> remaining;  ///< fraction of the error that remains after each step, from the order of
+                                    ///< the method: 1/2, 1/4, ..
     std::vector<Eigen::MatrixXd> observed;  ///< by step; row: replica, column: cell
 };
 
-/// Error of one cell by one cause: the scene less the limit of infinitely fine numerics.
+/// Error of one cell from one cause: the scene minus the limit of infinitely fine numerics.
 struct CellError {
     double value = 0;
     double standard_error = 0;
-    bool follows_order =
-        true;  ///< false: steps disagree, `value` is the last step's difference, at least that large
+    bool follows_order = true;  ///< false: the steps are inconsistent, and `value` is the difference of the
+                                ///< last step, a lower limit
 };
 
 struct CauseErrors {
@@ -31,12 +31,13 @@ struct CauseErrors {
 };
 
 struct ConvergenceLimits {
-    double force = 0.005;     ///< largest relative error of forces
-    double deviations = 0.5;  ///< .. of everything else, in standard deviations of one packing's replicates
+    double force = 0.005;  ///< maximum relative error of forces
+    double deviations =
+        0.5;  ///< maximum of all other errors, in standard deviations of the replicates of one packing
 };
 
 struct Convergence {
-    std::string scene, copies;  ///< `copies`: what the replicas are
+    std::string scene, copies;  ///< `copies`: description of the replicas
     std::vector<Cell> cells;
     int replicas = 0;
     Eigen::VectorXd mean, deviation;  ///< of the scene's replicas, by cell
@@ -44,23 +45,23 @@ struct Convergence {
     ConvergenceLimits limits;
     double seconds = 0;
 
-    /// Standard deviation of the cell over replicas, at least what makes its resolution count as the largest
-    /// error that is allowed: copies that do not rearrange hardly differ.
+    /// Standard deviation of the cell over replicas. The lower limit follows from the resolution, which must
+    /// not exceed the allowed error: copies without rearrangements hardly differ.
     double scale(std::size_t cell) const;
-    /// Largest error of the cell that is within the limits, in the observable's units.
+    /// Largest allowed error of the cell, in units of the observable.
     double limit(std::size_t cell) const;
-    /// Errors of forces are relative: their observables are logarithms.
+    /// Whether errors are relative, as for forces, whose observables are logarithms.
     bool is_relative(std::size_t cell) const;
-    /// Beyond the limit, and not by chance.
+    /// Whether the error is significantly beyond the limit.
     bool is_beyond(const CauseErrors& cause, std::size_t cell) const;
-    /// The cell of an observable where this cause's error is largest over its limit; -1: no cell has it.
+    /// The cell of an observable with the largest error from this cause over its limit; -1: none has one.
     int worst_cell(const CauseErrors& cause, int observable) const;
-    /// .. of all observables that is beyond its limit, or -1.
+    /// The worst cell of all observables beyond its limit, or -1.
     int worst_beyond(const CauseErrors& cause) const;
 };
 
-/// `base`: the scene's own observations. Rows are paired: a replica starts from the same packing in every
-/// step. Cells in which a replica has no value leave that replica out.
+/// `base`: observations of the scene itself. Rows are paired: a replica starts from the same packing in every
+/// step. A replica without a value in a cell is left out there.
 Convergence convergence_of(const Grid& grid, const Eigen::MatrixXd& base,
                            const std::vector<RefinedRuns>& refinements, const ConvergenceLimits& limits);
 

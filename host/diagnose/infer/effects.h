@@ -1,5 +1,5 @@
-// The library of effects that a simulation may leave out, and of the parameters that it may have slightly
-// wrong. A new effect is one row in effects.cpp (CONTRIBUTING.md).
+// The library of effects that a simulation may neglect, and of uncertain parameters. A new effect is one row
+// in effects.cpp (CONTRIBUTING.md).
 #pragma once
 #include <optional>
 #include <span>
@@ -12,12 +12,12 @@
 
 namespace mcdem::inline diagnose {
 
-/// A simulation and the instrument that looks at it.
+/// A simulation and the instrument that measures it.
 struct Model {
     Replica replica;
     Instrument instrument;
     double mean_diameter = 0;                     ///< of the experiment's grains [m]
-    std::optional<double> experiment_speed = {};  ///< of the experiment's plate [m/s]; nothing: slow
+    std::optional<double> experiment_speed = {};  ///< of the experiment's plate [m/s]; empty: slow
 };
 
 /// A key of the scene and its value in a model.
@@ -26,30 +26,30 @@ struct NumericalSetting {
     double* value;
 };
 
-/// One way in which reality may differ from the model, with an amplitude that is zero for the model as it is.
+/// A way in which reality may differ from the model; the amplitude is zero for the unchanged model.
 struct Effect {
     std::string_view name;
-    std::string_view unit;          ///< of the amplitude, empty for pure numbers
-    std::string_view formula;       ///< what the amplitude does
-    std::string_view source;        ///< where the formula comes from
-    double low, high;               ///< plausible amplitudes, over the scale
-    double first, second;           ///< of the paired runs, over the scale
-    double (*scale)(const Model&);  ///< natural size of the amplitude in this model [unit]
+    std::string_view unit;          ///< of the amplitude; empty for dimensionless ones
+    std::string_view formula;       ///< meaning of the amplitude
+    std::string_view source;        ///< reference for the formula
+    double low, high;               ///< range of plausible amplitudes, over the scale
+    double first, second;           ///< amplitudes of the paired runs, over the scale
+    double (*scale)(const Model&);  ///< natural scale of the amplitude in this model [unit]
     void (*apply)(Model&, double amplitude);
-    /// Why this model cannot have it; empty where it can.
+    /// Reason why this model cannot have the effect; empty if it can.
     std::string_view (*hindrance)(const Model&);
-    /// Of the simulation's own numerics: the settings that are lowered together; the first one is advised.
-    /// Nothing for what the world or the instrument does.
+    /// For effects of the simulation's own numerics: the settings that are lowered together; the first one is
+    /// recommended to the user. Null for effects of the real system or the instrument.
     std::vector<NumericalSetting> (*settings)(Model&) = nullptr;
 };
 
 /// All candidates, in the order of the documentation.
 std::span<const Effect> effects();
 const Effect* find_effect(std::string_view name);
-/// Whether it is the simulation's own numerics: not the world that it leaves out, but how it computes.
+/// Whether it is an effect of the simulation's own numerics.
 bool is_numerical(std::string_view name);
 
-/// A parameter of the model that is known only roughly: refitted in every comparison.
+/// An uncertain parameter of the model, refitted in every comparison.
 struct Nuisance {
     std::string name;
     std::string unit;
@@ -57,7 +57,7 @@ struct Nuisance {
     void (*apply)(Model&, double shift) = nullptr;
 };
 
-/// The model's nuisances. Sigmas come from the experiment's [uncertainty] where it has them.
+/// The model's nuisances. Sigmas are taken from the experiment's [uncertainty] if given there.
 std::vector<Nuisance> nuisances(const Model& model, const Experiment& experiment);
 
 }  // namespace mcdem::diagnose

@@ -1,4 +1,4 @@
-// Everything that a diagnosis rests on, as numbers: no simulator and no files behind it.
+// All numbers that a diagnosis is based on, without simulator and files.
 #pragma once
 #include <algorithm>
 #include <cstdint>
@@ -10,66 +10,66 @@
 
 namespace mcdem::inline diagnose {
 
-/// An effect that may be to blame, with plausible amplitudes.
+/// A candidate effect with its range of plausible amplitudes.
 struct CandidateRange {
     std::string name, unit;
     double low = 0, high = 0;
 };
-/// A parameter that may be off, with its prior.
+/// An uncertain parameter with its prior.
 struct NuisancePrior {
     std::string name, unit;
     double sigma = 0;
 };
 
-/// One of several packings of an experiment: what was seen of it, and runs of the scene on it.
+/// One of several packings of an experiment: its observation, and runs of the scene on it.
 struct PackingEvidence {
     std::string name;
     Eigen::VectorXd observed;
     Eigen::MatrixXd baseline;
-    /// Observed less the mean of the baseline.
+    /// Observed minus the mean of the baseline.
     Eigen::VectorXd gap() const;
 };
 
 struct Evidence {
-    Eigen::VectorXd observed;  ///< the experiment, one entry a cell
+    Eigen::VectorXd observed;  ///< the experiment, one entry per cell
     Eigen::MatrixXd baseline;  ///< row: replicate of the scene on the experiment's packing
     Library library;
-    std::vector<CandidateRange> candidates;  ///< all of them in library.effects
-    std::vector<NuisancePrior> nuisances;    ///< all of them in library.nuisances
-    std::uint64_t seed = 1;                  ///< of everything drawn at random
-    /// Several packings: observed and baseline are their means (take_means). Empty: one.
+    std::vector<CandidateRange> candidates;  ///< all of library.effects
+    std::vector<NuisancePrior> nuisances;    ///< all of library.nuisances
+    std::uint64_t seed = 1;                  ///< for all random draws
+    /// For several packings, whose means (take_means) are observed and baseline. Empty: a single packing.
     std::vector<PackingEvidence> packings = {};
     int packing_count() const { return std::max(1, static_cast<int>(packings.size())); }
 };
 
-/// Observed and baseline as the means over the packings. Where noise and signatures are alike the mean of the
-/// gaps holds all that the packings say of what they share: its likelihood is the product of theirs.
+/// Sets observed and baseline to the means over the packings. If noise and signatures are equal, the mean of
+/// the gaps contains all information about what the packings share: its likelihood is the product of theirs.
 void take_means(Evidence& evidence);
 
-/// Mean over packings whose rows lie one packing after the other.
+/// Mean over packings whose rows are stored one packing after the other.
 Eigen::MatrixXd mean_over_packings(const Eigen::MatrixXd& rows, int packings);
 
-/// Leaves out what simulations failed to give: replicates without any number, candidates and nuisances
-/// without a signature in most of the cells that are known otherwise. Says what, and why. Throws InputError
-/// where too few replicates are left.
+/// Leaves out the results of failed simulations: replicates without any value, candidates and nuisances
+/// without a signature in most of the otherwise known cells. Returns what was left out and why. Throws
+/// InputError if too few replicates remain.
 std::vector<std::string> leave_out_failures(Evidence& evidence);
 
-/// The evidence on chosen cells, with everything that follows from it before the observed is looked at.
+/// The evidence on selected cells, with all derived quantities that do not depend on the observation.
 struct GapData {
     CellChoice cells;
     Eigen::VectorXd mean;    ///< of the baseline
-    Eigen::VectorXd gap;     ///< observed less mean
-    Eigen::MatrixXd noise;   ///< scatter of one replicate, of several packings of their mean
-    std::vector<int> group;  ///< by row of noise: rows with a mean in common (library.h)
+    Eigen::VectorXd gap;     ///< observed minus mean
+    Eigen::MatrixXd noise;   ///< scatter of one replicate; for several packings, of their mean
+    std::vector<int> group;  ///< by row of noise: rows with a common mean (library.h)
     std::vector<int> fold;   ///< by row of noise: rows that are left out together, those of one packing
     std::vector<FreeParameter> free;
     std::vector<Candidate> candidates;  ///< effects, then nuisances beyond their priors
-    int effects = 0;                    ///< how many of them are effects
-    int packings = 1;                   ///< behind the gap
+    int effects = 0;                    ///< number of effects among them
+    int packings = 1;                   ///< number of packings in the gap
     const std::string& name(std::size_t candidate) const { return candidates[candidate].signature->name; }
 };
 
-/// Views into `evidence`, which must stay.
+/// Holds references to `evidence`, which must outlive it.
 GapData gap_data(const Evidence& evidence);
 
 }  // namespace mcdem::diagnose

@@ -1,5 +1,5 @@
-// The space in which an observation is held against the model: cells that all of them have, noise whitened,
-// and the model's rough parameters free to move within their priors.
+// The space in which an observation is compared with the model: common cells, whitened noise, and uncertain
+// parameters marginalised over their priors.
 #pragma once
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
@@ -10,25 +10,26 @@
 
 namespace mcdem::inline diagnose {
 
-/// Covariance of rows with mean zero, shrunk towards its own diagonal (Ledoit & Wolf 2004, on correlations).
+/// Covariance of rows with mean zero, shrunk towards its diagonal (Ledoit & Wolf 2004, applied to
+/// correlations).
 Eigen::MatrixXd shrunk_covariance(const Eigen::MatrixXd& rows);
 
-/// Cells whose value is finite in every replicate and every signature that is used, and that vary at all.
+/// Cells with finite values in every replicate and every used signature, and with nonzero variance.
 std::vector<Eigen::Index> usable_cells(const Eigen::MatrixXd& baseline,
                                        const std::vector<const Signature*>& used,
                                        const Eigen::VectorXd& observed);
 
-/// What a space may leave out: the ablations, and the split into fitted and held-out cells.
+/// Subset of the cells, for ablations and the split into fitted and held-out cells.
 using CellChoice = std::vector<Eigen::Index>;
 
 /// Rows of `all` in the order of `cells`.
 Eigen::VectorXd pick(const Eigen::VectorXd& all, const CellChoice& cells);
 Eigen::MatrixXd pick_columns(const Eigen::MatrixXd& all, const CellChoice& cells);
 
-/// Observable::resolution of each chosen cell, of `all` cells.
+/// Observable::resolution of each selected cell, of `all` cells.
 Eigen::ArrayXd resolutions(const CellChoice& cells, Eigen::Index all);
 
-/// A parameter that is refitted: its linear signature on the chosen cells and its prior.
+/// A refitted parameter: its linear signature on the selected cells and its prior.
 struct FreeParameter {
     Eigen::VectorXd direction;  ///< per unit
     double sigma = 0;           ///< prior
@@ -36,26 +37,27 @@ struct FreeParameter {
 
 class GapSpace {
 public:
-    /// `noise`: rows of one replicate's scatter, all cells; `mean_of`: replicates behind the mean that the
-    /// observed is compared with (0: known exactly). `extra`: variance that comes on top, all cells; empty:
+    /// `noise`: rows of the scatter of one replicate, all cells. `mean_of`: number of replicates in the mean
+    /// that is compared with the observation (0: exact). `extra`: additional variance, all cells; empty:
     /// none.
     GapSpace(const Eigen::MatrixXd& noise, int mean_of, const CellChoice& cells,
              const std::vector<FreeParameter>& free, const Eigen::VectorXd& extra = {});
 
     const CellChoice& cells() const { return cells_; }
-    /// Whitens a vector on all cells: its square is a chi-square of the gap with nuisances marginalised.
+    /// Whitens a vector on all cells; its square is a chi-square of the gap with nuisances marginalised.
     Eigen::VectorXd whiten(const Eigen::VectorXd& all) const { return whiten_chosen(pick(all, cells_)); }
     Eigen::VectorXd whiten_chosen(const Eigen::VectorXd& chosen) const;
-    /// Of a difference on all cells, nuisances marginalised, but for a constant of the number of cells.
+    /// Marginal log likelihood of a difference on all cells, up to a constant that depends on the number of
+    /// cells.
     double log_likelihood(const Eigen::VectorXd& all) const;
-    /// One sigma of each chosen cell by itself, moderated over its observable; nuisances not counted.
+    /// One sigma of each selected cell, moderated over its observable, without nuisances.
     const Eigen::ArrayXd& sigma() const { return sigma_; }
-    /// The nuisances' most probable values given a difference on all cells, and their errors after it.
+    /// Most probable values of the nuisances for a difference on all cells, and their posterior errors.
     Eigen::VectorXd fit_nuisances(const Eigen::VectorXd& all) const;
     Eigen::VectorXd nuisance_errors() const;
-    /// What is left of a difference, on the chosen cells, once the nuisances have their most probable values.
+    /// A difference on the selected cells minus the contribution of the most probable nuisances.
     Eigen::VectorXd refitted(const Eigen::VectorXd& all) const;
-    /// One sigma of a weighted sum of chosen cells; nuisances not counted.
+    /// One sigma of a weighted sum of selected cells, without nuisances.
     double sigma_of(const Eigen::VectorXd& weights) const;
     const std::vector<FreeParameter>& free() const { return free_; }
 

@@ -1,4 +1,4 @@
-// Vectors as JSON. JSON has no not-a-number: null stands for it.
+// Vectors as JSON, with null for NaN.
 #pragma once
 #include <Eigen/Core>
 #include <cmath>

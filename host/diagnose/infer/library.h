@@ -1,5 +1,5 @@
-// What simulations of a scene tell before any experiment is looked at: the scatter of the observation, and
-// the signature of every effect and nuisance.
+// Simulation results of a scene that do not depend on an experiment: the scatter of the observation, and the
+// signature of every effect and nuisance.
 #pragma once
 #include <filesystem>
 #include <map>
@@ -19,24 +19,24 @@ struct Library {
     std::vector<Signature> nuisances;
     std::map<std::string, std::string> provenance;  ///< scene, program, device
     std::map<std::string, std::string>
-        origin;  ///< all that it depends on, by name (ensemble/library_origin.h)
+        origin;  ///< everything that it depends on, by name (ensemble/library_origin.h)
 };
 
-/// Which replicates have a mean in common: those of a packing; all of them where a packing has but one.
+/// Groups of replicates with a common mean: those of a packing, or all of them if every packing has only one.
 std::vector<int> mean_groups(const Library& library);
 
-/// Rows less the mean over those of their group, scaled to the variance of one row.
+/// Rows minus the mean of their group, scaled to the variance of one row.
 Eigen::MatrixXd apart_from_mean(Eigen::MatrixXd rows, const std::vector<int>& group);
 
-/// Baseline replicates less the mean over those of the same packing, scaled to the variance of one replicate;
-/// with one replicate a packing, less the mean over packings.
+/// Baseline replicates minus the mean over those of the same packing, scaled to the variance of one
+/// replicate. With one replicate per packing the mean over packings is subtracted.
 Eigen::MatrixXd scatter(const Library& library);
 
-/// JSON, to the last bit the same of the same library.
+/// JSON text; bit-identical for the same library.
 std::string library_text(const Library& library);
-/// Written whole or not at all. Throws InputError where the file is there already.
+/// Writes the complete file or nothing. Throws InputError if the file exists.
 void write_library(const std::filesystem::path& file, const Library& library);
-/// Throws InputError where the file is not a library.
+/// Throws InputError if the file is not a library.
 Library read_library(const std::filesystem::path& file);
 
 }  // namespace mcdem::diagnose

@@ -1,31 +1,31 @@
-// Explanations worth a real run: the leading effects one by one, and the best two together.
+// Proposals to be confirmed by real runs: the leading single effects, and the best pair.
 #pragma once
 #include "diagnose/decide/decision.h"
 #include "diagnose/infer/gap_tests.h"
 
 namespace mcdem::inline diagnose {
 
-/// `statistics` of the observed gap; `mean_of`: replicates behind the baseline's mean.
+/// `statistics` of the observed gap; `mean_of`: number of replicates in the baseline's mean.
 std::vector<Proposal> propose(const GapSpace& space, const GapData& data, const NullDistribution& null,
                               const GapStatistics& statistics, int mean_of);
 
-/// What real runs say of a proposal: its gain in log likelihood over no effect, with what its scatter and its
-/// free parameters cost (their determinants, and the prior of the `nuisances` that it was run with), and its
-/// misfit. Within its error and a quarter of its size the amplitude may still move, and the nuisances within
-/// their priors: the steps that they take are returned (nuisances, then amplitudes). Nothing where fewer than
-/// two runs came to their end. `runs`: row a replicate.
+/// Evaluates the real runs of a proposal: its gain in log likelihood over no effect, including the cost of
+/// its scatter and its free parameters (their determinants, and the prior of the `nuisances` of the runs),
+/// and its misfit. The amplitude may still move with a prior of twice its error plus a quarter of its size,
+/// and the nuisances within their priors; these steps are returned (nuisances, then amplitudes). Returns
+/// nothing if fewer than two runs finished. `runs`: one row per replicate.
 std::optional<Eigen::VectorXd> confirm(Proposal& proposal, const GapData& data, const NullDistribution& null,
                                        const Eigen::VectorXd& observed, const Eigen::VectorXd& nuisances,
                                        const Eigen::MatrixXd& runs);
 
-/// The runs that came to their end: packings may run away at amplitudes at which others hold.
+/// The runs that finished: packings may run away at amplitudes at which others do not.
 Eigen::MatrixXd whole_runs(const Eigen::MatrixXd& runs, const CellChoice& cells);
 
-/// Variance by which a proposal's signatures may be wrong for one packing: packings differ in an effect, and
-/// a tenth of a signature is not known.
+/// Variance of the error of a proposal's signatures for one packing: packings differ in an effect, and a
+/// tenth of a signature is uncertain.
 Eigen::VectorXd signature_variance(const GapData& data, const Proposal& proposal);
 
-/// The sum of a proposal's signatures, or its best fit on other cells.
+/// The sum of a proposal's signatures at its amplitudes.
 Eigen::VectorXd explained_by(const Proposal& proposal, const GapData& data);
 
 }  // namespace mcdem::diagnose

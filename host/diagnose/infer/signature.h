@@ -1,11 +1,11 @@
-// How an effect moves the observation, as a function of its amplitude, learnt from paired runs.
+// Change of the observation by an effect as a function of its amplitude, from paired runs.
 #pragma once
 #include <Eigen/Core>
 #include <string>
 
 namespace mcdem::inline diagnose {
 
-/// mu(a) = linear a + curvature a^2 up to the largest amplitude simulated, straight on beyond it. One entry a
+/// mu(a) = linear a + curvature a^2 up to the largest simulated amplitude, linear beyond it. One entry per
 /// cell.
 struct Signature {
     std::string name;
@@ -13,25 +13,23 @@ struct Signature {
     Eigen::VectorXd linear;     ///< per unit amplitude
     Eigen::VectorXd curvature;  ///< per unit amplitude squared
     Eigen::VectorXd variance;   ///< of `linear`, from the scatter over pairs
-    Eigen::MatrixXd slopes;     ///< row: pair; the difference at the second amplitude, over it
+    Eigen::MatrixXd slopes;     ///< row: pair; difference at the second amplitude over that amplitude
 
     Eigen::VectorXd at(double amplitude) const;
     Eigen::VectorXd slope(double amplitude) const;  ///< d mu / d a
     int pairs() const { return static_cast<int>(slopes.rows()); }
-    /// Variance over pairs of `slopes`: how much packings (and random draws of the effect) differ in it,
-    /// chaos included.
+    /// Variance over pairs of `slopes`: differences between packings, random draws of the effect, and chaos.
     Eigen::VectorXd spread() const;
 };
 
-/// The signature of a part `b` of what is left of a setting once a part `done` was taken off it: of the
-/// amplitude done + b (1 - done), less what is done.
+/// The signature of a further reduction `b` of a setting after it was reduced by `done`: that of the
+/// amplitude done + b (1 - done) minus that of `done`.
 Signature continued_from(const Signature& signature, double done);
 
-/// From differences of paired runs (row: pair, column: cell) at two amplitudes. What does not stand out of
-/// the scatter over pairs is shrunk towards zero (positive-part James & Stein 1961, cell by cell), the
-/// curvature first. Pairs of which a run failed (not-a-number throughout) are left out. Where fewer than two
-/// are left, it is a straight line through those of the one amplitude at which runs hold; not-a-number where
-/// they hold at neither.
+/// From differences of paired runs (row: pair, column: cell) at two amplitudes. Values are shrunk towards
+/// zero according to the scatter over pairs (positive-part James & Stein 1961, cell by cell), the curvature
+/// first. Pairs with a failed run (all NaN) are left out. With fewer than two complete pairs, it is a
+/// straight line through the results at the amplitude at which runs succeed; NaN if they succeed at neither.
 Signature learn_signature(const std::string& name, double first, double second,
                           const Eigen::MatrixXd& at_first, const Eigen::MatrixXd& at_second);
 

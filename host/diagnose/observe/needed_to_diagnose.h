@@ -1,4 +1,4 @@
-// Whether an experiment can be diagnosed, before anything is simulated.
+// Checks whether an experiment can be diagnosed, before anything is simulated.
 #pragma once
 #include <string>
 #include <vector>
@@ -7,10 +7,10 @@
 
 namespace mcdem::inline diagnose {
 
-/// Cells that an experiment and its simulations must have in common.
+/// Minimum number of cells that an experiment and its simulations must have in common.
 inline constexpr std::size_t min_cells = 4;
 
-/// What `mcdem diagnose` needs and the experiment lacks, each with what to add; empty where it can be
+/// Data that `mcdem diagnose` needs and the experiment lacks, each with a remedy; empty if it can be
 /// diagnosed.
 std::vector<std::string> needed_to_diagnose(const Experiment& experiment);
 

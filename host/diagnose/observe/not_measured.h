@@ -1,4 +1,4 @@
-// What an experiment does not have, and what could be told with it.
+// Data that an experiment lacks, and what they would show.
 #pragma once
 #include <string>
 #include <vector>
@@ -7,7 +7,7 @@
 
 namespace mcdem::inline diagnose {
 
-/// One sentence for each file whose observables are missing everywhere.
+/// One sentence for each file whose observables are missing in all scans.
 std::vector<std::string> not_measured(const Eigen::VectorXd& observed, const Grid& grid);
 
 }  // namespace mcdem::diagnose

@@ -1,4 +1,4 @@
-// A recording as one vector: every observable at a few displacements of loading and of unloading.
+// A recording as one vector: every observable at several displacements of loading and of unloading.
 #pragma once
 #include <vector>
 
@@ -7,28 +7,28 @@
 
 namespace mcdem::inline diagnose {
 
-/// A hold of a programme: the scans at its beginning and its end. Those in between belong to no stroke.
+/// A hold of a programme: the scans at its start and its end. The scans in between belong to no stroke.
 struct HoldScans {
-    int begin = 0, first = 0, end = 0;  ///< scans; the first one that is taken during the hold
+    int begin = 0, first = 0, end = 0;  ///< scans; `first` is the first one taken during the hold
     Controlled keep = Controlled::position;
     Phase phase = Phase::load;
     double displacement = 0;  ///< of the experiment [m]
     bool operator==(const HoldScans&) const = default;
 };
 
-/// Where recordings are compared: displacements of the plate, and the width over which scans are smoothed.
+/// Displacements at which recordings are compared, and the width over which scans are smoothed.
 struct Grid {
     std::vector<double> displacement;  ///< [m]
-    double width = 0;                  ///< scans nearer than this count, the nearest most [m]
+    double width = 0;                  ///< scans within this distance contribute, with decreasing weight [m]
     double stroke = 0;                 ///< of the experiment [m]
-    /// Where the programme sets forces: those that the experiment has at the displacements while loading.
-    /// Scans are then sought by force, and the displacement is what is seen [N].
+    /// If the programme sets forces: the experiment's forces at the displacements while loading. Scans are
+    /// then selected by force, and the displacement is the observable [N].
     std::vector<double> force = {};
     double force_width = 0;             ///< [N]
-    std::vector<HoldScans> holds = {};  ///< of the programme, in its order
+    std::vector<HoldScans> holds = {};  ///< of the programme, in order
 };
 
-/// Four displacements of the experiment's stroke; the width takes in three scans at least.
+/// Four displacements of the experiment's stroke; the width covers at least three scans.
 Grid grid_of(const Recording& experiment);
 
 struct Cell {
@@ -40,10 +40,10 @@ struct Cell {
 /// The cells of a grid: by observable, then phase, then displacement.
 std::vector<Cell> cells_of(const Grid& grid);
 
-/// One value a cell; not-a-number where the recording does not tell. Cycles after `discard` are averaged.
-/// What a hold shows counts where its displacement is nearest.
-/// Within the width of a cell a straight line is fitted through the scans (local linear regression,
-/// triangular weights), so that scans need not lie at the same displacements in what is compared.
+/// One value per cell; NaN if the recording does not determine it. Cycles after `discard` are averaged. A
+/// hold is assigned to the nearest displacement. Within the width of a cell a straight line is fitted through
+/// the scans (local linear regression, triangular weights), so the recordings that are compared need not have
+/// scans at the same displacements.
 Eigen::VectorXd observe(const Recording& recording, const Grid& grid, const ReferenceMaterial& material,
                         int discard = 0);
 

@@ -1,7 +1,6 @@
-// What is looked at in one scan: numbers that measured and simulated packings have alike. Global ones
-// describe the packing; conditional ones take the measured positions as given and ask what each contact's
-// force says about the model, so that they average over thousands of contacts and do not feel chaotic
-// rearrangement.
+// Observables of one scan that exist for measured and simulated packings. Global ones describe the packing.
+// Conditional ones take the measured positions as given and compare each contact's force with the model; they
+// average over thousands of contacts and are not affected by chaotic rearrangements.
 #pragma once
 #include <Eigen/Core>
 #include <span>
@@ -11,25 +10,25 @@
 
 namespace mcdem::inline diagnose {
 
-enum class Needs { plate, contacts, positions, programme };  ///< positions: contacts too
+enum class Needs { plate, contacts, positions, programme };  ///< positions: contacts as well
 
 struct Observable {
     std::string_view name;
     Needs needs;
-    double resolution;  ///< differences below it mean nothing: numerics, damping, the instrument's own drift
-    std::string_view region;       ///< where it looks, empty: everywhere
-    std::string_view force_class;  ///< which forces, empty: all
+    double resolution;        ///< smaller differences are ignored: numerics, damping, drift of the instrument
+    std::string_view region;  ///< part of the packing; empty: all
+    std::string_view force_class;  ///< class of forces; empty: all
     std::string_view meaning;
 };
 
 /// The order of the vectors that scan_observables returns.
 std::span<const Observable> observables();
 
-/// Those that take more than one scan, or the stroke: the last ones of the list (observation.cpp).
+/// Observables that need several scans or the stroke: the last ones in the list (observation.cpp).
 enum class OfProgramme { displacement, relaxation, creep };
 Eigen::Index index_of(OfProgramme observable);
 
-/// Not-a-number where the scan does not tell.
+/// NaN for observables that the scan does not determine.
 Eigen::VectorXd scan_observables(const Recording& recording, const Scan& scan,
                                  const ReferenceMaterial& material);
 
