@@ -1,4 +1,4 @@
-// What a diagnosis says: the content of diagnosis.json and of the page (README.md beside this file).
+// Results of a diagnosis: the content of diagnosis.json and of the page (host/report/DIAGNOSIS_OUTPUT.md).
 #pragma once
 #include <array>
 #include <limits>
@@ -10,33 +10,34 @@
 namespace mcdem::inline diagnose {
 
 enum class Verdict {
-    no_gap,               ///< nothing detectable
+    no_gap,               ///< no detectable gap
     effect,               ///< one effect explains it
-    group,                ///< one of several that these data cannot tell apart
-    unknown_effect,       ///< a gap of which no effect of the library takes away enough
-    not_converged,        ///< the simulation's own numerics explain it: a setting is to be refined
-    calibration_suspect,  ///< a stated parameter lies far outside its uncertainty
+    group,                ///< one of several effects that these data cannot distinguish
+    unknown_effect,       ///< a gap, but no effect of the library closes enough of it
+    not_converged,        ///< the simulation's own numerics explain it: a setting must be refined
+    calibration_suspect,  ///< a stated parameter is far outside its uncertainty
 };
 
-/// Part of the data whose gap stands out of the noise.
+/// Part of the data with a significant gap.
 struct WhereEntry {
     std::string observable;
-    std::string phase;                         ///< load, unload, or empty: both
-    std::array<double, 2> displacement{0, 0};  ///< of the plate, from and to [m]
+    std::string phase;                         ///< load, unload, or empty for both
+    std::array<double, 2> displacement{0, 0};  ///< of the plate, from - to [m]
     std::optional<std::string> region;
     std::optional<std::string> force_class;
-    double z_score = 0;           ///< of the gap, over its noise
-    double z_score_refitted = 0;  ///< .. after the nuisances were refitted
-    double difference = 0;        ///< measured less simulated where it stands out most, in its own unit
+    double z_score = 0;           ///< gap over its noise
+    double z_score_refitted = 0;  ///< the same after refitting the nuisances
+    double difference =
+        0;  ///< measured minus simulated at the most significant cell, in the observable's unit
 };
 
-/// One cell of the picture "where": every observable, significant or not.
+/// One cell of the figure "where": every observable, significant or not.
 struct WhereCell {
     std::string observable;
     std::string phase;
     double displacement = 0;  ///< [m]
     double z_score = 0, z_score_refitted = 0;
-    double difference = 0;  ///< measured less simulated, in the observable's unit
+    double difference = 0;  ///< measured minus simulated, in the observable's unit
 };
 
 struct Cause {
@@ -44,19 +45,19 @@ struct Cause {
     double amplitude = 0;
     double amplitude_error = 0;  ///< one sigma
     std::string unit;
-    double confidence = 0;           ///< probability among the library's effects
-    double explained = 0;            ///< part of the chi-square of all differences, noise included
-    std::vector<std::string> group;  ///< effects that these data cannot tell from it, itself included
+    double confidence = 0;           ///< probability among all effects
+    double explained = 0;            ///< fraction of the chi-square of all differences, including noise
+    std::vector<std::string> group;  ///< effects that these data cannot distinguish from it, including itself
     double score = 0;                ///< gain in log likelihood over no effect, nuisances refitted in both
-    std::optional<double> confirmed_score;  ///< .. from real runs at the fitted amplitude
+    std::optional<double> confirmed_score;  ///< the same from real runs at the fitted amplitude
 };
 
 struct NuisanceFit {
     std::string name;
     double value = 0, error = 0;  ///< shift from the scene's value; one sigma after the fit
-    double prior = 0;             ///< one sigma before
+    double prior = 0;             ///< one sigma before the fit
     std::string unit;
-    bool at_bound = false;  ///< pulled further than its prior allows: a symptom
+    bool at_bound = false;  ///< the fit is at the limit of its prior
 };
 
 struct GapReduction {
@@ -68,32 +69,31 @@ struct GapReduction {
     std::optional<double> confirmed;                       ///< fraction from real runs
     std::map<std::string, std::array<double, 2>> metrics;  ///< Rtop, errf [N], errZ, bhat: before and after
     std::vector<std::array<double, 4>>
-        top_force;  ///< displacement [m], experiment, before, after [N], loading
-    /// Stretch of the plate's displacement that the effect was fitted on [m]; equal ends: not one stretch.
+        top_force;  ///< displacement [m], experiment, before and after [N], during loading
+    /// Interval of the plate's displacement in which the effect was fitted [m]; equal ends: not one interval.
     std::array<double, 2> fitted_displacement{0, 0};
 };
 
-/// How much of the gap the named explanation takes away, else the best one that there is: what the verdict
-/// hangs on.
+/// How much of the gap the named explanation, otherwise the best one, closes. The verdict depends on it.
 struct Explanation {
-    double reduction = 0;    ///< part of the gap that it takes away
-    bool simulated = false;  ///< by real runs, else by signatures
-    bool held_out = true;    ///< of the gap on data held out; false: those show none, of the whole gap
-    double placebo = 0;      ///< what the best of random signatures takes away
-    double needed = 0;       ///< what it must take away to be named
-    double remainder_p = 1;  ///< of what it leaves being noise
+    double reduction = 0;    ///< fraction of the gap that it closes
+    bool simulated = false;  ///< true: from real runs; false: from signatures
+    bool held_out = true;    ///< of the gap in held-out data; false: these show none, so of the whole gap
+    double placebo = 0;      ///< reduction by the best of random signatures
+    double needed = 0;       ///< reduction that is required to name an effect
+    double remainder_p = 1;  ///< p-value of the remainder
     bool leaves_more_than_noise = false;
     double remainder() const { return 1 - reduction; }
 };
 
-/// A setting of the simulation's numerics that the gap is consistent with.
+/// A numerical setting of the simulation that is consistent with the gap.
 struct Refinement {
     std::string effect, key, unit;
     double from = 0, to = 0;
-    bool done = false;  ///< the diagnosis refined the scene itself and went on; else it is to be set
+    bool done = false;  ///< the diagnosis refined the scene and continued; otherwise the user must set it
 };
 
-/// What to do next, in the user's terms.
+/// A recommended next step.
 struct NextStep {
     std::string what;
     std::optional<double> power;  ///< probability that it decides, predicted from the signatures
@@ -102,42 +102,42 @@ struct NextStep {
 /// One of several packings that were diagnosed together.
 struct PackingAgreement {
     std::string experiment;
-    double gap_p = 1;                           ///< of its gap alone being noise
-    double amplitude = 0, amplitude_error = 0;  ///< of the leading cause, by this packing alone
-    double agreement_p = 1;                     ///< of what sets it apart from the others being noise
-    bool differs = false;                       ///< it does so by more than noise, for one of so many
+    double gap_p = 1;                           ///< p-value of its gap alone
+    double amplitude = 0, amplitude_error = 0;  ///< of the leading cause, from this packing alone
+    double agreement_p = 1;                     ///< p-value of its difference from the other packings
+    bool differs = false;  ///< the difference exceeds noise, corrected for the number of packings
 };
 
 struct DetectionLimit {
     std::string effect, unit;
     double minimum_amplitude =
-        std::numeric_limits<double>::infinity();  ///< infinite: these data never show it
-    double absorbed_by_calibration = 0;           ///< part of its signature that nuisances take away
-    std::vector<std::string> group;               ///< not to be told apart from it at twice that amplitude
+        std::numeric_limits<double>::infinity();  ///< infinite: these data cannot show the effect
+    double absorbed_by_calibration = 0;           ///< fraction of its signature that nuisances absorb
+    std::vector<std::string> group;  ///< effects that cannot be distinguished from it at twice that amplitude
 };
 
 struct Diagnosis {
     Verdict verdict = Verdict::no_gap;
     bool detected = false;
-    double p_value = 1;  ///< the smaller of the two tests, corrected for there being two
+    double p_value = 1;  ///< smaller p of the two tests, with Bonferroni correction
     double p_omnibus = 1, p_directed = 1;
     std::vector<WhereEntry> where;
     std::vector<WhereCell> cells;
-    std::vector<Cause> causes;   ///< best first; empty where there is no gap
-    std::vector<Cause> ranking;  ///< all candidates by score, for the picture
+    std::vector<Cause> causes;   ///< best first; empty without a gap
+    std::vector<Cause> ranking;  ///< all candidates by score, for the figure
     std::vector<NuisanceFit> nuisances;
-    std::optional<Explanation> explanation;  ///< nothing where there is no gap
+    std::optional<Explanation> explanation;  ///< empty without a gap
     std::optional<GapReduction> gap_reduction;
     std::vector<DetectionLimit> detection_limits;
-    std::vector<PackingAgreement> packings;  ///< empty: only one
+    std::vector<PackingAgreement> packings;  ///< empty for a single packing
     std::vector<Refinement> refinements;
-    std::vector<NextStep> next;             ///< the most useful first
-    std::vector<std::string> not_measured;  ///< what is missing and what could have been told with it
+    std::vector<NextStep> next;             ///< most useful first
+    std::vector<std::string> not_measured;  ///< missing data, and what they would show
     std::vector<std::string>
-        not_testable;  ///< candidates that this scene or these data cannot show, with why
+        not_testable;  ///< candidates that this scene or these data cannot show, with reasons
     double seconds = 0;
     std::map<std::string, std::string> provenance;  ///< scene, experiment, versions, device, seed, hashes
-    double where_threshold = 0;  ///< |z| from which a cell stands out of all cells together; 0: not known
+    double where_threshold = 0;  ///< |z| above which a cell is significant among all cells; 0: unknown
 };
 
 }  // namespace mcdem::diagnose

@@ -1,5 +1,5 @@
-// Where is the gap? Cells whose difference, parameters refitted, is larger than any cell's of a replicate,
-// gathered into ranges.
+// Location of the gap: cells whose difference after refitting exceeds the largest one of the replicates,
+// merged into ranges.
 #pragma once
 #include "diagnose/decide/decision.h"
 #include "diagnose/infer/gap_tests.h"
@@ -10,10 +10,10 @@ struct Location {
     std::vector<WhereEntry> entries;  ///< significant ones, largest first
     std::vector<WhereCell> cells;     ///< all
     double threshold =
-        0;  ///< simultaneous: |z| of the largest refitted cell of all replicates but `Limits::false_alarm`
+        0;  ///< simultaneous threshold: quantile 1 - `Limits::false_alarm` of the largest |z| of a replicate
 };
 
-/// Descends from observable to phase to displacement where the parent stands out.
+/// Descends from observable to phase to displacement while the parent is significant.
 Location locate(const GapSpace& space, const GapData& data, const NullDistribution& null,
                 const Eigen::VectorXd& gap, const Grid& grid, const Limits& limits);
 

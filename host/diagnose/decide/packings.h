@@ -1,11 +1,11 @@
-// Whether several packings of an experiment show the same gap: scatter between packings told from an effect.
+// Agreement between several packings of an experiment: distinguishes scatter between packings from an effect.
 #pragma once
 #include "diagnose/infer/proposals.h"
 
 namespace mcdem::inline diagnose {
 
-/// Of each packing of the evidence; none where there is only one. `decided`: what the verdict is about, or
-/// null; each packing is asked for the amplitude of its first effect.
+/// One entry per packing of the evidence; none for a single packing. `decided`: the proposal of the verdict,
+/// or null; the amplitude of its first effect is estimated for each packing.
 std::vector<PackingAgreement> packing_agreements(const Evidence& evidence, const GapData& data,
                                                  const NullDistribution& null, const Proposal* decided,
                                                  const Limits& limits);

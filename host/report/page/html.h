@@ -6,13 +6,13 @@
 
 namespace mcdem::inline report {
 
-/// The text as it stands, whatever it holds, in an element or in a quoted attribute.
+/// Escapes a text for use in an element or in a quoted attribute.
 std::string html_text(const std::string& text);
 
-/// A <table>, its notes below it; empty where it has no rows.
+/// A <table> with its notes below; empty if it has no rows.
 std::string html_table(const TextTable& table);
 
-/// A <ul> of texts; empty where there are none.
+/// A <ul> of texts; empty if there are none.
 std::string html_list(const std::vector<std::string>& texts);
 
 }  // namespace mcdem::report

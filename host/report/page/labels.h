@@ -1,26 +1,27 @@
-// How settings are called, and stresses told, where people read them.
+// Readable names of settings, and units of stresses.
 #pragma once
 #include <string>
 
 namespace mcdem::inline report {
 
-/// Stands where a number is not known.
+/// Shown for an unknown number.
 inline const std::string no_number = "–";
 
-/// Of numbers that are told in millimetres and millinewtons.
+/// Units of numbers shown in millimetres and millinewtons.
 constexpr double mm = 1e-3, mN = 1e-3;
 
-/// Contact models in words ("mc_dem, gamma = 1" becomes "MC-DEM, gamma = 1"); other labels as they are.
+/// Replaces contact models by their full names ("mc_dem, gamma = 1" becomes "MC-DEM, gamma = 1"); other
+/// labels do not change.
 std::string words_for(const std::string& label);
 
-/// One line without control characters: what a label from a file may hold must not steer a terminal,
-/// break a table or end a script's line.
+/// Removes line breaks and control characters, so that a label from a file cannot control a terminal, break a
+/// table or end a line of a script.
 std::string one_line(const std::string& text);
 
-/// The text cut to `most` characters of UTF-8, with an ellipsis where something is missing.
+/// The text truncated to `most` UTF-8 characters, with an ellipsis if it was longer.
 std::string shortened(const std::string& text, std::size_t most);
 
-/// A unit in which the largest of some stresses has few digits.
+/// A unit in which the largest of several stresses has few digits.
 struct StressUnit {
     const char* name;
     double size;  ///< [Pa]

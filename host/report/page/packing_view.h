@@ -1,4 +1,4 @@
-// The packing in space, made ready for a page: what page_packing.js draws.
+// Data of the 3D view of a packing on a page, drawn by page_packing.js.
 #pragma once
 #include <optional>
 #include <string>
@@ -9,31 +9,30 @@
 
 namespace mcdem::inline report {
 
-/// One setting's packing, with some of its scans.
+/// The packing of one setting, with a selection of its scans.
 struct ShownPacking {
     std::string label;
-    Recording recording;  ///< the scans that are shown, with their positions and contacts
+    Recording recording;  ///< the selected scans, with positions and contacts
 };
 
-/// How much of a packing a page carries.
+/// Limits of the data on a page.
 struct PackingLimits {
-    std::optional<int> scans = std::nullopt;  ///< at most so many of each packing; none: as many as find room
-    long max_numbers = 600'000;               ///< in all packings together, about 3 MB
+    std::optional<int> scans = std::nullopt;  ///< maximum for each packing; default: as many as fit
+    long max_numbers = 600'000;               ///< of all packings together, about 3 MB
     int max_grains = 20'000;                  ///< of a packing: those nearest to its middle plane
 };
 
-/// Which of a recording's scans are shown: evenly spread, the first, the last and the strongest one
-/// (stress_strain.h) among them where there is room. `numbers`: how many numbers a scan of all packings
-/// together has.
+/// Selects scans of a recording, evenly spaced, including the first, the last and that of the largest load
+/// (stress_strain.h) if possible. `numbers`: numbers per scan of all packings together.
 std::vector<std::size_t> scans_shown(const Recording& recording, long numbers,
                                      const PackingLimits& limits = {});
 
-/// Numbers that a scan with so many grains and contacts takes.
+/// Numbers in a scan with this many grains and contacts.
 long numbers_of_scan(long grains, long contacts);
 
-/// What page_packing.js draws: lengths in mm, forces in mN, five digits of either; colours end at the force
-/// that all but one contact in two hundred stay below; `strongest`: the scan that a page opens at. Nothing
-/// where no scan has positions.
+/// Input of page_packing.js: lengths in mm, forces in mN, with five digits. The colour scale ends at the
+/// quantile of 0.995 of the forces. `strongest`: the scan at which a page opens. Nothing if no scan has
+/// positions.
 std::optional<Json> packing_view(const std::vector<ShownPacking>& packings, const PackingLimits& limits = {});
 
 }  // namespace mcdem::report

@@ -1,4 +1,4 @@
-// A page with charts: one HTML file that needs nothing else and is not allowed to ask for anything.
+// A page with charts: one self-contained HTML file without network access.
 #pragma once
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -11,44 +11,43 @@ namespace mcdem::inline report {
 
 using Json = nlohmann::ordered_json;
 
-/// Text from anywhere, for a place where plotly.js understands tags and entities: shown as it stands.
+/// Escapes a text for places in which plotly.js interprets tags and entities.
 std::string plot_text(const std::string& text);
 
-/// A chart in the terms of plotly.js. Colours may be the page's variables, "var(--ink)"; page.js fills them
-/// in.
+/// A chart for plotly.js. Colours may be variables of the page, "var(--ink)"; page.js replaces them.
 struct Chart {
-    std::string name;     ///< what it shows, one word: top_force
+    std::string name;     ///< one word: top_force
     std::string title;    ///< above it
     std::string caption;  ///< below it
     Json data = Json::array();
     Json layout = Json::object();
-    std::string log_axes = "";  ///< those that a button turns logarithmic: "y", "xy", none
+    std::string log_axes = "";  ///< axes with a button for a logarithmic scale: "y", "xy", or none
     int height = 440;           ///< [pixels]
-    int min_width = 0;          ///< a narrower screen scrolls it [pixels]
+    int min_width = 0;          ///< narrower screens scroll [pixels]
 };
 
-/// Collects the parts of a page from top to bottom. Every text may come from anywhere.
+/// Collects the parts of a page from top to bottom. All texts are escaped.
 class Page {
 public:
     explicit Page(std::string title) : title_(std::move(title)) {}
-    /// Before the heading of the first section.
+    /// Head of the page, before the first section.
     void lead(const std::string& kicker, const std::string& heading, const std::string& sentence);
     void section(const std::string& heading);
     void subheading(const std::string& text);
     void paragraph(const std::string& text);
-    /// Under its heading; nothing where it has no rows.
+    /// A table under its heading; nothing if it has no rows.
     void table(const std::string& heading, const TextTable& table);
     void list(const std::vector<std::string>& texts);
-    /// What a thing is called, and what is said of it.
+    /// Terms and their descriptions.
     void definitions(const std::vector<std::pair<std::string, std::string>>& lines);
-    /// A text of many lines, folded up under its heading.
+    /// A long text, collapsed under its heading.
     void folded(const std::string& heading, const std::string& text);
-    /// Gives it an id of its own: its name, numbered from the second of a name on.
+    /// Adds a chart. Its id is its name, with a number if the name is repeated.
     void chart(const Chart& chart);
-    /// The packing in space (packing_view.h).
+    /// The 3D view of a packing (packing_view.h).
     void packing(const Json& view, const std::string& caption);
 
-    /// The whole file. `packed_library`: plotly.js as a gzip file.
+    /// The complete file. `packed_library`: plotly.js as gzip.
     std::string html(const std::string& packed_library) const;
 
 private:
@@ -58,7 +57,7 @@ private:
     Json charts_ = Json::array(), packings_ = Json::array();
 };
 
-/// Writes the page with the library of the installation. Throws RunError where it cannot.
+/// Writes the page with the installed library. Throws RunError if that fails.
 void write_page(const Page& page, const std::filesystem::path& file);
 
 }  // namespace mcdem::report

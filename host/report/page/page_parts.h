@@ -1,5 +1,4 @@
-// The style sheet and the scripts of reports (*.css, *.js of this folder), put into the program at build
-// time.
+// Style sheet and scripts of reports (*.css, *.js in this folder), embedded at build time.
 #pragma once
 #include <map>
 #include <string>

@@ -1,11 +1,11 @@
-// The plotting library that reports carry: plotly.js, a file of the installation.
+// The plotting library in reports: plotly.js, an installed file.
 #pragma once
 #include <string>
 
 namespace mcdem::inline report {
 
-/// plotly.js as a gzip file's bytes. Looked for in $MCDEM_SHARE, in share/mcdem beside the program or beside
-/// its folder, and where the installation put it. Throws RunError where it is in none of them.
+/// plotly.js, compressed with gzip. It is searched in $MCDEM_SHARE, in share/mcdem next to the program or
+/// next to its folder, and in the installation folder. Throws RunError if it is not found.
 std::string packed_plotting_library();
 
 }  // namespace mcdem::report

@@ -1,4 +1,4 @@
-// Colours and markers of series, the same on pages and in figures for print.
+// Colours and markers of series, for pages and for figures for print.
 #pragma once
 #include <string>
 #include <vector>
@@ -9,17 +9,17 @@ namespace mcdem::inline report {
 
 struct SeriesStyle {
     std::string colour;  ///< "#rrggbb"
-    std::string marker;  ///< in the terms of matplotlib
+    std::string marker;  ///< as in matplotlib
 };
 
-/// Black circles: what simulations are compared with.
+/// Black circles, for the reference.
 SeriesStyle reference_style();
 
-/// Of the first, second, .. series. Colours that the colour-blind can tell apart (Okabe and Ito).
+/// Style of the first, second, .. series. The colours are suitable for colour-blind readers (Okabe and Ito).
 SeriesStyle style_number(std::size_t index);
 
-/// A contact model keeps its colour from figure to figure where every setting has another model; else colours
-/// follow the order of the settings.
+/// If every setting has a different contact model, a model has the same colour in all figures; otherwise
+/// colours follow the order of the settings.
 std::vector<SeriesStyle> styles_of(const std::vector<Setting>& settings);
 
 }  // namespace mcdem::report

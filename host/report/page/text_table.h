@@ -1,4 +1,4 @@
-// Tables of text: aligned for a terminal, or Markdown.
+// Text tables: aligned for a terminal, or Markdown.
 #pragma once
 #include <string>
 #include <vector>
@@ -20,7 +20,7 @@ struct TextTable {
 
 std::string to_text(const TextTable& table, TableFormat format);
 
-/// Characters of UTF-8 text, each taken to be one column wide.
+/// Number of characters of a UTF-8 text, each assumed to be one column wide.
 std::size_t width_of(const std::string& text);
 
 }  // namespace mcdem::report

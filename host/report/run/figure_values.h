@@ -1,6 +1,5 @@
-// What figures show, as JSON: the file figures.json that the Python package mcdem.figures draws. A key a
-// figure, named like the file of its picture; numbers in the units of the axes, null where they are not
-// known.
+// Values of figures as JSON: the file figures.json, which the Python package mcdem.figures draws. One key per
+// figure, with the name of the picture file; numbers in the units of the axes, null if unknown.
 #pragma once
 #include <nlohmann/json.hpp>
 #include <string>

@@ -5,8 +5,8 @@
 
 namespace mcdem::inline report {
 
-/// Those that have something to show. Time is shown of plates, and of cells that hold something; what belongs
-/// to distortion of cells that are distorted.
+/// Figures that have data. Time is shown for plates, and for cells with a hold; figures of distortion only
+/// for cells that are distorted.
 std::vector<RunFigure> programme_figures(const Cast& cast);
 
 /// "kPa" of "pressure p [kPa]".

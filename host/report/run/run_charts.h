@@ -1,11 +1,11 @@
-// The paper's four figures as charts of a page.
+// The four figures of the paper as charts of a page.
 #pragma once
 #include "report/page/page.h"
 #include "report/run/run_figures.h"
 
 namespace mcdem::inline report {
 
-/// Those that can be drawn; `notes` says which cannot, and why.
+/// The charts that can be drawn; `notes` lists the others with reasons.
 struct RunCharts {
     std::vector<Chart> charts;
     std::vector<std::string> notes;

@@ -1,6 +1,6 @@
-// The paper's four figures made ready for drawing, in the units of their axes: top force, force distribution
-// at one level, Z after thresholding, scaling law; those of programmes: programme_figures.h. Pages and
-// figures for print show the same values.
+// Values of the four figures of the paper in the units of their axes: top force, force distribution at one
+// level, Z after thresholding, scaling law. programme_figures.h has those of programmes. Pages and figures
+// for print show the same values.
 #pragma once
 #include <optional>
 #include <string>
@@ -15,34 +15,33 @@ namespace mcdem::inline report {
 struct FigureOptions {
     CompareOptions compare;
     std::vector<Comparison> comparisons =
-        {};  ///< of the settings with the reference, where at hand; else made
-    Phase distribution_phase =
-        Phase::unload;  ///< the force distribution is shown while loading or unloading ..
-    double distribution_displacement = 18e-3;  ///< .. at the level nearest to this [m]
-    double threshold = 0;                      ///< of Z where no reference tells tau [N]
+        {};  ///< comparisons of the settings with the reference, if available; otherwise computed
+    Phase distribution_phase = Phase::unload;  ///< phase of the force distribution,
+    double distribution_displacement = 18e-3;  ///< which is shown at the level nearest to this [m]
+    double threshold = 0;                      ///< for Z, if no reference determines tau [N]
 };
 
 /// One setting, or the reference.
 struct Series {
-    std::string words;  ///< its name in the key
+    std::string words;  ///< its name in the legend
     SeriesStyle style;
     Setting setting;
     Levels levels;
     std::optional<Comparison> comparison;  ///< with the reference
 };
 
-/// All that is shown.
+/// All data that are shown.
 struct Cast {
     std::vector<Series> simulated;
     std::optional<Series> reference;
     bool is_reference(const Series& series) const { return reference && &series == &*reference; }
 };
 
-/// The settings that have scans left after their discarded cycles.
+/// The settings that have scans after their discarded cycles.
 Cast cast_of(const std::vector<Setting>& settings, const std::optional<Setting>& reference,
              const FigureOptions& options);
 
-/// A point with the standard error of its y over replicas, not-a-number where that is not known.
+/// A point with the standard error of its y over replicas, NaN if unknown.
 struct FigurePoint {
     double x = 0, y = 0, error = not_available;
 };
@@ -52,21 +51,22 @@ struct FigureCurve {
     std::vector<FigurePoint> points;
 };
 
-/// What a figure shows of one series.
+/// Data of one series in a figure.
 struct FigureSeries {
-    const Series* series;             ///< of the cast
-    std::string remark;               ///< behind its words in the key: "tau 4.00 mN"; may be empty
-    std::vector<FigureCurve> curves;  ///< loading, unloading; without those that have no points
-    double slope = not_available;     ///< of the line through zero fitted to all points, in the axes' units
+    const Series* series;             ///< in the cast
+    std::string remark;               ///< appended to the name in the legend: "tau 4.00 mN"; may be empty
+    std::vector<FigureCurve> curves;  ///< loading, unloading; only curves with points
+    double slope =
+        not_available;  ///< of the line through the origin fitted to all points, in the units of the axes
 };
 
 struct RunFigure {
-    std::string name;              ///< of its file: top_force
+    std::string name;              ///< name of its file: top_force
     std::string x_label, y_label;  ///< with units
     std::vector<FigureSeries> series;
-    /// Of the force distribution: its level [mm].
+    /// Level of the force distribution [mm].
     std::optional<double> displacement;
-    std::string title = "";  ///< of a programme's, on a page
+    std::string title = "";  ///< for programmes, on a page
 };
 
 struct RunFigures {
@@ -74,19 +74,19 @@ struct RunFigures {
     std::vector<std::string> missing;  ///< "the force distribution: no contacts recorded"
 };
 
-/// Views of the cast, which must live as long.
+/// Holds pointers to the cast, which must outlive it.
 RunFigures run_figures(const Cast& cast, const FigureOptions& options);
 
-/// Whether Z leaves out weak forces.
+/// Whether Z ignores weak forces.
 bool is_thresholded(const Cast& cast, const FigureOptions& options);
 
-/// p(f) of one series at the level nearest to the one asked for.
+/// p(f) of one series at the level nearest to the requested one.
 struct ShownDensity {
     const Series* series;
     const Level* level;
     ForceDensity density;
 };
-/// On bins common to all, to the force that all but a few contacts stay below; empty where nothing is known.
+/// In common bins, up to a force that few contacts exceed; empty without data.
 std::vector<ShownDensity> shown_densities(const Cast& cast, const FigureOptions& options);
 
 }  // namespace mcdem::report

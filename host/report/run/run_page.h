@@ -1,4 +1,4 @@
-// Runs on a page: tables, the paper's figures, the packing in space, and where it all comes from.
+// A page of runs: tables, the figures of the paper, the packing in 3D, and provenance.
 #pragma once
 #include <optional>
 #include <string>
@@ -11,20 +11,20 @@
 
 namespace mcdem::inline report {
 
-/// Where a run's results come from.
+/// Origin of a run's results.
 struct RunOrigin {
     std::string path;                                          ///< of its folder or file
-    const Run* run = nullptr;                                  ///< observables suffice
-    std::vector<std::pair<std::string, std::string>> digests;  ///< file and the SHA-256 of it
+    const Run* run = nullptr;                                  ///< observables are sufficient
+    std::vector<std::pair<std::string, std::string>> digests;  ///< file and its SHA-256
 };
 
 struct RunsOnPage {
     std::vector<RunOrigin> origins;
-    std::vector<Setting> settings;     ///< of all runs, with contacts where recorded
-    std::optional<Setting> reference;  ///< what they are held against
+    std::vector<Setting> settings;     ///< of all runs, with contacts if recorded
+    std::optional<Setting> reference;  ///< for comparison
     FigureOptions figures;
     std::vector<ShownPacking> packings;
-    std::vector<std::string> left_out;  ///< of the packings: which scans and grains are not shown
+    std::vector<std::string> left_out;  ///< scans and grains of the packings that are not shown
     PackingLimits limits;
 };
 

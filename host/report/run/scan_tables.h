@@ -8,11 +8,11 @@
 
 namespace mcdem::inline report {
 
-/// One of plates, one of cells, where there are any; what should be known of them below.
+/// One table for plates and one for cells, if there are any, with notes.
 std::vector<TextTable> tables_of_scans(const std::vector<Setting>& settings);
 
-/// The same for programs, with standard errors, and a column for each scene key that is not the same in all.
-/// Throws InputError where some are cells and some are not.
+/// The same as CSV, with standard errors and a column for each scene key that varies. Throws InputError if
+/// some are cells and some are not.
 std::string csv_of_scans(const std::vector<Setting>& settings);
 
 }  // namespace mcdem::report

@@ -1,4 +1,4 @@
-// The tables that a run and a comparison end with.
+// Tables of runs and comparisons.
 #pragma once
 #include "metrics/compare.h"
 #include "metrics/model_table.h"
@@ -7,34 +7,33 @@
 
 namespace mcdem::inline report {
 
-/// "0.430 ± 0.012"; without its error where that is not known, a dash where there is no value.
+/// "0.430 ± 0.012"; without the error if it is unknown, a dash without a value.
 std::string with_error(const Estimate& estimate, int decimals, double unit = 1);
 
-/// "plate's speed: error of forces at most 0.5 %, estimated"; what to set where that is much, and, of
-/// strokes, what measures it.
+/// "plate's speed: error of forces at most 0.5 %, estimated"; if it is large, also which key to set and, for
+/// strokes, how to measure it.
 std::string rate_note(const std::string& what, double rate_error, bool strokes = true);
 
-/// `from`: the displacement or scan from which on grains overlap more than the law was tested for.
+/// `from`: the displacement or scan from which on overlaps exceed the tested range.
 std::string beyond_note(const std::string& setting, const std::string& from, const BeyondLaw& beyond);
 
-/// In quotes where it has to be.
+/// Quotes the text if necessary.
 std::string csv_field(const std::string& text);
 
-/// Scene keys that are not the same in all settings, seeds left out, and each setting's values of them.
+/// Scene keys that differ between settings, without seeds, and their values for each setting.
 struct VaryingKeys {
     std::vector<std::string> keys;
     std::vector<std::vector<std::string>> values;
 };
 VaryingKeys varying_keys(const std::vector<Setting>& settings);
 
-/// Top force at full stroke, or at its last scan with a mark, and over the reference setting's.
+/// Top force at full stroke (or at the last scan, marked) and its ratio to the reference setting.
 TextTable table_of_models(const ModelTable& models);
 
-/// The same as table_of_models for programs: a row a setting, with a column for each scene key that is not
-/// the same in all.
+/// table_of_models as CSV: one row per setting, with a column for each scene key that varies.
 std::string csv_of_models(const ModelTable& models, const std::vector<Setting>& settings);
 
-/// The paper's Table I, one row a setting, with what was not available below.
+/// Table I of the paper, one row per setting, with notes on unavailable data.
 TextTable table_of_comparisons(const std::vector<Comparison>& comparisons);
 
 /// Coefficient, R^2 and curvature of the scaling law by setting and phase.
