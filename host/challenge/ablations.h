@@ -1,4 +1,4 @@
-// Diagnoses that lack a part of the method, and simpler methods in its place: what each part is worth.
+// Diagnoses without a part of the method, and simpler methods, to measure the value of each part.
 #pragma once
 #include <span>
 
@@ -7,7 +7,7 @@
 
 namespace mcdem::inline challenge {
 
-/// The method on changed evidence, without confirming runs.
+/// The method with modified evidence, without confirming runs.
 struct Ablation {
     std::string_view name;
     std::string_view meaning;
@@ -15,7 +15,7 @@ struct Ablation {
 };
 std::span<const Ablation> ablations();
 
-/// Findings of the changed evidence; none where it is not enough for a diagnosis.
+/// Findings of the modified evidence; no candidates if it is not sufficient for a diagnosis.
 Findings ablated_findings(Evidence evidence, const Ablation& ablation);
 
 /// Another method on the same evidence.

@@ -1,4 +1,4 @@
-// What is scored of a diagnosis: the verdict, and whom it names.
+// The scored part of a diagnosis: the verdict and the named effects.
 #pragma once
 #include "diagnose/decide/decision.h"
 
@@ -7,10 +7,10 @@ namespace mcdem::inline challenge {
 struct Answer {
     Verdict verdict = Verdict::no_gap;
     std::vector<std::string>
-        group;              ///< named effects that cannot be told apart, or both of a pair; the leader first
-    double confidence = 0;  ///< of the leader
+        group;  ///< named effects that cannot be distinguished, or both of a pair; the leading one first
+    double confidence = 0;  ///< of the leading effect
     bool detected() const { return verdict != Verdict::no_gap; }
-    /// Effects are named as the cause.
+    /// Whether effects are named as the cause.
     bool names() const { return verdict == Verdict::effect || verdict == Verdict::group; }
 };
 

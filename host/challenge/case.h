@@ -1,4 +1,4 @@
-// One reality of the blind challenge: how it differs from the scene that it will be held against.
+// One reality of the blind challenge: its differences from the scene.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -7,7 +7,7 @@
 namespace mcdem::inline challenge {
 
 enum class CaseKind {
-    none,           ///< nothing but what every reality has: hidden nuisances, other numerics, noise
+    none,           ///< only what every reality has: hidden nuisances, other numerics, noise
     effect,         ///< one effect of the library
     pair,           ///< two of them
     unknown,        ///< an effect that the library of its diagnosis does not have
@@ -22,17 +22,18 @@ struct Hidden {
 };
 
 struct ChallengeCase {
-    std::string folder;  ///< of its experiment, in the challenge's
+    std::string folder;  ///< of its experiment, in the folder of the challenge
     CaseKind kind = CaseKind::none;
-    std::vector<Hidden> effects;      ///< of the library, or where unknown of outside_effects() or struck
-    std::vector<Hidden> nuisances;    ///< shifts, all of them
+    std::vector<Hidden>
+        effects;  ///< of the library; for unknown ones from outside_effects() or removed from the library
+    std::vector<Hidden> nuisances;    ///< shifts of all nuisances
     std::vector<std::string> struck;  ///< effects that its diagnosis may not name
-    int packing = 0;                  ///< which of the challenge's
-    std::uint64_t seed = 0;           ///< of its jitter, of what is random in its effects, and of its noise
+    int packing = 0;                  ///< number of its packing
+    std::uint64_t seed = 0;           ///< for its jitter, random properties of its effects, and its noise
     bool operator==(const ChallengeCase&) const = default;
 };
 
-/// The whole secret.
+/// The hidden truth.
 struct Challenge {
     std::uint64_t seed = 0;
     std::string scene;                         ///< SHA-256 of the scene's text
@@ -41,7 +42,7 @@ struct Challenge {
     bool operator==(const Challenge&) const = default;
 };
 
-/// Limits are set on the cases of the one half of the packings and scored on the other.
+/// Limits are set on the cases of one half of the packings and scored on the other.
 inline bool in_first_half(int packing) { return packing % 2 == 0; }
 
 }  // namespace mcdem::challenge

@@ -1,5 +1,5 @@
-// What a diagnosis of a challenge rested on and what it found, kept so that limits and ablations can be tried
-// without simulating again.
+// Stored evidence and findings of the diagnoses of a challenge, so that limits and ablations can be tried
+// without new simulations.
 #pragma once
 #include <filesystem>
 
@@ -8,14 +8,14 @@
 
 namespace mcdem::inline challenge {
 
-/// JSON of all but the library, which the cases of a challenge share.
+/// JSON of everything except the library, which all cases of a challenge share.
 std::string evidence_text(const Evidence& evidence);
-/// Throws InputError where the file is not evidence, or not of this library's cells.
+/// Throws InputError if the file is not evidence, or does not match the cells of this library.
 Evidence read_evidence(const std::filesystem::path& file, const Library& library);
 
 /// JSON.
 std::string findings_text(const Findings& findings);
-/// Throws InputError where the file holds no findings.
+/// Throws InputError if the file does not contain findings.
 Findings read_findings(const std::filesystem::path& file);
 
 }  // namespace mcdem::challenge

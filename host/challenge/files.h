@@ -1,5 +1,4 @@
-// challenge.json: what a diagnosis of the challenge may know, and the seal of what it may not
-// (tests/challenge/README.md).
+// challenge.json: the public data of a challenge, and the seal of its truth (tests/challenge/README.md).
 #pragma once
 #include <filesystem>
 #include <optional>
@@ -9,18 +8,18 @@
 namespace mcdem::inline challenge {
 
 struct OpenCase {
-    std::string folder;                                  ///< of its experiment, in the challenge's
-    std::optional<std::vector<std::string>> candidates;  ///< effects that may be named; nothing: all
+    std::string folder;  ///< of its experiment, in the folder of the challenge
+    std::optional<std::vector<std::string>> candidates;  ///< effects that may be named; empty: all
 };
 
 struct OpenChallenge {
     std::string scene;   ///< SHA-256 of the scene's text
-    std::string sealed;  ///< SHA-256 of the file that tells the answers
+    std::string sealed;  ///< SHA-256 of the truth file
     std::vector<OpenCase> cases;
 };
 
 std::string open_challenge_text(const OpenChallenge& challenge);
-/// Throws InputError where the folder holds no challenge.
+/// Throws InputError if the folder does not contain a challenge.
 OpenChallenge read_open_challenge(const std::filesystem::path& folder);
 
 }  // namespace mcdem::challenge

@@ -1,5 +1,5 @@
-// A blind challenge made: realities simulated with what is hidden, measured, and written as experiments that
-// tell nothing of it.
+// Generates a blind challenge: realities with hidden effects are simulated, measured, and written as
+// experiments that do not reveal them.
 #pragma once
 #include <filesystem>
 #include <functional>
@@ -12,20 +12,20 @@ namespace mcdem::inline challenge {
 
 struct ChallengeOptions {
     std::filesystem::path folder;  ///< of the challenge
-    std::filesystem::path truth;   ///< file of the answers
+    std::filesystem::path truth;   ///< truth file
     std::optional<std::uint64_t>
-        seed;  ///< nothing: that of the truth where it is there, else one that nobody knows
+        seed;  ///< default: that of an existing truth file, otherwise a random one that nobody knows
     ChallengeSize size;
     std::vector<std::string> effects;  ///< empty: challenged_effects()
-    Measurement measurement;           ///< how well all of them are measured
+    Measurement measurement;           ///< accuracy of all measurements
     std::function<void(double fraction)> on_progress = [](double) {};
     std::function<bool()> stop_wanted = [] { return false; };
 };
 
-/// Tries whether all realities can be simulated, and weakens those that run away; writes the truth, then
-/// challenge.json, then the folders that are not there yet. Returns the seal, SHA-256 of the truth. Throws
-/// InputError where the scene does not suit or the folder holds another challenge, RunError where a
-/// simulation fails, Interrupted when stop_wanted says so.
+/// Tests whether all realities can be simulated, and reduces the amplitudes of those that run away. Then
+/// writes the truth, challenge.json, and missing folders, in this order. Returns the seal, the SHA-256 of the
+/// truth. Throws InputError if the scene is unsuitable or the folder contains another challenge, RunError if
+/// a simulation fails, Interrupted if stop_wanted returns true.
 std::string make_challenge(Device& device, const Scene& scene, const ChallengeOptions& options);
 
 }  // namespace mcdem::challenge

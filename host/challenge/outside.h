@@ -1,5 +1,4 @@
-// Effects that realities of the challenge have and that no library knows: a diagnosis should name none of its
-// own.
+// Effects of realities that are in no library: a diagnosis should not name a library effect for them.
 #pragma once
 #include <span>
 #include <string_view>
@@ -11,9 +10,9 @@ namespace mcdem::inline challenge {
 
 struct OutsideEffect {
     std::string_view name;
-    std::string_view unit;     ///< of the amplitude, empty for pure numbers
-    std::string_view formula;  ///< what the amplitude does
-    double low, high;          ///< amplitudes drawn, log-uniform
+    std::string_view unit;     ///< of the amplitude; empty for dimensionless ones
+    std::string_view formula;  ///< meaning of the amplitude
+    double low, high;          ///< range of amplitudes, log-uniform
     bool both_signs;
     void (*change_model)(Replica&, double amplitude);  ///< before the simulation; may be null
     void (*change_reading)(Recording&,

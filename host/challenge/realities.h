@@ -1,4 +1,4 @@
-// Simulations of the cases of a challenge, with everything that is hidden in them.
+// Simulates the cases of a challenge with all their hidden effects.
 #pragma once
 #include <functional>
 #include <span>
@@ -11,26 +11,26 @@ namespace mcdem::inline challenge {
 
 class Realities {
 public:
-    /// Throws InputError where the scene does not suit a challenge.
+    /// Throws InputError if the scene is unsuitable for a challenge.
     Realities(Device& device, const Scene& scene, const Measurement& measurement);
 
-    /// The scene with what its instrument states, before anything is hidden in it.
+    /// The scene with the stated properties of its instrument, without hidden effects.
     const Model& stated() const { return stated_; }
     const std::vector<Nuisance>& nuisances() const { return nuisances_; }
 
-    /// The packings that cases start from, by number. Throws Interrupted.
+    /// Makes the initial packings of the cases, by number. Throws Interrupted.
     void make_packings(const std::vector<std::uint64_t>& seeds, const std::function<bool()>& stop_wanted);
 
-    /// One recording a case, not yet measured; ended early where a case fails. `scans_needed`: of the first
-    /// stroke, or all.
+    /// One unmeasured recording per case; shorter if a case fails. `Part`: scans of the first loading, or
+    /// all.
     enum class Part { loading, all };
     std::vector<Recording> simulate(std::span<const ChallengeCase* const> cases, Part part,
                                     const std::function<void(double fraction)>& on_progress) const;
 
-    /// The recording as the case's instrument reads it, in the stated box, named by its folder.
+    /// The recording measured by the instrument of the case, in the stated box, with the name of its folder.
     Experiment experiment(const ChallengeCase& c, Recording recording) const;
 
-    /// How many cases to simulate together.
+    /// Number of cases to simulate together.
     std::size_t at_once() const;
 
 private:

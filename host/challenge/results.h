@@ -1,4 +1,4 @@
-// What `mcdem challenge run` left behind, as far as it is scored.
+// Reads the scored results of `mcdem challenge run`.
 #pragma once
 #include <filesystem>
 #include <optional>
@@ -9,7 +9,7 @@
 
 namespace mcdem::inline challenge {
 
-/// What was said about the gap on held-out data, and what real runs said of it.
+/// Predicted gap reduction on held-out data, and that of real runs.
 struct PredictedReduction {
     double fraction = 0;
     std::array<double, 2> interval{0, 0};
@@ -17,10 +17,10 @@ struct PredictedReduction {
 };
 
 struct CaseResult {
-    std::string problem;  ///< why it was not diagnosed, empty where it was
+    std::string problem;  ///< reason why it was not diagnosed; empty if it was
     Findings findings;
-    std::map<std::string, double> detection_limits;   ///< smallest amplitude by effect
-    std::optional<PredictedReduction> gap_reduction;  ///< where there were confirming runs
+    std::map<std::string, double> detection_limits;   ///< smallest detectable amplitude by effect
+    std::optional<PredictedReduction> gap_reduction;  ///< if there were confirming runs
 };
 
 struct ChallengeResults {
@@ -28,10 +28,10 @@ struct ChallengeResults {
     std::vector<CaseResult> cases;  ///< in the order of the challenge
 };
 
-/// Throws InputError where the folder lacks a case or holds something else.
+/// Throws InputError if the folder lacks a case or contains something else.
 ChallengeResults read_challenge_results(const std::filesystem::path& folder, const OpenChallenge& challenge);
 
-/// Where run keeps the evidence of a case.
+/// File with the evidence of a case.
 std::filesystem::path evidence_file(const std::filesystem::path& folder, const OpenCase& open_case);
 
 }  // namespace mcdem::challenge

@@ -1,4 +1,4 @@
-// Every case of a blind challenge diagnosed, from its experiment alone.
+// Diagnoses every case of a blind challenge from its experiment only.
 #pragma once
 #include <memory>
 
@@ -7,12 +7,12 @@
 
 namespace mcdem::inline challenge {
 
-/// How large the challenge's signature library is, where it is not there yet.
+/// Size of the challenge's signature library, if it does not exist yet.
 struct ChallengeLibrary {
     std::filesystem::path file;
-    int packings = 16;                    ///< generated, other ones than those of the cases
-    int replicates = 4;                   ///< a packing
-    int pairs = 1;                        ///< of them, those repeated with every effect
+    int packings = 16;                    ///< generated, different from those of the cases
+    int replicates = 4;                   ///< per packing
+    int pairs = 1;                        ///< number of replicates that are repeated with every effect
     std::vector<std::string> candidates;  ///< empty: all
 };
 
@@ -24,20 +24,20 @@ struct ChallengeRunOptions {
     int confirmations = 4;
     std::uint64_t seed = 1;
     std::string program;
-    /// Keeps a diagnosis as out/<case>.json; a case that has this file is not diagnosed again.
+    /// Writes a diagnosis to out/<case>.json; a case with this file is not diagnosed again.
     std::function<void(const std::filesystem::path& file, const Diagnosis&)> keep;
     std::function<void(double fraction)> on_progress = [](double) {};
-    /// A case could not be diagnosed; its file says why, and it counts as a miss.
+    /// Called if a case cannot be diagnosed; its file contains the reason, and it counts as a miss.
     std::function<void(const std::string& message)> on_problem = [](const std::string&) {};
     std::function<bool()> stop_wanted = [] { return false; };
 };
 
-/// Throws InputError, also where a run lies in the folder, others are at work there, or the answers there
-/// were begun with other options; RunError or Interrupted.
+/// Throws InputError, also if the folder contains a run, is in use by other processes, or contains answers
+/// with other options; RunError or Interrupted.
 void run_challenge(Device& device, const Scene& scene, const ChallengeRunOptions& options);
 
-/// The same in parts: every case is one, and before them so is every batch of the library's simulations,
-/// where the library is not there yet. `scene` and `options` must live as long.
+/// The same in parts: one per case, preceded by batches of the library's simulations if the library does not
+/// exist yet. `scene` and `options` must outlive the result.
 std::unique_ptr<PartedWork> challenge_parts(const Scene& scene, const ChallengeRunOptions& options);
 
 }  // namespace mcdem::challenge

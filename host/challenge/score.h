@@ -1,4 +1,4 @@
-// The score of a challenge: what was answered, against what was sealed.
+// Score of a challenge: compares the answers with the sealed truth.
 #pragma once
 #include <filesystem>
 #include <functional>
@@ -8,20 +8,19 @@
 
 namespace mcdem::inline challenge {
 
-/// A way of answering, its limits set on the first half of the packings.
+/// A method, with limits set on the first half of the packings.
 struct ArmScore {
     std::string name, meaning;
-    bool has_limits = true;  ///< simpler methods have none
+    bool has_limits = true;  ///< false for simpler methods
     Limits limits;
-    Merits first, second;  ///< on the half that limits were set on, and on the other
+    Merits first, second;  ///< on the half that was used to set limits, and on the other one
 };
 
-/// Predicted against realised reduction of the gap, over all cases with confirming runs: no limit enters
-/// them.
+/// Predicted and realised gap reduction, over all cases with confirming runs. It does not depend on limits.
 struct GapReductionScore {
     int cases = 0;
     double median_error = 0;  ///< median |predicted - confirmed|
-    Share covered;            ///< the 90 % interval holds what was confirmed
+    Share covered;            ///< the 90 % interval contains the realised value
 };
 
 struct ChallengeScore {
@@ -32,7 +31,8 @@ struct ChallengeScore {
     std::vector<ScoredCase> scored;  ///< second half, by the whole method
 };
 
-/// `truth` must be the challenge's, sorted like it. `on_progress`: part of the ablations that is done.
+/// `truth` must belong to the challenge and have the same order. `on_progress`: completed fraction of the
+/// ablations.
 ChallengeScore score_challenge(const Challenge& truth, const OpenChallenge& open,
                                const std::filesystem::path& folder,
                                const std::function<void(double)>& on_progress);

@@ -1,5 +1,5 @@
-// Whether the answers of a scene are converged: what its plate speed, inertia, time step, settling, precision
-// and neighbour lists do to every observable.
+// Convergence of a scene: influence of plate speed, inertia, time step, settling, precision and neighbour
+// lists on every observable.
 #pragma once
 #include <filesystem>
 #include <functional>
@@ -12,10 +12,10 @@
 namespace mcdem::inline ensemble {
 
 struct ConvergeOptions {
-    std::filesystem::path folder;  ///< every simulation is kept below it and not made twice
+    std::filesystem::path folder;  ///< stores every simulation, so that none is repeated
     int replicas = 32;
     double jitter =
-        0;  ///< sd of a random displacement that sets replicas apart [m]; 0: half a per cent of a diameter
+        0;  ///< standard deviation of the jitter between replicas [m]; 0: half a per cent of a diameter
     std::uint64_t seed = 1;
     ConvergenceLimits limits;
     std::string program;  ///< version and commit
@@ -24,8 +24,8 @@ struct ConvergeOptions {
     std::function<bool()> stop_wanted = [] { return false; };
 };
 
-/// Of the scene's first replica: jittered copies of its packing or, where those hardly differ, packings drawn
-/// anew. Throws InputError where its runs stop, Interrupted when stop_wanted says so.
+/// For the scene's first replica. Uses jittered copies of its packing or, if those hardly differ, new
+/// packings. Throws InputError if its runs stop, Interrupted if stop_wanted returns true.
 Convergence converge_scene(Device& device, const Scene& scene, const ConvergeOptions& options);
 
 }  // namespace mcdem::ensemble

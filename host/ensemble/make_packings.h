@@ -1,4 +1,4 @@
-// The packings that all replicas of a scene start from.
+// Initial packings of all replicas of a scene.
 #pragma once
 #include <functional>
 #include <vector>
@@ -7,9 +7,9 @@
 
 namespace mcdem::inline ensemble {
 
-/// One packing a replica, in the scene's order, made on all cores; replicas that start alike share the
-/// work. Throws InputError with what is wrong in any of them. Gives up, with fewer packings than
-/// replicas, once `stop_wanted` says so (asked by several threads).
+/// One packing per replica, in order, computed on all cores; replicas with the same initial packing share the
+/// work. Throws InputError with all problems. Stops, with fewer packings than replicas, when `stop_wanted`
+/// returns true (called from several threads).
 std::vector<Packing> make_packings(const Scene& scene, const std::function<bool()>& stop_wanted = {});
 
 }  // namespace mcdem::ensemble

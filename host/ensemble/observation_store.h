@@ -1,5 +1,5 @@
-// Observations of simulations, and a few whole recordings, kept under a name made of all that went into them,
-// so that nothing is simulated twice.
+// Stores observations of simulations, and a few complete recordings, under hashes of all their inputs, so
+// that no simulation is repeated.
 #pragma once
 #include <Eigen/Core>
 #include <filesystem>
@@ -12,15 +12,15 @@ namespace mcdem::inline ensemble {
 
 class ObservationStore {
 public:
-    /// Makes the folder where it is missing.
+    /// Creates the folder if necessary.
     explicit ObservationStore(std::filesystem::path folder);
-    /// What was kept under the name; nothing where it is missing or damaged.
+    /// The stored observation with this name; nothing if it is missing or damaged.
     std::optional<Eigen::VectorXd> find(const std::string& name) const;
     void keep(const std::string& name, const Eigen::VectorXd& observation) const;
 
-    /// One that is whole.
+    /// Whether there is an undamaged one.
     bool has_recording(const std::string& name) const;
-    /// Throws InputError where it is missing or damaged.
+    /// Throws InputError if it is missing or damaged.
     Recording recording(const std::string& name) const;
     void keep(const std::string& name, const Recording& recording) const;
 

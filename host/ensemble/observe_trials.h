@@ -1,5 +1,5 @@
-// Many small simulations, each looked at through an instrument: what a signature library, a noise floor and
-// the confirmation of a cause are made of.
+// Many small simulations, each observed through an instrument, for signature libraries, noise floors and the
+// confirmation of effects.
 #pragma once
 #include <functional>
 #include <string>
@@ -12,23 +12,23 @@
 
 namespace mcdem::inline ensemble {
 
-/// One simulation and one look at it.
+/// One simulation and its observation.
 struct Trial {
     Model model;
-    Packing packing;             ///< where it starts, as measured
-    double jitter = 0;           ///< sd of a random displacement of every coordinate of it [m]
-    double diameter_jitter = 0;  ///< sd of a random change of every diameter [m]
+    Packing packing;             ///< initial packing, as measured
+    double jitter = 0;           ///< standard deviation of the noise on every initial coordinate [m]
+    double diameter_jitter = 0;  ///< standard deviation of the noise on every diameter [m]
     std::uint64_t seed =
-        0;  ///< of both jitters, of what is random in the replica, and of the measurement's noise
-    bool keep_recording = false;  ///< the whole recording too, as measured
+        0;  ///< for both jitters, random properties of the replica, and the noise of the measurement
+    bool keep_recording = false;  ///< also store the complete recording, as measured
 };
 
-/// What all trials of one question share.
+/// Common settings of all trials.
 struct Question {
-    Scene scene;  ///< precision and slots; its replicas are not looked at
+    Scene scene;  ///< precision and slots; its replicas are ignored
     Grid grid;
     ReferenceMaterial material;
-    int discard = 0;      ///< first cycles left out
+    int discard = 0;      ///< number of first cycles that are ignored
     std::string program;  ///< version and commit
 };
 
@@ -37,17 +37,17 @@ struct TrialOptions {
     std::function<bool()> stop_wanted = [] { return false; };
 };
 
-/// Row: trial, column: cell; not-a-number where a simulation failed. Trials that differ in the instrument
-/// only share a simulation, and what the store has is not simulated at all. All are kept as they come. Throws
-/// Interrupted when stop_wanted says so.
+/// Row: trial, column: cell; NaN if a simulation failed. Trials that differ only in the instrument share a
+/// simulation, and results in the store are reused. Results are stored as they are computed. Throws
+/// Interrupted if stop_wanted returns true.
 Eigen::MatrixXd observe_trials(Device& device, const Question& question, const std::vector<Trial>& trials,
                                const ObservationStore& store, const TrialOptions& options);
 
-/// The trials in parts that a process simulates alone, the same ones on every device. Trials that share a
-/// simulation lie in one part.
+/// Divides the trials into parts that can be simulated separately; the division does not depend on the
+/// device. Trials that share a simulation are in the same part.
 std::vector<std::vector<Trial>> parts_of_trials(const Question& question, const std::vector<Trial>& trials);
 
-/// Whether the store has the observations of all these trials by a device of this description.
+/// Whether the store contains the observations of all these trials for this device.
 bool are_observed(const std::string& device, const Question& question, const std::vector<Trial>& trials,
                   const ObservationStore& store);
 
@@ -59,7 +59,7 @@ struct Interrupted : std::runtime_error {
     Interrupted() : std::runtime_error("interrupted; the same command goes on where it stopped") {}
 };
 
-/// The material that observations are evaluated with: the model's.
+/// Material for the evaluation of observations: that of the model.
 ReferenceMaterial reference_material(const Model& model);
 
 }  // namespace mcdem::ensemble

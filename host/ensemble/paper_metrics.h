@@ -1,5 +1,4 @@
-// The paper's metrics of an experiment against the scene as it stands and against the scene with its cause
-// added.
+// Metrics of the paper for an experiment compared with the scene, and with the scene plus the named effect.
 #pragma once
 #include <vector>
 
@@ -12,7 +11,7 @@ struct BeforeAfter {
     std::vector<Recording> before, after;  ///< replicates, as measured
 };
 
-/// Fills in GapReduction::metrics (Rtop, errf [N], errZ, bhat) and GapReduction::top_force.
+/// Sets GapReduction::metrics (Rtop, errf [N], errZ, bhat) and GapReduction::top_force.
 void add_paper_metrics(GapReduction& gap_reduction, const Recording& experiment,
                        const BeforeAfter& simulated);
 

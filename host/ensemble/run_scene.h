@@ -1,5 +1,5 @@
-// Takes a scene through the simulation into a result folder, so that nothing but the time since the last
-// checkpoint is lost, whatever happens, and the result does not show that anything did.
+// Runs a scene into a result folder. After an interruption only the time since the last checkpoint is lost,
+// and the result is the same as that of an uninterrupted run.
 #pragma once
 #include <filesystem>
 #include <functional>
@@ -16,33 +16,33 @@ enum class Start { fresh, resume };
 struct RunOptions {
     std::filesystem::path folder;
     Start start = Start::fresh;
-    std::string program;  ///< version and commit, for the results
-    /// Called after every round; `fraction` of the whole run is done.
+    std::string program;  ///< version and commit, recorded in the results
+    /// Called after every round with the completed fraction of the run.
     std::function<void(double fraction)> on_progress = [](double) {};
-    /// A replica stopped; the others go on.
+    /// Called when a replica stops; the others continue.
     std::function<void(const Replica& replica, const Failure& failure)> on_failure = [](const Replica&,
                                                                                         const Failure&) {};
-    /// Something that the user should know and that does not stop the run.
+    /// Receives warnings that do not stop the run.
     std::function<void(const std::string& message)> on_warning = [](const std::string&) {};
-    /// Asked after every round, and by several threads while packings are made: true ends the run in good
-    /// order, to be resumed.
+    /// Called after every round, and from several threads while packings are made. True ends the run cleanly,
+    /// so that it can be resumed.
     std::function<bool()> stop_wanted = [] { return false; };
 };
 
 enum class RunEnd {
-    done,         ///< run.h5 is there
-    was_done,     ///< .. and was so before
-    interrupted,  ///< stop_wanted; a later resume goes on
+    done,         ///< run.h5 is complete
+    was_done,     ///< run.h5 was complete before
+    interrupted,  ///< by stop_wanted; the run can be resumed
 };
 
 struct RunSummary {
     RunEnd end = RunEnd::done;
-    long grain_steps = 0;  ///< made now; a resumed run's earlier ones do not count
-    double seconds = 0;    ///< spent on them, without kernels and packings being made ready
+    long grain_steps = 0;  ///< in this call, without those before a resume
+    double seconds = 0;    ///< for these steps, without compilation of kernels and generation of packings
 };
 
-/// Throws InputError for a folder, checkpoint or packing that does not suit, RunError where the work
-/// cannot be done. Replicas that fail are recorded and end nothing.
+/// Throws InputError for an unsuitable folder, checkpoint or packing, RunError for other failures. Replicas
+/// that fail are recorded and do not end the run.
 RunSummary run_scene(Device& device, const Scene& scene, const RunOptions& options);
 
 }  // namespace mcdem::ensemble

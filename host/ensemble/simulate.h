@@ -1,4 +1,4 @@
-// A scene taken through the simulation in memory, without files: for what needs many short runs.
+// Runs a scene in memory, without files, for many short runs.
 #pragma once
 #include <functional>
 #include <vector>
@@ -9,8 +9,8 @@
 
 namespace mcdem::inline ensemble {
 
-/// One recording a replica. Ends before its time once every replica has failed or has `scans_needed`
-/// scans. `on_progress` gets the part of the whole protocol that is done.
+/// One recording per replica. Ends early when every replica has failed or has `scans_needed` scans.
+/// `on_progress` receives the completed fraction of the whole protocol.
 std::vector<Recording> simulate(
     Device& device, const Scene& scene, const std::vector<Packing>& packings, std::size_t scans_needed,
     const std::function<void(double fraction)>& on_progress = [](double) {});

@@ -1,4 +1,4 @@
-// NumPy arrays that are the memory of a recording: nothing is copied, and they keep what they show alive.
+// NumPy arrays that refer to the memory of a recording: nothing is copied, and they keep the recording alive.
 #pragma once
 #include <pybind11/numpy.h>
 
@@ -6,8 +6,8 @@
 
 namespace mcdem::inline python {
 
-/// Each is read-only and has `owner` as its base. Shapes: [S] rows named as in run.h5, [S][6][3], [S],
-/// [S][3][3], [N], [N][3], [C] rows.
+/// Each array is read-only with `owner` as its base. Shapes: [S] rows with the names in run.h5, [S][6][3],
+/// [S], [S][3][3], [N], [N][3], [C] rows.
 pybind11::array scans_array(const Recording& recording, pybind11::handle owner);
 pybind11::array wall_force_array(const Recording& recording, pybind11::handle owner);
 pybind11::array top_force_array(const Recording& recording, pybind11::handle owner);
@@ -19,7 +19,7 @@ pybind11::array position_array(const Scan& scan, pybind11::handle owner);
 pybind11::array rotation_array(const Scan& scan, pybind11::handle owner);
 pybind11::array contact_array(const Scan& scan, pybind11::handle owner);
 
-/// [N][3][3], memory of its own.
+/// [N][3][3], a copy.
 pybind11::array grain_stress_array(const Recording& recording, const Scan& scan);
 
 }  // namespace mcdem::python

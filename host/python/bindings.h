@@ -1,4 +1,4 @@
-// The parts of the Python module; mcdem/__init__.pyi has the signatures as Python's users see them.
+// The parts of the Python module; mcdem/__init__.pyi contains the Python signatures.
 #pragma once
 #include <pybind11/pybind11.h>
 
@@ -15,7 +15,7 @@ void bind_diagnosis(pybind11::module_& module);
 void bind_convergence(pybind11::module_& module);
 void bind_comparison(pybind11::module_& module);
 
-/// A run as Python holds it: arrays and recordings share it, and nobody changes it.
+/// A run in Python: shared by arrays and recordings, immutable.
 using SharedRun = std::shared_ptr<Run>;
 
 }  // namespace mcdem::python

@@ -1,4 +1,4 @@
-// Scene keys and their values as Python's.
+// Converts scene keys and their values to Python.
 #pragma once
 #include <pybind11/pybind11.h>
 
@@ -7,10 +7,10 @@
 
 namespace mcdem::inline python {
 
-/// Text as Python has it. Bytes that are no UTF-8, of paths for one, stay as os.fsdecode makes them.
+/// Text as a Python str. Invalid UTF-8, for example in paths, is decoded like os.fsdecode.
 pybind11::str python_text(const std::string& text);
 
-/// Texts of a scene's values as int, float, bool or str; None for an empty text.
+/// Converts values of scene keys to int, float, bool or str; None for an empty text.
 pybind11::dict typed_parameters(const std::map<std::string, std::string>& parameters);
 
 }  // namespace mcdem::python

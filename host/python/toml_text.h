@@ -1,4 +1,4 @@
-// Python's values as TOML.
+// Converts Python values to TOML.
 #pragma once
 #include <pybind11/pybind11.h>
 
@@ -7,11 +7,11 @@
 
 namespace mcdem::inline python {
 
-/// A scene's tables, as nested or dotted keys, as a TOML document. Throws InputError for values that TOML has
-/// not.
+/// Scene tables with nested or dotted keys as a TOML document. Throws InputError for values without a TOML
+/// equivalent.
 std::string toml_text(const pybind11::dict& tables);
 
-/// "key=value" for each entry: what `--set` takes.
+/// "key=value" for each entry, as for `--set`.
 std::vector<std::string> overrides_of(const pybind11::dict& values);
 
 }  // namespace mcdem::python

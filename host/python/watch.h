@@ -1,5 +1,5 @@
-// A long call on behalf of Python: progress is told, Ctrl-C heard, and what the callbacks raise is kept until
-// the call has ended in good order.
+// Support for long calls from Python: reports progress, handles Ctrl-C, and stores exceptions of callbacks
+// until the call has ended cleanly.
 #pragma once
 #include <cxxabi.h>
 #include <pybind11/pybind11.h>
@@ -14,10 +14,10 @@ namespace mcdem::inline python {
 
 class Watch {
 public:
-    /// `progress` is a callable or None. To be made on the thread that makes the call, with the GIL.
+    /// `progress` is a callable or None. Must be constructed on the calling thread, with the GIL.
     explicit Watch(pybind11::object progress) : progress_(std::move(progress)) {}
 
-    /// Each may be called without the GIL, from any thread.
+    /// The functions below can be called without the GIL, from any thread.
     template <class... Arguments>
     void show_progress(const Arguments&... arguments) {
         ask_python([&] {
@@ -30,16 +30,16 @@ public:
                 throw pybind11::error_already_set();
         });
     }
-    /// True once a signal's handler or a callback has raised.
+    /// True after a signal handler or a callback has raised an exception.
     bool stop_wanted() {
-        // Python hands signals to its main thread only; workers see what that has heard.
+        // Python handles signals only on its main thread; other threads see the result.
         if (std::this_thread::get_id() == caller_)
             ask_python([] {
                 if (PyErr_CheckSignals() != 0) throw pybind11::error_already_set();
             });
         return stop_;
     }
-    /// Throws what a callback or a signal's handler has raised, if any has.
+    /// Rethrows the exception of a callback or signal handler, if there is one.
     void raise() const {
         if (error_) std::rethrow_exception(error_);
     }
@@ -50,7 +50,7 @@ private:
         if (stop_) return;
         try {
             const pybind11::gil_scoped_acquire gil;
-            if (stop_) return;  // another thread has raised meanwhile
+            if (stop_) return;  // another thread has raised an exception in the meantime
             try {
                 ask();
             } catch (pybind11::error_already_set&) {
@@ -58,7 +58,7 @@ private:
                 stop_ = true;
             }
         } catch (abi::__forced_unwind&) {
-            // Python ends, and ends this daemon thread, which could not be unwound through what runs in it.
+            // The interpreter is shutting down and stops this daemon thread, which cannot be unwound.
             while (true) pause();
         }
     }

@@ -1,4 +1,4 @@
-// What the parts of `mcdem challenge` share.
+// Shared code of the commands `mcdem challenge ..`.
 #pragma once
 #include <CLI/CLI.hpp>
 

@@ -8,23 +8,23 @@
 
 namespace mcdem::inline cli {
 
-/// Figures of merit of the whole method with 95 % intervals and what is asked; both halves.
+/// Figures of merit of the whole method with 95 % intervals and targets, for both halves.
 TextTable table_of_merits(const ChallengeScore& score);
-/// Every arm on the scored half.
+/// All methods on the scored half.
 TextTable table_of_arms(const ChallengeScore& score);
-/// Detected and named, by effect.
+/// Detected and named cases by effect.
 TextTable table_of_effects(const ChallengeScore& score);
-/// Named although unknown, by what it was.
+/// Cases with unknown effects in which an effect was named, by unknown effect.
 TextTable table_of_unknown(const ChallengeScore& score);
-/// Limits that the first half led to, and the defaults.
+/// Limits set with the first half, and the defaults.
 TextTable table_of_limits(const ChallengeScore& score);
 
-/// All of it as Markdown.
+/// The complete score as Markdown.
 std::string score_markdown(const ChallengeScore& score);
-/// All of it for programs.
+/// The complete score as JSON.
 std::string score_json(const ChallengeScore& score);
 
-/// What its figures show (report/run/figure_values.h), those that there are.
+/// Values of the available figures (report/run/figure_values.h).
 nlohmann::ordered_json score_figure_values(const ChallengeScore& score);
 
 }  // namespace mcdem::cli

@@ -10,10 +10,10 @@ void add_experiment_check(CLI::App& experiment);
 void add_experiment_from_run(CLI::App& experiment);
 void add_experiment_import(CLI::App& experiment, int& exit_code);
 
-/// Refuses a folder that holds another experiment or run.
+/// Throws InputError if the folder contains another experiment or a run.
 void expect_free(const std::filesystem::path& out);
 
-/// Lines of words, those after the first indented under the text.
+/// Wraps a text; all lines but the first are indented to the text.
 std::string wrapped(const std::string& head, const std::string& text);
 
 }  // namespace mcdem::cli

@@ -1,4 +1,4 @@
-// Parts of a work dealt to the devices of this machine, a process on each.
+// Distributes parts to the devices of this machine, one process per device.
 #pragma once
 #include <cstddef>
 #include <string>
@@ -6,10 +6,10 @@
 
 namespace mcdem::inline cli {
 
-/// Runs `words --part K --device D` for every part. A device whose process fails is taken out of `devices`,
-/// and another gets the part; so it is after a signal, but for a part whose processes were killed three
-/// times. Returns an exit code: interrupted; bad input, told by a process; failed, where no device is left;
-/// else done.
+/// Runs `words --part K --device D` for every part. A device whose process fails is removed from `devices`,
+/// and another one gets the part. The same happens if a process is killed by a signal, except that a part
+/// whose processes were killed three times is given up. Returns an exit code: interrupted; bad input if a
+/// process reported it; failed if no device is left; otherwise done.
 int deal_to_devices(const std::vector<std::string>& words, const std::vector<std::size_t>& parts,
                     std::vector<int>& devices);
 

@@ -1,4 +1,4 @@
-// The ranks that mpirun or srun has started, and the parts dealt to them by a counter.
+// MPI ranks started by mpirun or srun, and a counter that deals parts to them.
 #pragma once
 #include <cstddef>
 #include <memory>
@@ -6,25 +6,26 @@
 
 namespace mcdem::inline cli {
 
-/// MPI, for as long as this lives; once a process. A rank that is lost ends the others, as MPI does.
+/// Initialises MPI for the lifetime of the object; use it once per process. If a rank is lost, MPI ends the
+/// others.
 class Ranks {
 public:
-    /// Throws InputError where the program was built without MPI.
+    /// Throws InputError if the program was built without MPI.
     Ranks();
     ~Ranks();
     Ranks(const Ranks&) = delete;
 
     int rank() const;
     int size() const;
-    int on_machine() const;  ///< number of this rank among those of its machine
+    int on_machine() const;  ///< number of this rank among those on its machine
 
-    /// The list of rank 0, on all of them. Then `next` counts from 0 again.
+    /// Returns the list of rank 0 on all ranks. `next` then counts from 0 again.
     std::vector<std::size_t> agreed(std::vector<std::size_t> list);
-    /// A place in that list that no other rank gets; past its end, once for each rank, where all are dealt.
+    /// Index in that list that no other rank gets; past its end when all are dealt.
     std::size_t next();
-    /// To be called often by one that computes: lets others count.
+    /// Must be called often by a rank that computes, so that others can use the counter.
     void answer();
-    /// Until all ranks are here.
+    /// Waits for all ranks.
     void wait();
     [[noreturn]] void abort(int exit_code);
 

@@ -1,4 +1,4 @@
-// Runs and experiments read for comparison.
+// Loads runs and experiments for comparisons.
 #pragma once
 #include <CLI/CLI.hpp>
 #include <optional>
@@ -10,8 +10,7 @@
 
 namespace mcdem::inline cli {
 
-/// Some runs, and their settings side by side. Settings point into the runs: moving keeps them, copying
-/// would not.
+/// Several runs and their settings. Settings point into the runs, so the object can be moved but not copied.
 struct LoadedRuns {
     LoadedRuns() = default;
     LoadedRuns(LoadedRuns&&) = default;
@@ -20,19 +19,20 @@ struct LoadedRuns {
     std::vector<Setting> settings;
 };
 
-/// Each path is a result folder or file. Of several runs, every setting's label begins with the run's.
+/// Each path is a result folder or file. If there are several runs, the label of every setting begins with
+/// that of its run.
 LoadedRuns load_runs(const std::vector<std::string>& paths, ReadWhat what);
 
-/// What the user says about a reference.
+/// Options for the reference.
 struct ReferenceOptions {
     std::vector<std::string> paths;  ///< experiment folders, result folders or files
-    std::string setting;             ///< of a run with several; empty: mc_dem, where there is one
-    int discard = 0;                 ///< first cycles of an experiment to leave out
+    std::string setting;             ///< of a run with several settings; default: mc_dem, if it exists
+    int discard = 0;                 ///< number of first cycles of an experiment that are ignored
 };
 void add_reference_options(CLI::App& command, ReferenceOptions& options, const std::string& name,
                            const std::string& help);
 
-/// All replicas of the reference together: the one setting that others are held against.
+/// All replicas of the reference as one setting for comparisons.
 struct LoadedReference {
     LoadedReference() = default;
     LoadedReference(LoadedReference&&) = default;

@@ -1,4 +1,4 @@
-// What every command that reads a scene takes.
+// Common options of all commands that read a scene.
 #pragma once
 #include <CLI/CLI.hpp>
 #include <string>

@@ -1,5 +1,4 @@
-// The program's commands and options as plain values: what its manual and the shells' completions are written
-// from, so that they say what the program does.
+// Commands and options of the program as plain values, used to generate the manual and the shell completions.
 #pragma once
 #include <CLI/CLI.hpp>
 #include <string>
@@ -9,25 +8,25 @@ namespace mcdem::inline cli {
 
 struct OptionEntry {
     std::vector<std::string> names;    ///< "--out", "-h"; for a positional "SCENE"
-    std::string value;                 ///< what it takes, "DIR"; empty for a flag
-    std::vector<std::string> choices;  ///< the words it takes, where these are all
-    std::string text;                  ///< "--out DIR REQUIRED", as the help shows it
+    std::string value;                 ///< name of its value, "DIR"; empty for a flag
+    std::vector<std::string> choices;  ///< the allowed words, if it takes only these
+    std::string text;                  ///< "--out DIR REQUIRED", as in the help
     std::string help;
 };
 
 struct CommandEntry {
     std::string path;  ///< "", "run", "experiment check"
     std::string about;
-    std::string notes;  ///< what the help says below the options
+    std::string notes;  ///< text below the options in the help
     std::vector<OptionEntry> options;
     std::vector<OptionEntry> positionals;
-    std::vector<std::string> commands;  ///< names below it
+    std::vector<std::string> commands;  ///< names of its subcommands
 };
 
-/// The program itself, then every command, each before those below it.
+/// The program, followed by all commands, each before its subcommands.
 std::vector<CommandEntry> command_tree(const CLI::App& app);
 
-/// The entry at `path` and then `name`.
+/// The entry with `path` followed by `name`.
 const CommandEntry& below(const std::vector<CommandEntry>& tree, const std::string& path,
                           const std::string& name);
 

@@ -1,5 +1,5 @@
-// One function a command: adds it to the program's command line, with its help. The command's exit code
-// is put into `exit_code` when the command line asks for it; errors are thrown.
+// One function per command, which adds it with its help to the command line. The exit code of the command is
+// stored in `exit_code` when it runs; errors are thrown.
 #pragma once
 #include <CLI/CLI.hpp>
 

@@ -1,4 +1,4 @@
-// Completion scripts for shells, written from the program's own commands and options.
+// Completion scripts for shells, generated from the program's commands and options.
 #pragma once
 #include <string>
 #include <vector>
@@ -7,7 +7,7 @@
 
 namespace mcdem::inline cli {
 
-/// `shell` is bash, zsh or fish; `scene_keys` complete what is given as KEY=VALUE.
+/// `shell` is bash, zsh or fish; `scene_keys` complete options of the form KEY=VALUE.
 std::string completion_script(const std::vector<CommandEntry>& tree, const std::string& shell,
                               const std::vector<std::string>& scene_keys);
 

@@ -1,10 +1,10 @@
-// What to do when the program is ended by a defect, which may be a compiler's or a driver's.
+// Advice for crashes, which may be caused by a compiler or a driver.
 #pragma once
 
 namespace mcdem::inline cli {
 
-/// Says it after the signals by which such an end comes, where nobody else listens to them. PoCL's compiler
-/// does, so this is to be called again once OpenCL has started.
+/// Installs handlers that print the advice for signals of crashes, unless another handler is installed.
+/// PoCL's compiler installs some, so call this again after OpenCL has started.
 void hint_at_crashes();
 
 }  // namespace mcdem::cli

@@ -1,10 +1,10 @@
-// Ctrl-C and SIGTERM: the first asks for an end in good order, the second ends the program at once.
+// Ctrl-C and SIGTERM: the first one requests a clean end, the second one ends the program immediately.
 #pragma once
 #include <signal.h>
 
 namespace mcdem::inline cli {
 
-/// Listens as long as it lives.
+/// Handles signals during its lifetime.
 class Interrupt {
 public:
     Interrupt();

@@ -1,4 +1,4 @@
-// Manual pages, written from the program's own help.
+// Manual pages, generated from the program's help.
 #pragma once
 #include <map>
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace mcdem::inline cli {
 
-/// One page a command, roff by file name: "mcdem.1", "mcdem-experiment-check.1".
+/// One page per command; roff text by file name: "mcdem.1", "mcdem-experiment-check.1".
 std::map<std::string, std::string> manual_pages(const std::vector<CommandEntry>& tree,
                                                 const std::string& version);
 

@@ -1,4 +1,4 @@
-// What the program says on standard error: each line begins with `mcdem: `.
+// Messages on standard error; each line begins with `mcdem: `.
 #pragma once
 #include <spdlog/spdlog.h>
 
@@ -6,10 +6,10 @@
 
 namespace mcdem::inline cli {
 
-/// Must come first. From then on spdlog::info, warn and error speak to the user.
+/// Must be called first. Afterwards spdlog::info, warn and error print messages for the user.
 void set_up_messages();
 
-/// Says what went wrong, each problem on its line, and returns the exit code that stands for it.
+/// Prints the error, one line per problem, and returns its exit code.
 int report_error(const std::exception& error);
 
 }  // namespace mcdem::cli

@@ -1,4 +1,4 @@
-// How far a run is, and how long it will take: a bar on a terminal, lines of text elsewhere.
+// Progress and remaining time: a bar on a terminal, otherwise lines of text.
 #pragma once
 #include <chrono>
 #include <cstdio>
@@ -10,7 +10,7 @@ namespace mcdem::inline cli {
 
 enum class ProgressStyle { bar, lines };
 
-/// A bar where `out` is a terminal that can redraw its line.
+/// A bar if `out` is a terminal that can redraw its line.
 ProgressStyle progress_style(std::FILE* out);
 
 class Progress {
@@ -21,9 +21,9 @@ public:
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
 
-    /// `fraction` of the work is done. Draws only when there is something new to see.
+    /// Shows the completed fraction of the work. Draws only if something has changed.
     void show(double fraction);
-    /// Takes the bar away, before something else is written; the next show() brings it back.
+    /// Removes the bar before other output; the next show() draws it again.
     void clear();
 
 private:
@@ -39,12 +39,12 @@ private:
     std::FILE* out_;
     ProgressStyle style_;
     std::function<Clock::time_point()> now_;
-    std::optional<Moment> first_;  ///< a resumed run does not begin at 0
-    std::optional<Moment> last_;   ///< when something was drawn
+    std::optional<Moment> first_;  ///< a resumed run does not start at 0
+    std::optional<Moment> last_;   ///< time of the last drawing
     bool bar_is_there_ = false;
 };
 
-/// The progress of work in stages, each with its name and a bar of its own on standard error.
+/// Progress of work in several named stages, each with its own bar on standard error.
 class StageProgress {
 public:
     void show(const std::string& stage, double fraction);

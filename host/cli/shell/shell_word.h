@@ -1,11 +1,11 @@
-// Words as a shell takes them: what a user is told to type, and what a job script says.
+// Quoting of words for a shell, in messages and job scripts.
 #pragma once
 #include <string>
 #include <vector>
 
 namespace mcdem::inline cli {
 
-/// The word itself, in quotes where a shell would make something of it.
+/// The word, in quotes if a shell would interpret it.
 std::string shell_word(const std::string& word);
 std::string shell_words(const std::vector<std::string>& words);
 

@@ -1,5 +1,5 @@
-// Standard output and error that fail: a full disk, a closed pipe, a terminal that is gone. Messages that
-// cannot be written end nothing; results that cannot be printed make the exit code 1.
+// Failing standard streams: a full disk, a closed pipe, a lost terminal. Messages that cannot be written are
+// ignored; results that cannot be printed set the exit code to 1.
 #pragma once
 #include <fmt/format.h>
 
@@ -8,21 +8,21 @@
 
 namespace mcdem::inline cli {
 
-/// Must come first. No file that is opened later gets the number of a stream that was closed, and no write
-/// ends the program by a signal: neither to a pipe whose reader has gone, nor past a limit of the file size.
+/// Must be called first. Reserves the descriptors of closed streams, so that files opened later do not get
+/// them. Ignores signals caused by writes to a closed pipe or beyond the limit of the file size.
 void set_up_streams();
 
-/// Writes as much as can be written, and says nothing of the rest.
+/// Writes as much as possible and ignores errors.
 void write_text(std::FILE* out, std::string_view text);
 
-/// Results, on standard output.
+/// Prints results on standard output.
 template <class... T>
 void print_out(fmt::format_string<T...> format, T&&... values) {
     write_text(stdout, fmt::format(format, std::forward<T>(values)...));
 }
 
-/// The exit code of a command that had this one, once all is printed: exit_failed, with a message, where
-/// standard output has failed and is not a terminal that has gone.
+/// Final exit code of a command with this exit code: exit_failed, with a message, if standard output has
+/// failed and is not a lost terminal.
 int exit_code_of_output(int exit_code);
 
 }  // namespace mcdem::cli

@@ -1,4 +1,4 @@
-// The simulations of a diagnosis' library: which they are, and in parts for many processes.
+// The simulations of a diagnosis's library, as parts for several processes.
 #pragma once
 #include <memory>
 
@@ -7,12 +7,12 @@
 
 namespace mcdem::inline ensemble {
 
-/// Trials of a baseline whose recordings are kept whole: the paper's metrics are taken from them.
+/// Number of baseline trials with complete recordings, for the metrics of the paper.
 constexpr std::size_t trials_recorded = 4;
 void keep_recordings(std::vector<Trial>& trials);
 
-/// The work of a diagnosis before it begins: what is simulated, and how it is looked at. Throws InputError
-/// where an experiment does not say enough, or the packings of one are not measured alike.
+/// The simulations of a diagnosis and their observation. Throws InputError if an experiment has too few data,
+/// or the packings of one experiment are not measured in the same way.
 struct DiagnosisPlan {
     LibraryPlan library;
     Question question;
@@ -21,9 +21,9 @@ struct DiagnosisPlan {
 DiagnosisPlan plan_of(const Scene& scene, const std::vector<Experiment>& experiments,
                       const DiagnoseOptions& options);
 
-/// Nothing is left where the library's file is there; with all parts there, diagnose_experiment makes the
-/// library without simulating. Holds the folder's lock with others. The arguments must live as long. Throws
-/// InputError where the experiment cannot be diagnosed.
+/// Nothing is missing if the library's file exists. When all parts exist, diagnose_experiment builds the
+/// library without simulating. Holds a shared lock on the folder. The arguments must outlive the result.
+/// Throws InputError if the experiment cannot be diagnosed.
 std::unique_ptr<PartedWork> library_parts(const Scene& scene, const std::vector<Experiment>& experiments,
                                           const DiagnoseOptions& options);
 

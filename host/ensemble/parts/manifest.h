@@ -1,4 +1,4 @@
-// What the work in a folder was begun with: written once, and checked by every later command.
+// Inputs of the work in a folder: written once, and checked by every later command.
 #pragma once
 #include <filesystem>
 #include <map>
@@ -10,26 +10,26 @@
 
 namespace mcdem::inline ensemble {
 
-/// Name of a thing that must stay the same, and what stands for it.
+/// Names and values of the inputs that must not change.
 using Manifest = std::map<std::string, std::string>;
 
-/// Program, kernels, scene with its overrides, and packing files: what decides the bits of a run, but for
-/// the device.
+/// Program, kernels, scene with its overrides, and packing files: everything except the device that
+/// determines the bits of a run.
 Manifest manifest_of(const Scene& scene, const std::string& program);
 
-/// The device with its build of the kernels, which decides the last bits.
+/// The device with its build of the kernels, which determines the last bits.
 Manifest manifest_of(const Device& device, const Scene& scene);
 
 /// `<folder>/manifest.json` and `<folder>/device.json`. The second is written by the first process that
-/// computes: who begins the work may have no such device.
+/// computes, because the process that starts the work may not have such a device.
 std::filesystem::path manifest_file(const std::filesystem::path& folder);
 std::filesystem::path device_file(const std::filesystem::path& folder);
 
-/// None where there is no such file, or one that is damaged.
+/// None if the file does not exist or is damaged.
 std::optional<Manifest> read_manifest(const std::filesystem::path& file);
 
-/// Writes `wanted` where there is no manifest, or a damaged one. Returns what the file holds. Throws
-/// InputError that names every entry of another value; that of the name `chosen` may be another one.
+/// Writes `wanted` if there is no manifest or a damaged one. Returns the content of the file. Throws
+/// InputError with all entries that differ; the entry `chosen` may differ.
 Manifest keep_manifest(const std::filesystem::path& file, const Manifest& wanted,
                        const std::string& chosen = "");
 

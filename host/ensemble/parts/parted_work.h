@@ -1,5 +1,5 @@
-// Work that is cut into parts, each of which any process computes alone, in any order (README.md beside this
-// file).
+// Work that is divided into parts. Any process can compute any part, in any order (README.md in the parent
+// folder).
 #pragma once
 #include <cstddef>
 #include <functional>
@@ -9,24 +9,23 @@
 
 namespace mcdem::inline ensemble {
 
-/// A part is deterministic, and its result is put in place in one move: one that is computed twice, or by two
-/// processes at a time, is the same to the last bit. Nobody claims a part; who schedules them is another's.
+/// Parts are deterministic, and their results are moved into place by a rename. If two processes compute the
+/// same part, the results are bit-identical. Parts are not claimed; scheduling is left to the caller.
 class PartedWork {
 public:
     virtual ~PartedWork() = default;
 
-    /// Numbers of the parts that can be computed now and are not there; none when nothing is left to compute.
+    /// Numbers of the missing parts that can be computed now; empty when all are computed.
     virtual std::vector<std::size_t> missing() = 0;
 
-    /// Computes a part, unless a whole one is there. False where it was interrupted. Throws InputError and
-    /// RunError.
+    /// Computes a part, unless a complete one exists. Returns false if it was interrupted. Throws InputError
+    /// and RunError.
     virtual bool compute(Device& device, std::size_t part) = 0;
 
-    /// Puts the parts together once none is missing. False where one turned out to be damaged: it is missing
-    /// again.
+    /// Merges the parts when none is missing. Returns false if one is damaged; it is then missing again.
     virtual bool merge() = 0;
 
-    /// Called while a part is computed, with the fraction of it that is done.
+    /// Called while a part is computed, with the completed fraction of the part.
     std::function<void(double fraction)> on_progress = [](double) {};
 };
 

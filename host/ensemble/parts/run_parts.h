@@ -1,4 +1,4 @@
-// A run computed in parts, which are ranges of replicas (README.md beside this file).
+// A run in parts, which are ranges of replicas (README.md in the parent folder).
 #pragma once
 #include "ensemble/parts/parted_work.h"
 #include "ensemble/run_scene.h"
@@ -6,22 +6,23 @@
 
 namespace mcdem::inline ensemble {
 
-/// How a run is cut.
+/// Division of a run into parts.
 struct RunCut {
-    std::size_t part_replicas = 0;  ///< of a part; 0: enough to fill a device, but two parts a worker
-    std::size_t workers = 1;        ///< that are known to come
+    std::size_t part_replicas =
+        0;  ///< replicas per part; 0: enough to fill a device, but at least two parts per worker
+    std::size_t workers = 1;  ///< number of expected workers
 };
 
-/// The merged folder holds what run_scene leaves in it, bit for bit.
+/// After merging, the folder is bit-identical to the result of run_scene.
 class RunParts : public PartedWork {
 public:
-    /// Begins the run in the folder of `options`, or takes it up with the cut that it was begun with. Throws
-    /// InputError where another run lies there or is written there by one program, or where the program or
-    /// the scene is not the one it was begun with; RunError.
+    /// Starts the run in the folder of `options`, or continues it with its original division. Throws
+    /// InputError if the folder contains another run or is locked by a single process, or if the program or
+    /// the scene differ from the original ones; RunError.
     RunParts(const Scene& scene, const RunOptions& options, const RunCut& cut);
 
     std::vector<std::size_t> missing() override;
-    /// Also throws InputError for a device that is not of the kind of those that computed the other parts.
+    /// Also throws InputError if the device is of another kind than those that computed the other parts.
     bool compute(Device& device, std::size_t part) override;
     bool merge() override;
     std::size_t count() const { return count_; }
@@ -44,7 +45,7 @@ private:
     std::size_t part_replicas_ = 0, count_ = 0;
 };
 
-/// Whether a run lies in parts in this folder.
+/// Whether the folder contains a run in parts.
 bool is_run_in_parts(const std::filesystem::path& folder);
 
 }  // namespace mcdem::ensemble

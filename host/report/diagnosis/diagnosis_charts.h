@@ -1,5 +1,4 @@
-// The pictures of a diagnosis as charts of a page: where the gap is, which effects are consistent with it,
-// how far it shrinks.
+// Charts of a diagnosis: location of the gap, consistent effects, and gap reduction.
 #pragma once
 #include <optional>
 
@@ -8,14 +7,13 @@
 
 namespace mcdem::inline report {
 
-/// Heat map before and after recalibration, cells that stand out framed. Nothing without cells.
+/// Heat map before and after recalibration, with significant cells framed. Nothing without cells.
 std::optional<Chart> where_chart(const Diagnosis& diagnosis);
 
-/// Candidates by score, with their amplitudes over what these data can detect. Nothing without a ranking.
+/// Candidates by score, with their amplitudes over the detection limits. Nothing without a ranking.
 std::optional<Chart> which_chart(const Diagnosis& diagnosis);
 
-/// Top force, and the gap that is left. Empty without a reduction of the gap, or where the data held out show
-/// no gap.
+/// Top force and remaining gap. Empty without a gap reduction, or if the held-out data show no gap.
 std::vector<Chart> how_far_charts(const Diagnosis& diagnosis);
 
 }  // namespace mcdem::report

@@ -8,10 +8,11 @@
 
 namespace mcdem::inline report {
 
-/// Verdict, charts, tables and provenance; `name` tells it from others on the page, empty: it stands alone.
+/// Adds verdict, charts, tables and provenance. `name` distinguishes several diagnoses on a page; empty for a
+/// single one.
 void add_diagnosis(Page& page, const Diagnosis& diagnosis, const std::string& name);
 
-/// A page of this diagnosis alone. Throws RunError where it cannot be made.
+/// Writes a page with only this diagnosis. Throws RunError if that fails.
 void write_diagnosis_page(const Diagnosis& diagnosis, const std::filesystem::path& file);
 
 }  // namespace mcdem::report

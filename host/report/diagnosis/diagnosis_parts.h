@@ -1,4 +1,4 @@
-// What the pictures of a diagnosis show, made ready for drawing.
+// Data of the figures of a diagnosis.
 #pragma once
 #include <optional>
 #include <set>
@@ -9,7 +9,7 @@
 
 namespace mcdem::inline report {
 
-/// What the figures have in common. Blue and orange are told apart by the colour-blind.
+/// Common colours. Blue and orange are distinguishable for colour-blind readers.
 namespace diagnosis_colour {
 inline constexpr const char* named = "#D55E00";
 inline constexpr const char* other = "#6F9BBF";
@@ -18,15 +18,15 @@ inline constexpr const char* after = "#D55E00";
 inline constexpr const char* faint = "#999999";
 }  // namespace diagnosis_colour
 
-/// The figure "where": a row an observable, a column a displacement.
+/// The figure "where": one row per observable, one column per displacement.
 struct HeatMap {
     struct Column {
         std::string phase;
         double displacement;  ///< [m]
-        double x = 0;         ///< of its middle; columns are 1 wide, phases lie apart
+        double x = 0;         ///< of its centre; columns have width 1, phases are separated
     };
     std::vector<std::string> observables;  ///< from top to bottom
-    std::vector<Column> columns;           ///< in the order of the measurement: loading, then back
+    std::vector<Column> columns;           ///< in the order of the measurement: loading, then unloading
     double width = 0;
 
     int row(const WhereCell& cell) const;
@@ -34,37 +34,39 @@ struct HeatMap {
 };
 HeatMap heat_map_of(const std::vector<WhereCell>& cells);
 
-/// Whether any cell has a number.
+/// Whether any cell has a value.
 bool has_cells(const Diagnosis& diagnosis);
 
-/// Where the threshold is not known, the cells of the entries stand out before recalibration, and none after.
+/// Whether the cell is significant. If the threshold is unknown, the cells of the entries are significant
+/// before recalibration, and none after.
 bool stands_out(const Diagnosis& diagnosis, const WhereCell& cell, bool refitted);
 
-/// The colours end at this many sigmas: outliers must not fade all others, nor noise look like a gap.
+/// End of the colour scale in sigmas, so that outliers do not hide other cells and noise does not look like a
+/// gap.
 double colour_range(const std::vector<WhereCell>& cells);
 
-/// Candidates that the verdict names: the leader and its group, none where no effect explains the gap.
+/// Candidates that the verdict names: the leading effect and its group; none if no effect explains the gap.
 std::set<std::string> named_effects(const Diagnosis& diagnosis);
 
-/// Candidates that these data cannot tell apart share a letter: "A", "AB", empty where one stands alone. By
-/// place in the ranking.
+/// Candidates that these data cannot distinguish share a letter: "A", "AB"; empty for a single one. By index
+/// in the ranking.
 std::vector<std::string> group_letters(const std::vector<Cause>& ranking);
 
-/// A fitted amplitude over the smallest detectable one: that makes all units one.
+/// A fitted amplitude over the detection limit, so that all effects have the same unit.
 struct ShownAmplitude {
-    std::size_t place;  ///< in the ranking
+    std::size_t place;  ///< index in the ranking
     double over;
-    double half;  ///< of its 90 % interval
+    double half;  ///< half width of its 90 % interval
 };
 std::vector<ShownAmplitude> shown_amplitudes(const Diagnosis& diagnosis);
 
-/// Displacement [m], experiment, before and after [N]: those that are known in full.
+/// Displacement [m], experiment, before and after [N], where all are known.
 std::vector<std::array<double, 4>> known_forces(const GapReduction& gap_reduction);
 
-/// What the simulated force after the change is called.
+/// Legend of the simulated force after the change.
 std::string words_after(const Diagnosis& diagnosis);
 
-/// A part of the gap that is left.
+/// A remaining part of the gap.
 struct GapBar {
     std::string words, colour;
     double value;  ///< over the gap before

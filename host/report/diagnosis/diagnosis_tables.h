@@ -7,18 +7,18 @@ namespace mcdem::inline report {
 
 TextTable table_of_causes(const Diagnosis& diagnosis);
 
-/// Parts of the data that stand out, the strongest first, at most 20 of them.
+/// Significant parts of the data, strongest first, at most 20.
 TextTable table_of_where(const Diagnosis& diagnosis);
 
 TextTable table_of_detection_limits(const Diagnosis& diagnosis);
 
-/// Each of several packings by itself; no rows where there is one.
+/// Each of several packings separately; no rows for a single one.
 TextTable table_of_packings(const Diagnosis& diagnosis);
 
-/// How far the fit moved the parameters that are known only roughly.
+/// Fitted shifts of the uncertain parameters.
 TextTable table_of_nuisances(const Diagnosis& diagnosis);
 
-/// Gap and metrics before and after; empty without a reduction of the gap.
+/// Gap and metrics before and after; empty without a gap reduction.
 TextTable table_of_gap_reduction(const Diagnosis& diagnosis);
 
 TextTable table_of_provenance(const Diagnosis& diagnosis);

@@ -1,5 +1,4 @@
-// What the figures of a diagnosis show, as JSON (figure_values.h): where, which and how_far, those that there
-// are.
+// Values of the available figures of a diagnosis as JSON (figure_values.h): where, which and how_far.
 #pragma once
 #include <nlohmann/json.hpp>
 

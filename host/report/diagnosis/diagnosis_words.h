@@ -1,4 +1,4 @@
-// How effects, quantities and probabilities of a diagnosis are called where people read them.
+// Readable names of effects, quantities and probabilities of a diagnosis.
 #pragma once
 #include <string>
 #include <vector>
@@ -7,44 +7,44 @@
 
 namespace mcdem::inline report {
 
-/// An effect, nuisance or observable in words; one that is not known by name with blanks for its underscores.
+/// Readable name of an effect, nuisance or observable; unknown names with blanks instead of underscores.
 std::string words_of(const std::string& name);
 
-/// "a, b and c"; of more than `most` the first ones "and N more".
+/// "a, b and c"; if there are more than `most`, the first ones "and N more".
 std::string listed(const std::vector<std::string>& parts, std::size_t most = 100);
 
-/// "0.421 mJ/m²": three digits, in the unit that people use for it. "–" where it is not finite.
+/// "0.421 mJ/m²": three digits, in a convenient unit. "–" if it is not finite.
 std::string amount(double value, const std::string& unit);
 
-/// "0.42 ± 0.05 mJ/m²": as many decimals as the first two digits of the error; `sign`: with a plus too.
-/// "–" where the error is infinite.
+/// "0.42 ± 0.05 mJ/m²": with as many decimals as the first two digits of the error; `sign`: with a plus sign
+/// for positive values. "–" if the error is infinite.
 enum class Sign { minus_only, always };
 std::string amount(double value, double error, const std::string& unit, Sign sign = Sign::minus_only);
 
-/// "81 %"; "< 1 %" for what would round to nothing but is not.
+/// "81 %"; "< 1 %" for nonzero values that round to zero.
 std::string percent(double fraction);
 
 /// "p = 0.004", at most two digits.
 std::string p_words(double p);
 
-/// "18 to 24 mm", "18 mm" where both ends are one, empty where both are zero.
+/// "18 to 24 mm", "18 mm" if both ends are equal, empty if both are zero.
 std::string displacement_words(const std::array<double, 2>& displacement);
 
-/// "loading", "unloading", "both phases" where it is empty.
+/// "loading", "unloading", or "both phases" for an empty text.
 std::string phase_words(const std::string& phase);
 
 /// The entry as a phrase: "top force while loading, 18 to 24 mm: 12 % higher than simulated (6.1 sigma,
 /// 0.4 after recalibration)".
 std::string where_words(const WhereEntry& entry);
 
-/// The amplitude with its direction where its sign means one: "0.42 ± 0.05 mJ/m²", "5.0 ± 0.4 % lower than
-/// stated".
+/// The amplitude, in words with its direction if the sign means one: "0.42 ± 0.05 mJ/m²", "5.0 ± 0.4 % lower
+/// than stated".
 std::string directed_amount(const std::string& name, double value, double error, const std::string& unit);
 
 /// "adhesion (0.42 ± 0.05 mJ/m²)".
 std::string cause_words(const Cause& cause);
 
-/// The paper's metrics in its order, then others: name, before and after.
+/// The metrics in the paper's order, then others: name, before and after.
 std::vector<std::pair<std::string, std::array<double, 2>>> metrics_in_order(
     const GapReduction& gap_reduction);
 
@@ -54,11 +54,11 @@ std::string library_words(const Diagnosis& diagnosis);
 /// "plate.speed = 0.025 m/s instead of 0.1".
 std::string refinement_words(const Refinement& refinement);
 
-/// The step, and how often it is predicted to decide.
+/// The step, with the predicted probability that it decides.
 std::string next_words(const NextStep& step);
 
-/// The leading cause, where that is a parameter and no effect; else the parameters at their bounds, the one
-/// pulled furthest first.
+/// The leading cause, if it is a parameter; otherwise the parameters at their bounds, largest relative shift
+/// first.
 std::vector<NuisanceFit> suspects_of(const Diagnosis& diagnosis);
 
 /// "modulus: 2.30 ± 0.20 kPa higher than stated (4.6 times its stated error)".
