@@ -40,7 +40,7 @@ DeviceInfo describe(const cl::Platform& platform, const cl::Device& device) {
     return info;
 }
 
-/// Drivers have threads, which a forked child has not: it would wait for them for ever.
+/// Drivers have threads, which do not exist in a forked child: it would wait for them forever.
 void expect_not_forked() {
     static const pid_t first = getpid();
     if (getpid() != first)
@@ -52,7 +52,8 @@ void expect_not_forked() {
 
 std::vector<Found> find_devices() {
     expect_not_forked();
-    static std::mutex one_at_a_time;  // PoCL starts its devices at the first call, for one thread only
+    static std::mutex
+        one_at_a_time;  // PoCL initialises its devices at the first call and is not thread-safe there
     const std::lock_guard lock(one_at_a_time);
     expect_enough_open_files();
     prepare_kernel_cache();

@@ -27,7 +27,7 @@ bool can_write_in(const fs::path& folder) {
     return true;
 }
 
-/// Nobody else can have put anything there.
+/// Whether the folder belongs to this user and nobody else can write to it.
 bool is_ours_alone(const fs::path& folder) {
     struct stat what {};
     return lstat(folder.c_str(), &what) == 0 && S_ISDIR(what.st_mode) && what.st_uid == geteuid() &&
@@ -53,7 +53,7 @@ std::optional<Value> read_at(std::ifstream& file, std::uint64_t offset) {
     return value;
 }
 
-/// A shared object ends with the table of its sections.
+/// Whether the table of sections at the end of a shared object is complete.
 bool is_whole_shared_object(const fs::path& path, std::uint64_t size) {
     std::ifstream file(path, std::ios::binary);
     const auto header = read_at<Elf64_Ehdr>(file, 0);
@@ -63,7 +63,7 @@ bool is_whole_shared_object(const fs::path& path, std::uint64_t size) {
            header->e_shoff + std::uint64_t(header->e_shnum) * header->e_shentsize <= size;
 }
 
-/// LLVM's bitcode: after four letters, blocks, each a word that opens it and one with its length in words.
+/// LLVM bitcode: four letters, then blocks with a start word and a length in words.
 bool is_whole_bitcode(const fs::path& path, std::uint64_t size) {
     std::ifstream file(path, std::ios::binary);
     const auto letters = read_at<std::uint32_t>(file, 0);
@@ -77,14 +77,14 @@ bool is_whole_bitcode(const fs::path& path, std::uint64_t size) {
     return at == size;
 }
 
-/// What PoCL writes before it moves it to its name: another process may be at it.
+/// A file that PoCL will rename when it is complete; another process may be writing it.
 bool is_temporary(const fs::path& path) { return path.filename().string().starts_with("tempfile"); }
 
 void remove_what_is_cut_short(const fs::path& folder) {
     std::error_code error;
     for (auto entry = fs::recursive_directory_iterator(folder, error);
          !error && entry != fs::recursive_directory_iterator(); entry.increment(error)) {
-        std::error_code gone;  // another process may be at work here
+        std::error_code gone;  // another process may remove files at the same time
         if (!entry->is_regular_file(gone) || is_temporary(entry->path())) continue;
         const fs::path& path = entry->path();
         const std::uint64_t size = entry->file_size(gone);

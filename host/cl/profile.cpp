@@ -20,7 +20,7 @@ struct Sum {
 struct Profile {
     std::vector<std::pair<const char*, cl::Event>> noted;
     std::map<std::string, Sum> sums;
-    cl_ulong first = std::numeric_limits<cl_ulong>::max(), last = 0;  ///< the device's clock [ns]
+    cl_ulong first = std::numeric_limits<cl_ulong>::max(), last = 0;  ///< time of the device's clock [ns]
 
     void add_up() {
         for (const auto& [kernel, event] : noted) {

@@ -28,7 +28,7 @@ std::string kernel_source(const std::string& name) {
     return embedded_kernel_sources().at(name);
 }
 
-/// Puts every `#include "name"` in, once, with #line so that the compiler's messages name the file.
+/// Expands every `#include "name"` once, with #line so that messages of the compiler name the file.
 void append_source(const std::string& name, std::set<std::string>& seen, std::string& text) {
     if (!seen.insert(name).second) return;
     std::istringstream lines(kernel_source(name));
@@ -73,7 +73,7 @@ std::string program_text() {
 
 cl::Program build_program(const Device& device, const KernelBuild& build) {
     expect_room_for_kernels();
-    // -w: what the compiler finds odd about a device's own headers and vector widths is no user's concern.
+    // -w: warnings about the device's own headers and vector widths do not help the user.
     const auto options = fmt::format(
         "-w -cl-std=CL1.2 -DMCDEM_DOUBLE={} -DLANES={} -DSLOTS={} -DBLOCK={} "
         "-DLIST_ITEMS={}{}",

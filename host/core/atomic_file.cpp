@@ -43,13 +43,13 @@ bool is_temporary(const fs::path& file) {
            random.find_first_not_of("0123456789abcdef") == random.npos;
 }
 
-/// The name of the file that a temporary was to become.
+/// The final name for a temporary name.
 std::string temporary_place(const fs::path& temporary) {
     const std::string name = temporary.filename().string();
     return name.substr(0, name.size() - ending.size() - digits - 1);
 }
 
-/// What no living program has locked.
+/// Removes a temporary file unless a running program has locked it.
 void remove_if_abandoned(const fs::path& temporary) {
     const int descriptor = ::open(temporary.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
     if (descriptor < 0) return;
@@ -57,7 +57,7 @@ void remove_if_abandoned(const fs::path& temporary) {
     ::close(descriptor);
 }
 
-/// Locks a file just made. False where another program took it for an abandoned one and has removed it.
+/// Locks a new file. False if another program mistook it for an abandoned one and has removed it.
 bool lock_before_removal(int descriptor) {
     int result = 0;
     do result = ::flock(descriptor, LOCK_EX);
@@ -67,7 +67,7 @@ bool lock_before_removal(int descriptor) {
 }
 
 void force_to_disk(int descriptor, const fs::path& file) {
-    // Some file systems cannot sync (EINVAL, EROFS on folders): nothing more can be done there.
+    // Some file systems cannot sync (EINVAL, EROFS on folders); this is ignored.
     int result = 0;
     do result = ::fsync(descriptor);
     while (result != 0 && errno == EINTR);
@@ -116,7 +116,8 @@ void NewFile::write(std::string_view bytes) {
 void NewFile::close() {
     if (descriptor_ < 0) return;
     force_to_disk(descriptor_, place_);
-    // Closed even where it is interrupted; network disks report here what they could not write.
+    // close() releases the descriptor even if it is interrupted; network file systems report write errors
+    // here.
     if (::close(std::exchange(descriptor_, -1)) != 0 && errno != EINTR) fail(place_, errno);
 }
 
@@ -141,10 +142,10 @@ bool create_file(const fs::path& file, std::string_view text) {
     out.write(text);
     out.close();
     int error = ::link(out.temporary().c_str(), file.c_str()) == 0 ? 0 : errno;
-    // A network file system may have made the link and lost the answer.
+    // A network file system may have created the link and lost the reply.
     if (error == EEXIST && fs::hard_link_count(out.temporary()) == 2) error = 0;
     if (error == EPERM || error == ENOSYS || error == EOPNOTSUPP) {
-        // A file system without links: all that is lost is the order of two programs within a moment.
+        // File systems without links: two programs at the same moment may both create the file.
         error = fs::exists(file) ? EEXIST : 0;
         if (error == 0) out.put_in_place();
     }

@@ -12,7 +12,7 @@
 namespace mcdem::inline core {
 namespace {
 
-/// Closed with its owner.
+/// A file descriptor that is closed by its owner.
 struct Descriptor {
     int number;
     ~Descriptor() { ::close(number); }
@@ -40,7 +40,7 @@ void fail_reading(const std::string& what, int error) {
 
 int open_input(const std::filesystem::path& file) {
     int descriptor = -1;
-    // Without waiting: opening a pipe would last until somebody writes to it.
+    // O_NONBLOCK: opening a pipe would otherwise wait for a writer.
     do descriptor = ::open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
     while (descriptor < 0 && errno == EINTR);
     if (descriptor < 0) {

@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// How a file of a kind begins, and a word of its first bytes.
+/// Mark of a kind: the beginning of the file, and a text within its first bytes.
 struct Mark {
     FileKind kind;
     std::string_view what, begins, holds;
@@ -40,12 +40,12 @@ constexpr std::array marks{
 };
 constexpr std::array<std::string_view, 2> guides{"Grains and contacts for ParaView\n====",
                                                  "replica_*.xyz            grains, one frame a scan"};
-constexpr int head_size = 1 << 16, largest_figure = 1 << 24;  ///< a PDF says at its end who made it
+constexpr int head_size = 1 << 16, largest_figure = 1 << 24;  ///< a PDF names its producer at the end
 
 const Mark& mark_of(FileKind kind) {
     for (const Mark& mark : marks)
         if (mark.kind == kind) return mark;
-    throw RunError("no mark of an output");  // a test writes every kind
+    throw RunError("no mark of an output");  // not reached: a test covers every kind
 }
 
 bool is_of_kind(std::string_view head, FileKind kind) {

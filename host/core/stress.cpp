@@ -10,12 +10,12 @@
 namespace mcdem::inline core {
 namespace {
 
-/// From the centre of a grain of a contact to the contact point; `grain` is one of its two.
+/// Vector from the centre of a grain to the contact point; `grain` is one of the contact's two grains.
 Vec3 arm(const Box& box, const Scan& scan, const Contact& contact, int grain) {
     return apart(box, scan.position[static_cast<std::size_t>(grain)], contact.point);
 }
 
-/// Minus the sum over its contacts of arm times force, of each grain [N m].
+/// For each grain, minus the sum over its contacts of arm times force [N m].
 std::vector<Mat3> moments(const Box& box, const Scan& scan) {
     std::vector<Mat3> sums(scan.position.size(), Mat3::Zero());
     for (const Contact& contact : scan.contacts) {
@@ -28,7 +28,7 @@ std::vector<Mat3> moments(const Box& box, const Scan& scan) {
     return sums;
 }
 
-/// From the grain of a contact to its partner, of length one.
+/// Unit vector from the grain of a contact to its partner.
 Vec3 direction(const Box& box, const Scan& scan, const Contact& contact) {
     const Vec3& centre = scan.position[static_cast<std::size_t>(contact.grain)];
     const Vec3& other =

@@ -18,10 +18,10 @@ using Eigen::VectorXd;
 using std::numbers::pi;
 
 constexpr double smallest_sine =
-    0.15;  ///< the polynomials hold from here to s = 1; contacts 17 degrees apart
+    0.15;  ///< lower end of the polynomials' range, up to s = 1; contacts 17 degrees apart
 
-/// Where the series are sampled: Chebyshev points of [smallest_sine, 1], with the weights that make a least
-/// squares fit nearly the one of smallest maximum error.
+/// Samples of the series: Chebyshev points of [smallest_sine, 1], with weights that make a least-squares fit
+/// nearly a minimax fit.
 struct Samples {
     ArrayXd s, weight, point, size;
 };
@@ -40,8 +40,8 @@ Samples sample(double poisson_ratio) {
     return samples;
 }
 
-/// Weighted least squares polynomial, as coefficients of the powers of s. Solved in Chebyshev polynomials of
-/// 2 s - 1, since powers would lose half the digits.
+/// Weighted least-squares polynomial, as coefficients of the powers of s. Solved in Chebyshev polynomials of
+/// 2 s - 1, because powers would lose half the digits.
 VectorXd fit_polynomial(const ArrayXd& s, const ArrayXd& value, const ArrayXd& weight, int degree) {
     MatrixXd powers = MatrixXd::Zero(degree + 1, degree + 1);  // column n: T_n(2 s - 1) in powers of s
     powers(0, 0) = 1;
@@ -57,7 +57,7 @@ VectorXd fit_polynomial(const ArrayXd& s, const ArrayXd& value, const ArrayXd& w
     return powers * coefficients;
 }
 
-/// A polynomial with its exact value at s = 0 and the fitted rest.
+/// A polynomial with exact value at s = 0; the other coefficients are fitted.
 template <std::size_t terms>
 std::array<double, terms> with_limit(double limit, const VectorXd& rest) {
     std::array<double, terms> polynomial{limit};
@@ -67,7 +67,8 @@ std::array<double, terms> with_limit(double limit, const VectorXd& rest) {
 
 std::array<double, self_terms> fit_self(double poisson_ratio) {
     const ArrayXd a = (ArrayXd(12) << .05, .08, .12, .17, .22, .28, .34, .40, .46, .52, .58, .64).finished();
-    // The second part of the series falls as 1/n: its logarithm is known exactly and vanishes at nu = 1/2.
+    // The second part of the series decreases as 1/n: its logarithm is known exactly and vanishes at nu =
+    // 1/2.
     const double slope = (1 + poisson_ratio) * std::pow(1 - 2 * poisson_ratio, 2) / (2 * pi);
     VectorXd value(a.size());
     MatrixXd powers(a.size(), 4);
@@ -81,10 +82,11 @@ std::array<double, self_terms> fit_self(double poisson_ratio) {
 
 ElasticSphere fit(double poisson_ratio) {
     const auto [s, weight, point, size] = sample(poisson_ratio);
-    // Close to the load the sphere is a half space, (1 - nu^2)/(pi d) at distance d = 2 s; a spread of <r^2>
-    // adds <r^2>/4 of the Laplacian, which is 1/(16 s^3) to the 1/s of the point load.
+    // Close to the load the sphere is a half space, (1 - nu^2)/(pi d) at distance d = 2 s. A load
+    // distribution with mean square radius <r^2> adds <r^2>/4 times the Laplacian, which is 1/(16 s^3) for
+    // the 1/s of a point load.
     const double near_point = -(1 - poisson_ratio * poisson_ratio) / (2 * pi), near_size = near_point / 16;
-    // `size` enters divided by s^3, so small s needs the weight; below s = 0.3 contacts hardly ever meet.
+    // `size` is divided by s^3, so small s needs the weight; contacts rarely meet below s = 0.3.
     const ArrayXd size_weight = weight / s.square() * (s / 0.3).pow(1.5).min(1.0);
     ElasticSphere sphere;
     sphere.point = with_limit<point_terms>(

@@ -16,8 +16,8 @@ struct Quadrature {
     Eigen::ArrayXd node, weight;
 };
 
-/// The positive half of Gauss' rule. Enough nodes for the moments of order n over a cap of radius a/R
-/// while n a/R stays below about 260, the most that sphere_self_displacement asks for.
+/// The positive half of Gauss's rule, with enough nodes for the moments of order n over a cap of radius a/R
+/// while n a/R is below about 260, the maximum in sphere_self_displacement.
 const Quadrature& cap_quadrature() {
     static const Quadrature quadrature = [] {
         constexpr int order = 300;
@@ -33,17 +33,17 @@ const Quadrature& cap_quadrature() {
     return quadrature;
 }
 
-/// A unit load along the plate normal, spread over a cap: its radial and meridional moments of order n.
+/// Moments of order n, radial and meridional, of a unit load along the plate normal distributed over a cap.
 struct Moments {
     double radial;      ///< -<cos(theta) P_n>
     double meridional;  ///< <sin(theta) dP_n/dtheta> / (n(n+1))
 };
 
-/// -<1 - cos(theta) - r^2/2> over the punch, by which the gap of a sphere differs from a parabola, for the
-/// force 4/3 a^3/(1 - nu^2) of Hertz; near -(1 - nu^2) a/20.
+/// -<1 - cos(theta) - r^2/2> over the punch: the difference between the gap of a sphere and a parabola, for
+/// Hertz's force 4/3 a^3/(1 - nu^2); near -(1 - nu^2) a/20.
 double gap_displacement(double poisson_ratio, double a, const Eigen::ArrayXd& r2,
                         const Eigen::ArrayXd& punch) {
-    // (1 - sqrt(1 - r^2)) - r^2/2 without its cancellation
+    // (1 - sqrt(1 - r^2)) - r^2/2 without cancellation
     const Eigen::ArrayXd excess = r2.square() / 2 / (1 + (1 - r2).sqrt()).square();
     const double force = 4.0 / 3 * a * a * a / (1 - poisson_ratio * poisson_ratio);
     return -(excess * punch).sum() / force;
@@ -52,8 +52,8 @@ double gap_displacement(double poisson_ratio, double a, const Eigen::ArrayXd& r2
 }  // namespace
 
 // The modes are u = grad(phi) and u = r^2 grad(phi) + alpha x phi with phi = r^n P_n, numbered 1 and 2 here;
-// both solve Navier's equation for the alpha below. Written in (1 - 2 nu) and 2 nu, nothing is singular at
-// nu = 1/2.
+// both satisfy Navier's equation with the alpha below. Written in terms of (1 - 2 nu) and 2 nu, there is no
+// singularity at nu = 1/2.
 SurfaceMode surface_mode(double poisson_ratio, int order) {
     const double shear_part = 1 - 2 * poisson_ratio, bulk_part = 2 * poisson_ratio;
     if (order == 0) return {shear_part, 0, 0};
@@ -76,7 +76,7 @@ SphereDisplacement sphere_displacement(double poisson_ratio, double s) {
     SphereDisplacement sum;
     for (int n = 0; n <= terms; ++n) {
         const SurfaceMode mode = surface_mode(poisson_ratio, n);
-        // The series diverges (as the Dirac function it stands for); the smooth cut-off sums it.
+        // The series diverges like that of a Dirac function; the smooth cut-off makes it summable.
         const double filter = std::exp(-36 * std::pow(static_cast<double>(n) / terms, 8));
         const double factor = -(2 * n + 1) / (4 * pi) * filter * legendre;
         sum.point += factor * mode.radial;
@@ -91,7 +91,7 @@ SphereDisplacement sphere_displacement(double poisson_ratio, double s) {
 }
 
 double sphere_self_displacement(double poisson_ratio, double a) {
-    // With r = a sqrt(1 - y^2) the punch has weight 1 in y and Hertz' pressure 3 y^2.
+    // With r = a sqrt(1 - y^2) the punch has weight 1 in y and the Hertz pressure 3 y^2.
     const auto& [y, punch] = cap_quadrature();
     const Eigen::ArrayXd hertz = 3 * y.square() * punch;
     const Eigen::ArrayXd r2 = a * a * (1 - y.square());

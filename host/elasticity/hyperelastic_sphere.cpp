@@ -8,8 +8,8 @@
 namespace mcdem::inline elasticity {
 namespace {
 
-/// A contact's own force moves it towards the grain by F/(E R) (own[0] + own[1] a/R + own[2] (a/R)^2) beyond
-/// small strain.
+/// Beyond small strain, a contact's own force moves it inward by F/(E R) (own[0] + own[1] a/R + own[2]
+/// (a/R)^2).
 struct Coefficients {
     double poisson_ratio;
     std::array<double, 3> own;
@@ -24,7 +24,7 @@ constexpr std::array<Coefficients, 3> fitted{{
     {0.49, {0.0092, 0.0246, -0.1721}, 0.1576},
 }};
 
-/// Linear between the two fitted Poisson ratios around.
+/// Linear interpolation between the two neighbouring fitted Poisson ratios.
 double between(double poisson_ratio, auto&& value) {
     std::size_t i = 0;
     while (i + 2 < fitted.size() && poisson_ratio > fitted[i + 1].poisson_ratio) ++i;
@@ -34,8 +34,8 @@ double between(double poisson_ratio, auto&& value) {
     return (1 - inside) * value(fitted[i]) + inside * value(fitted[i + 1]);
 }
 
-/// Overlap by uniform compression, in powers of P: P/K = (1 - J) J^(2/3) solved for 1 - J^(1/3), the third
-/// power for P/K to 0.3 and flat contacts.
+/// Overlap by uniform compression, in powers of P: P/K = (1 - J) J^(2/3) solved for 1 - J^(1/3); the third
+/// power for P/K up to 0.3 and flat contacts.
 std::array<double, 3> uniform_compression(double poisson_ratio, double share) {
     const double compressibility = 3 * (1 - 2 * poisson_ratio);  // E/K
     return {compressibility / 3, share * std::pow(compressibility, 2) / 3,
@@ -48,7 +48,7 @@ void add_finite_strain(SurfaceLaw& law, double poisson_ratio, double share) {
     const auto own = [&](std::size_t n) {
         return share * between(poisson_ratio, [n](const Coefficients& c) { return c.own[n]; });
     };
-    // `self` is outward and has the logarithm second. Every force moves every point inward by uniform
+    // `self` is outward and has the logarithm second. Every force moves all points inward by uniform
     // compression.
     const double uniform = (1 - 2 * poisson_ratio) / (4 * std::numbers::pi);
     law.self[0] += uniform - own(0);

@@ -11,7 +11,7 @@ namespace {
 
 using std::numbers::pi;
 
-/// Gonzalez & Cuitino 2012: the half space with both points held on the sphere, exactly a polynomial.
+/// Gonzalez & Cuitino 2012: the half space with both points on the sphere; exactly a polynomial.
 std::array<double, point_terms> sphere_to_sphere(double nu) {
     const double scale = (1 + nu) / (4 * pi);
     return {-2 * (1 - nu) * scale, -2 * (1 - 2 * nu) * scale, (7 - 8 * nu) * scale};

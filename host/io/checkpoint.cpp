@@ -15,7 +15,7 @@ constexpr long checkpoint_format = 2;
 fs::path newest(const fs::path& folder) { return folder / "checkpoint.h5"; }
 fs::path previous(const fs::path& folder) { return folder / "checkpoint.previous.h5"; }
 
-/// CRC-32 over everything, sizes too, so that bytes cannot move from one field to the next unnoticed.
+/// CRC-32 over all data and their sizes, so that bytes cannot move unnoticed from one field to the next.
 class Checksum {
 public:
     void add(const void* data, std::size_t size) {
@@ -54,7 +54,7 @@ void write_file(NewFile& out, const Checkpoint& checkpoint) {
     for (const auto& [name, bytes] : checkpoint.fields) {
         if (name.empty() || name.find('/') != std::string::npos)
             throw RunError(out.place().string() + ": checkpoint field '" + name + "' cannot be a name");
-        // Plain: state of floating-point bits hardly packs, and a checkpoint must not hold up the run.
+        // Uncompressed: floating-point state hardly compresses, and a checkpoint must not delay the run.
         h5::Dataset table =
             file.create_rows("/checkpoint/fields/" + name, byte, {}, h5::Storage::plain, bytes.size());
         table.append(byte, bytes.data(), bytes.size());
@@ -92,7 +92,7 @@ void write_checkpoint(const fs::path& folder, const Checkpoint& checkpoint) {
     replace_file(newest(folder), [&](NewFile& out) {
         write_file(out, checkpoint);
         out.close();
-        // A crash between this move and the next leaves the previous one alone, which is read then.
+        // After a crash between the two renames only the previous checkpoint exists, and it is used.
         if (fs::exists(newest(folder))) move_file(newest(folder), previous(folder));
     });
 }

@@ -33,7 +33,7 @@ std::string quoted(const std::string& text) {
     return result + '"';
 }
 
-/// A number as it stands, a word in quotes.
+/// Numbers are not changed, words are quoted.
 std::string value_text(const std::string& value) {
     const bool is_number = !value.empty() && value.find_first_not_of("0123456789+-.eE") == value.npos;
     return is_number || value.empty() ? value : quoted(without_quotes(value));
@@ -45,8 +45,8 @@ std::vector<std::string> varying_keys(const Run& run) {
     return keys_that_vary(all);
 }
 
-/// The force that presses a level wall, or a face of a cell, outwards; not-a-number of a wall that is not
-/// there or not level [N].
+/// The force that presses a flat wall, or a face of a cell, outwards; NaN for a wall that is missing or not
+/// flat [N].
 double pressing(const Box& box, const Scan& scan, Wall wall) {
     if ((!has_wall(box, wall) && !is_cell(box)) || (is_cylinder(box) && wall == curved_wall))
         return std::numeric_limits<double>::quiet_NaN();
@@ -68,7 +68,7 @@ double pressing(const Box& box, const Scan& scan, Wall wall) {
     return 0;
 }
 
-/// The vertical force on a cylinder's wall; not-a-number in other containers [N].
+/// The vertical force on a cylinder's wall; NaN in other containers [N].
 double along_side(const Box& box, const Scan& scan) {
     if (!is_cylinder(box)) return std::numeric_limits<double>::quiet_NaN();
     return scan.wall_force[static_cast<std::size_t>(curved_wall)].z();
@@ -96,7 +96,7 @@ std::string csv_text(const Run& run) {
         for (const auto& key : keys)
             parameters.append(",").append(value_text(value_of(recording.parameters, key)));
         for (const Scan& scan : recording.scans) {
-            // "{}" prints the shortest digits that read back as the same number.
+            // "{}" prints the shortest digits that give the same number when read.
             fmt::format_to(out, "{},{},{},{},{},{},{},{},", r, label, scan.frame, scan.cycle,
                            name(scan.phase), scan.time, scan.plate_z, recording.displacement(scan));
             for (Wall wall : {Wall::plate, Wall::floor, Wall::x_min, Wall::x_max, Wall::y_min, Wall::y_max})

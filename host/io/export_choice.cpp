@@ -25,7 +25,7 @@ void expect_replicas(const ExportChoice& choice, const Run& run) {
                 fmt::format("--replica: must be one of 0 to {}, got {}", run.recordings.size() - 1, number));
 }
 
-/// A line for each replica that is chosen: its name and every scene key that is not the same in all.
+/// A line for each selected replica: its name and every scene key that varies.
 std::string list_of_replicas(const ExportChoice& choice, const Run& run) {
     std::vector<Parameters> all;
     for (const Recording& recording : run.recordings) all.push_back(recording.parameters);

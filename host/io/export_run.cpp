@@ -14,7 +14,7 @@ int export_run(const std::filesystem::path& run, const std::filesystem::path& fo
         throw InputError("export: must be told what to write: vtk, xyz or both");
     if (!std::filesystem::exists(run))
         throw InputError(run.string() + ": must be a result folder or file, got nothing there");
-    result_files(run);  // said before a folder is made where there are none
+    result_files(run);  // throws before a folder is created
     const FolderLock lock = open_output_folder(folder);
     const int files = (formats.vtk ? export_vtk(run, folder, choice) : 0) +
                       (formats.xyz ? export_xyz(run, folder, choice) : 0);

@@ -14,14 +14,18 @@
 namespace mcdem::inline io {
 namespace {
 
-enum class Answer { locked, held_by_others, no_locks };  // some network disks have none: ENOLCK, EBADF
+enum class Answer {
+    locked,
+    held_by_others,
+    no_locks
+};  // some network file systems have no locks: ENOLCK, EBADF
 
 Answer lock(int descriptor, int operation) {
     if (::flock(descriptor, operation | LOCK_NB) == 0) return Answer::locked;
     return errno == EWOULDBLOCK ? Answer::held_by_others : Answer::no_locks;
 }
 
-/// What is in the way of one that did not get the lock, and what to do.
+/// Reason why the lock is not available, and a remedy.
 const char* obstacle(int descriptor, FolderLock::Use use) {
     if (use == FolderLock::Use::shared)
         return ": another program is writing there alone, which cannot be shared: wait for it, or give "

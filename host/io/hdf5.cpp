@@ -10,9 +10,9 @@ namespace mcdem::inline io::h5 {
 namespace {
 
 constexpr hsize_t chunk_bytes = 32 * 1024;
-constexpr unsigned deflate_level = 1;  // a higher one costs five times the time for a few per cent
-// Deflate packs at most 1032:1. A table that claims more than its file can hold is damaged, and is not
-// worth the memory.
+constexpr unsigned deflate_level = 1;  // higher levels take five times as long for a few per cent
+// Deflate compresses at most 1032:1. A table that claims more than its file can contain is damaged, and no
+// memory is allocated for it.
 constexpr double max_bytes_per_byte = 1100;
 constexpr double small_table = 1 << 20;
 constexpr const char* digests_object = "/digests";
@@ -20,12 +20,12 @@ constexpr const char* elsewhere =
     ": lies outside this file, and is not followed: no file of this program is like that; take one that "
     "holds all its data itself";
 
-/// Told before anything else: no cleaning up at exit. Every file is closed by its owner; one whose disk was
-/// full stays half closed, and the library crashes when it tries again.
+/// Must be the first call: disables the library's cleanup at exit. Every file is closed by its owner. A file
+/// whose disk was full remains half closed, and the library would crash when it tries again.
 [[maybe_unused]] const herr_t no_cleaning_up = H5dont_atexit();
 
-/// The library prints its own error stacks unless told not to; ours carry the reason. It also loads programs
-/// that a file names as filters.
+/// Disables printing of error stacks, because our errors contain the reason, and loading of filter programs
+/// that a file names.
 void set_up_library() {
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
     H5PLset_loading_state(0);
@@ -39,7 +39,7 @@ std::string library_reason() {
         return 0;
     };
     H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_first, &reason);
-    // Where the system refused, its own words are enough: ".., error message = 'No space left on device', .."
+    // An error of the system is sufficient: ".., error message = 'No space left on device', .."
     const std::string before_words = "error message = '";
     const auto words = reason.find(before_words);
     if (words == std::string::npos) return reason;
@@ -47,7 +47,7 @@ std::string library_reason() {
     return reason.substr(begin, reason.find('\'', begin) - begin);
 }
 
-/// Memory that the library did not get.
+/// Whether the library could not allocate memory.
 bool library_lacks_memory() {
     bool lacks = false;
     const auto look = [](unsigned, const H5E_error2_t* error, void* lacks) -> herr_t {
@@ -58,7 +58,7 @@ bool library_lacks_memory() {
     return lacks;
 }
 
-/// Data of a table that lies in other files, or is put together from other tables.
+/// Whether the data of a table are in other files or tables.
 bool lies_elsewhere(hid_t dataset) {
     const Handle layout(H5Dget_create_plist(dataset), H5Pclose);
     return layout < 0 || H5Pget_external_count(layout) != 0 || H5Pget_layout(layout) == H5D_VIRTUAL;
@@ -70,17 +70,17 @@ Handle checked(hid_t id, Handle::Close close, const FileBelow& file, const std::
     return {id, close};
 }
 
-/// Properties of a new object that keeps no time of day: the same run gives the same bytes.
+/// Properties of a new object without time stamps, so that the same run gives the same bytes.
 Handle without_times(hid_t object_class) {
     Handle properties(H5Pcreate(object_class), H5Pclose);
     H5Pset_obj_track_times(properties, false);
     return properties;
 }
 
-/// `mode`: H5F_ACC_TRUNC makes a new HDF5 file.
+/// `mode`: H5F_ACC_TRUNC creates a new HDF5 file.
 Handle open_file(FileBelow& below, unsigned mode, const std::string& where) {
     const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-    // The 1.10 format: its metadata carry checksums, so that damage is noticed.
+    // The 1.10 format: its metadata have checksums, so damage is detected.
     H5Pset_libver_bounds(access, H5F_LIBVER_V110, H5F_LIBVER_V110);
     H5Pset_fclose_degree(access, H5F_CLOSE_STRONG);
     use_file(access, below);
@@ -91,8 +91,8 @@ Handle open_file(FileBelow& below, unsigned mode, const std::string& where) {
                    where, "cannot be created");
 }
 
-/// The library clears its conversion buffer, 1 MiB unless told otherwise, on every call: for a few rows
-/// that is most of the time.
+/// The library clears its conversion buffer (1 MiB by default) on every call; for a few rows this takes most
+/// of the time.
 Handle transfer(const Extent& size, hid_t memory_type) {
     hsize_t bytes = H5Tget_size(memory_type);
     for (hsize_t n : size) bytes *= n;
@@ -243,7 +243,7 @@ File File::open(const std::filesystem::path& path) {
 }
 
 File::~File() {
-    // The library keeps what it cannot close: it must find nothing there any more.
+    // The library keeps files that it cannot close: it must not access this one any more.
     if (below_ && id_.close() < 0) below_.release()->forget_file();
 }
 
@@ -277,7 +277,7 @@ bool File::exists(const std::string& object) const {
     const auto has_link = [&](const std::string& link) {
         return answered(H5Lexists(id_, link.c_str(), H5P_DEFAULT), link) > 0;
     };
-    // H5Lexists wants every group on the way to exist.
+    // H5Lexists requires all parent groups to exist.
     for (std::size_t end = object.find('/', 1); end != std::string::npos; end = object.find('/', end + 1))
         if (!has_link(object.substr(0, end))) return false;
     return has_link(object);
@@ -335,7 +335,7 @@ void File::expect_inside(const std::string& object) const {
         const std::string link = object.substr(0, end);
         H5L_info_t info;
         if (link.size() < 2) return;
-        if (answered(H5Lget_info(id_, link.c_str(), &info, H5P_DEFAULT), link) < 0) return;  // not there
+        if (answered(H5Lget_info(id_, link.c_str(), &info, H5P_DEFAULT), link) < 0) return;  // does not exist
         if (info.type != H5L_TYPE_HARD) throw InputError(where(link) + elsewhere);
     }
 }

@@ -69,7 +69,7 @@ haddr_t FileBelow::size() {
 
 namespace {
 
-/// The library's own part comes first.
+/// The library's part must come first.
 struct Open {
     H5FD_t library;
     FileBelow* below;
@@ -97,10 +97,10 @@ herr_t close(H5FD_t* file) {
     return 0;
 }
 
-/// Never the same: each has a file of its own.
+/// Never equal: each object has a file of its own.
 int compare(const H5FD_t* a, const H5FD_t* b) { return a < b ? -1 : a > b; }
 
-/// Those of the library's own driver for POSIX files, which decide how it lays out a file.
+/// Flags of the library's own driver for POSIX files, which determine the layout of a file.
 herr_t query(const H5FD_t*, unsigned long* flags) {
     *flags = H5FD_FEAT_AGGREGATE_METADATA | H5FD_FEAT_ACCUMULATE_METADATA | H5FD_FEAT_DATA_SIEVE |
              H5FD_FEAT_AGGREGATE_SMALLDATA | H5FD_FEAT_DEFAULT_VFD_COMPATIBLE;
@@ -137,7 +137,7 @@ hid_t driver() {
         H5FD_class_t made{};
 #ifdef H5FD_CLASS_VERSION
         made.version = H5FD_CLASS_VERSION;
-        made.value = static_cast<H5FD_class_value_t>(400);  // of those that need no registering
+        made.value = static_cast<H5FD_class_value_t>(400);  // one of the values that need no registration
 #endif
         made.name = "mcdem";
         made.maxaddr = (haddr_t{1} << 62) - 1;

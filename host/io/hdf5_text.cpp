@@ -6,7 +6,7 @@
 namespace mcdem::inline io::h5 {
 namespace {
 
-/// Attributes are small; a larger one is damage.
+/// Attributes are small; a larger one indicates damage.
 constexpr hssize_t max_numbers = 1000;
 constexpr std::size_t max_text_size = 1 << 20;
 
@@ -18,7 +18,7 @@ std::string without_padding(const char* text, std::size_t size) {
 
 bool is_fixed_text(hid_t type) { return H5Tget_class(type) == H5T_STRING && H5Tis_variable_str(type) == 0; }
 
-/// The same text type, for memory: the library converts padding but not character sets.
+/// The same text type in memory: the library converts padding but not character sets.
 Handle memory_text(hid_t file_type) {
     Handle type = text_type(H5Tget_size(file_type));
     H5Tset_cset(type, H5Tget_cset(file_type));
@@ -56,7 +56,7 @@ void File::set_attribute(const std::string& object, const std::string& name, std
     std::string padded(text);
     padded.resize(std::max<std::size_t>(text.size(), 1));
     const Handle type = text_type(text.size());
-    // ParaView 5.11 refuses the types of its files in UTF-8, even where that is the same bytes.
+    // ParaView 5.11 refuses the types of its files in UTF-8, even if the bytes are the same.
     if (std::ranges::all_of(text, [](unsigned char c) { return c < 128; })) H5Tset_cset(type, H5T_CSET_ASCII);
     write_attribute(object, name, type, scalar(), padded.data());
 }

@@ -10,7 +10,7 @@ FolderLock open_output_folder(const std::filesystem::path& folder) {
     expect_no_experiment(folder);
     make_result_folder(folder);
     FolderLock lock(folder, FolderLock::Use::alone);
-    expect_no_experiment(folder);  // made by another program meanwhile
+    expect_no_experiment(folder);  // may have been created by another program in the meantime
     remove_temporaries(folder / "simulations");
     return lock;
 }

@@ -8,7 +8,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What reading part `number` gives. What is wrong in a file is an InputError, like any other damaged file.
+/// Reads part `number`. Errors in its file are InputErrors, as for any other damaged file.
 template <class Read>
 auto from_part(std::size_t number, Read read) {
     try {

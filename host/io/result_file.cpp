@@ -110,7 +110,7 @@ std::vector<Scan> ResultFile::scans(const Recording& recording, std::size_t repl
 
 namespace {
 
-/// Row `row` of a table with one vector a grain.
+/// Row `row` of a table with one vector per grain.
 std::vector<Vec3> vectors_in(const h5::Dataset& table, std::size_t row, std::size_t grains) {
     std::vector<Vec3> vectors(grains);
     table.read(h5::number_type<double>(), vectors.data()->data(), row, 1);
@@ -169,7 +169,7 @@ void ResultFile::read_contacts(std::vector<Scan>& scans, std::size_t grains, std
         throw InputError(table.where() +
                          ": offset must rise from 0 to the number of contacts, one entry a scan "
                          "and one more");
-    // One scan at a time: the rows of a whole replica would double the memory.
+    // One scan at a time, because the rows of a whole replica would double the memory.
     for (std::size_t s = 0; s < scans.size(); ++s)
         scans[s].contacts = contact_rows(table, grains, offset[s], offset[s + 1]);
 }

@@ -35,7 +35,7 @@ bool belongs_to_a_run(const fs::path& file) {
            file == parts_folder(file.parent_path());
 }
 
-/// The segments of a run, kept open as long as they are not too many.
+/// The segments of a run, kept open if there are not too many.
 class Segments {
 public:
     explicit Segments(std::vector<fs::path> files) : files_(std::move(files)), open_(files_.size()) {}
@@ -53,7 +53,7 @@ private:
     std::vector<std::optional<ResultFile>> open_;
 };
 
-/// Replica by replica, so that memory holds one replica of one segment.
+/// Replica by replica, so that only one replica of one segment is in memory.
 void merge(const std::vector<fs::path>& files, const fs::path& merged) {
     const Run run = read_run_header(files);
     Segments segments(files);
@@ -137,7 +137,7 @@ ResultFolder ResultFolder::open_for_resume(const fs::path& folder) {
             folder.string() +
             ": holds parts of a run: go on with `mcdem run .. --resume`, or give another folder");
     if (found.is_finished()) {
-        found.remove_segments();  // a finish() cut short after its last write
+        found.remove_segments();  // left by a finish() that was interrupted after its last write
     } else {
         found.segments_ = static_cast<int>(segment_files(folder).size());
     }
@@ -152,7 +152,7 @@ int ResultFolder::append_segment(const Run& scans_since_last) {
 }
 
 void ResultFolder::drop_segments_from(int index) {
-    // The last first: a crash in between leaves no gap.
+    // The last one first, so that a crash in between leaves no gap.
     for (; segments_ > index; --segments_) fs::remove(segment_file(folder_, segments_ - 1));
 }
 
@@ -181,7 +181,7 @@ void ResultFolder::remove_segments() {
 void ResultFolder::finish() {
     const auto segments = segment_files(folder_);
     if (segments.empty()) throw RunError(folder_.string() + ": nothing was recorded");
-    // Locks keep others away, but not on every network disk.
+    // Locks exclude others, but not on every network file system.
     if (fs::exists(run_file(folder_)) || fs::exists(parts_folder(folder_)))
         throw RunError(
             folder_.string() +

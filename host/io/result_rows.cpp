@@ -12,7 +12,7 @@ h5::Handle array_type(hid_t element, std::vector<hsize_t> extent) {
     return {H5Tarray_create2(element, static_cast<unsigned>(extent.size()), extent.data()), H5Tclose};
 }
 
-/// The names are those h5py knows: it shows such a field as numpy.bool_.
+/// With the names that h5py uses, so it shows the field as numpy.bool_.
 h5::Handle truth_type() {
     h5::Handle type(H5Tenum_create(H5T_NATIVE_SCHAR), H5Tclose);
     const signed char no = 0, yes = 1;

@@ -48,7 +48,7 @@ void ResultWriter::write_provenance(const Run& run) {
     file_.set_attribute("/parameters", "device", run.device);
     file_.set_attribute("/parameters", "precision", run.precision);
     file_.write_texts("/parameters/scene", {run.scene});
-    // Once for all replicas: an attribute costs more time than the row of a scan.
+    // Once for all replicas: an attribute takes more time than the row of a scan.
     for (const auto& [field, unit] : scan_row_units())
         file_.set_attribute("/observables", "unit " + field, unit);
     for (const auto& [field, unit] : contact_row_units())

@@ -32,7 +32,7 @@ void expect_same_run(const Run& run, const Run& next, const std::filesystem::pat
     if (!same) throw InputError(file.string() + ": belongs to another run than the segments before it");
 }
 
-/// Takes what `file` says of the run: all of it from the first file, failures from later ones.
+/// Adds the header of `file` to the run: everything from the first file, failures from later ones.
 void add_header(Run& run, const ResultFile& file, const std::filesystem::path& path, bool is_first) {
     Run next = file.header();
     if (is_first) run = next;
@@ -59,8 +59,8 @@ bool has_moved(const std::filesystem::path& file_or_folder, const std::vector<st
     }
 }
 
-/// Files as `result_files` gives them, read. A run that goes on or ends meanwhile moves its scans from file
-/// to file: what is not found then is looked for again.
+/// Reads the files of `result_files`. A run that continues or ends in the meantime moves its scans to other
+/// files, so missing files are searched again.
 template <class Read>
 auto read_settled(const std::filesystem::path& file_or_folder, Read read) {
     constexpr int max_tries = 20;
@@ -91,7 +91,7 @@ Run read_run(const std::filesystem::path& file_or_folder, ReadWhat what) {
     });
 }
 
-/// Files stay open where they are not too many: a run that ends meanwhile removes them.
+/// Files stay open if there are not too many, because a run that ends in the meantime removes them.
 class RunReader::Files {
 public:
     explicit Files(std::vector<std::filesystem::path> paths)
@@ -104,7 +104,7 @@ public:
             for (auto& file : open_) file.reset();
         return open_[index].emplace(paths_[index]);
     }
-    /// The file, once the digests of this replica's positions and contacts in it match.
+    /// The file, after checking the digests of this replica's positions and contacts.
     const ResultFile& checked(std::size_t index, std::size_t replica) {
         const ResultFile& file = open(index);
         if (looked_at_[index].insert(replica).second) file.expect_whole(replica);
@@ -115,7 +115,7 @@ private:
     static constexpr std::size_t max_open_files = 100;
     std::vector<std::filesystem::path> paths_;
     std::vector<std::optional<ResultFile>> open_;
-    std::vector<std::set<std::size_t>> looked_at_;  ///< by file: replicas
+    std::vector<std::set<std::size_t>> looked_at_;  ///< checked replicas by file
 };
 
 RunReader::RunReader(const std::filesystem::path& file_or_folder) {

@@ -11,9 +11,9 @@
 namespace mcdem::inline io::h5 {
 namespace {
 
-constexpr std::size_t block_bytes = 1 << 20;  ///< looked at for a digest at once
+constexpr std::size_t block_bytes = 1 << 20;  ///< bytes per block of the digest
 
-/// As numpy names it: "f8", "S13", "(6,3)f8", "{frame:i4,time:f8}".
+/// Names of NumPy: "f8", "S13", "(6,3)f8", "{frame:i4,time:f8}".
 std::string text_of(hid_t type) {
     const std::size_t size = H5Tget_size(type);
     switch (H5Tget_class(type)) {
@@ -67,7 +67,7 @@ bool convert(std::vector<std::byte>& values, std::size_t count, hid_t from, hid_
     return true;
 }
 
-/// Block by block, so that memory holds little twice. `data`: where the rows go to, or nowhere.
+/// Block by block, to avoid a second copy in memory. `data`: destination of the rows, or null.
 void Dataset::read_checked(hid_t memory_type, std::byte* data, hsize_t rows) const {
     const Handle stored = type();
     const std::size_t in_row = values_in(1), row_bytes = in_row * H5Tget_size(stored);

@@ -56,7 +56,7 @@ The replicas here, with the scene keys that are not the same in all of the run:
 
 void add(std::vector<double>& values, const Vec3& v) { values.insert(values.end(), {v.x(), v.y(), v.z()}); }
 
-/// Where grains were at the first scan with positions and at the last one seen.
+/// Positions of grains at the first scan with positions and at the last one seen.
 class Track {
 public:
     explicit Track(const Box& box) : box_(box) {}
@@ -103,7 +103,7 @@ int export_vtk_replica(RunReader& reader, std::size_t replica, const std::filesy
                        const ExportChoice& choice) {
     const Recording& recording = reader.run().recordings[replica];
     const auto sub = folder / export_name(replica, recording.label);
-    std::optional<FolderLock> lock;  // for what a killed export has left there
+    std::optional<FolderLock> lock;  // protects temporary files of a killed export
     Track track(recording.box);
     int files = 0;
     for (std::size_t s = 0; s < recording.scans.size(); ++s) {
@@ -127,7 +127,7 @@ int export_vtk_replica(RunReader& reader, std::size_t replica, const std::filesy
     return files;
 }
 
-/// What is known of contacts, a row each.
+/// Data of contacts, one row each.
 struct ContactRows {
     explicit ContactRows(const Recording& recording, const Scan& scan) {
         for (const Contact& contact : scan.contacts) {
@@ -141,7 +141,7 @@ struct ContactRows {
             partner.push_back(contact.partner);
         }
     }
-    /// `write(name, values, row)` of a grid's points or cells.
+    /// Calls `write(name, values, row)` for data on the grid's points or cells.
     void write_with(const auto& write) const {
         write("grain", grain, h5::Extent{});
         write("partner", partner, h5::Extent{});
@@ -217,7 +217,7 @@ void write_vtk_contacts(const std::filesystem::path& file, const Recording& reco
     const ContactRows rows(recording, scan);
     replace_own(file, FileKind::vtk, [&](NewFile& out) {
         VtkGrid grid(out, lines);
-        grid.point_data("force", end_force, {3});  // tubes take their radius from points
+        grid.point_data("force", end_force, {3});  // tubes take their radius from point data
         grid.point_data("force_magnitude", end_magnitude);
         rows.write_with([&](const char* name, const auto& values, const h5::Extent& row) {
             grid.cell_data(name, values, row);

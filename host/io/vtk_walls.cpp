@@ -9,9 +9,9 @@
 namespace mcdem::inline io {
 namespace {
 
-constexpr int sides = 64;  ///< of the polygon that stands for a circle
+constexpr int sides = 64;  ///< of the polygon that approximates a circle
 
-/// The floor's corners, from above against the clock.
+/// The floor's corners, counterclockwise as seen from above.
 std::vector<Vec3> corners_of(const Box& box) {
     if (!is_cylinder(box))
         return {{0, 0, 0}, {box.size_x, 0, 0}, {box.size_x, box.size_y, 0}, {0, box.size_y, 0}};
@@ -23,7 +23,7 @@ std::vector<Vec3> corners_of(const Box& box) {
     return corners;
 }
 
-/// The wall over the edge from corner n to the next; -1: none.
+/// The wall above the edge from corner n to the next one; -1: none.
 int wall_over(const Box& box, std::size_t n) {
     if (is_cylinder(box)) return static_cast<int>(curved_wall);
     if (is_periodic(box)) return -1;
@@ -45,7 +45,7 @@ public:
         for (std::size_t n = 0; n < corners_.size(); ++n)
             add(VtkCell::line, -1, {corners_[n] + up, next(n) + up});
     }
-    /// Walls at the sides, or upright edges where there are none.
+    /// Side walls, or vertical edges if there are none.
     void upright(double height) {
         const Vec3 up(0, 0, height);
         for (std::size_t n = 0; n < corners_.size(); ++n) {

@@ -37,14 +37,14 @@ modifier "Wrap at periodic boundaries". In a cell they are in an upright box of 
 The replicas here, each a NAME, with the scene keys that are not the same in all of the run:
 )";
 
-/// In double quotes; extended XYZ knows no way to write one.
+/// In double quotes; extended XYZ cannot represent a double quote.
 std::string in_quotes(std::string text) {
     std::ranges::replace(text, '"', '\'');
     std::ranges::replace(text, '\n', ' ');
     return '"' + text + '"';
 }
 
-/// One word, as the format has it.
+/// A single word, as the format requires.
 std::string particle_type(const Recording& recording, std::size_t grain) {
     if (recording.species.empty()) return "X";
     std::string word = recording.species_names[static_cast<std::size_t>(recording.species[grain])];
@@ -76,7 +76,7 @@ void append_grains(fmt::memory_buffer& text, const Recording& recording, const S
     }
 }
 
-/// As LAMMPS writes them: of a cell that leans, the bounds of all of it.
+/// As LAMMPS writes them: for a tilted cell, the bounding box.
 std::string dump_bounds(const Recording& recording, const Scan& scan) {
     const Box now = deformed(recording.box, scan.strain);
     if (!is_cell(now))
@@ -106,7 +106,7 @@ void append_contacts(fmt::memory_buffer& text, const Recording& recording, const
                            contact.overlap);
 }
 
-/// Both files of one replica, its scans read one after the other.
+/// Writes both files of one replica, reading its scans one by one.
 int export_xyz_replica(RunReader& reader, std::size_t number, const std::filesystem::path& folder,
                        const ExportChoice& choice) {
     const Recording& recording = reader.run().recordings[number];

@@ -11,7 +11,7 @@
 namespace mcdem::inline scene {
 namespace {
 
-/// One overload a type of member; true where the value was taken.
+/// One overload per type of member; returns true if the value was accepted.
 struct Assign {
     const Key& key;
     const toml::node& value;

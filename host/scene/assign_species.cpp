@@ -21,7 +21,7 @@ std::string names_of(const std::vector<Species>& species) {
     return fmt::format("{}", fmt::join(names, ", "));
 }
 
-/// The place of the species that a file's word stands for.
+/// Index of the species with this name in a file.
 int place_of(const std::string& word, const std::vector<Species>& species, const std::string& source) {
     const auto named = std::ranges::find(species, word, &Species::name);
     if (named != species.end()) return static_cast<int>(named - species.begin());
@@ -34,8 +34,8 @@ int place_of(const std::string& word, const std::vector<Species>& species, const
 
 bool has_fractions(const Replica& replica) { return !std::isnan(replica.species.front().fraction); }
 
-/// Grains in an order left to chance, each of the species in whose share of them, by number or by volume, its
-/// middle lies.
+/// Puts the grains in random order and gives each the species in whose share of the order, by number or by
+/// volume, its middle lies.
 void draw_species(Packing& packing, const Replica& replica) {
     std::vector<std::size_t> order(packing.size());
     std::iota(order.begin(), order.end(), std::size_t{0});

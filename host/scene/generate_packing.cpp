@@ -19,7 +19,7 @@ double height_for(double grain_volume, double packing_fraction, const Box& box) 
     return grain_volume / (packing_fraction * box.size_x * box.size_y * floor_share(box));
 }
 
-/// Sizes of the only grains there are, or of each species, and how many of each.
+/// Sizes and number of grains of each species (or of the only kind of grains).
 struct Population {
     std::vector<Sizes> sizes;
     std::vector<int> counts;
@@ -36,7 +36,7 @@ Population population(const GeneratedPacking& wanted, const Mixture& mixture) {
     return all;
 }
 
-/// Each species' sizes as distributed, in an order left to chance.
+/// Draws the sizes of each species, in random order.
 void draw_grains(Packing& packing, const Population& population, std::uint64_t seed) {
     Random random(seed, Stream::diameters);
     std::vector<std::pair<double, int>> grains;
@@ -51,7 +51,7 @@ void draw_grains(Packing& packing, const Population& population, std::uint64_t s
     }
 }
 
-/// Takes the square around a cylinder to its floor, areas in proportion.
+/// Maps the square around a cylinder to its floor, keeping area fractions.
 void into_cylinder(const Box& box, double margin, Vec3& point) {
     const double inner = box.size_x - 2 * margin;
     const double radius = (cylinder_radius(box) - margin) * std::sqrt((point.x() - margin) / inner);
@@ -60,8 +60,8 @@ void into_cylinder(const Box& box, double margin, Vec3& point) {
     point.y() = cylinder_radius(box) + radius * std::sin(angle);
 }
 
-/// Uniform in the container, sorted into bars of four mean diameters, so that grains near in space are near
-/// in memory.
+/// Uniform in the container, sorted into columns of four mean diameters, so that grains that are close in
+/// space are close in memory.
 std::vector<Vec3> draw_positions(const GeneratedPacking& wanted, const Box& box, double height,
                                  std::uint64_t seed) {
     Random random(seed, Stream::positions);
@@ -94,7 +94,7 @@ double expected_height(const GeneratedPacking& wanted, const Box& box, const Mix
 
 Packing generate_packing(const GeneratedPacking& wanted, const Box& box, std::uint64_t seed,
                          const Mixture& mixture) {
-    // Growing gently lets grains find room; more stages or iterations change little.
+    // Slow growth lets grains rearrange; more stages or iterations change little.
     constexpr int stages = 10, iterations_of_stage = 200, last_iterations = 3000;
     constexpr double smallest_scale = 0.7;
 

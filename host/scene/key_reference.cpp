@@ -10,7 +10,7 @@ namespace mcdem::inline scene {
 
 std::string key_reference() {
     Settings defaults;
-    defaults.run.name.clear();  // the file's name stands in for it
+    defaults.run.name.clear();  // the default is the file's name
     std::string text;
     std::string_view open = "none yet";
     std::vector<Key> all(keys().begin(), keys().end());

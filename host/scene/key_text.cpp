@@ -1,4 +1,4 @@
-// Keys in words: what they take, what they are set to, and which one was meant.
+// Texts about keys: allowed values, current values, and suggestions for unknown keys.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -55,7 +55,7 @@ std::string text_of(Value value) {
         return fmt::format("{}", value);
 }
 
-/// Levenshtein's: insertions, deletions and replacements that turn one word into the other.
+/// Levenshtein distance: number of insertions, deletions and replacements between two words.
 std::size_t distance(std::string_view a, std::string_view b) {
     std::vector<std::size_t> row(b.size() + 1);
     std::iota(row.begin(), row.end(), std::size_t{0});
@@ -81,13 +81,13 @@ std::string description(const Key& key) {
 }
 
 std::string value_text(const Key& key, const Settings& settings) {
-    // The members are reached through a reference that could change them, which is not done here.
+    // Members are reached through a non-const reference; nothing is modified here.
     auto& at = const_cast<Settings&>(settings);
     return std::visit([&](auto get) { return text_of(get(at)); }, key.member);
 }
 
 std::string suggestion(std::string_view unknown) {
-    constexpr std::size_t longest = 64;  // longer ones are no typing errors
+    constexpr std::size_t longest = 64;  // longer words are not typing errors
     if (unknown.size() > longest) return "";
     std::string_view best;
     std::size_t least = std::max<std::size_t>(2, unknown.size() / 4) + 1;

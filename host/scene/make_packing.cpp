@@ -150,7 +150,7 @@ Packing make_packing(const Replica& replica) {
                                    mixture_of(replica));
     }
     apply_jitter(packing, from.position_jitter, from.seed);
-    // A generated packing may be a little higher than the plate, never so high that a centre is above it.
+    // A generated packing may be slightly higher than the plate, but centres are never above it.
     const auto problems =
         packing_problems(packing, replica.box, plate_face(replica, replica.plate.start), source);
     if (!problems.empty()) throw InputError(problems);

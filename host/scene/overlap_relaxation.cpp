@@ -12,8 +12,8 @@ namespace {
 
 double largest(const std::vector<double>& values) { return *std::max_element(values.begin(), values.end()); }
 
-/// FIRE (Bitzek et al. 2006) with its published constants. Stiffness and mass are 1, so times are in units
-/// of their ratio; 0.4 is below the stability limit of a grain with a dozen contacts.
+/// FIRE (Bitzek et al. 2006) with its published constants. Stiffness and mass are 1, which defines the unit
+/// of time; 0.4 is below the stability limit of a grain with a dozen contacts.
 struct Fire {
     static constexpr double max_time_step = 0.4, start_step = 0.1, start_mixing = 0.1;
     static constexpr double faster = 1.1, slower = 0.5, less_mixing = 0.99;
@@ -22,7 +22,7 @@ struct Fire {
     double time_step = start_step, mixing = start_mixing;
     int downhill = 0;
 
-    /// True where the motion goes uphill and has to stop.
+    /// True if the motion increases the energy and must stop.
     bool uphill(double power) {
         if (power <= 0) {
             downhill = 0;
@@ -140,7 +140,8 @@ void OverlapRelaxation::push_from_walls(int grain, double radius, Sums& sums) {
 }
 
 void OverlapRelaxation::move(double time_step) {
-    // No grain travels further than a fifth of the mean radius: random starts overlap strongly.
+    // No grain moves further than a fifth of the mean radius per step, because random initial positions
+    // overlap strongly.
     const double farthest = 0.2 * mean_radius_;
     for (std::size_t i = 0; i < position_.size(); ++i) {
         velocity_[i] += time_step * force_[i];

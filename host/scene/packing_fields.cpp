@@ -71,7 +71,7 @@ void add_grain(Packing& packing, std::string_view x, std::string_view y, std::st
 }
 
 void add_species(Packing& packing, std::string_view word) {
-    constexpr std::size_t max_names = 64;  // more than a scene can have; the last stands for all beyond
+    constexpr std::size_t max_names = 64;  // more than a scene can have; the last one represents all others
     auto& names = packing.species_names;
     const auto found = std::ranges::find(names, word);
     const auto place = std::min(static_cast<std::size_t>(found - names.begin()), max_names - 1);

@@ -11,7 +11,7 @@ void Problems::add(const Place& place, const std::string& what) {
 }
 
 void Problems::report() const {
-    constexpr std::size_t most = 100;  // a page or two; nobody reads more
+    constexpr std::size_t most = 100;  // more would not help
     if (found_.empty()) return;
     std::vector<std::string> lines;
     for (const auto& [order, text] : found_)

@@ -12,11 +12,11 @@
 namespace mcdem::inline scene {
 namespace {
 
-/// Contacts under a load are stiffer than Hertz where displaced surfaces, stiffening or finite strain add to
-/// them.
+/// Contacts may be stiffer than Hertz's law by this factor because of displaced surfaces, stiffening or
+/// finite strain.
 constexpr double beyond_hertz = 10;
 
-/// Which kinds of stage have a key; `stage` has all.
+/// Whether a kind of stage has a key; all have `stage`.
 bool belongs(StageKind kind, std::string_view key, bool cell) {
     const auto any = [&](std::initializer_list<std::string_view> list) {
         return std::ranges::find(list, key) != list.end();
@@ -39,7 +39,7 @@ bool belongs(StageKind kind, std::string_view key, bool cell) {
     return false;
 }
 
-/// One stage and what is wrong with it.
+/// One stage and its problems.
 class StageChecks {
 public:
     StageChecks(const Settings& settings, int number, const std::set<std::string>& said,
@@ -144,7 +144,7 @@ private:
         check_scan_places(field, target);
     }
 
-    /// A position between plate.end and plate.start, or a force.
+    /// Checks a position (between plate.end and plate.start) or a force.
     void expect_possible(std::string_view at, std::string_view field, double value) {
         if (field == "force") {
             if (!(value > 0)) add(at, fmt::format("must be a force > 0 [N], got {}", value));
@@ -249,7 +249,7 @@ void check_size(const std::vector<Stage>& programme, std::vector<CrossProblem>& 
              fmt::format("and the others must leave 1 to {} scans in all, got {}", max_scans, scans)});
 }
 
-/// A hold of stresses keeps those that the last move before it has set, also where stages are repeated.
+/// A hold of stresses keeps those set by the previous move, also if stages are repeated.
 void check_kept_stresses(const std::vector<Stage>& programme, const Plate& plate,
                          std::vector<CrossProblem>& problems) {
     const Stage* move = nullptr;

@@ -13,7 +13,7 @@
 namespace mcdem::inline scene {
 namespace {
 
-/// As TOML; a text that is none is a word.
+/// Parses a TOML value; other text is a word.
 toml::table value_of_text(const std::string& text) {
     try {
         return parse_toml("value = " + text, {}, 100);
@@ -22,14 +22,14 @@ toml::table value_of_text(const std::string& text) {
     }
 }
 
-/// The value of a text that the table of keys has written.
+/// Assigns a value from the text that the table of keys has written.
 void assign_text(const Key& key, const std::string& text, Settings& settings) {
     if (text.empty()) return;  // not given
     const toml::table table = value_of_text(text);
     assign(key, *table.get("value"), settings);
 }
 
-/// Stages of a file that others may have written.
+/// Checks stages from a file that may have been written by others.
 void expect_legs(const std::vector<Stage>& programme) {
     int before = 0;
     for (const Stage& stage : programme)
@@ -89,7 +89,7 @@ toml::array programme_tables(const std::vector<Stage>& programme) {
 
 std::vector<ScanPlace> scan_places(const std::vector<Stage>& programme, const Plate& plate) {
     std::vector<ScanPlace> places;
-    double position = plate.start, force = not_given;  // where the leg before has ended
+    double position = plate.start, force = not_given;  // at the end of the previous leg
     const std::vector<Leg> legs = legs_of(programme, plate);
     for (std::size_t l = 0; l < legs.size(); ++l) {
         const Stage& stage = programme[static_cast<std::size_t>(legs[l].stage)];
@@ -97,7 +97,7 @@ std::vector<ScanPlace> scan_places(const std::vector<Stage>& programme, const Pl
         const double from = by_force ? force : position;
         const double end = held ? stage.time : legs[l].target;
         for (int n = 1; n <= scans_of(stage); ++n) {
-            const bool at_target = stage.scan_at.empty() && n == stage.scans;  // to the last bit
+            const bool at_target = stage.scan_at.empty() && n == stage.scans;  // exactly
             const double at = held        ? scan_time(stage, n)
                               : at_target ? end
                                           : scan_level(stage, n, from, end, plate);

@@ -1,4 +1,5 @@
-// GCC warns of a file name that libfccp cuts on purpose for its own messages, which are not used here.
+// GCC warns about a file name that libfccp truncates on purpose for its own messages, which are not used
+// here.
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC diagnostic ignored "-Wstringop-truncation"
 #endif
@@ -13,11 +14,11 @@
 namespace mcdem::inline scene {
 namespace {
 
-// Words are read as text: the library's own numbers are not rounded to the nearest double.
+// Numbers are read as text, because the library does not round to the nearest double.
 using PackingReader = io::CSVReader<7, io::trim_chars<' ', '\t'>, io::no_quote_escape<','>,
                                     io::throw_on_overflow, io::single_and_empty_line_comment<'#'>>;
 
-/// The rows of one frame; a file without frames is one.
+/// The rows of one frame; a file without frames is a single frame.
 class RowReader {
 public:
     RowReader(PackingReader& reader, std::optional<long> wanted, FileProblems& problems)

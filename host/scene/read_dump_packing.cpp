@@ -1,4 +1,5 @@
-// Text dumps of LAMMPS and LIGGGHTS, `dump custom`: any number of frames, each of which names its columns.
+// Text dumps of LAMMPS and LIGGGHTS (`dump custom`): any number of frames, each with the names of its
+// columns.
 #include <fmt/format.h>
 
 #include "core/errors.h"
@@ -37,7 +38,7 @@ public:
     }
 
 private:
-    /// Reads what follows a title; gives the first line after it.
+    /// Reads the section under a title; returns its first line.
     std::optional<std::string_view> section(std::string_view title) {
         if (title.starts_with("ATOMS")) return rows(title);
         if (title == "TIMESTEP") {
@@ -96,7 +97,7 @@ private:
     std::optional<long> wanted_, step_, count_;
     std::vector<std::string_view> words_;
     std::vector<long> steps_;
-    std::optional<GrainRows> grains_;  ///< of the frame that is wanted, the last so far
+    std::optional<GrainRows> grains_;  ///< of the requested frame, or the last one so far
 };
 
 }  // namespace

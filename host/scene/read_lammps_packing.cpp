@@ -13,13 +13,13 @@ namespace {
 
 bool is_letter(char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z'); }
 
-/// Reads the file line by line; what it knows of the current line stands in `words` and `hint`.
+/// Reads the file line by line; `words` and `hint` belong to the current line.
 class LammpsReader {
 public:
     LammpsReader(std::istream& input, const std::string& source) : input_(input), problems_(source) {}
 
     Packing read() {
-        next_line();  // the first line is a title, whatever it says
+        next_line();  // the first line is always a title
         while (!in_atoms_ && !problems_.full() && next_line()) read_header_line();
         while (in_atoms_ && !problems_.full() && next_line()) read_atom_line();
         check_whole();

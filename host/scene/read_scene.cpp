@@ -16,7 +16,7 @@
 namespace mcdem::inline scene {
 namespace {
 
-/// Goes through a document once, collecting settings, variations and every problem.
+/// Processes a document once and collects settings, variations and all problems.
 class SceneReader {
 public:
     SceneReader(std::string_view text, const std::string& source, const std::vector<std::string>& overrides)
@@ -78,7 +78,7 @@ private:
 
     void read_variation(const Entry& entry, const Key& key) {
         const std::string name = fmt::format("batch.vary.\"{}\"", key.name);
-        add_bad(key);  // until all its values are known to be good
+        add_bad(key);  // until all its values are known to be valid
         if (key.scope == Scope::run) {
             problems_.add(entry.place,
                           name + " must be a key of which replicas have their own, got one of the whole run");
@@ -122,7 +122,7 @@ private:
         return false;
     }
 
-    /// Keys that are given or varied.
+    /// Keys that are set or varied.
     std::set<std::string> said() const {
         std::set<std::string> keys;
         for (const Entry& entry : document_.entries())
@@ -131,7 +131,7 @@ private:
         return keys;
     }
 
-    /// Where the key was said, or, of a stage or species, the first that was said of it.
+    /// Place of the key; for a stage or species the first place of any of its keys.
     Place place_of(const std::string& key) const {
         const Place place = document_.place_of(key);
         const auto element = list_element(key);
@@ -141,7 +141,7 @@ private:
         return place;
     }
 
-    /// A packing file and generated grains exclude each other.
+    /// A packing file and generated grains are mutually exclusive.
     void check_packing_source() {
         const bool from_file = !settings_.packing_file.empty() || varies("packing.file");
         for (const Entry& entry : document_.entries()) {
@@ -164,14 +164,14 @@ private:
                 "batch.replicas must be 1 where packing.seed varies: it gives every copy its own seed");
     }
 
-    /// Key and place of an entry, varied or not, that gives `key`; null where nothing does.
+    /// Entry (set or varied) that provides `key`; null if there is none.
     const Entry* entry_of(std::string_view key) const {
         for (const Entry& entry : document_.entries())
             if (entry.key == key || entry.key == std::string(vary_prefix) + std::string(key)) return &entry;
         return nullptr;
     }
 
-    /// Sizes are given once, and are those of a shape that is asked for.
+    /// Sizes are given only once, and belong to the selected shape.
     void check_container() {
         std::set<ContainerShape> shapes{settings_.replica.box.shape};
         for (const Variation& variation : variations_)
@@ -194,7 +194,7 @@ private:
         }
     }
 
-    /// As the scene names it.
+    /// The key's name as used in the scene.
     std::string given_name(const std::string& key) const {
         const Key* same = same_key(key);
         return std::string(same && !entry_of(key) && entry_of(same->name) ? same->name : key);

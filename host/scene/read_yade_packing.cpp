@@ -1,4 +1,4 @@
-// Yade's text, as export.text and export.textExt write it: x y z r, or what its `#format` line says.
+// Yade's text files from export.text and export.textExt: x y z r, or the columns in the `#format` line.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::string_view mark = "format ";
 
-/// The words behind a # at the line's beginning.
+/// The words after a # at the beginning of a line.
 std::string_view comment_of(std::string_view line) {
     line = without_blanks(line);
     return line.starts_with('#') ? without_blanks(line.substr(1)) : std::string_view();
@@ -23,7 +23,7 @@ bool is_row(std::string_view line) {
     return !line.empty() && line.front() != '#';
 }
 
-/// `#format x_y_z_r_matId`: what the columns are.
+/// Columns in a line `#format x_y_z_r_matId`.
 std::vector<std::string> columns_of(std::string_view format) {
     std::vector<std::string> names;
     for (std::size_t first = 0; first < format.size();) {

@@ -15,7 +15,7 @@
 namespace mcdem::inline scene {
 namespace {
 
-/// Words stand for themselves, numbers need their key; its table too where two keys would look the same.
+/// Words are used alone, numbers with their key, and with its table if two keys would look the same.
 std::string label_part(const Key& key, const Settings& settings, const std::vector<Variation>& variations) {
     const std::string value = value_text(key, settings);
     if (std::holds_alternative<MemberOf<ContactModel>>(key.member) ||

@@ -58,7 +58,7 @@ void resolve_sizes(Sizes& sizes, const GeneratedPacking& packing, SizeTables& ta
     fill(sizes.max, packing.diameter_max);
 }
 
-/// Those left out share what the others leave.
+/// Species without a fraction share the remainder equally.
 void resolve_fractions(std::vector<Species>& species, bool from_file) {
     double given = 0;
     int missing = 0;
@@ -72,7 +72,7 @@ void resolve_fractions(std::vector<Species>& species, bool from_file) {
     for (Species& one : species) fill(one.fraction, std::max(0.0, 1 - given) / missing);
 }
 
-/// Of all species together.
+/// Sets the sizes of all species together.
 void resolve_packing(const std::vector<Species>& species, GeneratedPacking& packing) {
     const auto by = [](double Sizes::*member) {
         return [member](const Species& one) { return one.sizes.*member; };
@@ -96,7 +96,7 @@ std::shared_ptr<const std::vector<double>> SizeTables::of(const std::string& fil
     const auto [place, is_new] = tables_.try_emplace(file);
     if (is_new) try {
             place->second = std::make_shared<const std::vector<double>>(read_diameters(file));
-        } catch (const InputError&) {  // species_problems reads it again and says what is wrong
+        } catch (const InputError&) {  // species_problems reads it again and reports the problem
         }
     return place->second;
 }

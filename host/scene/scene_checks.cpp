@@ -22,7 +22,7 @@ using Found = std::optional<std::string>;
 Found unless(bool good, std::string problem) { return good ? Found{} : Found{std::move(problem)}; }
 
 struct Check {
-    std::vector<std::string_view> keys;  ///< the first is to blame
+    std::vector<std::string_view> keys;  ///< the first one is reported
     enum class Packing { any, generated } applies;
     Found (*find)(const Settings&);
 };
@@ -33,7 +33,7 @@ Found in_container(std::string_view key, const Settings& s) {
     return small && small->key == key ? Found{small->what} : Found{};
 }
 
-/// A box that its grains would not cover once, but would if it was meant in millimetres.
+/// A box that the grains would not cover once, but would if its size was given in millimetres.
 Found millimetres(double width, const Settings& settings) {
     const auto& grains = settings.generated;
     return unless(
@@ -45,7 +45,7 @@ Found millimetres(double width, const Settings& settings) {
                     width, width / grains.diameter_max));
 }
 
-/// Positions must be known well enough for overlaps of a thousandth of a radius.
+/// Positions must be precise enough for overlaps of a thousandth of a radius.
 Found coarse_positions(const Settings& settings, double smallest_diameter) {
     if (settings.run.precision == Precision::double_precision) return {};
     const auto& replica = settings.replica;
@@ -174,7 +174,7 @@ const std::vector<Check> checks{
 };
 // clang-format on
 
-/// Where sizes are those of species there are no keys of [packing] to blame.
+/// If sizes come from species, problems do not refer to keys of [packing].
 CrossProblem of_species(const Settings& settings, CrossProblem problem) {
     if (settings.replica.species.empty()) return problem;
     const auto replace = [&](std::string_view key, std::string_view words) {
@@ -198,7 +198,7 @@ std::vector<CrossProblem> cross_problems(const Settings& settings,
     std::vector<CrossProblem> problems;
     for (const Check& check : checks) {
         if (check.applies == Check::Packing::generated && !settings.packing_file.empty()) continue;
-        // Sizes of species that are not whole (species_checks.cpp).
+        // Species without consistent sizes are reported by species_checks.cpp.
         if (check.applies == Check::Packing::generated && !has_sizes(settings.replica)) continue;
         if (std::ranges::any_of(check.keys, [&](auto key) { return bad.contains(key); })) continue;
         if (const Found problem = check.find(settings))

@@ -16,14 +16,14 @@ namespace {
 
 constexpr std::size_t largest_text = 1 << 20;
 
-/// [[programme]] or another such table with a number of elements that can be.
+/// Whether this is [[programme]] or another table with several elements.
 bool is_list_table(std::string_view name, const toml::node& node) {
     const ListTable* table = find_list_table(name);
     const std::size_t elements = node.as_array()->size();
     return table && elements >= 1 && elements <= static_cast<std::size_t>(table->most);
 }
 
-/// Keys of one stage of which only one of each group can be said.
+/// Keys of one stage of which at most one of each group may be set.
 bool exclude_each_other(std::string_view a, std::string_view b) {
     if (stage_of(a) < 0 || stage_of(a) != stage_of(b)) return false;
     const auto group = [](std::string_view key) {
@@ -40,7 +40,7 @@ std::string bare(std::string key) {
     return key;
 }
 
-/// The value of an override as TOML; a bare word stands for itself. Nothing where it is neither.
+/// The value of an override as TOML; a bare word is a string. Nothing if it is neither.
 std::optional<toml::table> parse_override(const std::string& value) {
     const bool one_line = std::ranges::none_of(value, [](unsigned char c) { return c < 32 || c == 127; });
     if (!one_line) return std::nullopt;
@@ -89,7 +89,8 @@ void SceneDocument::flatten(toml::table& table, const std::string& prefix, std::
     }
 }
 
-/// `programme.1.force` is the first stage's. An element that says nothing is an entry too, to be refused.
+/// `programme.1.force` belongs to the first stage. An element without keys is an entry too, so that it is
+/// refused.
 void SceneDocument::flatten(toml::array& elements, const std::string& table, std::vector<Entry>& into) const {
     int number = 0;
     for (toml::node& element : elements) {
@@ -151,8 +152,8 @@ void SceneDocument::apply(const std::string& override_text, Problems& problems) 
     }
 }
 
-/// What an override says takes the place of what it contradicts: the same key, its variation or the value
-/// that it varies, its other name, and a packing file or generated grains.
+/// An override removes what it contradicts: the same key, its variation or the value that it varies, its
+/// other name, and a packing file or generated grains.
 void SceneDocument::put(const Entry& entry) {
     const bool varied = entry.key.starts_with(vary_prefix);
     const std::string key = varied ? entry.key.substr(vary_prefix.size()) : entry.key;
@@ -162,7 +163,7 @@ void SceneDocument::put(const Entry& entry) {
         if (other_key == key) return true;
         if (const Key* same = same_key(key); same && other_key == same->name) return true;
         if (other.place.line == entry.place.line)
-            return false;  // overrides may contradict each other: an error
+            return false;  // overrides that contradict each other are an error
         return exclude_each_other(key, other_key) || (key == "packing.file" && is_generator_key(other_key)) ||
                (is_generator_key(key) && other_key == "packing.file");
     };

@@ -1,4 +1,5 @@
-// GCC warns of a file name that libfccp cuts on purpose for its own messages, which are not used here.
+// GCC warns about a file name that libfccp truncates on purpose for its own messages, which are not used
+// here.
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC diagnostic ignored "-Wstringop-truncation"
 #endif

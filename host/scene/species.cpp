@@ -8,7 +8,7 @@
 namespace mcdem::inline scene {
 namespace {
 
-/// Where the pair says something it takes the place of what would hold without it.
+/// Values of the pair replace the default values.
 PairLaw with_pair(const Replica& replica, std::string_view a, std::string_view b, PairLaw law) {
     for (const SpeciesPair& pair : replica.pairs) {
         const bool is_it = (pair.first == a && pair.second == b) || (pair.first == b && pair.second == a);

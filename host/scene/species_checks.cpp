@@ -50,7 +50,7 @@ private:
     }
     void add(std::string key, std::string what) { problems_.push_back({std::move(key), std::move(what)}); }
 
-    /// The first key of an element of which nothing is said.
+    /// The first key of an element without keys.
     std::string gap(std::string_view table, std::size_t n) const {
         const auto keys = find_list_table(table)->keys(static_cast<int>(n));
         const bool any = std::ranges::any_of(keys, [&](const Key& one) {
@@ -165,7 +165,7 @@ private:
                 fmt::format("must be at least diameter_mean = {}, got {}", sizes.mean, sizes.max));
     }
 
-    /// A species without a grain is a mistake, most often one of number and volume.
+    /// A species without grains is an error, usually a confusion of number and volume.
     void check_counts() {
         const int count = settings_.generated.count;
         const FractionsBy by = settings_.replica.packing.fractions_by;

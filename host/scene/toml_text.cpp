@@ -5,12 +5,12 @@
 namespace mcdem::inline scene {
 namespace {
 
-/// Dots that may be of dotted names rather than of decimal numbers. The parser recurses over the parts of a
-/// name, so that a few hundred thousand would overflow the stack.
+/// Number of dots that may belong to dotted names and not to decimal numbers. The parser is recursive in the
+/// parts of a name, so a few hundred thousand would overflow the stack.
 std::size_t dots_of_names(std::string_view text) {
     const auto digit = [&](std::size_t i) { return i < text.size() && text[i] >= '0' && text[i] <= '9'; };
     std::size_t count = 0;
-    bool in_number = false;  // since the dot before there were digits only
+    bool in_number = false;  // only digits since the previous dot
     for (std::size_t i = 0; i < text.size(); ++i) {
         if (text[i] == '.') {
             const bool decimal = i > 0 && digit(i - 1) && digit(i + 1) && !in_number;

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
-/// Points that fill the unit ball evenly: a golden-angle spiral, its radii from a sequence of their own.
+/// Points evenly distributed in the unit ball: a golden-angle spiral with radii from a separate sequence.
 const std::vector<Vec3>& ball_points() {
     static const std::vector<Vec3> points = [] {
         constexpr int count = 512;
@@ -31,7 +31,7 @@ const std::vector<Vec3>& ball_points() {
     return points;
 }
 
-/// All that is farther than a margin from every wall.
+/// The region farther than a margin from every wall.
 class Interior {
 public:
     Interior(const Box& box, double plate_z, double margin)
@@ -48,7 +48,7 @@ public:
         return (high_ - low_).prod() * floor_share(box_);
     }
 
-    /// Of a sphere's volume.
+    /// Fraction of a sphere's volume inside the region.
     double part_inside(const Vec3& centre, double radius) const {
         const double out = from_axis(box_, centre).norm();
         if (((centre.array() - radius) >= low_.array()).all() &&

@@ -18,10 +18,10 @@ namespace mcdem::inline sim {
 namespace {
 
 constexpr std::uint64_t max_int = std::numeric_limits<int>::max();
-constexpr double max_steps = 1e11;       // times 1e7 grains, a long holds them
-constexpr double min_time_step = 1e-30;  // [s] single precision holds it
+constexpr double max_steps = 1e11;       // times 1e7 grains it fits into a long
+constexpr double min_time_step = 1e-30;  // [s] representable in single precision
 
-/// What makes a batch of that many replicas fit, where `part` of it does.
+/// Advice for a batch of this many replicas if only the fraction `part` of it fits.
 std::string remedy(std::size_t replicas, double part) {
     const auto fitting = static_cast<std::size_t>(part * static_cast<double>(replicas));
     if (replicas > 1 && fitting > 0)
@@ -107,7 +107,7 @@ void expect_within_limits(const DeviceInfo& device, const KernelBuild& build,
 
 namespace {
 
-/// That a move of the cell can change at most.
+/// Largest change of a strain in a move of the cell.
 double max_strain_of_move(const Replica& replica) {
     double low = 0, high = 0;
     for (const Stage& stage : replica.programme)
@@ -116,9 +116,9 @@ double max_strain_of_move(const Replica& replica) {
     return high - low;
 }
 
-/// The fastest strain rate must leave a cell its shape in a step.
+/// The fastest strain rate must change the shape of the cell only little per step.
 void expect_slow_strains(const Replica& replica, double time_step) {
-    constexpr double most = 0.01;  // strain in a step
+    constexpr double most = 0.01;  // strain per step
     for (std::size_t n = 0; is_cell(replica.box) && n < replica.programme.size(); ++n)
         if (const Stage& stage = replica.programme[n];
             stage.kind == StageKind::move && stage.rate * time_step > most)
@@ -128,7 +128,7 @@ void expect_slow_strains(const Replica& replica, double time_step) {
                             n + 1, most, time_step, stage.rate, most / time_step));
 }
 
-/// About how long a stage's moves and holds take, each time that it runs [s].
+/// Estimated duration of a stage's moves and holds each time it runs [s].
 double seconds_of_stage(const Stage& stage, const Replica& replica) {
     const double speed = std::isnan(stage.speed) ? replica.plate.speed : stage.speed;
     if (stage.kind == StageKind::hold) return stage.time;

@@ -6,7 +6,7 @@
 namespace mcdem::inline sim {
 namespace {
 
-/// The strains of a move stand still while a stress is farther than this from the one set, relative.
+/// The strains of a move stop if a stress deviates from its target by more than this fraction.
 constexpr double still = 0.02;
 constexpr double min_strain = -10, strain_rounding = 1e-12;
 
@@ -47,7 +47,7 @@ void CellControl::rest(State& state) {
     for (Direction& direction : state.direction) ForceControl::rest(direction.control);
 }
 
-/// The strains start slowly, so that they hardly shift the stresses before these are controlled.
+/// The strains start slowly, so that they hardly change the stresses before these are controlled.
 void CellControl::steer(State& state, const SetStress& set, double duration, double max_rate,
                         bool drives) const {
     for_each_set(set, [&](std::size_t axis) {

@@ -10,12 +10,12 @@
 namespace mcdem::inline sim {
 namespace {
 
-// The plate goes after compliance * force as a tracker of second order, so that it does not lag behind while
-// the plate moves evenly. Critically damped: the slope is learned with a quarter of the square of the
-// catching up.
+// The plate follows compliance * force as a second-order tracker, so that it does not lag behind while the
+// force changes at a constant rate. Critical damping: the slope is learned with a quarter of the square of
+// the catch-up rate.
 constexpr double learn = 0.25;
 
-/// About the most that a packing adds to the force per length of compression, over the plate's own stiffness.
+/// Estimated upper limit of the packing's stiffness over that of the plate.
 double gain(const Replica& replica) {
     const double block = stiffest(replica).youngs_modulus * replica.box.size_x * replica.box.size_y *
                          floor_share(replica.box) / replica.plate.start;
@@ -31,9 +31,10 @@ double slowest_wave(const Replica& replica) {
 
 }  // namespace
 
-// A plate that moves at v feels Z v more, Z = stiffness * the time that a wave takes through the packing:
-// going after the force faster than that rings, and the more so the more compliant it is. Besides, what one
-// interval corrects must not be undone by the next: catch_up (1 + gain) < 2.
+// A plate that moves at v feels an additional force Z v, with Z = stiffness * travel time of a wave through
+// the packing. Following the force faster than that causes oscillations, which are stronger for a more
+// compliant plate. In addition, the correction of one interval must not be reversed by the next one: catch_up
+// (1 + gain) < 2.
 CompliantPlate::CompliantPlate(const Replica& replica)
     : compliance_(replica.effects.plate_compliance),
       follow_time_(replica.plate.start / slowest_wave(replica) * std::max(1.0, gain(replica))),

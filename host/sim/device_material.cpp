@@ -28,7 +28,7 @@ double reduced_shear_modulus(double e_i, double nu_i, double e_j, double nu_j) {
     return 1 / ((2 - nu_i) / shear_modulus(e_i, nu_i) + (2 - nu_j) / shear_modulus(e_j, nu_j));
 }
 
-/// E and nu of what a grain touches, and the pair's friction and restitution.
+/// E and nu of a grain's contact partner, and the friction and restitution of the pair.
 template <class Material>
 void set_pair(Material& m, std::size_t other, const GrainMaterial& g, double e, double nu,
               const PairLaw& law) {

@@ -63,8 +63,8 @@ void set_contact_law(DeviceReplica& d, const Replica& replica) {
     }
 }
 
-/// A grid that covers `span` cells by repeating itself where they are too many. Three cells a side are enough
-/// for the 27 around a grain to be different ones.
+/// A grid for `span` cells that is repeated if there are too many. With three cells per side the 27 cells
+/// around a grain are all different.
 std::array<int, 3> repeated_grid(std::array<int, 3> span, std::size_t grains) {
     const auto most = static_cast<double>(max_cells(grains));
     while (double(span[0]) * span[1] * span[2] > most) {
@@ -74,8 +74,8 @@ std::array<int, 3> repeated_grid(std::array<int, 3> span, std::size_t grains) {
     return span;
 }
 
-/// No neighbour is lost to rounding: the margin is 0.001 of a cell of the grid, the places of two grains
-/// along the box are known to a ten-thousandth of one each.
+/// No neighbour is lost by rounding: the margin is 0.001 of a cell, and the positions of two grains are
+/// accurate to a ten-thousandth of a cell each.
 template <class Real>
 constexpr double max_along = 0.0002 / std::numeric_limits<Real>::epsilon();
 constexpr double rounding_margin = 1.001;
@@ -84,7 +84,7 @@ std::array<double, 3> sizes(const Replica& replica) {
     return {replica.box.size_x, replica.box.size_y, replica.plate.start};
 }
 
-/// `reach`: the farthest that a neighbour's centre may be [m].
+/// `reach`: largest distance to the centre of a neighbour [m].
 template <class DeviceReplica>
 void set_cells(DeviceReplica& d, const Replica& replica, double reach, std::size_t grains) {
     using Real = decltype(d.skin);
@@ -95,14 +95,14 @@ void set_cells(DeviceReplica& d, const Replica& replica, double reach, std::size
     for (int axis = 0; axis < 3; ++axis) span[axis] = std::max(1, static_cast<int>(size[axis] / cell));
     std::fill_n(d.cell_size, 3, cell);
     const auto grid = repeated_grid(span, grains);
-    // Around a periodic end the grid in memory must repeat as well; the last cell is wider.
+    // Around a periodic boundary the stored grid must repeat as well; the last cell is wider.
     for (int axis = 0; axis < 2 && is_periodic(replica.box); ++axis) span[axis] -= span[axis] % grid[axis];
     d.span_x = span[0], d.span_y = span[1], d.span_z = span[2];
     d.cells_x = grid[0], d.cells_y = grid[1], d.cells_z = grid[2];
 }
 
-/// Grains lie in the grid undeformed; how far neighbours are apart there depends on the deformation. The grid
-/// in memory stays and is used in part.
+/// Grains are sorted into the grid by undeformed coordinates; the distance of neighbours in these depends on
+/// the deformation. The stored grid does not change, and a part of it is used.
 template <class DeviceReplica>
 void set_deformed_cells(DeviceReplica& d, const Replica& replica, double reach, const Strain& strain) {
     using Real = decltype(d.skin);
@@ -139,7 +139,7 @@ double time_step_of(const Replica& replica, const GrainMaterial& material, doubl
     return replica.numerics.time_step * pi * radius / rayleigh_speed(material);
 }
 
-/// Of the pair of species that loses least.
+/// Of the pair of species with the smallest loss of energy.
 double max_restitution(const Replica& replica) {
     double most = 0;
     for (std::size_t i = 0; i < std::max<std::size_t>(1, replica.species.size()); ++i)
@@ -162,7 +162,7 @@ double mindlin_share(const Replica& replica) {
 double time_step(const Replica& replica, const Packing& packing) {
     const auto excess = excess_compliance(replica, packing.size());
     const auto all = materials(replica);
-    // Of each species; a grain of mean stiffness as slow as the fastest one.
+    // For each species, the radius of a grain of mean stiffness with the Rayleigh time of the fastest grain.
     std::vector<double> smallest(all.size(), std::numeric_limits<double>::infinity());
     for (std::size_t i = 0; i < packing.size(); ++i) {
         double& radius = smallest[packing.species_of(i)];
@@ -181,9 +181,9 @@ double time_step(const Replica& replica, double radius) {
     return shortest;
 }
 
-/// The limit of stability over a report's frequency goes with the fifth root of the damping, as the
-/// extrapolation's phase error goes with the fifth power of the step (ARCHITECTURE.md). 0.7 was measured at a
-/// restitution of 0.95 (tests/truth/README.md). Hardly damped contacts are pumped slowly.
+/// The stability limit over a report's frequency is proportional to the fifth root of the damping, because
+/// the phase error of the extrapolation is proportional to the fifth power of the step (ARCHITECTURE.md). 0.7
+/// was measured at a restitution of 0.95. Weakly damped contacts gain energy only slowly.
 double stable_phase(double restitution) {
     return 0.7 * std::clamp(std::pow(damping_factor(restitution) / damping_factor(0.95), 0.2), 0.5, 1.0);
 }

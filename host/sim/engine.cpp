@@ -16,11 +16,12 @@
 namespace mcdem::inline sim {
 namespace {
 
-/// A list is made anew when a grain or the plate has moved this part of the margin. Half the margin is the
-/// limit that the kernels enforce step by step.
+/// A list is rebuilt when a grain or the plate has moved by this fraction of the margin. Half the margin is
+/// the limit that the kernels check in every step.
 constexpr double rebuild_at = 0.3;
-/// The plate moves at most this part of the margin in an interval: rebuild_at + plate_share <= 1/2. In a cell
-/// the same holds for two grains at the list's reach that go with the cell; what is left is for both of them.
+/// Maximum displacement of the plate in an interval over the margin: rebuild_at + plate_share <= 1/2. In a
+/// cell the same holds for the relative displacement, by the cell's motion, of two grains at the reach of the
+/// list.
 constexpr double plate_share = 0.2;
 constexpr int max_interval_steps = 60;
 
@@ -114,13 +115,14 @@ void Engine::upload_packings(const std::vector<Packing>& packings) {
         }
     for (auto& copy : fields_.motion.copies) write_reals(copy, 0, values);
     std::vector<double> tracks(reals_of_track * layout_.grains(), 0.0);
-    for (std::size_t real = 7; real < tracks.size(); real += reals_of_track) tracks[real] = 1;  // not turned
+    for (std::size_t real = 7; real < tracks.size(); real += reals_of_track)
+        tracks[real] = 1;  // identity rotation
     write_reals(fields_.tracks, 0, tracks);
 }
 
 double Engine::time_step(int replica) const { return shortened(time_step_[replica], shortening_[replica]); }
 
-/// Of the plate, or of a cell's motion between two grains at the list's reach [m/s].
+/// Speed of the plate, or of a cell's motion between two grains at the reach of the list [m/s].
 double Engine::speed_of_walls(int replica, const StepInterval& interval) const {
     const auto r = static_cast<std::size_t>(replica);
     if (!is_cell(replicas_[r].box)) return std::abs(interval.plate_velocity);
@@ -148,7 +150,7 @@ Engine::Part Engine::part(const std::vector<char>& wanted) const {
     return part;
 }
 
-/// The device's lists are written where they change.
+/// Uploads the lists of active replicas if they have changed.
 void Engine::choose(const std::vector<char>& active) {
     if (active == active_) return;
     active_ = active;
@@ -224,8 +226,8 @@ void Engine::find_neighbours(const std::vector<char>& active) {
     }
 }
 
-/// An even number of launches, so that every field ends in the copy in which it began; a replica that has
-/// made its steps waits.
+/// Makes an even number of launches, so that every double-buffered field ends in its original copy. A replica
+/// that has made its steps does nothing.
 void Engine::make_steps(int steps) {
     auto& f = fields_;
     for (int s = 0; s < steps + steps % 2; ++s) {
@@ -249,7 +251,7 @@ void Engine::measure() {
                              f.partner, f.force_x, f.force_y, f.force_z, f.cell_moments);
 }
 
-/// Of the working replicas that are cells, with these strains.
+/// For active replicas that are cells, with these strains.
 std::vector<Mat3> Engine::read_stresses(const std::vector<Strain>& strain) const {
     std::vector<Mat3> stress(replicas_.size(), Mat3::Zero());
     if (!fields_.has_cells()) return stress;
@@ -295,7 +297,7 @@ void add(Report& sum, const Report& portion) {
     if (sum.failed_grain < 0) sum.failed_grain = portion.failed_grain;
 }
 
-/// A replica's report is the sum of its portions', which stand in the order of its grains.
+/// A replica's report is the sum of the reports of its portions, in the order of its grains.
 template <class Report>
 std::vector<Report> by_replica(const std::vector<Portion>& portions, const std::vector<Report>& found,
                                int replicas) {

@@ -1,4 +1,4 @@
-// What the host reads of a replica between intervals, and what a restart needs.
+// Reading the state of replicas between intervals, and checkpoints.
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
@@ -15,7 +15,7 @@
 namespace mcdem::inline sim {
 namespace {
 
-/// One vector of each grain's motion, `first` reals from its beginning.
+/// A vector of each grain's motion that begins at real number `first`.
 std::vector<Vec3> by_grain(const std::vector<double>& motion, std::size_t first,
                            const std::vector<int>& order) {
     std::vector<Vec3> vectors(order.size());
@@ -46,7 +46,7 @@ int number_at(const std::byte* bytes, std::size_t index) {
     refuse_checkpoint(fmt::format("slot {} of '{}' holds {}, which there is not", slot, name, number));
 }
 
-/// Kernels look up what partners and partner slots point to, and do not check.
+/// Checks partners and partner slots, because kernels use them as indices without checks.
 void expect_partners(const Layout& layout, int slots, const std::byte* partner) {
     for (int r = 0; r < layout.replicas(); ++r) {
         const int first = layout.first_grain[r], last = first + layout.grain_count[r];
@@ -84,7 +84,7 @@ std::vector<double> Engine::reals(const std::vector<std::byte>& bytes, std::size
     return values;
 }
 
-/// `count` reals of a field from the `first` on, as bytes.
+/// `count` reals of a field starting at `first`, as bytes.
 template <class Quantity>
 std::vector<std::byte> Engine::read_bytes(const Field<Quantity>& field, std::size_t first,
                                           std::size_t count) const {
@@ -136,7 +136,7 @@ ReplicaState Engine::state(int replica) const { return state(replica, readings(r
 
 void Engine::for_each_state(const std::vector<int>& replicas,
                             const std::function<void(std::size_t, ReplicaState)>& use) const {
-    constexpr int max_grains = 1 << 18;  // that are read together: some 100 MB
+    constexpr int max_grains = 1 << 18;  // that are read together: about 100 MB
     for (std::size_t begin = 0, end; begin < replicas.size(); begin = end) {
         end = begin + 1;
         while (end < replicas.size() && replicas[end] == replicas[end - 1] + 1 &&
@@ -192,7 +192,7 @@ std::vector<Contact> Engine::contacts(int replica, const std::vector<Vec3>& posi
                 direction = from_axis(box, position[contact.grain]).normalized();
         } else {
             contact.partner = order[partner[slot] - layout_.first_grain[replica]];
-            if (contact.partner < contact.grain) continue;  // listed from the other side
+            if (contact.partner < contact.grain) continue;  // listed by the other grain
             direction = apart(box, position[contact.grain], position[contact.partner]).normalized();
         }
         contact.point = position[contact.grain] + arm[slot] * direction;

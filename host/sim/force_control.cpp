@@ -8,19 +8,22 @@
 namespace mcdem::inline sim {
 namespace {
 
-constexpr double tolerance = 1e-3;  ///< of a force set, relative
-/// Farther than this the plate is so slow that not even a rigid packing under it could pass the force unseen.
+constexpr double tolerance = 1e-3;  ///< of a prescribed force, relative
+/// Beyond this relative distance the plate is so slow that not even a rigid packing could exceed the force
+/// unnoticed.
 constexpr double near = 0.05;
-/// Nearer than this, on the way to a stop, drag takes the waves away that the plate would take for its doing.
+/// Below this relative distance, before a stop, drag removes waves that the controller would mistake for its
+/// own effect.
 constexpr double quiet = 0.25;
-/// Over the elastic stiffness of layers: packings are a few times stiffer (surfaces that displace one
-/// another, small ways back) to several times softer (grains that slide or yield).
+/// Over the elastic stiffness of layers: packings are between a few times stiffer (displaced surfaces, small
+/// unloading moves) and several times softer (grains that slide or yield).
 constexpr double stiffness_margin = 1.5;
-/// The rate follows within some `response` times what a wave through the packing takes, the force within
-/// `approach` times that: so far apart that neither overshoots at any of these stiffnesses.
+/// The rate follows within a few times `response` times the travel time of a wave through the packing, the
+/// force within `approach` times that. The two are separated enough that neither overshoots at any of these
+/// stiffnesses.
 constexpr double response = 1.5, approach = 14;
-/// How much stiffer than its layers a cell may be that goes fast: strained in all directions at once, far
-/// compressed, with surfaces that displace one another.
+/// Stiffness of a fast cell over that of its layers, at most: it is strained in all directions at once,
+/// strongly compressed, with displaced surfaces.
 constexpr double cell_margin = 5;
 
 }  // namespace
@@ -42,7 +45,7 @@ ForceControl ForceControl::of_plate(const Replica& replica, const PackingScale& 
     return control;
 }
 
-/// All layers deform alike, so that the packing's stiffness is felt at once.
+/// All layers deform equally, so the stiffness of the whole packing is felt immediately.
 ForceControl ForceControl::of_cell(const Replica& replica, const PackingScale& scale) {
     ForceControl control;
     const Box& box = replica.box;
@@ -61,7 +64,7 @@ ForceControl ForceControl::of_cell(const Replica& replica, const PackingScale& s
     return control;
 }
 
-/// Of the Hertz contacts of a full layer of grains that do not move.
+/// Stiffness of the Hertz contacts of a full layer of grains that do not move.
 double ForceControl::layer_stiffness(double force, double layer) {
     return 1.5 * std::cbrt(std::max(0.0, force)) * std::cbrt(layer * layer);
 }
@@ -70,7 +73,7 @@ double ForceControl::stiffness(const State& state, double set) const {
     return stiffness_margin * layer_stiffness(std::max(set, state.force), layer_) / layers_;
 }
 
-/// That a wave takes through the packing.
+/// Travel time of a wave through the packing.
 double ForceControl::response_time(const State& state, double set) const {
     return std::sqrt(inertia_ / stiffness(state, set));
 }
@@ -96,8 +99,8 @@ void ForceControl::observe(State& state, double force, double duration) {
     state.force = force;
 }
 
-/// Far off, waves in the packing shake the force by more than the plate changes it: the plate looks at the
-/// distance alone. It cannot feel more than a layer of the stiffest grains.
+/// Far from the target, waves in the packing change the force more than the plate does, so only the distance
+/// is used. The plate cannot feel more than a layer of the stiffest grains.
 double ForceControl::far_speed(double left, double force, double duration) const {
     const double stiffest =
         layer_stiffness(std::max(force, force + left / 2), stiffest_layer_) / rigid_layers_;

@@ -7,7 +7,7 @@
 namespace mcdem::inline sim {
 namespace {
 
-/// The lowest 21 bits of `value`, two zero bits between each.
+/// The lowest 21 bits of `value` with two zero bits between each.
 std::uint64_t spread(std::uint64_t value) {
     std::uint64_t spread = 0;
     for (int bit = 0; bit < 21; ++bit) spread |= (value >> bit & 1) << 3 * bit;

@@ -12,12 +12,13 @@ namespace {
 
 using Stage = ProtocolState::Stage;
 
-/// Part of an interval's pressure that is taken over, so that waves in the packing do not shake the plate.
+/// Weight of an interval's pressure in the moving average, so that waves in the packing do not affect the
+/// plate.
 constexpr double pressure_share = 0.2;
-/// The integrator takes away drag * time step of a velocity in a step. Where the plate halts, motion ends at
-/// once; before the first stroke grains still have some way to fall.
+/// The integrator removes drag * time step of a velocity per step. When the plate stops, motion ends at once;
+/// before the first stroke, grains still have to settle under gravity.
 constexpr double max_drag = 0.5, max_relax_drag = 0.02;
-/// Closer than this to a level, over the plate's start or a strain of one, the plate has arrived.
+/// Within this distance of a level, relative to the plate's start or a strain of one, the plate has arrived.
 constexpr double position_rounding = 1e-12;
 
 double force_along_z(const IntervalResult& result, Wall wall) {
@@ -45,7 +46,7 @@ bool ProtocolRunner::by_force() const {
     return state_.stage != Stage::relax && controlled(stage()) == Controlled::force;
 }
 
-/// Stops are approached one by one; without them only the end is.
+/// With stops, the target of the next scan; otherwise that of the move.
 double ProtocolRunner::set_force() const {
     if (stage().kind == StageKind::hold) return state_.leg_begin;
     return protocol_.stop_at_scans ? waypoint() : leg().target;
@@ -56,12 +57,12 @@ double ProtocolRunner::max_speed() const {
     return std::isnan(stage().speed) ? plate_.speed : stage().speed;
 }
 
-/// Where a move is to be scanned.
+/// Levels of the scans of a move.
 double ProtocolRunner::level_value(int level) const {
     return scan_level(stage(), level, state_.leg_begin, target(), plate_);
 }
 
-/// The next scan, or the end of the move.
+/// Position of the next scan, or the end of the move.
 double ProtocolRunner::waypoint() const {
     return state_.level < scans_of(stage()) ? level_value(state_.level + 1) : target();
 }
@@ -72,7 +73,7 @@ bool ProtocolRunner::waypoint_is_end() const {
     return stage().scan_at.empty() || level_value(scans) == target();
 }
 
-/// From the hold's beginning to its next scan or its end [s].
+/// Time from the start of the hold to its next scan or its end [s].
 double ProtocolRunner::hold_time() const {
     const int next = state_.level + 1;
     return next > scans_of(stage()) ? stage().time : scan_time(stage(), next);
@@ -91,8 +92,8 @@ long ProtocolRunner::max_stage_steps() const {
         time_step_);
 }
 
-/// The next interval as far as the protocol is concerned. The plate ends a move at the scan position: its
-/// last speed is a little lower.
+/// The next interval according to the protocol. The plate ends a move exactly at the scan position, so its
+/// last speed is slightly lower.
 StepInterval ProtocolRunner::planned() const {
     if (by_force()) return planned_by_force();
     if (by_stress()) return planned_by_stress();
@@ -106,7 +107,7 @@ StepInterval ProtocolRunner::planned() const {
     return {static_cast<int>(std::min(steps, max_steps)), state_.plate_z, left / (steps * time_step_), 0};
 }
 
-/// The plate stays between its ends.
+/// The plate stays between plate.end and plate.start.
 StepInterval ProtocolRunner::planned_by_force() const {
     double steps = std::clamp(std::floor(force_control_.interval(state_.control, set_force()) / time_step_),
                               2.0, max_steps);
@@ -176,7 +177,7 @@ void ProtocolRunner::give_up(const std::string& why) {
     stop();
 }
 
-/// At rest: net forces are small. The drag is so strong that velocities follow from the net forces alone.
+/// Whether net forces are small. The drag is so strong that velocities are determined by the net forces.
 bool ProtocolRunner::settled(const IntervalResult& result, double drag, bool plate_arrived) {
     const double unbalanced = quasi_static_.unbalanced_force(result.kinetic_energy, drag, state_.pressure);
     const bool still = plate_arrived && unbalanced <= protocol_.settle_unbalanced_force &&
@@ -252,7 +253,7 @@ std::optional<ProtocolRunner::ScanTag> ProtocolRunner::moved() {
     return waypoint_reached();
 }
 
-/// Forces on the way are passed, or, with stops, reached like the last one.
+/// Scans at forces are taken in passing or, with stops, at a target like the last one.
 std::optional<ProtocolRunner::ScanTag> ProtocolRunner::moved_by_force() {
     const double beyond = state_.control.force - waypoint();
     const bool up = leg().target > state_.leg_begin;
@@ -274,7 +275,7 @@ ProtocolRunner::ScanTag ProtocolRunner::tag(int cycle, bool settled) {
     return {state_.frame++, cycle, state_.phase, state_.plate_z, state_.time, state_.rate_error, settled};
 }
 
-/// The plate is where a scan is due or a move ends, and the next move begins.
+/// Called when the plate is at a scan position or at the end of a move; then the next move starts.
 std::optional<ProtocolRunner::ScanTag> ProtocolRunner::arrive(bool settled) {
     const bool end = waypoint_is_end();
     std::optional<ScanTag> scan;

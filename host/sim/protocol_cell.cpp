@@ -1,4 +1,4 @@
-// Cells in the protocol: moves to strains and stresses, and holds of them.
+// The protocol of cells: moves to strains and stresses, and holds.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,10 +11,10 @@ namespace {
 
 using Stage = ProtocolState::Stage;
 
-/// A move that changes stresses by less keeps them.
+/// A move with a smaller relative change of stresses is treated as keeping them.
 constexpr double min_change = 1e-3;
 
-/// With the strains to which the directions with a stress have come.
+/// The strains, with the current ones of the directions with a prescribed stress.
 Strain with_controlled(Strain strain, const SetStress& set, const CellControl::State& cell) {
     for (std::size_t axis = 0; axis < 3; ++axis)
         if (!std::isnan(set[axis])) strain[axis] = cell.direction[axis].strain;
@@ -27,7 +27,7 @@ bool ProtocolRunner::by_stress() const {
     return state_.stage != Stage::relax && controlled(stage()) == Controlled::stress;
 }
 
-/// A move of a cell that changes strains, whether or not it sets stresses as well.
+/// Whether a move of a cell changes strains, with or without stresses.
 bool ProtocolRunner::driven() const {
     return cell_ && stage().kind == StageKind::move && target() > state_.leg_begin;
 }
@@ -41,7 +41,7 @@ const mcdem::Stage& ProtocolRunner::last_move() const {
 
 SetStress ProtocolRunner::end_stress() const { return set_stress(last_move()); }
 
-/// Stops are approached one by one, where nothing but stresses changes.
+/// With stops, the stresses of the next scan if only stresses change; otherwise the target.
 SetStress ProtocolRunner::stress() const {
     SetStress set = end_stress();
     if (stage().kind == StageKind::hold || driven() || !protocol_.stop_at_scans) return set;
@@ -70,7 +70,7 @@ void ProtocolRunner::deform(StepInterval& interval) const {
     interval.plate_velocity = 0;
 }
 
-/// Its rates follow in deform().
+/// Its strain rates are set in deform().
 StepInterval ProtocolRunner::planned_by_stress() const {
     double steps =
         std::clamp(std::floor(cell_->interval(state_.cell, stress()) / time_step_), 2.0, max_steps);
@@ -96,7 +96,7 @@ void ProtocolRunner::follow_stress(double duration) {
         give_up(*stuck, "grains would meet their own images");
 }
 
-/// Where strains stop, so do the directions whose stress is set, and go on by themselves.
+/// When the strains stop, the directions with a prescribed stress stop too, and then continue separately.
 bool ProtocolRunner::stresses_are_back() {
     if (state_.cell.drive > 0) {
         CellControl::rest(state_.cell);
@@ -129,7 +129,7 @@ void ProtocolRunner::end_leg_of_cell() {
     CellControl::begin_leg(state_.cell, strain);
 }
 
-/// A hold goes on with stresses as the move before left them.
+/// A hold continues with the stresses of the previous move.
 void ProtocolRunner::begin_leg_of_cell() {
     if (state_.leg == 0) CellControl::begin_leg(state_.cell, {});
     if (!by_stress() || stage().kind != StageKind::hold) CellControl::rest(state_.cell);

@@ -19,7 +19,7 @@ std::string compress_less(const Replica& replica) {
     return is_cell(replica.box) ? "compress less" : "compress less: raise plate.end";
 }
 
-/// Why a replica stops that is not to go on beyond its law; empty where it goes on.
+/// Reason why a replica stops because of numerics.stop_beyond_law; empty if it continues.
 std::string beyond_law(const Replica& replica, const Scan& scan) {
     const auto tested = tested_overlap(replica.contact.model);
     if (!replica.numerics.stop_beyond_law || !tested || !(scan.max_overlap > *tested)) return "";
@@ -29,7 +29,7 @@ std::string beyond_law(const Replica& replica, const Scan& scan) {
         scan.max_overlap, name(replica.contact.model), *tested, compress_less(replica));
 }
 
-/// What a user can do about each way in which a replica stops (kernels/status.h).
+/// Advice for each reason why a replica stops (kernels/status.h).
 std::string cause_of(const IntervalResult& result, const Replica& replica, int slots) {
     std::string cause;
     const auto add = [&](int bit, const std::string& text) {
@@ -77,7 +77,7 @@ std::vector<Packing> true_packings(const std::vector<Replica>& replicas, std::ve
     return stated;
 }
 
-/// Grains, and the points of their contacts with them.
+/// Wraps grains, and the points of their contacts with them.
 void bring_into_cell(const Box& now, Scan& scan) {
     std::vector<Vec3> moved;
     for (Vec3& position : scan.position) {
