@@ -12,7 +12,8 @@
 namespace mcdem::inline calibrate {
 namespace {
 
-constexpr std::size_t points_for_an_error = 6;  ///< fewer tell the scatter about a fit too badly to stop
+constexpr std::size_t points_for_an_error =
+    6;  ///< with fewer, the scatter about the fit is too uncertain to stop
 
 void check(double target, const Bracket& bracket, const CalibrationOptions& options) {
     std::vector<std::string> problems;
@@ -36,7 +37,7 @@ std::vector<double> evenly(double low, double high, int count) {
     return values;
 }
 
-/// All that has been simulated so far.
+/// All results so far.
 class Evidence {
 public:
     void add(const CalibrationRound& round) {
@@ -46,13 +47,13 @@ public:
             else
                 runs_away_at_ = std::fmin(runs_away_at_, round.gamma[i]);
         }
-        // Above the lowest gamma that ran away, what is finite only survived by luck.
+        // Results above the lowest gamma that ran away are not reliable.
         std::erase_if(finite_, [&](const Point& p) { return p.x > runs_away_at_; });
         std::sort(finite_.begin(), finite_.end(), [](const Point& a, const Point& b) { return a.x < b.x; });
     }
     const std::vector<Point>& finite() const { return finite_; }
     double runs_away_at() const { return runs_away_at_; }
-    /// Of the half-open interval without points below the lowest runaway, and not too close to it.
+    /// End of the interval below the lowest runaway, at some distance from it.
     double highest_safe(double high) const {
         if (std::isnan(runs_away_at_) || finite_.empty()) return high;
         return std::min(high, (finite_.back().x + runs_away_at_) / 2);
@@ -67,8 +68,8 @@ private:
     double runs_away_at_ = none;
 };
 
-/// Neighbours between which the rising fit passes the target: `below` or `above` is not-a-number where
-/// all points lie on the other side.
+/// Neighbours between which the increasing fit crosses the target; `below` or `above` is NaN if all points
+/// are on the other side.
 struct Neighbours {
     double below = none, above = none;
 };
@@ -84,7 +85,7 @@ Neighbours neighbours(const std::vector<Point>& points, double target) {
     return found;
 }
 
-/// Where to look next: about `centre`, `half_width` to either side.
+/// Next interval of the search: `centre` plus and minus `half_width`.
 struct Window {
     double centre = none, half_width = none;
     double low() const { return centre - half_width; }
@@ -115,7 +116,7 @@ struct Window {
                     what, evidence.runs_away_at(), target, points.back().y, what, points.back().x, what));
 }
 
-/// The part of the bracket that a runaway leaves open, while the target has not been passed.
+/// Points in the part of the bracket below the lowest runaway, while the target has not been crossed.
 std::vector<double> explore(const Evidence& evidence, double target, const Bracket& bracket,
                             const CalibrationOptions& options) {
     const auto& points = evidence.finite();
@@ -135,8 +136,8 @@ std::vector<double> ask(const TopForces& top_forces, const std::vector<double>& 
     return forces;
 }
 
-/// The window about the root after a round: first from the bracketing neighbours, then half as wide each
-/// time, but never so narrow that scatter hides the slope.
+/// Window around the root after a round: first from the bracketing neighbours, then half as wide each time,
+/// but wide enough that the slope is significant.
 Window next_window(const Window& last, const Neighbours& around, const Crossing& root) {
     if (std::isnan(last.centre))
         return {(around.below + around.above) / 2, 1.5 * std::abs(around.above - around.below)};

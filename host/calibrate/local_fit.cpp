@@ -12,7 +12,7 @@ constexpr int points_for_parabola = 6;
 /// y - target = c0 + c1 t + c2 t^2 with t from -1 to 1 over the window.
 struct Fit {
     Eigen::VectorXd coefficients;
-    Eigen::MatrixXd covariance;  ///< not-a-number where no degrees of freedom are left
+    Eigen::MatrixXd covariance;  ///< NaN without degrees of freedom
     double slope(double t) const {
         return coefficients[1] + (coefficients.size() > 2 ? 2 * coefficients[2] * t : 0);
     }
@@ -38,13 +38,13 @@ Fit least_squares(const std::vector<Point>& scaled, double target) {
     return {c, (powers.transpose() * powers).inverse() * scatter};
 }
 
-/// Where the fit rises through zero within the window.
+/// Increasing zero of the fit within the window.
 double root(const Fit& fit) {
     const double c0 = fit.coefficients[0], c1 = fit.coefficients[1];
     const double c2 = fit.coefficients.size() > 2 ? fit.coefficients[2] : 0;
     const double discriminant = c1 * c1 - 4 * c2 * c0;
     if (!(discriminant > 0)) return none;
-    const double t = -2 * c0 / (c1 + std::sqrt(discriminant));  // the rising branch, also for c2 = 0
+    const double t = -2 * c0 / (c1 + std::sqrt(discriminant));  // increasing branch, also for c2 = 0
     return std::abs(t) <= 1 && fit.slope(t) > 0 ? t : none;
 }
 

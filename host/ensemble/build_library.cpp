@@ -11,17 +11,18 @@
 namespace mcdem::inline ensemble {
 namespace {
 
-/// Amplitudes of the paired runs of a nuisance: both sides of the model, so that its slope there is met.
+/// Amplitudes of the paired runs of a nuisance: on both sides of the model, so that its slope there is
+/// accurate.
 constexpr double nuisance_step = 1.0;  // sigmas
 
-/// Something that is simulated at two amplitudes.
+/// An effect or nuisance that is simulated at two amplitudes.
 struct Probe {
     std::string name;
     double amplitudes[2];
     void (*apply)(Model&, double);
 };
 
-/// Amplitudes are on the first specimen's scale.
+/// Amplitudes use the scale of the first specimen.
 std::vector<Probe> probes_of(const LibraryPlan& plan) {
     const Model& model = plan.specimens.front().model;
     std::vector<Probe> probes;

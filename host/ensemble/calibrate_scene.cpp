@@ -17,7 +17,7 @@ namespace {
 
 const std::set<std::string> left_aside{"contact.model", "contact.gamma", "packing.seed"};
 
-/// All values and all packings go through one simulation, so that a device is filled.
+/// Runs all values and all packings in one simulation, to fill the device.
 class ValueBatch {
 public:
     ValueBatch(Device& device, const Scene& scene, ContactModel model, double displacement)
@@ -30,7 +30,7 @@ public:
     std::size_t replicas() const { return packings_.size(); }
     double stroke() const { return scene_.replicas.front().plate.start - scene_.replicas.front().plate.end; }
 
-    /// Mean top force at the displacement for each value [N]; not-a-number where it ran away.
+    /// Mean top force at the displacement for each value [N]; NaN if it ran away.
     std::vector<double> top_forces(const std::vector<double>& values,
                                    const std::function<void(double)>& on_progress) {
         const auto recordings = simulate_all(values, on_progress);
@@ -56,7 +56,7 @@ private:
                 set(batch.replicas.back(), value);
                 packings.push_back(packings_[r]);
             }
-        // The last unloading is not looked at.
+        // The last unloading is not evaluated.
         const auto& protocol = scene_.replicas.front().protocol;
         const int strokes = 2 * protocol.cycles - 1;
         return simulate(device_, batch, packings,

@@ -19,7 +19,7 @@ constexpr double jitter_of_diameter = 0.005;
 
 /// One step of a refinement.
 struct Step {
-    double remaining;  ///< part of the error that it leaves
+    double remaining;  ///< fraction of the error that remains
     std::function<void(Scene& scene, Replica& replica)> refine;
 };
 
@@ -32,8 +32,7 @@ Step slower(double factor) {
     return {factor, [factor](Scene&, Replica& replica) {
                 replica.plate.speed *= factor;
                 replica.protocol.rate_tolerance *= factor;
-                for (Stage& stage : replica.programme)
-                    stage.speed *= factor;  // stays not-a-number where it is
+                for (Stage& stage : replica.programme) stage.speed *= factor;  // NaN is not changed
             }};
 }
 
@@ -50,8 +49,8 @@ std::string speed_remedy(const Replica& replica) {
 constexpr const char* without_stops =
     "protocol.stop_at_scans = false, with a slow plate: runs are shorter by the stops";
 
-/// Forces feel inertia through the square root of the density, and Verlet steps through the square of the
-/// time step; damping makes that of first order, which is assumed.
+/// Forces depend on inertia through the square root of the density. The error of Verlet is quadratic in the
+/// time step, but that of the damping is linear, which is assumed here.
 std::vector<Plan> plans_of(const Scene& scene, const Replica& replica) {
     std::vector<Plan> plans;
     plans.push_back({"plate speed", speed_remedy(replica), {slower(0.5), slower(0.25), slower(0.125)}});
@@ -129,7 +128,7 @@ public:
     }
 
 private:
-    /// Where diagnosis looks, for an experiment with this scene's stroke.
+    /// The grid of a diagnosis of an experiment with this scene's stroke.
     static Grid grid_of_stroke(const Replica& replica) {
         Recording levels;
         levels.plate_start = replica.plate.start;
@@ -142,7 +141,7 @@ private:
         return grid_of(levels);
     }
 
-    /// .. for an experiment that does what the first copy does.
+    /// The same for an experiment that follows the first copy.
     Grid grid_of_programme() {
         const Replica& replica = scene_.replicas.front();
         Trial trial = trial_of(replica, 0, 0);
@@ -182,8 +181,8 @@ private:
                               trial_options(cause));
     }
 
-    /// Copies that do not rearrange scatter less than their observables resolve, and are one packing over and
-    /// over again.
+    /// Whether the replicas are nearly identical: copies without rearrangements scatter less than the
+    /// resolution of the observables.
     bool hardly_differ(const Eigen::MatrixXd& base) const {
         const Convergence scatter = convergence_of(grid_, base, {}, options_.limits);
         int known = 0, differ = 0;

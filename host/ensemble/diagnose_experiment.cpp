@@ -20,7 +20,7 @@
 namespace mcdem::inline ensemble {
 namespace {
 
-/// The part of a diagnosis' work that one stage is.
+/// Options of one stage of a diagnosis.
 TrialOptions stage(const DiagnoseOptions& options, const std::string& name) {
     TrialOptions trial_options;
     trial_options.on_progress = [&options, name](double fraction) { options.on_progress(name, fraction); };
@@ -28,7 +28,7 @@ TrialOptions stage(const DiagnoseOptions& options, const std::string& name) {
     return trial_options;
 }
 
-/// "contact.gamma = 1.16" of every key in which the second differs.
+/// "contact.gamma = 1.16" for every key that differs in the second replica.
 std::vector<std::string> differing_keys(const Replica& before, const Replica& after) {
     Settings a, b;
     a.replica = before;
@@ -44,13 +44,13 @@ std::vector<std::string> differing_keys(const Replica& before, const Replica& af
     return list;
 }
 
-/// Real runs of a proposal, and again with what they taught.
+/// Maximum number of rounds of real runs of a proposal, including the corrected ones.
 constexpr int max_rounds = 3;
 
-/// By how many times a setting of the numerics is advised to be refined at most.
+/// Largest factor by which a refinement of a numerical setting is recommended.
 constexpr double max_refinement = 64;
 
-/// The work of one diagnosis, in the order of its steps.
+/// The steps of one diagnosis, in order.
 class DiagnosisRunner {
 public:
     DiagnosisRunner(Device& device, DiagnosisPlan plan, const std::vector<Experiment>& experiments,
@@ -91,16 +91,16 @@ private:
     Evidence gather() {
         Evidence evidence;
         evidence.seed = options_.seed;
-        if (options_.library) remove_temporaries_of(*options_.library);  // of a diagnosis that was cut short
+        if (options_.library) remove_temporaries_of(*options_.library);  // left by an interrupted diagnosis
         const bool ready = options_.library && std::filesystem::exists(*options_.library);
-        if (ready) {  // before any work
+        if (ready) {  // before any other work
             evidence.library = read_library(*options_.library);
             expect_origin(evidence.library,
                           library_origin(question_, model(), plan_.specimens.front().packing.size()),
                           *options_.library);
             expect_library_of(evidence.library, question_.grid, plan_, *options_.library);
         }
-        if (paper_metrics())  // first: what is kept whole is not simulated again
+        if (paper_metrics())  // first, because trials with complete recordings are not simulated again
             recorded(baseline_trials(plan_), options_.replicates);
         if (ready) {
             question_.grid = evidence.library.grid;
@@ -130,7 +130,7 @@ private:
         return observe_trials(device_, question_, baseline_trials(plan_), store_, stage(options_, name));
     }
 
-    /// Runs of the scene as it stands, one packing after the other.
+    /// Runs of the unchanged scene, one packing after the other.
     void take_baseline(Evidence& evidence, const Eigen::MatrixXd& runs) {
         if (library_is_own_) evidence.library.baseline = runs;
         evidence.packings.clear();
@@ -161,8 +161,8 @@ private:
                 false};
     }
 
-    /// The scene with the setting refined. Signatures are differences between paired runs, and stay; the
-    /// baseline is simulated again.
+    /// Refines a setting of the scene. Signatures are differences of paired runs and are kept; the baseline
+    /// is simulated again.
     void refine(Evidence& evidence, Refinement refinement) {
         const Effect& effect = *find_effect(refinement.effect);
         for (Specimen& specimen : plan_.specimens)
@@ -181,7 +181,7 @@ private:
         note_failures(evidence);
     }
 
-    /// What to set in the scene for what is named; nothing where nothing is.
+    /// How to change the scene according to the named effect; nothing if none is named.
     std::optional<NextStep> change_of_the_scene(const Diagnosis& diagnosis) const {
         if (!diagnosis.refinements.empty() && !diagnosis.refinements.back().done) {
             const Refinement& r = diagnosis.refinements.back();
@@ -196,7 +196,7 @@ private:
         std::vector<std::string> names;
         for (const Cause& cause : diagnosis.causes) {
             const bool together = diagnosis.causes.front().group.size() == 1;
-            if (!names.empty() && !together) break;  // of a group the leader
+            if (!names.empty() && !together) break;  // only the leading effect of a group
             apply_cause(changed, cause);
             names.push_back(cause.effect);
         }
@@ -224,8 +224,8 @@ private:
         }
     }
 
-    /// Real runs of every proposal, again where they miss; then of the one decided on with what the fitted
-    /// part of the data says of it.
+    /// Real runs of every proposal, repeated with corrections; then of the chosen one with the parameters
+    /// fitted to the first part of the data.
     void confirm(DiagnosisBuilder& builder) {
         std::vector<std::size_t> tried(builder.findings().proposals.size());
         std::iota(tried.begin(), tried.end(), std::size_t{0});
@@ -264,7 +264,7 @@ private:
                                 store_)};
     }
 
-    /// The first few trials, of those `of_a_packing`, with their whole recordings kept.
+    /// The first few of the `of_a_packing` trials, with complete recordings.
     std::vector<Trial> recorded(std::vector<Trial> trials, int of_a_packing) const {
         trials.resize(std::min(static_cast<std::size_t>(of_a_packing), trials_recorded));
         keep_recordings(trials);
@@ -305,10 +305,10 @@ private:
         return model;
     }
 
-    /// They compare the levels of strokes.
+    /// The metrics compare levels of strokes.
     bool paper_metrics() const { return options_.paper_metrics && model().replica.programme.empty(); }
 
-    /// The first packing's.
+    /// The model of the first packing.
     const Model& model() const { return plan_.specimens.front().model; }
     int packings() const { return static_cast<int>(experiments_.size()); }
 
@@ -319,7 +319,7 @@ private:
     CandidateChoice choice_;
     Question question_;
     LibraryPlan plan_;
-    bool library_is_own_ = false;  ///< made on the experiment's own packings
+    bool library_is_own_ = false;  ///< computed on the experiment's own packings
     std::vector<Refinement> refinements_;
 };
 
@@ -354,7 +354,7 @@ Model model_of(const Scene& scene, const Experiment& experiment) {
             "{}: experiment.toml must state the [[programme]] that it was taken through, and plate.csv its "
             "time_s, for a scene that has one",
             experiment.name));
-    // A scan before the stroke is no level of it, even where the plate's zero is a little off.
+    // A scan before the stroke is not one of its levels, even if the plate's zero is slightly wrong.
     const double begun = 0.02 * (recording.plate_start - lowest);
     int loading = 0, cycles = 1;
     for (const Scan& scan : recording.scans) {
@@ -365,7 +365,8 @@ Model model_of(const Scene& scene, const Experiment& experiment) {
         throw InputError(experiment.name + ": plate.csv must have loading frames below plate.start");
     model.replica.plate.start = recording.plate_start;
     model.replica.protocol.scan_at_start = true;
-    if (!model.replica.programme.empty()) {  // under a force the plate may go on where the scene lets it
+    if (!model.replica.programme
+             .empty()) {  // under a prescribed force the plate may move as far as the scene allows
         model.replica.plate.end = std::min(scene.replicas.front().plate.end, lowest);
         return model;
     }

@@ -17,19 +17,19 @@
 namespace mcdem::inline ensemble {
 namespace {
 
-/// What may differ between a library and a diagnosis, relative to the library's.
+/// Allowed difference between library and diagnosis, relative to the library.
 struct MayDiffer {
     std::string_view begins;
     double part;
 };
 constexpr double by_any_part = std::numeric_limits<double>::infinity(), a_little = 0.1;
 constexpr std::array may_differ{
-    MayDiffer{"packing.", by_any_part},  // an experiment brings its own
+    MayDiffer{"packing.", by_any_part},  // an experiment has its own packing
     MayDiffer{"plate.start",
               by_any_part},               // the experiment's zero of strain; the stroke is compared with the
     MayDiffer{"plate.end", by_any_part},  // library's levels
-    MayDiffer{"protocol.scans_per_stroke", by_any_part},  // observations are made at the library's levels
-    MayDiffer{"box.size_", a_little},                     // measured anew by every experiment
+    MayDiffer{"protocol.scans_per_stroke", by_any_part},  // observations use the levels of the library
+    MayDiffer{"box.size_", a_little},                     // measured separately for every experiment
     MayDiffer{"container.size_", a_little},
     MayDiffer{"mean diameter", a_little},
     MayDiffer{"grains", a_little},
@@ -79,8 +79,8 @@ std::map<std::string, std::string> library_origin(const Question& question, cons
     origin["grains"] = fmt::format("{}", grains);
     origin["kernels"] = Sha256().add(program_text()).hex();
     origin["observables"] = observables_digest();
-    origin["program"] =
-        question.program.substr(0, question.program.find(' '));  // the version; a commit may change nothing
+    origin["program"] = question.program.substr(
+        0, question.program.find(' '));  // only the version; a commit need not change results
     return origin;
 }
 
@@ -119,8 +119,8 @@ void expect_library_of(const Library& library, const Grid& grid, const LibraryPl
     };
     for (const std::string& name : plan.candidates) expect(library.effects, name);
     for (const Nuisance& nuisance : plan.nuisances) expect(library.nuisances, nuisance.name);
-    constexpr double alike = 0.1;  // a shifted zero of strain is for the diagnosis to find
-    const bool by_force = !library.grid.force.empty();  // then the stroke is what effects change
+    constexpr double alike = 0.1;                       // the diagnosis finds a shifted zero of strain
+    const bool by_force = !library.grid.force.empty();  // then the stroke depends on the effects
     if (!by_force && std::abs(library.grid.stroke - grid.stroke) > alike * grid.stroke)
         problems.push_back(fmt::format("{}: was made for a stroke of {:.4g} mm, the experiment has {:.4g} mm",
                                        file.string(), 1e3 * library.grid.stroke, 1e3 * grid.stroke));
@@ -129,7 +129,7 @@ void expect_library_of(const Library& library, const Grid& grid, const LibraryPl
 
 namespace {
 
-/// Mean top force of the runs, summed over the levels of loading: the strong ones count most [N].
+/// Mean top force of the runs, summed over the levels of loading; large forces dominate [N].
 double load(const Grid& grid, const Eigen::MatrixXd& baseline) {
     const std::vector<Cell> cells = cells_of(grid);
     double sum = 0;
@@ -148,7 +148,7 @@ double load(const Grid& grid, const Eigen::MatrixXd& baseline) {
 
 void expect_alike_loads(const Library& library, const Eigen::MatrixXd& baseline,
                         const std::filesystem::path& file) {
-    constexpr double alike = 1.6;  // packings of one kind, with grains 2 % larger, carry 1.5 times as much
+    constexpr double alike = 1.6;  // packings of the same kind with grains 2 % larger carry 1.5 times as much
     const double times = load(library.grid, baseline) / load(library.grid, library.baseline);
     if (!(std::max(times, 1 / times) > alike)) return;
     throw InputError(

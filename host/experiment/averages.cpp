@@ -1,4 +1,4 @@
-// What follows from measured contacts.
+// Quantities computed from measured contacts.
 #include <array>
 
 #include "experiment/measurements.h"
@@ -6,7 +6,7 @@
 namespace mcdem::inline experiment {
 namespace {
 
-/// Walls whose contacts were measured at all: on the others no contacts does not mean no force.
+/// Walls with any measured contacts: on the others, no contacts does not mean no force.
 std::array<bool, wall_count> measured_walls(const Recording& recording) {
     std::array<bool, wall_count> measured{};
     for (const Scan& scan : recording.scans)
@@ -23,8 +23,7 @@ void sum_wall_forces(Scan& scan, const std::array<bool, wall_count>& measured) {
     for (const Contact& contact : scan.contacts)
         if (is_wall(contact.partner))
             scan.wall_force[static_cast<std::size_t>(wall_of(contact.partner))] -= contact.force;
-    scan.wall_force[plate].z() =
-        top_force;  // the plate's own gauge sees the contacts below the threshold too
+    scan.wall_force[plate].z() = top_force;  // the plate's gauge also measures contacts below the threshold
 }
 
 void average(Scan& scan, double grains, double force_threshold) {

@@ -1,5 +1,5 @@
-// Grains at rest: the contact forces of each and its weight cancel, but for what the instrument adds and
-// leaves out.
+// Force balance of grains at rest: contact forces and weight must cancel, except for errors and missing
+// contacts of the instrument.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -12,10 +12,10 @@
 namespace mcdem::inline experiment {
 namespace {
 
-constexpr double near_wall = 1.25;     // centres nearer than this many radii may touch a wall
-constexpr double min_error = 0.02;     // of a force, where none is stated
-constexpr double unseen_contacts = 2;  // of a grain, each up to the threshold
-constexpr double max_unbalanced = 3;   // times what the errors explain
+constexpr double near_wall = 1.25;     // in radii; closer centres may touch a wall
+constexpr double min_error = 0.02;     // of a force, if none is stated
+constexpr double unseen_contacts = 2;  // per grain, each up to the threshold
+constexpr double max_unbalanced = 3;   // in multiples of the expected error
 constexpr std::size_t min_grains = 5;
 
 struct Load {
@@ -46,7 +46,7 @@ bool is_in_bulk(const Recording& recording, const Scan& scan, int grain) {
     });
 }
 
-/// Of the bulk's grains: force that does not cancel, over the root of the sum of squares and over its error.
+/// Unbalanced force on the grains of the bulk, over the root of the sum of squares and over its error.
 struct Imbalance {
     std::vector<double> relative, in_errors;
 };

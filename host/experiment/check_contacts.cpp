@@ -1,4 +1,4 @@
-// Contacts against positions, against the plate's gauge, against the stated threshold and stiffness.
+// Checks contacts against positions, the plate's gauge, the stated threshold and the stiffness.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,17 +11,18 @@
 namespace mcdem::inline experiment {
 namespace {
 
-constexpr double max_apart = 0.15;      // gap over the mean diameter: as far as simulations look for contacts
-constexpr double max_pulling = 0.2;     // of the contacts that are not weak
-constexpr double gauge_range = 1.5;     // plate contacts over the gauge's force, either way
-constexpr double clear_sum = 4;         // over the threshold times the plate's contacts
+constexpr double max_apart = 0.15;      // gap over the mean diameter, as in the contact search of simulations
+constexpr double max_pulling = 0.2;     // fraction of the contacts that are not weak
+constexpr double gauge_range = 1.5;     // force of plate contacts over that of the gauge, or the inverse
+constexpr double clear_sum = 4;         // in multiples of the threshold times the number of plate contacts
 constexpr std::size_t min_pairs = 20;   // for a typical force
 constexpr double clear_overlap = 0.02;  // over R*
-constexpr double hertz_range = 5;       // force over Hertz's, either way: a modulus or unit, no effect
-constexpr double gap_in_forces = 1.5;   // weakest force over the threshold
+constexpr double hertz_range =
+    5;  // force over that of Hertz's law, or the inverse: indicates a wrong modulus or unit, not an effect
+constexpr double gap_in_forces = 1.5;  // weakest force over the threshold
 constexpr std::size_t many_contacts = 1000;
 
-/// Distance of the surfaces [m].
+/// Gap between the surfaces [m].
 double gap(const Recording& recording, const Scan& scan, const Contact& contact) {
     const Vec3& centre = at(scan.position, contact.grain);
     const double radius = radius_of(recording, contact.grain);
@@ -64,7 +65,7 @@ void check_places(const Recording& recording, Findings& findings) {
     if (off.count()) findings.odd(contacts_file, "contact points away from their grain: " + off.text());
 }
 
-/// The direction in which a contact pushes its grain away.
+/// Direction in which a contact repels its grain.
 Vec3 outward(const Box& box, const Scan& scan, const Contact& contact) {
     const Vec3& centre = at(scan.position, contact.grain);
     if (is_wall(contact.partner)) return -towards_wall(box, wall_of(contact.partner), centre);
@@ -133,8 +134,9 @@ void check_gauge(const Recording& recording, double force_threshold, Findings& f
                                  ratio));
 }
 
-/// Typical force over Hertz's at the typical overlap, of the stronger half of the contacts at the highest
-/// load: there overlaps are clear, and chosen by force they do not favour errors of position.
+/// Typical force over that of Hertz's law at the typical overlap, for the stronger half of the contacts at
+/// the largest load. There overlaps are significant, and the selection by force is not biased by errors of
+/// positions.
 double force_over_hertz(const Recording& recording, const Scan& scan, double modulus, double nu) {
     struct Pair {
         double force, overlap, reduced_radius;

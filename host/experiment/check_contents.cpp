@@ -1,4 +1,4 @@
-// What there is, in a few lines.
+// Summary of the available data.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 

@@ -1,4 +1,4 @@
-// Whether the grains fit into their box, and how they move.
+// Checks whether the grains fit into their box, and how they move.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,9 +12,9 @@
 namespace mcdem::inline experiment {
 namespace {
 
-constexpr double min_fraction = 0.3, max_fraction = 0.95;  // of a packing that carries load
+constexpr double min_fraction = 0.3, max_fraction = 0.95;  // of a packing under load
 constexpr double max_overlap = 0.3;  // over the sum of radii; simulations lose their static solution at 0.5
-constexpr double max_jump = 0.75;    // over the diameter, beyond the plate's own way
+constexpr double max_jump = 0.75;    // over the diameter, in addition to the plate's displacement
 constexpr double max_in_wall = 0.5;  // over the radius
 
 void check_volume(const Recording& recording, Findings& findings) {
@@ -73,7 +73,7 @@ void check_overlaps(const Recording& recording, Findings& findings) {
                                               max_overlap, tally.text()));
 }
 
-/// Loose grains slip by half a diameter; to a neighbour's place goes only a number.
+/// Loose grains move by up to half a diameter; a move to a neighbour's position indicates exchanged numbers.
 void check_jumps(const Recording& recording, Findings& findings) {
     Tally tally;
     const Scan* before = nullptr;

@@ -1,4 +1,4 @@
-// What there is not, and what could have been told with it.
+// Missing data, and what they would show.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -12,9 +12,10 @@
 namespace mcdem::inline experiment {
 namespace {
 
-constexpr double rest = 0.005;     // of the stroke: a frame 0 below that is under load
-constexpr int min_frames = 4;      // of a stroke
-constexpr double min_tilt = 1e-3;  // of forces against the line of centres, where they have tangential parts
+constexpr double rest = 0.005;  // fraction of the stroke: beyond it frame 0 is under load
+constexpr int min_frames = 4;   // per stroke
+constexpr double min_tilt =
+    1e-3;  // angle of forces to the line of centres that indicates tangential components
 
 void missing_frames(const Recording& recording, Findings& findings) {
     long of_phase[2] = {0, 0};
@@ -61,7 +62,7 @@ void missing_positions(const Recording& recording, Findings& findings) {
                                      scans, recording.scans.size()));
 }
 
-/// What contacts with a wall would tell.
+/// Use of contacts with a wall.
 std::string_view told_by(Wall wall) {
     switch (wall) {
         case Wall::floor:
@@ -103,7 +104,7 @@ void missing_contacts(const Recording& recording, Findings& findings) {
 
 double sine(const Vec3& a, const Vec3& b) { return a.cross(b).norm() / (a.norm() * b.norm()); }
 
-/// At walls the normal is known exactly, between grains as well as the positions.
+/// At walls the normal is known exactly, between grains with the accuracy of the positions.
 void missing_tangential(const Experiment& experiment, Findings& findings) {
     const Recording& recording = experiment.recording;
     std::vector<double> at_walls, between_grains;
@@ -120,7 +121,7 @@ void missing_tangential(const Experiment& experiment, Findings& findings) {
     if (median(at_walls) < min_tilt)
         findings.missing(contacts_file, "tangential forces at walls: friction of walls");
     if (between_grains.empty()) return;
-    // Median of the angle that errors of both ends make, with a fifth to spare.
+    // Median of the angle caused by errors of both ends, with a margin of a fifth.
     const double by_error =
         1.2 * 1.18 * std::numbers::sqrt2 * experiment.measurement.position_error / mean_diameter(recording);
     if (median(between_grains) < std::max(min_tilt, by_error))

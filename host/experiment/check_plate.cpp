@@ -1,4 +1,4 @@
-// The course of the plate, its gauge, and the stated errors of measurement.
+// Checks the motion of the plate, its gauge, and the stated errors of measurement.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -11,9 +11,9 @@ namespace mcdem::inline experiment {
 namespace {
 
 constexpr double clear_load = 10;  // over the threshold of a contact
-constexpr double falls = 0.5;      // the force at the end of loading over the largest before
+constexpr double falls = 0.5;      // ratio of the force at the end of loading to the largest force before
 
-/// Whether a frame was taken while something was held: under a force the plate goes either way.
+/// Whether a frame was taken during a hold, in which the plate may move in both directions.
 std::vector<bool> held_frames(const Recording& recording) {
     std::vector<bool> held(recording.scans.size(), false);
     const auto places = scan_places(programme_of(recording.parameters), {recording.plate_start, 0});

@@ -1,4 +1,4 @@
-// The rows of plate.csv as the scans of a programme.
+// Checks the rows of plate.csv against the scans of a programme.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,9 +11,10 @@
 namespace mcdem::inline experiment {
 namespace {
 
-/// Farther from what the programme sets a row is that of another scan: of the stroke, the force, the hold.
+/// A row that deviates more from the programme belongs to another scan; over the stroke, the force, the time
+/// of the hold.
 constexpr double far_position = 0.25, far_force = 0.5, far_time = 0.1;
-constexpr double other_force = 0.01;  // of the force set
+constexpr double other_force = 0.01;  // relative to the prescribed force
 
 struct Programme {
     std::vector<Stage> stages;
@@ -103,7 +104,7 @@ private:
 std::vector<std::optional<double>> set_forces(const Recording& recording) {
     std::vector<std::optional<double>> forces(recording.scans.size());
     const Programme programme = programme_in(recording);
-    double before = not_given;  // what a hold that sets no force of its own keeps
+    double before = not_given;  // force kept by a hold that does not set one
     for (std::size_t k = 0; k < programme.places.size() && k + 1 < forces.size(); ++k) {
         const ScanPlace& place = programme.places[k];
         const bool begins = k == 0 || programme.places[k - 1].leg != place.leg;

@@ -138,7 +138,7 @@ private:
     Table& table_;
     Recording& recording_;
     double largest_force_;   ///< [N]
-    Vec3 margin_;            ///< further from the box no measured point can be [m]
+    Vec3 margin_;            ///< largest distance of a measured point from the box [m]
     std::vector<Row> rows_;  ///< of this frame
     long frame_ = -1;
 };

@@ -36,7 +36,7 @@ void read_tables(const fs::path& folder, std::uintmax_t largest, Experiment& exp
         read_grains(table, recording);
     }
     if (!contacts) return;
-    if (grains && recording.diameter.empty()) return;  // already told why
+    if (grains && recording.diameter.empty()) return;  // already reported
     if (!grains)
         return problems.add(contacts->string(),
                             "needs grains.csv with the grains of frame 0: contacts name them");

@@ -10,7 +10,8 @@
 namespace mcdem::inline experiment {
 namespace {
 
-constexpr double max_change = 0.25;  // of a diameter between frames; measuring it again changes it less
+constexpr double max_change =
+    0.25;  // relative change of a diameter between frames, larger than measurement errors
 
 struct GrainRow {
     long grain;
@@ -19,7 +20,7 @@ struct GrainRow {
     long line;
 };
 
-/// Collects the rows of one frame, then checks that they are all the grains.
+/// Collects the rows of one frame, and checks that all grains are there.
 class Frames {
 public:
     Frames(Table& table, Recording& recording) : table_(table), recording_(recording) {}
@@ -114,7 +115,7 @@ private:
                                    [&](Wall wall) { return wall_distance(box, wall, plate_z, point) < 0; });
     }
 
-    /// Of the images in a periodic container the one nearest to where the grain was last.
+    /// In a periodic container, the image nearest to the grain's previous position.
     Vec3 near_the_last(std::size_t grain, const Vec3& point) {
         if (!is_periodic(recording_.box)) return point;
         if (grain >= last_.size()) last_.resize(grain + 1, point);

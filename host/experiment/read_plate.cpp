@@ -12,7 +12,8 @@ namespace {
 
 constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
 constexpr int max_frames = 1'000'000;  // as of a scene
-constexpr double largest_height = 20;  // plate height over the box's width; beyond it is not in metres
+constexpr double largest_height =
+    20;  // plate height over the width of the box; a larger one is not in metres
 
 }  // namespace
 

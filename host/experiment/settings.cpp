@@ -25,7 +25,7 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// What a number in experiment.toml may be.
+/// A number in experiment.toml with its allowed range.
 struct Setting {
     std::string_view key;
     double low, high;
@@ -153,7 +153,8 @@ private:
                                     largest_box, length));
     }
 
-    /// `[uncertainty]` names the keys in full ("walls.friction"), or for grains their last word ("friction").
+    /// `[uncertainty]` contains full names of keys ("walls.friction"), or for grains the last word
+    /// ("friction").
     void read_sigma(const toml::table& root, const Setting& setting, Experiment& experiment) {
         std::vector<std::string> names{fmt::format("uncertainty.{}", setting.key)};
         if (setting.key.starts_with("grains."))
@@ -163,7 +164,7 @@ private:
                 experiment.uncertainty[std::string(setting.key)] = *sigma;
     }
 
-    /// Stages as a scene has them; into the recording's parameters, as a simulation's are.
+    /// Reads the stages as in a scene, into the recording's parameters as for a simulation.
     void read_programme(const toml::table& root, Experiment& experiment) {
         known("programme");
         const toml::node* node = root.get("programme");
@@ -182,7 +183,7 @@ private:
             problem(*node,
                     "plate.start must be stated beside [[programme]]: its strains are over that height");
         if (problems_.count() > before) return;
-        settings.packing_file = experiment.name;  // grains that are there
+        settings.packing_file = experiment.name;  // the grains exist, so nothing is generated
         settings.replica.box = recording.box;
         settings.replica.plate = {recording.plate_start, 0};
         std::set<std::string> said;
@@ -242,7 +243,7 @@ const std::vector<std::string>& material_keys() {
 
 namespace {
 
-/// Puts "a.b=value" into the table; a value that is no TOML is a text.
+/// Puts "a.b=value" into the table; a value that is not TOML is a string.
 void override_key(toml::table& root, const std::string& word, ExperimentProblems& problems) {
     const auto equals = word.find('=');
     std::string_view path = std::string_view(word).substr(0, std::min(equals, word.size()));
@@ -264,7 +265,7 @@ void override_key(toml::table& root, const std::string& word, ExperimentProblems
         if (!table) return problems.add("--set", fmt::format("{} must be a table, got a value before", part));
         path.remove_prefix(dot + 1);
     }
-    // Visited, so that the copy does not know the line of a text that nobody wrote.
+    // By visit, so that the copy has no line number of the overriding text.
     value.get("value")->visit([&](const auto& concrete) { table->insert_or_assign(path, concrete); });
 }
 

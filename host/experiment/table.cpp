@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-// GCC 12 sees a truncation in libfccp that is meant.
+// GCC 12 warns about an intended truncation in libfccp.
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wpragmas"
 #pragma GCC diagnostic ignored "-Wunknown-warning-option"
@@ -27,8 +27,8 @@ namespace fs = std::filesystem;
 constexpr auto too_large =
     "is larger than an experiment's table may be: leave out frames, or split it into several experiments";
 
-/// The bytes of a file, unpacked where it is packed. Ends with a newline whether the file does or not:
-/// libfccp looks one byte past the end of a last line without one.
+/// The bytes of a file, decompressed if necessary. Always ends with a newline, because libfccp otherwise
+/// reads one byte past the end of the last line.
 class Bytes : public io::ByteSourceBase {
 public:
     Bytes(const fs::path& file, std::uintmax_t largest, std::string& failure)
@@ -62,7 +62,7 @@ public:
 private:
     fs::path path_;
     gzFile file_;
-    std::uintmax_t left_;  ///< bytes that may still come
+    std::uintmax_t left_;  ///< remaining number of bytes
     std::string& failure_;
     bool ended_ = false;
 };
@@ -87,7 +87,7 @@ void split(std::string_view line, std::vector<std::string_view>& words) {
 std::optional<fs::path> find_table(const fs::path& folder, const std::string& name, std::uintmax_t largest,
                                    ExperimentProblems& problems) {
     const fs::path plain = folder / name, packed = folder / (name + ".gz");
-    // Of the link itself: one that leads nowhere is a table that was meant to be there.
+    // Of the link itself: a broken link means that a table is missing.
     const auto is_there = [](const fs::path& file) {
         std::error_code error;
         return fs::exists(fs::symlink_status(file, error));
@@ -110,12 +110,12 @@ std::optional<fs::path> find_table(const fs::path& folder, const std::string& na
     return std::nullopt;
 }
 
-/// The lines that count.
+/// Iteration over the data lines.
 class Table::Lines {
 public:
     Lines(const fs::path& file, std::uintmax_t largest)
         : reader_(file.string(), std::unique_ptr<io::ByteSourceBase>(new Bytes(file, largest, failure_))) {}
-    /// Nothing at the end, and where the file cannot be read on: failure() says why.
+    /// Nothing at the end, or if the file cannot be read; failure() gives the reason.
     std::optional<std::string_view> next() {
         try {
             while (const char* line = reader_.next_line()) {

@@ -19,7 +19,7 @@
 namespace mcdem::inline experiment {
 namespace {
 
-// "{}" prints the shortest digits that read back as the same number.
+// "{}" prints the shortest digits that give the same number when read.
 
 std::string grain_rows(const Recording& recording) {
     fmt::memory_buffer text;
@@ -46,7 +46,7 @@ std::string contact_rows(const Recording& recording) {
     return fmt::to_string(text);
 }
 
-/// As gzip packs it, without a time of day.
+/// Compressed with gzip, without a time stamp.
 std::string packed_by_gzip(const std::string& text) {
     constexpr int level = 6, window_of_gzip = 15 + 16, memory = 8;
     z_stream stream{};
@@ -64,7 +64,7 @@ std::string packed_by_gzip(const std::string& text) {
     return packed;
 }
 
-/// No rows: no table.
+/// Tables without rows are not written.
 void add_table(std::map<std::string, std::string>& files, const std::string& name,
                const std::vector<std::string>& columns, const std::string& rows, Packed packed) {
     if (rows.empty()) return;
@@ -118,7 +118,7 @@ void write_experiment(const std::filesystem::path& folder, const Experiment& exp
     for (const std::string name : {"contacts.csv", "grains.csv", "plate.csv"})
         for (const std::string end : {"", ".gz"})
             if (!files.contains(name + end)) std::filesystem::remove(folder / (name + end));
-    // experiment.toml comes last: with it the folder is an experiment.
+    // experiment.toml is written last, because it makes the folder an experiment.
     for (const auto& [name, bytes] : files)
         if (name != "experiment.toml") replace_file(folder / name, bytes);
     replace_file(folder / "experiment.toml", files.at("experiment.toml"));

@@ -8,7 +8,7 @@
 namespace mcdem::inline metrics {
 namespace {
 
-/// Of a sorted list, how many are at least tau.
+/// Number of forces in a sorted list that are at least tau.
 double count_from(const std::vector<double>& forces, double tau) {
     return static_cast<double>(forces.end() - std::lower_bound(forces.begin(), forces.end(), tau));
 }
@@ -95,7 +95,7 @@ std::vector<double> evenly(double from, double to, int count) {
     return points;
 }
 
-/// The best of the candidates (first and last of equally good neighbours), with the candidates beside it.
+/// The best candidate (first and last one of equally good neighbours), and its neighbours.
 struct Best {
     double first, last;    ///< [N]
     double before, after;  ///< [N]
@@ -115,11 +115,11 @@ double minimising_tau(const Objective& objective, std::vector<double> candidates
     Best best = best_of(objective, candidates);
     for (int round = 0; round < 3 && best.before < best.after; ++round)
         best = best_of(objective, evenly(best.before, best.after, 101));
-    if (best.first == 0) return 0;  // no threshold does as well as any
+    if (best.first == 0) return 0;  // no threshold is as good as any other
     return (best.first + best.last) / 2;
 }
 
-/// Vertex of the least-squares parabola through squared errors: smooth where the objective has steps.
+/// Vertex of the least-squares parabola through squared errors; it is smooth while the objective has steps.
 double vertex(const std::vector<double>& tau, const Eigen::ArrayXd& squared_error) {
     const auto n = static_cast<Eigen::Index>(tau.size());
     Eigen::MatrixXd powers(n, 3);

@@ -28,7 +28,7 @@ std::optional<Pairs> pair_by_seed(const std::vector<std::string>& a, const std::
         const auto found = where_in_b.find(a[i]);
         if (found == where_in_b.end()) return std::nullopt;
         pairs.emplace_back(static_cast<int>(i), found->second);
-        where_in_b.erase(found);  // a seed that comes twice in `a` is not found again
+        where_in_b.erase(found);  // a seed that occurs twice in `a` is not found again
     }
     return pairs;
 }

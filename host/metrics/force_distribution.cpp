@@ -5,7 +5,7 @@
 namespace mcdem::inline metrics {
 namespace {
 
-/// At most about `most` of the forces, taken evenly from the sorted list: enough to place edges.
+/// At most about `most` of the forces, at equal distances in the sorted list; sufficient to place edges.
 std::vector<double> sorted_sketch(const std::vector<double>& forces, std::size_t most) {
     const std::size_t step = std::max<std::size_t>(1, forces.size() / most);
     std::vector<double> sketch;
@@ -38,7 +38,7 @@ std::vector<Histogram> histograms(const std::vector<std::vector<double>>& lists,
     return all;
 }
 
-/// B at one level under each omission.
+/// B at one level for each omission.
 std::vector<double> overlaps(const Level& below, const Level& above, double weight, const Level& reference,
                              const std::vector<Omission>& omissions, WallContacts walls) {
     const auto p_below = forces_by_replica(below, walls), q = forces_by_replica(reference, walls);
@@ -68,7 +68,7 @@ int bin_count(double n, double m) {
 
 std::vector<double> common_edges(const std::vector<double>& p, const std::vector<double>& q, int bins) {
     const auto sketch_p = sorted_sketch(p, 20000), sketch_q = sorted_sketch(q, 20000);
-    std::vector<std::pair<double, double>> weighted;  // force, share of the whole
+    std::vector<std::pair<double, double>> weighted;  // force, weight
     for (double f : sketch_p) weighted.emplace_back(f, 0.5 / sketch_p.size());
     for (double f : sketch_q) weighted.emplace_back(f, 0.5 / sketch_q.size());
     std::sort(weighted.begin(), weighted.end());
@@ -138,7 +138,7 @@ DistributionDistance distribution_distance(const Levels& simulated, const Levels
     std::vector<double> bhat;
     for (double sum : sums) bhat.push_back(-std::log(sum / distance.levels_used));
     distance.bhat = jackknife.estimate(bhat);
-    distance.bhat.value = std::max(0.0, distance.bhat.value);  // noise may carry the corrected B above 1
+    distance.bhat.value = std::max(0.0, distance.bhat.value);  // noise can increase the corrected B above 1
     return distance;
 }
 

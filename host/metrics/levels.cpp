@@ -31,7 +31,8 @@ std::vector<Placed> scans_of_phase(const Replicas& replicas, Phase phase, const 
     return placed;
 }
 
-/// Median distance of neighbouring scans of one recording, phase and cycle [m]; infinite where none has two.
+/// Median distance between neighbouring scans of the same recording, phase and cycle [m]; infinite if there
+/// are none.
 double median_spacing(const Replicas& replicas) {
     std::vector<double> spacings;
     for (const auto* recording : replicas)
@@ -46,7 +47,7 @@ double median_spacing(const Replicas& replicas) {
     return *middle;
 }
 
-/// A programme comes to one displacement at different loads and times.
+/// A programme reaches the same displacement at different loads and times.
 void expect_strokes(const Replicas& replicas) {
     for (const auto* recording : replicas)
         if (follows_programme(*recording))
@@ -107,7 +108,7 @@ std::vector<LevelMean> level_means(const Levels& levels, const Quantity& quantit
 std::vector<LevelMatch> match_levels(const Levels& simulated, const Levels& reference, double tolerance) {
     std::vector<LevelMatch> matches;
     for (const auto& wanted : reference) {
-        int below = -1, above = -1;  // neighbours on either side, one and the same where the level is hit
+        int below = -1, above = -1;  // neighbouring levels; equal if a level matches
         for (std::size_t s = 0; s < simulated.size(); ++s) {
             if (simulated[s].phase != wanted.phase) continue;
             if (simulated[s].displacement <= wanted.displacement) below = static_cast<int>(s);

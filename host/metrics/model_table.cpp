@@ -23,7 +23,7 @@ const Setting& reference_of(const std::vector<Setting>& settings, const std::opt
     throw InputError(fmt::format("reference setting: must be one of {}; got {}", known, *label));
 }
 
-/// The largest displacement of all that did not stop early; not-a-number where all did.
+/// The largest displacement of all replicas that did not stop early; NaN if all did.
 double largest_stroke(const std::vector<Setting>& settings, const LevelOptions& options) {
     double largest = not_available;
     for (const auto& setting : settings)
@@ -31,7 +31,7 @@ double largest_stroke(const std::vector<Setting>& settings, const LevelOptions& 
     return largest;
 }
 
-/// Displacement of the furthest scan, of replicas that stopped early too.
+/// Displacement of the last scan, including replicas that stopped early.
 double last_scan(const Levels& levels) {
     double last = not_available;
     for (const auto& level : levels) last = std::fmax(last, level.displacement);

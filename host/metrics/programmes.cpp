@@ -38,7 +38,7 @@ bool has_hold(const Replicas& replicas) {
 
 namespace {
 
-/// One replica's scan, and whose it is.
+/// A scan and its replica.
 struct Seen {
     const Recording* recording;
     const Scan* scan;

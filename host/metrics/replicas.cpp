@@ -8,7 +8,7 @@
 namespace mcdem::inline metrics {
 namespace {
 
-// The scene keys that metrics know by name.
+// Scene keys used by the metrics.
 const std::string seed_key = "packing.seed";
 const std::string model_key = "contact.model";
 const std::string discard_key = "protocol.discard";
@@ -18,7 +18,7 @@ Parameters without_seed(Parameters parameters) {
     return parameters;
 }
 
-/// "gamma=1" of every key that varies, the model's word first.
+/// "gamma=1" for every key that varies; the model comes first.
 std::string label_of(const Parameters& parameters, const std::vector<std::string>& varying) {
     std::string label =
         std::ranges::count(varying, model_key) ? without_quotes(value_of(parameters, model_key)) : "";
@@ -31,7 +31,7 @@ std::string label_of(const Parameters& parameters, const std::vector<std::string
     return label;
 }
 
-/// What all recordings are called but for their copy's number " #2"; empty where they are not.
+/// Common label of all recordings without the number of the copy " #2"; empty if labels differ.
 std::string common_label(const Replicas& replicas) {
     const auto without_copy = [](const std::string& label) {
         const auto end = label.find_last_not_of("0123456789");
@@ -45,7 +45,7 @@ std::string common_label(const Replicas& replicas) {
     return label;
 }
 
-/// The labels that the scene gave, where they tell all settings apart.
+/// Labels from the scene, if they distinguish all settings.
 std::vector<std::string> labels_of_scene(const std::vector<Setting>& settings) {
     std::vector<std::string> labels;
     for (const auto& setting : settings) {

@@ -5,7 +5,7 @@
 namespace mcdem::inline metrics {
 namespace {
 
-/// Both phases at one displacement, as levels to match against.
+/// A level at one displacement, used for matching.
 Levels level_at(Phase phase, double displacement) { return {{phase, displacement, {}}}; }
 
 bool has(const Level& level, std::size_t replica) { return !level.scans[replica].empty(); }

@@ -6,7 +6,8 @@
 namespace mcdem::inline diagnose {
 namespace {
 
-/// Gain by candidate: from real runs where there are some, else as far behind the leader as by signatures.
+/// Gain by candidate: from real runs if there are any, otherwise as far behind the leading one as by
+/// signatures.
 std::vector<double> known_gains(const Findings& findings, const Proposal& leader) {
     std::vector<double> gains = findings.gain;
     for (double& gain : gains)
@@ -17,7 +18,7 @@ std::vector<double> known_gains(const Findings& findings, const Proposal& leader
     return gains;
 }
 
-/// Index of the best single effect, -1 where there is none.
+/// Index of the best single effect; -1 if there is none.
 int best_single(const Findings& findings) {
     int best = -1;
     for (std::size_t k = 0; k < findings.proposals.size(); ++k) {
@@ -29,7 +30,7 @@ int best_single(const Findings& findings) {
     return best;
 }
 
-/// Index of a pair that is worth its second effect by what it gains, -1 where there is none.
+/// Index of a pair with a sufficient gain from its second effect; -1 if there is none.
 int gaining_pair(const Findings& findings, double single_gain, const Limits& limits) {
     for (std::size_t k = 0; k < findings.proposals.size(); ++k) {
         const Proposal& pair = findings.proposals[k];
@@ -40,7 +41,7 @@ int gaining_pair(const Findings& findings, double single_gain, const Limits& lim
     return -1;
 }
 
-/// The part of the gap that is to be taken away for a name: most of it, and clearly more than by a placebo.
+/// Reduction required to name an effect: most of the gap, and clearly more than the placebo.
 double needed_reduction(const Findings& findings, const Limits& limits) {
     return std::max(limits.reduction, findings.placebo + limits.over_placebo);
 }
@@ -49,19 +50,21 @@ bool takes_the_gap_away(const Proposal& proposal, const Findings& findings, cons
     return proposal.best_reduction() >= needed_reduction(findings, limits);
 }
 
-/// More than noise, and more than a little: something else is behind the gap, or in its place.
+/// Whether the remainder exceeds both noise and the allowed fraction: another cause contributes, or is the
+/// real one.
 bool leaves_too_much(const Proposal& proposal, const Limits& limits) {
     return proposal.best_misfit() < limits.misfit && 1 - proposal.best_reduction() > limits.remainder;
 }
 
-/// Two instead of one: where one leaves more than noise, and two leave noise or little of what one does.
+/// Whether a pair is better than a single effect: one leaves more than noise, and two leave only noise or
+/// much less.
 bool is_better(const Proposal& pair, const Proposal& single, const Limits& limits) {
     return single.best_misfit() < limits.misfit &&
            (pair.best_misfit() >= limits.pair_misfit ||
             1 - pair.best_reduction() <= limits.pair_remainder * (1 - single.best_reduction()));
 }
 
-/// Probability that an explanation is right, by the part of the gap that it takes away.
+/// Probability that an explanation with this reduction is right.
 double trust(const Proposal& proposal, const Findings& findings, const Limits& limits) {
     if (leaves_too_much(proposal, limits)) return limits.right_below;
     const double low = needed_reduction(findings, limits) - limits.reduction_error;
@@ -70,7 +73,7 @@ double trust(const Proposal& proposal, const Findings& findings, const Limits& l
     return limits.right_below + above * (limits.right_above - limits.right_below);
 }
 
-/// Each candidate's share of the likelihood, gains that differ by the group's margin weighing as
+/// Share of each candidate in the likelihood; gains are scaled so that the group's margin corresponds to
 /// `limits.group`.
 std::vector<double> shares(const std::vector<double>& gains, double best, double margin,
                            const Limits& limits) {
@@ -82,7 +85,7 @@ std::vector<double> shares(const std::vector<double>& gains, double best, double
     return parts;
 }
 
-/// The leader, and who is within the margin behind it, by gain.
+/// The leading candidate, and those within the margin, by gain.
 std::vector<std::size_t> group_of(std::size_t leader, const std::vector<double>& gains, double best,
                                   double margin) {
     std::vector<std::size_t> group{leader};
@@ -92,13 +95,14 @@ std::vector<std::size_t> group_of(std::size_t leader, const std::vector<double>&
     return group;
 }
 
-/// Index of the proposal of one candidate alone, -1 where there is none.
+/// Index of the proposal with only this candidate; -1 if there is none.
 int proposal_of(std::size_t candidate, const Findings& findings) {
     const auto found = std::ranges::find(findings.proposals, std::vector{candidate}, &Proposal::candidates);
     return found == findings.proposals.end() ? -1 : static_cast<int>(found - findings.proposals.begin());
 }
 
-/// Who was tried and takes too little away does not stand for the leader, however near in likelihood.
+/// Removes members of the group that were tried and close too little of the gap, even if their likelihood is
+/// close.
 void keep_those_that_do(std::vector<std::size_t>& group, const Findings& findings, const Limits& limits) {
     const auto fails = [&](std::size_t candidate) {
         const int k = proposal_of(candidate, findings);
@@ -108,8 +112,8 @@ void keep_those_that_do(std::vector<std::size_t>& group, const Findings& finding
     group.erase(std::remove_if(group.begin() + 1, group.end(), fails), group.end());
 }
 
-/// Suspects come before any effect that they cannot be told from: first the simulation's own numerics, then
-/// stated parameters that may be wrong.
+/// Suspects take precedence over effects from which they cannot be distinguished: first the simulation's own
+/// numerics, then stated parameters.
 template <class IsSuspect>
 bool suspected(Decision& decision, const Findings& findings, Verdict verdict, IsSuspect is_suspect) {
     if (std::ranges::none_of(decision.group, is_suspect)) return false;
@@ -136,7 +140,7 @@ void name_it(Decision& decision, const Findings& findings, const Limits& limits)
         decision.verdict = !pair && decision.group.size() > 1 ? Verdict::group : Verdict::effect;
 }
 
-/// Verdict, proposal and group.
+/// Selects verdict, proposal and group.
 Decision chosen(const Findings& findings, int single, std::vector<std::size_t> group, const Limits& limits) {
     Decision decision;
     decision.proposal = single;
@@ -173,7 +177,7 @@ Decision decide(const Findings& findings, const Limits& limits) {
     Decision decision = chosen(findings, single, group_of(leader.candidates[0], gains, best, margin), limits);
     const Proposal& decided = findings.proposals[static_cast<std::size_t>(decision.proposal)];
     const double right = trust(decided, findings, limits);
-    if (decided.candidates.size() == 2) {  // both of them: what one alone gains is not compared
+    if (decided.candidates.size() == 2) {  // a pair: gains of single effects are not compared
         decision.confidence.assign(findings.gain.size(), 0.0);
         for (const std::size_t c : decided.candidates) decision.confidence[c] = right;
         return decision;

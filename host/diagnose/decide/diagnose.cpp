@@ -18,7 +18,8 @@
 namespace mcdem::inline diagnose {
 namespace {
 
-constexpr double worth_another_run = 0.01;  ///< p of what a proposal leaves, below
+constexpr double worth_another_run =
+    0.01;  ///< another run is worthwhile if the p of the remainder is smaller
 
 GapData checked_data(const Evidence& evidence) {
     GapData data = gap_data(evidence);
@@ -52,7 +53,7 @@ std::vector<NuisanceFit> nuisance_fits(const Evidence& evidence, const GapSpace&
     return fits;
 }
 
-/// The candidates as causes, in the words of the output.
+/// The candidates as causes of the output.
 class Causes {
 public:
     Causes(const Evidence& evidence, const Findings& findings, const Decision& decision,
@@ -74,7 +75,7 @@ public:
                 cause.confirmed_score = proposal.confirmed_gain;
                 if (proposal.confirmed_gain) take_amplitude(cause, candidate, proposal);
             }
-        // Of an effect that is named there is one amplitude: that of the explanation.
+        // A named effect has a single amplitude: that of the explanation.
         if (decision_.verdict != Verdict::no_gap && decision_.proposal >= 0)
             take_amplitude(cause, candidate,
                            findings_.proposals[static_cast<std::size_t>(decision_.proposal)]);
@@ -91,7 +92,7 @@ public:
         return list;
     }
 
-    /// The leader and its group; or both effects of a pair, each by itself.
+    /// The leading effect and its group, or both effects of a pair.
     std::vector<Cause> leading() const {
         const Proposal& decided = findings_.proposals[static_cast<std::size_t>(decision_.proposal)];
         std::vector<Cause> list;
@@ -179,7 +180,7 @@ void DiagnosisBuilder::confirm(std::size_t proposal, const Eigen::MatrixXd& runs
     if (!step_[proposal]) return;
     const Eigen::MatrixXd whole = whole_runs(runs, data_.cells);
     const Runs last{whole_[proposal], whole.colwise().mean().transpose(), static_cast<int>(whole.rows())};
-    // The signature's amplitude and the one that the runs ask for enclose the truth where signatures bend.
+    // If a signature is curved, its amplitude and that of the runs enclose the true one.
     for (std::size_t k = 0; k < tried.amplitudes.size(); ++k) {
         const double half =
             0.5 * (*step_[proposal])[whole_[proposal].nuisances.size() + static_cast<Eigen::Index>(k)];
@@ -243,7 +244,7 @@ void DiagnosisBuilder::confirm_held_out(std::size_t proposal, const Eigen::Matri
 }
 
 double DiagnosisBuilder::refining_factor(std::size_t candidate, double most) const {
-    constexpr double unnoticed = 4;  // log likelihood that what is left gains; chance alone gains as much
+    constexpr double unnoticed = 4;  // gain in log likelihood that also occurs by chance
     const Candidate& numerics = data_.candidates[candidate];
     double reality = statistics_.fits[candidate].amplitude + statistics_.fits[candidate].error;
     for (const Proposal& p : findings_.proposals)

@@ -6,7 +6,7 @@
 namespace mcdem::inline diagnose {
 namespace {
 
-/// Neighbouring significant displacements of one observable and phase as one entry each.
+/// Merges neighbouring significant displacements of one observable and phase into entries.
 void gather_ranges(const std::vector<WhereCell>& row, double threshold, double half_spacing,
                    const Observable& observable, std::vector<WhereEntry>& entries) {
     for (std::size_t first = 0; first < row.size(); ++first) {

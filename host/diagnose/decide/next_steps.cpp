@@ -11,12 +11,12 @@
 namespace mcdem::inline diagnose {
 namespace {
 
-constexpr double times_better = 5;  ///< that a parameter is measured
+constexpr double times_better = 5;  ///< factor by which a parameter is measured better
 constexpr int more_packings = 3;
-constexpr double worth_saying = 0.9;  ///< of what errors or limits are now, or less
+constexpr double worth_saying = 0.9;  ///< ratio to the present error or limit; larger ones are not reported
 constexpr std::size_t max_steps = 4;
 
-/// A measurement, as the space that it would make.
+/// A possible measurement and the space that results from it.
 struct Measurement {
     std::string what;
     GapSpace space;
@@ -55,7 +55,7 @@ std::vector<Measurement> measurements_of(const Evidence& evidence, const GapData
     return list;
 }
 
-/// Squared distance, in sigmas, of a signature from the nearest that another candidate can do.
+/// Squared distance, in sigmas, of a signature from the closest one of another candidate.
 double distance(const GapSpace& space, const Candidate& a, double amplitude, const Candidate& b) {
     const Eigen::VectorXd gap = a.signature->at(amplitude);
     return std::max(0.0, space.whiten(gap).squaredNorm() - 2 * fit_effect(space, b, gap).score);
@@ -68,14 +68,14 @@ double power_to_tell(double squared_distance, double margin) {
     return cdf(boost::math::normal(), (0.5 * squared_distance - margin) / sigma);
 }
 
-/// The decided amplitude of a candidate.
+/// The amplitude of a candidate in the decision.
 double amplitude_of(const Findings& findings, const Decision& decision, std::size_t candidate) {
     const Proposal& decided = findings.proposals[static_cast<std::size_t>(decision.proposal)];
     const auto place = std::ranges::find(decided.candidates, candidate) - decided.candidates.begin();
     return place < std::ssize(decided.candidates) ? decided.amplitudes[static_cast<std::size_t>(place)] : 0;
 }
 
-/// To tell the leader of a group from the others.
+/// Measurements that distinguish the leading effect from the others in its group.
 std::vector<NextStep> telling_apart(const std::vector<Measurement>& measurements, const GapData& data,
                                     const Findings& findings, const Decision& decision,
                                     const Limits& limits) {
@@ -95,7 +95,7 @@ std::vector<NextStep> telling_apart(const std::vector<Measurement>& measurements
     return steps;
 }
 
-/// Information on the amplitude of a candidate there, over that of now.
+/// Information on a candidate's amplitude after a measurement, over the present one.
 double more_information(const GapSpace& then, const GapSpace& now, const Candidate& candidate,
                         double amplitude) {
     const Eigen::VectorXd slope = candidate.signature->slope(amplitude);
@@ -108,7 +108,7 @@ double median(std::vector<double> values) {
     return values.empty() ? 1 : values[values.size() / 2];
 }
 
-/// Without rivals: what becomes of the amplitude's error, or without a gap of the detection limits.
+/// Without rivals: resulting errors of the amplitude, or without a gap resulting detection limits.
 std::vector<NextStep> sharpening(const std::vector<Measurement>& measurements, const Evidence& evidence,
                                  const GapData& data, const Findings& findings, const Decision& decision) {
     const GapSpace now(data.noise, static_cast<int>(evidence.baseline.rows()), data.cells, data.free);
@@ -133,7 +133,7 @@ std::vector<NextStep> sharpening(const std::vector<Measurement>& measurements, c
     return steps;
 }
 
-/// What sets effects apart that one slow stroke down and up does not.
+/// Other protocols that distinguish effects better than one slow stroke down and up.
 void add_other_protocols(const Evidence& evidence, const GapData& data, const Decision& decision,
                          std::vector<NextStep>& steps) {
     const auto named = [&](const char* name) {

@@ -5,7 +5,8 @@
 namespace mcdem::inline diagnose {
 namespace {
 
-/// What a packing may have wrong by itself: its zero of strain. All else is of the material.
+/// The only parameter that can differ between packings: the zero of strain. All others belong to the
+/// material.
 std::vector<FreeParameter> own_parameters(const Evidence& evidence, const GapData& data, double scale) {
     std::vector<FreeParameter> own;
     for (std::size_t k = 0; k < data.free.size(); ++k)
@@ -22,10 +23,11 @@ std::vector<PackingAgreement> packing_agreements(const Evidence& evidence, const
     const double count = evidence.packing_count();
     if (count < 2) return {};
     const int mean_of = static_cast<int>(evidence.baseline.rows());
-    const Eigen::MatrixXd noise = std::sqrt(count) * data.noise;  // of one packing
-    const double apart = std::sqrt(1 - 1 / count);                // of one less the mean of all
+    const Eigen::MatrixXd noise = std::sqrt(count) * data.noise;  // for one packing
+    const double apart =
+        std::sqrt(1 - 1 / count);  // for the difference between one packing and the mean of all
     const GapSpace alone(noise, mean_of, data.cells, data.free);
-    Eigen::VectorXd extra;  // an effect is not quite the same in every packing
+    Eigen::VectorXd extra;  // effects vary slightly between packings
     if (decided) extra = apart * apart * signature_variance(data, *decided);
     const GapSpace differences(apart * noise, mean_of, data.cells, own_parameters(evidence, data, apart),
                                extra);

@@ -8,15 +8,17 @@
 namespace mcdem::inline diagnose {
 namespace {
 
-/// Standard errors beyond which a difference is taken for real: some two thousand cells are looked at.
+/// Differences are significant beyond this number of standard errors, because about two thousand cells are
+/// tested.
 constexpr double sure = 4;
 
 Estimate mean_of(const Eigen::ArrayXd& values) {
     return mean_over_replicas({values.data(), static_cast<std::size_t>(values.size())});
 }
 
-/// An error e leaves e remaining_k after step k: the scene differs from step k by e (1 - remaining_k). Least
-/// squares replica by replica, so that the standard error knows how the steps hang together.
+/// After step k the error e is reduced to e remaining_k, so the scene differs from step k by e (1 -
+/// remaining_k). Least squares for each replica separately, so that the standard error includes correlations
+/// between steps.
 CellError error_of(const RefinedRuns& refinement, const Eigen::VectorXd& base, Eigen::Index cell) {
     const std::size_t steps = refinement.remaining.size();
     Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(base.size());

@@ -12,7 +12,7 @@ double expected_gain(const GapSpace& space, const Signature& signature, double a
     return 0.5 * space.whiten(signature.at(amplitude)).squaredNorm();
 }
 
-/// Smallest amplitude between zero and `end` that gains `wanted`; infinite where none does.
+/// Smallest amplitude between zero and `end` with a gain of `wanted`; infinite if there is none.
 double smallest_amplitude(const GapSpace& space, const Signature& signature, double end, double wanted) {
     if (end == 0 || expected_gain(space, signature, end) < wanted) return INFINITY;
     double below = 0, above = end;
@@ -28,7 +28,7 @@ double smallest_amplitude(const GapSpace& space, const Signature& signature, dou
 std::vector<DetectionLimit> detection_limits(const GapSpace& space, const GapData& data,
                                              const NullDistribution& null, const Evidence& evidence,
                                              const Limits& limits) {
-    // p is doubled for there being two tests.
+    // Bonferroni correction for two tests.
     const double threshold = null.quantile(&GapStatistics::directed, 0.5 * limits.false_alarm);
     const double wanted = 0.5 * std::pow(std::sqrt(2 * threshold) + power_of_four_fifths, 2);
     const GapSpace fixed(data.noise, static_cast<int>(evidence.baseline.rows()), data.cells, {});

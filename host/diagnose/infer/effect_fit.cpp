@@ -9,13 +9,13 @@ namespace mcdem::inline diagnose {
 namespace {
 
 constexpr int coarse_steps = 24;
-constexpr int bits = 20;  // of the amplitude, 1e-6 of the range
-/// Amplitudes are searched in turn until none moves by this part of its range. Signatures alike to 0.99 take
-/// a hundred rounds.
+constexpr int bits = 20;  // of the amplitude: 1e-6 of the range
+/// Amplitudes are optimised in turn until none changes by more than this fraction of its range. Signatures
+/// with a correlation of 0.99 need a hundred rounds.
 constexpr double unmoved = 1e-5;
 constexpr int max_rounds = 200;
 
-/// -2 log likelihood as a function of the amplitudes, from products of the whitened gap and parts of
+/// -2 log likelihood as a function of the amplitudes, from products of the whitened gap and the terms of the
 /// signatures.
 class Misfit {
 public:
@@ -41,7 +41,7 @@ public:
         return c.dot(products_ * c);
     }
 
-    /// Of the amplitudes: products of the whitened slopes of their signatures.
+    /// Fisher information of the amplitudes: products of the whitened slopes of their signatures.
     Eigen::MatrixXd information(const Eigen::VectorXd& amplitudes) const {
         Eigen::MatrixXd slopes = Eigen::MatrixXd::Zero(products_.rows(), effects());
         for (Eigen::Index k = 0; k < effects(); ++k) {
@@ -51,7 +51,7 @@ public:
         return slopes.transpose() * products_ * slopes;
     }
 
-    /// The amplitude `k` that fits best while the others stay.
+    /// The best amplitude `k` with the others fixed.
     double best_amplitude(Eigen::VectorXd amplitudes, Eigen::Index k) const {
         const auto misfit = [&](double a) {
             amplitudes[k] = a;
@@ -108,7 +108,7 @@ double draw_error(const GapSpace& space, const Candidate& candidate, double ampl
     const Eigen::VectorXd slope = space.whiten(signature.slope(amplitude));
     const double information = slope.squaredNorm();
     if (pairs < 2 || !(information > 1e-300)) return 0;
-    Eigen::VectorXd of_pair(pairs);  // the amplitude that stands for 1 in the mean
+    Eigen::VectorXd of_pair(pairs);  // amplitude of each pair relative to the mean
     for (int p = 0; p < pairs; ++p)
         of_pair[p] = slope.dot(space.whiten(signature.slopes.row(p))) / information;
     const double variance = (of_pair.array() - of_pair.mean()).square().sum() / (pairs - 1);

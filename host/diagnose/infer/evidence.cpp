@@ -17,10 +17,10 @@ const Signature& find(const std::vector<Signature>& list, const std::string& nam
     return *found;
 }
 
-/// How far beyond its prior a parameter is followed, in sigmas.
+/// Largest allowed shift of a parameter, in sigmas of its prior.
 constexpr double farthest = 12;
 
-/// Mean over the rows that are finite.
+/// Mean over the finite rows.
 Eigen::VectorXd column_means(const Eigen::MatrixXd& rows) {
     Eigen::VectorXd mean(rows.cols());
     for (Eigen::Index cell = 0; cell < rows.cols(); ++cell) {
@@ -31,8 +31,8 @@ Eigen::VectorXd column_means(const Eigen::MatrixXd& rows) {
     return mean;
 }
 
-/// Replicates of one packing know of one another through their mean: they are left out together where there
-/// are packings enough.
+/// Replicates of one packing are correlated through their mean. They are left out together if there are
+/// enough packings.
 std::vector<int> folds_of(const std::vector<int>& packing) {
     constexpr int most = 8;
     const int packings = 1 + *std::ranges::max_element(packing);
@@ -42,8 +42,8 @@ std::vector<int> folds_of(const std::vector<int>& packing) {
     return fold;
 }
 
-/// Part of the known cells that a signature must have. Fewer: its runs failed, and it would take the cells
-/// with it.
+/// Fraction of the known cells that a signature must have. Otherwise its runs failed, and using it would
+/// exclude the missing cells.
 constexpr double enough_cells = 0.5;
 constexpr std::size_t min_replicates = 8;
 
@@ -74,7 +74,7 @@ void leave_out_replicates(Evidence& evidence, std::vector<std::string>& notes) {
     evidence.baseline = Eigen::MatrixXd(evidence.baseline(own, Eigen::all));
 }
 
-/// Removes those of `wanted` whose signature lacks most of the cells that everything else has.
+/// Removes entries of `wanted` whose signature lacks most of the cells that all others have.
 template <class Wanted>
 void leave_out_signatures(const Evidence& evidence, const std::vector<Signature>& signatures,
                           std::vector<Wanted>& wanted, std::vector<std::string>& notes) {

@@ -11,7 +11,7 @@ namespace {
 constexpr int bootstrap_draws = 200;
 constexpr int placebo_signatures = 20;
 
-/// Both arms of the space, with the whitening of the fitted cells made once.
+/// Both comparisons, sharing the whitening of the fitted cells.
 class Arms {
 public:
     Arms(const GapData& data, const Split& split, int mean_of)
@@ -20,7 +20,7 @@ public:
           mean_of_(mean_of),
           space_(data.noise, mean_of, split.fitted, data.free) {}
 
-    /// What refitted nuisances leave.
+    /// Remainder after refitting the nuisances.
     Eigen::VectorXd refitted(Eigen::VectorXd gap) const {
         const Eigen::VectorXd shifts = space_.fit_nuisances(gap);
         for (Eigen::Index k = 0; k < shifts.size(); ++k)
@@ -45,7 +45,7 @@ public:
         return sum;
     }
 
-    /// Sizes of the gap on the held-out cells, without and with the candidates.
+    /// Size of the gap on the held-out cells without and with the candidates.
     std::array<double, 2> sizes(const Eigen::VectorXd& gap, const std::vector<Candidate>& candidates,
                                 int extra = 0) const {
         return {
@@ -64,7 +64,7 @@ double part_gone(const std::array<double, 2>& sizes) {
     return sizes[0] > 0 ? std::clamp(1 - sizes[1] / sizes[0], -1.0, 1.0) : 0;
 }
 
-/// A signature of the same size that nothing stands behind: a random mixture of the replicates' scatter.
+/// A random signature of typical size: a random mixture of the replicates' scatter.
 Signature random_signature(const GapData& data, Random& random) {
     Signature s;
     s.reach = 1;
@@ -75,7 +75,7 @@ Signature random_signature(const GapData& data, Random& random) {
     return s;
 }
 
-/// The largest of what `part` says of random signatures.
+/// The largest value of `part` for random signatures.
 template <class Part>
 double best_placebo(const GapData& data, std::uint64_t seed, Part part) {
     Random random(seed, Stream::placebo);

@@ -37,7 +37,7 @@ std::vector<Eigen::Index> usable_cells(const Eigen::MatrixXd& baseline,
     return cells;
 }
 
-// The cells of one observable lie together (cells_of).
+// The cells of one observable are contiguous (cells_of).
 Eigen::ArrayXd resolutions(const CellChoice& cells, Eigen::Index all) {
     const Eigen::Index cells_each = all / static_cast<Eigen::Index>(observables().size());
     Eigen::ArrayXd list(static_cast<Eigen::Index>(cells.size()));
@@ -54,9 +54,9 @@ Eigen::MatrixXd pick_columns(const Eigen::MatrixXd& all, const CellChoice& cells
 
 namespace {
 
-/// Variances of single cells, few replicates behind each, drawn towards the mean of their observable: as if
-/// that mean had been seen in a few replicates more (Smyth 2004). A cell that hardly moved by chance does not
-/// stand out then.
+/// Variances of single cells, moderated towards the mean of their observable because there are few
+/// replicates: as if that mean had been observed in a few more replicates (Smyth 2004). A cell with an
+/// accidentally small scatter is then not significant.
 Eigen::ArrayXd moderated(const Eigen::ArrayXd& variance, const CellChoice& cells,
                          const Eigen::MatrixXd& noise) {
     constexpr double replicates_more = 8;
@@ -81,7 +81,7 @@ Eigen::ArrayXd moderated(const Eigen::ArrayXd& variance, const CellChoice& cells
 GapSpace::GapSpace(const Eigen::MatrixXd& noise, int mean_of, const CellChoice& cells,
                    const std::vector<FreeParameter>& free, const Eigen::VectorXd& extra)
     : cells_(cells), free_(free) {
-    const double both = 1 + (mean_of > 0 ? 1.0 / mean_of : 0);  // the observed one's scatter, and the mean's
+    const double both = 1 + (mean_of > 0 ? 1.0 / mean_of : 0);  // scatter of the observation and of the mean
     Eigen::MatrixXd covariance = both * shrunk_covariance(pick_columns(noise, cells));
     covariance.diagonal() += resolutions(cells, noise.cols()).square().matrix();
     if (extra.size() > 0) covariance.diagonal() += pick(extra, cells);
@@ -96,7 +96,8 @@ GapSpace::GapSpace(const Eigen::MatrixXd& noise, int mean_of, const CellChoice& 
     }
     noise_.compute(covariance);
     total_.compute(total);
-    if (free.empty()) return;  // Eigen's solvers take the address of the first number, and there is none
+    if (free.empty())
+        return;  // Eigen's solvers take the address of the first element, which does not exist here
     Eigen::MatrixXd precision = directions_.transpose() * noise_.solve(directions_);
     for (std::size_t k = 0; k < free.size(); ++k)
         precision(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(k)) +=

@@ -12,9 +12,9 @@ namespace {
 
 constexpr int draws_a_replicate = 3;
 
-/// The null's replicates without one fold, and that fold as if it had been observed: what is left out has no
-/// part in the mean either. Kept in it, few replicates would all lie in the directions of the others'
-/// scatter, where an experiment does not.
+/// The replicates without one fold, and that fold as if it were observed. Left-out replicates do not
+/// contribute to the mean either: otherwise a small set would lie in the subspace of the others' scatter, in
+/// contrast to an experiment.
 class LeftOut {
 public:
     LeftOut(const GapData& data, int fold) : data_(data) {
@@ -27,7 +27,7 @@ public:
         std::vector<int> group;
         for (const auto r : kept_) {
             const auto alike = [&](Eigen::Index other) { return group_of(other) == group_of(r); };
-            if (std::ranges::count_if(kept_, alike) < 2) continue;  // its own mean
+            if (std::ranges::count_if(kept_, alike) < 2) continue;  // only one replicate left
             rows.push_back(r);
             group.push_back(group_of(r));
         }
@@ -35,7 +35,7 @@ public:
     }
     const std::vector<Eigen::Index>& rows() const { return out_; }
 
-    /// A row less the mean of those that were kept, scaled to the variance of one.
+    /// A row minus the mean of the remaining replicates, scaled to the variance of one replicate.
     Eigen::VectorXd row(Eigen::Index r) const {
         Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(data_.noise.cols());
         int kept = 0;
@@ -46,7 +46,7 @@ public:
     }
 
 private:
-    /// Rows as they were before they were scaled to the variance of one.
+    /// Rows before they were scaled to the variance of one replicate.
     Eigen::MatrixXd unscaled(const std::vector<Eigen::Index>& rows) const {
         Eigen::MatrixXd some = data_.noise(rows, Eigen::all);
         for (std::size_t k = 0; k < rows.size(); ++k)
@@ -62,8 +62,8 @@ private:
     std::vector<Eigen::Index> kept_, out_;
 };
 
-/// A statistic's cube root is nearly normal (Wilson & Hilferty 1931). Its mean and variance are known from
-/// few replicates: what one more gives follows Student's t.
+/// The cube root of a statistic is nearly normal (Wilson & Hilferty 1931). Its mean and variance are
+/// estimated from few replicates, so a further replicate follows Student's t.
 struct Predicted {
     double mean = 0, sigma = 0;
     boost::math::students_t_distribution<> t;
@@ -84,8 +84,8 @@ Predicted predicted(const std::vector<GapStatistics>& draws, double GapStatistic
     return {mean, std::sqrt(variance * (1 + 1 / n)), boost::math::students_t_distribution<>(n - 1)};
 }
 
-/// Statistics are larger where fewer replicates make the covariance: those of the draws by as much as the
-/// observed gap's are with a fold left out.
+/// Statistics are larger if fewer replicates determine the covariance. Scales those of the draws by the ratio
+/// found for the observed gap when a fold is left out.
 void take_to_scale(std::vector<GapStatistics>& draws, const std::vector<GapStatistics>& left_out,
                    const GapStatistics& whole) {
     for (double GapStatistics::*statistic :
@@ -99,14 +99,13 @@ void take_to_scale(std::vector<GapStatistics>& draws, const std::vector<GapStati
     }
 }
 
-/// When the plate passes a cell, by its place among those of its observable: loading, then unloading back.
+/// Order in which the plate passes a cell, by its index in its observable: loading, then unloading.
 double passage(Eigen::Index place, Eigen::Index places) {
     return static_cast<double>(2 * place < places ? place : places - 1 - (place - places / 2));
 }
 
-/// Mean and trend of every observable with three cells or more, as weights of the chosen cells, which lie
-/// observable by observable, loading before unloading, each by displacement (cells_of). Cells weigh by what
-/// is known of them, 1/sigma^2.
+/// Mean and trend of every observable with three or more cells, as weights of the selected cells, which are
+/// ordered by observable, phase (loading first) and displacement (cells_of). Cells have the weight 1/sigma^2.
 std::vector<Eigen::VectorXd> observable_patterns(const GapSpace& space, Eigen::Index all) {
     constexpr std::size_t fewest = 3;
     const CellChoice& cells = space.cells();

@@ -93,7 +93,7 @@ std::string digest_of(const std::map<std::string, std::string>& origin) {
     return digest.hex();
 }
 
-/// Of all but the digest itself.
+/// Digest of everything except the digest itself.
 std::string digest_of_content(json j) {
     j.erase("sha256");
     return Sha256().add(j.dump()).hex();

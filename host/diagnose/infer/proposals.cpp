@@ -9,14 +9,14 @@
 namespace mcdem::inline diagnose {
 namespace {
 
-/// .. and the best nuisance however far behind, so that no effect is named for what a wrong parameter does:
-/// signatures are least right for parameters far off. Of the simulation's own numerics the best, where it is
-/// near.
+/// In addition, the best nuisance is always tried, however far behind, so that no effect is named because of
+/// a wrong parameter; signatures are least accurate for parameters that are far off. The best of the
+/// simulation's own numerics is tried if it is close.
 constexpr std::size_t max_singles = 3;
-/// Effects this much behind the leader, in log likelihood or as a part of its gain, are not tried.
+/// Effects this far behind the leading one, in log likelihood or as a fraction of its gain, are not tried.
 constexpr double far_behind = 8, far_behind_share = 0.25;
 constexpr double pair_gain = 4;
-/// Part by which a signature may be wrong, cell by cell.
+/// Relative error of a signature, cell by cell.
 constexpr double signature_error = 0.1;
 constexpr Eigen::Index min_runs = 2;
 
@@ -27,8 +27,8 @@ Eigen::VectorXd without(const Eigen::VectorXd& gap, const GapData& data, const P
     return left;
 }
 
-/// How much more packings scatter with the effect than without: they differ in it, and its random draws do.
-/// Of one packing.
+/// Additional scatter between packings caused by the effect, because packings differ in it and it has random
+/// draws. For one packing.
 Eigen::VectorXd effect_scatter(const GapData& data, const Proposal& proposal) {
     const Eigen::VectorXd chaos = 2.0 * data.packings * data.noise.colwise().squaredNorm().transpose() /
                                   static_cast<double>(data.noise.rows());
@@ -58,8 +58,8 @@ double signature_misfit(const GapData& data, const NullDistribution& null, const
     return null.misfit_p(space, without(gap, data, proposal));
 }
 
-/// The two candidates that fit the gap best together. Neither need lead alone: what two do to one cell may
-/// cancel.
+/// The two candidates that fit the gap best together. Neither needs to lead alone, because the contributions
+/// of both to a cell may cancel.
 Proposal best_pair(const GapSpace& space, const GapData& data, const std::vector<std::size_t>& order) {
     Proposal best;
     for (std::size_t i = 0; i < order.size(); ++i)
@@ -75,7 +75,7 @@ Proposal best_pair(const GapSpace& space, const GapData& data, const std::vector
     return best;
 }
 
-/// Of nuisances that the runs were made with, in log likelihood.
+/// Cost of the nuisances of the runs in log likelihood, from their priors.
 double prior_cost(const Eigen::VectorXd& nuisances, const std::vector<FreeParameter>& free) {
     double cost = 0;
     for (std::size_t k = 0; k < free.size(); ++k)
@@ -142,7 +142,7 @@ std::vector<Proposal> propose(const GapSpace& space, const GapData& data, const 
 std::optional<Eigen::VectorXd> confirm(Proposal& proposal, const GapData& data, const NullDistribution& null,
                                        const Eigen::VectorXd& observed, const Eigen::VectorXd& nuisances,
                                        const Eigen::MatrixXd& all_runs) {
-    constexpr double still_free = 0.25;  // part of an amplitude
+    constexpr double still_free = 0.25;  // fraction of an amplitude
     const Eigen::MatrixXd runs = whole_runs(all_runs, data.cells);
     if (runs.rows() < min_runs) return std::nullopt;
     const Eigen::VectorXd left = observed - runs.colwise().mean().transpose();

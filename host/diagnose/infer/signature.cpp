@@ -10,7 +10,7 @@
 namespace mcdem::inline diagnose {
 namespace {
 
-/// Mean over rows and its variance, column by column.
+/// Mean over rows and its variance, for each column.
 struct Moments {
     Eigen::ArrayXd mean, variance;
 };
@@ -21,7 +21,7 @@ Moments moments(const Eigen::MatrixXd& rows) {
     return {mean.array(), apart.array().square().colwise().sum().transpose() / (n * std::max(1.0, n - 1))};
 }
 
-/// Rows that came to their end: a run that failed has no number at all.
+/// Rows of complete runs; a failed run has only NaN.
 std::vector<Eigen::Index> whole(const Eigen::MatrixXd& rows) {
     std::vector<Eigen::Index> list;
     for (Eigen::Index r = 0; r < rows.rows(); ++r)
@@ -29,7 +29,7 @@ std::vector<Eigen::Index> whole(const Eigen::MatrixXd& rows) {
     return list;
 }
 
-/// Part of each mean that is kept.
+/// Factor of each mean after shrinkage.
 Eigen::ArrayXd kept(const Moments& m) { return (1 - m.variance / m.mean.square().max(1e-300)).max(0.0); }
 
 }  // namespace
@@ -50,7 +50,7 @@ Eigen::VectorXd Signature::spread() const {
 
 namespace {
 
-/// Through the pairs of one amplitude.
+/// Straight line through the pairs of one amplitude.
 Signature straight_signature(const std::string& name, double amplitude, const Eigen::MatrixXd& at) {
     const Moments line = moments(at / amplitude);
     Signature s;
@@ -65,7 +65,7 @@ Signature straight_signature(const std::string& name, double amplitude, const Ei
 
 Signature parabola_signature(const std::string& name, double first, double second,
                              const Eigen::MatrixXd& at_first, const Eigen::MatrixXd& at_second) {
-    // The parabola through zero and both differences, pair by pair.
+    // The parabola through zero and both differences, for each pair.
     const double a = first, b = second, determinant = a * b * (b - a);
     const Moments curvature = moments((at_second * a - at_first * b) / determinant);
     const Moments parabola = moments((at_first * b * b - at_second * a * a) / determinant);

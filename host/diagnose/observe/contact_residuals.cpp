@@ -9,18 +9,18 @@
 namespace mcdem::inline diagnose {
 namespace {
 
-/// A contact as one grain feels it.
+/// A contact from the side of one grain.
 struct Side {
     int contact;
-    Vec3 direction;  ///< from the grain's centre outward
+    Vec3 direction;  ///< outward from the grain's centre
     double push;
 };
 
 /// Outward displacement, over (1 + nu) F/(4 pi E R), of the surface at an angle from a force: the paper's Eq.
 /// 1 with both points on the undeformed sphere (Gonzalez & Cuitino 2012), s = sin(theta / 2).
 double displacement_on_sphere(double cosine, double nu) {
-    const double s =
-        std::sqrt(std::max(0.5 * (1 - cosine), 0.0225));  // contacts nearer than 17 degrees are misread
+    const double s = std::sqrt(
+        std::max(0.5 * (1 - cosine), 0.0225));  // contacts closer than 17 degrees are measurement errors
     return (-2 * (1 - nu) - 2 * (1 - 2 * nu) * s + (7 - 8 * nu) * s * s) / s;
 }
 

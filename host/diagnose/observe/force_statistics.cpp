@@ -13,7 +13,7 @@
 namespace mcdem::inline diagnose {
 namespace {
 
-/// The value below which a part `share` of the values lies.
+/// Quantile: the value below which a fraction `share` of the values lies.
 double quantile(std::vector<double>& values, double share) {
     if (values.empty()) return not_available;
     const auto at =

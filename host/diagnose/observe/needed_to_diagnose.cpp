@@ -10,7 +10,7 @@
 namespace mcdem::inline diagnose {
 namespace {
 
-/// Where the force on the plate is known, of all places where it is compared.
+/// Points of the comparison without a force on the plate.
 std::string missing_forces(const Recording& recording) {
     Recording plate;
     plate.plate_start = recording.plate_start;

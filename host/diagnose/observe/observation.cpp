@@ -13,12 +13,12 @@ constexpr double parts_of_stroke[] = {0.42, 0.61, 0.80, 0.98};
 constexpr double width_of_stroke = 0.12;
 constexpr Phase phases[] = {Phase::load, Phase::unload};
 
-/// Weighted straight lines through the observables of some scans, evaluated in the middle.
+/// Weighted straight lines through the observables of several scans, evaluated at the centre.
 class LocalLine {
 public:
     explicit LocalLine(Eigen::Index count) : sums_(Eigen::ArrayXXd::Zero(count, 5)) {}
 
-    /// `offset`: displacement less that of the cell, over the width.
+    /// `offset`: displacement minus that of the cell, over the width.
     void add(double offset, const Eigen::VectorXd& values) {
         const double weight = 1 - std::abs(offset);
         for (Eigen::Index q = 0; q < values.size(); ++q) {
@@ -47,7 +47,7 @@ private:
 
 namespace {
 
-/// Each hold with a scan at its beginning: the last one before it, where that is taken at the end of its leg.
+/// Each hold with the scan at its start: the last one before it, if that is at the end of its leg.
 std::vector<HoldScans> holds_of(const Recording& recording, const std::vector<ScanPlace>& places) {
     std::vector<HoldScans> holds;
     for (std::size_t k = 0; k < places.size() && k + 1 < recording.scans.size(); ++k) {
@@ -74,9 +74,10 @@ bool is_held(const Grid& grid, std::size_t scan) {
         grid.holds, [&](const HoldScans& hold) { return number >= hold.first && number <= hold.end; });
 }
 
-/// The forces that loading has at the displacements, between its scans.
+/// Sets the forces during loading at the displacements, interpolated between scans.
 void set_forces(const Recording& recording, Grid& grid) {
-    std::vector<std::pair<double, double>> curve;  // displacement, force: the first time that it comes there
+    std::vector<std::pair<double, double>>
+        curve;  // displacement, force; at the first time that it is reached
     for (std::size_t s = 0; s < recording.scans.size(); ++s) {
         const Scan& scan = recording.scans[s];
         const double displacement = recording.displacement(scan);
@@ -131,7 +132,7 @@ std::vector<Cell> cells_of(const Grid& grid) {
 
 namespace {
 
-/// Observables of a scan in a stroke; of displacement and force the one that is not sought by.
+/// Observables of a scan in a stroke. Of displacement and force, only the one that is not prescribed.
 Eigen::VectorXd stroke_observables(const Recording& recording, const Scan& scan, const Grid& grid,
                                    const ReferenceMaterial& material) {
     Eigen::VectorXd values = scan_observables(recording, scan, material);
@@ -142,7 +143,7 @@ Eigen::VectorXd stroke_observables(const Recording& recording, const Scan& scan,
     return values;
 }
 
-/// Distance of a scan from a place of the grid, over the width.
+/// Distance of a scan from a grid point, over the width.
 double offset_of(const Recording& recording, const Scan& scan, const Grid& grid, std::size_t place) {
     if (grid.force.empty()) return (recording.displacement(scan) - grid.displacement[place]) / grid.width;
     return (scan.top_force() - grid.force[place]) / grid.force_width;
@@ -154,7 +155,7 @@ std::size_t nearest_place(const Grid& grid, double displacement) {
     return static_cast<std::size_t>(nearest - grid.displacement.begin());
 }
 
-/// What holds show, each where it is nearest: the mean, where there are several.
+/// Adds the observables of holds, each at the nearest displacement; the mean if there are several.
 void add_holds(const Recording& recording, const Grid& grid, int discard, std::vector<LocalLine>& lines) {
     for (const HoldScans& hold : grid.holds) {
         if (static_cast<std::size_t>(hold.end) >= recording.scans.size() || hold.begin == hold.end) continue;

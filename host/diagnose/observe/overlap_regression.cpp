@@ -12,13 +12,13 @@
 namespace mcdem::inline diagnose {
 namespace {
 
-/// Overlaps below this are lost in the errors of positions.
+/// Smaller overlaps are not significant compared with errors of positions.
 constexpr double clear_overlap = 0.02;
 
 template <int terms>
 using Terms = Eigen::Matrix<double, terms, 1>;
 
-/// Least squares, contact by contact.
+/// Least squares, accumulated contact by contact.
 template <int terms>
 class Regression {
 public:
@@ -27,7 +27,7 @@ public:
         right_ += x * y;
         ++rows_;
     }
-    /// Not-a-number with fewer than five rows a term.
+    /// NaN with fewer than five rows per term.
     Terms<terms> solve() const {
         if (rows_ < 5 * terms) return Terms<terms>::Constant(not_available);
         return products_.ldlt().solve(right_);
@@ -43,7 +43,7 @@ Terms<4> grain_terms(const ContactResidual& c) {
     return {1, c.implied, c.implied * c.implied, c.cross_contact};
 }
 
-/// Mean product of the remainders of two contacts of one grain, and the same with remainder times overlap.
+/// Mean product of the residuals of two contacts of one grain, and the same with residual times overlap.
 std::array<double, 2> shared_remainders(std::size_t grains, std::span<const ContactResidual> contacts,
                                         const std::vector<double>& remainder, double mean_overlap) {
     struct Sums {

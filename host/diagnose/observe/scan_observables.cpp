@@ -61,7 +61,7 @@ constexpr Observable all_observables[] = {
 // clang-format on
 constexpr std::size_t count = std::size(all_observables);
 
-/// Takes one group of numbers after the other, in the order of the table.
+/// Collects groups of numbers in the order of the table.
 class Row {
 public:
     template <std::size_t n>
