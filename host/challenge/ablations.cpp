@@ -10,7 +10,7 @@
 namespace mcdem::inline challenge {
 namespace {
 
-/// Forgets what was observed in the cells of observables that are not wanted.
+/// Removes the observations in the cells of other observables.
 template <class Wanted>
 void observe_only(Evidence& evidence, Wanted wanted) {
     const auto cells = cells_of(evidence.library.grid);
@@ -32,15 +32,15 @@ void top_force_alone(Evidence& evidence) {
 
 void without_nuisances(Evidence& evidence) { evidence.nuisances.clear(); }
 
-/// The mean over the library's packings for the experiment's own packing, and their scatter for that of
-/// replicates.
+/// Uses the mean over the library's packings instead of the experiment's own packing, and their scatter
+/// instead of that of replicates.
 void without_pairing(Evidence& evidence) {
     Library& library = evidence.library;
     const int packings = 1 + *std::ranges::max_element(library.packing);
     evidence.baseline = Eigen::MatrixXd::Zero(packings, library.baseline.cols());
     std::vector<int> replicates(static_cast<std::size_t>(packings), 0);
     for (const int packing : library.packing) ++replicates[static_cast<std::size_t>(packing)];
-    // Every replicate stands for a packing of its own; those of one packing stay in one fold of eight.
+    // Every replicate represents a packing of its own; those of one packing stay in one fold of eight.
     const int step = (packings + 7) / 8 * 8;
     std::vector<int> seen(static_cast<std::size_t>(packings), 0);
     for (std::size_t r = 0; r < library.packing.size(); ++r) {
@@ -61,7 +61,7 @@ const Ablation ablation_table[] = {
 };
 // clang-format on
 
-/// The effect that gains most in `space`, with its share of `exp(gain)`.
+/// The effect with the largest gain in `space`, with its share of `exp(gain)`.
 struct Winner {
     std::string name;
     double gain = 0, confidence = 0;
@@ -81,7 +81,8 @@ Winner winner(const GapSpace& space, const GapData& data) {
     return best;
 }
 
-/// Least squares in units of each cell's own scatter: no covariance, no nuisances, always somebody to blame.
+/// Least squares in units of the scatter of each cell, without covariance and nuisances; always names an
+/// effect.
 Answer smallest_residual(const Evidence& evidence) {
     const GapData data = gap_data(evidence);
     const auto count = static_cast<Eigen::Index>(data.cells.size());
@@ -95,7 +96,7 @@ Answer smallest_residual(const Evidence& evidence) {
     return {Verdict::effect, {winner(GapSpace(independent, 0, data.cells, {}), data).name}, 1};
 }
 
-/// Schwarz 1978: an effect is worth its parameter or it is not; that nothing known is right is no answer.
+/// Schwarz 1978: an effect is accepted if it justifies its parameter; the method cannot abstain.
 Answer bayesian_information(const Evidence& evidence) {
     const GapData data = gap_data(evidence);
     const GapSpace space(data.noise, static_cast<int>(evidence.baseline.rows()), data.cells, data.free);

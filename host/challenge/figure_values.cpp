@@ -42,7 +42,7 @@ std::array<double, 2> wilson_interval(int successes, int trials) {
 
 double ideal_power(const PowerCurve& curve, double over_limit) {
     const boost::math::normal normal;
-    const double threshold = boost::math::quantile(normal, 1 - curve.false_alarm / 2);  // either sign
+    const double threshold = boost::math::quantile(normal, 1 - curve.false_alarm / 2);  // two-sided
     const double at_limit = threshold + boost::math::quantile(normal, curve.power_at_limit);
     const double mean = over_limit * at_limit;
     return boost::math::cdf(normal, mean - threshold) + boost::math::cdf(normal, -mean - threshold);

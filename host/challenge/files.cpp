@@ -16,7 +16,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 constexpr int challenge_format = 1;
 
-/// The name of a case names files of its results too: nothing but a name, and none that these have besides.
+/// Names of cases are also names of files of results: only plain names that do not collide with other files.
 bool is_name_of_a_case(const std::string& name) {
     return name.starts_with("case_") && name.size() <= 100 &&
            std::ranges::all_of(name, [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-'; });

@@ -13,7 +13,7 @@ struct Choice {
 
 // clang-format off
 const std::vector<Choice> choices{
-    {"false_alarm",  &Limits::false_alarm,  {0.01}},  // a level of significance says what it means, and is not tuned
+    {"false_alarm",  &Limits::false_alarm,  {0.01}},  // a level of significance has a fixed meaning and is not tuned
     {"reduction",    &Limits::reduction,    {0.5, 0.6, 0.7, 0.8}},
     {"over_placebo", &Limits::over_placebo, {0.1, 0.2, 0.4}},
     {"misfit",       &Limits::misfit,       {1e-4, 1e-3, 3e-3, 0.01, 0.03, 0.1}},

@@ -22,9 +22,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double weaker = 0.8;  ///< amplitudes of a reality that ran away, from one try to the next
+constexpr double weaker = 0.8;  ///< factor of the amplitudes of a reality that ran away, for the next try
 constexpr int max_tries = 10;
-constexpr double part_of_tries = 0.3;  ///< of the progress: loading alone, and not all cases
+constexpr double part_of_tries = 0.3;  ///< of the progress: only the loading, and not all cases
 
 using Cases = std::vector<const ChallengeCase*>;
 
@@ -42,7 +42,7 @@ InputError of_another_challenge(const fs::path& file) {
                     file.string()));
 }
 
-/// Equal in all but how strong effects are, which trying may have changed.
+/// Whether two challenges are equal except for the amplitudes of effects, which may have been reduced.
 bool alike(Challenge a, Challenge b) {
     for (Challenge* challenge : {&a, &b})
         for (ChallengeCase& c : challenge->cases)
@@ -111,8 +111,8 @@ private:
         }
     }
 
-    /// Dense packings whose contacts feel one another have no static solution from some amplitude on. Such
-    /// realities are loaded again with weaker effects before anything is sealed.
+    /// Dense packings with interacting contacts have no static solution above some amplitude. Such realities
+    /// are loaded again with weaker effects before the truth is sealed.
     void weaken_what_runs_away() {
         Cases tried;
         for (const ChallengeCase& c : challenge_.cases)
@@ -141,7 +141,7 @@ private:
         }
     }
 
-    /// The truth first, then what may be known.
+    /// Writes the truth first, then the public data.
     std::string seal_all() const {
         const std::string truth = truth_text(challenge_), seal = seal_of(truth);
         const fs::path open_file = options_.folder / "challenge.json";
@@ -153,7 +153,7 @@ private:
         return seal;
     }
 
-    /// Folders that lie there before the challenge are others'.
+    /// Folders that exist before the challenge belong to something else.
     void expect_no_cases() const {
         for (const ChallengeCase& c : challenge_.cases)
             if (fs::exists(options_.folder / c.folder))

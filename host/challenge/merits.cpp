@@ -9,7 +9,7 @@ bool is_true(const ChallengeCase& truth, const std::string& effect) {
     return std::ranges::find(truth.effects, effect, &Hidden::name) != truth.effects.end();
 }
 
-/// Sums that become means.
+/// Sums for means.
 struct Sums {
     double group = 0, sharpness = 0, brier = 0;
     int groups = 0;

@@ -19,14 +19,15 @@ constexpr std::string_view tried[] = {"cross_contact",   "friction",   "adhesion
                                       "modulus_scatter", "plate_tilt", "plate_compliance", "force_bias",
                                       "gauge_drift"};
 
-/// Effects that are the same thing in another direction.
+/// Pairs of effects that are the same in another direction.
 constexpr std::array<std::string_view, 2> twins[] = {{"plate_tilt", "plate_tilt_y"}};
 
-constexpr int every_struck = 4;              ///< of the unknown, one in so many is struck from the library
-constexpr double nearest = 4, farthest = 8;  ///< nuisances outside their prior, in sigmas
+constexpr int every_struck =
+    4;  ///< of the unknown cases, one in this number has its effect removed from the library
+constexpr double nearest = 4, farthest = 8;  ///< shifts of nuisances outside their prior, in sigmas
 
-/// Drawn from a tenth of the smaller, the smaller or the larger of the library's two amplitudes up to 1.5
-/// times the larger.
+/// Lower end of the amplitudes: a tenth of the smaller, the smaller, or the larger of the library's two
+/// amplitudes. The upper end is 1.5 times the larger one.
 enum class Strength { any, clear, strong };
 
 class Drawing {
@@ -75,7 +76,7 @@ private:
     Random random_;
 };
 
-/// All effects that are the one or its twin.
+/// The effect and its twin.
 std::vector<std::string> with_twin(const std::string& name) {
     for (const auto& pair : twins)
         if (std::ranges::find(pair, name) != pair.end()) return {std::string(pair[0]), std::string(pair[1])};
@@ -118,7 +119,7 @@ std::vector<ChallengeCase> draw_cases(const ChallengeSize& size, const std::vect
     return cases;
 }
 
-/// Every second case of a kind to either half, packings of a half by turns.
+/// Distributes every kind evenly over both halves, and over the packings of each half.
 void deal_packings(std::vector<ChallengeCase>& cases, int packings, Random& random) {
     for (int half = 0; half < 2; ++half) {
         std::vector<std::size_t> mine;
@@ -156,7 +157,7 @@ void check(const ChallengeSize& size, const std::vector<std::string>& effects, c
     if (!problems.empty()) throw InputError(problems);
 }
 
-/// Small enough for every file format, and unrelated for neighbouring seeds.
+/// Small enough for every file format, and independent for consecutive seeds.
 std::uint64_t derived_seed(std::uint64_t seed, std::uint64_t number) {
     return scattered(scattered(seed) + number) >> 16;
 }

@@ -15,12 +15,12 @@
 namespace mcdem::inline challenge {
 namespace {
 
-// What every reality has and no diagnosis is told: other numerics, so that they are not what is recognised.
+// Hidden numerics of every reality, so that the diagnosis cannot rely on identical numerics.
 constexpr double time_step_factor = 0.7;
 constexpr double restitution_factor = 0.95;
-constexpr double start_jitter = 0.02;  ///< over the mean diameter: packings of one seed are not quite alike
+constexpr double start_jitter = 0.02;  ///< over the mean diameter, so that packings with the same seed differ
 
-constexpr std::size_t max_grains_at_once = 16'384;  ///< a batch is what an interruption may lose
+constexpr std::size_t max_grains_at_once = 16'384;  ///< a batch is lost after an interruption
 
 GeneratedPacking generated(const Scene& scene) {
     std::vector<std::string> problems;

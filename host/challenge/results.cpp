@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-/// The keys of diagnosis.json that are scored.
+/// Reads the scored keys of diagnosis.json.
 void read_diagnosis(const json& diagnosis, CaseResult& result) {
     for (const json& limit : diagnosis.at("detection_limits"))
         result.detection_limits[limit.at("effect")] =

@@ -38,7 +38,7 @@ std::string text_of(const fs::path& file) {
 
 std::size_t grains_of(const Experiment& experiment) { return experiment.recording.diameter.size(); }
 
-/// What lies in the folder is looked at once those cannot come any more whom the lock keeps away.
+/// Locks the folder, and then checks its content.
 FolderLock lock_folder(const fs::path& out, FolderLock::Use use) {
     expect_no_experiment(out);
     make_result_folder(out);
@@ -63,14 +63,14 @@ public:
                                              options.challenge.string(), c.folder));
         lock_.emplace(lock_folder(options.out, use));
         expect_own_options();
-        make_folder_of(options.library.file);  // now, not after the library is made
+        make_folder_of(options.library.file);  // before the library is computed
         remove_temporaries_of(options.library.file);
         for (const char* folder : {evidence_folder, findings_folder}) make_folder(options.out / folder);
         for (const char* folder : {"", "simulations", evidence_folder, findings_folder})
             remove_temporaries(options.out / folder);
     }
 
-    /// Cases come first in the numbers, and last to be computed: they need the library.
+    /// Cases have the first numbers, but are computed last because they need the library.
     std::vector<std::size_t> missing() override {
         std::vector<std::size_t> parts;
         if (missing_cases().empty()) return parts;
@@ -139,7 +139,7 @@ private:
         return cases;
     }
 
-    /// Throws InputError where the answers in the folder were begun with other options.
+    /// Throws InputError if the answers in the folder were started with other options.
     void expect_own_options() const {
         Manifest wanted = manifest_of(scene_, options_.program);
         wanted["challenge"] = Sha256().add(text_of(options_.challenge / "challenge.json")).hex();
@@ -165,7 +165,7 @@ private:
     }
 
     fs::path library_file() const { return options_.out / "library.json"; }
-    /// In simulations, for the progress.
+    /// Number of simulations, for the progress.
     double work_of_library() {
         double trials = 0;
         for (const auto& part : library_parts()) trials += static_cast<double>(part.size());
@@ -173,8 +173,8 @@ private:
     }
     double work_a_case() const { return options_.replicates + 2.0 * options_.confirmations; }
 
-    /// Other packings of the same kind; the seeds of the cases' are not known here, and are not met by
-    /// chance.
+    /// Other packings of the same kind. The seeds of the cases are not known here; a coincidence is
+    /// improbable.
     std::vector<Packing> other_packings(const Replica& replica) const {
         constexpr std::uint64_t apart = 0x6c696272617279;
         Scene all = scene_;
@@ -189,8 +189,8 @@ private:
         return packings;
     }
 
-    /// The grid of an experiment whose plate went as the scene's does: a case's own zero of strain is not the
-    /// scene's.
+    /// The grid of an experiment with the plate positions of the scene, because the zero of strain of a case
+    /// differs from that of the scene.
     Grid grid_of_scene(const Experiment& experiment) const {
         const Plate& plate = scene_.replicas.front().plate;
         Grid grid = grid_of(experiment.recording);
@@ -201,7 +201,7 @@ private:
         return grid;
     }
 
-    /// The first case's experiment is what the library is made for.
+    /// The first case, whose experiment determines the library.
     const Experiment& first_experiment() {
         if (!first_) first_ = read_experiment(options_.challenge / challenge_.cases.front().folder);
         return *first_;
@@ -252,13 +252,13 @@ private:
         return trials;
     }
 
-    /// Reads the library, or makes it as the first case is measured; a copy goes to the results. Throws
-    /// InputError where it was made from something else, or the results are of another one.
+    /// Reads the library, or computes it for the measurement of the first case, and copies it to the results.
+    /// Throws InputError if its origin differs, or the results belong to another one.
     void make_library(Device& device) {
         if (library_) return;
         const fs::path& file = options_.library.file;
         const Experiment& experiment = first_experiment();
-        if (!fs::exists(file))  // or another process is quicker, with the same library
+        if (!fs::exists(file))  // another process may have written the same library in the meantime
             create_file(file, library_text(build_library(device, question(), library_plan(), store(),
                                                          trial_options())));
         Library library = read_library(file);

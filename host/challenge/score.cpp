@@ -42,13 +42,13 @@ GapReductionScore score_gap_reduction(const std::vector<CaseResult>& results) {
     return score;
 }
 
-/// What the arms other than the whole method find and answer, by arm, then case.
+/// Findings and answers of all methods except the whole one, by method and case.
 struct OtherArms {
     std::vector<std::vector<Findings>> findings;
     std::vector<std::vector<Answer>> answers;
 };
 
-/// All arms of all cases that were diagnosed, on all cores.
+/// Evaluates all methods for all diagnosed cases, on all cores.
 class Trying {
 public:
     Trying(const OpenChallenge& open, const ChallengeResults& results, const std::filesystem::path& folder)
@@ -88,7 +88,7 @@ private:
     const std::filesystem::path& folder_;
 };
 
-/// Cases of one half.
+/// The cases of one half.
 template <class Case>
 std::vector<Case> half_of(const std::vector<Case>& cases, bool first) {
     std::vector<Case> half;

@@ -13,7 +13,7 @@
 namespace mcdem::inline ensemble {
 namespace {
 
-/// Everything that make_packing looks at, so that equal texts mean equal packings.
+/// Text with all inputs of make_packing: equal texts mean equal packings.
 std::string start_of(const Replica& replica) {
     const PackingSource& from = replica.packing;
     std::string text = fmt::format("{} {} {} {} {} {} {} {}", name(replica.box.shape), replica.box.size_x,
@@ -32,7 +32,7 @@ std::string start_of(const Replica& replica) {
                               drawn.diameter_min, drawn.diameter_max, drawn.packing_fraction);
 }
 
-/// Throws the first error that is not about input; else all problems of input, each once.
+/// Throws the first error that is not an InputError, otherwise all problems of input, each once.
 void report(const std::vector<std::exception_ptr>& errors) {
     std::vector<std::string> problems;
     for (const auto& error : errors) try {

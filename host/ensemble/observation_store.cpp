@@ -13,7 +13,7 @@
 namespace mcdem::inline ensemble {
 namespace {
 
-/// A digest of the numbers comes first: a file damaged later is not believed.
+/// A digest of the numbers is stored first, to detect damaged files.
 std::string digest_of(const Eigen::VectorXd& values) {
     return Sha256().add(std::span(values.data(), static_cast<std::size_t>(values.size()))).hex();
 }

@@ -19,7 +19,7 @@ double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// Scans held in memory at most; past it they go to the disk, whatever the clock says.
+/// Maximum size of scans in memory; beyond it they are written to disk before the next checkpoint is due.
 constexpr std::size_t max_bytes_held = std::size_t{256} << 20;
 
 std::size_t bytes_of(const Scan& scan) {
@@ -27,7 +27,7 @@ std::size_t bytes_of(const Scan& scan) {
            scan.contacts.size() * sizeof(Contact);
 }
 
-/// A run under way: the simulation, its folder, and what was recorded since the last segment.
+/// A run in progress: the simulation, its folder, and the data recorded since the last segment.
 class RunSession {
 public:
     RunSession(Device& device, const Scene& scene, const std::vector<Packing>& packings,
@@ -44,7 +44,7 @@ public:
             pending_.recordings.push_back(begin_recording(scene.replicas[r], packings[r]));
     }
 
-    /// Goes back to the last checkpoint, or to the beginning where there is none.
+    /// Returns to the last checkpoint, or to the start if there is none.
     void resume() {
         const auto checkpoint = find_checkpoint(folder_, identity_);
         folder_.drop_segments_from(checkpoint ? checkpoint->segments : 0);
@@ -79,12 +79,12 @@ private:
         return {more ? RunEnd::interrupted : RunEnd::done, simulation_.grain_steps(), seconds_since(start)};
     }
 
-    /// The device or the disk has failed: what was recorded since the last checkpoint can be read all the
-    /// same, where there is room for it. Resuming drops and makes it again.
+    /// Called when the device or the disk has failed: writes the data recorded since the last checkpoint, if
+    /// there is space, so that they can be read. Resuming discards and computes them again.
     void keep_what_is_recorded() noexcept {
         try {
             if (anything_new_) folder_.append_segment(pending_);
-        } catch (const std::exception&) {  // the first failure is what the user must hear of
+        } catch (const std::exception&) {  // only the first error is reported
         }
     }
 
@@ -100,15 +100,15 @@ private:
         options_.on_failure(scene_.replicas[replica], failure);
     }
 
-    /// Runs so large that a checkpoint takes long write fewer: it stays a small part of the time.
+    /// Runs whose checkpoints take long write fewer, so that they take a small fraction of the time.
     bool checkpoint_due() const {
         const double rest = checkpoint_seconds_ > 1 ? 20 * checkpoint_seconds_ : 0;
         const double interval = std::max(60 * scene_.output.checkpoint_minutes, rest);
         return seconds_since(last_checkpoint_) >= interval || bytes_held_ >= max_bytes_held;
     }
 
-    /// The segment first, then the checkpoint that names it: a crash in between leaves a segment too many,
-    /// which resume() drops.
+    /// Writes the segment first, then the checkpoint that names it. A crash in between leaves one segment too
+    /// many, which resume() discards.
     void write_checkpoint() {
         const auto start = Clock::now();
         if (anything_new_ || folder_.segments() == 0) {
@@ -135,10 +135,10 @@ private:
     bool anything_new_ = false;
     std::size_t bytes_held_ = 0;
     Clock::time_point last_checkpoint_;
-    double checkpoint_seconds_ = 0;  ///< that the last one took
+    double checkpoint_seconds_ = 0;  ///< duration of the last one
 };
 
-/// What is left to do once run.h5 is there, and safe to do twice.
+/// Work after run.h5 is complete; it can be repeated safely.
 void close_folder(const std::filesystem::path& folder) {
     write_csv(read_run(folder, ReadWhat::observables), folder);
     remove_checkpoints(folder);

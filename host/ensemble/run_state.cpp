@@ -28,14 +28,15 @@ std::string text_of(const Checkpoint& checkpoint, const std::string& field) {
     return {reinterpret_cast<const char*>(found->second.data()), found->second.size()};
 }
 
-/// FNV-1a over 64 bits, number by number.
+/// 64-bit FNV-1a, number by number.
 class Digest {
 public:
     void add(double value) {
         std::uint64_t bits;
         std::memcpy(&bits, &value, sizeof bits);
         sum_ = (sum_ ^ bits) * 0x100000001b3;
-        sum_ ^= sum_ >> 29;  // high bits come back down, or the last sign would count for little
+        sum_ ^= sum_ >> 29;  // mixes high bits into low ones; otherwise the sign of the last number would
+                             // have little influence
     }
     std::string text() const { return fmt::format("{:016x}", sum_); }
 
@@ -54,8 +55,8 @@ std::string digest_of(const std::vector<Packing>& packings) {
     return digest.text();
 }
 
-/// The keys in which two scenes differ with their values, of the first replica that differs: "contact.gamma
-/// is 1.2, was 1". Empty where no key tells.
+/// Keys with different values in two scenes, for the first replica that differs: "contact.gamma is 1.2, was
+/// 1". Empty if no key differs.
 std::string changed_keys(const std::string& now, const std::string& then) {
     std::string text;
     try {
@@ -73,7 +74,7 @@ std::string changed_keys(const std::string& now, const std::string& then) {
     return text;
 }
 
-/// The first line in which two scenes differ.
+/// The first different line of two scenes.
 std::string first_difference(const std::string& now, const std::string& then) {
     const auto line_of = [](const std::string& text, std::size_t begin) {
         return begin < text.size() ? text.substr(begin, text.find('\n', begin) - begin) : "nothing";
@@ -128,7 +129,7 @@ std::optional<Checkpoint> find_checkpoint(const ResultFolder& folder, const RunI
     const std::string where = folder.path().string();
     auto checkpoint = read_checkpoint(folder.path());
     if (!checkpoint) {
-        // Stopped before its first checkpoint. Segments, if any, still say whose they are.
+        // Stopped before its first checkpoint. Segments, if any, still identify the run.
         if (folder.segments() > 0)
             expect_same_scene(identity.scene_text, read_run_header(segment_files(folder.path())).scene,
                               where);

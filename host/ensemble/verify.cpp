@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// `check` returns what could not be checked, and throws InputError where the file is not good.
+/// `check` returns what could not be checked, and throws InputError if the file is damaged.
 Verified looked_at(const fs::path& file, const std::function<std::string()>& check) {
     try {
         return {file, true, check()};
@@ -48,7 +48,7 @@ std::string check_plate_table(const fs::path& folder) {
     return "";
 }
 
-/// Lines as `sha256sum` writes them.
+/// Checks a file in the format of `sha256sum`.
 void check_sums(const fs::path& folder, std::vector<Verified>& all) {
     const std::string sums = read_file(folder / sums_file);
     constexpr std::size_t digits = 64;
@@ -69,7 +69,7 @@ void check_sums(const fs::path& folder, std::vector<Verified>& all) {
     }
 }
 
-/// What the work in the folder was begun with.
+/// Checks the manifests of work in the folder.
 void check_manifests(const fs::path& folder, std::vector<Verified>& all) {
     for (const fs::path& file : {manifest_file(folder), device_file(folder)})
         if (fs::exists(file))
@@ -111,7 +111,7 @@ void check_run(const fs::path& folder, std::vector<Verified>& all) {
     for (const fs::path& file : files) result(file);
 }
 
-/// A diagnosis or a library: library.json, and every simulation that was kept.
+/// Checks a diagnosis or a library: library.json, and all stored simulations.
 void check_library(const fs::path& folder, std::vector<Verified>& all) {
     if (fs::exists(folder / "library.json"))
         all.push_back(looked_at(folder / "library.json", [&] {

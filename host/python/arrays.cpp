@@ -10,7 +10,7 @@ namespace {
 namespace py = pybind11;
 static_assert(sizeof(Vec3) == 3 * sizeof(double), "positions are read as rows of three numbers");
 
-/// A view of `count` objects that lie side by side: rows of named fields.
+/// An array of `count` contiguous objects: rows of named fields.
 template <class Row>
 class Fields {
 public:

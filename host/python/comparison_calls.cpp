@@ -15,7 +15,7 @@ namespace {
 
 namespace py = pybind11;
 
-/// A run, or what lies at a path.
+/// A run object, or the run at a path.
 SharedRun reference_of(const py::object& reference, int discard, ReadWhat what) {
     if (py::isinstance<Run>(reference)) return reference.cast<SharedRun>();
     std::filesystem::path path;

@@ -40,7 +40,7 @@ void check(const Numbers& numbers) {
 using Path = std::filesystem::path;
 using OneOrSeveral = std::variant<Path, std::vector<Path>>;
 
-/// Several packings are told apart by their folders.
+/// Several packings are named by their folders.
 std::vector<Experiment> read_experiments(const OneOrSeveral& folders) {
     if (const Path* one = std::get_if<Path>(&folders)) return {read_experiment(*one)};
     std::vector<Experiment> experiments;
@@ -52,7 +52,7 @@ std::vector<Experiment> read_experiments(const OneOrSeveral& folders) {
     return experiments;
 }
 
-/// The text of diagnosis.json, written beside the simulations like it and the page.
+/// The text of diagnosis.json, which is written to the folder with the simulations and the page.
 std::string diagnose_into(const Scene& scene, const Path& folder, const DiagnoseOptions& options,
                           const OneOrSeveral& experiment, const std::string& choice, bool page) {
     const std::vector<Experiment> measured = read_experiments(experiment);

@@ -1,4 +1,4 @@
-// The extension module mcdem._engine; mcdem/__init__.py is what users import.
+// The extension module mcdem._engine; users import mcdem/__init__.py.
 #include <fmt/format.h>
 #include <pybind11/numpy.h>
 
@@ -12,8 +12,7 @@
 namespace mcdem::inline python {
 namespace {
 
-/// Bad input is a ValueError with the text that the program prints; what fails in spite of good input a
-/// RuntimeError.
+/// InputError becomes ValueError with the message of the program; other failures become RuntimeError.
 void translate(std::exception_ptr error) {
     try {
         if (error) std::rethrow_exception(error);
@@ -25,11 +24,11 @@ void translate(std::exception_ptr error) {
     }
 }
 
-/// Before there are threads: two that need NumPy's functions for the first time would wait for each other.
+/// Imports NumPy before there are threads: two threads that import it at the same time would deadlock.
 void find_numpy() {
     try {
         pybind11::dtype::of<double>();
-    } catch (const pybind11::error_already_set&) {  // said where an array is asked for
+    } catch (const pybind11::error_already_set&) {  // reported when an array is requested
     }
 }
 

@@ -13,14 +13,14 @@ namespace {
 
 namespace py = pybind11;
 
-/// One recording of a run that it keeps alive. Arrays have it as their base.
+/// One recording of a run, which it keeps alive. It is the base of its arrays.
 struct OneRecording {
     SharedRun run;
     std::size_t index;
     const Recording& get() const { return run->recordings[index]; }
 };
 
-/// From 0, or from the end where negative, as Python counts.
+/// Index from 0, or from the end if negative, as in Python.
 std::size_t place_in(std::size_t size, py::ssize_t index, const char* what) {
     const auto count = static_cast<py::ssize_t>(size);
     if (index < -count || index >= count)
@@ -42,7 +42,7 @@ const Scan& scan_at(const OneRecording& recording, py::ssize_t index) {
     return recording.get().scans[place_in(recording.get().scans.size(), index, "scan")];
 }
 
-/// A property that is an array over the recording's memory.
+/// A property that is an array of the recording's memory.
 auto array_property(py::array (*array)(const Recording&, py::handle)) {
     return [array](const py::object& self) { return array(self.cast<const OneRecording&>().get(), self); };
 }
@@ -72,7 +72,7 @@ void bind_failure(py::module_& module) {
         });
 }
 
-/// What a recording has of every scan.
+/// Arrays with one entry per scan.
 void bind_scan_arrays(py::class_<OneRecording>& recording) {
     recording
         .def_property_readonly(
@@ -100,7 +100,7 @@ void bind_scan_arrays(py::class_<OneRecording>& recording) {
                                "[S][3][3] mean of n n, n the direction of a contact between grains.");
 }
 
-/// What a recording has of every grain or contact at one scan.
+/// Arrays with one entry per grain or contact at one scan.
 void bind_single_scans(py::class_<OneRecording>& recording) {
     recording
         .def(

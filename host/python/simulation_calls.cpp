@@ -36,7 +36,7 @@ std::string failure_text(const std::string& label, const Failure& failure) {
                        failure.grain < 0 ? "" : fmt::format(", grain {}", failure.grain), failure.cause);
 }
 
-/// As the program does: one that stops is a warning, all of them a failure.
+/// As in the program: a replica that stops is a warning; if all stop, it is an error.
 void expect_one_alive(const Run& run) {
     std::string causes;
     for (const Recording& recording : run.recordings) {

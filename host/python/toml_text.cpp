@@ -26,7 +26,7 @@ std::string in_quotes(const std::string& text) {
     return all + "\"";
 }
 
-/// Dotted keys stay dotted.
+/// Dotted keys remain dotted.
 std::string key_text(py::handle key) {
     if (!py::isinstance<py::str>(key))
         throw InputError(fmt::format("a key must be text, got {}", std::string(py::repr(key))));
@@ -37,16 +37,16 @@ std::string key_text(py::handle key) {
     return plain ? text : in_quotes(text);
 }
 
-/// A scalar of NumPy as Python's own.
+/// Converts a NumPy scalar to a Python scalar.
 py::object plain(py::handle value) {
     const bool scalar =
         py::hasattr(value, "ndim") && py::hasattr(value, "item") && py::cast<int>(value.attr("ndim")) == 0;
     return scalar ? py::object(value.attr("item")()) : py::reinterpret_borrow<py::object>(value);
 }
 
-/// Tables and lists in one another. A dictionary that holds itself would have no end.
+/// Maximum depth of nested tables and lists. A dictionary that contains itself would be endless.
 constexpr int deepest = 32;
-constexpr std::size_t max_items = 1'000'000;  ///< list; a scene has at most a MiB of text
+constexpr std::size_t max_items = 1'000'000;  ///< items in a list; a scene has at most a MiB of text
 
 void expect_shallow(int depth, const std::string& where) {
     if (depth <= deepest) return;
@@ -80,7 +80,7 @@ std::string table_text(const py::dict& table, const std::string& where, int dept
     return fmt::format("{{{}}}", fmt::join(items, ", "));
 }
 
-/// On one line.
+/// A value on one line.
 std::string value_text(py::handle given, const std::string& where, int depth) {
     expect_shallow(depth, where);
     const py::object value = plain(given);
@@ -91,12 +91,12 @@ std::string value_text(py::handle given, const std::string& where, int depth) {
     if (is_list(value)) return list_text(value, where, depth);
     if (PyIndex_Check(value.ptr())) return py::str(py::int_(value));
     if (py::hasattr(value, "__float__"))
-        return py::repr(py::float_(py::cast<double>(value)));  // reads back to the last bit
+        return py::repr(py::float_(py::cast<double>(value)));  // exact when read back
     throw InputError(fmt::format("{} must be a number, true or false, text, a list or a table, got {}", where,
                                  std::string(py::repr(value))));
 }
 
-/// Values first: in TOML what follows a table's heading belongs to it.
+/// Values first, because in TOML everything after a table's heading belongs to that table.
 void append_table(std::string& text, const std::string& name, const py::dict& table, int depth) {
     expect_shallow(depth, name);
     const std::string inside = name.empty() ? "" : name + ".";

@@ -11,7 +11,7 @@ namespace {
 
 const std::string two_effects = "two effects";
 
-/// What the right verdict would say.
+/// The right verdict.
 std::string row_of(const ChallengeCase& truth) {
     switch (truth.kind) {
         case CaseKind::none:

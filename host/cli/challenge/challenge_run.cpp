@@ -25,7 +25,7 @@ struct RunChallengeCommand {
     SharingOptions sharing;
 };
 
-/// The command line without what says where and how it runs.
+/// The command line without options that determine where and how it runs.
 std::vector<std::string> words_of(const RunChallengeCommand& command) {
     const ChallengeRunOptions& options = command.options;
     std::vector<std::string> words{"challenge", "run", command.challenge, "--scene", command.scene};

@@ -24,7 +24,7 @@ std::string short_share(const Share& share) {
 
 std::string met(bool is_met) { return is_met ? "yes" : "NO"; }
 
-/// One line of the table of merits: a share of both halves, and what is asked.
+/// One line of the table of merits: shares of both halves, and the target.
 class MeritRows {
 public:
     MeritRows(const ArmScore& arm, TextTable& table) : arm_(arm), table_(table) {}
@@ -63,7 +63,7 @@ void add_gap_reduction(const GapReductionScore& gap_reduction, TextTable& table)
                           "at least 80 %", met(gap_reduction.covered.value() >= 0.80), "all"});
 }
 
-/// Mean square error of saying the share of the other half every time.
+/// Mean square error of always stating the share of the other half.
 double base_rate_brier(const Merits& m, double rate) {
     const double right = m.right_where_named.value();
     return right * (1 - rate) * (1 - rate) + (1 - right) * rate * rate;

@@ -42,13 +42,13 @@ std::string text_of_file(const std::string& file) {
     return read_file(file);
 }
 
-/// The folder's path in full, without a slash at its end.
+/// The absolute path of the folder, without a final slash.
 fs::path whole_path(const std::string& folder) {
     const fs::path path = fs::absolute(folder).lexically_normal();
     return path.has_filename() ? path : path.parent_path();
 }
 
-/// What the tables do not tell; its problems are told with all others.
+/// Values that are not in the tables; their problems are reported together with all others.
 Experiment known_of(const ImportCommand& command, ExperimentProblems& problems) {
     Experiment known;
     known.recording.plate_start = std::nan("");
@@ -64,8 +64,8 @@ Experiment known_of(const ImportCommand& command, ExperimentProblems& problems) 
 
 fs::path kept_mapping(const ImportCommand& command) { return fs::path(command.out) / "mapping.toml"; }
 
-/// Of a file that the Python module has left (host/python/mcdem/importing/__main__.py); none where there is
-/// none.
+/// Lines of a file written by the Python module (host/python/mcdem/importing/__main__.py); empty if it does
+/// not exist.
 std::vector<std::string> lines_of(const fs::path& file) {
     std::vector<std::string> lines;
     std::istringstream in(fs::exists(file) ? read_file(file) : "");
@@ -73,7 +73,7 @@ std::vector<std::string> lines_of(const fs::path& file) {
     return lines;
 }
 
-/// What the Python module is asked to do.
+/// Arguments for the Python module.
 std::vector<std::string> words_of(const ImportCommand& command, const Experiment& known,
                                   const ExperimentProblems& settings, const fs::path& work) {
     std::vector<std::string> words{"--work=" + work.string(), "--kept=" + kept_mapping(command).string()};
@@ -100,7 +100,7 @@ std::vector<std::string> words_of(const ImportCommand& command, const Experiment
     return words;
 }
 
-/// The mapping for the user to correct, and every problem.
+/// Reports all problems, with the mapping for the user to correct.
 [[noreturn]] void refuse(const ImportCommand& command, const fs::path& work,
                          std::vector<std::string> problems, bool wrong_rows) {
     const std::string file = kept_mapping(command).string();
@@ -118,7 +118,7 @@ std::vector<std::string> words_of(const ImportCommand& command, const Experiment
     throw InputError(problems);
 }
 
-/// A new folder beside another, removed with what is in it at the end.
+/// A new folder next to another one, removed with its content at the end.
 class FolderBeside {
 public:
     explicit FolderBeside(const fs::path& other) {
@@ -140,7 +140,7 @@ private:
     fs::path path_;
 };
 
-/// What `out` gets can be read. Files are told as they would be in `out`.
+/// Reads the result before it is moved to `out`. Messages name files as in `out`.
 Experiment read_back(const fs::path& folder, const std::string& out) {
     try {
         return read_experiment(folder);
@@ -155,10 +155,10 @@ Experiment read_back(const fs::path& folder, const std::string& out) {
     }
 }
 
-/// Puts the tables into place, experiment.toml last: with it the folder is an experiment.
+/// Moves the tables into place, experiment.toml last, because it makes the folder an experiment.
 void put_in_place(const fs::path& work, const fs::path& out) {
     const FolderLock lock = open_output_folder(out);
-    expect_free(out);  // still
+    expect_free(out);  // checked again
     for (const char* table : {"contacts.csv", "grains.csv", "plate.csv", "experiment.toml"})
         for (const std::string end : {"", ".gz"})
             if (fs::exists(work / (table + end))) move_file(work / (table + end), out / (table + end));

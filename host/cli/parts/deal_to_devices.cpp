@@ -17,7 +17,7 @@
 namespace mcdem::inline cli {
 namespace {
 
-constexpr int max_kills = 3;  ///< of a part's processes
+constexpr int max_kills = 3;  ///< per part
 
 struct Running {
     std::size_t part;

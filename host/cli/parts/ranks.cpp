@@ -19,14 +19,14 @@ namespace mcdem::inline cli {
 struct Ranks::Mpi {
     int rank = 0, size = 1, on_machine = 0;
     MPI_Win window{};
-    long* counter = nullptr;  ///< of rank 0: never set back
-    long first = 0;           ///< what the counter shows at the beginning of a list
+    long* counter = nullptr;  ///< on rank 0; never reset
+    long first = 0;           ///< value of the counter at the start of a list
     long listed = 0;
 };
 
 namespace {
 
-/// A rank that waits leaves its processor to those that compute.
+/// A waiting rank yields its processor to ranks that compute.
 void wait_for(MPI_Request request) {
     for (int done = 0; MPI_Test(&request, &done, MPI_STATUS_IGNORE), !done;)
         std::this_thread::sleep_for(std::chrono::milliseconds(10));
@@ -68,7 +68,7 @@ std::vector<std::size_t> Ranks::agreed(std::vector<std::size_t> list) {
     static_assert(sizeof(std::size_t) == sizeof(unsigned long));
     send_to_all(list.data(), static_cast<int>(size), MPI_UNSIGNED_LONG);
     mpi_->first += mpi_->listed;
-    mpi_->listed = static_cast<long>(size) + mpi_->size;  // each rank goes past the end once
+    mpi_->listed = static_cast<long>(size) + mpi_->size;  // each rank passes the end once
     return list;
 }
 

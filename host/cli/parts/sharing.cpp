@@ -21,7 +21,7 @@ using Numbers = std::vector<std::size_t>;
 
 const char* const all_devices = "all";
 const char* const group = "Many devices and nodes";
-constexpr int all_is_merged = -1;  ///< in place of an exit code: what is left is to report
+constexpr int all_is_merged = -1;  ///< instead of an exit code: everything is merged and must be reported
 
 std::string choice_of(const std::string& device) { return device == all_devices ? "" : device; }
 
@@ -30,15 +30,14 @@ int interrupted(const SharedWork& work) {
     return exit_interrupted;
 }
 
-/// The device or the disk has failed.
+/// Reports a failure of the device or the disk.
 int failed(const SharedWork& work, const std::exception& error) {
     const int code = report_error(error);
     spdlog::warn("what was done stays in {}, and the same command goes on", work.out.string());
     return code;
 }
 
-/// Merges once nothing is missing: none left means that it is merged. A part found to be damaged is missing
-/// again.
+/// Merges when nothing is missing; returns nothing after the merge. A damaged part is missing again.
 Numbers left_to_compute(PartedWork& parts) {
     Numbers left = parts.missing();
     while (left.empty() && !parts.merge()) left = parts.missing();
@@ -51,7 +50,7 @@ void expect_progress(const SharedWork& work, const Numbers& before, const Number
                        ": no part could be finished: what is said above must be mended first");
 }
 
-/// Lets `compute`, which returns an exit code, have what is left until all is merged.
+/// Calls `compute`, which returns an exit code, with the missing parts until all are merged.
 int until_merged(const SharedWork& work, PartedWork& parts,
                  const std::function<int(const Numbers&)>& compute) {
     for (Numbers before, left; !(left = left_to_compute(parts)).empty(); before = left) {
@@ -269,7 +268,7 @@ int share(const SharedWork& work, const SharingOptions& options, const std::stri
                      : options.slurm ? compute_by_slurm(work, *parts, options, device)
                      : on_all        ? compute_on_all_devices(work, *parts, devices)
                                      : compute_here(work, *parts, device);
-    parts.reset();  // with its lock
+    parts.reset();  // releases its lock
     return code == all_is_merged ? work.report() : code;
 }
 

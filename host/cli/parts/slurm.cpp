@@ -24,22 +24,22 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-constexpr auto look = std::chrono::milliseconds(200);  ///< at the folder
-constexpr auto ask = std::chrono::seconds(5);          ///< Slurm
-constexpr auto settle = std::chrono::seconds(10);      ///< for files of a job that ended to be seen here
+constexpr auto look = std::chrono::milliseconds(200);  ///< interval between checks of the folder
+constexpr auto ask = std::chrono::seconds(5);          ///< interval between queries of Slurm
+constexpr auto settle = std::chrono::seconds(10);      ///< time until files of a finished job become visible
 
-/// Of an array: what a Slurm takes where nothing is said (MaxArraySize).
+/// Maximum size of an array: Slurm's default of MaxArraySize.
 constexpr std::size_t max_tasks = 1000;
 
 fs::path jobs_file(const SlurmJob& job) { return job.folder / "jobs"; }
 
-/// What was submitted last.
+/// The last submitted jobs.
 struct Jobs {
-    std::string array, next;  ///< numbers; empty: nothing was submitted
+    std::string array, next;  ///< job numbers; empty: not submitted
     std::string parts;
 };
 
-/// In the pattern of a log's name, % begins a replacement.
+/// Escapes % in the pattern of a log's name.
 std::string log_pattern(const SlurmJob& job, const std::string& name) {
     std::string pattern;
     for (const char c : fs::absolute(job.folder).string()) pattern += c == '%' ? "%%" : std::string(1, c);
@@ -70,7 +70,7 @@ Jobs submitted_last(const SlurmJob& job) {
     return jobs;
 }
 
-/// Whether any task of the jobs waits or runs. Where Slurm does not answer, it may.
+/// Whether any task of the jobs is pending or running. True if Slurm does not answer.
 bool are_in_queue(const Jobs& jobs) {
     const auto end = slurm({"squeue", "--me", "--noheader", "--array", "--format=%F"});
     if (end.exit_code != 0) return true;
@@ -84,7 +84,7 @@ bool was_cancelled(const Jobs& jobs) {
     return end.exit_code == 0 && !end.out.empty();
 }
 
-/// `words`, and the options of the command line that stand for the job.
+/// `words`, with the command-line options of the job.
 std::vector<std::string> next_words(const SlurmJob& job) {
     std::vector<std::string> words = job.words;
     words.insert(words.end(), {"--slurm", "--no-wait", "--slurm-tasks", std::to_string(job.tasks)});
@@ -95,7 +95,7 @@ std::vector<std::string> next_words(const SlurmJob& job) {
     return words;
 }
 
-/// Its number.
+/// Returns the job number.
 std::string submit_script(const SlurmJob& job, const std::vector<std::string>& options,
                           const std::string& argument) {
     std::vector<std::string> words{"sbatch", "--parsable", "--requeue", "--job-name=mcdem"};

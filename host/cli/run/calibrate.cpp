@@ -25,7 +25,7 @@ struct CalibrateCommand {
     CalibrateOptions options;
 };
 
-/// JSON knows no not-a-number.
+/// JSON has no NaN.
 nlohmann::json number(double value) {
     return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json();
 }

@@ -1,4 +1,4 @@
-// mcdem compare and mcdem figures: runs against a reference, in numbers and in figures.
+// mcdem compare and mcdem figures: comparison of runs with a reference as numbers and figures.
 #include "cli/run/figures.h"
 #include "cli/run/report_sources.h"
 #include "cli/shell/commands.h"

@@ -51,7 +51,7 @@ DiagnoseOptions options_of(const DiagnoseCommand& command) {
     return options;
 }
 
-/// Several packings are told apart by their folders.
+/// Several packings are named by their folders.
 std::vector<Experiment> read_experiments(const std::vector<std::string>& folders) {
     std::vector<Experiment> experiments;
     for (const std::string& folder : folders) {
@@ -104,7 +104,7 @@ int run_alone(const DiagnoseCommand& command, const Scene& scene,
     }
 }
 
-/// The command line without what says where and how it runs.
+/// The command line without options that determine where and how it runs.
 std::vector<std::string> words_of(const DiagnoseCommand& command) {
     std::vector<std::string> words{"diagnose", command.scene.file};
     for (const auto& setting : command.scene.overrides) words.insert(words.end(), {"--set", setting});

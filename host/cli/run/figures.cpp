@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Larger runs are not read into memory unasked.
+/// Larger runs are read into memory only on request.
 constexpr std::uintmax_t max_bytes_read = std::uintmax_t{1} << 30;
 
 const char* const values_file = "figures.json";

@@ -46,7 +46,7 @@ void add_all_runs(Page& page, const std::vector<std::string>& paths, const Repor
 int write_report(const ReportCommand& command) {
     expect_replaceable(command.out, FileKind::page);
     make_folder_of(command.out);
-    packed_plotting_library();  // said before minutes of reading where it is missing
+    packed_plotting_library();  // throws before minutes of reading if it is missing
     std::vector<std::string> runs;
     std::vector<std::pair<std::string, Diagnosis>> diagnoses;
     for (const auto& source : command.sources)

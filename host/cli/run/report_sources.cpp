@@ -20,8 +20,7 @@ std::string digest_of(const std::filesystem::path& file) {
     return digest.hex();
 }
 
-/// The replica of a setting that is shown: the first, where it stands in its run, and how much a scan of it
-/// takes.
+/// The displayed replica of a setting: the first one, its index in its run, and the size of a scan.
 struct Chosen {
     const Recording* recording;
     std::size_t run = 0, replica = 0;
@@ -49,7 +48,7 @@ std::vector<Chosen> chosen_replicas(const LoadedRuns& loaded, const PackingLimit
     return chosen;
 }
 
-/// What of the packing is not shown, in words; empty where all is.
+/// Description of the parts of the packing that are not displayed; empty if all is.
 std::string words_left_out(const Chosen& chosen, std::size_t scans, int max_grains) {
     const auto all_scans = chosen.recording->scans.size(), all_grains = chosen.recording->diameter.size();
     std::string words;
@@ -61,7 +60,7 @@ std::string words_left_out(const Chosen& chosen, std::size_t scans, int max_grai
     return words;
 }
 
-/// A note for each packing of which something is left out; one for all where that is the same.
+/// A note for each incomplete packing, or a common note if it is the same for all.
 std::vector<std::string> notes_of(const std::vector<std::pair<std::string, std::string>>& left_out) {
     const auto as_first = [&](const auto& one) { return one.second == left_out.front().second; };
     std::vector<std::string> notes;

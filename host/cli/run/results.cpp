@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The folder's name, also of "out/first/" and "out/first/run.h5".
+/// The folder's name, also for "out/first/" and "out/first/run.h5".
 std::string short_name(const std::string& path) {
     fs::path p = fs::path(path).lexically_normal();
     if (p.filename() == "run.h5") p = p.parent_path();
@@ -20,7 +20,7 @@ std::string short_name(const std::string& path) {
     return p.filename().string();
 }
 
-/// Names that tell the runs apart: the folders' names, whole paths where those are not enough.
+/// Unique names of the runs: the folders' names, or whole paths if those are not unique.
 std::vector<std::string> names_of(const std::vector<std::string>& paths) {
     std::vector<std::string> names;
     for (const auto& path : paths) {

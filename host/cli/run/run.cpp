@@ -32,7 +32,7 @@ struct RunCommand {
     RunCut cut;
 };
 
-/// The command line without what says where and how it runs.
+/// The command line without options that determine where and how it runs.
 std::vector<std::string> words_of(const RunCommand& command) {
     std::vector<std::string> words{"run", command.scene.file};
     for (const auto& setting : command.scene.overrides) words.insert(words.end(), {"--set", setting});
@@ -97,7 +97,7 @@ void print_paths(const RunCommand& command, const std::vector<std::filesystem::p
     for (const auto& file : figures) print_out("  {}\n", file.string());
 }
 
-/// The exit code of a run whose results lie in the folder.
+/// Reports a run with results in the folder; returns the exit code.
 int report_run(const RunCommand& command, const RunSummary& summary) {
     const Run run = read_run(command.out, ReadWhat::observables);
     std::size_t failed = 0;
@@ -131,7 +131,7 @@ SharedWork shared_work(const RunCommand& command, const Scene& scene) {
     return work;
 }
 
-/// What went wrong, and how to go on from what was recorded before.
+/// Reports an error and how to resume.
 int failed_run(const RunCommand& command, const std::exception& error) {
     const int code = report_error(error);
     if (has_checkpoint(command.out))

@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t max_labels = 12;
 
-/// The device that a run would use, where there is one: a scene can be checked without.
+/// The device of a run, if there is one; a scene can be checked without a device.
 std::optional<Device> chosen_device(const std::string& choice) {
     try {
         return Device(choice);
@@ -27,7 +27,7 @@ std::optional<Device> chosen_device(const std::string& choice) {
     }
 }
 
-/// `device`: checked whether it can hold the run, where there is one.
+/// Checks whether `device`, if any, can hold the run.
 void print_memory(const Scene& scene, const std::optional<Device>& device) {
     const FieldMemory memory =
         memory_needed(scene.precision, scene.slots, scene.replicas, packing_sizes(scene.replicas));
@@ -36,7 +36,7 @@ void print_memory(const Scene& scene, const std::optional<Device>& device) {
     print_out("\n");
 }
 
-/// What each packing that is read is like.
+/// Prints properties of each packing file.
 void print_packings(const Scene& scene) {
     std::set<std::pair<std::string, std::optional<long>>> printed;
     for (const Replica& replica : scene.replicas) {
@@ -51,7 +51,7 @@ void print_packings(const Scene& scene) {
     }
 }
 
-/// "2 cycles with 30 scans a stroke", or a programme's size.
+/// "2 cycles with 30 scans a stroke", or the size of a programme.
 std::string strokes_text(const Replica& replica) {
     if (replica.programme.empty())
         return fmt::format("{} cycle{} with {} scans a stroke", replica.protocol.cycles,

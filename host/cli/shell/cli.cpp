@@ -32,7 +32,7 @@ const char* const first_steps =
     "(continue with --resume).\n"
     "Environment: MCDEM_DEVICE chooses the device where --device is not given.";
 
-/// What is wrong with the command line, and where to read how it should be.
+/// Reports an error in the command line, and which help to read.
 int report_usage(const CLI::App& app, const CLI::ParseError& error) {
     std::string command = "mcdem";
     const CLI::App* last = &app;
@@ -40,7 +40,7 @@ int report_usage(const CLI::App& app, const CLI::ParseError& error) {
         last = last->get_subcommands().front();
         command += " " + last->get_name();
     }
-    // "A subcommand is required" does not say that there was one that is not known.
+    // "A subcommand is required" does not mention an unknown subcommand.
     const auto unknown =
         last->get_require_subcommand_min() > 0 ? app.remaining(true) : std::vector<std::string>{};
     if (unknown.empty())
@@ -52,7 +52,7 @@ int report_usage(const CLI::App& app, const CLI::ParseError& error) {
     return exit_bad_input;
 }
 
-/// An empty place would be taken for the folder that one is in, or fail only once the work is done.
+/// Refuses empty paths, which would mean the current folder, or fail only after the work.
 void expect_places(CLI::App& app) {
     const auto is_place = [](const CLI::Option* option) {
         const std::string name = option->get_single_name();
@@ -91,7 +91,7 @@ int run_cli(int argc, const char* const* argv) {
     try {
         set_up_streams();
         set_up_messages();
-    } catch (const std::bad_alloc&) {  // there is nothing yet to say it with
+    } catch (const std::bad_alloc&) {  // no memory for a message
         std::fputs("mcdem: needs more memory than there is\n", stderr);
         return exit_failed;
     }

@@ -6,7 +6,7 @@
 namespace mcdem::inline cli {
 namespace {
 
-/// CLI11 names the words of a set as its type: "TEXT:{bash,zsh,fish}".
+/// Choices in the type name of a CLI11 option: "TEXT:{bash,zsh,fish}".
 std::vector<std::string> choices_of(const std::string& type) {
     const auto from = type.find('{'), to = type.find('}');
     if (from == type.npos || to == type.npos) return {};

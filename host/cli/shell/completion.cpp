@@ -12,7 +12,7 @@
 namespace mcdem::inline cli {
 namespace {
 
-/// What may stand where an option's value or a positional is expected.
+/// Type of an option's value or of a positional.
 enum class Kind { folder, file, scene_key, word, anything };
 
 Kind kind_of(const OptionEntry& option) {
@@ -23,7 +23,7 @@ Kind kind_of(const OptionEntry& option) {
     return Kind::anything;
 }
 
-/// In single quotes, for any of the shells.
+/// In single quotes, for all three shells.
 std::string in_quotes(const std::string& text) {
     std::string all = "'";
     for (const char c : text)
@@ -40,7 +40,7 @@ std::string place_of(const CommandEntry& command) {
     return place;
 }
 
-/// All places, as one pattern of `case`.
+/// All commands as one pattern of `case`.
 std::string places(const std::vector<CommandEntry>& tree) {
     std::string pattern;
     for (const CommandEntry& command : tree)
@@ -48,7 +48,7 @@ std::string places(const std::vector<CommandEntry>& tree) {
     return pattern;
 }
 
-/// One line a command and option that takes a value: `"PLACE --option") ACTION ;;`.
+/// One line per command and option with a value: `"PLACE --option") ACTION ;;`.
 template <class Action>
 std::string value_cases(const std::vector<CommandEntry>& tree, Action action) {
     std::string cases;
@@ -68,7 +68,7 @@ std::vector<std::string> all_names(const std::vector<OptionEntry>& options) {
     return names;
 }
 
-/// The words that a command takes where it has neither files nor commands.
+/// Allowed words of a command without files and subcommands.
 std::vector<std::string> choices_of(const CommandEntry& command) {
     for (const OptionEntry& positional : command.positionals)
         if (!positional.choices.empty()) return positional.choices;
@@ -151,7 +151,7 @@ std::string zsh_action(const OptionEntry& option) {
     return "_message 'value'; return";
 }
 
-/// 'name:what it is', for _describe.
+/// 'name:description', for _describe.
 std::string zsh_entry(const std::string& name, const std::string& help) {
     std::string entry = name + ":";
     for (const char c : help) entry += c == ':' ? std::string("\\:") : std::string(1, c);

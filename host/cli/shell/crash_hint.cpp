@@ -18,7 +18,7 @@ constexpr char hint[] =
 void say_hint(int signal) {
     const ssize_t written = write(STDERR_FILENO, hint, sizeof hint - 1);
     (void)written;
-    raise(signal);  // its default again, SA_RESETHAND
+    raise(signal);  // default action again because of SA_RESETHAND
 }
 
 }  // namespace
@@ -28,7 +28,7 @@ void hint_at_crashes() {
         struct sigaction before {};
         const bool is_free = sigaction(signal, nullptr, &before) == 0 && before.sa_handler == SIG_DFL;
         if (!is_free && signal != SIGABRT)
-            continue;  // a sanitizer's, or one that leaves the rest to the one before
+            continue;  // handler of a sanitizer, or one that continues with the previous handler
         struct sigaction action {};
         action.sa_handler = say_hint;
         action.sa_flags = static_cast<int>(SA_RESETHAND);

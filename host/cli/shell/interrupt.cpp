@@ -14,7 +14,7 @@ Interrupt::Interrupt() {
     asked = false;
     struct sigaction action {};
     action.sa_handler = [](int) { asked = true; };
-    action.sa_flags = static_cast<int>(SA_RESETHAND | SA_RESTART);  // the next one does what signals do
+    action.sa_flags = static_cast<int>(SA_RESETHAND | SA_RESTART);  // the next signal has its default action
     sigaction(SIGINT, &action, &before_int_);
     sigaction(SIGTERM, &action, &before_term_);
 }

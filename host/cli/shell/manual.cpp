@@ -13,7 +13,7 @@
 namespace mcdem::inline cli {
 namespace {
 
-/// Text that roff takes as it stands: no escapes, no requests at the beginning of a line, plain hyphens.
+/// Text for roff without escapes, requests at the start of a line, and special hyphens.
 std::string literal(const std::string& text) {
     std::string roff;
     for (const char c : text) {

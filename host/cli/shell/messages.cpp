@@ -16,7 +16,7 @@ void say_lines(const std::string& text) {
     for (std::string line; std::getline(lines, line);) spdlog::error("{}", line);
 }
 
-/// What a user can do about an OpenCL error. Drivers use CL_OUT_OF_RESOURCES for both.
+/// Advice for an OpenCL error. Drivers use CL_OUT_OF_RESOURCES for both.
 const char* remedy_of(cl_int code) {
     switch (code) {
         case CL_MEM_OBJECT_ALLOCATION_FAILURE:
@@ -35,7 +35,7 @@ void set_up_messages() {
     auto logger =
         std::make_shared<spdlog::logger>("mcdem", std::make_shared<spdlog::sinks::stderr_sink_mt>());
     logger->set_pattern("mcdem: %v");
-    logger->set_error_handler([](const std::string&) {});  // a message that cannot be written ends nothing
+    logger->set_error_handler([](const std::string&) {});  // ignores messages that cannot be written
     spdlog::set_default_logger(logger);
 }
 

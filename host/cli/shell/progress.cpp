@@ -15,9 +15,9 @@ namespace mcdem::inline cli {
 namespace {
 
 constexpr double bar_interval = 0.1;     ///< between two drawings of the bar [s]
-constexpr double line_interval = 10;     ///< a line at least this often [s] ..
-constexpr double line_step = 0.1;        ///< .. or after this much progress ..
-constexpr double shortest_interval = 1;  ///< .. but not more often than this [s]
+constexpr double line_interval = 10;     ///< a line is printed at least this often [s],
+constexpr double line_step = 0.1;        ///< or after this much progress,
+constexpr double shortest_interval = 1;  ///< but not more often than this [s]
 
 int columns(std::FILE* out) {
     winsize size{};
@@ -61,7 +61,7 @@ void Progress::show(double fraction) {
     const Moment moment{now_(), fraction};
     if (!first_) {
         first_ = moment;
-        if (style_ == ProgressStyle::lines) last_ = moment;  // nothing to say yet
+        if (style_ == ProgressStyle::lines) last_ = moment;  // nothing to report yet
     }
     const double waited = last_ ? seconds_since(*last_) : 1e9;
     const double moved = last_ ? fraction - last_->fraction : 0;
@@ -73,7 +73,7 @@ void Progress::show(double fraction) {
     style_ == ProgressStyle::bar ? draw_bar(fraction) : print_line(fraction);
 }
 
-/// From the pace since the beginning; empty as long as that tells little.
+/// Estimate from the speed since the start; empty while it is too uncertain.
 std::string Progress::time_left(double fraction) const {
     const double done = fraction - first_->fraction, seconds = seconds_since(*first_);
     if (done < 0.005 || seconds < 1) return "";
@@ -84,7 +84,7 @@ void Progress::draw_bar(double fraction) {
     const auto text = fmt::format(" {:3.0f} %{}", std::floor(100 * fraction), time_left(fraction));
     const int width = std::clamp(columns(out_) - static_cast<int>(text.size()) - 3, 0, 50);
     const int full = static_cast<int>(fraction * width);
-    // \033[K: to the end of the line nothing else
+    // \033[K: clears the rest of the line
     write_text(out_, fmt::format("\r[{:#<{}}{:-<{}}]{}\033[K", "", full, "", width - full, text));
     std::fflush(out_);
     bar_is_there_ = true;

@@ -19,8 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int not_started = 127;                     ///< the exit code where exec fails
-constexpr auto look = std::chrono::milliseconds(5);  ///< whether it has ended
+constexpr int not_started = 127;                     ///< exit code if exec fails
+constexpr auto look = std::chrono::milliseconds(5);  ///< interval between checks whether it has ended
 
 std::string variable(const char* name) {
     const char* value = std::getenv(name);
@@ -30,13 +30,13 @@ std::string variable(const char* name) {
 std::string interpreter() {
     const std::string chosen = variable("MCDEM_PYTHON");
     if (!chosen.empty()) return chosen;
-    // In a virtual environment the one beside this program, else the system's.
+    // In a virtual environment the interpreter next to this program, otherwise the system's.
     for (const fs::path& python : {this_program().parent_path() / "python3", fs::path("/usr/bin/python3")})
         if (::access(python.c_str(), X_OK) == 0) return python.string();
     return "python3";
 }
 
-/// The folder that holds the package `mcdem`.
+/// The folder of the package `mcdem`.
 fs::path package_folder() {
     const std::string chosen = variable("MCDEM_PYTHON_FOLDER");
     std::vector<fs::path> folders{chosen};
@@ -52,8 +52,8 @@ fs::path package_folder() {
                     looked));
 }
 
-/// Only the package's folder and what the user has set: no module of the folder that one is in comes in
-/// between.
+/// Search path with only the package's folder and the user's settings, so that modules in the current folder
+/// are not used.
 std::vector<std::string> environment() {
     const std::string others = variable("PYTHONPATH");
     return {"PYTHONPATH=" + package_folder().string() + (others.empty() ? "" : ":" + others),
@@ -77,7 +77,7 @@ ProgramEnd end_of(Subprocess python) {
 int run_python_module(const std::string& module, const std::vector<std::string>& arguments) {
     std::vector<std::string> words{interpreter(), "-m", "mcdem.program", module};
     words.insert(words.end(), arguments.begin(), arguments.end());
-    std::fflush(stdout);  // or its output would come first
+    std::fflush(stdout);  // otherwise its output would come first
     const ProgramEnd end = end_of(Subprocess(words, environment()));
     if (end.exit_code == not_started)
         throw RunError(fmt::format(

@@ -16,12 +16,12 @@ namespace mcdem::inline cli {
 namespace {
 
 bool was_terminal = false;
-int output_error = 0;  ///< errno of the first write to standard output that failed
+int output_error = 0;  ///< errno of the first failed write to standard output
 
 }  // namespace
 
 void set_up_streams() {
-    // Opened for the wrong use: reading or writing it still fails.
+    // Opened in the wrong direction, so that using it still fails.
     for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
         if (::fcntl(stream, F_GETFD) < 0 && errno == EBADF)
             ::open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);
@@ -36,7 +36,7 @@ void write_text(std::FILE* out, std::string_view text) {
 
 int exit_code_of_output(int exit_code) {
     errno = 0;
-    std::cout.flush();  // by this way the help comes
+    std::cout.flush();  // CLI11 prints help there
     if ((std::fflush(stdout) != 0 || !std::cout) && output_error == 0) output_error = errno;
     if ((output_error == 0 && std::ferror(stdout) == 0) || was_terminal) return exit_code;
     spdlog::error("standard output cannot be written: {}",

@@ -27,7 +27,7 @@ std::vector<char*> pointers(std::vector<std::string>& words) {
     return all;
 }
 
-/// This program's environment, with these settings in place of those of the same name.
+/// This program's environment, with these settings added or replaced.
 std::vector<std::string> environment_with(const std::vector<std::string>& settings) {
     std::vector<std::string> all = settings;
     for (char** own = environ; *own; ++own) {
@@ -39,7 +39,7 @@ std::vector<std::string> environment_with(const std::vector<std::string>& settin
     return all;
 }
 
-/// `out`: what becomes its standard output, or -1.
+/// `out`: descriptor for its standard output, or -1.
 pid_t start(std::vector<std::string>& words, int out, const std::vector<std::string>& settings = {}) {
     const auto arguments = pointers(words);
     auto environment = environment_with(settings);
@@ -47,7 +47,7 @@ pid_t start(std::vector<std::string>& words, int out, const std::vector<std::str
     const pid_t parent = ::getpid();
     const pid_t process = ::fork();
     if (process < 0) throw RunError(words.front() + ": cannot be started: " + std::strerror(errno));
-    if (process == 0) {  // only what may be called between fork and exec
+    if (process == 0) {  // only async-signal-safe functions between fork and exec
         ::prctl(PR_SET_PDEATHSIG, SIGTERM);
         if (::getppid() != parent) ::_exit(not_found);
         if (out < 0 || ::dup2(out, STDOUT_FILENO) >= 0) {

@@ -9,9 +9,9 @@
 namespace mcdem::inline diagnose {
 namespace {
 
-/// In addition, the best nuisance is always tried, however far behind, so that no effect is named because of
-/// a wrong parameter; signatures are least accurate for parameters that are far off. The best of the
-/// simulation's own numerics is tried if it is close.
+/// Maximum number of leading single effects that are tried. In addition, the best nuisance is always tried,
+/// however far behind, so that no effect is named because of a wrong parameter; signatures are least accurate
+/// for parameters that are far off. The best of the simulation's own numerics is tried if it is close.
 constexpr std::size_t max_singles = 3;
 /// Effects this far behind the leading one, in log likelihood or as a fraction of its gain, are not tried.
 constexpr double far_behind = 8, far_behind_share = 0.25;

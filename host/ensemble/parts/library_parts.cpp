@@ -61,7 +61,7 @@ private:
 
 namespace {
 
-/// All cells lie within the shortest stroke.
+/// The grid within the shortest stroke.
 Grid common_grid(const std::vector<Experiment>& experiments) {
     Grid grid;
     for (const Experiment& experiment : experiments)
@@ -70,7 +70,7 @@ Grid common_grid(const std::vector<Experiment>& experiments) {
     return grid;
 }
 
-/// Packings of one experiment are pressed and measured alike.
+/// Checks that the packings of one experiment are compressed and measured in the same way.
 void expect_alike(const std::vector<Experiment>& experiments, const Grid& grid) {
     constexpr double alike = 0.1;
     const Experiment& first = experiments.front();

@@ -14,7 +14,7 @@
 namespace mcdem::inline ensemble {
 namespace {
 
-/// One digest of all packing files of the scene: their names are in the scene, what they hold may change.
+/// Common digest of all packing files of the scene, whose contents may change under the same name.
 std::string digest_of_packing_files(const Scene& scene) {
     std::set<std::string> files;
     for (const Replica& replica : scene.replicas)

@@ -31,24 +31,24 @@ fs::path part_file(const fs::path& folder, std::size_t part) {
 }
 std::string work_prefix(std::size_t part) { return part_name(part) + ".work-"; }
 
-/// Parts no longer wanted, on their way out: the folder of the parts goes in one step.
+/// Merged parts before their removal: the folder of the parts is renamed in one step.
 fs::path old_parts(const fs::path& folder) { return folder / "parts.merged"; }
 
 bool is_merged(const fs::path& folder) {
     return fs::exists(run_file(folder)) && !fs::exists(parts_folder(folder));
 }
 
-/// Grains of a replica, as far as a scene tells without its packing.
+/// Number of grains of a replica, as far as a scene determines it without its packing.
 double grains_of(const Replica& replica) {
     if (const auto* drawn = std::get_if<GeneratedPacking>(&replica.packing.source)) return drawn->count;
-    constexpr double bytes_of_a_grain = 50;  // about, in a packing file
+    constexpr double bytes_of_a_grain = 50;  // approximate, in a packing file
     std::error_code missing;
     const auto bytes = fs::file_size(std::get<PackingFile>(replica.packing.source).path, missing);
     return missing ? 1 : std::max(1.0, static_cast<double>(bytes) / bytes_of_a_grain);
 }
 
-/// As many replicas as fill a device, but so few that every worker has two parts: the last to end is waited
-/// for.
+/// As many replicas as fill a device, but at most so many that every worker has two parts, to shorten the
+/// wait for the last one.
 std::size_t fitting_size(const Scene& scene, const RunCut& cut) {
     if (cut.part_replicas > 0) return cut.part_replicas;
     double most = 1;
@@ -58,7 +58,7 @@ std::size_t fitting_size(const Scene& scene, const RunCut& cut) {
     return std::clamp<std::size_t>((scene.replicas.size() + shares - 1) / shares, 1, filling);
 }
 
-/// The size of parts that a manifest states.
+/// The size of parts in a manifest.
 std::size_t size_in(const Manifest& kept, const fs::path& file) {
     const auto found = kept.find(size_of_part);
     const std::string text = found == kept.end() ? "" : found->second;
@@ -71,7 +71,7 @@ std::size_t size_in(const Manifest& kept, const fs::path& file) {
                     file.string(), size_of_part, text));
 }
 
-/// A run of one program in the folder is not touched: it is its own.
+/// Throws if the folder contains a run of a single process.
 void expect_no_run_of_one(const fs::path& folder) {
     if (fs::exists(parts_folder(folder))) return;
     if (has_checkpoint(folder) || !segment_files(folder).empty())
@@ -81,7 +81,7 @@ void expect_no_run_of_one(const fs::path& folder) {
             "another folder");
 }
 
-/// Keeps those away that write alone. What lies in the folder is looked at once they cannot come any more.
+/// Excludes processes that work alone, and then checks the content of the folder.
 FolderLock lock_for_sharing(const fs::path& folder, const Scene& scene) {
     make_result_folder(folder);
     FolderLock lock(folder, FolderLock::Use::shared);
@@ -106,7 +106,7 @@ RunParts::RunParts(const Scene& scene, const RunOptions& options, const RunCut& 
     count_ = (scene.replicas.size() + part_replicas_ - 1) / part_replicas_;
 }
 
-/// The size of parts, as it was when the folder was begun.
+/// The size of parts with which the folder was started.
 std::size_t RunParts::begin(const RunCut& cut) {
     const fs::path folder = parts_folder(options_.folder), file = manifest_file(folder);
     make_folder(folder);
@@ -121,8 +121,8 @@ std::size_t RunParts::begin(const RunCut& cut) {
     return size_in(keep_manifest(file, wanted, size_of_part), file);
 }
 
-/// Where the manifest is damaged, the finished parts tell how large parts are. Throws InputError where they
-/// are another run's.
+/// If the manifest is damaged, the size follows from the finished parts. Throws InputError if they belong to
+/// another run.
 std::size_t RunParts::size_of_finished_parts(std::size_t fitting) const {
     std::size_t size = 0;
     for (const auto& entry : fs::directory_iterator(parts_folder(options_.folder))) {
@@ -131,7 +131,7 @@ std::size_t RunParts::size_of_finished_parts(std::size_t fitting) const {
         try {
             part = read_run_header({entry.path()});
         } catch (const InputError&) {
-            continue;  // found when it is merged
+            continue;  // detected during the merge
         }
         if (part.scene != scene_.text || part.program != options_.program)
             throw InputError(
@@ -148,7 +148,7 @@ std::vector<std::size_t> RunParts::missing() {
     if (fs::exists(run_file(options_.folder))) return parts;
     for (std::size_t part = 0; part < count_; ++part)
         if (!fs::exists(part_file(options_.folder, part))) parts.push_back(part);
-    // .. unless all went between two looks, merged by another process.
+    // .. unless another process has merged all of them in the meantime.
     if (fs::exists(run_file(options_.folder))) parts.clear();
     return parts;
 }
@@ -162,7 +162,7 @@ Scene RunParts::scene_of(std::size_t part) const {
     return some;
 }
 
-/// Throws DamagedPart where the finished part cannot be read, or is another one.
+/// Throws DamagedPart if the finished part cannot be read, or belongs to something else.
 void RunParts::expect_own(std::size_t part) const try {
     const fs::path file = part_file(options_.folder, part);
     const Run found = read_run_header({file});
@@ -190,8 +190,8 @@ void RunParts::warn_of_damage(std::size_t part, const std::string& why) const {
     options_.on_warning(fmt::format("part {} is computed again: {}", part_name(part), why));
 }
 
-/// A folder of this process for its work on the part, with the checkpoint that an interrupted process has
-/// left, if any. One of another machine whose lock does not reach this one finds its folder gone, and does no
+/// A work folder of this process for the part, with the checkpoint of an interrupted process, if there is
+/// one. A process on another machine whose lock is not visible here finds its folder missing, and does no
 /// harm.
 fs::path RunParts::take_work_folder(std::size_t part) const {
     std::random_device random;
@@ -204,8 +204,8 @@ fs::path RunParts::take_work_folder(std::size_t part) const {
             std::error_code gone;
             fs::rename(entry.path(), mine, gone);
             if (!gone) break;
-        } catch (const InputError&) {  // another process is at it
-        } catch (const RunError&) {    // it is gone
+        } catch (const InputError&) {  // another process is working there
+        } catch (const RunError&) {    // it no longer exists
         }
     }
     return mine;
@@ -239,17 +239,17 @@ bool RunParts::compute(Device& device, std::size_t part) try {
     if (run_part(device, part, work) == RunEnd::interrupted) return false;
     move_file(run_file(work), part_file(options_.folder, part));
     fs::remove_all(work);
-    // Others may have merged while this process computed what was done already.
+    // Others may have merged in the meantime.
     if (fs::exists(run_file(options_.folder))) merge();
     return true;
 } catch (const std::exception&) {
-    // The folder of the parts goes when others have merged them, whatever this process was about to do there.
+    // Another process may have merged the parts and removed their folder.
     if (!is_merged(options_.folder)) throw;
     expect_scene_of(options_.folder, scene_);
     return true;
 }
 
-/// Locks keep others away, but not on every network disk.
+/// Locks exclude others, but not on every network file system.
 void RunParts::expect_own_merge() const {
     if (read_run_header({run_file(options_.folder)}).scene != scene_.text)
         throw InputError(options_.folder.string() +
@@ -257,7 +257,7 @@ void RunParts::expect_own_merge() const {
                          "(run.h5 and plate.csv; parts/) elsewhere");
 }
 
-/// False where a part is damaged, which is removed then.
+/// False if a part is damaged; it is then removed.
 bool RunParts::merge_files() try {
     std::vector<fs::path> files;
     for (std::size_t part = 0; part < count_; ++part) {
@@ -272,7 +272,7 @@ bool RunParts::merge_files() try {
     return false;
 }
 
-/// Safe to do twice, by two processes at a time, and after it was cut short anywhere.
+/// Can be repeated safely, by two processes at the same time, and after an interruption anywhere.
 bool RunParts::merge() try {
     if (is_merged(options_.folder)) return true;
     if (fs::exists(run_file(options_.folder)))
@@ -283,7 +283,7 @@ bool RunParts::merge() try {
     fs::remove_all(old_parts(options_.folder));
     fs::rename(parts_folder(options_.folder), old_parts(options_.folder));
     fs::remove_all(old_parts(options_.folder));
-    // Another that merges at the same time may still write: what it would write is there.
+    // Another process that merges at the same time may still write a file that already exists.
     remove_temporaries(options_.folder);
     return true;
 } catch (const std::exception&) {

@@ -11,14 +11,14 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Numbers that are not finite need no care: the library writes null for them.
+// The library writes null for numbers that are not finite.
 
 template <class Value>
 Json or_null(const std::optional<Value>& value) {
     return value ? Json(*value) : Json();
 }
 
-/// Without the last digits' noise: a nanometre is the smallest step.
+/// Rounded to a nanometre, to remove noise in the last digits.
 Json millimetres(double metres) { return std::round(metres * 1e9) / 1e6; }
 
 Json millimetres(const std::array<double, 2>& metres) {

@@ -24,7 +24,7 @@ void add_gap(Page& page, const Diagnosis& diagnosis) {
     page.table("Packing by packing", table_of_packings(diagnosis));
 }
 
-/// What the rows of the picture mean, of those in it.
+/// Meanings of the rows of the figure.
 TextTable table_of_observables(const Diagnosis& diagnosis) {
     TextTable table;
     table.columns = {{"observable", Align::left}, {"what it is", Align::left}};
@@ -36,7 +36,7 @@ TextTable table_of_observables(const Diagnosis& diagnosis) {
     return table;
 }
 
-/// What the amplitudes of the candidates mean.
+/// Meanings of the candidates' amplitudes.
 TextTable table_of_effects(const Diagnosis& diagnosis) {
     TextTable table;
     table.columns = {{"effect", Align::left}, {"amplitude", Align::left}, {"source", Align::left}};

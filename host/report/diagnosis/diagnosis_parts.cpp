@@ -12,7 +12,7 @@ namespace {
 constexpr double phase_gap = 0.35;      ///< between loading and unloading [columns]
 constexpr double interval_90 = 1.6449;  ///< sigmas on either side
 
-/// Displacements that differ by less are one column [m].
+/// Displacements with a smaller difference are one column [m].
 constexpr double same_displacement = 1e-5;
 
 int phase_order(const std::string& phase) { return phase == "load" ? 0 : phase == "unload" ? 1 : 2; }

@@ -11,7 +11,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// null stands for what is not finite or not known.
+/// null means not finite or unknown.
 double number(const Json& json, double otherwise = std::numeric_limits<double>::quiet_NaN()) {
     return json.is_null() ? otherwise : json.get<double>();
 }
@@ -34,7 +34,7 @@ auto list_of(const Json& json, Read read) {
     return list;
 }
 
-/// Files of earlier versions have none.
+/// Missing in files of earlier versions.
 double difference_of(const Json& json) {
     return json.contains("difference") ? number(json["difference"]) : 0;
 }
@@ -152,7 +152,7 @@ Diagnosis read(const Json& json) {
     d.ranking = list_of(json.at("ranking"), cause_of);
     d.nuisances = list_of(json.at("nuisances"), nuisance_of);
     if (const auto found = json.find("explanation"); found != json.end() && !found->is_null())
-        d.explanation = explanation_of(*found);  // files of earlier versions have none
+        d.explanation = explanation_of(*found);  // missing in files of earlier versions
     if (!json.at("shrink").is_null()) d.gap_reduction = gap_reduction_of(json.at("shrink"));
     d.detection_limits = list_of(json.at("detection_limits"), limit_of);
     d.not_measured = json.at("not_measured");

@@ -26,7 +26,7 @@ std::string others(const std::vector<std::string>& group, const std::string& eff
     return words.empty() ? no_number : listed(words);
 }
 
-/// Region and force class that the entry is about.
+/// Region and force class of the entry.
 std::string part_words(const WhereEntry& entry) {
     std::vector<std::string> words;
     if (entry.region && !entry.region->empty()) words.push_back(words_of(*entry.region));
@@ -35,10 +35,10 @@ std::string part_words(const WhereEntry& entry) {
     return words.empty() ? "all" : listed(words);
 }
 
-/// The best value of a metric, beside which the others are read.
+/// The ideal value of a metric.
 std::string perfect(const std::string& metric) { return metric == "Rtop" ? "1" : "0"; }
 
-/// What a metric of the paper is; empty for others.
+/// Meaning of a metric of the paper; empty for others.
 std::string meaning_of(const std::string& metric) {
     if (metric == "Rtop") return "force on the plate at full stroke, simulated over measured";
     if (metric == "errf") return "root mean square error of the force on the plate over the cycle";

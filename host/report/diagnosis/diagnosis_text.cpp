@@ -27,7 +27,7 @@ const Cause* leader_of(const Diagnosis& diagnosis) {
     return diagnosis.ranking.empty() ? nullptr : &diagnosis.ranking.front();
 }
 
-/// The members of the leader's group with their amplitudes, where those are known.
+/// The members of the leading effect's group, with their amplitudes if known.
 std::vector<std::string> members_of(const Diagnosis& diagnosis, const Cause& leader) {
     std::vector<std::string> members;
     for (const auto& name : leader.group) {
@@ -42,7 +42,8 @@ std::vector<std::string> members_of(const Diagnosis& diagnosis, const Cause& lea
     return members;
 }
 
-/// A second effect that acts together with the leader, in words that follow it; empty where there is none.
+/// A second effect that acts together with the leading one, as a continuation of a sentence; empty if there
+/// is none.
 std::string together_with(const Diagnosis& diagnosis) {
     std::vector<std::string> parts;
     for (std::size_t i = 1; i < diagnosis.causes.size(); ++i) {
@@ -53,7 +54,7 @@ std::string together_with(const Diagnosis& diagnosis) {
     return parts.empty() ? "" : " together with " + listed(parts);
 }
 
-/// What cannot be told from the leader, in words that follow it; empty where it stands alone.
+/// Effects that cannot be distinguished from the leading one, as a continuation; empty if there are none.
 std::string not_told_from(const Cause& leader) {
     std::vector<std::string> parts;
     for (const auto& name : leader.group)
@@ -61,7 +62,7 @@ std::string not_told_from(const Cause& leader) {
     return parts.empty() ? "" : ", which these data cannot tell from " + listed(parts);
 }
 
-/// What the diagnosis refined by itself, in words that follow a statement; empty where nothing was.
+/// Settings that the diagnosis has refined, as a continuation; empty if there are none.
 std::string refined(const Diagnosis& diagnosis) {
     std::string text;
     for (const auto& refinement : diagnosis.refinements)
@@ -69,14 +70,14 @@ std::string refined(const Diagnosis& diagnosis) {
     return text;
 }
 
-/// What is still to be refined; empty where nothing is known of it.
+/// Settings that must still be refined; empty if none are known.
 std::string to_refine(const Diagnosis& diagnosis) {
     for (const auto& refinement : diagnosis.refinements)
         if (!refinement.done) return ": set " + refinement_words(refinement);
     return "";
 }
 
-/// Packings that differ from the others by more than noise.
+/// Packings that differ significantly from the others.
 std::vector<std::string> differing_packings(const Diagnosis& diagnosis) {
     std::vector<std::string> names;
     for (const auto& packing : diagnosis.packings)
@@ -84,7 +85,7 @@ std::vector<std::string> differing_packings(const Diagnosis& diagnosis) {
     return names;
 }
 
-/// In words that follow a statement; empty where there is one packing.
+/// Agreement of the packings, as a continuation; empty for a single packing.
 std::string packings_words(const Diagnosis& diagnosis) {
     if (diagnosis.packings.empty()) return "";
     const auto differing = differing_packings(diagnosis);
@@ -106,7 +107,7 @@ std::string gap_line(const Diagnosis& diagnosis) {
         refined(diagnosis), p_words(diagnosis.p_value), packings);
 }
 
-/// The strongest of the cells that are framed in the picture, and how many there are.
+/// The strongest of the framed cells in the figure, and their number.
 struct Framed {
     const WhereCell* strongest = nullptr;
     int count = 0;
@@ -124,8 +125,7 @@ Framed framed_cells(const Diagnosis& diagnosis, bool refitted) {
     return framed;
 }
 
-/// Where no entry stands for them: single cells beyond the threshold, so that the words say what the picture
-/// shows.
+/// Without entries: single cells beyond the threshold, so that the text agrees with the figure.
 std::string framed_line(const Diagnosis& diagnosis) {
     const Framed refitted = framed_cells(diagnosis, true), stated = framed_cells(diagnosis, false);
     if (refitted.count + stated.count == 0) return "no single part of the data stands out of the noise.";
@@ -165,12 +165,12 @@ std::string where_line(const Diagnosis& diagnosis) {
     return text + ".";
 }
 
-/// "97 % of the gap": the number that the verdict hangs on.
+/// "97 % of the gap": the reduction on which the verdict depends.
 std::string reduction_words(const Diagnosis& diagnosis) {
     return diagnosis.explanation ? percent(diagnosis.explanation->reduction) + " of the gap" : "the gap";
 }
 
-/// What it lacks to be named, in words that follow its reduction.
+/// The reduction required to name an effect, as a continuation.
 std::string needed_words(const Explanation& explanation) {
     const auto needed = percent(explanation.needed);
     return needed == percent(explanation.reduction) ? "a little less than is needed to name it"
@@ -260,8 +260,7 @@ std::string how_far_line(const Diagnosis& diagnosis) {
     return text + ".";
 }
 
-/// Finite limits of the candidates that were nearest to being called for; in the order given without a
-/// ranking.
+/// Finite limits of the candidates with the highest scores; without a ranking, in the given order.
 std::vector<std::string> limits_that_matter(const Diagnosis& diagnosis) {
     auto limits = diagnosis.detection_limits;
     const auto rank = [&](const DetectionLimit& limit) {
@@ -325,7 +324,7 @@ std::string next_line(const Diagnosis& diagnosis) {
 }
 
 /// In words that follow what is named.
-std::string taken_away(const Diagnosis& diagnosis) {
+/// The reduction of the named explanation, as a continuation.
     return diagnosis.explanation ? ", and " + reduction_words(diagnosis) + " goes away with it" : "";
 }
 

@@ -11,9 +11,9 @@ namespace {
 
 constexpr int where_row_height = 22, where_above_rows = 64, where_below_rows = 56;  // [pixels]
 constexpr int beside_columns = 300, min_column = 30;                                // [pixels]
-constexpr std::size_t max_numbers = 16;  // columns in which numbers find room
+constexpr std::size_t max_numbers = 16;  // maximum number of columns with printed numbers
 
-/// Columns of the trace: those of the map, and an empty one where the phase changes.
+/// Columns of the trace: those of the map, and an empty one between the phases.
 struct Grid {
     std::vector<double> edges;
     std::vector<int> column;  ///< of the map; -1: empty
@@ -36,7 +36,7 @@ std::string hover_words(const WhereCell& cell, double z) {
            fmt::format("<br>{:.2f} sigma", z);
 }
 
-/// Blue: the experiment lies below, orange: above.
+/// Blue: the experiment is lower; orange: it is higher.
 Json colours() {
     return {{0, "var(--cool-3)"},     {0.2, "var(--cool-2)"}, {0.375, "var(--cool-1)"}, {0.5, "var(--none)"},
             {0.625, "var(--warm-1)"}, {0.8, "var(--warm-2)"}, {1, "var(--warm-3)"}};
@@ -87,7 +87,7 @@ Json cells_trace(const Diagnosis& diagnosis, const HeatMap& map, bool refitted, 
                 {"font", {{"size", 12}}}}}}}};
 }
 
-/// Frames of the cells that stand out, and a trace of their numbers.
+/// Frames of the significant cells, and a trace of their numbers.
 void add_frames(const Diagnosis& diagnosis, const HeatMap& map, bool refitted, const std::string& axis,
                 Chart& chart) {
     const double range = colour_range(diagnosis.cells);
@@ -122,7 +122,7 @@ void add_frames(const Diagnosis& diagnosis, const HeatMap& map, bool refitted, c
 
 Json columns_axis(const HeatMap& map, double from, double to) {
     Json places = Json::array(), words = Json::array();
-    const auto every = map.columns.size() / 10 + 1;  // more would run into each other
+    const auto every = map.columns.size() / 10 + 1;  // more labels would overlap
     for (std::size_t c = 0; c < map.columns.size(); c += every) {
         places.push_back(map.columns[c].x);
         words.push_back(fmt::format("{:.3g}", map.columns[c].displacement * 1e3));

@@ -87,7 +87,7 @@ Json amplitudes(const Diagnosis& diagnosis) {
             {"showlegend", false}};
 }
 
-/// A column of words beside the axes, one a row.
+/// A column of text next to the axes, one text per row.
 Json column(const std::string& heading, const std::vector<std::string>& words, double x, const char* anchor) {
     Json annotations = Json::array();
     const auto add = [&](const std::string& text, const Json& y, const char* yref, int shift) {

@@ -41,7 +41,7 @@ const std::map<std::string, std::string>& special_words() {
     return words;
 }
 
-/// Unit in files, what its number is multiplied with, unit for people.
+/// Unit in files, conversion factor, displayed unit.
 struct ShownUnit {
     std::string unit;
     double factor;
@@ -63,12 +63,12 @@ std::string with_unit(const std::string& number, const std::string& unit) {
     return unit.empty() ? number : number + " " + unit;
 }
 
-/// Decimals that show the first two digits of `error`.
+/// Number of decimals that shows the first two digits of `error`.
 int decimals_for(double error) {
     return std::clamp(1 - static_cast<int>(std::floor(std::log10(error))), 0, 12);
 }
 
-/// What the two signs of an amplitude mean, in words that follow its size.
+/// Texts for the two signs of an amplitude, after its absolute value.
 struct Directions {
     std::string above, below;
 };
@@ -136,7 +136,7 @@ std::string amount(double value, double error, const std::string& unit, Sign sig
 std::string percent(double fraction) {
     if (!std::isfinite(fraction)) return no_number;
     if (fraction > 0 && fraction < 0.005) return "< 1 %";
-    return fmt::format("{:.0f} %", std::round(fraction * 100) + 0.0);  // no minus before a zero
+    return fmt::format("{:.0f} %", std::round(fraction * 100) + 0.0);  // avoids "-0"
 }
 
 std::string p_words(double p) {
@@ -157,7 +157,7 @@ std::string phase_words(const std::string& phase) {
 
 namespace {
 
-/// "12 % higher than simulated"; the size of forces only, whose observables are logarithms.
+/// "12 % higher than simulated"; only for the magnitude of forces, whose observables are logarithms.
 std::string difference_words(const WhereEntry& entry) {
     const bool is_force = entry.observable == "top_force" || entry.observable == "mean_force";
     const std::string size =

@@ -6,12 +6,13 @@
 namespace mcdem::inline report {
 namespace {
 
-/// "#rrggbb" as a faint fill; ink stays what it is.
+/// "#rrggbb" as a light fill; the colour of text is not changed.
 std::string faint(const std::string& colour) {
     return colour.starts_with('#') ? colour + "2e" : "var(--grid)";
 }
 
-/// There and back along the curve. On logarithmic axes a band must not reach zero: at most two thirds down.
+/// Outline of the band. On logarithmic axes it must not reach zero, so the lower edge is limited to a third
+/// of the value.
 Json band(const Series& series, const std::string& colour, const std::vector<FigurePoint>& points) {
     Json x = Json::array(), y = Json::array();
     for (const auto& p : points) x.push_back(p.x), y.push_back(p.y + p.error);

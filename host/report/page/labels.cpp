@@ -29,7 +29,7 @@ std::string one_line(const std::string& text) {
 }
 
 std::string shortened(const std::string& text, std::size_t most) {
-    std::size_t characters = 0, end = 0;  // `end`: where the character before the last one allowed ends
+    std::size_t characters = 0, end = 0;  // `end`: end of the last but one allowed character
     for (std::size_t i = 0; i < text.size(); ++i) {
         if ((text[i] & 0xC0) == 0x80) continue;  // not the first byte of a character
         if (++characters == most) end = i;

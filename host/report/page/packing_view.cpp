@@ -21,7 +21,7 @@ double rounded(double value) {
     return unit < 1 ? scaled / std::round(1 / unit) : scaled * unit;
 }
 
-/// The grains that are shown, and where each grain stands among them (-1: not at all).
+/// The displayed grains, and the index of each grain among them (-1: not displayed).
 struct Shown {
     std::vector<int> grains, place;
 };
@@ -46,7 +46,7 @@ Shown shown_grains(const Recording& recording, int most) {
     return shown;
 }
 
-/// What a scan of a cell is, without its number.
+/// Description of a cell's scan, without its number.
 std::string words_of_cell(const Scan& scan) {
     const double p = mean_stress(scan.stress);
     const StressUnit unit = stress_unit(p);
@@ -108,7 +108,7 @@ Json setting_json(const ShownPacking& packing, const PackingLimits& limits) {
             {"scans", scans}};
 }
 
-/// The value that all but one in two hundred stay below; 1 where there is none.
+/// Quantile of 0.995; 1 if there are no values.
 double colour_end(std::vector<double> values) {
     if (values.empty()) return 1;
     const auto place = values.end() - 1 - static_cast<std::ptrdiff_t>(values.size() / 200);
@@ -116,7 +116,7 @@ double colour_end(std::vector<double> values) {
     return *place > 0 ? rounded(*place) : 1;
 }
 
-/// Forces of contacts, and on grains, of all scans [mN].
+/// Forces of contacts and on grains, for all scans [mN].
 struct Forces {
     std::vector<double> contact, grain;
 };

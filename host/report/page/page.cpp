@@ -24,7 +24,7 @@ std::string base64(std::string_view bytes) {
     return text;
 }
 
-/// The digest of a script as a page's policy names it.
+/// The hash of a script for the page's content security policy.
 std::string script_hash(const std::string& script) {
     const auto hex = Sha256().add(script).hex();
     std::string bytes;
@@ -33,7 +33,7 @@ std::string script_hash(const std::string& script) {
     return "'sha256-" + base64(bytes) + "'";
 }
 
-/// Nothing in it can end the element that it stands in.
+/// JSON in which nothing can end the enclosing element.
 std::string json_for_page(const Json& json) {
     std::string safe;
     for (const char c : json.dump(-1, ' ', false, Json::error_handler_t::replace)) switch (c) {
@@ -52,8 +52,9 @@ std::string json_for_page(const Json& json) {
     return safe;
 }
 
-/// Scripts: the page's own one, and what that unpacks (plotly.js, which makes functions of text). Pictures:
-/// those that the page makes itself. Anything else, and every address, is refused.
+/// Content security policy. Scripts: only the page's own and the one that it unpacks (plotly.js, which
+/// creates functions from text). Images: only those created by the page. All other content and all network
+/// access is refused.
 std::string policy(const std::string& script) {
     return "default-src 'none'; script-src " + script_hash(script) +
            " 'unsafe-eval'; style-src 'unsafe-inline'; img-src data: blob:";

@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* file_name = "plotly.js.gz";
 
-/// $MCDEM_SHARE alone where it is set, so that a wrong one is noticed.
+/// Only $MCDEM_SHARE if it is set, so that a wrong value is noticed.
 std::vector<fs::path> folders() {
     if (const char* chosen = std::getenv("MCDEM_SHARE")) return {chosen};
     std::error_code unknown;
@@ -30,7 +30,7 @@ std::string packed_plotting_library() {
     for (const auto& folder : folders()) {
         std::ifstream in(folder / file_name, std::ios::binary);
         std::string bytes{std::istreambuf_iterator<char>(in), {}};
-        if (bytes.starts_with("\x1f\x8b")) return bytes;  // what gzip files begin with
+        if (bytes.starts_with("\x1f\x8b")) return bytes;  // magic number of gzip
         looked += (looked.empty() ? "" : ", ") + folder.string();
     }
     throw RunError(

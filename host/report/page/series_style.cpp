@@ -6,7 +6,7 @@
 namespace mcdem::inline report {
 namespace {
 
-// Okabe & Ito 2008, less yellow (too faint on white) and black (the reference), in the order of
+// Okabe & Ito 2008, without yellow (too light on white) and black (the reference), in the order of
 // ContactModel.
 constexpr std::array<const char*, 7> palette{"#0072B2", "#56B4E9", "#009E73", "#E69F00",
                                              "#D55E00", "#CC79A7", "#666666"};

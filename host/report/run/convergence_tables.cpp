@@ -12,7 +12,7 @@
 namespace mcdem::inline report {
 namespace {
 
-/// In per cent for forces, in standard deviations of one packing's replicates for all else.
+/// In per cent for forces, otherwise in standard deviations of one packing's replicates.
 double shown(const Convergence& convergence, std::size_t cell, double value) {
     return convergence.is_relative(cell) ? 100 * value : value / convergence.scale(cell);
 }
@@ -40,7 +40,7 @@ bool has_any(const Convergence& convergence, int observable) {
     return false;
 }
 
-/// By how much the error at this cell must go down.
+/// Factor by which the error at this cell must be reduced.
 double factor_of(const Convergence& convergence, const CauseErrors& cause, std::size_t cell) {
     return std::abs(cause.cells[cell].value) / convergence.limit(cell);
 }

@@ -5,7 +5,7 @@
 namespace mcdem::inline report {
 namespace {
 
-/// The level of the phase nearest to the displacement that has contacts; none where there is none.
+/// The level with contacts nearest to the displacement in this phase; null if there is none.
 const Level* nearest_level(const Series& series, const FigureOptions& options) {
     const Level* nearest = nullptr;
     const auto distance = [&](const Level& level) {
@@ -30,7 +30,7 @@ std::vector<ShownDensity> shown_levels(const Cast& cast, const FigureOptions& op
     return shown;
 }
 
-/// Bins common to all: to the force that all but a few contacts stay below, as many as the fewest allow.
+/// Common bins up to a force that few contacts exceed; their number follows from the smallest sample.
 struct Bins {
     double largest = 0;  ///< [N]
     int count = 100;

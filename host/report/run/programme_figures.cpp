@@ -9,7 +9,7 @@
 namespace mcdem::inline report {
 namespace {
 
-constexpr double distortion = 1e-6;  ///< deviatoric strain of a cell that counts
+constexpr double distortion = 1e-6;  ///< smaller deviatoric strains of a cell are ignored
 
 /// What an axis shows.
 struct Axis {
@@ -48,7 +48,7 @@ RunFigure figure_of(const std::vector<Track>& tracks, const std::string& name, c
     return figure;
 }
 
-/// The largest value of a quantity in any scan.
+/// Largest value of a quantity in all scans.
 double largest(const std::vector<Track>& tracks, Estimate MeanScan::*quantity) {
     double most = 0;
     for (const Track& track : tracks)
@@ -64,7 +64,7 @@ const Axis time_axis{"time [s]", 1, &MeanScan::time};
 const Axis volume{"volume strain [%]", 1e-2, &MeanScan::volume_strain};
 const Axis shear{"deviatoric strain [%]", 1e-2, &MeanScan::shear_strain};
 
-/// Mean and deviatoric stress of the tracks in a unit common to them.
+/// Mean and deviatoric stress of the tracks in a common unit.
 struct Stresses {
     Axis p, q;
 };
@@ -98,7 +98,7 @@ void add_cells(const std::vector<Track>& tracks, std::vector<RunFigure>& figures
                                 {"contacts per grain Z", 1, &MeanScan::coordination}));
 }
 
-/// Of plates and of cells that are distorted.
+/// For plates, and for cells that are distorted.
 void add_stress_path(const std::vector<Track>& tracks, std::vector<RunFigure>& figures) {
     const auto [p, q] = stresses_of(tracks);
     figures.push_back(figure_of(tracks, "stress_path", "Stress path", p, q));

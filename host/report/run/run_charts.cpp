@@ -19,7 +19,7 @@ Chart chart_of(const RunFigure& figure, const std::string& title, const std::str
     return chart;
 }
 
-/// Loading solid, unloading dashed; the reference as points, full and open.
+/// Loading solid, unloading dashed; the reference as points, filled and open.
 void add_curves(Json& traces, const Cast& cast, const FigureSeries& shown, const PointWords& words,
                 const std::string& remark = "") {
     bool in_key = true;
@@ -43,7 +43,7 @@ bool several_replicas(const RunFigure& figure) {
     return false;
 }
 
-/// What lines, points and bands mean.
+/// Meaning of lines, points and bands.
 std::string caption(const Cast& cast, const RunFigure& figure) {
     return std::string("Solid lines: loading, dashed: unloading.") +
            (cast.reference ? " Points: the reference, full while loading, open while unloading." : "") +
@@ -86,7 +86,7 @@ Chart coordination_chart(const Cast& cast, const RunFigure& figure, const Figure
     return chart;
 }
 
-/// Points of loading (full) and unloading (open), and the line through zero.
+/// Points of loading (filled) and unloading (open), and the line through the origin.
 void add_scaling(Json& traces, const Cast& cast, const FigureSeries& shown) {
     const auto colour = chart_colour(cast, *shown.series);
     const auto words = plot_text(shown.series->words);
@@ -119,7 +119,7 @@ Chart scaling_chart(const Cast& cast, const RunFigure& figure) {
     return chart;
 }
 
-/// What its axes mean where that is not plain.
+/// Explanation of the axes, if necessary.
 std::string programme_words(const RunFigure& figure) {
     std::string words;
     const auto has = [&](const char* quantity) {

@@ -15,7 +15,7 @@ namespace mcdem::inline report {
 namespace {
 
 constexpr double mN_m = 1e-3;
-constexpr std::size_t key_characters = 44;  ///< a longer label would leave no room for the curves
+constexpr std::size_t key_characters = 44;  ///< longer labels would leave no space for the curves
 
 std::optional<Comparison> comparison_of(const Setting& setting, const std::optional<Setting>& reference,
                                         const FigureOptions& options) {
@@ -31,7 +31,7 @@ bool is_programme(const Series& series) { return follows_programme(series.settin
 
 void add_each(const Cast& cast, RunFigure& figure, const std::function<FigureSeries(const Series&)>& make) {
     const auto add = [&](const Series& series) {
-        if (is_programme(series)) return;  // it has no levels
+        if (is_programme(series)) return;  // a programme has no levels
         auto shown = make(series);
         if (!shown.curves.empty()) figure.series.push_back(std::move(shown));
     };
@@ -39,8 +39,8 @@ void add_each(const Cast& cast, RunFigure& figure, const std::function<FigureSer
     if (cast.reference) add(*cast.reference);
 }
 
-/// The levels of one phase that are known. Unloading starts at the turning point, the last level of loading,
-/// which then comes last.
+/// The known levels of one phase. Unloading starts at the turning point, the last level of loading, which is
+/// then last.
 std::vector<FigurePoint> curve_points(const std::vector<LevelMean>& means, Phase phase) {
     std::vector<FigurePoint> points;
     const auto point_of = [](const LevelMean& level) -> FigurePoint {
@@ -93,13 +93,13 @@ RunFigure distribution_figure(const Cast& cast, const FigureOptions& options) {
     return figure;
 }
 
-/// Below which contact forces are left out of Z [N].
+/// Force threshold of Z [N].
 double threshold_of(const Series& series, const FigureOptions& options) {
     if (!series.comparison) return options.threshold;
     return series.comparison->tau.available() ? series.comparison->tau.value : 0;
 }
 
-/// Z of the series at its threshold; as recorded where there are no contacts, and for the reference.
+/// Z of the series at its threshold; as recorded without contacts, and for the reference.
 std::vector<LevelMean> coordination_means(const Cast& cast, const Series& series,
                                           const FigureOptions& options) {
     const auto walls = options.compare.walls_in_coordination;

@@ -24,7 +24,7 @@ std::string listed_names(const std::vector<RunOrigin>& origins) {
     return names;
 }
 
-/// " Grains of gel, rubber." where some run has species.
+/// " Grains of gel, rubber." if a run has species.
 std::string species_of(const RunsOnPage& runs) {
     std::vector<std::string> names;
     for (const RunOrigin& origin : runs.origins)
@@ -34,7 +34,7 @@ std::string species_of(const RunsOnPage& runs) {
     return names.empty() ? "" : fmt::format(" Grains of {}.", fmt::join(names, ", "));
 }
 
-/// The head's sentences.
+/// Sentences at the head of the page.
 std::string head_of(const RunsOnPage& runs) {
     std::string words = what_was_simulated(runs.settings) + species_of(runs);
     if (runs.reference) words += " Held against " + runs.reference->label + ".";
@@ -77,7 +77,7 @@ void add_packing(Page& page, const RunsOnPage& runs) {
     page.packing(*view, caption);
 }
 
-/// Seeds of the packings, the first few of many.
+/// Seeds of the packings, shortened if there are many.
 std::string seeds_of_run(const Run& run) {
     constexpr std::size_t most = 12;
     std::vector<std::string> seeds;

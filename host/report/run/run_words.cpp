@@ -16,7 +16,8 @@
 namespace mcdem::inline report {
 namespace {
 
-constexpr std::size_t max_listed = 4;  ///< settings; of more the first and last in order of size
+constexpr std::size_t max_listed =
+    4;  ///< maximum number of settings; if there are more, the smallest and the largest ones
 
 std::string counted(std::size_t count, const std::string& what) {
     return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
@@ -55,7 +56,7 @@ std::string protocol_words(const Recording& recording) {
     return "compressed by a plate" + (cycles.empty() || cycles == "1" ? "" : ", " + cycles + " cycles");
 }
 
-/// What a setting reached.
+/// Result of a setting.
 struct Reached {
     std::string setting;
     double value;
@@ -89,7 +90,7 @@ std::string of_strokes(const std::vector<Setting>& settings, const LevelOptions&
                   reached);
 }
 
-/// The scan in which the mean of a quantity is largest.
+/// The scan with the largest mean of a quantity.
 Reached strongest(const Setting& setting, Estimate MeanScan::*quantity,
                   const std::function<std::string(const MeanScan&)>& words) {
     const MeanScan* most = nullptr;

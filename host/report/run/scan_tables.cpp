@@ -32,7 +32,7 @@ std::vector<Told> told_of(const std::vector<Setting>& settings, bool cells) {
 struct Quantity {
     std::string title, csv_name;
     std::function<const Estimate&(const MeanScan&)> of;
-    double unit = 1;  ///< in which a table shows it; CSV has SI units
+    double unit = 1;  ///< for tables; CSV uses SI units
     int decimals = 3;
 };
 
@@ -43,14 +43,14 @@ double largest(const std::vector<Told>& told, const Quantity& quantity) {
     return most;
 }
 
-/// So many that the largest number has four digits.
+/// Number of decimals with which the largest number has four digits.
 int four_digits(double largest) {
     return largest > 0 ? std::clamp(3 - static_cast<int>(std::floor(std::log10(largest))), 0, 6) : 1;
 }
 
 const char* const strain_names[]{"strain_x", "strain_y", "strain_z", "shear_xy", "shear_xz", "shear_yz"};
 
-/// Strains that are not zero everywhere, one column for the first three where they are alike; or all six.
+/// Nonzero strains, with one column for the first three if they are equal; or all six.
 std::vector<Quantity> strains(const std::vector<Told>& told, bool all) {
     std::vector<Quantity> columns;
     const auto strain = [](std::size_t k) {
@@ -93,7 +93,7 @@ std::vector<Quantity> cell_quantities(const std::vector<Told>& told, bool all_st
     return columns;
 }
 
-/// The first scan in which a replica's grains overlap more than the law was tested for.
+/// The first scan in which a replica's overlaps exceed the tested range.
 int first_beyond(const std::vector<MeanScan>& scans, double tested) {
     const auto beyond = [&](const MeanScan& scan) { return scan.max_overlap > tested; };
     return std::ranges::find_if(scans, beyond)->frame;

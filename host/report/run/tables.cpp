@@ -14,7 +14,7 @@ std::string number(double value, int decimals) {
     return std::isfinite(value) ? fmt::format("{:.{}f}", value, decimals) : no_number;
 }
 
-/// Notes by setting; those that all settings share once.
+/// Notes for each setting; common notes once.
 std::vector<std::string> notes_of(const std::vector<Comparison>& comparisons) {
     std::vector<std::string> notes;
     for (const auto& c : comparisons)
