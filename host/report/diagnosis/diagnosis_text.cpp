@@ -323,8 +323,8 @@ std::string next_line(const Diagnosis& diagnosis) {
     return text + ".";
 }
 
-/// In words that follow what is named.
 /// The reduction of the named explanation, as a continuation.
+std::string taken_away(const Diagnosis& diagnosis) {
     return diagnosis.explanation ? ", and " + reduction_words(diagnosis) + " goes away with it" : "";
 }
 
