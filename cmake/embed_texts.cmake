@@ -1,5 +1,5 @@
-# embed_texts(OUTPUT HEADER FUNCTION FILES..): a C++ source that defines mcdem::FUNCTION(), which HEADER declares:
-# the files' texts by their names, so that the program carries them. Made anew when a file changes.
+# embed_texts(OUTPUT HEADER FUNCTION FILES..): generates a C++ source that defines mcdem::FUNCTION(), declared in HEADER.
+# It returns the embedded texts of the files by name. The source is generated again when a file changes.
 function(embed_texts output header function)
   list(SORT ARGN)
   add_custom_command(OUTPUT ${output}

@@ -1,11 +1,11 @@
-# What `cmake --install` puts where, in three parts: the program with its manual and completions; the engine for
-# other programs, found by find_package(mcdem); the Python module.
+# Rules for `cmake --install`, in three components: the program with its manual and completions; the engine as a library
+# for other programs (find_package(mcdem)); the Python module.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 install(TARGETS mcdem RUNTIME COMPONENT program)
 
-# Manual and completions are written by the program, so that they say what it does.
+# The program generates its manual and completions.
 set(described ${CMAKE_BINARY_DIR}/described)
 add_custom_command(OUTPUT ${described}/done
   COMMAND ${CMAKE_COMMAND} -E rm -rf ${described}
@@ -25,7 +25,7 @@ install(DIRECTORY host/python/mcdem DESTINATION ${share}/mcdem/python COMPONENT 
   FILES_MATCHING PATTERN "*.py" PATTERN __pycache__ EXCLUDE)
 install(DIRECTORY scenes DESTINATION ${share}/mcdem COMPONENT program)
 
-# The engine: every floor below the command line and the Python module.
+# The engine: all floors below the command line and the Python module.
 set(floors core elasticity scene cl sim io experiment metrics calibrate diagnose report ensemble)
 add_library(mcdem_engine INTERFACE)
 target_link_libraries(mcdem_engine INTERFACE mcdem_ensemble mcdem_report)
@@ -49,7 +49,7 @@ install(FILES ${CMAKE_BINARY_DIR}/mcdemConfig.cmake ${CMAKE_BINARY_DIR}/mcdemCon
   DESTINATION ${package} COMPONENT development)
 
 if(MCDEM_PYTHON)
-  # Where this Python looks below a prefix; Debian's calls the folder dist-packages.
+  # The module folder of this Python below a prefix; Debian calls it dist-packages.
   if(NOT MCDEM_PYTHON_DIR)
     execute_process(COMMAND ${Python3_EXECUTABLE} -c "import site, sys; print('lib/python%d.%d/' % sys.version_info[:2] \
 + site.getsitepackages()[0].rsplit('/', 1)[1])" OUTPUT_VARIABLE site OUTPUT_STRIP_TRAILING_WHITESPACE)

@@ -1,5 +1,5 @@
-# The plotting library of reports: plotly.js of Debian's python3-plotly, packed, in share/mcdem of the build folder
-# and of the installation. The program looks for it there when it makes a page.
+# The plotting library of reports: plotly.js from Debian's python3-plotly, compressed, in share/mcdem of the build folder
+# and of the installation. The program reads it from there when it writes a page.
 find_file(PLOTLY_JS NAMES plotly.min.js plotly.js
   PATHS /usr/share/python3-plotly /usr/lib/python3/dist-packages/plotly/package_data NO_DEFAULT_PATH)
 set(PACKED_PLOTLY_JS ${CMAKE_BINARY_DIR}/share/mcdem/plotly.js.gz)

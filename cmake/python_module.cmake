@@ -1,12 +1,12 @@
-# The Python module mcdem, in <build>/python, where pybind11 and Python's headers are there (MCDEM_PYTHON).
-# Debian's pybind11 and NumPy belong to Debian's Python, also where another one comes first in PATH.
+# The Python module mcdem in <build>/python, if pybind11 and Python's headers are installed (MCDEM_PYTHON).
+# Debian's pybind11 and NumPy belong to Debian's Python, even if another one is first in PATH.
 if(NOT DEFINED Python3_EXECUTABLE AND EXISTS /etc/debian_version AND EXISTS /usr/bin/python3)
   set(Python3_EXECUTABLE /usr/bin/python3)
 endif()
 set(PYBIND11_NOPYTHON ON)
 find_package(pybind11 2.10 CONFIG QUIET)
 find_package(Python3 QUIET COMPONENTS Interpreter Development.Module)
-# Python itself has no sanitizers and cannot load what has.
+# Python is built without sanitizers and cannot load modules built with them.
 if(pybind11_FOUND AND Python3_Development.Module_FOUND AND NOT MCDEM_SANITIZE AND NOT MCDEM_FUZZ)
   set(can_build ON)
 else()

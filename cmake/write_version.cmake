@@ -1,5 +1,5 @@
-# Run at every build: writes the program's version, with the commit it was built from where git knows it.
-# The file changes only when they do.
+# Runs at every build: writes the program's version with the commit, if git knows it.
+# The file changes only if the version or the commit changes.
 find_package(Git QUIET)
 set(commit "")
 if(Git_FOUND)
