@@ -1,6 +1,6 @@
-// From nothing to the first two steps of the first packing: kernel compilation as a user waits for it. Run it
-// with an empty cache folder for the cold figure (bench/run does: POCL_CACHE_DIR, CUDA_CACHE_PATH), again for
-// the warm one.
+// Time from program start to the first two steps of the first packing, including compilation of the kernels.
+// Run it with an empty cache folder for a cold start (bench/run does: POCL_CACHE_DIR, CUDA_CACHE_PATH), and
+// again for a warm start.
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 

@@ -16,8 +16,8 @@ namespace {
 
 constexpr std::uint64_t seed = 1;
 constexpr int paper_count = 514;
-/// Six contacts a grain need about this fraction far from walls, and less of a small box, since walls keep
-/// grains apart: the share that a layer next to the walls lacks, in diameters.
+/// Packing fraction with about six contacts per grain far from walls. In a small box it is lower, because
+/// walls keep grains apart: the missing layer next to the walls, in diameters.
 constexpr double inner_fraction = 0.645, lacking_layer = 0.46;
 
 double side_of_cube(const GeneratedPacking& what) {
@@ -68,7 +68,7 @@ DensePacking generated(int count, const std::filesystem::path& cache) {
     return dense;
 }
 
-/// Where a coordinate comes to lie in tile `index` along an axis: every other tile is a mirror image.
+/// Coordinate in tile `index` along an axis: every other tile is a mirror image.
 double tiled(double coordinate, double size, int index) {
     return index * size + (index % 2 ? size - coordinate : coordinate);
 }
@@ -90,7 +90,7 @@ DensePacking tile(const DensePacking& one, std::array<int, 3> tiles) {
     return all;
 }
 
-/// Tiles along x, y, z, as near to a cube as the number allows.
+/// Numbers of tiles along x, y, z, as close to a cube as possible.
 std::array<int, 3> tiles_for(int tiles) {
     std::array<int, 3> best{tiles, 1, 1};
     for (int i = 1; i <= tiles; ++i)

@@ -1,4 +1,4 @@
-// Names the device in a benchmark's output.
+// Adds the name of the device to a benchmark's output.
 #pragma once
 #include <benchmark/benchmark.h>
 

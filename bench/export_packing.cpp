@@ -1,4 +1,4 @@
-// Writes a dense packing for other codes, with the numbers that they need to run the same.
+// Writes a dense packing for other codes, with all parameters that they need for the same run.
 #include <fmt/format.h>
 
 #include <exception>

@@ -1,4 +1,4 @@
-// The machine's limits as OpenCL reaches them: what the step benchmarks are held against.
+// Limits of the machine as reached through OpenCL, for comparison with the step benchmarks.
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
@@ -30,7 +30,7 @@ cl::Program machine_program(const Device& device) {
     return program;
 }
 
-/// Three arrays far larger than any cache.
+/// Three arrays much larger than any cache.
 void triad(benchmark::State& state, Device& device, const cl::Program& program) {
     const std::size_t bytes = device.info().gpu ? std::size_t{1} << 30 : std::size_t{1} << 28;
     const std::size_t floats = bytes / sizeof(float);
@@ -64,7 +64,7 @@ void multiply_add(benchmark::State& state, Device& device, const cl::Program& pr
     cl::Kernel kernel(program, "multiply_add");
     kernel.setArg(0, out);
     kernel.setArg(1, 0.5f);
-    kernel.setArg(2, 1.0f);  // x = x / 2 + 1 goes to 2
+    kernel.setArg(2, 1.0f);  // x = x / 2 + 1 converges to 2
     const auto run = [&] {
         device.queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(items), cl::NDRange(group));
         device.finish();
@@ -79,7 +79,7 @@ void multiply_add(benchmark::State& state, Device& device, const cl::Program& pr
     state.counters["flops_per_s"] = Counter(flops * state.iterations(), Counter::kIsRate);
 }
 
-/// A step is one launch after another in one queue, waited for at the end of a stretch.
+/// One launch after another in one queue, with a wait at the end of an interval.
 void launch(benchmark::State& state, Device& device, const cl::Program& program) {
     constexpr int launches = 100;
     cl::Buffer out(device.context(), CL_MEM_READ_WRITE, 64);

@@ -13,13 +13,13 @@ namespace mcdem::bench {
 namespace {
 
 constexpr int slots = 16;
-constexpr double plate_speed = 0.1;      // [m/s], the paper's
+constexpr double plate_speed = 0.1;      // [m/s], as in the paper
 constexpr double position_error = 1e-4;  // [m], of the experiment
 constexpr int relax_steps = 60;
 constexpr double relax_drag = 100;  // [1/s]
-/// Six contacts a grain, give or take what the models' surfaces move.
+/// About six contacts per grain; the range allows for displaced surfaces.
 constexpr double min_contacts = 5, max_contacts = 8;
-/// Of the top force, float against double, after a round.
+/// Tolerance of the top force in float compared with double, after a round.
 constexpr double precision_tolerance = 1e-3;
 
 std::vector<Replica> replicas_of(const StepCase& wanted, const DensePacking& dense) {
@@ -38,7 +38,7 @@ std::vector<Packing> packings_of(const StepCase& wanted, const DensePacking& den
     return packings;
 }
 
-/// The top force that 514 grains must have after a round, by the same steps in double precision.
+/// Top force of 514 grains after a round with the same steps in double precision.
 double reference_top_force(Device& device, const StepCase& like, const std::filesystem::path& cache) {
     static std::map<std::pair<ContactModel, FrictionLaw>, double> known;
     const auto [entry, is_new] = known.try_emplace({like.model, like.friction}, 0.0);
@@ -68,7 +68,7 @@ void MovingPlate::round() {
     make_steps(round_steps / 2, plate_speed, 0);
 }
 
-/// Replicas whose lists grow stale make fewer steps than asked for, so each counts its own.
+/// Replicas whose lists must be rebuilt make fewer steps than requested, so each counts its own.
 void MovingPlate::make_steps(int steps, double plate_velocity, double settle_drag) {
     const int replicas = engine_.replicas();
     std::vector<int> left(replicas, steps);

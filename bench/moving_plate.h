@@ -1,5 +1,5 @@
-// A batch of dense packings under a plate that goes down and up at the paper's speed: what the step
-// benchmarks run. Neighbour lists are made anew as the engine sees need.
+// A batch of dense packings under a plate that moves down and up at the speed of the paper, for the step
+// benchmarks. The engine rebuilds neighbour lists when necessary.
 #pragma once
 #include "bench/dense_packing.h"
 #include "sim/engine.h"
@@ -9,21 +9,21 @@ namespace mcdem::bench {
 struct StepCase {
     ContactModel model = ContactModel::mc_dem;
     FrictionLaw friction = FrictionLaw::saturated;
-    int grains = 514;  ///< a replica
+    int grains = 514;  ///< per replica
     int replicas = 1;
     Precision precision = Precision::single_precision;
 };
 
 class MovingPlate {
 public:
-    /// Every replica is the dense packing of that many grains, jittered by the experiment's measurement
-    /// error, and relaxed for a moment.
+    /// Every replica is the dense packing of that many grains, jittered by the measurement error of the
+    /// experiment, and relaxed briefly.
     MovingPlate(Device& device, const StepCase& wanted, const std::filesystem::path& cache);
 
-    /// Steps of one round: the plate goes down for half of them and up for the other half.
+    /// Steps of one round: half of them while the plate moves down, half while it moves up.
     static constexpr int round_steps = 120;
 
-    /// One round of every replica. Throws RunError when a replica stops.
+    /// Runs one round of every replica. Throws RunError if a replica stops.
     void round();
 
     double coordination_number() const;  ///< Z of the first replica
@@ -44,8 +44,8 @@ private:
     double top_force_ = 0;
 };
 
-/// Throws RunError unless the packing is as dense as it should be, nothing has failed, and the top force of
-/// one packing of 514 grains agrees with the same in double precision (where the device has it).
+/// Throws RunError unless the packing has the expected density, nothing has failed, and the top force of one
+/// packing of 514 grains agrees with that in double precision (if the device supports it).
 void check_before_timing(Device& device, MovingPlate& subject, const std::filesystem::path& cache);
 
 }  // namespace mcdem::bench

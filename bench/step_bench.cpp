@@ -1,4 +1,4 @@
-// Grain-steps a second in dense packings with everything on. Every case is checked before it is timed.
+// Grain-steps per second in dense packings with all features. Every case is checked before it is timed.
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
@@ -14,7 +14,8 @@ namespace {
 using namespace mcdem;
 using namespace mcdem::bench;
 
-/// Google Benchmark calls a function several times to find how often to repeat it: the last case stays.
+/// Google Benchmark calls a function several times to determine the number of repetitions, so the last case
+/// is kept.
 struct Kept {
     std::string name;
     std::unique_ptr<MovingPlate> plate;
@@ -22,7 +23,7 @@ struct Kept {
 
 MovingPlate& checked(Device& device, Kept& kept, const std::string& name, const StepCase& wanted) {
     if (kept.name != name) {
-        kept = {};  // frees the device before the next case fills it
+        kept = {};  // frees the device before the next case
         auto plate = std::make_unique<MovingPlate>(device, wanted, MCDEM_BENCH_CACHE);
         check_before_timing(device, *plate, MCDEM_BENCH_CACHE);
         kept = {name, std::move(plate)};

@@ -6,8 +6,8 @@ namespace {
 constexpr double slots = 16;
 
 // Flops. A square root, division, minimum or maximum counts as one operation; selections, comparisons and
-// conversions as none. The sums of each header, in the order of its lines:
-constexpr double inverse_root = 6;  // estimate and a step of Newton's method; elsewhere a root and a division
+// conversions do not count. The sums of each header, in the order of its lines:
+constexpr double inverse_root = 6;  // estimate and a Newton step; elsewhere a root and a division
 constexpr double see_neighbours = 3 + 5 + 1 + inverse_root + 3 + 3;
 constexpr double hertz = 2 + 2 + 2 + 2 + 2;  // gap, delta, a, S, F
 constexpr double reduced = 12;               // R* and m*
@@ -27,7 +27,7 @@ constexpr double finite_size_term = 1 + 12 + 4;             // spread, polynomia
 constexpr double self_term = 1 + 3 * (2 + 21 + 4 + 4 + 6);  // three Newton steps
 constexpr double extrapolation = 1 + 5;
 constexpr double reductions = 7 * 15;  // per grain: seven sums over 16 lanes
-constexpr double integration = 85;     // per grain, 35 of it the rotation
+constexpr double integration = 85;     // per grain, 35 of them for the rotation
 
 double surface_term(ContactModel model) {
     switch (model) {
@@ -51,10 +51,11 @@ StepCost step_cost(ContactModel model, FrictionLaw friction, Precision precision
     const bool bulging = model != ContactModel::independent;
     const bool springs = friction == FrictionLaw::mindlin;
 
-    // Reals: position, velocity, spin and rotation come and go (4 each), the listed position comes. Per slot,
-    // the predicted displacement and those of two and four steps before come, the next prediction and this
-    // step's displacement go; the three spring components come and go. Integers: partner, and partner slot
-    // where surfaces move. What neighbours hold is read by themselves anyway and counts as cached.
+    // Reals: position, velocity, spin and rotation are read and written (4 each), the listed position is
+    // read. Per slot, the predicted displacement and those of two and four steps before are read, the next
+    // prediction and this step's displacement are written; the three spring components are read and written.
+    // Integers: partner, and partner slot if surfaces move. The values of neighbours are read by the
+    // neighbours anyway and count as cached.
     const double reals = 2 * 4 * 4 + 4 + slots * ((bulging ? 5 : 0) + (springs ? 6 : 0));
     const double integers = slots * (bulging ? 2 : 1);
 

@@ -6,7 +6,7 @@ __all__ = ["Failure", "Recording", "Run", "Scene", "__version__", "calibrate", "
 
 
 def __getattr__(name):
-    """The compiled module is loaded by the first name that needs it: the commands written in Python do without."""
+    """Loads the compiled module when a name needs it, because commands written in Python do not."""
     if name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     home = ".command" if name == "report" else "._engine"

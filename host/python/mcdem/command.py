@@ -1,4 +1,4 @@
-"""The program `mcdem`, called from Python."""
+"""Calls the program `mcdem` from Python."""
 import os
 import pathlib
 import shutil
@@ -9,7 +9,7 @@ from .errors import InputError, RunError
 
 
 def program_path():
-    """MCDEM_PROGRAM, else mcdem of the search path."""
+    """MCDEM_PROGRAM, otherwise mcdem in the search path."""
     found = os.environ.get("MCDEM_PROGRAM") or shutil.which("mcdem")
     if not found:
         raise RunError("the program mcdem is not in the search path: name it by MCDEM_PROGRAM")
@@ -21,7 +21,7 @@ def problems_of(messages):
 
 
 def ask(words, folder=None):
-    """What the program prints, given these words; its messages go to standard error. Raises InputError and RunError."""
+    """Output of the program with these arguments; its messages go to standard error. Raises InputError and RunError."""
     done = subprocess.run([program_path(), *words], cwd=folder, capture_output=True, text=True, errors="replace")
     if done.returncode == 2:
         raise InputError(problems_of(done.stderr))

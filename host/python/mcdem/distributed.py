@@ -1,11 +1,11 @@
-"""Parts of a run, a challenge or a diagnosis as tasks of Dask: on this machine, or wherever a Dask cluster runs.
+"""Computes parts of a run, a challenge or a diagnosis as Dask tasks, on this machine or on any Dask cluster.
 
-mcdem.distributed.run("scene.toml", "out/sweep")                           # a process for each device of this machine
+mcdem.distributed.run("scene.toml", "out/sweep")                           # one process per device of this machine
 mcdem.distributed.run("scene.toml", "out/sweep", client=Client(cluster))   # any cluster: Slurm, PBS, LSF, Kubernetes, ..
 mcdem.distributed.compute(["challenge", "run", ...])                           # any command that works in parts
 
-Each task is a process `mcdem .. --part K`. Machines need the program and the folders by the same paths. A part that a lost
-worker was at is computed again by another: parts are the same bits wherever they are computed.
+Each task is a process `mcdem .. --part K`. All machines need the program and the folders under the same paths. If a worker is
+lost, another one computes its part again: parts are bit-identical wherever they are computed.
 """
 import argparse
 import contextlib
@@ -17,12 +17,12 @@ from typing import Any, Callable
 from .command import ask, problems_of, program_path
 from .errors import InputError, RunError
 
-TRIES = 3  # of a part, beside those that end with a lost worker
+TRIES = 3  # per part, not counting lost workers
 
 
 def run(scene: str | os.PathLike[str], out: str | os.PathLike[str], *, settings: dict[str, Any] | None = None,
         part_replicas: int | None = None, figures: bool = False, **how: Any) -> None:
-    """Runs a scene into the folder `out`: its replicas, in parts. `settings` overrides keys; `how`: see compute."""
+    """Runs the replicas of a scene in parts into the folder `out`. `settings` overrides keys; `how`: see compute."""
     words = ["run", os.fspath(scene), "--out", os.fspath(out)] + ([] if figures else ["--no-figures"])
     for key, value in (settings or {}).items():
         words += ["--set", f"{key}={value}"]
@@ -33,10 +33,10 @@ def run(scene: str | os.PathLike[str], out: str | os.PathLike[str], *, settings:
 
 def compute(words: list[str], *, client: Any = None, folder: str | os.PathLike[str] | None = None, tries: int = TRIES,
             report: Callable[[str], None] | None = None) -> None:
-    """Computes what is missing of a command's work, and puts it together. Given again, it goes on where it stopped.
+    """Computes the missing parts of a command and merges them. Calling it again continues where it stopped.
 
-    `words`: the command line after `mcdem`. `client`: a distributed.Client, else a cluster of this machine with a worker
-    for each of its devices. `folder`: where the command is run. Raises InputError and RunError.
+    `words`: the command line after `mcdem`. `client`: a distributed.Client; default: a local cluster with one worker
+    per device. `folder`: working folder of the command. Raises InputError and RunError.
     """
     report = report or (lambda line: print(f"mcdem: {line}", file=sys.stderr, flush=True))
     work = Work([program_path(), *words], os.path.abspath(folder or "."), tries, report)
@@ -48,7 +48,7 @@ def compute(words: list[str], *, client: Any = None, folder: str | os.PathLike[s
 
 @contextlib.contextmanager
 def local_client(work):
-    """Named 0, 1, ..: the place of each one's device."""
+    """A client of workers 0, 1, ..; the name is the index of the worker's device."""
     from distributed import Client, LocalCluster
     with LocalCluster(n_workers=len(work.devices()), threads_per_worker=1, processes=True) as cluster, \
             Client(cluster) as client:
@@ -73,7 +73,7 @@ class Work:
                 code = subprocess.run([*self.command, "--merge"], cwd=self.folder).returncode
                 if code == 0:
                     return
-                missing = self.missing(1)  # what was found to be damaged
+                missing = self.missing(1)  # damaged parts
                 if not missing:
                     raise RunError(f"what was computed could not be put together: exit code {code}")
             if missing == before:
@@ -82,7 +82,7 @@ class Work:
             before = missing
 
     def deal(self, client, parts):
-        """One task a part, until all have ended. Raises InputError where the program does not take its input."""
+        """One task per part; waits for all. Raises InputError if the program refuses its input."""
         from distributed import as_completed
         futures = {client.submit(compute_part, self.command, self.folder, part, key=f"part-{part}-{os.urandom(4).hex()}",
                                  retries=self.tries - 1, pure=False): part for part in parts}
@@ -100,17 +100,17 @@ class Work:
 
 
 def compute_part(command, folder, part):
-    """The task: None, or why the program does not take its input. Raises RuntimeError, for another try, where it failed."""
+    """The task. Returns None, or the reason why the program refuses its input. Raises RuntimeError after a failure, for another try."""
     import shutil
     import subprocess
     from distributed import get_worker
     words = [*command, "--part", str(part)]
     place = get_worker().name
-    if isinstance(place, int):  # of a cluster with a worker a device
+    if isinstance(place, int):  # a cluster with one worker per device
         devices = subprocess.run([command[0], "devices", "--alike"], capture_output=True, text=True).stdout.split()
         if devices:
             words += ["--device", devices[place % len(devices)]]
-    if shutil.which("setpriv"):  # the process ends when its worker does
+    if shutil.which("setpriv"):  # ends the process with its worker
         words = ["setpriv", "--pdeathsig", "TERM", *words]
     done = subprocess.run(words, cwd=folder, stdin=subprocess.DEVNULL, capture_output=True, text=True, errors="replace")
     if done.returncode == 2:
@@ -121,7 +121,7 @@ def compute_part(command, folder, part):
 
 
 def send_by_value():
-    """Workers need no package mcdem: the task goes to them with all that it is."""
+    """Sends the code of the task to the workers, so that they do not need the package mcdem."""
     if __name__ != "__main__":
         import cloudpickle
         cloudpickle.register_pickle_by_value(sys.modules[__name__])
@@ -151,5 +151,5 @@ def main():
 if __name__ == "__main__":
     main()
 else:
-    with contextlib.suppress(ModuleNotFoundError):  # found missing where it is used
+    with contextlib.suppress(ModuleNotFoundError):  # reported where it is used
         send_by_value()

@@ -1,8 +1,8 @@
-"""The errors that reach a user of the command line (host/core/errors.h)."""
+"""Errors that are reported to the user (host/core/errors.h)."""
 
 
 class InputError(ValueError):
-    """What the user gave is wrong (exit code 2). Carries every problem: where, what must be, what was got."""
+    """Invalid user input (exit code 2). Contains all problems: where, what must be, what was got."""
 
     def __init__(self, problems):
         self.problems = [problems] if isinstance(problems, str) else list(problems)
@@ -10,4 +10,4 @@ class InputError(ValueError):
 
 
 class RunError(RuntimeError):
-    """The work could not be done although the input was good (exit code 1)."""
+    """The work failed although the input was valid (exit code 1)."""

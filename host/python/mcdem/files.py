@@ -1,4 +1,4 @@
-"""Files that are written whole or not at all."""
+"""Atomic file writes."""
 import fcntl
 import os
 import pathlib
@@ -6,12 +6,12 @@ import secrets
 
 
 def write_whole(file, content):
-    """Puts bytes into a file, forced to the disk, under its name only when all are there. An OSError names the file."""
+    """Writes bytes to a temporary file, flushes it to disk and renames it. An OSError names the file."""
     file = pathlib.Path(file)
     temporary = file.with_name(f"{file.name}.{secrets.token_hex(8)}.tmp")
     try:
         with open(temporary, "xb") as out:
-            fcntl.flock(out, fcntl.LOCK_EX)  # others remove only what no program holds (host/core/atomic_file.cpp)
+            fcntl.flock(out, fcntl.LOCK_EX)  # others remove only unlocked files (host/core/atomic_file.cpp)
             out.write(content)
             out.flush()
             os.fsync(out.fileno())

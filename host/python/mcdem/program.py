@@ -9,7 +9,7 @@ import sys
 
 from .errors import InputError, RunError
 
-# Module -> Debian package, where python3-MODULE is not its name.
+# Module -> Debian package, if its name is not python3-MODULE.
 PACKAGES = {"PIL": "python3-pil", "skimage": "python3-skimage", "mpi4py": "python3-mpi4py"}
 
 
@@ -19,14 +19,14 @@ def say(text):
 
 
 def interrupt(number, frame):
-    """The first signal ends the command in good order. A Ctrl-C comes twice, from the terminal and from the program."""
+    """The first signal ends the command cleanly. Ctrl-C arrives twice, from the terminal and from the program."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
     raise KeyboardInterrupt
 
 
 def exit_code_of(error):
-    """Says what went wrong."""
+    """Prints the error and returns its exit code."""
     if isinstance(error, InputError):
         for problem in error.problems:
             say(problem)
@@ -60,13 +60,13 @@ def run(module, arguments):
 
 
 def flush(exit_code):
-    """The exit code, once all is printed."""
+    """The exit code after all output is flushed."""
     was_terminal = sys.stdout.isatty()
     try:
         sys.stdout.flush()
         return exit_code
     except OSError as error:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # or Python would try again and complain
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # otherwise Python tries again and prints an error
         if was_terminal:
             return exit_code
         say(f"standard output cannot be written: {error.strerror}")

@@ -1,12 +1,12 @@
-"""Figures for print of runs, comparisons, diagnoses, convergence studies and challenges, by matplotlib.
+"""Figures for print of runs, comparisons, diagnoses, convergence studies and challenges, drawn with matplotlib.
 
     axes = mcdem.figures.top_force("out/small")
     axes.set_xlim(0, 20)
     mcdem.figures.save(axes, "top_force.pdf")
 
-A function a figure. Its first argument is a folder that a command wrote, or the file `figures.json` in it: all numbers were
-worked out by that command, nothing is computed here but places on the paper. `axes`: where to draw; new ones, of the size
-that the figure has in print, where left out. Functions return the axes, or an array of them where a figure has several.
+There is one function per figure. Its first argument is a folder written by a command, or the file `figures.json` in it, which
+contains all values; these functions only draw them. `axes`: axes to draw into; by default new ones with the size of the figure in
+print. Functions return the axes, or an array of axes if a figure has several.
 """
 from .challenge import confidence, confusion, power
 from .convergence import convergence

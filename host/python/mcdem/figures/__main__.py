@@ -4,8 +4,8 @@ import sys
 
 import matplotlib
 
-matplotlib.use("agg")  # no screen is needed
-matplotlib.rcdefaults()  # a user's own settings are for figures that the user draws
+matplotlib.use("agg")  # works without a display
+matplotlib.rcdefaults()  # ignores the user's settings
 
 
 def main(file):

@@ -1,4 +1,4 @@
-"""How well diagnoses of withheld truths did."""
+"""Figures of the score of a challenge."""
 import matplotlib.colors
 import matplotlib.patches
 import matplotlib.ticker
@@ -13,7 +13,7 @@ MEASURED, RIGHT = "#0072B2", "#D55E00"
 
 @styled
 def confusion(source, axes=None):
-    """Cases by truth (rows) and verdict (columns), darker with their part of the row; framed: right answers."""
+    """Cases by truth (rows) and verdict (columns), shaded by the fraction of the row; framed: right answers."""
     values = read(source, "confusion")
     cases = np.array(values["cases"], float)
     axes = axes or new_axes(34 + 6 * cases.shape[1] + 14, 30 + 4.2 * cases.shape[0])
@@ -41,7 +41,7 @@ def confusion(source, axes=None):
 
 @styled
 def power(source, axes=None):
-    """Part of the cases that is detected, by amplitude over the predicted detection limit, with its 95 % interval."""
+    """Fraction of detected cases by amplitude over the predicted detection limit, with 95 % intervals."""
     axes = proportions(read(source, "power"), axes)
     axes.set_xscale("log")
     axes.xaxis.set_major_locator(matplotlib.ticker.LogLocator(subs=(1, 2, 5)))
@@ -52,7 +52,7 @@ def power(source, axes=None):
 
 @styled
 def confidence(source, axes=None):
-    """Part of the verdicts that is right, by the probability that was stated with them, with its 95 % interval."""
+    """Fraction of right verdicts by stated probability, with 95 % intervals."""
     axes = proportions(read(source, "confidence"), axes)
     axes.set_xlim(-0.02, 1.04)
     return axes

@@ -1,16 +1,16 @@
-"""What the numerics of a scene do to its observables."""
+"""Figure of a convergence study."""
 import matplotlib.patches
 import numpy as np
 
 from .style import PAGE, key, new_axes, plain, styled
 from .values import read
 
-EDGE = 4  # what lies farther out stands at the edge
+EDGE = 4  # larger values are drawn at the edge
 
 
 @styled
 def convergence(source, axes=None):
-    """Largest error of every observable by each cause, over its limit, with two standard errors. Shaded: within the limits."""
+    """Largest error of every observable from each cause, over its limit, with two standard errors. Shaded: within the limits."""
     values = read(source, "convergence")
     rows, causes = values["rows"], values["causes"]
     axes = axes or new_axes(PAGE, 16 + 4.2 * len(rows))

@@ -1,4 +1,4 @@
-"""Where simulation and experiment differ, which effects are consistent with it, how far the gap shrinks."""
+"""Figures of a diagnosis: location of the gap, consistent effects, gap reduction."""
 import functools
 
 import matplotlib.cm
@@ -10,17 +10,17 @@ import numpy as np
 from .style import COLUMN, INK, PAGE, figure_of, is_crowded, key, new_axes, plain, styled
 from .values import read
 
-# Blue: the experiment lies below the simulation, orange: above.
+# Blue: the experiment is lower than the simulation; orange: higher.
 BELOW_ABOVE = matplotlib.colors.LinearSegmentedColormap.from_list("below_above", [
     (0, "#053B78"), (0.2, "#3F86BF"), (0.375, "#B9D5EA"), (0.5, "#F4F4F2"), (0.625, "#F9D3AE"), (0.8, "#E08530"), (1, "#8F3A04")])
-MAX_NUMBERS = 12  # columns in which numbers find room
+MAX_NUMBERS = 12  # maximum number of columns with printed numbers
 EXPERIMENT = {"color": INK, "linestyle": "", "marker": "o", "markersize": 2.2}
 
 
 @styled
 def where(source, axes=None):
-    """Gap by observable and displacement, in sigmas of its noise. Left: parameters as stated, right: after they were fitted
-    within their uncertainty. Framed: beyond what noise alone seldom reaches in any cell. `axes`: two."""
+    """Gap by observable and displacement, in sigmas of its noise. Left: stated parameters; right: parameters fitted
+    within their uncertainty. Framed: significant among all cells. `axes`: two."""
     values = read(source, "where")
     if axes is None:
         axes = new_axes(PAGE, 28 + 3.6 * len(values["observables"]), ncols=2, sharey=True)
@@ -48,9 +48,9 @@ def draw_cell(axes, values, cell, scale):
 
 
 def set_columns(axes, values, heading):
-    """Time runs from left to right: loading, then back."""
+    """Labels of the columns, in order of time: loading, then unloading."""
     columns = values["columns"]
-    shown = columns[::len(columns) // 12 + 1]  # more would run into each other
+    shown = columns[::len(columns) // 12 + 1]  # more labels would overlap
     axes.set_xticks([column["x"] for column in shown], [f"{column['displacement_mm']:.3g}" for column in shown])
     axes.set_xlim(0, values["width"])
     axes.set_xlabel(values["x_label"])
@@ -65,9 +65,9 @@ def set_columns(axes, values, heading):
 
 @styled
 def which(source, axes=None):
-    """Candidate effects. Left: how much better the data are explained with each, diamonds: simulated in full; candidates that
-    share a letter cannot be told apart. Right: fitted amplitude with its 90 % interval over the smallest that shows in
-    these data (dashed line), in words with one standard error, and the probability among the candidates. `axes`: two."""
+    """Candidate effects. Left: gain in likelihood of each (diamonds: from real runs); candidates that share a letter cannot be
+    distinguished. Right: fitted amplitude with its 90 % interval over the detection limit of these data (dashed line), the
+    amplitude with one standard error as text, and the probability among the candidates. `axes`: two."""
     values = read(source, "which")
     rows = values["rows"]
     if axes is None:
@@ -102,7 +102,7 @@ def which(source, axes=None):
 
 
 def draw_gain(axes, place, row, colour, largest):
-    """The number stands at the foot of its bar, beside one that is too short, and beside a diamond in its place."""
+    """Prints the number at the base of its bar, next to a bar that is too short, or next to a diamond."""
     gain, simulated = row["gain"], row["gain_simulated"]
     if gain is not None:
         axes.barh(place, gain, 0.68, color=colour)
@@ -116,14 +116,14 @@ def draw_gain(axes, place, row, colour, largest):
 
 
 def column(axes, x, row, words, side):
-    """A word of a table beside the axes: x as a part of their width."""
+    """A text of a table next to the axes: x is a fraction of their width."""
     axes.text(x, row, plain(words), transform=axes.get_yaxis_transform(), ha=side, va="center", fontsize=6.5)
 
 
 @styled
 def how_far(source, axes=None):
-    """Top force before and after the effect is added, and the gap that is left of data held out with its 90 % interval;
-    placebo: the best of many made-up effects. `axes`: two, or one where the experiment has no top force."""
+    """Top force before and after the effect is added, and the remaining gap in held-out data with its 90 % interval;
+    placebo: the best of many random effects. `axes`: two, or one if the experiment has no top force."""
     values = read(source, "how_far")
     has_forces = bool(values["forces"])
     below = 15 if has_forces and is_crowded(force_entries(values["forces"])) else 0

@@ -1,4 +1,4 @@
-"""The paper's four figures of runs, alone or against a reference, and those of programmes of plates and cells."""
+"""The four figures of the paper, with or without a reference, and figures of programmes of plates and cells."""
 import matplotlib.lines
 import matplotlib.patches
 import numpy as np
@@ -13,9 +13,9 @@ PHASES = {"load": "loading", "unload": "unloading"}
 
 @styled
 def top_force(source, axes=None):
-    """Force on the plate. Solid lines: loading, dashed: unloading; points: the reference, full and open."""
+    """Force on the plate. Solid lines: loading, dashed: unloading; points: the reference, filled and open."""
     values = read(source, "top_force")
-    values["series"].sort(key=lambda series: (series["is_reference"], -largest(series)))  # the key from top to bottom as the curves end
+    values["series"].sort(key=lambda series: (series["is_reference"], -largest(series)))  # order of the legend as at the ends of the curves
     shown = entries(values)
     axes = axes or keyed_axes(shown, is_crowded(shown))
     draw_curves(axes, values)
@@ -43,7 +43,7 @@ def force_distribution(source, axes=None):
 
 @styled
 def coordination(source, axes=None):
-    """Contacts per grain, forces below tau left out where there is a reference. Lines and points as of the top force."""
+    """Contacts per grain, without forces below tau if there is a reference. Lines and points as in `top_force`."""
     values = read(source, "coordination")
     shown = entries(values)
     axes = axes or keyed_axes(shown, True)
@@ -55,7 +55,7 @@ def coordination(source, axes=None):
 
 @styled
 def scaling(source, axes=None):
-    """Top force against averages over the packing. Full points: loading, open: unloading; lines through zero fit both."""
+    """Top force against averages over the packing. Filled points: loading, open: unloading; lines through the origin are fitted to both."""
     values = read(source, "scaling")
     shown = [(matplotlib.lines.Line2D([], [], color=series["colour"], marker=series["marker"], linestyle=""), words(series))
              for series in values["series"]]
@@ -107,7 +107,7 @@ def shear_stress_strain(source, axes=None):
 
 @styled
 def stress_path(source, axes=None):
-    """Deviatoric stress q against mean stress p, of cells that are distorted and of plates."""
+    """Deviatoric stress q against mean stress p, for cells that are distorted and for plates."""
     return of_programme(source, "stress_path", axes)
 
 
@@ -142,7 +142,7 @@ def shear_strain_time(source, axes=None):
 
 
 def of_programme(source, name, axes, from_zero=True):
-    """One line a setting, scan after scan; scans are marked, since paths may come back to where they were."""
+    """One line per setting, in order of the scans, which are marked because paths may return to earlier points."""
     values = read(source, name)
     shown = entries(values, phases=())
     axes = axes or keyed_axes(shown, is_crowded(shown))
@@ -154,17 +154,17 @@ def of_programme(source, name, axes, from_zero=True):
 
 
 def keyed_axes(shown, is_below):
-    """New axes with room for a key below them."""
+    """New axes with space for a legend below them."""
     return new_axes(height=62 + key_height(shown) * is_below)
 
 
 def place_key(axes, shown, place):
-    """Inside the axes, below them where it would hide curves."""
+    """A legend inside the axes, or below them if it would hide curves."""
     key(axes, shown, **({} if is_crowded(shown) else {"loc": place}))
 
 
 def draw_curves(axes, values, **lines):
-    """Lines with bands for simulations, points with bars for the reference. `lines`: how lines look."""
+    """Lines with bands for simulations, points with error bars for the reference. `lines`: style of the lines."""
     for series in values["series"]:
         for curve in series["curves"]:
             if series["is_reference"]:
@@ -178,7 +178,7 @@ def draw_line(axes, series, curve, **look):
     x, y, error = numbers(curve)
     axes.plot(x, y, color=series["colour"], **SIMULATED[curve["phase"]], **look)
     if np.isfinite(error).any():
-        low = np.where(y > 0, np.maximum(y - error, y / 3), y - error)  # a band has a logarithm too
+        low = np.where(y > 0, np.maximum(y - error, y / 3), y - error)  # keeps the band positive on logarithmic axes
         axes.fill_between(x, low, y + error, color=series["colour"], alpha=0.18, linewidth=0)
 
 
@@ -195,7 +195,7 @@ def label(axes, values):
 
 
 def numbers(curve):
-    """x, y and standard error, not-a-number where that is not known."""
+    """x, y and standard error (NaN if unknown)."""
     return [np.array(curve[quantity], float) for quantity in ("x", "y", "standard_error")]
 
 
@@ -208,7 +208,7 @@ def largest(series):
 
 
 def entries(values, phases=("load", "unload")):
-    """The series, then what lines, points and bands mean."""
+    """Legend entries of the series, followed by those of lines, points and bands."""
     series = values["series"]
     shown = [(matplotlib.lines.Line2D([], [], color=one["colour"], **({"marker": "o", "linestyle": ""} if one["is_reference"]
                                                                      else {"linewidth": 1.8})), words(one)) for one in series]

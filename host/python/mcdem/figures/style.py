@@ -1,4 +1,4 @@
-"""How figures look: sizes and fonts for print, keys, files."""
+"""Style of figures: sizes and fonts for print, legends, files."""
 import functools
 import io
 import math
@@ -11,11 +11,11 @@ from ..files import write_whole
 
 MILLIMETRE = 1 / 25.4  # of an inch, matplotlib's unit of length
 COLUMN = 86            # width of a column of a journal [mm]
-PAGE = 178             # .. of its page [mm]
+PAGE = 178             # width of its page [mm]
 
 INK, GREY, GRID = "#222222", "#666666", "#dddddd"
 
-# On top of the user's own settings. Text stays text, so that it can be edited and searched.
+# Applied on top of the user's settings. Text is stored as text, so that it can be edited and searched.
 STYLE = {
     "font.family": "sans-serif", "font.sans-serif": ["DejaVu Sans"], "font.size": 7, "axes.labelsize": 7, "xtick.labelsize": 6.5,
     "ytick.labelsize": 6.5, "legend.fontsize": 6.5, "text.color": INK, "axes.labelcolor": INK, "xtick.labelcolor": INK,
@@ -31,7 +31,7 @@ STYLE = {
 
 
 def styled(draw):
-    """The function draws in STYLE, whatever else the program has set."""
+    """Decorator: the function draws in STYLE, whatever else the program has set."""
     @functools.wraps(draw)
     def drawn(*arguments, **named):
         with matplotlib.rc_context(STYLE):
@@ -48,18 +48,18 @@ def new_axes(width=COLUMN, height=62, **grid):
 
 
 def figure_of(axes):
-    """The page of axes, or of an array of them."""
+    """The figure of axes, or of an array of axes."""
     return axes.figure if hasattr(axes, "figure") else next(iter(getattr(axes, "flat", axes))).figure
 
 
 def plain(text):
-    """Text that matplotlib shows as it stands: no formulas, no label that hides itself."""
+    """Escapes text that matplotlib would interpret (formulas, labels with a leading underscore)."""
     text = text.replace("$", r"\$")
     return " " + text if text.startswith("_") else text
 
 
 def key_height(entries):
-    """What a key below the axes takes [mm]."""
+    """Height of a legend below the axes [mm]."""
     return 3.1 * math.ceil(len(entries) / key_columns(entries)) + 1
 
 
@@ -68,12 +68,12 @@ def key_columns(entries):
 
 
 def is_crowded(entries):
-    """Whether a key inside the axes would hide curves."""
+    """Whether a legend inside the axes would hide curves."""
     return len(entries) > 9 or max(len(words) for _, words in entries) > 36
 
 
 def key(axes, entries, **place):
-    """A key of (artist, words) inside the axes where `place` says so, else below them."""
+    """A legend of (artist, text), inside the axes at `place`, otherwise below them."""
     if not place:
         place = {"loc": "upper left", "bbox_to_anchor": (-0.1, -0.17), "ncol": key_columns(entries), "columnspacing": 1.2}
     return axes.legend([artist for artist, _ in entries], [plain(words) for _, words in entries], **place)
@@ -81,11 +81,11 @@ def key(axes, entries, **place):
 
 @styled
 def save(axes, file):
-    """The page of the axes as PDF, PNG or SVG, by the file's name; whole or not at all."""
+    """Saves the figure of the axes atomically as PDF, PNG or SVG, according to the extension."""
     file = pathlib.Path(file)
     kind = file.suffix[1:]
-    creator = {"png": "Software"}.get(kind, "Creator")  # by it `mcdem` knows a figure as its own
-    dates = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}  # the same figure has the same bytes
+    creator = {"png": "Software"}.get(kind, "Creator")  # `mcdem` recognises its own figures by this
+    dates = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}  # so that the same figure has the same bytes
     page = io.BytesIO()
     figure_of(axes).savefig(page, format=kind, metadata={creator: "mcdem figure", **dates.get(kind, {})})
     write_whole(file, page.getvalue())

@@ -6,7 +6,7 @@ FORMAT = 1
 
 
 def read(source, name=None):
-    """What the figure `name` shows; without a name, of all figures that the folder or file has."""
+    """Values of the figure `name`; without a name, of all figures in the folder or file."""
     file = pathlib.Path(source)
     if file.is_dir():
         file = file / "figures.json"
