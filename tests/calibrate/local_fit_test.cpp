@@ -7,7 +7,7 @@
 namespace mcdem {
 namespace {
 
-TEST(RisingFit, pools_what_falls) {
+TEST(RisingFit, pools_decreasing_values) {
     EXPECT_EQ(rising_fit({{0, 1}, {1, 3}, {2, 2}, {3, 5}}), (std::vector<double>{1, 2.5, 2.5, 5}));
     EXPECT_EQ(rising_fit({{0, 3}, {1, 2}, {2, 1}}), (std::vector<double>{2, 2, 2}));
 }

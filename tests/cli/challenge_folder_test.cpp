@@ -43,7 +43,7 @@ protected:
     }
 };
 
-TEST_F(ChallengeFolderTest, WhereOneProgramAnswersAChallenge) {
+TEST_F(ChallengeFolderTest, IsRefusedWhereOneProgramAnswersAChallenge) {
     const auto one = held_challenge();
     expect_refused(challenge_words(), alone);
     expect_refused(run_words("out"), alone);
@@ -126,7 +126,7 @@ TEST_F(ChallengeFolderTest, ALibraryOfAnotherSceneIsRefusedBeforeAnyWork) {
     expect_refused(words, "out/library.json: is another library than changed.json");
 }
 
-TEST_F(ChallengeFolderTest, WhereProgramsShareAChallenge) {
+TEST_F(ChallengeFolderTest, IsRefusedWhereProgramsShareAChallenge) {
     const auto one = held_challenge({"--part=0"});
     expect_refused(challenge_words(), shared);
     expect_refused(run_words("out"), shared);
@@ -177,7 +177,7 @@ TEST_F(ChallengeFolderTest, OtherOptionsThanItWasBegunWithAreRefused) {
     EXPECT_EQ(bytes_of_file(path("out/manifest.json")), manifest);
 }
 
-TEST_F(ChallengeFolderTest, WhereARunIsWritten) {
+TEST_F(ChallengeFolderTest, IsRefusedWhereARunIsWritten) {
     {
         const auto run = ResultFolder::create(path("out"));  // as of a run before its first checkpoint
         expect_refused(challenge_words(), alone);

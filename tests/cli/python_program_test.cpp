@@ -73,7 +73,7 @@ TEST_F(PythonProgramTest, WhatIsMissingIsNamed) {
                 testing::ThrowsMessage<RunError>(HasSubstr("nowhere")));
 }
 
-TEST_F(PythonProgramTest, AModuleOfTheFolderThatOneIsInHidesNone) {
+TEST_F(PythonProgramTest, AModuleInTheCurrentFolderIsNotUsed) {
     const fs::path here = fs::current_path();
     std::ofstream(path("json.py")) << "raise SystemExit('not Python\\'s own')\n";
     set("PYTHONPATH", "");

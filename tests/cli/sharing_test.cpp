@@ -71,7 +71,7 @@ TEST_F(SharingTest, AnotherJobScriptIsKept) {
     EXPECT_EQ(bytes_of_file(path("out/slurm/job.sh")), "#!/bin/bash\nmine\n");
 }
 
-TEST_F(SharingTest, SlurmThatIsNotThereIsBadInput) {
+TEST_F(SharingTest, MissingSlurmIsBadInput) {
     const auto finished = mcdem(run_words("out", {"--slurm"}), {"PATH=/nowhere"});
     expect_bad_input(finished, "the program sbatch is not there");
 }

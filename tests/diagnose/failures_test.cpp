@@ -42,7 +42,7 @@ TEST(Failures, ACandidateThatRunsAwayCostsItselfAlone) {
     EXPECT_EQ(d.causes.at(0).effect, "adhesion");
 }
 
-TEST(Failures, ANuisanceToo) {
+TEST(Failures, ANuisanceThatRunsAwayCostsItselfAlone) {
     World w;
     w.evidence.library.nuisances[0].curvature.setConstant(not_available);
     EXPECT_THAT(leave_out_failures(w.evidence), ElementsAre(HasSubstr("modulus: its runs failed")));

@@ -29,7 +29,7 @@ Evidence two_alike(SyntheticWorld& world, double apart, double amplitude) {
     return evidence;
 }
 
-TEST(NextSteps, OfAGroupTellItsMembersApart) {
+TEST(NextSteps, OfAGroupDistinguishItsMembers) {
     SyntheticWorld world(6, 3);
     const Evidence evidence = two_alike(world, 0.05, 4);
     const DiagnosisBuilder draft(evidence, {});

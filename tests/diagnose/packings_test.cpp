@@ -83,7 +83,7 @@ TEST(Packings, WithoutAnEffectAllPAreUniform) {
     for (const int found : {gaps, alone, apart}) EXPECT_NEAR(found, level * drawn, 3.5 * error);
 }
 
-TEST(Packings, OneIsNotHeldAgainstItself) {
+TEST(Packings, ASinglePackingIsNotComparedWithItself) {
     SyntheticWorld world(6, 1);
     Evidence evidence = world.evidence(1, replicates);
     world.add_effect(evidence, "adhesion", world.pattern(1));

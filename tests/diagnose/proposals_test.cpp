@@ -149,7 +149,7 @@ TEST(Confirmation, RunsThatMeetTheData) {
     EXPECT_NEAR(*p.confirmed_gain, p.gain, 0.25 * p.gain);
 }
 
-TEST(Confirmation, RunsThatDoNot) {
+TEST(Confirmation, RunsThatDoNotMeetTheData) {
     Case c({0, 4}, 2);
     Proposal p = c.proposals().at(0);
     confirm(p, c.data, c.null, c.evidence.observed, at_priors,

@@ -17,7 +17,7 @@ using ::testing::Not;
 using ::testing::StartsWith;
 using ::testing::ThrowsMessage;
 
-TEST(BaselineTrials, HaveSeedsOfTheirOwn) {
+TEST(BaselineTrials, HaveDifferentSeeds) {
     const SmallTrials small;
     LibraryPlan plan;
     plan.specimens = {{small.model, small.packing}, {small.model, small.packing}};

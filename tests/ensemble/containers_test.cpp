@@ -50,7 +50,7 @@ TEST(Containers, OfSeveralShapesRunTogetherAndComeBack) {
     EXPECT_NE(run.recordings[0].scans[0].position, run.recordings[2].scans[0].position);
 }
 
-TEST(Containers, OfEqualSizesHavePackingsOfTheirOwn) {
+TEST(Containers, WithEqualSizesHaveDifferentPackings) {
     const auto packings = make_packings(parse_scene(three_shapes, "three.toml", {}), {});
     ASSERT_EQ(packings.size(), 3u);
     EXPECT_NE(packings[0].position, packings[1].position);

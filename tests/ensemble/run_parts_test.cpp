@@ -243,7 +243,7 @@ TEST_F(RunPartsTest, GoOnFromTheCheckpointOfAnInterruptedOne) {
     expect_like_whole("often");
 }
 
-TEST_F(RunPartsTest, LeaveACheckpointToThoseWhoAreAtIt) {
+TEST_F(RunPartsTest, LeaveACheckpointThatIsInUse) {
     interrupt("held", 0, 1);
     const auto work = work_folder("held");
     {
@@ -287,7 +287,7 @@ TEST_F(RunPartsTest, AnotherPartInItsPlaceIsComputedAgain) {
     expect_like_whole("copied");
 }
 
-TEST_F(RunPartsTest, ASizeThatIsNoneIsRefused) {
+TEST_F(RunPartsTest, AnInvalidSizeIsRefused) {
     compute("none", {0});
     const auto manifest = file("none", "manifest.json");
     const std::string whole = bytes_of_file(manifest), size = "\"replicas of a part\": \"1\"";

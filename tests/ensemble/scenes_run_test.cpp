@@ -38,7 +38,7 @@ std::vector<std::string> scene_names() {
 
 class ScenesRun : public testing::TestWithParam<std::string> {};
 
-TEST_P(ScenesRun, Begins) {
+TEST_P(ScenesRun, AllScenesStart) {
     TestFolder folder;
     Device device;
     RunOptions options;

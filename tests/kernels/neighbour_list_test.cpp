@@ -274,7 +274,7 @@ void expect_memory_moves_with_neighbours(const Start& start, const char* quantit
 
 // Grains cross the list's margin several times within an interval, and the plate comes down on them: an
 // interval ends early rather than miss a contact. The reference looks at every pair in every step.
-TEST(NeighbourList, LongStretchesMissNoContact) {
+TEST(NeighbourList, LongIntervalsMissNoContact) {
     if (!has_double()) GTEST_SKIP() << "the device has no double precision";
     const Start start = mixing(FrictionLaw::saturated, ContactModel::independent);
     constexpr double plate_velocity = -0.003;
@@ -304,7 +304,7 @@ TEST(NeighbourList, LongStretchesMissNoContact) {
 }
 
 // The most that an interval may let the plate come nearer is a fifth of the margin (grains may use the rest).
-TEST(NeighbourList, StretchesEndBeforeThePlateOutrunsTheList) {
+TEST(NeighbourList, IntervalsEndBeforeThePlateOutrunsTheList) {
     const Start start = jittered_lattice(test_replica(), 64, 16);
     Batch batch(build(Precision::single_precision), start);
     const double margin = 0.2 * start.replica.numerics.skin * 0.01;

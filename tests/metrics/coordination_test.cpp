@@ -71,7 +71,7 @@ TEST(ErrZ, finds_the_threshold_that_the_reference_was_measured_with) {
     EXPECT_EQ(error.levels_used, 20);
 }
 
-TEST(ErrZ, is_the_rms_that_no_threshold_can_mend) {
+TEST(ErrZ, is_the_rms_that_no_threshold_can_reduce) {
     // Two levels with the same forces cannot both fit Z + 1 and Z - 1 of a reference: the best is 1.
     auto simulated = synthetic::recording({.levels = 1, .touch = -1e9, .contacts = 5000});
     simulated.scans[1].contacts = simulated.scans[0].contacts;

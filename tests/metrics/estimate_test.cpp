@@ -67,7 +67,7 @@ TEST(Jackknife, of_a_mean_is_its_standard_error) {
     EXPECT_EQ(jackknife.estimate(means).count, 5);
 }
 
-TEST(Jackknife, leaves_pairs_out_together_and_strangers_one_by_one) {
+TEST(Jackknife, leaves_pairs_out_together_and_others_one_by_one) {
     EXPECT_EQ(Jackknife({"1", "2", "3"}, {"3", "2", "1"}).omissions().size(), 4u);
     EXPECT_EQ(Jackknife({"1", "2", "3"}, {"7", "8", "9"}).omissions().size(), 7u);
     EXPECT_EQ(Jackknife({"1"}, {""}).omissions().size(), 1u);

@@ -50,7 +50,7 @@ TEST(Bhattacharyya, does_not_change_when_forces_are_stretched) {
     EXPECT_DOUBLE_EQ(overlap(p, q), before);
 }
 
-TEST(Bhattacharyya, is_zero_for_strangers_and_symmetric) {
+TEST(Bhattacharyya, is_zero_for_disjoint_samples_and_symmetric) {
     const auto p = draw(std::uniform_real_distribution<>(0, 1), 2000, 7);
     const auto q = draw(std::uniform_real_distribution<>(5, 6), 3000, 8);
     EXPECT_LT(overlap(p, q), 1.0 / bin_count(2000, 3000) + 0.005);  // one bin at most holds some of both

@@ -38,7 +38,7 @@ TEST(Programmes, MeansAreOverTheReplicasThatHaveTheScan) {
     EXPECT_NEAR(scans[1].displacement.value, 0.01, 1e-15);
 }
 
-TEST(Programmes, AreToldFromStrokes) {
+TEST(Programmes, AreDistinguishedFromStrokes) {
     const Recording held = recording_of({1, 1}, 0);
     Recording stroke = held;
     stroke.parameters.clear();

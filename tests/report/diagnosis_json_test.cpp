@@ -141,7 +141,7 @@ TEST(DiagnosisJson, any_text_is_carried_and_bytes_that_are_none_are_replaced) {
     EXPECT_EQ(parsed(d)["causes"][0]["effect"], "caf\xEF\xBF\xBD");
 }
 
-TEST(DiagnosisJson, verdicts_have_names_of_their_own) {
+TEST(DiagnosisJson, verdicts_have_unique_names) {
     std::set<std::string> names;
     for (const auto verdict : samples::all_verdicts) names.insert(verdict_name(verdict));
     EXPECT_EQ(names, (std::set<std::string>{"no_gap", "effect", "group", "unknown_effect", "not_converged",

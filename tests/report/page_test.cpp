@@ -92,7 +92,7 @@ TEST(Page, loads_nothing) {
         EXPECT_FALSE(contains(markup, loads)) << loads;
 }
 
-TEST(Page, charts_of_one_name_have_ids_of_their_own) {
+TEST(Page, charts_with_the_same_name_have_unique_ids) {
     Page page("two");
     for (int i = 0; i < 3; ++i) page.chart({.name = "where", .title = "", .caption = ""});
     const auto text = page.html("");

@@ -21,7 +21,7 @@ const std::string one_move = "[[programme]]\nstrain = 0.1\n";
 
 Replica read_one(const std::string& text) { return parse_scene(text, "good.toml", {}).replicas.at(0); }
 
-TEST(Cell, IsAsHighAsItsGrainsAsk) {
+TEST(Cell, HeightFollowsFromItsGrains) {
     const Replica replica = read_one(cell + few + one_move);
     EXPECT_EQ(replica.box.shape, ContainerShape::cell);
     EXPECT_EQ(replica.plate.start, replica.box.height);

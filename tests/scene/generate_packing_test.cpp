@@ -144,7 +144,7 @@ TEST(GeneratedPacking, CompressedPackingsBalance) {
     }
 }
 
-TEST(GeneratedPacking, OneGrainAndAnEmptyDesert) {
+TEST(GeneratedPacking, OneGrainAndAVeryLargeBox) {
     const Box box{0.05, 0.05};
     const Packing one = generate_packing(wanted(1, 0.08), box, 1);
     EXPECT_EQ(largest_overlap(one, box, height(one, box, 0.08)), 0);

@@ -56,12 +56,12 @@ TEST(KeyReference, NamesEveryKey) {
               std::string::npos);
 }
 
-TEST(Keys, HaveNamesOfTheirOwn) {
+TEST(Keys, HaveUniqueNames) {
     std::set<std::string_view> names;
     for (const Key& key : keys()) EXPECT_TRUE(names.insert(key.name).second) << key.name;
 }
 
-TEST(Keys, ReachMembersOfTheirOwn) {
+TEST(Keys, ReachDifferentMembers) {
     Settings settings;
     std::set<const void*> members;
     for (const Key& key : keys()) {

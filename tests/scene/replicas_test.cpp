@@ -15,7 +15,7 @@ std::vector<std::string> labels(const Scene& scene) {
     return all;
 }
 
-TEST(Replicas, CopiesHaveSeedsOfTheirOwn) {
+TEST(Replicas, CopiesHaveDifferentSeeds) {
     const Scene scene = parse_scene("[packing]\nseed = 10\n[batch]\nreplicas = 3\n", "a.toml");
     EXPECT_THAT(labels(scene), ElementsAre("mc_dem #1", "mc_dem #2", "mc_dem #3"));
     for (int copy = 0; copy < 3; ++copy) EXPECT_EQ(scene.replicas[copy].packing.seed, 10u + copy);

@@ -271,7 +271,7 @@ TEST(SpeciesOfAFile, AreNamedOrNumberedThere) {
     }
 }
 
-TEST(SpeciesOfAFile, GoByFractionsWhereItSaysNothing) {
+TEST(SpeciesOfAFile, FollowFractionsWithoutNamesInTheFile) {
     const TestFolder folder;
     std::string rows = "x_m,y_m,z_m,diameter_m\n";
     for (int i = 0; i < 400; ++i)

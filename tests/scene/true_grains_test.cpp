@@ -45,7 +45,7 @@ TEST(TrueGrains, ScatterNormallyGrainByGrain) {
     EXPECT_EQ(packing.position.size(), count);
 }
 
-TEST(TrueGrains, MustBeLeftOver) {
+TEST(TrueGrains, MustHavePositiveDiameters) {
     Replica replica;
     replica.label = "too small";
     replica.effects.diameter_error = -0.02;

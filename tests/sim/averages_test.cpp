@@ -90,7 +90,7 @@ TEST(Averages, PackingFractionOfACylinderIsThatOfItsMiddle) {
     EXPECT_NEAR(fraction({0.5, 0.5, 0.8}), 0.5, 0.01);
 }
 
-TEST(Averages, OfAPeriodicCellGoOverItsEnds) {
+TEST(Averages, OfAPeriodicCellCrossItsBoundaries) {
     const Box cell{1, 1, ContainerShape::periodic};
     const double ball = std::numbers::pi / 6 * 0.008;
     for (const Vec3& centre : {Vec3(0, 0.99, 0.5), Vec3(0.5, 0.5, 0.5), Vec3(-3.1, 0.2, 0.3)})

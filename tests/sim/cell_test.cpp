@@ -195,7 +195,7 @@ TEST(Cell, KeepsMomentumToRounding) {
 }
 
 // Grains that touch nothing go straight on, whatever the cell does around them.
-TEST(Cell, LeavesFreeGrainsTheirVelocity) {
+TEST(Cell, FreeGrainsKeepTheirVelocity) {
     Start start = cell_lattice(conservative(ContactModel::independent), 3, 5);
     start.packing.position.resize(2);
     start.packing.diameter.resize(2);
