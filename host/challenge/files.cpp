@@ -56,7 +56,7 @@ OpenChallenge read_open_challenge(const std::filesystem::path& folder) {
     try {
         const auto json = nlohmann::json::parse(text);
         if (json.at("format") != challenge_format)
-            throw InputError(file.string() + ": made by another version; make it anew");
+            throw InputError(file.string() + ": made by another version; generate it again");
         OpenChallenge challenge{json.at("scene_sha256"), json.at("sealed_sha256"), {}};
         for (const auto& c : json.at("cases")) {
             challenge.cases.push_back({c.at("folder"), std::nullopt});

@@ -100,12 +100,13 @@ public:
         if (hardly_differ(base) && options_.jitter == 0) {
             if (can_draw_anew()) {
                 draw_anew();
-                copies = "packings drawn anew, for jittered copies of one hardly differ";
-                base = observe("packings drawn anew", scene_, scene_.replicas.front());
+                copies = "new random packings, because jittered copies of one hardly differ";
+                base = observe("new random packings", scene_, scene_.replicas.front());
                 expect_enough(base);
             } else {
                 copies +=
-                    ", which hardly differ; packing.file cannot be drawn anew: a larger --jitter makes them";
+                    ", which hardly differ; a packing.file has no random copies: a larger --jitter makes "
+                    "them";
             }
         }
         std::vector<RefinedRuns> refinements;

@@ -56,7 +56,7 @@ std::vector<Recording> kept_recordings(const Device& device, const Question& que
                                        const std::vector<Trial>& trials, const ObservationStore& store);
 
 struct Interrupted : std::runtime_error {
-    Interrupted() : std::runtime_error("interrupted; the same command goes on where it stopped") {}
+    Interrupted() : std::runtime_error("interrupted; run the same command again to continue") {}
 };
 
 /// Material for the evaluation of observations: that of the model.

@@ -139,7 +139,7 @@ std::optional<Checkpoint> find_checkpoint(const ResultFolder& folder, const RunI
     if (checkpoint->device != identity.device)
         throw InputError(
             fmt::format("{}: must be resumed on the device it was begun on, {}; got {}: choose it "
-                        "with --device, or start anew in another folder",
+                        "with --device, or start again in another folder",
                         where, checkpoint->device, identity.device));
     if (text_of(*checkpoint, packings_field) != identity.packings)
         throw InputError(where +
@@ -148,7 +148,7 @@ std::optional<Checkpoint> find_checkpoint(const ResultFolder& folder, const RunI
     if (checkpoint->segments > folder.segments())
         throw InputError(
             fmt::format("{}: must hold the {} segments that its checkpoint names, has {}: the "
-                        "run cannot go on; start it anew in another folder",
+                        "run cannot be resumed; start it again in another folder",
                         where, checkpoint->segments, folder.segments()));
     const auto program = text_of(*checkpoint, program_field);
     if (program != identity.program)

@@ -60,7 +60,7 @@ void check_sums(const fs::path& folder, std::vector<Verified>& all) {
             line.size() > digits + 2 ? folder / line.substr(digits + 2) : folder / sums_file;
         all.push_back(looked_at(file, [&]() -> std::string {
             if (line.size() <= digits + 2 || fs::path(line.substr(digits + 2)).has_parent_path())
-                throw InputError("its lines must be a SHA-256 and the name of a file beside it");
+                throw InputError("its lines must be a SHA-256 and the name of a file in the same folder");
             if (Sha256().add(read_file(file)).hex() != line.substr(0, digits))
                 throw InputError(std::string("it has another SHA-256 than ") + sums_file +
                                  " says: it was changed");

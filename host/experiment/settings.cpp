@@ -180,8 +180,7 @@ private:
             read_stage(*list->get_as<toml::table>(n), static_cast<int>(n), settings, nodes);
         Recording& recording = experiment.recording;
         if (std::isnan(recording.plate_start))
-            problem(*node,
-                    "plate.start must be stated beside [[programme]]: its strains are over that height");
+            problem(*node, "[[programme]] requires plate.start: its strains are relative to that height");
         if (problems_.count() > before) return;
         settings.packing_file = experiment.name;  // the grains exist, so nothing is generated
         settings.replica.box = recording.box;

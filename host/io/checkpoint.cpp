@@ -111,7 +111,8 @@ std::optional<Checkpoint> read_checkpoint(const fs::path& folder) {
         }
     }
     if (problems.empty()) return std::nullopt;
-    problems.push_back(folder.string() + ": no checkpoint can be read: start the run anew in another folder");
+    problems.push_back(folder.string() +
+                       ": no checkpoint can be read: start the run again in another folder");
     throw InputError(problems);
 }
 

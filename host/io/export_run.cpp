@@ -10,8 +10,7 @@ namespace mcdem::inline io {
 
 int export_run(const std::filesystem::path& run, const std::filesystem::path& folder,
                const ExportFormats& formats, const ExportChoice& choice) {
-    if (!formats.vtk && !formats.xyz)
-        throw InputError("export: must be told what to write: vtk, xyz or both");
+    if (!formats.vtk && !formats.xyz) throw InputError("export: choose a format: vtk, xyz or both");
     if (!std::filesystem::exists(run))
         throw InputError(run.string() + ": must be a result folder or file, got nothing there");
     result_files(run);  // throws before a folder is created

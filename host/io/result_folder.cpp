@@ -167,8 +167,9 @@ void ResultFolder::expect_whole_segments() const {
                 segment.scans(run.recordings[r], r, ReadWhat::everything);
         }
     } catch (const InputError& error) {
-        throw InputError(fmt::format(
-            "{}; scans that are gone cannot be gone on from: run anew, into another folder", error.what()));
+        throw InputError(
+            fmt::format("{}; a run with missing scans cannot be resumed: start it again in another folder",
+                        error.what()));
     }
 }
 

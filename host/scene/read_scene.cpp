@@ -236,7 +236,7 @@ private:
                 problems_.add(
                     document_.place_of("batch.replicas"),
                     "batch.replicas must be 1 where packing.file is given without packing.position_jitter: "
-                    "copies would be alike");
+                    "all copies would be identical");
             grains = std::max(grains, grain_count(settings, files));
             if (static_cast<double>(grains * combinations_.size()) > max_grains) break;
         }

@@ -66,8 +66,7 @@ private:
             return add(key("species", n, "name"),
                        "must be given: results and [[pair]] call the species by it");
         if (name == walls_name)
-            return add(key("species", n, "name"),
-                       "must be another word: walls stands for floor, plate and sides");
+            return add(key("species", n, "name"), "must be another word: walls means floor, plate and sides");
         for (std::size_t k = 0; k < n; ++k)
             if (species_[k].name == name)
                 return add(
@@ -97,7 +96,8 @@ private:
                                        name.empty() ? "none" : "\"" + name + "\"", known_names()));
         }
         if (!said("pair", n, "friction") && !said("pair", n, "restitution"))
-            add(key("pair", n, "friction"), "must be given, or restitution: a pair has one of its own");
+            add(key("pair", n, "friction"),
+                "must be given, or restitution: a pair needs at least one of them");
         if (pair.first == pair.second)
             add(key("pair", n, "second"),
                 fmt::format("must be another species than first, got \"{}\" for both: what two of its grains "

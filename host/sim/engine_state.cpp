@@ -68,7 +68,7 @@ void expect_partner_slots(int slot_count, const std::byte* partner_slot, std::si
 }  // namespace
 
 void refuse_checkpoint(const std::string& what) {
-    throw InputError("the checkpoint is damaged: " + what + ": start the run anew in another folder");
+    throw InputError("the checkpoint is damaged: " + what + ": start the run again in another folder");
 }
 
 std::vector<double> Engine::reals(const std::vector<std::byte>& bytes, std::size_t first,

@@ -363,7 +363,7 @@ TEST_F(InterruptionTest, DamagedScansAreFoundBeforeTheWorkGoesOn) {
     const auto refused = mcdem(words("a", true));
     EXPECT_EQ(refused.exit_code, 2) << refused.err;
     EXPECT_THAT(refused.err, HasSubstr("segment-000000.h5"));
-    EXPECT_THAT(refused.err, HasSubstr("run anew, into another folder"));
+    EXPECT_THAT(refused.err, HasSubstr("start it again in another folder"));
     EXPECT_THAT(refused.err, testing::Not(HasSubstr("% done")));
 }
 

@@ -110,9 +110,9 @@ TEST_F(ConvergeScene, DrawsPackingsAnewWhereCopiesHardlyDiffer) {
                                              "plate.end=0.0195",
                                              "plate.speed=0.5"};
     const Convergence drawn = converge(pressed(one_grain), "drawn");
-    EXPECT_THAT(drawn.copies, HasSubstr("packings drawn anew"));
+    EXPECT_THAT(drawn.copies, HasSubstr("new random packings"));
     EXPECT_GT(drawn.deviation[0], 0.01) << "diameters differ";
-    EXPECT_TRUE(causes.contains("packings drawn anew"));
+    EXPECT_TRUE(causes.contains("new random packings"));
     EXPECT_THAT(of(drawn, "plate speed").remedy, HasSubstr("times as long"));
 }
 

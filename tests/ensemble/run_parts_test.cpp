@@ -315,7 +315,7 @@ TEST_F(RunPartsTest, ADamagedManifestIsMadeAnewFromTheFinishedParts) {
         scene_ = mine;
         warnings_.clear();
         finish(name, 4);  // in the parts that were begun, of one replica
-        EXPECT_THAT(warnings_, ElementsAre(HasSubstr("is damaged, and made anew from what is there")));
+        EXPECT_THAT(warnings_, ElementsAre(HasSubstr("is damaged, and rebuilt from the finished parts")));
         expect_like_whole(name);
     }
 }

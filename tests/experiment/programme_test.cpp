@@ -129,7 +129,7 @@ TEST_F(Programmes, StagesAreCheckedAsThoseOfAScene) {
                 HasSubstr(": programme.4.keep must be one of position, force, stress, got 3"));
     folder.replace("experiment.toml", "keep = 3", "keep = \"force\"");
     folder.replace("experiment.toml", "start = 0.022\n", "");
-    EXPECT_THAT(folder.error(), HasSubstr(": plate.start must be stated beside [[programme]]"));
+    EXPECT_THAT(folder.error(), HasSubstr("[[programme]] requires plate.start"));
 }
 
 TEST_F(Programmes, AreDescribedAndMayCreep) {

@@ -26,14 +26,15 @@ constexpr int all_is_merged = -1;  ///< instead of an exit code: everything is m
 std::string choice_of(const std::string& device) { return device == all_devices ? "" : device; }
 
 int interrupted(const SharedWork& work) {
-    spdlog::warn("interrupted; what was done stays in {}, and the same command goes on", work.out.string());
+    spdlog::warn("interrupted; results are kept in {}; run the same command again to continue",
+                 work.out.string());
     return exit_interrupted;
 }
 
 /// Reports a failure of the device or the disk.
 int failed(const SharedWork& work, const std::exception& error) {
     const int code = report_error(error);
-    spdlog::warn("what was done stays in {}, and the same command goes on", work.out.string());
+    spdlog::warn("results are kept in {}; run the same command again to continue", work.out.string());
     return code;
 }
 
@@ -46,8 +47,7 @@ Numbers left_to_compute(PartedWork& parts) {
 
 void expect_progress(const SharedWork& work, const Numbers& before, const Numbers& left) {
     if (left == before)
-        throw RunError(work.out.string() +
-                       ": no part could be finished: what is said above must be mended first");
+        throw RunError(work.out.string() + ": no part could be finished: fix the errors above first");
 }
 
 /// Calls `compute`, which returns an exit code, with the missing parts until all are merged.
@@ -102,7 +102,7 @@ int compute_on_all_devices(const SharedWork& work, PartedWork& parts, const std:
         const int code = deal_to_devices(part_words(work), left, left_devices);
         if (code == exit_interrupted) return interrupted(work);
         if (code == exit_failed)
-            spdlog::error("no device is left; what was done stays in {}, and the same command goes on",
+            spdlog::error("no device is left; results are kept in {}; run the same command again to continue",
                           work.out.string());
         return code;
     });
@@ -183,12 +183,13 @@ int compute_by_slurm(const SharedWork& work, PartedWork& parts, const SharingOpt
         progress.clear();
         if (left.empty()) continue;
         if (Interrupt::wanted()) {
-            spdlog::warn("job {} goes on; the same command waits for it again, `scancel {}` ends it", number,
-                         number);
+            spdlog::warn("job {} continues; the same command waits for it again, `scancel {}` ends it",
+                         number, number);
             return exit_interrupted;
         }
-        spdlog::error("job {} has ended before the work was done; {} says why; the same command goes on",
-                      number, (job.folder / "*.log").string());
+        spdlog::error(
+            "job {} has ended before the work was done, see {}; run the same command again to continue",
+            number, (job.folder / "*.log").string());
         return exit_failed;
     }
     return is_next ? exit_done : all_is_merged;

@@ -83,9 +83,7 @@ void print_calibration(const SceneCalibration& result) {
     print_out("{} = {}{}{}\n", modulus ? "E" : "gamma",
               with_error({unit * result.found.gamma, unit * result.found.standard_error, result.replicas}, 4),
               modulus ? " kPa" : "",
-              result.found.converged
-                  ? ""
-                  : " (not yet as sure as asked for: raise --rounds, or use more replicas)");
+              result.found.converged ? "" : " (tolerance not reached: raise --rounds, or use more replicas)");
 }
 
 void calibrate(CalibrateCommand& command) {

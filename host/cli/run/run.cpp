@@ -135,7 +135,7 @@ SharedWork shared_work(const RunCommand& command, const Scene& scene) {
 int failed_run(const RunCommand& command, const std::exception& error) {
     const int code = report_error(error);
     if (has_checkpoint(command.out))
-        spdlog::warn("what was recorded before is kept; go on with\n  {}", resume_command(command));
+        spdlog::warn("recorded data are kept; resume with\n  {}", resume_command(command));
     return code;
 }
 
@@ -152,7 +152,7 @@ int run_alone(const RunCommand& command, const Scene& scene) {
     }
     if (is_profiling()) fmt::print(stderr, "{}", profile_text());
     if (summary.end == RunEnd::interrupted) {
-        spdlog::warn("interrupted; go on with\n  {}", resume_command(command));
+        spdlog::warn("interrupted; resume with\n  {}", resume_command(command));
         return exit_interrupted;
     }
     if (summary.end == RunEnd::was_done) spdlog::info("{}: this run is done already", command.out);

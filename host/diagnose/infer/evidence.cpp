@@ -85,8 +85,7 @@ void leave_out_signatures(const Evidence& evidence, const std::vector<Signature>
         const Signature& s = find(signatures, w.name);
         const auto has = (known && s.linear.array().isFinite() && s.curvature.array().isFinite()).count();
         if (static_cast<double>(has) >= enough_cells * static_cast<double>(known.count())) return false;
-        notes.push_back(w.name +
-                        ": its runs failed (the packing runs away with it), so nothing is said of it");
+        notes.push_back(w.name + ": its runs failed (the packing runs away with it), so it cannot be tested");
         return true;
     });
 }

@@ -115,7 +115,8 @@ std::size_t RunParts::begin(const RunCut& cut) {
     std::size_t size = fitting_size(scene_, cut);
     if (fs::exists(file) && !read_manifest(file)) {
         size = size_of_finished_parts(size);
-        options_.on_warning(fmt::format("{}: is damaged, and made anew from what is there", file.string()));
+        options_.on_warning(
+            fmt::format("{}: is damaged, and rebuilt from the finished parts", file.string()));
     }
     wanted[size_of_part] = std::to_string(size);
     return size_in(keep_manifest(file, wanted, size_of_part), file);
@@ -220,8 +221,9 @@ RunEnd RunParts::run_part(Device& device, std::size_t part, const fs::path& work
             run.start = Start::resume;
             return run_scene(device, scene, run).end;
         } catch (const InputError& error) {
-            options_.on_warning(fmt::format("part {} is computed anew: what was there of it is of no use: {}",
-                                            part_name(part), error.what()));
+            options_.on_warning(
+                fmt::format("part {} is computed again, because its unfinished results cannot be used: {}",
+                            part_name(part), error.what()));
             fs::remove_all(work);
         }
     run.start = Start::fresh;

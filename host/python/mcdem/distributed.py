@@ -75,9 +75,9 @@ class Work:
                     return
                 missing = self.missing(1)  # damaged parts
                 if not missing:
-                    raise RunError(f"what was computed could not be put together: exit code {code}")
+                    raise RunError(f"the parts could not be merged: exit code {code}")
             if missing == before:
-                raise RunError("no part could be finished: what is said above must be mended first")
+                raise RunError("no part could be finished: fix the errors above first")
             self.deal(client, missing)
             before = missing
 

@@ -135,7 +135,7 @@ Verdict verdict_of(const std::string& word) {
     for (const auto verdict : {Verdict::no_gap, Verdict::effect, Verdict::group, Verdict::unknown_effect,
                                Verdict::not_converged, Verdict::calibration_suspect})
         if (verdict_name(verdict) == word) return verdict;
-    throw std::invalid_argument("verdict is none that is known: " + word);
+    throw std::invalid_argument("unknown verdict: " + word);
 }
 
 Diagnosis read(const Json& json) {

@@ -47,7 +47,7 @@ std::string meaning_of(const std::string& metric) {
                "left "
                "out that makes it smallest";
     if (metric == "bhat")
-        return "how far the distributions of contact forces lie apart: -ln of the mean of Bhattacharyya's "
+        return "difference between the distributions of contact forces: -ln of the mean of Bhattacharyya's "
                "coefficient";
     return "";
 }
@@ -67,7 +67,7 @@ TextTable table_of_causes(const Diagnosis& diagnosis) {
                      {"of chi-square"},
                      {"gain in log likelihood"},
                      {"simulated in full"},
-                     {"cannot be told from", Align::left}};
+                     {"indistinguishable from", Align::left}};
     for (const auto& cause : diagnosis.causes)
         table.rows.push_back(
             {words_of(cause.effect), amount(cause.amplitude, cause.amplitude_error, cause.unit),
@@ -103,7 +103,7 @@ TextTable table_of_detection_limits(const Diagnosis& diagnosis) {
     table.columns = {{"effect", Align::left},
                      {"smallest detectable amplitude"},
                      {"absorbed by calibration"},
-                     {"at twice that, cannot be told from", Align::left}};
+                     {"at twice that, indistinguishable from", Align::left}};
     for (const auto& limit : diagnosis.detection_limits)
         table.rows.push_back({words_of(limit.effect),
                               std::isfinite(limit.minimum_amplitude)

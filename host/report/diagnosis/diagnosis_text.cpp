@@ -295,18 +295,18 @@ std::string limits_line(const Diagnosis& diagnosis) {
     if (diagnosis.verdict == Verdict::no_gap)
         text = no_gap_limits(diagnosis);
     else if (diagnosis.verdict == Verdict::unknown_effect)
-        text = "an effect that nobody thought of, or several at once, may be behind it";
+        text = "an unknown effect, or several at once, may be the cause";
     else if (diagnosis.verdict == Verdict::not_converged)
         text =
-            "an effect that looks like this setting would give the same data, and is to be told from it "
-            "first";
+            "an effect that looks like this setting would give the same data, and must be distinguished "
+            "from it first";
     else if (diagnosis.verdict == Verdict::calibration_suspect)
         text = "an effect that looks like this parameter would give the same data";
     else
         text = "consistent is not proven: an effect outside the library may look the same";
     while (text.ends_with('.')) text.pop_back();
     if (!differing_packings(diagnosis).empty())
-        text += "; what the packings do not share is no effect that acts on all alike";
+        text += "; a difference between packings is not an effect that acts on all of them";
     const auto never = never_shown(diagnosis);
     if (!never.empty()) text += "; these data can never show " + listed(never, max_limits);
     if (!diagnosis.not_measured.empty())
@@ -316,7 +316,7 @@ std::string limits_line(const Diagnosis& diagnosis) {
 }
 
 std::string next_line(const Diagnosis& diagnosis) {
-    if (diagnosis.next.empty()) return "nothing that the signatures tell would help.";
+    if (diagnosis.next.empty()) return "no measurement is predicted to help.";
     std::string text;
     for (const auto& step : diagnosis.next) text += (text.empty() ? "" : "; ") + one_line(next_words(step));
     while (text.ends_with('.')) text.pop_back();
