@@ -116,7 +116,7 @@ def a_manifest_that_is_not_whole_costs_no_part(place):
         stopped_before_merge(place)
         manifest = place / "out/parts/manifest.json"
         manifest.write_text(manifest.read_text()[:length])
-        expect(mcdem(place, *IN_PARTS, fault_log=place.parent / "log"), 0, "manifest.json: is damaged, and rebuilt from the finished parts")
+        expect(mcdem(place, *IN_PARTS, fault_log=place.parent / "log"), 0, "manifest.json: is damaged, and rebuilt")
         assert (place / "out/run.h5").read_bytes() == result
     assert ".work-" not in (place.parent / "log").read_text()  # where parts are computed
 

@@ -1,4 +1,5 @@
-"""Tables of a laboratory or of another program as an experiment: guessed, then read by a mapping (host/experiment/README.md).
+"""Imports tables of a laboratory or of another program as an experiment: guesses a mapping and reads the tables with it
+(host/experiment/README.md).
 
 `mcdem experiment import` runs it (host/cli/experiment/experiment_import.cpp): from files to named columns (tables, text, formats), to what
 the columns are (names, mapping, guess*), to frames in SI units (rows, plate, grains, contacts), to one experiment (assemble).

@@ -43,7 +43,7 @@ def print_entry(key, of):
 
 
 def print_mapping(mapping):
-    """What each table is taken for, column by column."""
+    """Prints the role of each table and of its columns."""
     for table in mapping:
         more = f" and {len(table.files) - 1} more" if len(table.files) > 1 else ""
         why = f": {table.role_why}" if table.role_why else ""
@@ -60,7 +60,7 @@ def print_mapping(mapping):
 
 
 class Results:
-    """Files for the program, in its folder."""
+    """Writes the files for the program into its folder."""
 
     def __init__(self, folder):
         self.folder = folder
@@ -73,7 +73,7 @@ class Results:
 
 
 def expect_kept(kept, text):
-    """Throws where another mapping lies there; the same may, in the user's own words."""
+    """Raises an error if another mapping exists; the same one, edited by the user, may."""
     if not os.path.lexists(kept):
         return
     there = text_of_mapping(kept)
@@ -99,7 +99,7 @@ def import_by_mapping(arguments, known, results):
 
 
 def import_by_guess(arguments, known, results):
-    """None where the guess is not safe."""
+    """None if the guess is uncertain."""
     if not arguments.tables:
         raise InputError("TABLE: must be at least one file, or --mapping must name them, got neither")
     if os.path.lexists(arguments.kept):

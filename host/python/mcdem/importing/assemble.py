@@ -1,4 +1,4 @@
-"""Plate, grains and contacts put together: the tables of an experiment folder."""
+"""Combines plate, grains and contacts into the tables of an experiment folder."""
 import gzip
 import os
 from dataclasses import dataclass, field
@@ -13,14 +13,15 @@ from .mapping import WALLS
 from .plate import PlateRows, import_plate
 from .problems import Problems, number_text
 
-MAX_APART, WEAK = 0.5, 0.01  # of a contact's two sides: of the larger force, of the largest of the frame
+# For the two sides of a contact: largest difference over the larger force; weak forces over the largest one of the frame.
+MAX_APART, WEAK = 0.5, 0.01
 
 
 @dataclass
 class Known:
-    """What the tables do not tell; the scale that tells millimetres from metres."""
+    """Values that are not in the tables, including the scale that distinguishes millimetres from metres."""
 
-    box: tuple = (0.0, 0.0)  # [m]; 0: not known
+    box: tuple = (0.0, 0.0)  # [m]; 0: unknown
     plate_start: float = np.nan
     youngs_modulus: float = np.nan  # of the grains [Pa]
     poisson_ratio: float = 0.4
@@ -30,7 +31,7 @@ class Known:
 
 @dataclass
 class Imported:
-    """Tables as an experiment folder has them, and what was left out."""
+    """The tables of an experiment folder, and notes about ignored data."""
 
     plate: pd.DataFrame
     grains: pd.DataFrame
@@ -90,12 +91,12 @@ class _Assembly:
                 rows.problem_once("inside", first, f"centres must lie in the box of {size[0]:g} by {size[1]:g} m below the plate at "
                                   f"{size[2]:g} m, got {at} in frame {number_text(grains.keys[frame])}: see length_unit, origin_x, "
                                   "origin_y, origin_z and frames_by in the mapping")
-        if min(grains.row) > 0:  # an experiment begins with the grains
+        if min(grains.row) > 0:  # an experiment starts at the first frame of the grains
             self.dropped = min(grains.row)
             self.notes.append(f"the plate's first {self.dropped} rows are left out: grains are known from then on")
 
     def contacts_of(self, table, before):
-        """Each contact once, grain < partner, by row of the plate."""
+        """Each contact once, with grain < partner, by row of the plate."""
         by = table.map.word("frames_by", "plate")
         frames = import_contacts(table, self.grains, self.problems)
         scans = self.grains.plate_rows_of(by, frames.keys)
@@ -115,7 +116,7 @@ class _Assembly:
         return self.put_points(self.joined(all_of, table.map.word("sides", "one") == "both", frames, before), frames)
 
     def joined(self, contacts, both, frames, before):
-        """The mean of both sides where each contact is listed from either."""
+        """The mean of both sides if contacts are listed from both."""
         pair = ["scan", "grain", "partner"]
         place, size = contacts.groupby(pair).cumcount(), np.linalg.norm(contacts[["fx", "fy", "fz"]], axis=1)
         first_side = contacts.groupby(pair).side.transform("first")
@@ -139,7 +140,7 @@ class _Assembly:
 
     @staticmethod
     def check_sides(first, other, largest, frames):
-        """Weak forces may differ more: their errors are those of the strong ones."""
+        """Weak forces may differ more, because their errors are those of the strong ones."""
         a, b = first[["fx", "fy", "fz"]].values, other[["fx", "fy", "fz"]].values
         sizes, apart = (np.linalg.norm(a, axis=1), np.linalg.norm(b, axis=1)), np.linalg.norm(a - b, axis=1)
         wrong = np.flatnonzero(apart > np.maximum(MAX_APART * np.maximum(*sizes), WEAK * largest))
@@ -150,7 +151,7 @@ class _Assembly:
                                      'of the sides out of the table and write `sides = "one"`')
 
     def put_points(self, contacts, frames):
-        """Where none was measured: midway between the surfaces; on a wall under the centre."""
+        """Contact points that were not measured: midway between the surfaces; on a wall, the foot of the perpendicular."""
         lost = np.flatnonzero(contacts.x.isna())
         if not len(lost):
             return contacts
@@ -202,7 +203,7 @@ def import_tables(tables, known):
 
 
 def write_tables(imported, folder, packed=False):
-    """No rows: no table. Numbers with the shortest digits that read back; forced to the disk."""
+    """Writes a table if it has rows, with the shortest digits that give the same numbers when read; flushes it to disk."""
     for name in ("plate", "grains", "contacts"):
         table = getattr(imported, name)
         if table is not None and len(table):

@@ -1,11 +1,11 @@
-"""Contacts by frame, numbered as the grains. Points that were not measured are not-a-number."""
+"""Contacts by frame, with the numbers of the grains. Points that were not measured are NaN."""
 import numpy as np
 
 from .mapping import BY_DIRECTION, WALLS
 from .problems import is_whole, number_text, quoted, to_number
 from .rows import Rows, whole_entry
 
-NOBODY, SOME_WALL = -8, -7  # beside grains >= 0 and walls -1 to -6: nothing that is known; a wall that the force decides
+NOBODY, SOME_WALL = -8, -7  # in addition to grains >= 0 and walls -1 to -6: unknown partner; wall to be determined by the force
 
 
 def wall_partner(name):
@@ -14,7 +14,7 @@ def wall_partner(name):
 
 class ContactFrames:
     def __init__(self, keys=()):
-        self.keys = list(keys)  # of each frame, those without contacts too
+        self.keys = list(keys)  # of each frame, including those without contacts
         self.frame = self.grain = self.partner = self.row = np.zeros(0, int)  # of each contact; row: among `rows`
         self.point = self.force = np.zeros((0, 3))  # [m], on `grain` [N]
         self.rows = None
@@ -28,7 +28,7 @@ class ContactFrames:
 
 
 def wall_by_direction(force):
-    """The wall that pushes a grain with this force: straight off it, friction left aside."""
+    """The wall that exerts this force on a grain: the one whose normal is closest to it."""
     axis = np.argmax(np.abs(force), axis=1)
     return -1 - (2 * axis + np.where(force[np.arange(len(axis)), axis] > 0, 0, 1))
 
@@ -50,10 +50,10 @@ class _Reader:
         return self.problems.count == before
 
     def side_of(self, key, text, number):
-        """A grain, a wall, SOME_WALL or NOBODY; and what is wrong about it, or None."""
+        """A grain, a wall, SOME_WALL or NOBODY; and the problem, or None."""
         grain = int(self.grains.number_of(int(number) + self.offset)) if is_whole(number) else -1
         wall = self.map.walls.get(text if number is None else number_text(number))
-        if wall and (key == "partner" or grain < 0):  # meshes have numbers of their own, which may be those of grains too
+        if wall and (key == "partner" or grain < 0):  # numbers of meshes may equal those of grains
             return (SOME_WALL if wall.word == BY_DIRECTION else wall_partner(wall.word)), None
         if text in WALLS:
             axis = WALLS.index(text) // 2
@@ -63,7 +63,7 @@ class _Reader:
         return (grain, None) if grain >= 0 else (NOBODY, "")
 
     def sides(self, key, wanted):
-        """Of each row; `wanted` rows that name nobody are problems."""
+        """Partner of each row; unknown partners in `wanted` rows are problems."""
         sides = np.full(len(self.rows), NOBODY)
         if key == "partner" and self.one_wall:
             sides[:] = wall_partner(self.one_wall)
@@ -86,7 +86,7 @@ class _Reader:
         return sides
 
     def partners(self, wanted):
-        """Grain and partner of each row, whether they were listed the other way round, and which rows are whole."""
+        """Grain and partner of each row, whether they were exchanged, and which rows are complete."""
         first, second = self.sides("grain", wanted.copy()), self.sides("partner", wanted.copy())
         turned = first < 0  # Yade lists walls first
         grain, partner = np.where(turned, second, first), np.where(turned, first, second)
@@ -128,7 +128,7 @@ class _Reader:
                                    "behind others: sort them")
         frames = ContactFrames(keys)
         frame = np.searchsorted(starts, np.arange(len(self.rows)), "right") - 1
-        # A frame without contacts counts in the order too.
+        # A frame without contacts counts in the order as well.
         wanted = np.nan_to_num(self.rows.number("where")) != 0 if "where" in self.rows else np.ones(len(self.rows), bool)
         grain, partner, turned, known = self.partners(wanted)
         at = self.grains.frames_of(self.map.word("frames_by", "plate"), keys)[frame]
@@ -137,7 +137,7 @@ class _Reader:
         if all(key in self.rows for key in "xyz"):
             point = np.column_stack([self.rows.number(key, known) for key in "xyz"]) * self.map.length_factor() - self.grains.origin
             known &= np.isfinite(point).all(axis=1)
-        # Without any force grains are only near: LAMMPS lists them too.
+        # Grains without force do not touch; LAMMPS lists them as well.
         kept = known & np.isfinite(force).all(axis=1) & (force != 0).any(axis=1)
         frames.partner = np.where(partner == SOME_WALL, wall_by_direction(np.nan_to_num(force)), partner)[kept]
         frames.frame, frames.grain, frames.point, frames.force = frame[kept], grain[kept], point[kept], force[kept]

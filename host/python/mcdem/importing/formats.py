@@ -1,4 +1,4 @@
-"""Files of simulation programs: dumps and data files of LAMMPS and LIGGGHTS, VTK, extended xyz."""
+"""Readers for files of simulation programs: dumps and data files of LAMMPS and LIGGGHTS, VTK, extended xyz."""
 import contextlib
 import io
 import os
@@ -19,7 +19,7 @@ def _whole(word):
 
 
 def parse_dump(table, lines, problems):
-    """`dump custom` (ITEM: ATOMS) and `dump local` (ITEM: ENTRIES), any number of frames, each of which names its columns."""
+    """`dump custom` (ITEM: ATOMS) and `dump local` (ITEM: ENTRIES), any number of frames, each with the names of its columns."""
     table.begin("dump", lines, Form(" ", "."))
     items = [n for n, line in enumerate(lines) if line.startswith(ITEM)] + [len(lines)]
     first = next(n for n, line in enumerate(lines) if line.strip())
@@ -124,7 +124,7 @@ def looks_like_xyz(lines):
 
 
 def parse_xyz(table, text, problems):
-    """Extended xyz, frame by frame, by ASE; vectors become name_x, name_y, name_z."""
+    """Extended xyz, frame by frame, read by ASE; vectors become name_x, name_y, name_z."""
     from ase.io import iread
 
     names = None
@@ -143,7 +143,7 @@ def parse_xyz(table, text, problems):
             step = next((atoms.info[key] for key in ("step", "Step", "timestep", "frame") if key in atoms.info), place)
             table.frames.append((float(step), sum(map(len, chunks))))
             chunks.append(np.column_stack(list(fields.values())))
-    except Exception as error:  # ASE has no error of its own for a file that is wrong
+    except Exception as error:  # ASE has no exception type for invalid files
         return problems.add(table.file, f"must be extended xyz that ASE reads, got: {quoted(str(error) or type(error).__name__)}")
     table.format, table.form = "xyz", Form(" ", ".")
     table.set_numbers(names, np.concatenate(chunks))
@@ -157,7 +157,7 @@ def is_mesh(content):
 
 
 def parse_mesh(table, content, problems):
-    """VTK's unstructured grids, legacy or XML, by meshio: a row is a point with its data."""
+    """VTK's unstructured grids, legacy or XML, read by meshio: a row is a point with its data."""
     import meshio
 
     ending = ".vtk" if content.startswith(b"#") else ".vtu"
@@ -169,7 +169,7 @@ def parse_mesh(table, content, problems):
             with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
                 mesh = meshio.read(file)
             fields = {name: np.asarray(values, float).reshape(len(mesh.points), -1) for name, values in mesh.point_data.items()}
-        except (Exception, SystemExit) as error:  # meshio ends the program where a file is wrong
+        except (Exception, SystemExit) as error:  # meshio exits if a file is invalid
             return problems.add(table.file, f"must be a VTK file that meshio reads, got: {quoted(str(error) or type(error).__name__)}")
     columns = ["x", "y", "z"]
     for name, values in fields.items():
@@ -215,7 +215,7 @@ class _Vtk:
         return 0
 
     def numbers(self, count):
-        """The next `count` numbers, over as many lines as they take."""
+        """The next `count` numbers, which may span several lines."""
         words = []
         while len(words) < count and not self.problems.count:
             more = self.next()

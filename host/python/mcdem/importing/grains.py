@@ -1,4 +1,4 @@
-"""Grains by frame, each frame whole, in the order of their ids."""
+"""Grains by frame, complete and ordered by id."""
 import numpy as np
 
 from .mapping import signed_column
@@ -11,24 +11,24 @@ class GrainFrames:
         self.keys, self.position = [], []  # of each frame: its key, centres [n][3] [m]
         self.ids, self.diameter = np.zeros(0, int), np.zeros(0)  # of the first frame; [m]
         self.where = []  # of each frame, for messages
-        self.origin = np.zeros(3)  # of the box, in the tables' axes once they are turned [m]
-        self.sign = np.ones(3)  # -1 where a table's axis counts the other way
+        self.origin = np.zeros(3)  # of the box, in the axes of the tables after reversal [m]
+        self.sign = np.ones(3)  # -1 for reversed axes of a table
         self.index, self.plate = FrameIndex(), FrameIndex()
-        self.row = None  # of the plate, of each frame; -1: none; None: not known
+        self.row = None  # row of the plate for each frame; -1: none; None: unknown
         self.plate_rows = 0
 
     def number_of(self, ids):
-        """From the table's numbers of grains; -1 where there is none."""
+        """Indices of grains from their numbers in the table; -1 if there is none."""
         ids = np.asarray(ids)
         at = np.minimum(np.searchsorted(self.ids, ids), max(len(self.ids) - 1, 0))
         return np.where(self.ids[at] == ids, at, -1) if len(self.ids) else np.full(ids.shape, -1)
 
     def top(self, frame):
-        """Of the highest grain [m]."""
+        """Height of the highest grain [m]."""
         return max(0.0, float(np.max(self.position[frame][:, 2] + self.diameter / 2)))
 
     def plate_rows_of(self, by, keys):
-        """The plate's rows of another table's frames, in their order; `by` as in frames_by. -1: none."""
+        """Rows of the plate for the frames of another table, in order; `by` as in frames_by. -1: none."""
         keys = np.asarray(keys, float)
         if by in ("order", "rows"):
             rows = np.arange(len(keys)) if by == "order" else keys
@@ -39,7 +39,7 @@ class GrainFrames:
         return np.where(frames < 0, -1, np.asarray(self.row)[frames]) if self.row is not None else np.full(len(keys), -1)
 
     def frames_of(self, by, keys):
-        """The same of the grains' frames. Where the plate's rows are not known, frames in order are the grains' own."""
+        """The same for frames of the grains. If the rows of the plate are unknown, frames in order are those of the grains."""
         if by == "grains" or (by == "plate" and self.row is None):
             return self.index.find(keys)
         if self.row is None:
@@ -49,13 +49,13 @@ class GrainFrames:
         return np.array([first.get(row, -1) if row >= 0 else -1 for row in self.plate_rows_of(by, keys)], int)
 
     def place(self, by, plate):
-        """Finds each frame's row of the plate."""
+        """Finds the row of the plate for each frame."""
         self.plate, self.plate_rows = plate.index, len(plate)
         self.row = list(self.plate_rows_of(by, self.keys))
 
 
 def _read_columns(rows, mapped, problems):
-    """Number, centre and diameter in each row, and which rows are whole."""
+    """Number, centre and diameter in each row, and which rows are complete."""
     unit, size_key = mapped.length_factor(), next((key for key in ("radius", "diameter") if key in rows), None)
     wanted = np.nan_to_num(rows.number("where")) != 0 if "where" in rows else np.ones(len(rows), bool)
     centres = np.column_stack([rows.number(key, wanted) for key in "xyz"])
@@ -121,7 +121,7 @@ class _Reader:
         frames.position.append(centres)
 
     def expect_diameters(self, rows, row, shown, diameter):
-        """Without numbers, rows in another order show in their diameters. All may swell alike."""
+        """Without numbers, a different order of the rows is detected by their diameters, which may all change by the same factor."""
         growth = diameter / self.frames.diameter
         differ = np.mean(np.abs(growth / np.mean(growth) - 1))
         if differ > 0.02:

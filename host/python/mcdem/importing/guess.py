@@ -1,5 +1,5 @@
-"""What the tables in files are. A guess is sure where a name says it and the numbers do not contradict, or where the numbers leave
-one possibility; unclear where they leave several."""
+"""Guesses the meaning of tables. A guess is sure if a name states it and the numbers do not contradict, or if the numbers allow
+only one possibility; it is unclear if they allow several."""
 import re
 
 import numpy as np
@@ -22,13 +22,13 @@ from .tables import read_table, read_tables
 
 
 def _natural(file):
-    """Numbers in names by their size."""
+    """Sort key that compares numbers in names by value."""
     return [(0, int(word), "") if word.isdigit() and word.isascii() and len(word) < 1000 else (1, 0, word)
             for word in re.split(r"([0-9]+)", file)]
 
 
 def _group(parts):
-    """Files with the same columns are the frames of one table, in the order of the numbers in their names."""
+    """Groups files with the same columns as frames of one table, ordered by the numbers in their names."""
     groups = []
     for part in parts:
         alike = next((group for group in groups if part.named and group[0].named and group[0].columns == part.columns
@@ -49,7 +49,7 @@ def _group(parts):
 
 
 def _grains_so_far(tables):
-    """As they stand; empty where they cannot be read yet."""
+    """The tables read with the present mapping; empty if that is not possible yet."""
     of_grains, problems = [table for table in tables if table.role == "grains"], Problems()
     grains = import_grains(of_grains, problems)
     if problems.count or not grains.keys:
@@ -94,7 +94,7 @@ def guess_tables(files, known):
 
 
 def mapping_of(tables):
-    """Units and signs that a guess leaves out are unclear in it."""
+    """Marks units and signs without a guess as unclear."""
     for table in tables:
         for key in must_be_stated(table.map):
             if key not in table.map:
@@ -104,7 +104,7 @@ def mapping_of(tables):
 
 
 def wrong_rows(tables):
-    """Of plate and grains, where the guess knows their columns: they are why it does not know more."""
+    """Problems in the tables of plate and grains that prevent further guesses, if their columns are known."""
     lines = []
     for table in tables:
         columns_known = all(of.sure != UNCLEAR or "_" in key for key, of in table.map.entries.items())
@@ -120,13 +120,13 @@ def wrong_rows(tables):
 
 
 def _columns_in(mapped, part):
-    """How many columns the mapping names in this table, where the file has all of them; -1 where it lacks one."""
+    """Number of columns that the mapping names in this table, if the file has all of them; -1 if it lacks one."""
     words = [word for _, words in columns_of(mapped) for word in words]
     return len(words) if all(part.find(signed_column(word)[1]) is not None for word in words) else -1
 
 
 def _distribute(files, tables, problems):
-    """Each file to the table that it fits best; two of the same merit are a problem."""
+    """Assigns each file to the best matching table; a tie is a problem."""
     for file in files:
         best, most, why = None, 0, f"{file}: must have the columns of a table of the mapping, got others"
         for table in tables:
@@ -150,7 +150,7 @@ def _distribute(files, tables, problems):
 
 
 def read_import_tables(mapping, files=(), file="mapping"):
-    """The tables of a mapping with their files read. `files`, where there are any, take the place of the mapping's: each goes to the
+    """Reads the files of the tables in a mapping. `files`, if given, replace those of the mapping: each is assigned to the
     table whose columns it has."""
     tables, problems = [], []
     for mapped in mapping:

@@ -1,4 +1,4 @@
-"""What a table of contacts means: which numbers are grains and which walls, on whom a force is, in which units."""
+"""Guesses the meaning of a table of contacts: grains and walls, sides of the forces, units."""
 import numpy as np
 
 from .contacts import import_contacts
@@ -8,24 +8,24 @@ from .mapping import UNCLEAR, guess, negated
 from .names import FORCES, VOXEL
 from .problems import Problems
 
-MAX_ROWS = 200_000  # of a file that a guess looks at
-NEAR = 1.2  # of the sum of radii: touching, measurement errors included
-FORCE_FACTORS = {unit: FORCES[unit] for unit in "N mN uN kN gf kgf".split()}  # the others are too near to these
+MAX_ROWS = 200_000  # maximum number of rows used for a guess
+NEAR = 1.2  # of the sum of radii: touching, including measurement errors
+FORCE_FACTORS = {unit: FORCES[unit] for unit in "N mN uN kN gf kgf".split()}  # the others are too similar to these
 
 
 def hertz_tells(unit):
-    """With a modulus wrong by three, newtons look like weights in gf or kgf."""
+    """With a modulus wrong by a factor of three, newtons look like gf or kgf."""
     return unit not in ("gf", "kgf")
 
 
 def hertz_force(known, radius, other, overlap):
-    """Of two grains, or of a grain and a rigid wall (radius inf) [N]; not-a-number where E is not known."""
+    """Hertz force between two grains, or a grain and a rigid wall (radius inf) [N]; NaN if E is unknown."""
     modulus = known.youngs_modulus / (1 - known.poisson_ratio**2) / np.where(np.isinf(other), 1, 2)
     return 4 / 3 * modulus * np.sqrt(1 / (1 / radius + 1 / other)) * np.maximum(overlap, 0) ** 1.5
 
 
 class _Places:
-    """The contacts in frames in which the grains' places are known."""
+    """The contacts in frames with known positions of the grains."""
 
     def __init__(self, table, grains):
         frames = import_contacts(table, grains, Problems(), MAX_ROWS)
@@ -40,19 +40,19 @@ class _Places:
         self.line, self.other_radius = self.centre - position[at[kept], other], radius[other]
 
     def touching(self):
-        """Share of the pairs that touch, 0 where there are none."""
+        """Fraction of touching pairs, 0 without pairs."""
         distance = np.linalg.norm(self.line, axis=1)[self.pair]
         return float(np.mean(distance < NEAR * (self.radius + self.other_radius)[self.pair])) if len(distance) else 0.0
 
     def outward(self, box):
-        """+1 where forces push grains apart as they stand, -1 where they do turned round: by pairs, else by walls near by."""
+        """+1 if forces repel grains as given, -1 if they do after reversal: from pairs, otherwise from nearby walls."""
         with np.errstate(invalid="ignore", divide="ignore"):
             cosine = np.sum(self.force * self.line, axis=1) / (np.linalg.norm(self.force, axis=1) * np.linalg.norm(self.line, axis=1))
         cosine = cosine[self.pair & np.isfinite(cosine)]
         if len(cosine) >= 3:
             return float(cosine.mean())
         axis = np.argmax(np.abs(self.force), axis=1) if len(self.force) else np.zeros(0, int)
-        sides = np.flatnonzero(~self.pair & (axis < 2))  # the plate's place is not known here
+        sides = np.flatnonzero(~self.pair & (axis < 2))  # the position of the plate is unknown here
         if not len(sides):
             return 0.0
         low = self.centre[sides, axis[sides]] < np.asarray(box)[axis[sides]] / 2
@@ -60,12 +60,12 @@ class _Places:
 
 
 def _guess_offset(table, grains):
-    """The offset with which nearly all pairs touch."""
+    """The offset of the numbers with which nearly all pairs touch."""
     most, best = -1.0, 0
-    for offset in (0, 1, -1, -2, -3, -4, -5, -6):  # Yade's walls may count before its grains
+    for offset in (0, 1, -1, -2, -3, -4, -5, -6):  # Yade may number its walls before its grains
         trial = table.changed(id_offset=guess(str(offset), "stated", ""))
         others = unknown_partners(trial, grains, offset, MAX_ROWS)
-        if len(others) > 12:  # walls are few
+        if len(others) > 12:  # there are only few walls
             continue
         set_walls(trial.map, others, grains)
         share = _Places(trial, grains).touching()
@@ -80,7 +80,7 @@ def _guess_offset(table, grains):
 
 
 def _guess_force_upwards(table, grains, box):
-    """Forces lie along the lines of centres where fz counts the way that it should."""
+    """Guesses the sign of fz: forces must be along the lines of centres."""
     fz = table.map["fz"]
     as_it_is, other_way = (abs(_Places(trial, grains).outward(box)) for trial in (table, table.changed(fz=negated(fz))))
     if abs(as_it_is - other_way) < 0.2:
@@ -116,7 +116,7 @@ def _guess_sides(table, frames):
 
 
 def _point_units(table, grains, voxel_size):
-    """The units in which contact points lie at the surfaces of their grains."""
+    """Units in which contact points are on the surfaces of their grains."""
     fits = []
     for unit in length_factors(voxel_size):
         size = {"voxel_size": guess(repr(float(voxel_size)), "stated", "")} if unit == VOXEL else {}
@@ -128,7 +128,7 @@ def _point_units(table, grains, voxel_size):
 
 
 def _guess_point_unit(table, grains, known, voxel_size):
-    """Unit and direction of contact points: z may count the other way than it was taken for."""
+    """Unit and direction of contact points: z may have the opposite sign of the present guess."""
     mapped = table.map
     if "x" not in mapped or "z" not in mapped:
         return

@@ -1,4 +1,4 @@
-"""Which frames of the tables belong together."""
+"""Guesses which frames of the tables belong together."""
 from dataclasses import dataclass, field
 
 
@@ -10,12 +10,12 @@ from .rows import FrameIndex, Rows
 
 @dataclass
 class _Frames:
-    """The frames of a table, and what their numbers count."""
+    """The frames of a table, and the meaning of their numbers."""
 
     keys: list = field(default_factory=list)
     by: str = "place"
-    counts: str = ""  # "time", "step", "scan"; empty: nothing says
-    unit: str = ""  # of time, as its name states it
+    counts: str = ""  # "time", "step", "scan"; empty: unknown
+    unit: str = ""  # of time, as stated by its name
 
 
 def _frames_of(table):
@@ -37,7 +37,7 @@ def _all_among(keys, others):
 
 
 def _choose_frame_column(table, plate):
-    """Of several columns that may tell the frame, the one that the plate's table has too."""
+    """Among several columns for the frame, the one that the plate's table also has."""
     if "frame" not in plate.map or "frame" not in table.map:
         return
     base = column_name(plate.map.word("frame")).base
@@ -47,7 +47,7 @@ def _choose_frame_column(table, plate):
 
 
 def _only_counts(keys):
-    """0, 1, 2, .. or 1, 2, 3, ..: it may be the frames at hand that are counted, not those of others."""
+    """0, 1, 2, .. or 1, 2, 3, ..: may number the frames of this table and not those of others."""
     return bool(keys) and keys[0] in (0, 1) and all(b == a + 1 for a, b in zip(keys, keys[1:]))
 
 
@@ -58,7 +58,7 @@ def _told_by(frames):
 
 
 def _same_clock(a, b):
-    """Times count from the same units: stated ones are converted. Beside seconds a name may state none."""
+    """Times must have comparable units: stated ones are converted. Together with seconds, a name may omit the unit."""
     if a.unit == b.unit:
         return True
     if not a.unit or not b.unit:
@@ -67,7 +67,7 @@ def _same_clock(a, b):
 
 
 def _same_numbers(frames, others):
-    """How sure it is that frames whose numbers are all among those of `others` are the ones with these numbers."""
+    """Certainty that frames whose numbers all occur in `others` are the frames with these numbers."""
     alike = frames.counts == others.counts
     if not _same_clock(frames, others):
         return UNCLEAR
@@ -75,7 +75,7 @@ def _same_numbers(frames, others):
         return "likely" if frames.by == "place" else "sure"
     if len(frames.keys) == len(others.keys):
         return "likely"
-    if others.by == "place":  # numbers of rows, if these count from 0 as well
+    if others.by == "place":  # row numbers, if they also start at 0
         counts_rows = frames.keys[0] == 0 and frames.counts != "time"
         return "likely" if counts_rows and (frames.by != "file" or not _only_counts(frames.keys)) else UNCLEAR
     if frames.by == "file":

@@ -1,4 +1,4 @@
-"""Unit, origin, size and upward direction of the tables of grains."""
+"""Guesses unit, origin, size and upward direction of the tables of grains."""
 import numpy as np
 
 from .assemble import import_grains
@@ -11,12 +11,12 @@ METRES = guess("m", "stated", "")
 
 
 def plain_grains(table):
-    """The grains as they stand, in metres."""
+    """The grains with their raw numbers taken as metres."""
     return import_grains([table.changed(length_unit=METRES)], Problems())
 
 
 def fitting_units(factors, value, scale, low, high):
-    """Of the units those for which `value` in that unit over `scale` lies between `low` and `high`."""
+    """Units for which `value` in that unit over `scale` is between `low` and `high`."""
     with np.errstate(divide="ignore", invalid="ignore"):
         return [unit for unit, factor in factors.items() if low < abs(value) * factor / abs(np.float64(scale)) < high]
 
@@ -26,7 +26,7 @@ def length_factors(voxel_size):
 
 
 def nearest_over_radii(position, diameter):
-    """Median over grains of the distance to the neighbour that is nearest for the sum of the radii, over that sum: about 1 in a
+    """Median over grains of the smallest ratio of the distance to a neighbour to the sum of the radii: about 1 in a
     dense packing."""
     position, diameter = position[:2000], diameter[:2000]
     if len(position) < 3:
@@ -40,7 +40,7 @@ def nearest_over_radii(position, diameter):
 
 
 def _guess_same_diameter(table):
-    """Where no column has a size, a suggestion."""
+    """A suggestion if there is no column for the size."""
     mapped = table.map
     if any(key in mapped for key in ("diameter", "radius", "same_diameter")) or not all(axis in mapped for axis in "xyz"):
         return
@@ -54,7 +54,7 @@ def _guess_same_diameter(table):
 
 
 def _check_size(mapped, grains):
-    """Radii taken for diameters look twice too far apart; the other way round, twice too near."""
+    """Distinguishes radii and diameters: with the wrong one, distances between neighbours are wrong by a factor of two."""
     now, other = ("radius", "diameter") if "radius" in mapped else ("diameter", "radius")
     if now not in mapped:
         return
@@ -88,7 +88,7 @@ def _unit_by_box(mapped, width, depth, known):
 
 
 def state_voxel_size(mapped, known, width=0):
-    """Where a table counts in voxels: as stated, else what would make a packing `width` wide fill the box."""
+    """Voxel size of a table in voxels: as stated, otherwise the one with which a packing of this `width` fills the box."""
     if mapped.word("length_unit") != VOXEL:
         return
     if known.voxel_size > 0:
@@ -102,7 +102,7 @@ def state_voxel_size(mapped, known, width=0):
 def _guess_origin(mapped, low, high, grains, box):
     if box[0] <= 0:
         return
-    unit, margin = mapped.length_factor(), 0.12 * grains.diameter[0]  # soft grains reach into the walls
+    unit, margin = mapped.length_factor(), 0.12 * grains.diameter[0]  # soft grains overlap walls
     for axis, key in enumerate(("origin_x", "origin_y", "origin_z")):
         size = box[axis] / unit if axis < 2 else np.inf
         reach = f"grains reach from {low[axis]:.4g} to {high[axis]:.4g}"
@@ -129,18 +129,18 @@ def guess_grain_lengths(table, known):
 
 
 def _end_that_gives(ends, diameter):
-    """The end that nears the other one from the highest frame to the lowest; the plate presses from above."""
+    """The end that moves towards the other one between the highest and the lowest frame; it is the one with the plate."""
     heights = ends[:, 1] - ends[:, 0]
     lowest, highest = ends[np.argmin(heights)], ends[np.argmax(heights)]
     shrink = heights.max() - heights.min()
-    if not shrink > 0.1 * diameter:  # less may be noise
+    if not shrink > 0.1 * diameter:  # smaller changes may be noise
         return "none"
     at_low = (lowest[0] - highest[0]) / shrink
     return "low" if at_low > 0.8 else "high" if at_low < 0.2 else "both"
 
 
 def _upwards(column, now, ends, diameter):
-    """What the ends and the column's name say of a table whose z is not negated yet."""
+    """Guesses the direction of z, not reversed so far, from the ends of the packing and the column's name."""
     gives, margin, (low, high) = _end_that_gives(ends, diameter), 0.12 * diameter, ends[0]
     negated, reach = "-" + column, f"grains reach from {low:.4g} to {high:.4g}"
     if is_among(column_name(column).base, DOWNWARDS):
@@ -161,8 +161,8 @@ def _upwards(column, now, ends, diameter):
 
 
 def guess_grains_upwards(tables):
-    """Turned round where that is sure, unclear where it may be."""
-    told = []  # and whether the frames tell
+    """Reverses z if that is certain; marks it as unclear if it is possible."""
+    told = []  # and whether the frames decide
     for table in tables:
         if table.role != "grains" or "z" not in table.map:
             continue

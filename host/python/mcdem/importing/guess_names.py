@@ -1,4 +1,4 @@
-"""Role and columns of a table by the names of its columns, with the units that they state."""
+"""Guesses role and columns of a table from the names of its columns, with their units."""
 from .mapping import UNCLEAR, guess, signed_column
 from .names import COUNTED, FORCES, LENGTH_WORDS, VOXEL, column_name, columns_by_key, is_among
 
@@ -33,7 +33,7 @@ def _size_is_missing(columns):
 
 
 def _note_unit(mapped, key, keys, known):
-    """The unit that the names of these columns state, if they agree and it is one that is known."""
+    """The unit in the names of these columns, if they agree and it is known."""
     units, others = set(), set()
     for entry in keys:
         for word in mapped[entry].words if entry in mapped else ():
@@ -52,7 +52,7 @@ def _note_unit(mapped, key, keys, known):
 
 
 def _note_tangential(mapped, columns):
-    """A size of the normal force beside a tangential one, whose direction nothing tells."""
+    """A magnitude of the normal force together with a tangential one without direction."""
     for column in columns:
         base = column_name(column).base
         if base.startswith(("ft", "fs")) or any(word in base for word in ("tang", "shear", "scher")):
@@ -61,7 +61,7 @@ def _note_tangential(mapped, columns):
 
 
 def _note_programs(mapped, columns):
-    """What programs that measure images mean by their columns."""
+    """Columns of image analysis programs."""
     if is_spam(columns):
         for axis in "xyz" if "Xdisp" in columns else "":
             mapped[axis].words = [f"{axis.upper()}pos", f"{axis.upper()}disp"]
@@ -97,7 +97,7 @@ def guess_by_names(table):
         for key in "xyz":
             found.pop(key, None)
     for key, names in found.items():
-        one = len(names) == 1 or key == "frame"  # "time" beside "frame" is another way to say the same
+        one = len(names) == 1 or key == "frame"  # "time" in addition to "frame" has the same meaning
         mapped[key] = guess(names[0], "sure" if one else UNCLEAR, "its name" if one else f"{len(names)} columns have such a name")
     if "force" in mapped:
         _note_tangential(mapped, columns)
@@ -108,6 +108,6 @@ def guess_by_names(table):
 
 
 def _only_touching(columns):
-    """SPAM's lists of contacts: labels of grains, orientations, numbers of voxels."""
+    """Contact lists of SPAM: labels of grains, orientations, numbers of voxels."""
     bases = {column_name(column).base for column in columns}
     return bool({"label1", "lab1", "labeli"} & bases) and not any(base.startswith(("f", "kraft")) for base in bases)

@@ -1,4 +1,4 @@
-"""Units and sign of the plate's table: its position by the grains below it, its force by theirs on it."""
+"""Guesses units and sign of the plate's table: its position from the grains below it, its force from their forces on it."""
 import numpy as np
 
 from .contacts import import_contacts, wall_partner
@@ -10,27 +10,27 @@ from .problems import Problems
 
 
 def _plain_rows(table, start):
-    """The plate's table as it stands, in the units m and N."""
+    """The plate's table with its raw numbers taken as m and N."""
     plain = {key: guess(word, "stated", "") for key, word in (("length_unit", "m"), ("force_unit", "N"), ("force_sign", "+"))}
     return import_plate(table.changed(**plain), start, Problems())
 
 
 class _Plate:
-    """The plate's rows beside the grains' frames."""
+    """The plate's rows together with the frames of the grains."""
 
     def __init__(self, rows, grains):
         self.rows, self.grains = rows, grains
         of_frames = rows.index.find(grains.keys) if grains.row is None else np.array(grains.row, int)
-        # Frames are placed by the first table that is taken for the plate's; a second one may be shorter.
+        # Frames refer to the first table of the plate; a second one may be shorter.
         self.row = np.where(of_frames < len(rows), of_frames, -1)
 
     def lowest_frame(self):
-        """The frame with the lowest plate, and its height: it rests on the grains there."""
+        """The frame with the lowest plate, which touches the grains there, and its height."""
         heights = np.where(self.row >= 0, self.rows.z[self.row], np.inf) if len(self.row) else np.zeros(0)
         return (int(np.argmin(heights)), float(heights.min())) if len(heights) else (0, np.inf)
 
     def force_ratio(self, truth):
-        """Median over the loaded frames of the table's force over the one that `truth` gives."""
+        """Median over the loaded frames of the ratio of the table's force to that of `truth`."""
         force, ratios = np.abs(self.rows.force), []
         for frame in np.flatnonzero(self.row >= 0):
             row, expected = self.row[frame], truth(frame, self.rows.z[self.row[frame]])
@@ -40,7 +40,7 @@ class _Plate:
 
 
 def _guess_downwards(mapped, rows):
-    """The plate presses on its way down."""
+    """Guesses the direction: the force increases while the plate moves down."""
     place = "displacement" if "displacement" in mapped else "plate_z"
     if len(rows) < 3 or mapped[place].sure == UNCLEAR or not np.isfinite(rows.z).any():
         return
@@ -53,8 +53,8 @@ def _guess_downwards(mapped, rows):
 
 
 def _guess_origin(mapped, plate, factors, grains_factor):
-    """A plate below 0 counts from somewhere else than the floor, and so may one that counts downwards and does not rest on the
-    grains at its lowest."""
+    """The origin of a plate below 0 is not the floor; that of a downward column that does not touch the grains at its
+    lowest position may be elsewhere as well."""
     if "plate_z" not in mapped or not np.isfinite(plate.rows.z).any():
         return
     lowest = int(np.nanargmin(plate.rows.z))
@@ -70,7 +70,7 @@ def _guess_origin(mapped, plate, factors, grains_factor):
 
 
 def _height_fits(plate, start, goes_down, factors):
-    """Units in which the plate rests on the grains at its lowest, and what was seen."""
+    """Units in which the plate touches the grains at its lowest position, with the reason."""
     grains = plate.grains
     lowest, lowest_z = plate.lowest_frame()
     if not grains.keys or not np.isfinite(lowest_z) or (goes_down and not np.isfinite(start)):
@@ -102,7 +102,7 @@ def _guess_height(mapped, plate, start, factors):
 
 
 def _contact_forces(tables, grains):
-    """Of the grains on the plate in each of their frames, from their contacts with it; not-a-number where none is listed."""
+    """Force of the grains on the plate in each of their frames, from their contacts with it; NaN if none is listed."""
     sums = np.full(len(grains.keys), np.nan)
     for table in tables:
         unit = table.map.get("force_unit")

@@ -1,10 +1,10 @@
-"""What columns without telling names are, from their numbers."""
+"""Guesses columns without meaningful names from their numbers."""
 import numpy as np
 
 from .guess_lengths import nearest_over_radii
 from .mapping import UNCLEAR, guess
 
-MAX_ROWS, MAX_COLUMNS = 20_000, 50  # that are looked at
+MAX_ROWS, MAX_COLUMNS = 20_000, 50  # maximum size used for guesses
 
 
 def _numbers_of(part, most=MAX_COLUMNS):
@@ -12,7 +12,7 @@ def _numbers_of(part, most=MAX_COLUMNS):
 
 
 def _has_numbers(column):
-    """Most of it, for a table may have gaps; text is none."""
+    """Whether most cells are numbers, because a table may have gaps."""
     return 2 * np.isfinite(column).sum() > len(column)
 
 
@@ -21,7 +21,7 @@ def _all_whole(column):
 
 
 def _first_frame(part, columns):
-    """Rows of the first frame: as long as columns that are whole and constant at first do not change."""
+    """Rows of the first frame: until an integer column that is constant at first changes."""
     rows = len(columns[0])
     if len(part.frames) > 1:
         rows = min(rows, part.frames[1][1])
@@ -43,7 +43,7 @@ def _name_leading_columns(mapped, part, columns, frame_rows):
 
 
 def guess_grains_by_values(table):
-    """Four columns that taken for spheres touch one another."""
+    """Four columns that give touching spheres."""
     part, mapped = table.parts[0], table.map
     columns = _numbers_of(part)
     rows = _first_frame(part, columns)
@@ -66,7 +66,7 @@ def guess_grains_by_values(table):
 
 
 def _touching_pairs(part, first, second, grains):
-    """Rows and unit vectors from partner to grain, where nearly all pairs that two columns name touch; else none."""
+    """Rows and unit vectors from partner to grain, if nearly all pairs in two columns touch; otherwise none."""
     frame = np.zeros(len(first), int)
     if part.frames:
         steps, starts = zip(*part.frames)
@@ -85,7 +85,7 @@ def _touching_pairs(part, first, second, grains):
 
 
 def _alignment(columns, c, rows, away):
-    """How well three columns are forces along the lines of centres: the median of |cos| of the angle between them."""
+    """Measure for three columns being forces along the lines of centres: the median of |cos| of the angle between them."""
     force = np.column_stack([column[rows] for column in columns[c:c + 3]])
     size = np.linalg.norm(force, axis=1)
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -95,7 +95,7 @@ def _alignment(columns, c, rows, away):
 
 
 def guess_contacts_by_values(table, grains):
-    """Two columns that name grains that touch, and forces along their centres."""
+    """Two columns with numbers of touching grains, and forces along the lines of centres."""
     part, mapped = table.parts[0], table.map
     columns = _numbers_of(part)
     for a in range(len(columns) - 1 if grains.keys else 0):

@@ -1,4 +1,4 @@
-"""Which of what contacts name are walls, and which walls."""
+"""Guesses which partners of contacts are walls, and which walls."""
 import numpy as np
 
 from .mapping import BY_DIRECTION, UNCLEAR, WALLS, guess
@@ -6,16 +6,16 @@ from .names import column_name
 from .problems import Problems, number_text
 from .rows import whole_entry
 
-NEAR = 1.3  # of a radius: at the wall, measurement errors included
-NOTHING = {"", "-", "--", "?", "na", "n/a", "#n/a", "nan", "+nan", "-nan", "null", "none"}  # never a wall
+NEAR = 1.3  # of a radius: at the wall, including measurement errors
+NOTHING = {"", "-", "--", "?", "na", "n/a", "#n/a", "nan", "+nan", "-nan", "null", "none"}  # not a wall
 WORDS = {"floor": "floor bottom boden base zmin zlo", "plate": "plate top lid piston deckel platte stempel zmax zhi",
          "x_min": "xmin left links xlo", "x_max": "xmax right rechts xhi", "y_min": "ymin front vorn ylo",
          "y_max": "ymax back rear hinten yhi"}
-TURNED = {"zmin": "plate", "zlo": "plate", "zmax": "floor", "zhi": "floor"}  # where z is downwards
+TURNED = {"zmin": "plate", "zlo": "plate", "zmax": "floor", "zhi": "floor"}  # if z points downwards
 
 
 def _wall_word(text, downwards):
-    """Words for walls; others are decided by direction."""
+    """Walls with known names; others are determined by the direction of their forces."""
     base = column_name(text).base
     if downwards and base in TURNED:
         return TURNED[base]
@@ -23,7 +23,7 @@ def _wall_word(text, downwards):
 
 
 def unknown_partners(table, grains, offset, most=None, only=""):
-    """What stands for a grain and is none, in the first `most` rows: what the table may call its walls."""
+    """Partners in the first `most` rows that are not grains: possible names of walls."""
     found = set()
     for key in ("grain", "partner"):
         name = table.map.word(key)
@@ -44,7 +44,7 @@ def unknown_partners(table, grains, offset, most=None, only=""):
 
 
 def set_walls(mapped, names, grains):
-    """By their words or by the way of their forces."""
+    """Walls from their names or from the direction of their forces."""
     mapped.walls = {}
     for name in names:
         word = _wall_word(name, grains.sign[2] < 0)
@@ -52,7 +52,7 @@ def set_walls(mapped, names, grains):
 
 
 def _is_at(walls, centres, radii, box, tops):
-    """Whether each grain is at its wall."""
+    """Whether each grain touches its wall."""
     axis = (-1 - walls) // 2
     places = np.array([0, box[0], 0, box[1], 0, 0], float)[-1 - walls]
     places = np.where(walls == -6, tops, places)
@@ -60,7 +60,7 @@ def _is_at(walls, centres, radii, box, tops):
 
 
 def _names_of(frames, mapped):
-    """What each contact's row calls its wall: in the partner's column, or in the grain's."""
+    """The name of the wall in each row: in the column of the partner, or of the grain."""
     def name_of(row):
         part = frames.rows.parts[frames.rows.part[row]]
         for key in ("partner", "grain"):
@@ -76,8 +76,8 @@ def _names_of(frames, mapped):
 
 
 def guess_walls(table, frames, grains, known):
-    """Walls that only have a number: where nearly all their forces point one way, that one. Unclear where the grains are not at
-    the wall, for then a grain may be missing."""
+    """Walls that only have a number: determined by the common direction of nearly all their forces. Unclear if the grains do not
+    touch the wall, because a grain may be missing."""
     mapped, box = table.map, known.box
     if not mapped.walls:
         return

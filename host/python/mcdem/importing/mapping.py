@@ -1,4 +1,4 @@
-"""What the columns of tables mean: guessed, and written as mapping.toml for the user to correct (read_mapping reads it back)."""
+"""The mapping of table columns: guessed, and written as mapping.toml for the user to correct (read_mapping reads it)."""
 import json
 import re
 from dataclasses import dataclass, field
@@ -9,13 +9,13 @@ from .problems import to_number
 from .text import Form
 
 WALLS = ["x_min", "x_max", "y_min", "y_max", "floor", "plate"]
-BY_DIRECTION = "by direction"  # a wall of which the direction of each force decides which one it is
-UNCLEAR = "unclear"  # beside stated, sure, likely: must be confirmed in the mapping before anything is imported
+BY_DIRECTION = "by direction"  # a wall that is determined by the direction of each force
+UNCLEAR = "unclear"  # in addition to stated, sure, likely: must be confirmed in the mapping before the import
 
 
 @dataclass
 class Guess:
-    words: list  # a word, or columns: "-z" where z counts the other way
+    words: list  # a word, or columns: "-z" if z is reversed
     sure: str = "stated"
     why: str = ""
 
@@ -33,13 +33,13 @@ def signed_column(word):
 
 
 def negated(of):
-    """The entry with every column counting the other way."""
+    """The entry with all columns reversed."""
     return Guess([word[1:] if word.startswith("-") else "-" + word for word in of.words], of.sure, of.why)
 
 
 class Key(NamedTuple):
     name: str
-    kind: str  # column, quantity (may have a sign), quantities (several that are added up), word, number
+    kind: str  # column, quantity (may have a sign), quantities (a sum of several), word, number
     meaning: str = ""
     words: tuple = ()
 
@@ -118,12 +118,12 @@ class MappedTable:
     role_sure: str = "stated"
     role_why: str = ""
     line: int = 0  # in the mapping
-    files: list = field(default_factory=list)  # alike, in the order of the frames
-    unused: list = field(default_factory=list)  # columns that were seen and are not used
+    files: list = field(default_factory=list)  # with the same columns, in order of the frames
+    unused: list = field(default_factory=list)  # unused columns
     form: Form = None  # of text
-    decimal_unclear: str = ""  # why; empty: it is clear
+    decimal_unclear: str = ""  # reason; empty if it is clear
     entries: dict = field(default_factory=dict)
-    walls: dict = field(default_factory=dict)  # of contacts: from what the table calls a wall to its name
+    walls: dict = field(default_factory=dict)  # of contacts: from the table's name of a wall to the standard name
 
     def __contains__(self, key):
         return key in self.entries
@@ -144,7 +144,7 @@ class MappedTable:
         return to_number(self.word(key, "0")) or 0.0
 
     def length_factor(self, otherwise="m"):
-        """Metres in the table's unit."""
+        """Length of the table's unit in metres."""
         unit = self.word("length_unit", otherwise)
         return self.number("voxel_size") if unit == VOXEL else LENGTHS[unit]
 
@@ -160,7 +160,7 @@ class MappedTable:
 
 
 def must_be_stated(table):
-    """Units and signs that the table's columns need: no mapping may leave them out."""
+    """Units and signs that are required for the table's columns."""
     def has(*keys):
         return any(key in table for key in keys)
 
@@ -249,12 +249,12 @@ def _table_text(table):
 
 
 def mapping_text(tables):
-    """Each guess with how sure it is and why; unclear ones begin with a question mark."""
+    """Each guess with its certainty and reason; unclear ones begin with a question mark."""
     return INTRODUCTION + "".join(map(_table_text, tables))
 
 
 def unclear_entries(text, file):
-    """The lines that must be confirmed, each as a problem with what to choose from."""
+    """The lines that must be confirmed, each as a problem with the possible values."""
     problems = []
     for number, line in enumerate(text.split("\n"), 1):
         key, equals, rest = line.partition(" = ")

@@ -1,4 +1,4 @@
-"""What the name of a column says: a quantity, and perhaps a unit, in the words of laboratories and programs."""
+"""Meaning of column names: a quantity and possibly a unit, in the terms of laboratories and programs."""
 import re
 from dataclasses import dataclass
 
@@ -14,14 +14,14 @@ def _factors(words, base):
 LENGTHS = _factors("m cm mm um", "m")
 FORCES = _factors("N mN uN kN cN daN gf kgf lbf", "N")
 TIMES = _factors("s sec ms min h", "s")
-VOXEL = "voxel"  # a length unit whose size the mapping states
+VOXEL = "voxel"  # a length unit with its size in the mapping
 LENGTH_WORDS = [*LENGTHS, VOXEL]
 SYNONYMS = {"µm": "um", "μm": "um", "micron": "um", "µN": "uN", "μN": "uN", "g": "gf", "kg": "kgf", "gram": "gf", "newton": "N",
             "meter": "m", "voxels": VOXEL, "vox": VOXEL, "vx": VOXEL, "px": VOXEL, "pixel": VOXEL, "pixels": VOXEL}
-DOWNWARDS = "depth tiefe profondeur zdown zdownwards"  # names of z where it counts downwards
+DOWNWARDS = "depth tiefe profondeur zdown zdownwards"  # names of a downward z
 _FRAME = ("frame", "frame scan image snapshot step timestep bild schritt state time t zeit temps iter")
 
-# Key of the mapping and names without units and punctuation; the first that fits counts.
+# Keys of the mapping and their names without units and punctuation; the first match is used.
 WORDS = {
     "plate": [
         _FRAME,
@@ -58,16 +58,16 @@ WORDS = {
         ("force", "force f forcemagnitude fn normalforce kraft fabs fmag forcenorm"),
     ],
 }
-# What the numbers of frames count.
+# Meanings of frame numbers.
 COUNTED = {"time": "time t zeit temps", "step": "step timestep schritt iter", "scan": "frame scan image snapshot bild state"}
 _LETTERS = str.maketrans({"ä": "ae", "ö": "oe", "ü": "ue", "ß": "ss", "Ä": "ae", "Ö": "oe", "Ü": "ue"})
 
 
 @dataclass
 class ColumnName:
-    base: str = ""  # small letters and digits only, without the unit: "toppressure"
-    unit: str = ""  # of length, force or time; empty where none is named
-    unknown: str = ""  # what stands in brackets in a unit's place and is none that is known
+    base: str = ""  # only lower-case letters and digits, without the unit: "toppressure"
+    unit: str = ""  # of length, force or time; empty if there is none
+    unknown: str = ""  # unknown unit in brackets
 
 
 def _known_unit(word):
@@ -98,7 +98,7 @@ def is_among(base, words):
 
 
 def key_of_name(role, name):
-    """The key of a table of that role that a column of this name stands for, or None."""
+    """The key of a column with this name in a table of that role, or None."""
     return next((key for key, words in WORDS.get(role, []) if is_among(name.base, words)), None)
 
 

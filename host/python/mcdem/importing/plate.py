@@ -1,4 +1,4 @@
-"""The plate's table: height and force by row, phases and cycles from its turns where no column says them."""
+"""The plate's table: height and force by row; phases and cycles from reversals if there are no columns for them."""
 import numpy as np
 
 from .mapping import signed_column
@@ -6,7 +6,7 @@ from .names import TIMES, column_name
 from .problems import number_text, quoted
 from .rows import FrameIndex, Rows
 
-TURN = 0.01  # of the stroke: smaller steps back are noise
+TURN = 0.01  # of the stroke: smaller reversals are noise
 LOAD, UNLOAD = 0, 1
 PHASES = {**dict.fromkeys("load loading down compression compress belastung".split(), LOAD),
           **dict.fromkeys("unload unloading up decompression decompress entlastung".split(), UNLOAD)}
@@ -25,7 +25,7 @@ class PlateRows:
 
 
 def _phases(z):
-    """A phase begins behind the lowest or highest position before a turn."""
+    """A phase starts after the lowest or highest position before a reversal."""
     turn, phase, now, extreme = TURN * (z.max() - z.min()), np.zeros(len(z), int), LOAD, 0
     for i in range(1, len(z)):
         back = (z[i] - z[extreme]) * (1 if now == LOAD else -1)
@@ -53,7 +53,7 @@ def _check_heights(rows, plate, start, goes_down):
                           + (" and plate.start" if goes_down else ", plate_z and origin_z"))
     highest, down = int(np.nanargmax(plate.z)), np.nanmin(plate.z)
     high = plate.z[highest]
-    if high - start > 1e-9 * high and high - start > start - down:  # a little above the start is noise
+    if high - start > 1e-9 * high and high - start > start - down:  # positions slightly above the start are noise
         rows.problem(highest, f"the plate must go down from plate.start, {start:g} m, got {high:g} m: "
                      + ("displacements count downwards, write a - before the column's name where it counts upwards" if goes_down
                         else "see length_unit, and --set plate.start=.."))
@@ -71,7 +71,7 @@ def _read_phases(rows, plate, problems):
         plate.phase = _phases(plate.z)
     if "cycle" in rows:
         cycle = np.nan_to_num(rows.whole_number("cycle"))
-        plate.cycle = (cycle - cycle[0]).astype(int)  # many count from 1
+        plate.cycle = (cycle - cycle[0]).astype(int)  # many tables count from 1
         falls = np.flatnonzero(np.diff(plate.cycle) < 0)
         if len(falls):
             rows.problem_once("cycle", falls[0] + 1, "cycle must not fall: sort the rows by time")
@@ -80,7 +80,7 @@ def _read_phases(rows, plate, problems):
 
 
 def _read_programme(rows, mapped, plate, sign):
-    """Times and the forces set, those where one was."""
+    """Times, and prescribed forces if there are any."""
     plate.time = rows.number("time") * TIMES.get(column_name(mapped.word("time")).unit, 1)
     if "set_force" in rows:
         stated = np.array([rows.text(i, "set_force").strip() != "" for i in range(len(rows))])
@@ -88,7 +88,7 @@ def _read_programme(rows, mapped, plate, sign):
 
 
 def import_plate(table, start, problems, programme=False):
-    """Heights need `start` [m] where the table states displacements; not-a-number where it is not known. Rows of a programme need
+    """Heights require `start` [m] (NaN if unknown) if the table contains displacements. Rows of a programme require
     times."""
     mapped, rows = table.map, Rows(table, problems)
     goes_down = "displacement" in rows

@@ -1,10 +1,10 @@
-"""Problems in what the user gave, collected and told together; numbers and words as messages show them."""
+"""Collected problems of the user's input; numbers and words for messages."""
 import math
 import re
 
 from ..errors import InputError
 
-MAX_TOLD = 20  # further ones are only counted
+MAX_TOLD = 20  # maximum number of reported problems
 NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
 
 
@@ -19,7 +19,7 @@ class Problems:
         self.count += 1
 
     def once(self, topic, where, what):
-        """Told once for each topic: a column in millimetres is one problem, not one for each line."""
+        """Adds only one problem for each topic: a column in millimetres is one problem, not one for each line."""
         if topic not in self.told:
             self.told.add(topic)
             self.add(where, what)
@@ -50,7 +50,7 @@ def is_whole(value):
 
 
 def number_text(value):
-    """The shortest digits that read back: 17, 0.5."""
+    """The shortest digits that give the same number when read: 17, 0.5."""
     return repr(float(value)).removesuffix(".0")
 
 

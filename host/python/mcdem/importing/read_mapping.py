@@ -1,4 +1,4 @@
-"""mapping.toml as the user has left it."""
+"""Reads mapping.toml, possibly edited by the user."""
 import collections
 import os
 import re
@@ -10,13 +10,13 @@ from .problems import Problems, quoted, to_number
 from .text import Form
 
 LARGEST = 1_000_000  # bytes
-MAX_DOTS = 100  # in a line: the parser takes the square of their number in time
+MAX_DOTS = 100  # per line: the parser's time is quadratic in their number
 
 
 class _Reader:
     def __init__(self, text, file, problems):
         self.lines, self.file, self.problems = text.split("\n"), file, problems
-        self.places = collections.defaultdict(list)  # lines by what stands before their "="
+        self.places = collections.defaultdict(list)  # line numbers by the text before their "="
         for n, line in enumerate(self.lines, 1):
             self.places[line.partition("=")[0].strip()].append(n)
         self.headers = [n for n, line in enumerate(self.lines, 1) if re.match(r"\s*\[\[\s*table\s*\]\]", line)]
@@ -25,7 +25,7 @@ class _Reader:
         self.problems.add(f"{self.file}:{line}", what)
 
     def line_of(self, key, table=None):
-        """Where the key stands in the table: TOML's reader does not say."""
+        """Line of the key in the table, which the TOML reader does not provide."""
         first = self.headers[table] if table is not None and table < len(self.headers) else 0
         last = self.headers[table + 1] - 1 if table is not None and table + 1 < len(self.headers) else len(self.lines)
         found = [n for name in (key, toml_text(key), f"'{key}'") for n in self.places.get(name, []) if first < n <= last]
@@ -43,7 +43,7 @@ class _Reader:
         return read
 
     def words(self, key, value, line):
-        """None where it is something else than text."""
+        """None if it is not text."""
         words = [value] if isinstance(value, str) else value
         if not isinstance(words, list) or not words or not all(isinstance(word, str) and word for word in words):
             self.wrong(line, f"{quoted(key)} must be a text, or a list of texts, got something else")
@@ -73,7 +73,7 @@ class _Reader:
         return Form({"tab": "\t", "blanks": " "}.get(separator, separator), decimal)
 
     def problem_of(self, key, words):
-        """What is wrong with an entry, or None."""
+        """The problem of an entry, or None."""
         if len(words) > 1 and key.kind != "quantities":
             return f"must be one text, got {len(words)}"
         if key.kind in ("quantity", "quantities") and "-" in words:

@@ -1,4 +1,4 @@
-"""The rows of a table's files as arrays, by the mapping's keys; frames by their number, time or step."""
+"""Rows of a table's files as arrays, by keys of the mapping; frames by number, time or step."""
 import os
 import re
 
@@ -24,7 +24,7 @@ class ImportTable:
 
 
 def whole_entry(mapped, key, problems):
-    """A whole number of the mapping, 0 where it has none; anything else is a problem."""
+    """An integer in the mapping, 0 if it is missing; anything else is a problem."""
     if is_whole(value := mapped.number(key)):
         return int(value)
     problems.add(mapped.files[0], f'{key} must be a whole number of at most 2e9, got "{mapped.word(key)}": see the mapping')
@@ -32,14 +32,14 @@ def whole_entry(mapped, key, problems):
 
 
 def _number_in_name(file):
-    """The last number in a file's name, its endings left aside: 3 of "scan2/grains_003.csv.gz"."""
+    """The last number in a file's name without its extensions: 3 for "scan2/grains_003.csv.gz"."""
     stem = os.path.splitext(os.path.basename(file).removesuffix(".gz"))[0]
     digits = re.findall(r"[0-9]+", stem)
     return float(digits[-1]) if digits else None
 
 
 def _keys_of_files(parts):
-    """The files' numbers where all have one and they rise; else their places."""
+    """The numbers in the files' names if all have one and they increase; otherwise their positions."""
     numbers = [_number_in_name(part.file) for part in parts]
     if len(parts) > 1 and None not in numbers and all(a < b for a, b in zip(numbers, numbers[1:])):
         return numbers, "file"
@@ -47,12 +47,12 @@ def _keys_of_files(parts):
 
 
 class Rows:
-    """The rows in the order of the files. `keyed_by` tells the rows' frames: the files' places in the list, the last numbers in
-    their names, a dump's steps, a column. `key` is the frame's number, time [s where the column names a unit] or step."""
+    """The rows in the order of the files. `keyed_by` determines the rows' frames: the files' positions in the list, the last
+    numbers in their names, a dump's steps, or a column. `key` is the number, time (in s if the column has a unit) or step of the frame."""
 
     def __init__(self, table, problems, most=None):
         self.map, self.parts, self.problems = table.map, table.parts, problems
-        self.columns = {}  # by key: for each part its signs and columns
+        self.columns = {}  # by key: signs and columns of each part
         before = problems.count
         self._find_columns()
         whole = problems.count == before
@@ -76,7 +76,7 @@ class Rows:
 
     @property
     def keyed(self):
-        """Frames have numbers, times or steps of their own."""
+        """Whether frames have numbers, times or steps."""
         return self.keyed_by in ("step", "column")
 
     def __len__(self):
@@ -97,14 +97,14 @@ class Rows:
                                           f"{key}, got {', '.join(part.columns)}")
 
     def each_part(self, key):
-        """Part, its rows, where they stand among all, and its columns of that key."""
+        """Each part with its rows, their positions among all rows, and its columns of that key."""
         for number, part in enumerate(self.parts):
             mine = np.flatnonzero(self.part == number)
             if len(mine):
                 yield part, self.row[mine], mine, self.columns[key][number]
 
     def number(self, key, of=None):
-        """The entry's value in each row: of several columns their sum. Not-a-number is a problem, in the rows `of`."""
+        """The entry's value in each row, the sum of several columns. NaN is a problem in the rows `of`."""
         values = np.zeros(len(self))
         for part, rows, mine, columns in self.each_part(key):
             for sign, column in columns:
@@ -136,11 +136,11 @@ class Rows:
         self.problems.add(lambda: self.where(i), what)
 
     def problem_once(self, topic, i, what):
-        """Told once for each topic and file."""
+        """Adds only one problem for each topic and file."""
         self.problems.once(self.parts[self.part[i]].file + topic, lambda: self.where(i), what)
 
     def frames(self):
-        """First row of each frame, and behind the last: rows of the same key that follow one another."""
+        """First row of each frame, and the end of the last one: a frame is a sequence of rows with the same key."""
         changes = np.flatnonzero(np.diff(self.key)) + 1
         return np.concatenate([[0], changes, [len(self)]]) if len(self) else np.zeros(1, int)
 
@@ -157,7 +157,7 @@ class FrameIndex:
         self.tolerance = 1e-3 * steps.min() if len(steps) else 1e-9 * abs(self.sorted[0]) if len(keys) else 0.0
 
     def find(self, keys):
-        """Places; -1 where there is none."""
+        """Positions; -1 if there is none."""
         keys = np.asarray(keys, float)
         if not len(self.sorted):
             return np.full(keys.shape, -1)

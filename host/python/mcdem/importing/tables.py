@@ -1,4 +1,4 @@
-"""Tables as other programs and laboratories write them: all become named columns, whose meaning and units come later."""
+"""Reads tables of other programs and laboratories as named columns; their meaning and units are determined later."""
 import gzip
 import os
 import zlib
@@ -10,26 +10,26 @@ from . import formats
 from .problems import Problems, number_text
 from .text import cell_number, cut, parse_text
 
-LARGEST = 1 << 30  # bytes of a table, unpacked
-CHUNK = 20_000  # rows whose cells are kept as text
+LARGEST = 1 << 30  # maximum size of a table in bytes, uncompressed
+CHUNK = 20_000  # rows that are kept as text at a time
 
 
 class Table:
     def __init__(self, file):
         self.file, self.format, self.form = file, "text", None
-        self.lines = []  # of the file, for cells that are no numbers and for messages
-        self.decimal_clear = True  # else every comma may part thousands as well: 1,306
-        self.named, self.columns = False, []  # whether the file names its columns; else they are "column 1", ..
+        self.lines = []  # of the file, for cells that are not numbers and for messages
+        self.decimal_clear = True  # otherwise every comma may also be a thousands separator: 1,306
+        self.named, self.columns = False, []  # whether the file has names of columns; otherwise they are "column 1", ..
         self.frames = []  # of a dump: (timestep, first row)
-        self.line_of = []  # of each row, from 1; empty where rows are no lines
+        self.line_of = []  # of each row, from 1; empty if rows are not lines
         self.rows, self._pending, self._chunks, self._texts = 0, [], [], {}
 
     def begin(self, format_, lines, form):
         self.format, self.lines, self.form = format_, lines, form
 
     def name_columns(self, names, count):
-        """Names that are missing, were there before or begin with a question mark or a minus, which a mapping keeps for what is not
-        confirmed and what counts the other way, give way to the column's number."""
+        """Replaces names by the column's number if they are missing, repeated, or begin with a question mark or a minus, which a
+        mapping uses for unconfirmed values and reversed columns."""
         taken = set()
         self.columns = []
         for i in range(count):
@@ -56,7 +56,7 @@ class Table:
         decimal, columns = self.form.decimal, []
         for cells in zip(*self._pending):
             try:
-                if any("_" in cell or not cell.isascii() for cell in cells):  # Python reads 1_000 as a number
+                if any("_" in cell or not cell.isascii() for cell in cells):  # Python accepts 1_000 as a number
                     raise ValueError
                 columns.append(list(map(float, (cell.replace(",", ".") for cell in cells) if decimal == "," else cells)))
             except ValueError:
@@ -65,7 +65,7 @@ class Table:
         self._pending = []
 
     def numbers(self, column):
-        """Not-a-number where the cell is no finite number."""
+        """NaN if the cell is not a finite number."""
         if self._pending:
             self._convert()
         if len(self._chunks) > 1:
@@ -96,7 +96,7 @@ class Table:
 
 
 def _bytes_of(file):
-    """The file's bytes, unpacked where it is packed."""
+    """The file's bytes, decompressed if necessary."""
     if not os.path.isfile(file):
         got = "something that is not a file" if os.path.lexists(file) else "no such file"
         raise InputError(f"{file}: must be a table, got {got}")
@@ -113,7 +113,7 @@ def _bytes_of(file):
 
 
 def parse_table(content, file, form=None):
-    """`form` overrules the guess of how a text is cut."""
+    """`form` overrides the guess of the text format."""
     table, problems = Table(file), Problems()
     if formats.is_mesh(content):
         formats.parse_mesh(table, content, problems)
@@ -123,7 +123,7 @@ def parse_table(content, file, form=None):
     try:
         text = content.decode()
     except UnicodeDecodeError:
-        text = content.decode("latin-1")  # what European spreadsheets write where they do not write UTF-8
+        text = content.decode("latin-1")  # written by European spreadsheets instead of UTF-8
     lines = [line.removesuffix("\r") for line in text.split("\n")]
     if lines[-1] == "":
         lines.pop()
@@ -148,7 +148,7 @@ def read_table(file, form=None):
 
 
 def read_tables(files, form=None):
-    """All of them, or the problems of all of them together."""
+    """All tables, or the problems of all of them together."""
     tables, problems = [], []
     for file in files:
         try:

@@ -1,4 +1,4 @@
-"""Text in rows and columns, cut by commas, semicolons, tabs or blanks, with decimal points or commas.
+"""Reads text tables, separated by commas, semicolons, tabs or blanks, with decimal points or commas.
 
 What comes before the first row with a number in it may name the columns, and in a line below state their units; Yade's
 `#format` line, and a line of words behind a # where nothing else does, name them too.
@@ -13,21 +13,21 @@ SAMPLED_LINES = 100
 MAX_COLUMNS = 10_000
 NOTHING = {"", "-", "--", "nan", "NaN", "NAN", "na", "NA", "N/A", "n/a", "null", "NULL", "inf"}
 UNITS = {"", "-", "m", "cm", "mm", "um", "µm", "N", "mN", "kN", "uN", "µN", "g", "gf", "s", "ms", "%", "1", "min", "voxel"}
-THOUSANDS = {",": re.compile(r"[+-]?[1-9]\d{0,2}(\.\d{3})+(,.*)?", re.ASCII | re.DOTALL),  # 12.345,6 where the decimal is a comma
+THOUSANDS = {",": re.compile(r"[+-]?[1-9]\d{0,2}(\.\d{3})+(,.*)?", re.ASCII | re.DOTALL),  # 12.345,6 with a decimal comma
              ".": re.compile(r"[+-]?[1-9]\d{0,2}(,\d{3})+(\..*)?", re.ASCII | re.DOTALL)}
 
 
 class Form(NamedTuple):
-    separator: str = ","  # " " stands for any blanks
+    separator: str = ","  # " " means any blanks
     decimal: str = "."
 
 
-# In the order in which equally good ones are preferred.
+# In order of preference among equally good ones.
 FORMS = [Form(";", "."), Form(";", ","), Form("\t", "."), Form("\t", ","), Form(",", "."), Form(" ", "."), Form(" ", ",")]
 
 
 def cut(line, separator):
-    """Cells of a line; a cell in quotes may hold the separator."""
+    """Cells of a line; a quoted cell may contain the separator."""
     if separator == " ":
         return line.split()
     if '"' not in line:
@@ -68,13 +68,13 @@ def sample(lines):
 
 
 def _usual_width(lines, separator):
-    """The number of cells that most lines have; of several the largest."""
+    """The most frequent number of cells per line; the largest one in a tie."""
     counts = Counter(len(cut(line, separator)) for line in lines)
     return max(counts, key=lambda width: (counts[width], width))
 
 
 def _merit(lines, form):
-    """The share of lines as wide as most, times that of numbers among their cells."""
+    """Fraction of lines with the usual number of cells, times the fraction of numbers among their cells."""
     width = _usual_width(lines, form.separator)
     alike = [cells for cells in (cut(line, form.separator) for line in lines) if len(cells) == width]
     numbers = sum(_numbers_in(cells, form.decimal) for cells in alike) / max(width, 1)
@@ -98,8 +98,8 @@ def _kind(cell):
 
 
 def _lines_above_names(rows, width):
-    """Lines above the last one of words only, which names the columns, where each of them has a word in a column that holds only
-    numbers below it: `Vorkraft;0,5;N` is no row of `Zeit;Weg;Kraft`."""
+    """Number of header lines above the last line that contains only words, the names of the columns, if each of them has a word in a
+    column that contains only numbers below: `Vorkraft;0,5;N` is not a row of `Zeit;Weg;Kraft`."""
     numeric = [True] * width
     for names in range(len(rows), 0, -1):
         kinds = [_kind(cell) for cell in rows[names - 1]]
@@ -119,7 +119,7 @@ def _lines_above_names(rows, width):
 
 
 def _lines_above(lines, separator):
-    """Lines before the first as wide as most, where they hold a word: `Probe;17` is no row."""
+    """Number of lines with words before the first line with the usual number of cells: `Probe;17` is not a row."""
     rows = [cut(line, separator) for line in sample(lines)]
     if not rows:
         return 0
@@ -133,7 +133,7 @@ def _lines_above(lines, separator):
 
 
 class _DecimalComma:
-    """What the cells tell of a table whose decimal is taken for a comma: the first of each kind with its line."""
+    """Evidence for or against a decimal comma in the cells: the first of each kind with its line."""
 
     def __init__(self):
         self.seen = {}
@@ -156,7 +156,7 @@ def _without_brackets(word):
 
 
 def _names_of(headings, comment, format_, width):
-    """The last line of names before the first row counts, or the two last, where the second states units."""
+    """Names of the columns: the last line before the first row, or the last two if the second contains units."""
     headings = [names for names in headings if len(names) in (width, width + 1)]
     if not headings:
         return comment if len(comment) == width else format_
@@ -168,7 +168,7 @@ def _names_of(headings, comment, format_, width):
 
 
 def _read_comment(words, separator):
-    """Names in a comment, and those of Yade's format."""
+    """Names in a comment, including Yade's format line."""
     words = words.strip(" \t\r")
     if words.startswith("format "):
         names = words[7:].strip().split("_")
@@ -203,7 +203,7 @@ def parse_text(table, lines, form, problems):
         cells = cut(line, form.separator)
         is_row = bool(table.columns)
         has_numbers = is_row or _numbers_in(cells, form.decimal) > 0
-        if len(cells) > 1 and not cells[-1] and (_numbers_in(cells, form.decimal) > 0):  # a separator at the line's end
+        if len(cells) > 1 and not cells[-1] and (_numbers_in(cells, form.decimal) > 0):  # a separator at the end of the line
             trailing = trailing or not is_row
             cells = cells[:-1] if trailing else cells
         if not is_row and (above > 0 or not has_numbers):
