@@ -1,6 +1,6 @@
-// The page itself: unpacks the plotting library, draws the charts and draws them again in other colours.
+// Main script: unpacks the plotting library, draws the charts, and draws them again when the theme changes.
 const plotSettings = {responsive: true, displaylogo: false, modeBarButtonsToRemove: ['lasso2d', 'select2d']};
-const narrow = 640;  // pixels, below which legends go under the charts
+const narrow = 640;  // pixels; on narrower pages legends are below the charts
 
 async function unpackedLibrary() {
   const packed = Uint8Array.from(atob(document.getElementById('library').textContent), c => c.charCodeAt(0));
@@ -13,7 +13,7 @@ const axisLook = {gridcolor: 'var(--grid)', linecolor: 'var(--axis)', tickcolor:
 
 const toolLook = {bgcolor: 'rgba(0,0,0,0)', color: 'var(--line)', activecolor: 'var(--ink)'};
 
-/// What the chart says of its layout, in the page's look.
+/// The layout of the chart in the style of the page.
 function layoutOf(chart, width) {
   const layout = {
     height: chart.height, margin: {l: 60, r: 16, t: 24, b: 48}, paper_bgcolor: 'rgba(0,0,0,0)',
@@ -53,7 +53,7 @@ function addLogButtons(charts) {
   }
 }
 
-/// A chart as it would be on paper, as a file of vectors that drawing programs can edit.
+/// The chart in its print version as an SVG file that drawing programs can edit.
 function addSvgButtons(charts) {
   for (const button of document.querySelectorAll('button[data-svg]')) {
     const chart = charts.find(({id}) => id === button.dataset.svg);
@@ -67,9 +67,9 @@ function addSvgButtons(charts) {
   }
 }
 
-/// Paper is bright, and as wide as it is.
+/// For print: light theme and the width of the paper.
 function addPrinting(charts, packings, drawAll) {
-  const paper = 690;  // pixels of A4 between its margins
+  const paper = 690;  // width of A4 between its margins in pixels
   let theme;
   addEventListener('beforeprint', () => {
     theme = root.dataset.theme;

@@ -1,9 +1,9 @@
-// The packing in space: grains and force chains coloured by force, a slider over its scans.
+// 3D view of a packing: grains and force chains coloured by force, with a slider over its scans.
 const wallNames = ['wall x min', 'wall x max', 'wall y min', 'wall y max', 'floor', 'plate'];
 const widths = [1, 1.5, 2.5, 4, 6, 9];  // of force chains by class [pixels]
-const smallGrains = 0.42;               // of their size where chains are to be seen
+const smallGrains = 0.42;               // scale of grains when chains are shown
 
-/// The unit sphere as triangles: an icosahedron, its triangles parted `times` times into four.
+/// The unit sphere as triangles: an icosahedron whose triangles are divided into four, `times` times.
 function sphereMesh(times) {
   const t = (1 + Math.sqrt(5)) / 2;
   let points = [[-1, t, 0], [1, t, 0], [-1, -t, 0], [1, -t, 0], [0, -1, t], [0, 1, t], [0, -1, -t], [0, 1, -t],
@@ -64,7 +64,7 @@ class PackingView {
     this.player.textContent = this.timer ? 'stop' : 'play';
   }
 
-  /// Sum of the forces on each grain's contacts [mN], and how many they are.
+  /// Sum of the forces on each grain's contacts [mN], and their number.
   loads(scan) {
     const force = new Float64Array(this.shown.diameter_mm.length), count = new Int32Array(force.length);
     scan.force_mN.forEach((f, c) => {
@@ -105,7 +105,7 @@ class PackingView {
                        outlinewidth: 0}};
   }
 
-  /// The partner's centre, in a periodic cell that of its nearest image.
+  /// Centre of the partner; in a periodic cell that of its nearest image.
   image(scan, grain, partner) {
     const there = [scan.x_mm[partner], scan.y_mm[partner], scan.z_mm[partner]];
     if (this.shown.container === 'cell') {
@@ -122,7 +122,7 @@ class PackingView {
     return there;
   }
 
-  /// Where a contact's line ends: the partner's centre, or the foot on the wall.
+  /// End of a contact's line: the partner's centre, or the foot on the wall.
   end(scan, grain, partner) {
     if (partner >= 0) return this.image(scan, grain, partner);
     const [width, depth] = this.shown.box_mm, wall = -1 - partner;
@@ -138,7 +138,7 @@ class PackingView {
   chains(scan) {
     const scale = forceScale(), classes = widths.length, largest = this.view.force_mN;
     const number = this.shown.number;
-    const thin = Math.max(0.35, Math.min(1, Math.cbrt(100 / number.length)));  // many chains must not hide one another
+    const thin = Math.max(0.35, Math.min(1, Math.cbrt(100 / number.length)));  // so that many chains do not hide one another
     const traces = widths.map((width, c) => ({
       type: 'scatter3d', mode: 'lines', name: 'force chains', x: [], y: [], z: [], text: [], hoverinfo: 'text',
       showlegend: false, line: {width: thin * width, color: colourAt(scale, (c + 0.5) / classes)}, connectgaps: false}));
@@ -190,14 +190,14 @@ class PackingView {
     const axis = title => ({title: {text: title}, gridcolor: 'var(--grid)', showbackground: false, zeroline: false,
                             showspikes: false, nticks: 5, color: 'var(--axis)'});
     const [width, depth] = this.shown.box_mm;
-    const past = 0.1 * Math.max(...this.shown.diameter_mm);  // grains reach into walls, and are cut at the axes' ends
+    const past = 0.1 * Math.max(...this.shown.diameter_mm);  // grains overlap walls and would be cut off at the ends of the axes
     const tall = this.shown.top_mm / Math.cbrt(width * depth * this.shown.top_mm);
     const spans = [width, depth, this.shown.top_mm].map(length => length + 2 * past), mean = Math.cbrt(spans[0] * spans[1] * spans[2]);
     const far = Math.min(1.2, Math.max(0.8, tall / 1.3));
     return {margin: {l: 0, r: 0, t: 0, b: 0}, paper_bgcolor: 'rgba(0,0,0,0)', modebar: toolLook, uirevision: 'kept',
             font: {family: 'system-ui, sans-serif', size: 12, color: 'var(--ink)'},
             hoverlabel: {bgcolor: 'var(--card)', bordercolor: 'var(--line)', font: {color: 'var(--ink)'}, align: 'left'},
-            // not those of what is drawn: contacts in a periodic cell go on beyond it
+            // not from the drawn data: contacts in a periodic cell extend beyond it
             scene: {aspectmode: 'manual', aspectratio: {x: spans[0] / mean, y: spans[1] / mean, z: spans[2] / mean}, uirevision: 'kept', camera: {eye: {x: 1.2 * far, y: -1.95 * far, z: 0.55 * far},
                     center: {x: 0, y: 0, z: -0.08}},
                     xaxis: {...axis('x [mm]'), range: [-past, width + past]},
@@ -213,13 +213,13 @@ class PackingView {
     return drawn;
   }
 
-  /// `width` [pixels]; as wide as there is room where left out.
+  /// `width` [pixels]; default: the available width.
   draw(width) {
     this.output.textContent = this.shown.scans[this.slider.value].title;
     return Plotly.react(this.place, this.traces(), {...themed(this.layout()), width}, plotSettings);
   }
 
-  /// Browsers print what was last seen in space, or nothing: a copy on a flat canvas takes its place.
+  /// Browsers do not print WebGL reliably, so it is replaced by a copy on a 2D canvas.
   print(width) {
     this.draw(width);
     const {glplot} = this.place._fullLayout.scene._scene, canvas = glplot.canvas;

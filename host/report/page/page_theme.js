@@ -1,4 +1,4 @@
-// Bright, dark or on paper: the colours that charts take from the page.
+// Themes (light, dark, print): colours that charts take from the page.
 const root = document.documentElement;
 const screenIsDark = matchMedia('(prefers-color-scheme: dark)');
 
@@ -6,7 +6,7 @@ function isDark() {
   return root.dataset.theme ? root.dataset.theme === 'dark' : screenIsDark.matches;
 }
 
-/// A copy of charts' data with every "var(--name)" replaced by what the page has for it now.
+/// A copy of the charts' data with every "var(--name)" replaced by its present value.
 function themed(value, style = getComputedStyle(root)) {
   if (typeof value === 'string' && value.startsWith('var(--'))
     return style.getPropertyValue(value.slice(4, -1)).trim();
@@ -15,7 +15,7 @@ function themed(value, style = getComputedStyle(root)) {
   return Object.fromEntries(Object.entries(value).map(([key, part]) => [key, themed(part, style)]));
 }
 
-/// What `work` gives while the page has that theme; nothing of it is seen.
+/// Result of `work` with that theme, without a visible change.
 function inTheme(name, work) {
   const before = root.dataset.theme;
   root.dataset.theme = name;
@@ -26,14 +26,14 @@ function inTheme(name, work) {
   }
 }
 
-/// Forces from weak to strong: the strong ones stand out of either background.
+/// Colour scale of forces; strong forces have high contrast on light and dark backgrounds.
 function forceScale() {
   return isDark()
     ? [[0, '#2f3a46'], [0.15, '#5d4a52'], [0.4, '#b3541e'], [0.7, '#ff9a52'], [1, '#fff1d6']]
     : [[0, '#d8dde3'], [0.15, '#f0cfa4'], [0.4, '#e08530'], [0.7, '#a03c06'], [1, '#3d0b00']];
 }
 
-/// The scale's colour at a share from 0 to 1.
+/// The colour at a fraction from 0 to 1 of the scale.
 function colourAt(scale, share) {
   const above = Math.max(1, scale.findIndex(([place]) => place >= share));
   const [[from, low], [to, high]] = [scale[above - 1], scale[above]];
