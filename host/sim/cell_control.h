@@ -41,7 +41,7 @@ public:
     double drag(const State& state, const SetStress& set) const;           ///< [1/s]
     double approach_time(const State& state, const SetStress& set) const;  ///< [s]
     static bool reached(const State& state, const SetStress& set);
-    /// Fraction of the change of stress since the start of the leg, 0 to 1.
+    /// Fraction of the change of stress since the start of the leg; 1 at the target.
     static double done(const State& state, const SetStress& target);
     /// Change of stress in this leg, relative to its target.
     static double change(const State& state, const SetStress& target);
