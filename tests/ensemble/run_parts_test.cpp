@@ -260,7 +260,7 @@ TEST_F(RunPartsTest, WhatIsOfNoUseOfAPartIsThrownAway) {
     for (const char* name : {"checkpoint.h5", "checkpoint.previous.h5", "segment-000000.h5"})
         std::ofstream(work_folder("lost") / name) << "damaged";
     finish("lost");
-    EXPECT_THAT(warnings_, ElementsAre(HasSubstr("computed anew")));
+    EXPECT_THAT(warnings_, ElementsAre(HasSubstr("computed again")));
     expect_like_whole("lost");
 }
 
