@@ -253,7 +253,7 @@ def numbers_that_are_none_make_no_experiment(place):
         del run["digests"]
         run["particles/replica_00001/position/value"][0, 3] = float("nan")
     expect(mcdem(place, "experiment", "from-run", "out", "--replica", "1", "--out", "lab"), 2,
-           "grain 3 has a position that is no number")
+           "/particles/replica_00001/position/value: grain 3 has a value that is no number")
 
 
 def main():
