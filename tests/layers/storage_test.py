@@ -168,6 +168,13 @@ def pipes_are_refused_at_once(place):
            "challenge.json: is a pipe or device")
 
 
+def what_the_system_refuses_is_told_with_its_path(place):
+    os.symlink("loop", place / "loop")
+    done = mcdem(place, *RUN[:3], "loop", "--no-figures")
+    expect(done, 1, "mcdem: loop")
+    assert "filesystem error" not in done.stderr and "Too many levels of symbolic links" in done.stderr, done.stderr
+
+
 def numpy_text(kind):
     if kind.subdtype:
         return f"({','.join(map(str, kind.shape))}){numpy_text(kind.base)}"
