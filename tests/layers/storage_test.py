@@ -231,7 +231,9 @@ def an_unfinished_run_is_verified(place):
     assert done.returncode == -9, done
     done = mcdem(place, "verify", "out")
     expect(done, 0, "out/checkpoint.h5: good\nout/segment-000000.h5: good\n", "stdout")
+    expect(mcdem(place, "verify", "out/checkpoint.h5"), 0, "out/checkpoint.h5: good\n", "stdout")
     os.truncate(place / "out/checkpoint.h5", 3000)
+    expect(mcdem(place, "verify", "out/checkpoint.h5"), 1, "out/checkpoint.h5: NOT GOOD", "stdout")
     expect(mcdem(place, "verify", "out"), 1, "out/checkpoint.h5: NOT GOOD", "stdout")
     (place / "empty").mkdir()
     expect(mcdem(place, "verify", "empty"), 2, "holds no run")
@@ -245,6 +247,13 @@ def an_experiment_carries_sums(place):
         expect(mcdem(place, *words), 0)
         subprocess.run(["sha256sum", "--check", "--strict", "--quiet", "SHA256SUMS"], cwd=place / "lab", check=True)
         expect(mcdem(place, "verify", "lab"), 0, "good", "stdout")
+        expect(mcdem(place, "verify", "lab/SHA256SUMS"), 2, "verified with the folder that they are in")
+        sums = (place / "lab/SHA256SUMS").read_text()
+        (place / "lab/SHA256SUMS").write_text("".join(line for line in sums.splitlines(True) if "plate.csv" not in line))
+        done = mcdem(place, "verify", "lab")
+        expect(done, 1, "SHA256SUMS does not name it", "stdout")
+        assert done.stdout.count("NOT GOOD") == 1 and "plate.csv" in done.stdout.splitlines()[-1], done.stdout
+        (place / "lab/SHA256SUMS").write_text(sums)
         expect(mcdem(place, *words), 0)  # finishes what was cut short at the very end
         table = next((place / "lab").glob("plate.csv*"))
         table.write_bytes(table.read_bytes()[:-2])
