@@ -175,6 +175,16 @@ def what_the_system_refuses_is_told_with_its_path(place):
     assert "filesystem error" not in done.stderr and "Too many levels of symbolic links" in done.stderr, done.stderr
 
 
+def kernels_are_compiled_in_an_empty_environment(place):
+    result = whole_run(place)
+    for extra in {}, {"PATH": os.environ["PATH"]}:
+        shutil.rmtree(place / "out")
+        done = subprocess.run([MCDEM, *RUN], cwd=place, env={"POCL_CACHE_DIR": str(place / "cache"), **extra},
+                              capture_output=True, text=True, timeout=TIME_LIMIT)
+        expect(done, 0)
+        assert (place / "out/run.h5").read_bytes() == result
+
+
 def numpy_text(kind):
     if kind.subdtype:
         return f"({','.join(map(str, kind.shape))}){numpy_text(kind.base)}"
