@@ -10,7 +10,7 @@
 
 namespace mcdem::inline ensemble {
 
-/// The observation in a file of a store; nothing where it is missing or damaged.
+/// Returns the observation in a file of a store; empty where it is missing or damaged.
 std::optional<Eigen::VectorXd> read_observation(const std::filesystem::path& file);
 
 class ObservationStore {
