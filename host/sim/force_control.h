@@ -4,6 +4,7 @@
 // determines how fast the speed changes, not the final state. A direction of a cell with a prescribed stress
 // is controlled in the same way, with stress in place of force [Pa] and the rate of the cell's length over
 // its initial length in place of the plate's velocity [1/s].
+#pragma once
 #include "scene/scene.h"
 #include "sim/engine.h"
 #include "sim/quasi_static.h"
