@@ -20,6 +20,18 @@ std::string digest_of(const Eigen::VectorXd& values) {
 
 }  // namespace
 
+std::optional<Eigen::VectorXd> read_observation(const std::filesystem::path& file) {
+    constexpr std::size_t digest_length = 64;
+    if (!std::filesystem::exists(file)) return std::nullopt;
+    const std::string bytes = read_file(file);
+    if (bytes.size() < digest_length || (bytes.size() - digest_length) % sizeof(double) != 0)
+        return std::nullopt;
+    Eigen::VectorXd values(static_cast<Eigen::Index>((bytes.size() - digest_length) / sizeof(double)));
+    std::copy(bytes.begin() + digest_length, bytes.end(), reinterpret_cast<char*>(values.data()));
+    if (bytes.substr(0, digest_length) != digest_of(values)) return std::nullopt;
+    return values;
+}
+
 ObservationStore::ObservationStore(std::filesystem::path folder) : folder_(std::move(folder)) {
     make_folder(folder_);
 }
@@ -29,15 +41,7 @@ std::filesystem::path ObservationStore::file_of(const std::string& name) const {
 }
 
 std::optional<Eigen::VectorXd> ObservationStore::find(const std::string& name) const {
-    constexpr std::size_t digest_length = 64;
-    if (!std::filesystem::exists(file_of(name))) return std::nullopt;
-    const std::string bytes = read_file(file_of(name));
-    if (bytes.size() < digest_length || (bytes.size() - digest_length) % sizeof(double) != 0)
-        return std::nullopt;
-    Eigen::VectorXd values(static_cast<Eigen::Index>((bytes.size() - digest_length) / sizeof(double)));
-    std::copy(bytes.begin() + digest_length, bytes.end(), reinterpret_cast<char*>(values.data()));
-    if (bytes.substr(0, digest_length) != digest_of(values)) return std::nullopt;
-    return values;
+    return read_observation(file_of(name));
 }
 
 void ObservationStore::keep(const std::string& name, const Eigen::VectorXd& observation) const {

@@ -10,6 +10,9 @@
 
 namespace mcdem::inline ensemble {
 
+/// Returns the observation in a file of a store; empty where it is missing or damaged.
+std::optional<Eigen::VectorXd> read_observation(const std::filesystem::path& file);
+
 class ObservationStore {
 public:
     /// Creates the folder if necessary.

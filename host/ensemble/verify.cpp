@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <set>
 
 #include "core/errors.h"
 #include "core/input_file.h"
@@ -48,8 +49,19 @@ std::string check_plate_table(const fs::path& folder) {
     return "";
 }
 
+/// Reports files of an experiment that are not listed.
+void check_listed(const fs::path& folder, const std::set<std::string>& listed, std::vector<Verified>& all) {
+    for (const std::string name : {"contacts.csv", "contacts.csv.gz", "experiment.toml", "grains.csv",
+                                   "grains.csv.gz", "plate.csv", "plate.csv.gz"})
+        if (!listed.contains(name) && fs::exists(folder / name))
+            all.push_back({folder / name, false,
+                           fmt::format("{} does not name it: it was added later, or its line was taken out",
+                                       sums_file)});
+}
+
 /// Checks a file in the format of `sha256sum`.
 void check_sums(const fs::path& folder, std::vector<Verified>& all) {
+    std::set<std::string> listed;
     const std::string sums = read_file(folder / sums_file);
     constexpr std::size_t digits = 64;
     for (std::size_t first = 0; first < sums.size();) {
@@ -58,6 +70,7 @@ void check_sums(const fs::path& folder, std::vector<Verified>& all) {
         first = end + 1;
         const fs::path file =
             line.size() > digits + 2 ? folder / line.substr(digits + 2) : folder / sums_file;
+        listed.insert(file.filename().string());
         all.push_back(looked_at(file, [&]() -> std::string {
             if (line.size() <= digits + 2 || fs::path(line.substr(digits + 2)).has_parent_path())
                 throw InputError("its lines must be a SHA-256 and the name of a file in the same folder");
@@ -67,6 +80,7 @@ void check_sums(const fs::path& folder, std::vector<Verified>& all) {
             return "";
         }));
     }
+    check_listed(folder, listed, all);
 }
 
 /// Checks the manifests of work in the folder.
@@ -120,7 +134,6 @@ void check_library(const fs::path& folder, std::vector<Verified>& all) {
         }));
     const fs::path simulations = folder / "simulations";
     if (!fs::is_directory(simulations)) return;
-    const ObservationStore store(simulations);
     std::vector<fs::path> files;
     for (const auto& entry : fs::directory_iterator(simulations)) files.push_back(entry.path());
     std::ranges::sort(files);
@@ -129,11 +142,28 @@ void check_library(const fs::path& folder, std::vector<Verified>& all) {
             all.push_back(looked_at(file, [&] { return check_result_file(file); }));
         if (file.extension() == ".obs")
             all.push_back(looked_at(file, [&]() -> std::string {
-                if (!store.find(file.stem().string()))
+                if (!read_observation(file))
                     throw InputError("its digest does not match: it is simulated again when it is needed");
                 return "";
             }));
     }
+}
+
+/// Checks a file outside of its folder.
+Verified looked_at_alone(const fs::path& file) {
+    if (file.extension() != ".h5" && file.extension() != ".json")
+        throw InputError(file.string() +
+                         ": must be a folder, a .h5 file of a run or the .json of a library: other files are "
+                         "verified with the folder that they are in");
+    return looked_at(file, [&]() -> std::string {
+        if (file.extension() == ".json")
+            read_library(file);
+        else if (file.filename().string().starts_with("checkpoint."))
+            expect_whole_checkpoint(file);
+        else
+            return check_result_file(file);
+        return "";
+    });
 }
 
 }  // namespace
@@ -141,11 +171,7 @@ void check_library(const fs::path& folder, std::vector<Verified>& all) {
 std::vector<Verified> verify(const fs::path& path) {
     std::vector<Verified> all;
     if (!fs::is_directory(path)) {
-        all.push_back(looked_at(path, [&]() -> std::string {
-            if (path.extension() != ".json") return check_result_file(path);
-            read_library(path);
-            return "";
-        }));
+        all.push_back(looked_at_alone(path));
         return all;
     }
     check_run(path, all);

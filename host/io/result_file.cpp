@@ -3,12 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "core/container.h"
 #include "core/errors.h"
 
 namespace mcdem::inline io {
+namespace {
+
+bool is_length(double value) { return std::isfinite(value) && value > 0; }
+
+}  // namespace
 
 ResultFile::ResultFile(const std::filesystem::path& file) : file_(h5::File::open(file)) {
     if (!file_.has_attribute("/parameters", "format"))
@@ -59,8 +65,8 @@ Recording ResultFile::recording_header(std::size_t replica) const {
     Recording recording;
     recording.label = file_.text_attribute(particles, "label");
     const auto edges = file_.numbers_attribute(particles + "/box", "edges");
-    if (edges.size() != 3)
-        throw InputError(file_.where(particles + "/box") + ": edges must be 3 numbers [m]");
+    if (edges.size() != 3 || !std::ranges::all_of(edges, is_length))
+        throw InputError(file_.where(particles + "/box") + ": edges must be 3 numbers > 0 [m]");
     recording.box = {edges[0], edges[1]};
     if (file_.has_attribute(particles + "/box", "shape")) {
         const auto shape = parse<ContainerShape>(file_.text_attribute(particles + "/box", "shape"));
@@ -74,6 +80,10 @@ Recording ResultFile::recording_header(std::size_t replica) const {
     const auto diameter = file_.dataset(particles + "/diameter");
     diameter.expect_row({});
     recording.diameter = diameter.read_all<double>();
+    if (const auto bad = std::ranges::find_if_not(recording.diameter, is_length);
+        bad != recording.diameter.end())
+        throw InputError(fmt::format("{}: must be numbers > 0 [m], got {} for grain {}", diameter.where(),
+                                     *bad, bad - recording.diameter.begin()));
     read_species(recording, particles);
     const auto parameters = file_.read_texts(parameters_path(replica));
     if (parameters.size() % 2 != 0)

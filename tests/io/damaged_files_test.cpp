@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <fstream>
 #include <random>
 
@@ -152,6 +153,25 @@ TEST(damaged_files, wrong_types_and_sizes_are_named) {
                 HasSubstr("must be the row of a scan"));
     EXPECT_THAT(error_with("/particles/replica_00000/position/step", std::vector<long>{0}),
                 HasSubstr("one row for each of step"));
+}
+
+TEST(damaged_files, sizes_that_are_none_are_refused) {
+    TemporaryFolder folder;
+    const auto error_after = [&](const std::function<void(Recording&)>& change) {
+        auto run = synthetic_run({.replicas = 1, .scans = 2});
+        change(run.recordings.front());
+        write_run(folder / "run.h5", run);
+        return read_error(folder / "run.h5");
+    };
+    for (const double bad : {0.0, -0.01, double(NAN), double(INFINITY)}) {
+        EXPECT_THAT(error_after([&](Recording& recording) { recording.diameter[1] = bad; }),
+                    HasSubstr("/particles/replica_00000/diameter: must be numbers > 0 [m]"));
+        for (const auto& change : std::vector<std::function<void(Recording&)>>{
+                 [&](Recording& recording) { recording.box.size_x = bad; },
+                 [&](Recording& recording) { recording.box.size_y = bad; },
+                 [&](Recording& recording) { recording.plate_start = bad; }})
+            EXPECT_THAT(error_after(change), HasSubstr("/box: edges must be 3 numbers > 0 [m]"));
+    }
 }
 
 /// Lets `change` do something to a result file with the library alone, and returns the error of reading it.

@@ -168,6 +168,23 @@ def pipes_are_refused_at_once(place):
            "challenge.json: is a pipe or device")
 
 
+def what_the_system_refuses_is_told_with_its_path(place):
+    os.symlink("loop", place / "loop")
+    done = mcdem(place, *RUN[:3], "loop", "--no-figures")
+    expect(done, 1, "mcdem: loop")
+    assert "filesystem error" not in done.stderr and "Too many levels of symbolic links" in done.stderr, done.stderr
+
+
+def kernels_are_compiled_in_an_empty_environment(place):
+    result = whole_run(place)
+    for extra in {}, {"PATH": os.environ["PATH"]}:
+        shutil.rmtree(place / "out")
+        done = subprocess.run([MCDEM, *RUN], cwd=place, env={"POCL_CACHE_DIR": str(place / "cache"), **extra},
+                              capture_output=True, text=True, timeout=TIME_LIMIT)
+        expect(done, 0)
+        assert (place / "out/run.h5").read_bytes() == result
+
+
 def numpy_text(kind):
     if kind.subdtype:
         return f"({','.join(map(str, kind.shape))}){numpy_text(kind.base)}"
@@ -224,7 +241,9 @@ def an_unfinished_run_is_verified(place):
     assert done.returncode == -9, done
     done = mcdem(place, "verify", "out")
     expect(done, 0, "out/checkpoint.h5: good\nout/segment-000000.h5: good\n", "stdout")
+    expect(mcdem(place, "verify", "out/checkpoint.h5"), 0, "out/checkpoint.h5: good\n", "stdout")
     os.truncate(place / "out/checkpoint.h5", 3000)
+    expect(mcdem(place, "verify", "out/checkpoint.h5"), 1, "out/checkpoint.h5: NOT GOOD", "stdout")
     expect(mcdem(place, "verify", "out"), 1, "out/checkpoint.h5: NOT GOOD", "stdout")
     (place / "empty").mkdir()
     expect(mcdem(place, "verify", "empty"), 2, "holds no run")
@@ -238,6 +257,13 @@ def an_experiment_carries_sums(place):
         expect(mcdem(place, *words), 0)
         subprocess.run(["sha256sum", "--check", "--strict", "--quiet", "SHA256SUMS"], cwd=place / "lab", check=True)
         expect(mcdem(place, "verify", "lab"), 0, "good", "stdout")
+        expect(mcdem(place, "verify", "lab/SHA256SUMS"), 2, "verified with the folder that they are in")
+        sums = (place / "lab/SHA256SUMS").read_text()
+        (place / "lab/SHA256SUMS").write_text("".join(line for line in sums.splitlines(True) if "plate.csv" not in line))
+        done = mcdem(place, "verify", "lab")
+        expect(done, 1, "SHA256SUMS does not name it", "stdout")
+        assert done.stdout.count("NOT GOOD") == 1 and "plate.csv" in done.stdout.splitlines()[-1], done.stdout
+        (place / "lab/SHA256SUMS").write_text(sums)
         expect(mcdem(place, *words), 0)  # finishes what was cut short at the very end
         table = next((place / "lab").glob("plate.csv*"))
         table.write_bytes(table.read_bytes()[:-2])
@@ -253,7 +279,7 @@ def numbers_that_are_none_make_no_experiment(place):
         del run["digests"]
         run["particles/replica_00001/position/value"][0, 3] = float("nan")
     expect(mcdem(place, "experiment", "from-run", "out", "--replica", "1", "--out", "lab"), 2,
-           "grain 3 has a position that is no number")
+           "/particles/replica_00001/position/value: grain 3 has a value that is no number")
 
 
 def main():

@@ -28,7 +28,7 @@ if __name__ == "__main__":
     with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=":0") as cluster, Client(cluster) as client:
         mcdem.distributed.run("sweep.toml", "dask", client=client, part_replicas=1)
         try:
-            mcdem.distributed.run("sweep.toml", "dask", settings={"grains.friction": -7}, client=client)
+            mcdem.distributed.run("sweep.toml", "dask", settings={"grains.friction": -7, "output.contacts": True}, client=client)
         except ValueError as error:
             print("refused:", error)
 """
@@ -93,7 +93,7 @@ def works_from_python(place):
     place.run_alone()
     (place.path / "by_hand.py").write_text(BY_HAND)
     said = place.run([sys.executable, "by_hand.py"], {"PYTHONPATH": str(PACKAGE), "MCDEM_PROGRAM": place.mcdem})
-    assert "refused: " in said and "grains.friction" in said, said
+    assert "refused: " in said and "grains.friction" in said and "output.contacts" not in said, said
     place.expect_like_alone("dask")
 
 
@@ -111,6 +111,10 @@ def says_what_is_wrong(place):
     """Bad input, and what is to be installed."""
     said = finish(distribute(place, [*command_of("sweep.toml", "dask"), "--set", "nothing=1"]), exit_codes=(2,))
     assert "mcdem: " in said and "nothing" in said and "Traceback" not in said, said
+    for scheduler in "tcp://127.0.0.1:1", "sweep.toml":
+        said = finish(distribute(place, ["--scheduler", scheduler, *command_of("sweep.toml", "dask")],
+                                 more={"DASK_DISTRIBUTED__COMM__TIMEOUTS__CONNECT": "1s"}), exit_codes=(2,))
+        assert "mcdem: --scheduler: must be" in said and "Traceback" not in said, said
     without = place.path / "python"
     without.write_text(f"#!/bin/sh\nexec {sys.executable} -S \"$@\"\n")
     without.chmod(0o755)

@@ -2,6 +2,7 @@
 
 #include <spdlog/sinks/stdout_sinks.h>
 
+#include <filesystem>
 #include <sstream>
 
 #include "cl/opencl.h"
@@ -47,6 +48,8 @@ int report_error(const std::exception& error) {
     if (const auto* opencl = dynamic_cast<const cl::Error*>(&error))
         spdlog::error("OpenCL: {} failed with code {}: {}", opencl->what(), opencl->err(),
                       remedy_of(opencl->err()));
+    else if (const auto* file = dynamic_cast<const std::filesystem::filesystem_error*>(&error))
+        spdlog::error("{}: {}", file->path1().string(), file->code().message());
     else if (dynamic_cast<const std::bad_alloc*>(&error))
         spdlog::error("needs more memory than there is");
     else

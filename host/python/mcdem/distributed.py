@@ -9,6 +9,7 @@ lost, another one computes its part again: parts are bit-identical wherever they
 """
 import argparse
 import contextlib
+import json
 import os
 import subprocess
 import sys
@@ -25,7 +26,7 @@ def run(scene: str | os.PathLike[str], out: str | os.PathLike[str], *, settings:
     """Runs the replicas of a scene in parts into the folder `out`. `settings` overrides keys; `how`: see compute."""
     words = ["run", os.fspath(scene), "--out", os.fspath(out)] + ([] if figures else ["--no-figures"])
     for key, value in (settings or {}).items():
-        words += ["--set", f"{key}={value}"]
+        words += ["--set", f"{key}={json.dumps(value) if isinstance(value, (bool, list, tuple)) else value}"]
     if part_replicas:
         words += ["--part-replicas", str(part_replicas)]
     compute(words, **how)
@@ -127,6 +128,15 @@ def send_by_value():
         cloudpickle.register_pickle_by_value(sys.modules[__name__])
 
 
+def client_of(scheduler):
+    """Of a Dask scheduler that runs already, by its address or file."""
+    import distributed
+    try:
+        return distributed.Client(scheduler_file=scheduler) if os.path.exists(scheduler) else distributed.Client(scheduler)
+    except (OSError, TypeError, ValueError) as error:
+        raise InputError(f"--scheduler: must be the address or file of a Dask scheduler that answers, got {scheduler}: {error}")
+
+
 def main():
     parser = argparse.ArgumentParser(
         prog="mcdem distribute", description="Parts of a command's work as tasks of Dask: by default on all devices of "
@@ -138,13 +148,8 @@ def main():
     options = parser.parse_args()
     if not options.words:
         parser.error("a command is needed: run, challenge run or diagnose")
-    import distributed
     with contextlib.ExitStack() as stack:
-        client = None
-        if options.scheduler:
-            is_file = os.path.exists(options.scheduler)
-            client = stack.enter_context(distributed.Client(scheduler_file=options.scheduler) if is_file
-                                         else distributed.Client(options.scheduler))
+        client = stack.enter_context(client_of(options.scheduler)) if options.scheduler else None
         compute(options.words, client=client, tries=options.tries)
 
 
