@@ -1,6 +1,5 @@
 #include "cli/parts/deal_to_devices.h"
 
-#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <deque>

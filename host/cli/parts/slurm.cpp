@@ -17,6 +17,7 @@
 #include "core/input_file.h"
 #include "core/make_folder.h"
 #include "core/output_file.h"
+#include "core/replaced.h"
 
 namespace mcdem::inline cli {
 namespace {
@@ -41,9 +42,7 @@ struct Jobs {
 
 /// Escapes % in the pattern of a log's name.
 std::string log_pattern(const SlurmJob& job, const std::string& name) {
-    std::string pattern;
-    for (const char c : fs::absolute(job.folder).string()) pattern += c == '%' ? "%%" : std::string(1, c);
-    return pattern + "/" + name;
+    return replaced(fs::absolute(job.folder).string(), {{'%', "%%"}}) + "/" + name;
 }
 
 ProgramEnd slurm(const std::vector<std::string>& words) {

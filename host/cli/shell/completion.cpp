@@ -1,12 +1,13 @@
-#include "cli/shell/completion.h"
-
+// mcdem completion: scripts for shells, written from the program's own commands and options.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 
+#include "cli/shell/command_tree.h"
 #include "cli/shell/commands.h"
 #include "cli/shell/standard_streams.h"
+#include "core/replaced.h"
 #include "scene/keys.h"
 
 namespace mcdem::inline cli {
@@ -25,13 +26,7 @@ Kind kind_of(const OptionEntry& option) {
 
 /// In single quotes, for all three shells.
 std::string in_quotes(const std::string& text) {
-    std::string all = "'";
-    for (const char c : text)
-        if (c == '\'')
-            all += "'\\''";
-        else
-            all += c == '\n' ? ' ' : c;
-    return all + "'";
+    return "'" + replaced(text, {{'\'', "'\\''"}, {'\n', " "}}) + "'";
 }
 
 std::string place_of(const CommandEntry& command) {
@@ -153,9 +148,7 @@ std::string zsh_action(const OptionEntry& option) {
 
 /// 'name:description', for _describe.
 std::string zsh_entry(const std::string& name, const std::string& help) {
-    std::string entry = name + ":";
-    for (const char c : help) entry += c == ':' ? std::string("\\:") : std::string(1, c);
-    return " " + in_quotes(entry);
+    return " " + in_quotes(name + ":" + replaced(help, {{':', "\\:"}}));
 }
 
 std::string zsh_script(const std::vector<CommandEntry>& tree, const std::string& keys) {
@@ -255,13 +248,6 @@ end
 
 }  // namespace
 
-std::string completion_script(const std::vector<CommandEntry>& tree, const std::string& shell,
-                              const std::vector<std::string>& scene_keys) {
-    const std::string keys = fmt::format("{}", fmt::join(scene_keys, " "));
-    if (shell == "zsh") return zsh_script(tree, keys);
-    return shell == "fish" ? fish_script(tree, keys) : bash_script(tree, keys);
-}
-
 void add_completion(CLI::App& app, int&) {
     auto* sub = app.add_subcommand("completion", "Print a shell completion script");
     auto shell = std::make_shared<std::string>();
@@ -272,9 +258,10 @@ void add_completion(CLI::App& app, int&) {
         "Installed by `cmake --install`. Without installing, for the current shell:\n"
         "  source <(mcdem completion bash)");
     sub->callback([&app, shell] {
-        std::vector<std::string> names;
-        for (const Key& key : keys()) names.emplace_back(key.name);
-        print_out("{}", completion_script(command_tree(app), *shell, names));
+        std::vector<std::string_view> names;  // complete what is given as KEY=VALUE
+        for (const Key& key : keys()) names.push_back(key.name);
+        const auto script = *shell == "zsh" ? zsh_script : *shell == "fish" ? fish_script : bash_script;
+        print_out("{}", script(command_tree(app), fmt::format("{}", fmt::join(names, " "))));
     });
 }
 

@@ -1,12 +1,12 @@
-#include "cli/shell/manual.h"
-
+// mcdem manual: roff pages, written from the program's own help.
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <sstream>
 
+#include "cli/shell/command_tree.h"
 #include "cli/shell/commands.h"
 #include "core/output_file.h"
+#include "core/replaced.h"
 #include "core/version.h"
 #include "io/output_folder.h"
 
@@ -29,19 +29,10 @@ std::string literal(const std::string& text) {
 }
 
 std::string page_name(const std::string& path) {
-    std::string name = path.empty() ? "mcdem" : "mcdem-" + path;
-    for (char& c : name)
-        if (c == ' ') c = '-';
-    return name;
+    return path.empty() ? "mcdem" : "mcdem-" + replaced(path, {{' ', "-"}});
 }
 
 std::string program_and(const std::string& path) { return path.empty() ? "mcdem" : "mcdem " + path; }
-
-std::string one_line(std::string text) {
-    for (char& c : text)
-        if (c == '\n') c = ' ';
-    return text;
-}
 
 std::string list_of(const std::string& heading, const std::vector<OptionEntry>& options) {
     if (options.empty()) return "";
@@ -74,7 +65,8 @@ std::string page(const std::vector<CommandEntry>& tree, const CommandEntry& comm
     std::string upper = name;
     for (char& c : upper) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
     std::string roff = fmt::format(".TH {} 1 \"\" \"mcdem {}\" \"User Commands\"\n", literal(upper), version);
-    roff += fmt::format(".SH NAME\n{} \\- {}\n", literal(name), literal(one_line(command.about)));
+    roff +=
+        fmt::format(".SH NAME\n{} \\- {}\n", literal(name), literal(replaced(command.about, {{'\n', " "}})));
     roff += synopsis(command) + commands_of(tree, command);
     roff += list_of("ARGUMENTS", command.positionals) + list_of("OPTIONS", command.options);
     if (!command.notes.empty()) roff += ".SH NOTES\n.nf\n" + literal(command.notes) + "\n.fi\n";
@@ -87,14 +79,6 @@ std::string page(const std::vector<CommandEntry>& tree, const CommandEntry& comm
 }
 
 }  // namespace
-
-std::map<std::string, std::string> manual_pages(const std::vector<CommandEntry>& tree,
-                                                const std::string& version) {
-    std::map<std::string, std::string> pages;
-    for (const CommandEntry& command : tree)
-        pages[page_name(command.path) + ".1"] = page(tree, command, version);
-    return pages;
-}
 
 void add_manual(CLI::App& app, int&) {
     auto* sub = app.add_subcommand("manual", "Write the manual pages of all commands to a folder");
@@ -109,8 +93,10 @@ void add_manual(CLI::App& app, int&) {
     sub->callback([&app, folder] {
         const FolderLock lock = open_output_folder(*folder);
         const std::string version = std::string(version_text).substr(0, std::string(version_text).find(' '));
-        for (const auto& [name, text] : manual_pages(command_tree(app), version))
-            replace_own(std::filesystem::path(*folder) / name, FileKind::manual, text);
+        const auto tree = command_tree(app);
+        for (const CommandEntry& command : tree)
+            replace_own(std::filesystem::path(*folder) / (page_name(command.path) + ".1"), FileKind::manual,
+                        page(tree, command, version));
     });
 }
 

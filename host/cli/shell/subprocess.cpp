@@ -10,7 +10,6 @@
 #include <csignal>
 #include <cstring>
 #include <string_view>
-#include <system_error>
 #include <utility>
 
 #include "core/errors.h"

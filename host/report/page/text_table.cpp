@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/replaced.h"
 #include "report/page/labels.h"
 
 namespace mcdem::inline report {
@@ -10,12 +11,8 @@ namespace {
 using Cells = std::vector<std::string>;
 
 std::string escaped(const std::string& text) {
-    std::string safe;
-    for (char c : text) {
-        if (std::string("|\\`*[<").find(c) != std::string::npos) safe += '\\';
-        safe += c;
-    }
-    return safe;
+    return replaced(text,
+                    {{'|', "\\|"}, {'\\', "\\\\"}, {'`', "\\`"}, {'*', "\\*"}, {'[', "\\["}, {'<', "\\<"}});
 }
 
 Cells prepared(const Cells& cells, TableFormat format) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/parameters.h"
+#include "core/replaced.h"
 #include "report/page/labels.h"
 
 namespace mcdem::inline report {
@@ -58,9 +59,7 @@ std::string beyond_note(const std::string& setting, const std::string& from, con
 std::string csv_field(const std::string& text) {
     const auto line = one_line(text);
     if (line.find_first_of(",\"") == std::string::npos) return line;
-    std::string field = "\"";
-    for (char c : line) field += c == '"' ? std::string("\"\"") : std::string(1, c);
-    return field + "\"";
+    return "\"" + replaced(line, {{'"', "\"\""}}) + "\"";
 }
 
 VaryingKeys varying_keys(const std::vector<Setting>& settings) {
