@@ -8,9 +8,9 @@
 #include <set>
 
 #include "diagnose/decide/decision.h"
-#include "report/diagnosis/diagnosis_charts.h"
 #include "report/diagnosis/diagnosis_json.h"
 #include "report/diagnosis/diagnosis_text.h"
+#include "report/diagnosis/diagnosis_values.h"
 #include "report/diagnosis/diagnosis_words.h"
 
 namespace mcdem {
@@ -166,7 +166,10 @@ TEST(DiagnosisAgreement, OfTitleFiguresPictureAndFile) {
         EXPECT_EQ(says(line(d, "Gap"), "by more than noise;") || says(line(d, "Gap"), "by more than noise."),
                   some_differ);
         EXPECT_EQ(says(line(d, "Limits"), "a difference between packings"), some_differ);
-        const bool framed = !where_chart(d)->layout["shapes"].empty();
+        bool framed = false;
+        const auto values = diagnosis_figure_values(d);
+        for (const auto& panel : values["where"]["panels"])
+            for (const auto& cell : panel["cells"]) framed = framed || cell["stands_out"];
         EXPECT_NE(says(line(d, "Where"), "no single part"), framed);
         const auto json = nlohmann::json::parse(diagnosis_json(d));
         EXPECT_EQ(json["sentence"], sentence);

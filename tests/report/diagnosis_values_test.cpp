@@ -6,7 +6,6 @@
 
 #include <cmath>
 
-#include "report/diagnosis/diagnosis_parts.h"
 #include "report/diagnosis_samples.h"
 
 namespace mcdem {

@@ -73,7 +73,8 @@ TEST(ProgrammeCharts, SayWhatTheirAxesMean) {
     ASSERT_EQ(made.charts.size(), 8u);
     EXPECT_EQ(made.charts[0].title, "Mean stress against volume strain");
     EXPECT_THAT(made.charts[0].caption, HasSubstr("a third of the stress tensor's trace"));
-    EXPECT_EQ(made.charts[0].data[0]["hovertemplate"], "%{x:.4g} %<br>%{y:.4g} Pa");
+    EXPECT_EQ(made.charts[0].log_axes, "y");
+    EXPECT_EQ(made.charts[0].values["y_label"], "mean stress p [Pa]");
 }
 
 TEST(FigureFile, HoldsTheFiguresOfCells) {

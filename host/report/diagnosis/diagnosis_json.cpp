@@ -1,177 +1,294 @@
 #include "report/diagnosis/diagnosis_json.h"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "core/errors.h"
 #include "report/diagnosis/diagnosis_text.h"
 #include "report/diagnosis/diagnosis_words.h"
+#include "report/page/labels.h"
 
 namespace mcdem::inline report {
 namespace {
 
 using Json = nlohmann::ordered_json;
+using NamedPairs = std::vector<std::pair<std::string, std::array<double, 2>>>;
 
-// The library writes null for numbers that are not finite.
+/// An object, into which members are written or from which they are read, by the same list of them
+/// (`describe`). null stands for what is not finite (the library writes it) or not known.
+class Members {
+public:
+    Members(Json& json, bool reads) : json_(json), reads_(reads) {}
 
-template <class Value>
-Json or_null(const std::optional<Value>& value) {
-    return value ? Json(*value) : Json();
+    void operator()(const char* key, auto& value) { exchange(place(key), value); }
+    /// Of a member that files of earlier versions lack.
+    void later(const char* key, auto& value) {
+        if (!reads_ || json_.contains(key)) (*this)(key, value);
+    }
+    /// What follows from the others.
+    void derived(const char* key, const auto& value) {
+        if (!reads_) json_[key] = value;
+    }
+    void text_or_null(const char* key, std::string& text) {
+        std::optional<std::string> known = text.empty() ? std::nullopt : std::optional(text);
+        (*this)(key, known);
+        text = known.value_or("");
+    }
+    void number_or(const char* key, double& number, double of_null) {
+        (*this)(key, number);
+        if (std::isnan(number)) number = of_null;
+    }
+    /// Rounded to a nanometre, to remove noise in the last digits.
+    void millimetres(const char* key, double& metres) {
+        double length = std::round(metres * 1e9) / 1e6;
+        (*this)(key, length);
+        if (reads_) metres = length * mm;
+    }
+    void millimetres(const char* key, std::array<double, 2>& metres) {
+        Json& json = place(key);
+        for (std::size_t k = 0; k < 2; ++k) {
+            double length = std::round(metres[k] * 1e9) / 1e6;
+            exchange(reads_ ? json.at(k) : json.emplace_back(), length);
+            if (reads_) metres[k] = length * mm;
+        }
+    }
+    /// As an object, in this order.
+    void object(const char* key, NamedPairs& pairs) {
+        Json& json = place(key);
+        if (!reads_) json = Json::object();
+        if (reads_)
+            for (const auto& [name, _] : json.items()) pairs.emplace_back(name, std::array<double, 2>{});
+        for (auto& [name, values] : pairs) exchange(json[name], values);
+    }
+
+private:
+    Json& place(const char* key) { return reads_ ? json_.at(key) : json_[key]; }
+
+    template <class Value>
+    void exchange(Json& json, Value& value) {
+        if constexpr (requires(Members members) { describe(members, value); }) {
+            if (!reads_) json = Json::object();
+            Members members(json, reads_);
+            describe(members, value);
+        } else if (reads_) {
+            json.get_to(value);
+        } else {
+            json = value;
+        }
+    }
+    void exchange(Json& json, double& number) {
+        if (reads_)
+            number = json.is_null() ? std::nan("") : json.get<double>();
+        else
+            json = number;
+    }
+    template <class Value>
+    void exchange(Json& json, std::optional<Value>& value) {
+        if (reads_ && json.is_null()) return value.reset();
+        if (reads_) value.emplace();
+        if (value) exchange(json, *value);
+    }
+    template <class Value>
+    void exchange(Json& json, std::vector<Value>& values) {
+        if (!reads_) json = Json::array();
+        if (reads_)
+            for (auto& item : json) exchange(item, values.emplace_back());
+        else
+            for (auto& value : values) exchange(json.emplace_back(), value);
+    }
+    void exchange(Json& json, std::array<double, 2>& numbers) {
+        for (std::size_t k = 0; k < 2; ++k) exchange(reads_ ? json.at(k) : json.emplace_back(), numbers[k]);
+    }
+
+    Json& json_;
+    bool reads_;
+};
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+void describe(Members& io, WhereEntry& entry) {
+    io("observable", entry.observable);
+    io.text_or_null("phase", entry.phase);
+    io.millimetres("displacement_mm", entry.displacement);
+    io("region", entry.region);
+    io("z_score", entry.z_score);
+    io("z_score_refitted", entry.z_score_refitted);
+    io("force_class", entry.force_class);
+    io.later("difference", entry.difference);
 }
 
-/// Rounded to a nanometre, to remove noise in the last digits.
-Json millimetres(double metres) { return std::round(metres * 1e9) / 1e6; }
-
-Json millimetres(const std::array<double, 2>& metres) {
-    return Json::array({millimetres(metres[0]), millimetres(metres[1])});
+void describe(Members& io, WhereCell& cell) {
+    io("observable", cell.observable);
+    io.text_or_null("phase", cell.phase);
+    io.millimetres("displacement_mm", cell.displacement);
+    io("z_score", cell.z_score);
+    io("z_score_refitted", cell.z_score_refitted);
+    io.later("difference", cell.difference);
 }
 
-Json phase(const std::string& name) { return name.empty() ? Json() : Json(name); }
-
-template <class Value, class Write>
-Json list(const std::vector<Value>& values, Write write) {
-    Json array = Json::array();
-    for (const auto& value : values) array.push_back(write(value));
-    return array;
+void describe(Members& io, Cause& cause) {
+    io("effect", cause.effect);
+    io("amplitude", cause.amplitude);
+    io("unit", cause.unit);
+    io("confidence", cause.confidence);
+    io("group", cause.group);
+    io.number_or("amplitude_error", cause.amplitude_error, infinite);
+    io("explained", cause.explained);
+    io("score", cause.score);
+    io("confirmed_score", cause.confirmed_score);
 }
 
-Json where_json(const WhereEntry& entry) {
-    return {{"observable", entry.observable},
-            {"phase", phase(entry.phase)},
-            {"displacement_mm", millimetres(entry.displacement)},
-            {"region", or_null(entry.region)},
-            {"z_score", entry.z_score},
-            {"z_score_refitted", entry.z_score_refitted},
-            {"force_class", or_null(entry.force_class)},
-            {"difference", entry.difference}};
+/// A row of GapReduction::top_force.
+struct TopForce {
+    double displacement = 0, experiment = 0, before = 0, after = 0;
+};
+void describe(Members& io, TopForce& row) {
+    io.millimetres("displacement_mm", row.displacement);
+    io("experiment_N", row.experiment);
+    io("before_N", row.before);
+    io("after_N", row.after);
 }
 
-Json cell_json(const WhereCell& cell) {
-    return {{"observable", cell.observable},
-            {"phase", phase(cell.phase)},
-            {"displacement_mm", millimetres(cell.displacement)},
-            {"z_score", cell.z_score},
-            {"z_score_refitted", cell.z_score_refitted},
-            {"difference", cell.difference}};
+void describe(Members& io, GapReduction& gap) {
+    io("held_out", gap.held_out);
+    io("before", gap.before);
+    io("after", gap.after);
+    io("fraction", gap.fraction);
+    io("interval", gap.interval);
+    io("placebo", gap.placebo);
+    NamedPairs metrics = metrics_in_order(gap);
+    io.object("metrics", metrics);
+    gap.metrics.insert(metrics.begin(), metrics.end());
+    io("confirmed", gap.confirmed);
+    io.millimetres("fitted_displacement_mm", gap.fitted_displacement);
+    std::vector<TopForce> rows;
+    for (const auto& row : gap.top_force) rows.push_back({row[0], row[1], row[2], row[3]});
+    io("top_force", rows);
+    gap.top_force.clear();
+    for (const TopForce& row : rows)
+        gap.top_force.push_back({row.displacement, row.experiment, row.before, row.after});
 }
 
-Json cause_json(const Cause& cause) {
-    return {{"effect", cause.effect},
-            {"amplitude", cause.amplitude},
-            {"unit", cause.unit},
-            {"confidence", cause.confidence},
-            {"group", cause.group},
-            {"amplitude_error", cause.amplitude_error},
-            {"explained", cause.explained},
-            {"score", cause.score},
-            {"confirmed_score", or_null(cause.confirmed_score)}};
+void describe(Members& io, Explanation& explanation) {
+    io("reduction", explanation.reduction);
+    io("simulated", explanation.simulated);
+    io("held_out", explanation.held_out);
+    io("placebo", explanation.placebo);
+    io("needed", explanation.needed);
+    io.derived("remainder", explanation.remainder());
+    io("remainder_p", explanation.remainder_p);
+    io("leaves_more_than_noise", explanation.leaves_more_than_noise);
 }
 
-Json top_force_json(const std::array<double, 4>& row) {
-    return {{"displacement_mm", millimetres(row[0])},
-            {"experiment_N", row[1]},
-            {"before_N", row[2]},
-            {"after_N", row[3]}};
+void describe(Members& io, PackingAgreement& packing) {
+    io("experiment", packing.experiment);
+    io("gap_p", packing.gap_p);
+    io("amplitude", packing.amplitude);
+    io.number_or("amplitude_error", packing.amplitude_error, infinite);
+    io("agreement_p", packing.agreement_p);
+    io("differs", packing.differs);
 }
 
-Json gap_reduction_json(const std::optional<GapReduction>& gap_reduction) {
-    if (!gap_reduction) return {};
-    Json metrics = Json::object();
-    for (const auto& [name, values] : metrics_in_order(*gap_reduction)) metrics[name] = values;
-    return {{"held_out", gap_reduction->held_out},
-            {"before", gap_reduction->before},
-            {"after", gap_reduction->after},
-            {"fraction", gap_reduction->fraction},
-            {"interval", gap_reduction->interval},
-            {"placebo", gap_reduction->placebo},
-            {"metrics", metrics},
-            {"confirmed", or_null(gap_reduction->confirmed)},
-            {"fitted_displacement_mm", millimetres(gap_reduction->fitted_displacement)},
-            {"top_force", list(gap_reduction->top_force, top_force_json)}};
+void describe(Members& io, Refinement& refinement) {
+    io("effect", refinement.effect);
+    io("key", refinement.key);
+    io("was", refinement.from);
+    io("to", refinement.to);
+    io("unit", refinement.unit);
+    io("done", refinement.done);
 }
 
-Json explanation_json(const std::optional<Explanation>& explanation) {
-    if (!explanation) return {};
-    return {{"reduction", explanation->reduction},
-            {"simulated", explanation->simulated},
-            {"held_out", explanation->held_out},
-            {"placebo", explanation->placebo},
-            {"needed", explanation->needed},
-            {"remainder", explanation->remainder()},
-            {"remainder_p", explanation->remainder_p},
-            {"leaves_more_than_noise", explanation->leaves_more_than_noise}};
+void describe(Members& io, NextStep& step) {
+    io("what", step.what);
+    io("power", step.power);
 }
 
-Json packing_json(const PackingAgreement& packing) {
-    return {{"experiment", packing.experiment},   {"gap_p", packing.gap_p},
-            {"amplitude", packing.amplitude},     {"amplitude_error", packing.amplitude_error},
-            {"agreement_p", packing.agreement_p}, {"differs", packing.differs}};
+void describe(Members& io, DetectionLimit& limit) {
+    io("effect", limit.effect);
+    io.number_or("minimum_amplitude", limit.minimum_amplitude, infinite);
+    io("absorbed_by_calibration", limit.absorbed_by_calibration);
+    io("unit", limit.unit);
+    io("group", limit.group);
 }
 
-Json refinement_json(const Refinement& refinement) {
-    return {{"effect", refinement.effect}, {"key", refinement.key},   {"was", refinement.from},
-            {"to", refinement.to},         {"unit", refinement.unit}, {"done", refinement.done}};
+void describe(Members& io, NuisanceFit& fit) {
+    io("name", fit.name);
+    io("shift", fit.value);
+    io("error", fit.error);
+    io("prior", fit.prior);
+    io("unit", fit.unit);
+    io("at_bound", fit.at_bound);
 }
 
-Json step_json(const NextStep& step) { return {{"what", step.what}, {"power", or_null(step.power)}}; }
-
-Json limit_json(const DetectionLimit& limit) {
-    return {{"effect", limit.effect},
-            {"minimum_amplitude", limit.minimum_amplitude},
-            {"absorbed_by_calibration", limit.absorbed_by_calibration},
-            {"unit", limit.unit},
-            {"group", limit.group}};
+/// The members that stand in an object of their own.
+struct Gap {
+    Diagnosis& of;
+};
+void describe(Members& io, Gap& gap) {
+    io("detected", gap.of.detected);
+    io("p_value", gap.of.p_value);
+    io("p_omnibus", gap.of.p_omnibus);
+    io("p_directed", gap.of.p_directed);
 }
 
-Json nuisance_json(const NuisanceFit& fit) {
-    return {{"name", fit.name},   {"shift", fit.value}, {"error", fit.error},
-            {"prior", fit.prior}, {"unit", fit.unit},   {"at_bound", fit.at_bound}};
+/// In the order of Verdict.
+constexpr std::array verdict_names{"no_gap",         "effect",        "group",
+                                   "unknown_effect", "not_converged", "calibration_suspect"};
+
+Verdict verdict_of(const std::string& word) {
+    const auto found = std::ranges::find(verdict_names, word);
+    if (found == verdict_names.end()) throw std::invalid_argument("unknown verdict: " + word);
+    return static_cast<Verdict>(found - verdict_names.begin());
+}
+
+void describe(Members& io, Diagnosis& diagnosis) {
+    std::string verdict = verdict_name(diagnosis.verdict);
+    io("verdict", verdict);
+    diagnosis.verdict = verdict_of(verdict);
+    Gap gap{diagnosis};
+    io("gap", gap);
+    io("where", diagnosis.where);
+    io("causes", diagnosis.causes);
+    io.later("explanation", diagnosis.explanation);
+    io("shrink", diagnosis.gap_reduction);
+    io("detection_limits", diagnosis.detection_limits);
+    io("not_measured", diagnosis.not_measured);
+    io("seconds", diagnosis.seconds);
+    io.derived("sentence", verdict_sentence(diagnosis));
+    io.number_or("where_threshold", diagnosis.where_threshold, 0);
+    io("cells", diagnosis.cells);
+    io("ranking", diagnosis.ranking);
+    io("nuisances", diagnosis.nuisances);
+    io("not_testable", diagnosis.not_testable);
+    io.later("refinements", diagnosis.refinements);
+    io.later("next", diagnosis.next);
+    io.later("packings", diagnosis.packings);
+    io("provenance", diagnosis.provenance);
 }
 
 }  // namespace
 
-std::string verdict_name(Verdict verdict) {
-    switch (verdict) {
-        case Verdict::no_gap:
-            return "no_gap";
-        case Verdict::effect:
-            return "effect";
-        case Verdict::group:
-            return "group";
-        case Verdict::unknown_effect:
-            return "unknown_effect";
-        case Verdict::not_converged:
-            return "not_converged";
-        case Verdict::calibration_suspect:
-            break;
-    }
-    return "calibration_suspect";
-}
+std::string verdict_name(Verdict verdict) { return verdict_names[static_cast<std::size_t>(verdict)]; }
 
 std::string diagnosis_json(const Diagnosis& diagnosis) {
-    const Json json{{"verdict", verdict_name(diagnosis.verdict)},
-                    {"gap",
-                     {{"detected", diagnosis.detected},
-                      {"p_value", diagnosis.p_value},
-                      {"p_omnibus", diagnosis.p_omnibus},
-                      {"p_directed", diagnosis.p_directed}}},
-                    {"where", list(diagnosis.where, where_json)},
-                    {"causes", list(diagnosis.causes, cause_json)},
-                    {"explanation", explanation_json(diagnosis.explanation)},
-                    {"shrink", gap_reduction_json(diagnosis.gap_reduction)},
-                    {"detection_limits", list(diagnosis.detection_limits, limit_json)},
-                    {"not_measured", diagnosis.not_measured},
-                    {"seconds", diagnosis.seconds},
-                    {"sentence", verdict_sentence(diagnosis)},
-                    {"where_threshold", diagnosis.where_threshold},
-                    {"cells", list(diagnosis.cells, cell_json)},
-                    {"ranking", list(diagnosis.ranking, cause_json)},
-                    {"nuisances", list(diagnosis.nuisances, nuisance_json)},
-                    {"not_testable", diagnosis.not_testable},
-                    {"refinements", list(diagnosis.refinements, refinement_json)},
-                    {"next", list(diagnosis.next, step_json)},
-                    {"packings", list(diagnosis.packings, packing_json)},
-                    {"provenance", diagnosis.provenance}};
+    Json json = Json::object();
+    Members members(json, false);
+    Diagnosis written = diagnosis;
+    describe(members, written);
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+Diagnosis diagnosis_of_json(const std::string& text, const std::string& where) {
+    try {
+        Json json = Json::parse(text);
+        Members members(json, true);
+        Diagnosis diagnosis;
+        describe(members, diagnosis);
+        return diagnosis;
+    } catch (const std::exception& error) {
+        throw InputError(where + ": must be a diagnosis.json that `mcdem diagnose` wrote; " + error.what());
+    }
 }
 
 }  // namespace mcdem::report

@@ -47,15 +47,9 @@ TextTable table_of_effects(const Diagnosis& diagnosis) {
     return table;
 }
 
-void add_chart(Page& page, const std::optional<Chart>& chart) {
-    if (chart) page.chart(*chart);
-}
-
-void add_how_far(Page& page, const Diagnosis& diagnosis) {
-    page.section("How far");
-    if (!diagnosis.gap_reduction) page.paragraph(verdict_lines(diagnosis)[3].says);
-    for (const auto& chart : how_far_charts(diagnosis)) page.chart(chart);
-    page.table("Before and after", table_of_gap_reduction(diagnosis));
+void add_charts(Page& page, const std::vector<Chart>& charts, std::initializer_list<std::string_view> names) {
+    for (const auto& chart : charts)
+        if (std::ranges::find(names, chart.name) != names.end()) page.chart(chart);
 }
 
 void add_table(Page& page, const std::string& heading, const TextTable& table) {
@@ -79,16 +73,20 @@ void add_diagnosis(Page& page, const Diagnosis& diagnosis, const std::string& na
     for (const auto& [about, says] : verdict_lines(diagnosis)) lines.emplace_back(about, says);
     page.definitions(lines);
     add_gap(page, diagnosis);
+    const auto charts = diagnosis_charts(diagnosis);
     page.section("Where");
-    add_chart(page, where_chart(diagnosis));
+    add_charts(page, charts, {"where"});
     page.table("What stands out", table_of_where(diagnosis));
     page.section("Which");
-    add_chart(page, which_chart(diagnosis));
+    add_charts(page, charts, {"which"});
     page.table(diagnosis.verdict == Verdict::unknown_effect ? "What comes nearest"
                                                             : "Effects consistent with the gap",
                table_of_causes(diagnosis));
     page.table("What these data can show", table_of_detection_limits(diagnosis));
-    add_how_far(page, diagnosis);
+    page.section("How far");
+    if (!diagnosis.gap_reduction) page.paragraph(verdict_lines(diagnosis)[3].says);
+    add_charts(page, charts, {"how_far", "gap_left"});
+    page.table("Before and after", table_of_gap_reduction(diagnosis));
     std::vector<std::string> steps;
     for (const auto& step : diagnosis.next) steps.push_back(next_words(step));
     add_list(page, "What to do next", steps);

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "report/diagnosis/diagnosis_parts.h"
+#include "report/diagnosis/diagnosis_values.h"
 #include "report/diagnosis/diagnosis_words.h"
 #include "report/page/labels.h"
 

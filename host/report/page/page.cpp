@@ -6,14 +6,46 @@
 #include <algorithm>
 
 #include "core/output_file.h"
+#include "core/replaced.h"
 #include "core/sha256.h"
-#include "report/page/html.h"
 #include "report/page/labels.h"
 #include "report/page/page_parts.h"
 #include "report/page/plotting_library.h"
 
 namespace mcdem::inline report {
 namespace {
+
+/// Shown as it stands, on one line.
+std::string html_text(const std::string& text) {
+    return replaced(one_line(text),
+                    {{'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}, {'\'', "&#39;"}});
+}
+
+std::string html_table(const TextTable& table) {
+    if (table.rows.empty()) return "";
+    const auto cell = [&](const char* tag, std::size_t column, const std::string& text) {
+        const auto left = table.columns[column].align == Align::left ? " class=\"left\"" : "";
+        return fmt::format("<{0}{1}>{2}</{0}>", tag, left, html_text(text));
+    };
+    std::string html = "<div class=\"wide\"><table>\n<thead><tr>";
+    for (std::size_t c = 0; c < table.columns.size(); ++c) html += cell("th", c, table.columns[c].title);
+    html += "</tr></thead>\n<tbody>\n";
+    for (const auto& row : table.rows) {
+        html += "<tr>";
+        for (std::size_t c = 0; c < row.size(); ++c) html += cell("td", c, row[c]);
+        html += "</tr>\n";
+    }
+    html += "</tbody></table></div>\n";
+    for (const auto& note : table.notes) html += "<p class=\"note\">" + html_text(note) + "</p>\n";
+    return html;
+}
+
+std::string html_list(const std::vector<std::string>& texts) {
+    if (texts.empty()) return "";
+    std::string html = "<ul>\n";
+    for (const auto& text : texts) html += "<li>" + html_text(text) + "</li>\n";
+    return html + "</ul>\n";
+}
 
 std::string base64(std::string_view bytes) {
     std::string text(4 * ((bytes.size() + 2) / 3) + 1, '\0');  // and the library's closing zero
@@ -35,21 +67,8 @@ std::string script_hash(const std::string& script) {
 
 /// JSON in which nothing can end the enclosing element.
 std::string json_for_page(const Json& json) {
-    std::string safe;
-    for (const char c : json.dump(-1, ' ', false, Json::error_handler_t::replace)) switch (c) {
-            case '<':
-                safe += "\\u003c";
-                break;
-            case '>':
-                safe += "\\u003e";
-                break;
-            case '&':
-                safe += "\\u0026";
-                break;
-            default:
-                safe += c;
-        }
-    return safe;
+    return replaced(json.dump(-1, ' ', false, Json::error_handler_t::replace),
+                    {{'<', "\\u003c"}, {'>', "\\u003e"}, {'&', "\\u0026"}});
 }
 
 /// Content security policy. Scripts: only the page's own and the one that it unpacks (plotly.js, which
@@ -62,7 +81,8 @@ std::string policy(const std::string& script) {
 
 std::string page_script() {
     std::string script;
-    for (const char* name : {"page_theme.js", "page_packing.js", "page.js"}) script += page_parts().at(name);
+    for (const char* name : {"page_theme.js", "page_charts.js", "page_packing.js", "page.js"})
+        script += page_parts().at(name);
     return "'use strict';\n" + script;
 }
 
@@ -76,13 +96,6 @@ std::string head(const std::string& title, const std::string& script) {
 }
 
 }  // namespace
-
-std::string plot_text(const std::string& text) {
-    std::string safe;
-    for (const char c : one_line(text))
-        safe += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '>' ? "&gt;" : std::string(1, c);
-    return safe;
-}
 
 void Page::lead(const std::string& kicker, const std::string& heading, const std::string& sentence) {
     body_ += "<header><p class=\"kicker\">" + html_text(kicker) + "</p>\n<h1>" + html_text(heading) +
@@ -132,8 +145,8 @@ std::string Page::new_id(const std::string& name) {
 void Page::chart(const Chart& chart) {
     const auto id = new_id(chart.name);
     charts_.push_back({{"id", id},
-                       {"data", chart.data},
-                       {"layout", chart.layout},
+                       {"kind", chart.name},
+                       {"values", chart.values},
                        {"log", chart.log_axes},
                        {"height", chart.height}});
     body_ += "<figure><div class=\"bar\"><h3>" + html_text(chart.title) + "</h3>";

@@ -11,16 +11,12 @@ namespace mcdem::inline report {
 
 using Json = nlohmann::ordered_json;
 
-/// Escapes a text for places in which plotly.js interprets tags and entities.
-std::string plot_text(const std::string& text);
-
-/// A chart for plotly.js. Colours may be variables of the page, "var(--ink)"; page.js replaces them.
+/// A chart, which page_charts.js draws with plotly.js.
 struct Chart {
-    std::string name;     ///< one word: top_force
-    std::string title;    ///< above it
-    std::string caption;  ///< below it
-    Json data = Json::array();
-    Json layout = Json::object();
+    std::string name;           ///< one word: top_force
+    std::string title;          ///< above it
+    std::string caption;        ///< below it
+    Json values = {};           ///< as in figures.json
     std::string log_axes = "";  ///< axes with a button for a logarithmic scale: "y", "xy", or none
     int height = 440;           ///< [pixels]
     int min_width = 0;          ///< narrower screens scroll [pixels]

@@ -87,6 +87,7 @@ function addPrinting(charts, packings, drawAll) {
 
 async function showPage() {
   const content = JSON.parse(document.getElementById('content').textContent);
+  for (const chart of content.charts) Object.assign(chart, chartOf(chart));
   (0, eval)(await unpackedLibrary());
   const packings = content.packings.map(({id, view}) => new PackingView(id, view));
   const drawAll = () => Promise.all([...content.charts.map(chart => drawChart(chart)),

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "report/diagnosis/diagnosis_words.h"
 #include "report/page/series_style.h"

@@ -133,9 +133,4 @@ std::vector<RunFigure> programme_figures(const Cast& cast) {
     return figures;
 }
 
-std::string unit_of(const std::string& label) {
-    const auto open = label.rfind('['), close = label.rfind(']');
-    return open == std::string::npos ? "" : label.substr(open + 1, close - open - 1);
-}
-
 }  // namespace mcdem::report

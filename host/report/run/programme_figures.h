@@ -9,7 +9,4 @@ namespace mcdem::inline report {
 /// for cells that are distorted.
 std::vector<RunFigure> programme_figures(const Cast& cast);
 
-/// "kPa" of "pressure p [kPa]".
-std::string unit_of(const std::string& label);
-
 }  // namespace mcdem::report
