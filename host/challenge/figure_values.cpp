@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <boost/math/distributions/normal.hpp>
 #include <cmath>
+#include <set>
 
+#include "report/diagnosis/diagnosis_json.h"
 #include "report/diagnosis/diagnosis_words.h"
 
 namespace mcdem::inline challenge {
@@ -14,6 +16,47 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr double normal_quantile_975 = 1.959964;
+constexpr double power_at_limit = 0.8;  ///< fraction of the cases at the detection limit that are detected
+const std::string two_effects = "two effects";
+
+/// The right verdict.
+std::string row_of(const ChallengeCase& truth) {
+    switch (truth.kind) {
+        case CaseKind::none:
+            return verdict_name(Verdict::no_gap);
+        case CaseKind::effect:
+            return truth.effects.front().name;
+        case CaseKind::pair:
+            return two_effects;
+        case CaseKind::unknown:
+            return verdict_name(Verdict::unknown_effect);
+        case CaseKind::outside_prior:
+            break;
+    }
+    return verdict_name(Verdict::calibration_suspect);
+}
+
+std::string column_of(const Answer& answer) {
+    if (!answer.names()) return verdict_name(answer.verdict);
+    return answer.verdict == Verdict::effect && answer.group.size() == 2 ? two_effects : answer.group.front();
+}
+
+/// No gap, effects, two of them, unknown, calibration.
+std::vector<std::string> in_order(std::set<std::string> names) {
+    std::vector<std::string> list, last;
+    if (names.erase(verdict_name(Verdict::no_gap))) list.push_back(verdict_name(Verdict::no_gap));
+    for (const std::string& name :
+         {two_effects, verdict_name(Verdict::unknown_effect), verdict_name(Verdict::not_converged),
+          verdict_name(Verdict::calibration_suspect)})
+        if (names.erase(name)) last.push_back(name);
+    list.insert(list.end(), names.begin(), names.end());
+    list.insert(list.end(), last.begin(), last.end());
+    return list;
+}
+
+std::size_t place_in(const std::vector<std::string>& list, const std::string& name) {
+    return static_cast<std::size_t>(std::ranges::find(list, name) - list.begin());
+}
 
 Json names_json(const std::vector<std::string>& names) {
     Json words = Json::array();
@@ -21,12 +64,86 @@ Json names_json(const std::vector<std::string>& names) {
     return words;
 }
 
-/// Appends a proportion with its interval.
-void add_proportion(Json& points, double x, int successes, int trials) {
-    points["x"].push_back(x);
-    points["part"].push_back(double(successes) / trials);
-    points["interval"].push_back(wilson_interval(successes, trials));
-    points["cases"].push_back(trials);
+/// Number of cases by truth and verdict.
+Json confusion_values(const std::vector<ScoredCase>& cases) {
+    std::set<std::string> rows, columns;
+    for (const ScoredCase& c : cases) {
+        rows.insert(row_of(*c.truth));
+        columns.insert(column_of(c.answer));
+    }
+    const auto truths = in_order(rows), verdicts = in_order(columns);
+    std::vector<std::vector<int>> counts(truths.size(), std::vector<int>(verdicts.size(), 0));
+    for (const ScoredCase& c : cases)
+        ++counts[place_in(truths, row_of(*c.truth))][place_in(verdicts, column_of(c.answer))];
+    Json right = Json::array();
+    for (std::size_t t = 0; t < truths.size(); ++t)
+        if (const auto v = place_in(verdicts, truths[t]); v < verdicts.size()) right.push_back({t, v});
+    return {{"truths", names_json(truths)},
+            {"verdicts", names_json(verdicts)},
+            {"cases", counts},
+            {"right", right}};
+}
+
+/// The part of the cases that are hits, with its interval, in bins of `x_of` a case with these upper edges.
+/// Null where none counts.
+template <class X, class Hit>
+Json measured(const std::vector<ScoredCase>& cases, std::vector<double> edges, X x_of, Hit is_hit) {
+    struct Bin {
+        double x = 0;  ///< mean
+        int hits = 0, cases = 0;
+    };
+    edges.push_back(INFINITY);
+    std::vector<Bin> bins(edges.size());
+    for (const ScoredCase& c : cases) {
+        const auto bin = std::ranges::upper_bound(edges, x_of(c)) - edges.begin();
+        Bin& b = bins[static_cast<std::size_t>(std::min<std::ptrdiff_t>(bin, std::ssize(edges) - 1))];
+        b.x += (x_of(c) - b.x) / ++b.cases;
+        b.hits += is_hit(c);
+    }
+    Json points;
+    for (const Bin& bin : bins) {
+        if (bin.cases == 0) continue;
+        points["x"].push_back(bin.x);
+        points["part"].push_back(double(bin.hits) / bin.cases);
+        points["interval"].push_back(wilson_interval(bin.hits, bin.cases));
+        points["cases"].push_back(bin.cases);
+    }
+    return points;
+}
+
+/// By amplitude over the predicted detection limit.
+Json power_values(std::vector<ScoredCase> cases, double false_alarm) {
+    std::erase_if(cases, [](const ScoredCase& c) { return !(c.over_limit > 0); });
+    Json points = measured(
+        cases, {0.35, 0.7, 1, 1.5, 3, 6, 12}, [](const ScoredCase& c) { return c.over_limit; },
+        [](const ScoredCase& c) { return c.answer.detected(); });
+    if (points.is_null()) return points;
+    const double smallest = std::min(0.5, points["x"].front().get<double>()) / 1.2;
+    const double largest = std::max(2.0, points["x"].back().get<double>()) * 1.2;
+    Json json{{"x_label", "amplitude / predicted detection limit"},
+              {"y_label", "part that is detected"},
+              {"measured", points}};
+    for (int i = 0; i <= 100; ++i) {
+        const double x = smallest * std::pow(largest / smallest, i / 100.0);
+        json["predicted"]["x"].push_back(x);
+        json["predicted"]["part"].push_back(ideal_power(false_alarm, x));
+    }
+    json["words_predicted"] = fmt::format("as predicted: {:.2g} without an effect, {:.2g} at the limit",
+                                          false_alarm, power_at_limit);
+    return json;
+}
+
+/// By the probability that the verdict states.
+Json confidence_values(std::vector<ScoredCase> cases) {
+    std::erase_if(cases, [](const ScoredCase& c) { return !c.answer.names(); });
+    Json points = measured(
+        cases, {0.4, 0.6, 0.8, 0.95}, [](const ScoredCase& c) { return c.answer.confidence; }, leads_rightly);
+    if (points.is_null()) return points;
+    return {{"x_label", "probability stated"},
+            {"y_label", "part that is right"},
+            {"measured", points},
+            {"predicted", {{"x", {0, 1}}, {"part", {0, 1}}}},
+            {"words_predicted", "as stated"}};
 }
 
 }  // namespace
@@ -40,52 +157,23 @@ std::array<double, 2> wilson_interval(int successes, int trials) {
     return {std::max(0.0, middle - half), std::min(1.0, middle + half)};
 }
 
-double ideal_power(const PowerCurve& curve, double over_limit) {
+double ideal_power(double false_alarm, double over_limit) {
     const boost::math::normal normal;
-    const double threshold = boost::math::quantile(normal, 1 - curve.false_alarm / 2);  // two-sided
-    const double at_limit = threshold + boost::math::quantile(normal, curve.power_at_limit);
+    const double threshold = boost::math::quantile(normal, 1 - false_alarm / 2);  // two-sided
+    const double at_limit = threshold + boost::math::quantile(normal, power_at_limit);
     const double mean = over_limit * at_limit;
     return boost::math::cdf(normal, mean - threshold) + boost::math::cdf(normal, -mean - threshold);
 }
 
-Json confusion_values(const ConfusionMatrix& matrix) {
-    Json right = Json::array();
-    for (std::size_t t = 0; t < matrix.truths.size(); ++t)
-        for (std::size_t v = 0; v < matrix.verdicts.size(); ++v)
-            if (matrix.truths[t] == matrix.verdicts[v]) right.push_back({t, v});
-    return {{"truths", names_json(matrix.truths)},
-            {"verdicts", names_json(matrix.verdicts)},
-            {"cases", matrix.counts},
-            {"right", right}};
-}
-
-Json power_values(const PowerCurve& curve) {
-    Json json{{"x_label", "amplitude / predicted detection limit"}, {"y_label", "part that is detected"}};
-    double smallest = 0.5, largest = 2;
-    for (const auto& point : curve.points) {
-        if (point.cases <= 0) continue;
-        add_proportion(json["measured"], point.over_limit, point.detected, point.cases);
-        smallest = std::min(smallest, point.over_limit);
-        largest = std::max(largest, point.over_limit);
-    }
-    smallest /= 1.2, largest *= 1.2;
-    for (int i = 0; i <= 100; ++i) {
-        const double x = smallest * std::pow(largest / smallest, i / 100.0);
-        json["predicted"]["x"].push_back(x);
-        json["predicted"]["part"].push_back(ideal_power(curve, x));
-    }
-    json["words_predicted"] = fmt::format("as predicted: {:.2g} without an effect, {:.2g} at the limit",
-                                          curve.false_alarm, curve.power_at_limit);
-    return json;
-}
-
-Json confidence_values(const std::vector<ConfidenceBin>& bins) {
-    Json json{{"x_label", "probability stated"}, {"y_label", "part that is right"}};
-    for (const auto& bin : bins)
-        if (bin.cases > 0) add_proportion(json["measured"], bin.stated, bin.right, bin.cases);
-    json["predicted"] = {{"x", {0, 1}}, {"part", {0, 1}}};
-    json["words_predicted"] = "as stated";
-    return json;
+Json score_figure_values(const ChallengeScore& score) {
+    Json values = Json::object();
+    if (!score.scored.empty()) values["confusion"] = confusion_values(score.scored);
+    if (const Json power = power_values(score.scored, score.arms.front().limits.false_alarm);
+        !power.is_null())
+        values["power"] = power;
+    if (const Json confidence = confidence_values(score.scored); !confidence.is_null())
+        values["confidence"] = confidence;
+    return values;
 }
 
 }  // namespace mcdem::challenge

@@ -22,38 +22,56 @@ TEST(WilsonInterval, is_that_of_newcombe_1998) {
 }
 
 TEST(IdealPower, goes_through_what_was_stated) {
-    const PowerCurve curve{.points = {}, .false_alarm = 0.05, .power_at_limit = 0.8};
-    EXPECT_NEAR(ideal_power(curve, 0), 0.05, 1e-12);
-    EXPECT_NEAR(ideal_power(curve, 1), 0.8, 1e-5);  // the other sign adds 1e-6
+    EXPECT_NEAR(ideal_power(0.05, 0), 0.05, 1e-12);
+    EXPECT_NEAR(ideal_power(0.05, 1), 0.8, 1e-5);  // the other sign adds 1e-6
     // half of the cases at 1.96 sigma, the limit being 1.960 + 0.8416 sigma
-    EXPECT_NEAR(ideal_power(curve, 1.95996 / (1.95996 + 0.84162)), 0.5, 1e-4);
-    EXPECT_GT(ideal_power(curve, 2), 0.999);
+    EXPECT_NEAR(ideal_power(0.05, 1.95996 / (1.95996 + 0.84162)), 0.5, 1e-4);
+    EXPECT_GT(ideal_power(0.05, 2), 0.999);
 }
 
-TEST(ConfusionValues, count_cases_and_mark_right_answers) {
-    const auto values = confusion_values(
-        {{"no_gap", "adhesion"}, {"no_gap", "adhesion", "unknown_effect"}, {{9, 1, 0}, {2, 3, 5}}});
+const ChallengeCase no_effect{}, adhesion{.kind = CaseKind::effect, .effects = {{"adhesion", 1e-3}}};
+const Answer nothing{}, right{Verdict::effect, {"adhesion"}, 0.9}, unknown{Verdict::unknown_effect, {}, 0};
+
+/// The figures of so many cases of each kind.
+nlohmann::ordered_json figures_of(const std::vector<std::pair<int, ScoredCase>>& cases) {
+    ChallengeScore score;
+    score.arms.push_back({"whole", "", true, {.false_alarm = 0.05}, {}, {}});
+    for (const auto& [count, one] : cases) score.scored.insert(score.scored.end(), count, one);
+    return score_figure_values(score);
+}
+
+TEST(ScoreFigures, count_cases_and_mark_right_answers) {
+    const auto values = figures_of({{9, {&no_effect, nothing}},
+                                    {1, {&no_effect, right}},
+                                    {2, {&adhesion, nothing}},
+                                    {3, {&adhesion, right}},
+                                    {5, {&adhesion, unknown}}})["confusion"];
     EXPECT_EQ(values["truths"], (nlohmann::json{"no gap", "adhesion"}));
-    EXPECT_EQ(values["cases"][1][2], 5);
+    EXPECT_EQ(values["verdicts"], (nlohmann::json{"no gap", "adhesion", "unknown effect"}));
+    EXPECT_EQ(values["cases"], (nlohmann::json{{9, 1, 0}, {2, 3, 5}}));
     EXPECT_EQ(values["right"], (nlohmann::json{{0, 0}, {1, 1}}));
 }
 
-TEST(PowerValues, are_parts_with_intervals_and_leave_out_empty_points) {
-    const PowerCurve curve{.points = {{0.5, 0, 20}, {1, 0, 0}, {2, 20, 20}}};
-    const auto values = power_values(curve);
+TEST(ScoreFigures, power_is_parts_with_intervals_and_leaves_out_empty_bins) {
+    const auto values = figures_of({{20, {&adhesion, nothing, 0.5}}, {20, {&adhesion, right, 2}}})["power"];
     EXPECT_EQ(values["measured"]["x"], (nlohmann::json{0.5, 2.0}));
     EXPECT_EQ(values["measured"]["part"], (nlohmann::json{0.0, 1.0}));
     EXPECT_NEAR(values["measured"]["interval"][0][1].get<double>(), 0.161, 5e-4);
     EXPECT_EQ(values["measured"]["cases"], (nlohmann::json{20, 20}));
     EXPECT_DOUBLE_EQ(values["predicted"]["part"][50].get<double>(),
-                     ideal_power(curve, values["predicted"]["x"][50].get<double>()));
+                     ideal_power(0.05, values["predicted"]["x"][50].get<double>()));
 }
 
-TEST(ConfidenceValues, are_parts_over_what_was_stated) {
-    const auto values = confidence_values({{0.9, 15, 20}, {0.3, 0, 0}});
+TEST(ScoreFigures, confidence_is_parts_over_what_was_stated) {
+    const auto values = figures_of({{15, {&adhesion, right}}, {5, {&no_effect, right}}})["confidence"];
     EXPECT_EQ(values["measured"]["x"], (nlohmann::json{0.9}));
     EXPECT_EQ(values["measured"]["part"], (nlohmann::json{0.75}));
     EXPECT_NEAR(values["measured"]["interval"][0][0].get<double>(), 0.531, 5e-4);
+}
+
+TEST(ScoreFigures, are_those_that_there_are) {
+    EXPECT_TRUE(figures_of({}).empty());
+    EXPECT_EQ(figures_of({{1, {&no_effect, nothing}}}).size(), 1u);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // mcdem challenge score
-#include "challenge/score.h"
+#include "challenge/figure_values.h"
 #include "challenge/truth.h"
 #include "cli/challenge/challenge.h"
 #include "cli/challenge/challenge_tables.h"

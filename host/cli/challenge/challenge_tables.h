@@ -1,8 +1,5 @@
-// The score of a challenge as tables, JSON and figures.
+// The score of a challenge as tables and JSON.
 #pragma once
-#include <nlohmann/json.hpp>
-#include <vector>
-
 #include "challenge/score.h"
 #include "report/page/text_table.h"
 
@@ -23,8 +20,5 @@ TextTable table_of_limits(const ChallengeScore& score);
 std::string score_markdown(const ChallengeScore& score);
 /// The complete score as JSON.
 std::string score_json(const ChallengeScore& score);
-
-/// Values of the available figures (report/run/figure_values.h).
-nlohmann::ordered_json score_figure_values(const ChallengeScore& score);
 
 }  // namespace mcdem::cli
