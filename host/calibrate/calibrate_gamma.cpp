@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "calibrate/local_fit.h"
 #include "core/errors.h"

@@ -1,7 +1,5 @@
 #include "challenge/score.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <mutex>

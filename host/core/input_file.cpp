@@ -77,6 +77,4 @@ std::string read_file(const std::filesystem::path& file, std::string_view if_mis
     return read_file(file);
 }
 
-void expect_input(const std::filesystem::path& file) { const Descriptor in{open_input(file)}; }
-
 }  // namespace mcdem::core

@@ -21,9 +21,6 @@ std::string read_file(const std::filesystem::path& file);
 /// The same; if the file does not exist, the message of the InputError is `if_missing`.
 std::string read_file(const std::filesystem::path& file, std::string_view if_missing);
 
-/// Throws like open_input; does not read the file.
-void expect_input(const std::filesystem::path& file);
-
 /// Throws RunError: the system refused `what` with this errno. This says nothing about the file's content.
 [[noreturn]] void fail_reading(const std::string& what, int error);
 

@@ -2,7 +2,6 @@
 // compression. For a model without gamma it finds the Young's modulus of the grains.
 #pragma once
 #include <functional>
-#include <optional>
 
 #include "calibrate/calibrate_gamma.h"
 #include "cl/device.h"

@@ -1,7 +1,6 @@
 #include "ensemble/observation_store.h"
 
 #include <algorithm>
-#include <cstdint>
 
 #include "core/atomic_file.h"
 #include "core/errors.h"

@@ -90,11 +90,10 @@ void check_balance(const Experiment& experiment, Findings& findings) {
         findings.note(contacts_file,
                       fmt::format("of the forces on a grain in the bulk, {:.2g} % do not cancel (median)",
                                   100 * median(typical)));
-    if (unbalanced.count())
-        findings.odd(contacts_file,
-                     "forces on the grains do not cancel, was the packing at rest, are contacts left "
-                     "out? Frames: " +
-                         unbalanced.text());
+    findings.odd(
+        contacts_file,
+        "forces on the grains do not cancel, was the packing at rest, are contacts left out? Frames: ",
+        unbalanced);
 }
 
 }  // namespace mcdem::experiment

@@ -57,12 +57,10 @@ void check_places(const Recording& recording, Findings& findings) {
                 });
         }
     }
-    if (distant.count())
-        findings.odd(contacts_file,
-                     "contacts of grains that do not touch, are grains and frames numbered as in "
-                     "grains.csv? " +
-                         distant.text());
-    if (off.count()) findings.odd(contacts_file, "contact points away from their grain: " + off.text());
+    findings.odd(contacts_file,
+                 "contacts of grains that do not touch, are grains and frames numbered as in grains.csv? ",
+                 distant);
+    findings.odd(contacts_file, "contact points away from their grain: ", off);
 }
 
 /// Direction in which a contact repels its grain.
@@ -105,9 +103,9 @@ void check_threshold(const Recording& recording, double force_threshold, Finding
                     return fmt::format("{}, {:.3g} mN", names(recording, contact), 1e3 * force);
                 });
         }
-    if (below.count())
-        findings.odd(contacts_file, fmt::format("forces below the stated threshold of {:.3g} mN: {}",
-                                                1e3 * force_threshold, below.text()));
+    findings.odd(contacts_file,
+                 fmt::format("forces below the stated threshold of {:.3g} mN: ", 1e3 * force_threshold),
+                 below);
     if (force_threshold > 0 && all >= many_contacts && weakest > gap_in_forces * force_threshold)
         findings.odd(contacts_file,
                      fmt::format("of {} contacts the weakest has {:.3g} mN: the threshold is higher "

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <map>
-#include <numbers>
 #include <set>
 
 #include "core/container.h"

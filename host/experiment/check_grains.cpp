@@ -47,8 +47,7 @@ void check_walls(const Recording& recording, Findings& findings) {
                                            wall_name(recording.box, wall));
                     });
             }
-    if (tally.count())
-        findings.odd(grains_file, "grains reach into a wall by more than half their radius: " + tally.text());
+    findings.odd(grains_file, "grains reach into a wall by more than half their radius: ", tally);
 }
 
 void check_overlaps(const Recording& recording, Findings& findings) {
@@ -68,9 +67,8 @@ void check_overlaps(const Recording& recording, Findings& findings) {
                 });
         });
     }
-    if (tally.count())
-        findings.odd(grains_file, fmt::format("grains overlap by more than {} of their radii together: {}",
-                                              max_overlap, tally.text()));
+    findings.odd(grains_file,
+                 fmt::format("grains overlap by more than {} of their radii together: ", max_overlap), tally);
 }
 
 /// Loose grains move by up to half a diameter; a move to a neighbour's position indicates exchanged numbers.
@@ -88,11 +86,8 @@ void check_jumps(const Recording& recording, Findings& findings) {
         }
         before = &scan;
     }
-    if (tally.count())
-        findings.odd(grains_file,
-                     "grains jump by most of a diameter from frame to frame, are they numbered "
-                     "alike? " +
-                         tally.text());
+    findings.odd(grains_file,
+                 "grains jump by most of a diameter from frame to frame, are they numbered alike? ", tally);
 }
 
 }  // namespace

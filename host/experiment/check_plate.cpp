@@ -44,10 +44,9 @@ void check_course(const Recording& recording, Findings& findings) {
                                    name(scan.phase));
             });
     }
-    if (wrong_way.count()) findings.odd(plate_file, "the plate goes against its phase: " + wrong_way.text());
-    if (unload_first.count())
-        findings.odd(plate_file, "a cycle is one loading and then one unloading: " + unload_first.text());
-    if (left_out.count()) findings.odd(plate_file, "cycles are left out: " + left_out.text());
+    findings.odd(plate_file, "the plate goes against its phase: ", wrong_way);
+    findings.odd(plate_file, "a cycle is one loading and then one unloading: ", unload_first);
+    findings.odd(plate_file, "cycles are left out: ", left_out);
 }
 
 void check_start(const Recording& recording, Findings& findings) {
@@ -77,9 +76,7 @@ void check_gauge(const Experiment& experiment, Findings& findings) {
         largest = std::max(largest, scan.top_force());
         last = scan.top_force();
     }
-    if (pulls.count())
-        findings.odd(plate_file,
-                     "the top force is negative, though the grains press the plate up: " + pulls.text());
+    findings.odd(plate_file, "the top force is negative, though the grains press the plate up: ", pulls);
     if (last < falls * largest && largest > clear_load * experiment.measurement.force_threshold)
         findings.odd(
             plate_file,

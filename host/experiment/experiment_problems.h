@@ -14,7 +14,6 @@ public:
     void add_once(const std::string& topic, const std::string& where, const std::string& what);
     /// True at the maximum; further problems are only counted.
     bool full() const;
-    bool was_told(const std::string& topic) const { return told_.contains(topic); }
     bool empty() const { return count_ == 0; }
     long count() const { return count_; }
     /// All problems, and the number of further ones.

@@ -7,20 +7,6 @@
 
 namespace mcdem::inline experiment {
 
-class Findings {
-public:
-    void note(const std::string& about, const std::string& text) { add(Severity::note, about, text); }
-    void missing(const std::string& about, const std::string& text) { add(Severity::missing, about, text); }
-    void odd(const std::string& about, const std::string& text) { add(Severity::odd, about, text); }
-    const std::vector<Finding>& all() const { return all_; }
-
-private:
-    void add(Severity severity, const std::string& about, const std::string& text) {
-        all_.push_back({severity, about, text});
-    }
-    std::vector<Finding> all_;
-};
-
 /// Counts findings of one kind over the frames and keeps an example.
 class Tally {
 public:
@@ -34,6 +20,24 @@ private:
     long count_ = 0, frames_ = 0;
     int first_ = -1, last_ = -1;
     std::string example_;
+};
+
+class Findings {
+public:
+    void note(const std::string& about, const std::string& text) { add(Severity::note, about, text); }
+    void missing(const std::string& about, const std::string& text) { add(Severity::missing, about, text); }
+    void odd(const std::string& about, const std::string& text) { add(Severity::odd, about, text); }
+    /// The text and what was found, where anything was.
+    void odd(const std::string& about, const std::string& text, const Tally& tally) {
+        if (tally.count()) odd(about, text + tally.text());
+    }
+    const std::vector<Finding>& all() const { return all_; }
+
+private:
+    void add(Severity severity, const std::string& about, const std::string& text) {
+        all_.push_back({severity, about, text});
+    }
+    std::vector<Finding> all_;
 };
 
 inline constexpr auto settings_file = "experiment.toml";

@@ -7,7 +7,6 @@
 #include <limits>
 #include <map>
 #include <set>
-#include <span>
 #include <sstream>
 
 #include "core/container.h"

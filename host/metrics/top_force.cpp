@@ -1,7 +1,5 @@
 #include "metrics/top_force.h"
 
-#include <algorithm>
-
 namespace mcdem::inline metrics {
 namespace {
 

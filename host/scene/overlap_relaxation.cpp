@@ -10,8 +10,6 @@
 namespace mcdem::inline scene {
 namespace {
 
-double largest(const std::vector<double>& values) { return *std::max_element(values.begin(), values.end()); }
-
 /// FIRE (Bitzek et al. 2006) with its published constants. Stiffness and mass are 1, which defines the unit
 /// of time; 0.4 is below the stability limit of a grain with a dozen contacts.
 struct Fire {
@@ -39,25 +37,6 @@ struct Fire {
 };
 
 }  // namespace
-
-double largest_overlap(const Packing& packing, const Box& box, double height) {
-    double most = 0;
-    for (std::size_t i = 0; i < packing.size(); ++i) {
-        const double radius = packing.diameter[i] / 2;
-        for (int wall = 0; wall < wall_count; ++wall)
-            if (has_wall(box, static_cast<Wall>(wall)))
-                most = std::max(most, (radius - wall_distance(box, static_cast<Wall>(wall), height,
-                                                              packing.position[i])) /
-                                          radius);
-    }
-    const CellList cells(packing.position, box, height, largest(packing.diameter));
-    cells.for_each_pair([&](int i, int j) {
-        const double reach = (packing.diameter[i] + packing.diameter[j]) / 2;
-        const double distance = apart(box, packing.position[i], packing.position[j]).norm();
-        most = std::max(most, 2 * (reach - distance) / std::min(packing.diameter[i], packing.diameter[j]));
-    });
-    return most;
-}
 
 OverlapRelaxation::OverlapRelaxation(const Packing& packing, const Box& box, double height)
     : box_(box),
@@ -176,7 +155,7 @@ void OverlapRelaxation::find_pairs() {
     pairs_.clear();
     std::vector<Vec3> inside;
     for (const Vec3& point : position_) inside.push_back(into_cell(box_, point));
-    const CellList cells(inside, box_, height_, 2 * largest(radius_) + margin_);
+    const CellList cells(inside, box_, height_, 2 * std::ranges::max(radius_) + margin_);
     cells.for_each_pair([&](int i, int j) {
         const double reach = radius_[i] + radius_[j] + margin_;
         if (core::apart(box_, position_[i], position_[j]).squaredNorm() < reach * reach)

@@ -7,9 +7,6 @@
 
 namespace mcdem::inline scene {
 
-/// Largest overlap of any two grains, or of a grain with a wall, over the radius of the smaller grain.
-double largest_overlap(const Packing& packing, const Box& box, double height);
-
 class OverlapRelaxation {
 public:
     /// The packing has the final diameters and the initial positions.

@@ -42,10 +42,6 @@ void FileProblems::add(const std::string& what) {
     if (!full()) problems_.push_back(fmt::format("{}: {}", source_, what));
 }
 
-void FileProblems::add_at(const std::string& where, const std::string& what) {
-    if (!full()) problems_.push_back(where + ": " + what);
-}
-
 bool FileProblems::full() const { return problems_.size() >= max_problems; }
 
 void FileProblems::report() const {

@@ -22,8 +22,6 @@ public:
     explicit FileProblems(std::string source) : source_(std::move(source)) {}
     void add(long line, const std::string& what);
     void add(const std::string& what);
-    /// `where` is "file:line".
-    void add_at(const std::string& where, const std::string& what);
     bool full() const;
     bool empty() const { return problems_.empty(); }
     /// Throws InputError if there are problems.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <numeric>
-#include <sstream>
 
 #include "scene/packing_fields.h"
 #include "scene/read_packing.h"

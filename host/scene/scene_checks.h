@@ -1,10 +1,8 @@
 // Checks that involve several keys.
 #pragma once
 #include <map>
-#include <optional>
 #include <set>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "scene/keys.h"

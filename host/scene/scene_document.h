@@ -3,7 +3,6 @@
 #include <toml++/toml.h>
 
 #include <deque>
-#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>

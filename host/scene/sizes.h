@@ -1,7 +1,5 @@
 // Size distributions of species.
 #pragma once
-#include <map>
-#include <memory>
 #include <string>
 #include <vector>
 

@@ -1,9 +1,9 @@
 // Cells: their keys, what is wrong with them, their packings, and the path of their programme.
 #include "core/container.h"
 #include "core/errors.h"
+#include "largest_overlap.h"
 #include "scene/cell_path.h"
 #include "scene/make_packing.h"
-#include "scene/overlap_relaxation.h"
 #include "scene/read_scene.h"
 #include "scene_test_tools.h"
 

@@ -1,8 +1,8 @@
 // Cylinders and periodic cells: their keys, what is wrong with them, and packings that fill them.
 #include "core/container.h"
+#include "largest_overlap.h"
 #include "scene/generate_packing.h"
 #include "scene/make_packing.h"
-#include "scene/overlap_relaxation.h"
 #include "scene/packing_state.h"
 #include "scene/read_scene.h"
 #include "scene_test_tools.h"

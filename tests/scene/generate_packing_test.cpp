@@ -7,6 +7,7 @@
 #include <set>
 #include <utility>
 
+#include "largest_overlap.h"
 #include "scene/cell_pairs.h"
 #include "scene/make_packing.h"
 #include "scene/overlap_relaxation.h"

@@ -1,8 +1,6 @@
 // mcdem devices
 #include <fmt/format.h>
 
-#include <cstdio>
-
 #include "cl/device.h"
 #include "cli/shell/commands.h"
 #include "cli/shell/standard_streams.h"

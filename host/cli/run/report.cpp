@@ -1,8 +1,6 @@
 // mcdem report
 #include <fmt/format.h>
 
-#include <iterator>
-
 #include "cli/run/figures.h"
 #include "cli/run/report_sources.h"
 #include "cli/run/results.h"

@@ -1,7 +1,5 @@
 #include "cli/run/results.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
 #include "core/errors.h"

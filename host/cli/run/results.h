@@ -1,7 +1,6 @@
 // Loads runs and experiments for comparisons.
 #pragma once
 #include <CLI/CLI.hpp>
-#include <optional>
 #include <string>
 #include <vector>
 

@@ -1,6 +1,5 @@
 #include "diagnose/decide/decision.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace mcdem::inline diagnose {

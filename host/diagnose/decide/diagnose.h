@@ -1,7 +1,6 @@
 // From evidence to diagnosis: detection limits, existence and location of the gap, effects, and gap
 // reduction.
 #pragma once
-#include <memory>
 
 #include "diagnose/decide/decision.h"
 #include "diagnose/infer/gap_reduction.h"
