@@ -26,6 +26,10 @@ def main():
     assert run(PASSED) == (0, "")
     gtest = skipped("precise", "[ RUN ] precise\nstep_test.cpp:77: Skipped\nthe device has no double precision\n\n[ SKIPPED ] precise")
     assert run(PASSED, gtest) == (0, "did not run: precise: the device has no double precision\n")
+    suite = ('<testcase name="sim.Cell" status="run"><system-out>[ RUN      ] Cell.One\n[       OK ] Cell.One (3 ms)\n'
+             "[ RUN      ] Cell.Two\n/cell_test.cpp:9: Skipped\nthe tables are not here\n\n[  SKIPPED ] Cell.Two (0 ms)\n"
+             "[  SKIPPED ] 1 test, listed below:\n[  SKIPPED ] Cell.Two</system-out></testcase>")
+    assert run(PASSED, suite) == (1, "did not run: Cell.Two: the tables are not here\n")
     assert run(skipped("fast", "needs a GPU"))[0] == 0
     code, said = run(gtest, skipped("slurm", "starting\nslurmctld is not installed"))
     assert code == 1 and said.splitlines()[1] == "did not run: slurm: slurmctld is not installed", said

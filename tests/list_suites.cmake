@@ -1,0 +1,13 @@
+# cmake -DPROGRAM=.. -DNAME=.. -DLIST=.. -P list_suites.cmake: writes the tests of a test program into LIST, for CTest: one a
+# suite. Its tests run in one process, which builds the kernels once and makes what the suite shares once.
+execute_process(COMMAND ${PROGRAM} --gtest_list_tests OUTPUT_VARIABLE listed COMMAND_ERROR_IS_FATAL ANY)
+string(REGEX MATCHALL "[^\n]+" lines "${listed}")
+set(tests "")
+foreach(line ${lines})
+  if(line MATCHES "^([^ ]+)\\.($| )")
+    set(suite ${CMAKE_MATCH_1})
+    string(APPEND tests "add_test([=[${NAME}.${suite}]=] [=[${PROGRAM}]=] [=[--gtest_filter=${suite}.*]=])\n"
+      "set_tests_properties([=[${NAME}.${suite}]=] PROPERTIES TIMEOUT 1800)\n")
+  endif()
+endforeach()
+file(WRITE ${LIST} "${tests}")
