@@ -55,6 +55,7 @@ std::string observation_name(const std::string& simulation, const Question& ques
                               instrument.strain_offset,
                               instrument.gauge_drift,
                               instrument.zero_drift,
+                              instrument.gauge_hysteresis,
                               instrument.force_saturation,
                               m.youngs_modulus,
                               m.poisson_ratio,

@@ -38,7 +38,7 @@ public:
         scan.plate_z = truth.plate_z + instrument_.strain_offset;
         scan.wall_force[static_cast<std::size_t>(Wall::plate)].z() =
             (1 + instrument_.gauge_drift * path) * truth.top_force() +
-            instrument_.zero_drift * path * highest_;
+            instrument_.zero_drift * path * highest_ + hysteresis(truth);
         const auto shift = shifts(frame);
         scan.position.reserve(truth.position.size());
         for (std::size_t i = 0; i < truth.position.size(); ++i)
@@ -49,6 +49,12 @@ public:
     }
 
 private:
+    double hysteresis(const Scan& truth) const {
+        if (truth.phase != Phase::unload || !(highest_ > 0)) return 0;
+        const double force = truth.top_force();
+        return 4 * instrument_.gauge_hysteresis * force * (1 - force / highest_);
+    }
+
     /// Errors of the grains' centres in this frame [m].
     std::vector<Vec3> shifts(std::size_t frame) const {
         std::vector<Vec3> shift(grains_, Vec3::Zero());

@@ -17,6 +17,8 @@ struct Instrument {
     double gauge_drift = 0;       ///< after the last cycle the top force is read (1 + gauge_drift) times too
                                   ///< large; it grows with the plate's path
     double zero_drift = 0;        ///< .. and larger by zero_drift of the highest, whatever it is; grows alike
+    double gauge_hysteresis = 0;  ///< on the way up the top force F is read larger by 4 gauge_hysteresis
+                                  ///< F (1 - F/F_max), F_max the highest: by gauge_hysteresis F_max at most
     double force_saturation = 0;  ///< a contact force f is read as f/(1 + force_saturation f) [1/N]
 };
 

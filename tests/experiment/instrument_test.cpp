@@ -254,6 +254,20 @@ TEST(measured, zero_drifts_by_a_part_of_the_highest_force) {
         EXPECT_DOUBLE_EQ(seen.scans[s].top_force(), force[s] - 0.03 * 2 * path[s] / 0.06);
 }
 
+TEST(measured, a_gauge_with_hysteresis_reads_another_force_on_the_way_up) {
+    Recording real = truth();
+    real.scans.resize(6, real.scans.back());
+    const double force[] = {0, 1, 4, 2, 1, 0}, read[] = {0, 1, 4, 2.4, 1.3, 0};
+    for (int s = 0; s < 6; ++s) {
+        real.scans[s].phase = s < 3 ? Phase::load : Phase::unload;
+        real.scans[s].wall_force[static_cast<std::size_t>(Wall::plate)].z() = force[s];
+    }
+    Instrument instrument;
+    instrument.gauge_hysteresis = 0.1;
+    const Recording seen = measured(real, instrument, 1);
+    for (int s = 0; s < 6; ++s) EXPECT_DOUBLE_EQ(seen.scans[s].top_force(), read[s]) << s;
+}
+
 TEST(measured, strong_contact_forces_saturate) {
     const Recording real = truth();
     Instrument saturating;

@@ -60,7 +60,7 @@ def test_readings():
     assert math.isclose(read("barrel", 0.1)[0]["grains"][0][1], edge)
     assert all(map(math.isclose, tops(read("late_force", 0.5)), [0, 1, 4, 3.5]))
     assert all(map(math.isclose, tops(read("gauge_drift", 0.3)), [0, 2.2, 7.2, 1.3]))
-    assert all(map(math.isclose, tops(read("gauge_hysteresis", 0.6)), [0, 2, 6, 1.5]))
+    assert all(map(math.isclose, tops(read("gauge_hysteresis", 0.15)), [0, 2, 6, 1.5]))
     assert all(map(math.isclose, tops(read("zero_drift", 0.1)), [0, 2.2, 6.4, 1.6]))
     assert all(map(math.isclose, [scan["height"] for scan in read("backlash", 1e-3)], [0.12, 0.11, 0.10, 0.111]))
     assert math.isclose(read("plate_compliance", 1e-3)[2]["height"], 0.10 - 6e-3)

@@ -158,12 +158,12 @@ def late_force(scans, amplitude, chance):
 
 
 def gauge_hysteresis(scans, amplitude, chance):
-    """On the way back the gauge reads too much: nothing where it turns and at no force, a quarter of this part of the highest
-    force between."""
+    """On the way back the gauge reads too much: nothing where it turns and at no force, this part of the highest force at half
+    of it."""
     highest = max(scan["top"] for scan in scans)
     for scan in scans:
         if scan["phase"] == "unload":
-            scan["top"] += amplitude * scan["top"] * (highest - scan["top"]) / highest
+            scan["top"] += 4 * amplitude * scan["top"] * (1 - scan["top"] / highest)
 
 
 def zero_drift(scans, amplitude, chance):
@@ -195,6 +195,7 @@ LIBRARY = {
     "gauge_drift": Hidden(0.05, 0.15, "gain of the gauge, in the end", signed=True, reading=gauge_drift),
     "force_saturation": Hidden(0.3, 2, "1/f0 of f/(1 + f/f0) [1/N]", reading=force_saturation),
     "zero_drift": Hidden(0.01, 0.05, "of the gauge, over the highest force", signed=True, reading=zero_drift),
+    "gauge_hysteresis": Hidden(0.025, 0.1, "of the gauge, over the highest force", reading=gauge_hysteresis),
     "position_bias": Hidden(0.0015, 0.0045, "lengths read too large", signed=True, reading=position_bias),
 }
 
@@ -210,7 +211,6 @@ OUTSIDE = {
     "missing_contacts": Hidden(0.08, 0.25, "part of the contacts overlooked", reading=missing_contacts),
     "dim_walls": Hidden(0.08, 0.3, "part of the forces at walls that is not seen", reading=dim_walls),
     "late_force": Hidden(0.2, 0.6, "lateness of the gauge over the time between scans", reading=late_force),
-    "gauge_hysteresis": Hidden(0.1, 0.4, "of the gauge", reading=gauge_hysteresis),
     "backlash": Hidden(4e-4, 1.5e-3, "plate read too high on the way up [m]", signed=True, reading=backlash),
 }
 

@@ -142,6 +142,8 @@ const Effect all_effects[] = {
      -0.5, 0.8, -0.1, 0.1, one, [](Model& m, double a) { m.instrument.gauge_drift += a; }, nothing},
     {"zero_drift", "relative", "top force read too large after the last cycle by this part of the highest, before in proportion to the plate's path", "measurement",
      -0.5, 0.5, -0.03, 0.03, one, [](Model& m, double a) { m.instrument.zero_drift += a; }, nothing},
+    {"gauge_hysteresis", "relative", "top force read too large while the plate goes up, at half the highest force by this part of the highest", "measurement",
+     -0.3, 0.3, -0.03, 0.03, one, [](Model& m, double a) { m.instrument.gauge_hysteresis += a; }, nothing},
     {"force_saturation", "1/N", "a in f/(1 + a f), what is read of a contact force f", "measurement",
      0, 50, 2, 6, inverse_force, [](Model& m, double a) { m.instrument.force_saturation += a; }, nothing},
     {"force_threshold", "N", "true less stated threshold of contact forces", "measurement",

@@ -29,6 +29,7 @@ const std::map<std::string, std::string>& special_words() {
         {"force_bias", "bias of contact forces"},
         {"gauge_drift", "drift of the load cell's gain"},
         {"zero_drift", "drift of the load cell's zero"},
+        {"gauge_hysteresis", "hysteresis of the load cell"},
         {"force_saturation", "saturation of contact forces"},
         {"force_threshold", "shifted force threshold"},
         {"position_bias", "bias of positions"},
@@ -90,6 +91,7 @@ const std::map<std::string, Directions>& directions() {
         {"force_bias", read},
         {"gauge_drift", read},
         {"zero_drift", read},
+        {"gauge_hysteresis", read},
         {"position_bias", read},
     };
     return all;
