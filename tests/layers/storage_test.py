@@ -18,7 +18,7 @@ except ImportError:
     sys.exit(77)
 
 MCDEM, LAYER = (pathlib.Path(word).resolve() for word in sys.argv[1:3])
-TIME_LIMIT = 120  # seconds for one command
+TIME_LIMIT = 600  # seconds for one command, which may have to compile the kernels on a busy machine
 SCENE = """name = "tiny"
 [box]
 size_x = 0.05
@@ -177,12 +177,11 @@ def what_the_system_refuses_is_told_with_its_path(place):
 
 def kernels_are_compiled_in_an_empty_environment(place):
     result = whole_run(place)
-    for extra in {}, {"PATH": os.environ["PATH"]}:
-        shutil.rmtree(place / "out")
-        done = subprocess.run([MCDEM, *RUN], cwd=place, env={"POCL_CACHE_DIR": str(place / "cache"), **extra},
-                              capture_output=True, text=True, timeout=TIME_LIMIT)
-        expect(done, 0)
-        assert (place / "out/run.h5").read_bytes() == result
+    shutil.rmtree(place / "out")
+    done = subprocess.run([MCDEM, *RUN], cwd=place, env={"POCL_CACHE_DIR": str(place / "cache")}, capture_output=True,
+                          text=True, timeout=TIME_LIMIT)
+    expect(done, 0)
+    assert (place / "out/run.h5").read_bytes() == result
 
 
 def numpy_text(kind):
