@@ -62,7 +62,7 @@ struct HeatMap {
             columns.push_back({cell.phase, cell.displacement});
         }
         std::ranges::sort(columns, earlier);
-        columns.erase(std::ranges::unique(columns, same).begin(), columns.end());
+        columns.erase(std::unique(columns.begin(), columns.end(), same), columns.end());
         for (std::size_t c = 0; c < columns.size(); ++c) {
             if (c > 0 && columns[c].phase != columns[c - 1].phase) width += phase_gap;
             columns[c].x = width + 0.5;
