@@ -90,15 +90,6 @@ INLINE bool any_lane(mask m) {
     return (two.x | two.y) != 0;
 }
 
-/* Bit n is set where lane n is. */
-INLINE uint lane_bits(mask m) {
-    const int16 powers = (int16)(1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 8192, 16384, 32768);
-    const int16 bits = convert_int16(m) & powers;
-    const int8 eight = bits.lo | bits.hi;
-    const int4 four = eight.lo | eight.hi;
-    return (uint)(four.x | four.y | four.z | four.w);
-}
-
 /* Nothing to the processor; to the compiler a value it cannot see through. LLVM else takes the vectors of a
    transposition apart into loads of single numbers, twice the instructions. */
 #if defined(__AVX__) && !MCDEM_DOUBLE

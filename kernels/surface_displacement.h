@@ -69,37 +69,19 @@ INLINE void tabulate(Contacts c, lanes3 normal, int v, EXCHANGE ContactTable* ta
     STORE_LANES(c.radius, table->radius, v);
 }
 
-/* Opens a loop over the slots k with a contact force, in order. A CPU takes them from the bits of a mask:
-   which slots touch is irregular, so a branch for every slot is often mispredicted. */
-#if LANES == 16
-INLINE ulong pressed_slots(EXCHANGE const ContactTable* table) {
-    ulong bits = 0;
-    for (int v = 0; v < VECTORS; ++v)
-        bits |= (ulong)lane_bits(AS_MASK(LOAD_LANES(table->elastic, v) > R(0))) << (16 * v);
-    return bits;
-}
-#define LOWEST_BIT(bits) popcount(((bits) & -(bits)) - 1)
-#define FOR_EACH_PRESSED(k, table)                                      \
-    for (ulong left = pressed_slots(table), k = LOWEST_BIT(left); left; \
-         left &= left - 1, k = LOWEST_BIT(left))
-#else
-#define FOR_EACH_PRESSED(k, table)  \
-    for (int k = 0; k < SLOTS; ++k) \
-        if (table->elastic[k] > R(0))
-#endif
-
 /* The sum over the contacts k of the grain, for its slots v. */
 INLINE lanes half_space_sum(Grain at, EXCHANGE const ContactTable* table, real compliance_ratio,
                             lanes3 direction, int v) {
     global const Material* restrict material = at.material;
     const lanes arm = LOAD_LANES(table->arm, v);
     lanes sum = R(0);
-    FOR_EACH_PRESSED(k, table) {
+    for (int k = 0; k < SLOTS; ++k) {
         const real force = table->elastic[k];
+        if (!(force > R(0))) continue;
         const lanes cosine =
             direction.x * table->x[k] + direction.y * table->y[k] + direction.z * table->z[k];
         const lanes term = half_space_displacement(material, cosine, arm, table->arm[k]) * force;
-        sum += WHERE(AS_MASK(SLOT_NUMBERS(v) == (int)k), R(0), term);
+        sum += WHERE(AS_MASK(SLOT_NUMBERS(v) == k), R(0), term);
     }
     return sum * (material->half_space_scale * compliance_ratio);
 }
@@ -110,13 +92,14 @@ INLINE SurfaceDisplacement sphere_sum(Grain at, EXCHANGE const ContactTable* tab
     const lanes relative = LOAD_LANES(table->radius, v) / radius;
     const lanes receiving = (R(2) / R(3)) * relative * relative;
     SurfaceDisplacement sum = {R(0), R(0)};
-    FOR_EACH_PRESSED(k, table) {
+    for (int k = 0; k < SLOTS; ++k) {
         const real force = table->elastic[k];
+        if (!(force > R(0))) continue;
         const lanes cosine =
             direction.x * table->x[k] + direction.y * table->y[k] + direction.z * table->z[k];
         const real source = table->radius[k] / radius;
         const SurfaceDisplacement b = sphere_displacement(at, cosine, receiving + R(0.4) * source * source);
-        const mask itself = AS_MASK(SLOT_NUMBERS(v) == (int)k);
+        const mask itself = AS_MASK(SLOT_NUMBERS(v) == k);
         sum.point += WHERE(itself, R(0), b.point * force);
         sum.size += WHERE(itself, R(0), b.size * force);
     }
