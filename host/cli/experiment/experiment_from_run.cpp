@@ -214,8 +214,8 @@ void add_instrument_options(CLI::App& sub, Instrument& instrument) {
         "of the last cycle, before in proportion to the plate's path",
         bias);
     add("--gauge-hysteresis", instrument.gauge_hysteresis, "PART",
-        "Not stated: while the plate goes up the top force is read too large, at half the highest force by "
-        "this part of the highest",
+        "Unstated error: while the plate goes up the top force is read too large, at half the highest force "
+        "by this fraction of the highest",
         bias);
     add("--force-saturation", instrument.force_saturation, "PER_N",
         "Unstated error: a contact force f is read as f/(1 + a f), with this a [1/N]",
