@@ -39,7 +39,7 @@ void measure(benchmark::State& state, Device& device, Kept& kept, const std::str
         const double steps = static_cast<double>(state.iterations()) * MovingPlate::round_steps;
         const double grain_steps = steps * wanted.grains * wanted.replicas;
         const double contacts = plate.coordination_number();
-        const StepCost cost = step_cost(wanted.model, wanted.friction, wanted.precision, contacts);
+        const StepCost cost = step_cost(wanted.model, wanted.friction, wanted.precision);
         const auto rate = [](double amount) {
             return benchmark::Counter(amount, benchmark::Counter::kIsRate);
         };

@@ -4,6 +4,8 @@ namespace mcdem::bench {
 namespace {
 
 constexpr double slots = 16;
+/// Slots that a CPU goes through: the most neighbours that one of 16 grains has.
+constexpr double listed = 11;
 
 // Flops. A square root, division, minimum or maximum counts as one operation; selections, comparisons and
 // conversions do not count. The sums of each header, in the order of its lines:
@@ -19,34 +21,34 @@ constexpr double saturated = 6 + inverse_root + 1 + 1 + 3;
 constexpr double mindlin = 6 + 5 + 6 + 9 + 6 + 1 + 3 + 1 + 12 + 2 + 3;
 constexpr double force_and_torque = 6 + 18;
 constexpr double checks = 2 + 1;
-constexpr double half_space_term =
-    5 + 7 + inverse_root + 6 + 3 + 3;  // cosine, distance, its inverse, u . n, bracket, times F and sum
-constexpr double sphere_term =
-    5 + 3 + inverse_root + 1 + 17 + 3;                      // cosine, s, root, s, polynomial, times F and sum
-constexpr double finite_size_term = 1 + 12 + 4;             // spread, polynomial, product
+// Of a pair of slots, both displacements:
+constexpr double half_space_pair =
+    5 + 5 + inverse_root + 6 + 3 + 1 + 4;  // cosine, distance, its inverse, u . n, bracket, times F and sum
+constexpr double sphere_pair =
+    5 + 3 + inverse_root + 1 + 17 + 1 + 4;                  // cosine, s, root, s, polynomial, times F and sum
+constexpr double finite_size_pair = 2 + 6 + 12 + 3 + 6;     // radius, spreads, polynomial, times F and sum
 constexpr double self_term = 1 + 3 * (2 + 21 + 4 + 4 + 6);  // three Newton steps
 constexpr double extrapolation = 1 + 5;
-constexpr double reductions = 7 * 15;  // per grain: seven sums over 16 lanes
 constexpr double integration = 85;     // per grain, 35 of them for the rotation
 
-double surface_term(ContactModel model) {
+double surface_pair(ContactModel model) {
     switch (model) {
         case ContactModel::independent:
             return 0;
         case ContactModel::elastic_half_space:
         case ContactModel::mc_dem:
-            return half_space_term;
+            return half_space_pair;
         case ContactModel::elastic_sphere:
         case ContactModel::hyperelastic_sphere:
-            return sphere_term + finite_size_term;
+            return sphere_pair + finite_size_pair;
         default:
-            return sphere_term;
+            return sphere_pair;
     }
 }
 
 }  // namespace
 
-StepCost step_cost(ContactModel model, FrictionLaw friction, Precision precision, double contacts) {
+StepCost step_cost(ContactModel model, FrictionLaw friction, Precision precision) {
     const double real = precision == Precision::double_precision ? 8 : 4;
     const bool bulging = model != ContactModel::independent;
     const bool springs = friction == FrictionLaw::mindlin;
@@ -65,9 +67,8 @@ StepCost step_cost(ContactModel model, FrictionLaw friction, Precision precision
     const double slot = see_neighbours + hertz + reduced + damping + own_displacement + contact_point +
                         sliding + friction_flops + force_and_torque + checks + self +
                         (bulging ? extrapolation : 0);
-    // Each touching contact displaces the surface at every slot.
-    return {reals * real + integers * 4,
-            slots * (slot + contacts * surface_term(model)) + reductions + integration};
+    const double pairs = listed * (listed - 1) / 2;
+    return {reals * real + integers * 4, listed * slot + pairs * surface_pair(model) + integration};
 }
 
 }  // namespace mcdem::bench

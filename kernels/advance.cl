@@ -1,46 +1,51 @@
 /* One time step of every grain: see the neighbours, contact forces, displace the surfaces, integrate. */
 
-/* What a row's contacts do to its grain, lane by lane. */
-typedef struct {
-    lanes3 force;
-    lanes3 torque;
-    mask too_deep, unprobed;
-} RowSums;
+/* Slots in trouble, two kinds counted in one sum. */
+#define DEEP_SLOTS 1024
+INLINE slots trouble_status(lanes counts) {
+    const slots count = AS_SLOTS(counts), deep = count & (DEEP_SLOTS - 1);
+    return BITS(deep != 0, STATUS_OVERLAP) | BITS(count != deep, STATUS_UNPROBED);
+}
 
 /* See the neighbours, then the forces of their contacts; tabulates them for the surfaces. `effects` are the
    replica's, or a plain 0 that leaves them out when this is compiled. */
-INLINE RowSums row_forces(Grain at, const int effects, Batch batch, EXCHANGE ContactTable* table) {
+INLINE GrainSums contact_sums(Grain at, const int effects, Batch batch, const slots* partner,
+                              EXCHANGE ContactTable* table) {
     global const Replica* restrict replica = at.replica;
-    global real* memory_rows = memory_of(replica, batch.memory, at.row);
-    RowSums sums = {ZERO3, ZERO3, 0, 0};
-    for (int v = 0; v < VECTORS; ++v) {
-        const Neighbours seen =
-            see_neighbours(at, effects, batch.motion, LOAD_LANES(batch.partner + at.row, v));
-        const Displaced b = load_displacements(at, batch, v);
-        Memory memory = load_memory(replica, effects, memory_rows, v);
+    lanes displacement[SLOTS_HERE];
+    slots partner_slot[SLOTS_HERE];
+    Memories kept;
+    load_displacements(at, batch, displacement, partner_slot);
+    load_memories(at, batch.memory, &kept);
+    GrainSums sums = {ZERO3, ZERO3, R(0)};
+    for (int v = 0; v < at.count; ++v) {
+        const Neighbours seen = see_neighbours(at, effects, batch.motion, partner[v]);
+        const Displaced b = displaced(at, batch, seen, displacement, partner_slot, v);
+        Memory memory = recall(replica, effects, &kept, v);
         const Contacts c = contact_forces(at, effects, seen, b, replica->time_step, &memory);
-        store_memory(replica, effects, memory, memory_rows, v);
+        remember(replica, effects, memory, &kept, v);
         add_contacts(c, seen.normal, &sums.force, &sums.torque);
         if (effects & EFFECT_ROLLING_RESISTANCE) sums.torque = add3(sums.torque, c.couple);
         /* Asked this way round, a displacement that is not a number counts as too deep as well. */
-        sums.too_deep |= ~AS_MASK(c.approach <= replica->overlap_limit * (at.now.position.w + seen.radius)) &
-                         seen.occupied;
-        sums.unprobed |= AS_MASK(b.here > replica->probe_gap) & ~c.touching & seen.occupied;
+        const mask too_deep =
+            NOT(AS_MASK(c.approach <= replica->overlap_limit * (at.now.radius + seen.radius))) &
+            seen.occupied;
+        const mask unprobed = AS_MASK(b.here > replica->probe_gap) & NOT(c.touching) & seen.occupied;
+        sums.trouble += WHERE(too_deep, R(1), R(0)) + WHERE(unprobed, R(DEEP_SLOTS), R(0));
         tabulate(c, seen.normal, v, table);
     }
+    store_memories(at, &kept, batch.memory);
     return sums;
 }
 
 /* Where the contacts of this step push the surface at every slot. */
 INLINE void surface_displacements(Grain at, EXCHANGE ContactTable* table, lanes* restrict displacement) {
-    SurfaceDisplacement b[VECTORS];
-    for (int v = 0; v < VECTORS; ++v) {
-        b[v] = surface_displacement(at, table, v);
-        displacement[v] = b[v].point + b[v].size;
-    }
+    SurfaceDisplacement b[SLOTS_HERE];
+    surface_displacement(at, table, b);
+    for (int v = 0; v < at.count; ++v) displacement[v] = b[v].point + b[v].size;
     if (!at.replica->confinement) return;
-    const Confined grain = confined(at, b, table);
-    for (int v = 0; v < VECTORS; ++v) displacement[v] = confined_displacement(at, grain, b[v], v, table);
+    const Confinement all = confinement_of(at, confined(at, b, table));
+    for (int v = 0; v < at.count; ++v) displacement[v] = confined_displacement(at, all, b[v], v, table);
 }
 
 /* Where the contacts of this step push the surface at every slot, extrapolated to the next step:
@@ -52,41 +57,60 @@ INLINE void displace_surfaces(Grain at, EXCHANGE ContactTable* table, int step, 
                               global real* restrict displacement_next, global real* restrict history) {
     global real* two_before = history + ((step + 2) & 3) * slot_count + at.row;
     global real* four_before = history + (step & 3) * slot_count + at.row;
-    lanes displacement[VECTORS];
-    surface_displacements(at, table, displacement);
-    for (int v = 0; v < VECTORS; ++v) {
-        const lanes now = displacement[v];
-        const lanes next = (R(10) / R(6)) * now - (R(5) / R(6)) * LOAD_LANES(two_before, v) +
-                           (R(1) / R(6)) * LOAD_LANES(four_before, v);
-        STORE_LANES(next, displacement_next + at.row, v);
-        STORE_LANES(now, four_before, v);
-    }
+    lanes now[SLOTS_HERE], two[SLOTS_HERE], four[SLOTS_HERE];
+    surface_displacements(at, table, now);
+    load_row(two_before, SLOTS, at.count, two);
+    load_row(four_before, SLOTS, at.count, four);
+    for (int v = 0; v < at.count; ++v)
+        two[v] = (R(10) / R(6)) * now[v] - (R(5) / R(6)) * two[v] + (R(1) / R(6)) * four[v];
+    for (int v = at.count; v % 4 != 0 && SLOTS_HERE > 1; ++v) now[v] = two[v] = R(0); /* stored as well */
+    store_row(two, at.count, displacement_next + at.row, SLOTS);
+    store_row(now, at.count, four_before, SLOTS);
 }
 
 /* A replica that has made its steps keeps its state in both copies of every field, whichever is read at last.
  */
-INLINE void keep_state(Grain at, Batch batch, global Motion* restrict motion_next,
+INLINE void keep_state(Grain at, slots grain, Batch batch, global Motion* restrict motion_next,
                        global real* restrict displacement_next) {
-    if (IS_LEADER) motion_next[at.index] = at.now;
+    if (IS_LEADER) store_motion(at.now, motion_next, grain);
     if (at.replica->surface == SURFACE_RIGID) return;
-    for (int v = 0; v < VECTORS; ++v)
-        STORE_LANES(LOAD_LANES(batch.displacement + at.row, v), displacement_next + at.row, v);
+    lanes displacement[SLOTS_HERE];
+    load_row(batch.displacement + at.row, SLOTS, at.count, displacement);
+    store_row(displacement, at.count, displacement_next + at.row, SLOTS);
 }
 
-/* Slots in trouble, two kinds counted in one sum. */
-#define DEEP_SLOTS 1024
-INLINE int trouble_status(real counts) {
-    const int count = (int)counts;
-    return (count % DEEP_SLOTS ? STATUS_OVERLAP : 0) | (count / DEEP_SLOTS ? STATUS_UNPROBED : 0);
+/* Trouble is rare: each grain by itself. */
+INLINE void report_status(int first, slots bits, global int* restrict status) {
+#if LANES == 16
+    int each[LANES];
+    vstore16(bits, 0, each);
+    for (int lane = 0; lane < LANES; ++lane)
+        if (each[lane]) status[first + lane] |= each[lane];
+#else
+    status[first] |= bits;
+#endif
 }
 
-/* Stops the replica after this step where a grain is in trouble or has moved as far as the margin of its
-   neighbour list allows. */
-INLINE void expect_listed(Grain at, Motion after, int bits, real3 listed_position, int step,
-                          global volatile int* stop_at) {
-    const real3 moved = deformed_way(at.replica, at.elapsed, after.position.xyz - listed_position);
-    if (bits || dot(moved, moved) > at.replica->max_move * at.replica->max_move)
-        atomic_min(stop_at, step + 1);
+/* The state after this step. Stops the replica where a grain is in trouble or has moved as far as the margin
+   of its neighbour list allows. */
+INLINE void finish_step(Grain at, slots grain, GrainSums total, int step, global Motion* restrict motion_next,
+                        global Track* restrict track, global int* restrict status,
+                        global volatile int* restrict stop_at) {
+    global real4* tracks = (global real4*)track;
+    const slots place = grain * TRACK_VECTORS;
+    const mask is_grain = AS_MASK(at.now.radius > R(0));
+    const Moving after = chosen_motion(is_grain, integrate(at, total.force, total.torque), at.now);
+    store_motion(after, motion_next, grain);
+    const lanes4 rotation = gather4(tracks + 1, place), listed = gather4(tracks, place);
+    scatter4(rotated(rotation, scale3(at.replica->time_step, after.spin)), tracks + 1, place);
+    const lanes3 way = subtract3(after.position, (lanes3){listed.x, listed.y, listed.z});
+    const lanes3 moved = deformed_way(at.replica, at.elapsed, way);
+    const real limit = at.replica->max_move;
+    const mask far = AS_MASK(dot3(moved, moved) > limit * limit) & is_grain;
+    const slots bits = BITS(is_grain, trouble_status(total.trouble) | motion_status(at, after));
+    const mask trouble = AS_MASK(bits != 0);
+    if (ANY(trouble)) report_status(at.first, bits, status);
+    if (ANY(trouble | far)) atomic_min(stop_at, step + 1);
 }
 
 WORK_GROUP(STEP_ITEMS)
@@ -98,39 +122,33 @@ kernel void advance(const int step, const int slot_count, global const Replica* 
                     global const real* restrict displacement, global real* restrict displacement_next,
                     global real* restrict history, global real* restrict memory, global Track* restrict track,
                     global int* restrict status) {
-    GRAIN_OF_WORK_ITEM
+    GRAINS_OF_WORK_ITEM
     const int r = replica_of_block[block];
     global const Replica* restrict replica = replicas + r;
     const Batch batch = {motion, partner, partner_slot, displacement, memory};
-    const Grain at = grain_at(replica, materials, r, index, step, motion[index]);
+    const slots grain = first + LANE_NUMBERS;
+    Grain at = grain_at(replica, materials, r, first, step, load_motion(motion, grain));
     /* One answer for a work-group, so that no barrier is missed: what lowers stop_at in this step sets step
      * + 1. */
     const int last = stop_at[r];
     if (step >= last) {
-        if (step == last) keep_state(at, batch, motion_next, displacement_next);
+        if (step == last) keep_state(at, grain, batch, motion_next, displacement_next);
         return;
     }
 
-    prefetch_next_displacements(at, batch);
+    slots partners[SLOTS_HERE];
+    at.count = load_partners(partner + at.row, partners);
     /* Put in place twice: where there are no effects they cost nothing. */
-    const RowSums sums = RARELY(replica->effects) ? row_forces(at, replica->effects, batch, table)
-                                                  : row_forces(at, 0, batch, table);
-    const lanes trouble = WHERE(sums.too_deep, R(1), R(0)) + WHERE(sums.unprobed, R(DEEP_SLOTS), R(0));
-    share_sums(sums.force, sums.torque, trouble, scratch);
+    const GrainSums sums = RARELY(replica->effects)
+                               ? contact_sums(at, replica->effects, batch, partners, table)
+                               : contact_sums(at, 0, batch, partners, table);
+    share_sums(sums, scratch);
     SYNCHRONISE();
     if (replica->surface != SURFACE_RIGID)
         displace_surfaces(at, table, replica->steps_before + step, slot_count, displacement_next, history);
 
-    const GrainSums total = add_up(sums.force, sums.torque, trouble, scratch);
-    if (IS_LEADER && at.now.position.w > R(0)) {
-        const Motion after = integrate(at, total.force.xyz, total.torque.xyz);
-        motion_next[index] = after;
-        const int bits = trouble_status(total.force.w) | motion_status(at, after);
-        if (bits) status[index] |= bits;
-        track[index].rotation =
-            rotated(track[index].rotation, after.angular_velocity.xyz * replica->time_step);
-        expect_listed(at, after, bits, track[index].listed_position.xyz, step, stop_at + r);
-    }
+    const GrainSums total = add_up(sums, scratch);
+    if (IS_LEADER) finish_step(at, grain, total, step, motion_next, track, status, stop_at + r);
     /* Without it PoCL lets padding grains into the block above, where work-groups that are done have left
      * before barriers. */
     SYNCHRONISE();

@@ -4,9 +4,9 @@
 /* Grains of unequal stiffness, E_i = E / (1 + excess_compliance_i):
    1/E* = (1 - nu_i^2)/E_i + (1 - nu_j^2)/E_j, the shear modulus likewise; a wall's excess compliance is zero.
  */
-INLINE lanes scattered_modulus(Grain at, Neighbours seen, lanes modulus, real compliance,
+INLINE lanes scattered_modulus(Grain at, Neighbours seen, lanes modulus, lanes compliance,
                                lanes compliance_there) {
-    const real excess = at.now.velocity.w;
+    const lanes excess = at.now.excess_compliance;
 #if SPECIES > 1
     return modulus /
            (R(1) + modulus * add_alike(compliance * excess, compliance_there * seen.excess_compliance));
@@ -89,17 +89,17 @@ INLINE lanes attraction_energy(Attraction a, lanes overlap, lanes approach) {
    et al. 1999; model A of Ai et al. 2011). It fades to a viscous one as saturated friction does. */
 INLINE lanes3 rolling_couple(Grain at, Neighbours seen, lanes normal_force, lanes reduced_radius) {
     global const Replica* restrict replica = at.replica;
-    const real r = at.now.position.w;
+    const lanes r = at.now.radius;
     const lanes r_there = seen.radius;
-    real fifth = r * r * r * r * r;
+    lanes fifth = r * r * r * r * r;
     lanes fifth_there = r_there * r_there * r_there * r_there * r_there;
 #if SPECIES > 1
-    fifth *= at.material->relative_density;
+    fifth *= OWN(at, relative_density);
     fifth_there *= of_neighbours(at, seen, PLACE_OF(relative_density));
 #endif
     const lanes reduced_inertia = at.materials->density * (R(8) / R(15)) * PI *
                                   WHERE(seen.wall, fifth, R(1) / (R(1) / fifth + R(1) / fifth_there));
-    const lanes3 relative = subtract3(seen.spin, same3(at.now.angular_velocity.xyz));
+    const lanes3 relative = subtract3(seen.spin, at.now.spin);
     const lanes slow = replica->sliding_velocity / reduced_radius;
     const lanes limit = replica->rolling_resistance * reduced_radius * fmax(normal_force, (lanes)(R(0)));
     const lanes viscosity = fmin(limit / sqrt(dot3(relative, relative) + slow * slow),

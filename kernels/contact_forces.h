@@ -33,7 +33,7 @@ typedef struct {
 INLINE Pressed press(Grain at, const int effects, Neighbours seen, Displaced b, Memory* restrict memory,
                      Contacts* restrict c) {
     global const Replica* restrict replica = at.replica;
-    const real radius = at.now.position.w, excess_compliance = at.now.velocity.w;
+    const lanes radius = at.now.radius, excess_compliance = at.now.excess_compliance;
     Pressed p;
     const lanes gap = seen.distance - (radius + seen.radius);
     p.pair = reduced(at, seen);
@@ -41,9 +41,9 @@ INLINE Pressed press(Grain at, const int effects, Neighbours seen, Displaced b, 
         const mask curved = seen.wall & AS_MASK(fabs(seen.normal.z) < R(0.5));
         p.pair.radius = WHERE(curved, curved_radius(replica, radius), p.pair.radius);
     }
-    lanes modulus = of_pairs(at.material->modulus, seen);
+    lanes modulus = OF_PAIRS(at, modulus, seen);
     if (effects & EFFECT_MODULUS_SCATTER)
-        modulus = scattered_modulus(at, seen, modulus, at.material->grain_compliance,
+        modulus = scattered_modulus(at, seen, modulus, OWN(at, grain_compliance),
                                     of_neighbours(at, seen, PLACE_OF(grain_compliance)));
     lanes outward = b.here + b.there;
     if (effects & EFFECT_BULGE_CONTACTS)
@@ -55,7 +55,7 @@ INLINE Pressed press(Grain at, const int effects, Neighbours seen, Displaced b, 
     c->overlap = WHERE(c->touching, c->approach, R(0));
     SelfCompliance self = {R(0), R(0), R(0)};
     if (replica->finite_contacts) {
-        const ComplianceRatio ratio = {effects ? R(1) + excess_compliance : R(1),
+        const ComplianceRatio ratio = {effects ? R(1) + excess_compliance : (lanes)(R(1)),
                                        effects ? R(1) + seen.excess_compliance : (lanes)(R(1))};
         const SelfConsistent solved = self_consistent(at, seen, ratio, c->overlap, p.pair.radius, modulus);
         c->overlap = solved.overlap;
@@ -79,28 +79,27 @@ INLINE Pressed press(Grain at, const int effects, Neighbours seen, Displaced b, 
 
 /* Stiffness of a tangential spring, 8 G* a. */
 INLINE lanes shear_stiffness(Grain at, const int effects, Neighbours seen, lanes contact_radius) {
-    lanes modulus = of_pairs(at.material->shear, seen);
+    lanes modulus = OF_PAIRS(at, shear, seen);
     if (effects & EFFECT_MODULUS_SCATTER)
-        modulus = scattered_modulus(at, seen, modulus, at.material->shear_compliance,
+        modulus = scattered_modulus(at, seen, modulus, OWN(at, shear_compliance),
                                     of_neighbours(at, seen, PLACE_OF(shear_compliance)));
     return R(8) * modulus * contact_radius;
 }
 
 /* Velocity of the other surface past this one at the contact point, without what separates them. */
 INLINE lanes3 sliding_velocity(Grain at, Neighbours seen, lanes arm, lanes separating) {
-    const lanes3 turn =
-        add_scaled3(scale3(seen.distance - arm, seen.spin), arm, same3(at.now.angular_velocity.xyz));
+    const lanes3 turn = add_scaled3(scale3(seen.distance - arm, seen.spin), arm, at.now.spin);
     return subtract3(add_scaled3(seen.velocity, -separating, seen.normal), cross3(turn, seen.normal));
 }
 
 INLINE Contacts contact_forces(Grain at, const int effects, Neighbours seen, Displaced b, real elapsed,
                                Memory* restrict memory) {
     global const Replica* restrict replica = at.replica;
-    const real radius = at.now.position.w;
+    const lanes radius = at.now.radius;
     Contacts c;
     const Pressed pressed = press(at, effects, seen, b, memory, &c);
     const Reduced pair = pressed.pair;
-    const lanes damping = of_pairs(at.material->damping, seen);
+    const lanes damping = OF_PAIRS(at, damping, seen);
     const lanes separating = dot3(seen.velocity, seen.normal);
     const lanes normal_force =
         pressed.relaxed_force - damping * sqrt(pressed.stiffness * pair.mass) * separating;
@@ -110,7 +109,7 @@ INLINE Contacts contact_forces(Grain at, const int effects, Neighbours seen, Dis
         R(0.5) * (seen.distance + (radius + c.displacement) - (seen.radius + pressed.displacement_there));
     c.arm = WHERE(c.touching, WHERE(seen.wall, seen.distance, midway), radius + c.displacement);
 
-    const lanes friction_coefficient = of_pairs(at.material->friction, seen);
+    const lanes friction_coefficient = OF_PAIRS(at, friction, seen);
     FrictionTerms terms = {friction_coefficient * fmax(normal_force, (lanes)(R(0))), R(0), damping, pair.mass,
                            c.touching};
     if (replica->mindlin) terms.stiffness = shear_stiffness(at, effects, seen, c.radius);
@@ -128,7 +127,7 @@ INLINE Contacts contact_forces(Grain at, const int effects, Neighbours seen, Dis
     return c;
 }
 
-/* Adds a row's forces and torques r_i x F_t, lane by lane. */
+/* Adds the forces of contacts and their torques r_i x F_t, lane by lane. */
 INLINE void add_contacts(Contacts c, lanes3 normal, lanes3* restrict force, lanes3* restrict torque) {
     *force = add3(*force, c.force);
     *torque = add_scaled3(*torque, c.arm, cross3(normal, c.tangential));

@@ -1,6 +1,6 @@
 /* Where a grain meets each of its neighbours: direction, distance and gap, for grains and walls alike. */
 
-/* What the slots of one grain see of the other side. A wall is a neighbour of radius zero at the foot of
+/* What one slot of each lane sees of the other side. A wall is a neighbour of radius zero at the foot of
    the perpendicular. */
 typedef struct {
     mask occupied;
@@ -18,9 +18,9 @@ typedef struct {
  * grains. */
 INLINE lanes3 wall_feet(Grain at, const int effects, slots partner, lanes3 there) {
     global const Replica* restrict replica = at.replica;
-    lanes3 foot = where3(AS_MASK(partner < NO_PARTNER), same3(at.now.position.xyz), there);
+    lanes3 foot = where3(AS_MASK(partner < NO_PARTNER), at.now.position, there);
     if (replica->container == CONTAINER_CYLINDER) {
-        const lanes3 side = same3(side_foot(replica, at.now.position));
+        const lanes3 side = side_foot(replica, at.now.position);
         foot = where3(AS_MASK(partner == WALL_PARTNER(0)), side, foot);
     } else {
         foot.x = WHERE(AS_MASK(partner == WALL_PARTNER(0)), replica->wall_position[0], foot.x);
@@ -32,7 +32,7 @@ INLINE lanes3 wall_feet(Grain at, const int effects, slots partner, lanes3 there
     foot.z = WHERE(AS_MASK(partner == WALL_PARTNER(4)), replica->wall_position[4], foot.z);
     foot.z = WHERE(AS_MASK(partner == WALL_PARTNER(5)), at.plate_z, foot.z);
     if (effects & EFFECT_PLATE_TILT) {
-        const lanes3 on_plate = same3(plate_foot(replica, at.plate_z, at.now.position));
+        const lanes3 on_plate = plate_foot(replica, at.plate_z, at.now.position);
         foot = where3(AS_MASK(partner == WALL_PARTNER(5)), on_plate, foot);
     }
     return foot;
@@ -41,7 +41,7 @@ INLINE lanes3 wall_feet(Grain at, const int effects, slots partner, lanes3 there
 INLINE Neighbours see_neighbours(Grain at, const int effects, global const Motion* restrict motion,
                                  slots partner) {
     const mask wall = AS_MASK(partner < NO_PARTNER);
-    const slots index = select((slots)(at.index), partner, partner >= 0);
+    const slots index = select(at.first + LANE_NUMBERS, partner, partner >= 0);
     const lanes4 position = gather_motion(motion, index, 0), velocity = gather_motion(motion, index, 1),
                  spin = gather_motion(motion, index, 2);
     lanes3 there = {position.x, position.y, position.z}, moving = {velocity.x, velocity.y, velocity.z};
@@ -62,12 +62,12 @@ INLINE Neighbours see_neighbours(Grain at, const int effects, global const Motio
 #if SPECIES > 1
     seen.species = AS_SLOTS(WHERE(wall, R(WALL_COLUMN), spin.w));
 #endif
-    lanes3 apart = subtract3(there, same3(at.now.position.xyz));
+    lanes3 apart = subtract3(there, at.now.position);
     if (at.replica->container == CONTAINER_PERIODIC) {
         apart.x = nearest_image(apart.x, at.replica->wall_position[1]);
         apart.y = nearest_image(apart.y, at.replica->wall_position[3]);
     }
-    seen.velocity = subtract3(moving, same3(at.now.velocity.xyz));
+    seen.velocity = subtract3(moving, at.now.velocity);
     if (at.replica->container == CONTAINER_CELL) {
         const Deformation f = deformation(at.replica, at.elapsed);
         const lanes3 listed = nearest_lanes_in_cell(at.replica, f, apart);

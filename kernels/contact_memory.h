@@ -1,6 +1,7 @@
 /* What a contact remembers from step to step, each side in its own slot. A grain's memory is one block of
    rows of SLOTS reals; a batch keeps the rows that some replica needs (Replica: memory_rows and where each
    begins). */
+#define MOST_MEMORY_ROWS 5
 
 typedef struct {
     lanes3 spring; /* tangential, of Mindlin friction, as seen from this grain [m] */
@@ -8,29 +9,55 @@ typedef struct {
     lanes relaxed; /* force that the contact has got used to, of viscoelasticity [N] */
 } Memory;
 
-INLINE global real* memory_of(global const Replica* restrict replica, global real* memory, size_t row) {
-    return memory + row * replica->memory_rows;
+/* Of all slots of a work-item: a copy on a CPU, the memory itself on a GPU. */
+#if LANES == 16
+typedef struct {
+    lanes row[MOST_MEMORY_ROWS][SLOTS];
+} Memories;
+#define ROW_ENTRY(kept, kind, v) ((kept)->row[kind][v])
+#else
+typedef struct {
+    global real* rows;
+} Memories;
+#define ROW_ENTRY(kept, kind, v) ((kept)->rows[(kind)*SLOTS + SLOT(v)])
+#endif
+
+INLINE void load_memories(Grain at, global real* restrict memory, Memories* restrict kept) {
+    const int rows = at.replica->memory_rows;
+#if LANES == 16
+    for (int kind = 0; kind < rows; ++kind)
+        load_row(memory + at.row * rows + kind * SLOTS, rows * SLOTS, at.count, kept->row[kind]);
+#else
+    kept->rows = memory + at.row * rows;
+#endif
 }
 
-/* `rows`: of this grain. */
-INLINE Memory load_memory(global const Replica* restrict replica, const int effects,
-                          global const real* restrict rows, int v) {
+INLINE void store_memories(Grain at, const Memories* restrict kept, global real* restrict memory) {
+#if LANES == 16
+    const int rows = at.replica->memory_rows;
+    for (int kind = 0; kind < rows; ++kind)
+        store_row(kept->row[kind], at.count, memory + at.row * rows + kind * SLOTS, rows * SLOTS);
+#else
+    (void)at, (void)kept, (void)memory;
+#endif
+}
+
+INLINE Memory recall(global const Replica* restrict replica, const int effects, const Memories* kept, int v) {
     Memory memory = {ZERO3, R(0), R(0)};
     if (replica->mindlin)
-        memory.spring =
-            (lanes3){LOAD_LANES(rows, v), LOAD_LANES(rows + SLOTS, v), LOAD_LANES(rows + 2 * SLOTS, v)};
-    if (effects & EFFECT_PLASTICITY) memory.deepest = LOAD_LANES(rows + replica->deepest_row * SLOTS, v);
-    if (effects & EFFECT_VISCOELASTICITY) memory.relaxed = LOAD_LANES(rows + replica->relaxed_row * SLOTS, v);
+        memory.spring = (lanes3){ROW_ENTRY(kept, 0, v), ROW_ENTRY(kept, 1, v), ROW_ENTRY(kept, 2, v)};
+    if (effects & EFFECT_PLASTICITY) memory.deepest = ROW_ENTRY(kept, replica->deepest_row, v);
+    if (effects & EFFECT_VISCOELASTICITY) memory.relaxed = ROW_ENTRY(kept, replica->relaxed_row, v);
     return memory;
 }
 
-INLINE void store_memory(global const Replica* restrict replica, const int effects, Memory memory,
-                         global real* restrict rows, int v) {
+INLINE void remember(global const Replica* restrict replica, const int effects, Memory memory,
+                     Memories* restrict kept, int v) {
     if (replica->mindlin) {
-        STORE_LANES(memory.spring.x, rows, v);
-        STORE_LANES(memory.spring.y, rows + SLOTS, v);
-        STORE_LANES(memory.spring.z, rows + 2 * SLOTS, v);
+        ROW_ENTRY(kept, 0, v) = memory.spring.x;
+        ROW_ENTRY(kept, 1, v) = memory.spring.y;
+        ROW_ENTRY(kept, 2, v) = memory.spring.z;
     }
-    if (effects & EFFECT_PLASTICITY) STORE_LANES(memory.deepest, rows + replica->deepest_row * SLOTS, v);
-    if (effects & EFFECT_VISCOELASTICITY) STORE_LANES(memory.relaxed, rows + replica->relaxed_row * SLOTS, v);
+    if (effects & EFFECT_PLASTICITY) ROW_ENTRY(kept, replica->deepest_row, v) = memory.deepest;
+    if (effects & EFFECT_VISCOELASTICITY) ROW_ENTRY(kept, replica->relaxed_row, v) = memory.relaxed;
 }

@@ -49,10 +49,10 @@ INLINE real3 deformed(Deformation f, real3 a) {
 }
 
 /* F^-1 a. */
-INLINE real3 undeformed(Deformation f, real3 a) {
+INLINE lanes3 undeformed(Deformation f, lanes3 a) {
     const real3 inverse = R(1) / (real3)(f.xx, f.yy, f.zz); /* one division of vectors */
-    const real z = a.z * inverse.z, y = (a.y - f.yz * z) * inverse.y;
-    return (real3)((a.x - f.xy * y - f.xz * z) * inverse.x, y, z);
+    const lanes z = a.z * inverse.z, y = (a.y - f.yz * z) * inverse.y;
+    return (lanes3){(a.x - f.xy * y - f.xz * z) * inverse.x, y, z};
 }
 
 /* From one listed position to another, as it is to the nearest image in the deformed cell. One axis after the
@@ -70,56 +70,56 @@ INLINE real3 undeformed(Deformation f, real3 a) {
 NEAREST_IN_CELL(nearest_in_cell, real3, real)
 NEAREST_IN_CELL(nearest_lanes_in_cell, lanes3, lanes)
 
-INLINE real3 deformed_way(global const Replica* restrict replica, real elapsed, real3 way) {
-    return replica->container == CONTAINER_CELL ? deformed(deformation(replica, elapsed), way) : way;
-}
-
 INLINE lanes3 deformed_lanes(Deformation f, lanes3 a) {
     return (lanes3){f.xx * a.x + f.xy * a.y + f.xz * a.z, f.yy * a.y + f.yz * a.z, f.zz * a.z};
+}
+
+INLINE lanes3 deformed_way(global const Replica* restrict replica, real elapsed, lanes3 way) {
+    return replica->container == CONTAINER_CELL ? deformed_lanes(deformation(replica, elapsed), way) : way;
 }
 
 INLINE real cylinder_radius(global const Replica* restrict replica) {
     return R(0.5) * replica->wall_position[1];
 }
 
-/* The horizontal vector from a cylinder's axis [m]. */
-INLINE real2 from_axis(global const Replica* restrict replica, real4 point) {
-    return point.xy - cylinder_radius(replica);
-}
-
 /* The foot of the perpendicular on a cylinder's wall. */
-INLINE real3 side_foot(global const Replica* restrict replica, real4 point) {
-    const real2 out = from_axis(replica, point);
-    const real distance = sqrt(out.x * out.x + out.y * out.y);
-    const real gap = cylinder_radius(replica) - distance;
-    const real2 way = distance > R(0) ? out * (gap / distance) : (real2)(gap, R(0));
-    return (real3)(point.x + way.x, point.y + way.y, point.z);
+INLINE lanes3 side_foot(global const Replica* restrict replica, lanes3 point) {
+    const real radius = cylinder_radius(replica);
+    const lanes x = point.x - radius, y = point.y - radius, distance = sqrt(x * x + y * y);
+    const lanes gap = radius - distance;
+    const mask off_axis = AS_MASK(distance > R(0));
+    const lanes part = gap / WHERE(off_axis, distance, R(1));
+    return (lanes3){point.x + WHERE(off_axis, x * part, gap), point.y + WHERE(off_axis, y * part, R(0)),
+                    point.z};
 }
 
 /* From a wall to a point inside; far where there is no such wall. The plate is another matter (plate.h). */
 INLINE real side_distance(global const Replica* restrict replica, int wall, real4 point) {
     if (replica->container >= CONTAINER_PERIODIC) return INFINITY;
     if (replica->container == CONTAINER_CYLINDER) {
-        const real2 out = from_axis(replica, point);
+        const real2 out = point.xy - cylinder_radius(replica);
         return wall == 0 ? cylinder_radius(replica) - sqrt(out.x * out.x + out.y * out.y) : R(INFINITY);
     }
     const real coordinate = wall < 2 ? point.x : point.y, place = replica->wall_position[wall];
     return wall % 2 ? place - coordinate : coordinate - place;
 }
 
-INLINE bool within_sides(global const Replica* restrict replica, real4 point) {
-    if (replica->container >= CONTAINER_PERIODIC) {
-        const real x = point.x / replica->wall_position[1], y = point.y / replica->wall_position[3];
-        return fmax(fabs(x), fabs(y)) < MAX_DRIFT;
+INLINE mask within_sides(global const Replica* restrict replica, lanes3 point) {
+    global const real* wall = replica->wall_position;
+    if (replica->container >= CONTAINER_PERIODIC)
+        return AS_MASK(fmax(fabs(point.x / wall[1]), fabs(point.y / wall[3])) < MAX_DRIFT);
+    if (replica->container == CONTAINER_CYLINDER) {
+        const real radius = cylinder_radius(replica);
+        const lanes x = point.x - radius, y = point.y - radius;
+        return AS_MASK(sqrt(x * x + y * y) < radius);
     }
-    if (replica->container == CONTAINER_CYLINDER) return side_distance(replica, 0, point) > R(0);
-    return point.x > replica->wall_position[0] && point.x < replica->wall_position[1] &&
-           point.y > replica->wall_position[2] && point.y < replica->wall_position[3];
+    return AS_MASK(point.x > wall[0]) & AS_MASK(point.x < wall[1]) & AS_MASK(point.y > wall[2]) &
+           AS_MASK(point.y < wall[3]);
 }
 
 /* R* of a sphere inside a cylinder, 1/R* = sqrt(1/R (1/R - 1/R_c)): the geometric mean of both directions
    (Johnson 1985, section 4.2). Forces by it are within 0.2 % of Hertz's elliptical contact up to R = R_c/4
    and within 1 % up to R_c/2. */
-INLINE real curved_radius(global const Replica* restrict replica, real radius) {
+INLINE lanes curved_radius(global const Replica* restrict replica, lanes radius) {
     return radius / sqrt(R(1) - radius / cylinder_radius(replica));
 }

@@ -1,46 +1,46 @@
 /* Velocity Verlet in its leapfrog form: velocities stand half a step before the positions that carry the
    forces. Weight less buoyancy, drag, inertia of a sphere. */
-INLINE Motion integrate(Grain at, real3 force, real3 torque) {
+INLINE Moving integrate(Grain at, lanes3 force, lanes3 torque) {
     global const Replica* restrict replica = at.replica;
-    const Motion now = at.now;
-    const real dt = replica->time_step, radius = now.position.w;
-    const real species = SPECIES > 1 ? now.angular_velocity.w : R(0);
-    const real mass = sphere_mass(at, radius);
-    real3 acceleration = force / mass - replica->drag * now.velocity.xyz;
-    acceleration.z -= at.material->weight_density / at.material->density;
-    const real3 turning =
-        torque / (R(0.4) * mass * radius * radius) - replica->spin_drag * now.angular_velocity.xyz;
+    const Moving now = at.now;
+    const real dt = replica->time_step;
+    const lanes radius = now.radius, mass = sphere_mass(at, radius), inverse_mass = R(1) / mass;
+    const lanes inverse_inertia = R(1) / (R(0.4) * mass * radius * radius);
+    lanes3 acceleration = add_scaled3(scale3(inverse_mass, force), -replica->drag, now.velocity);
+    acceleration.z -= OWN(at, weight_density) / OWN(at, density);
+    const lanes3 turning = add_scaled3(scale3(inverse_inertia, torque), -replica->spin_drag, now.spin);
+    Moving after = now;
+    after.spin = add_scaled3(now.spin, dt, turning);
     if (replica->container == CONTAINER_CELL) {
         /* What is left of Newton's law beyond the cell's own motion (Evans & Morriss 1984, SLLOD). */
         const Deformation f = deformation(replica, at.elapsed);
-        acceleration -= deformed(deformation_rate(replica), undeformed(f, now.velocity.xyz));
-        const real3 own = now.velocity.xyz + acceleration * dt;
-        const real3 spin = now.angular_velocity.xyz + turning * dt;
-        const Motion after = {(real4)(now.position.xyz + undeformed(f, own) * dt, radius),
-                              (real4)(own, now.velocity.w), (real4)(spin, species)};
+        const lanes3 own = deformed_lanes(deformation_rate(replica), undeformed(f, now.velocity));
+        after.velocity = add_scaled3(now.velocity, dt, subtract3(acceleration, own));
+        after.position = add_scaled3(now.position, dt, undeformed(f, after.velocity));
         return after;
     }
-    const real3 v = now.velocity.xyz + acceleration * dt;
-    const real3 w = now.angular_velocity.xyz + turning * dt;
-    const Motion after = {(real4)(now.position.xyz + v * dt, radius), (real4)(v, now.velocity.w),
-                          (real4)(w, species)};
+    after.velocity = add_scaled3(now.velocity, dt, acceleration);
+    after.position = add_scaled3(now.position, dt, after.velocity);
     return after;
 }
 
 /* A rotation, and then one more by a small angle, `by` along the laboratory's axes. */
-INLINE real4 rotated(real4 rotation, real3 by) {
-    const real3 half_angle = R(0.5) * by, v = rotation.xyz;
-    const real4 q =
-        (real4)(v + rotation.w * half_angle + cross(half_angle, v), rotation.w - dot(half_angle, v));
-    return q * (R(1.5) - R(0.5) * dot(q, q)); /* of length one: a step of Newton's method */
+INLINE lanes4 rotated(lanes4 rotation, lanes3 by) {
+    const lanes3 half_angle = scale3(R(0.5), by), v = {rotation.x, rotation.y, rotation.z};
+    const lanes3 q = add3(add_scaled3(v, rotation.w, half_angle), cross3(half_angle, v));
+    const lanes w = rotation.w - dot3(half_angle, v);
+    const lanes to_one = R(1.5) - R(0.5) * (dot3(q, q) + w * w); /* a step of Newton's method */
+    return (lanes4){q.x * to_one, q.y * to_one, q.z * to_one, w * to_one};
 }
 
-INLINE int motion_status(Grain at, Motion after) {
+INLINE slots motion_status(Grain at, Moving after) {
     global const Replica* restrict replica = at.replica;
-    const real4 x = after.position, w = after.angular_velocity;
-    if (!isfinite(x.x + x.y + x.z + w.x + w.y + w.z)) return STATUS_NOT_A_NUMBER;
-    const bool between = replica->container == CONTAINER_CELL
-                             ? fabs(x.z / replica->wall_position[5]) < MAX_DRIFT
-                             : x.z > replica->wall_position[4] && x.z < plate_height(replica, at.plate_z, x);
-    return within_sides(replica, x) && between ? 0 : STATUS_LOST;
+    const lanes3 x = after.position, w = after.spin;
+    const mask finite = AS_MASK(fabs(x.x + x.y + x.z + w.x + w.y + w.z) < INFINITY);
+    const mask between =
+        replica->container == CONTAINER_CELL
+            ? AS_MASK(fabs(x.z / replica->wall_position[5]) < MAX_DRIFT)
+            : AS_MASK(x.z > replica->wall_position[4]) & AS_MASK(x.z < plate_heights(replica, at.plate_z, x));
+    const mask inside = within_sides(replica, x) & between;
+    return BITS(finite & NOT(inside), STATUS_LOST) | BITS(NOT(finite), STATUS_NOT_A_NUMBER);
 }

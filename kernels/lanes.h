@@ -1,7 +1,8 @@
-/* Contacts side by side: one spelling for a vector of 16 slots (CPU) and for one slot a work-item (GPU).
-   WHERE(condition, yes, no) chooses lane by lane.
-   A grain's slots are SLOTS reals in a row; `lanes` holds LANES of them. What the slots of one grain must
-   know of one another goes through an EXCHANGE array: private memory on a CPU, local memory on a GPU. */
+/* Numbers side by side: `lanes` are one number of each grain that a work-item works for, LANES grains on a
+   CPU (vectors) and one on a GPU. WHERE(condition, yes, no) chooses lane by lane.
+   A grain has SLOTS slots, in memory a row of reals. A CPU's work-item goes through all of them, a GPU's has
+   one: arrays by slot have SLOTS_HERE entries, and entry v is of SLOT(v). What the slots of a grain must know
+   of one another goes through an EXCHANGE array: private memory on a CPU, local memory on a GPU. */
 #if LANES == 16
 #if MCDEM_DOUBLE
 typedef double16 lanes;
@@ -15,33 +16,39 @@ typedef int16 mask;
 typedef int16 slots;
 #define AS_SLOTS(numbers) convert_int16(numbers)
 #define WHERE(condition, yes, no) select((lanes)(no), (lanes)(yes), (condition))
-#define EXCHANGE private
-#define VECTORS (SLOTS / 16)
-#define SYNCHRONISE()
-#define LOAD_LANES(row, v) vload16(v, row)
-#define STORE_LANES(value, row, v) vstore16(value, v, row)
+#define BITS(condition, bits) (convert_int16(condition) & (bits))
+#define NOT(condition) (~(condition))
 #define ANY(m) any_lane(m)
+#define LANE_NUMBERS ((int16)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15))
+#define SLOTS_HERE SLOTS
+#define SLOT(v) (v)
+#define EXCHANGE private
+#define SYNCHRONISE()
+#define LOAD_LANES(field) vload16(0, field)
+#define STORE_LANES(value, field) vstore16(value, 0, field)
 /* Asks for a place in memory ahead of its use; OpenCL's own prefetch() does nothing in PoCL. */
 #if defined(__x86_64__) || defined(__aarch64__)
 #define PREFETCH(place) __builtin_prefetch((const void*)(size_t)(place))
 #else
 #define PREFETCH(place)
 #endif
-#define SLOT_NUMBERS(v) ((int16)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15) + (v)*16)
 #else
 typedef real lanes;
 typedef int mask;
 typedef int slots;
-#define AS_SLOTS(numbers) ((int)(numbers))
 #define AS_MASK(integers) (integers)
+#define AS_SLOTS(numbers) ((int)(numbers))
 #define WHERE(condition, yes, no) ((condition) ? (lanes)(yes) : (lanes)(no))
-#define EXCHANGE local
-#define VECTORS 1
-#define SYNCHRONISE() barrier(CLK_LOCAL_MEM_FENCE)
-#define LOAD_LANES(row, v) ((row)[get_local_id(0) % SLOTS])
-#define STORE_LANES(value, row, v) ((row)[get_local_id(0) % SLOTS] = (value))
+#define BITS(condition, bits) ((condition) ? (bits) : 0)
+#define NOT(condition) (!(condition))
 #define ANY(m) (m)
-#define SLOT_NUMBERS(v) ((int)(get_local_id(0) % SLOTS))
+#define LANE_NUMBERS 0
+#define SLOTS_HERE 1
+#define SLOT(v) ((int)(get_local_id(0) % SLOTS))
+#define EXCHANGE local
+#define SYNCHRONISE() barrier(CLK_LOCAL_MEM_FENCE)
+#define LOAD_LANES(field) (*(field))
+#define STORE_LANES(value, field) (*(field) = (value))
 #endif
 
 typedef struct {
@@ -51,7 +58,6 @@ typedef struct {
     lanes x, y, z, w;
 } lanes4;
 
-INLINE lanes3 same3(real3 a) { return (lanes3){a.x, a.y, a.z}; }
 INLINE lanes3 add3(lanes3 a, lanes3 b) { return (lanes3){a.x + b.x, a.y + b.y, a.z + b.z}; }
 INLINE lanes3 subtract3(lanes3 a, lanes3 b) { return (lanes3){a.x - b.x, a.y - b.y, a.z - b.z}; }
 INLINE lanes3 scale3(lanes factor, lanes3 a) { return (lanes3){factor * a.x, factor * a.y, factor * a.z}; }
@@ -98,46 +104,112 @@ INLINE bool any_lane(mask m) {
 #define KEEP_WHOLE(vector)
 #endif
 
-/* Eight rows of four turned into four vectors of eight: every fourth row lies in one vector, so that two
-   rounds of interleaving within halves bring the lanes into order. */
+/* Eight rows of four numbers and four vectors of eight, turned into one another: every fourth row lies in one
+   vector, so that two rounds of interleaving within halves bring the lanes into order. */
+#define INTERLEAVE_LOW(type, a, b) (type)(a.s0, b.s0, a.s1, b.s1, a.s4, b.s4, a.s5, b.s5)
+#define INTERLEAVE_HIGH(type, a, b) (type)(a.s2, b.s2, a.s3, b.s3, a.s6, b.s6, a.s7, b.s7)
+#define LOW_PAIRS(type, a, b) (type)(a.s01, b.s01, a.s45, b.s45)
+#define HIGH_PAIRS(type, a, b) (type)(a.s23, b.s23, a.s67, b.s67)
+#define GATHER_FOUR(name, four, eight, eight_rows)                                                    \
+    INLINE eight_rows name(global const four* restrict field, int8 i) {                               \
+        eight a = (eight)(field[i.s0], field[i.s4]), b = (eight)(field[i.s1], field[i.s5]);           \
+        eight c = (eight)(field[i.s2], field[i.s6]), d = (eight)(field[i.s3], field[i.s7]);           \
+        KEEP_WHOLE(a);                                                                                \
+        KEEP_WHOLE(b);                                                                                \
+        KEEP_WHOLE(c);                                                                                \
+        KEEP_WHOLE(d);                                                                                \
+        const eight ab_low = INTERLEAVE_LOW(eight, a, b), ab_high = INTERLEAVE_HIGH(eight, a, b);     \
+        const eight cd_low = INTERLEAVE_LOW(eight, c, d), cd_high = INTERLEAVE_HIGH(eight, c, d);     \
+        return (eight_rows){LOW_PAIRS(eight, ab_low, cd_low), HIGH_PAIRS(eight, ab_low, cd_low),      \
+                            LOW_PAIRS(eight, ab_high, cd_high), HIGH_PAIRS(eight, ab_high, cd_high)}; \
+    }
 typedef struct {
     real8 x, y, z, w;
 } eight4;
-#define INTERLEAVE_LOW(a, b) (real8)(a.s0, b.s0, a.s1, b.s1, a.s4, b.s4, a.s5, b.s5)
-#define INTERLEAVE_HIGH(a, b) (real8)(a.s2, b.s2, a.s3, b.s3, a.s6, b.s6, a.s7, b.s7)
-#define LOW_PAIRS(a, b) (real8)(a.s01, b.s01, a.s45, b.s45)
-#define HIGH_PAIRS(a, b) (real8)(a.s23, b.s23, a.s67, b.s67)
-INLINE eight4 gather_eight(global const real4* restrict field, int8 i) {
-    real8 a = (real8)(field[i.s0], field[i.s4]), b = (real8)(field[i.s1], field[i.s5]);
-    real8 c = (real8)(field[i.s2], field[i.s6]), d = (real8)(field[i.s3], field[i.s7]);
-    KEEP_WHOLE(a);
-    KEEP_WHOLE(b);
-    KEEP_WHOLE(c);
-    KEEP_WHOLE(d);
-    const real8 ab_low = INTERLEAVE_LOW(a, b), ab_high = INTERLEAVE_HIGH(a, b);
-    const real8 cd_low = INTERLEAVE_LOW(c, d), cd_high = INTERLEAVE_HIGH(c, d);
-    return (eight4){LOW_PAIRS(ab_low, cd_low), HIGH_PAIRS(ab_low, cd_low), LOW_PAIRS(ab_high, cd_high),
-                    HIGH_PAIRS(ab_high, cd_high)};
-}
-
-/* field[index], lane by lane */
+typedef struct {
+    int8 x, y, z, w;
+} eight_slots4;
+typedef struct {
+    slots x, y, z, w;
+} slots4;
+GATHER_FOUR(gather_eight, real4, real8, eight4)
+GATHER_FOUR(gather_eight_slots, int4, int8, eight_slots4)
 INLINE lanes4 gather4(global const real4* restrict field, slots index) {
     const eight4 low = gather_eight(field, index.lo), high = gather_eight(field, index.hi);
     return (lanes4){(lanes)(low.x, high.x), (lanes)(low.y, high.y), (lanes)(low.z, high.z),
                     (lanes)(low.w, high.w)};
 }
+INLINE slots4 gather_slots4(global const int4* restrict field, slots index) {
+    const eight_slots4 low = gather_eight_slots(field, index.lo), high = gather_eight_slots(field, index.hi);
+    return (slots4){(slots)(low.x, high.x), (slots)(low.y, high.y), (slots)(low.z, high.z),
+                    (slots)(low.w, high.w)};
+}
+
+/* field[index] = value, lane by lane */
+INLINE void scatter_eight(eight4 value, global real4* restrict field, int8 i) {
+    const real8 xy_low = INTERLEAVE_LOW(real8, value.x, value.y),
+                xy_high = INTERLEAVE_HIGH(real8, value.x, value.y);
+    const real8 zw_low = INTERLEAVE_LOW(real8, value.z, value.w),
+                zw_high = INTERLEAVE_HIGH(real8, value.z, value.w);
+    const real8 a = LOW_PAIRS(real8, xy_low, zw_low), b = HIGH_PAIRS(real8, xy_low, zw_low);
+    const real8 c = LOW_PAIRS(real8, xy_high, zw_high), d = HIGH_PAIRS(real8, xy_high, zw_high);
+    field[i.s0] = a.lo, field[i.s1] = b.lo, field[i.s2] = c.lo, field[i.s3] = d.lo;
+    field[i.s4] = a.hi, field[i.s5] = b.hi, field[i.s6] = c.hi, field[i.s7] = d.hi;
+}
+
+INLINE void scatter4(lanes4 v, global real4* restrict field, slots index) {
+    scatter_eight((eight4){v.x.lo, v.y.lo, v.z.lo, v.w.lo}, field, index.lo);
+    scatter_eight((eight4){v.x.hi, v.y.hi, v.z.hi, v.w.hi}, field, index.hi);
+}
+
+/* field[index], lane by lane */
 INLINE lanes gather(global const real* restrict field, slots index) {
     return (lanes)(field[index.s0], field[index.s1], field[index.s2], field[index.s3], field[index.s4],
                    field[index.s5], field[index.s6], field[index.s7], field[index.s8], field[index.s9],
                    field[index.sa], field[index.sb], field[index.sc], field[index.sd], field[index.se],
                    field[index.sf]);
 }
+
+/* The first `count` slots of LANES rows, `stride` reals apart, and up to three more. */
+INLINE void load_row(global const real* restrict rows, int stride, int count, lanes* restrict slot) {
+    for (int v = 0; v < count; v += 4) {
+        const lanes4 four = gather4((global const real4*)(rows + v), LANE_NUMBERS * (stride / 4));
+        slot[v] = four.x, slot[v + 1] = four.y, slot[v + 2] = four.z, slot[v + 3] = four.w;
+    }
+}
+INLINE void load_slots(global const int* restrict rows, int count, slots* restrict slot) {
+    for (int v = 0; v < count; v += 4) {
+        const slots4 four = gather_slots4((global const int4*)(rows + v), LANE_NUMBERS * (SLOTS / 4));
+        slot[v] = four.x, slot[v + 1] = four.y, slot[v + 2] = four.z, slot[v + 3] = four.w;
+    }
+}
+INLINE void store_row(const lanes* restrict slot, int count, global real* restrict rows, int stride) {
+    for (int v = 0; v < count; v += 4) {
+        const lanes4 four = {slot[v], slot[v + 1], slot[v + 2], slot[v + 3]};
+        scatter4(four, (global real4*)(rows + v), LANE_NUMBERS * (stride / 4));
+    }
+}
 #else
 INLINE lanes4 gather4(global const real4* restrict field, slots index) {
     const real4 f = field[index];
     return (lanes4){f.x, f.y, f.z, f.w};
 }
+INLINE void scatter4(lanes4 value, global real4* restrict field, slots index) {
+    field[index] = (real4)(value.x, value.y, value.z, value.w);
+}
 INLINE lanes gather(global const real* restrict field, slots index) { return field[index]; }
+INLINE void load_row(global const real* restrict row, int stride, int count, lanes* restrict slot) {
+    (void)stride, (void)count;
+    *slot = row[SLOT(0)];
+}
+INLINE void load_slots(global const int* restrict row, int count, slots* restrict slot) {
+    (void)count;
+    *slot = row[SLOT(0)];
+}
+INLINE void store_row(const lanes* restrict slot, int count, global real* restrict row, int stride) {
+    (void)stride, (void)count;
+    row[SLOT(0)] = *slot;
+}
 #endif
 
 /* 1 / sqrt(x). In float on x86 to 3e-7: the processor's estimate and one step of Newton's method, where the

@@ -14,7 +14,6 @@ typedef struct {
    F. */
 INLINE lanes elastic_energy(Grain at, int effects, Neighbours seen, Contacts c) {
     global const Replica* restrict replica = at.replica;
-    const real radius = at.now.position.w;
     lanes displaced = R(0.5) * c.elastic * c.displacement;
     if (replica->finite_contacts) /* by itself; others' in surface_energy */
         displaced = replica->confinement ? (lanes)(R(0)) : own_work(at, c.elastic, c.radius);
@@ -24,10 +23,10 @@ INLINE lanes elastic_energy(Grain at, int effects, Neighbours seen, Contacts c) 
 }
 
 /* The integral of what the contacts of a grain displace at one another, spheres only [J]. */
-INLINE real surface_energy(Grain at, EXCHANGE ContactTable* table) {
+INLINE lanes surface_energy(Grain at, EXCHANGE ContactTable* table) {
     SYNCHRONISE();
-    SurfaceDisplacement b[VECTORS];
-    for (int v = 0; v < VECTORS; ++v) b[v] = surface_displacement(at, table, v);
+    SurfaceDisplacement b[SLOTS_HERE];
+    sphere_sums(at, table, b);
     return confined_work(at, confined(at, b, table));
 }
 
@@ -36,13 +35,45 @@ INLINE void add_contact_sums(Grain at, Neighbours seen, Displaced b, Contacts c,
     const lanes share = WHERE(seen.wall, R(1), R(0.5)), force = c.elastic;
     const lanes overlap = WHERE(c.touching, c.overlap, R(1));
     /* Before the contact's own displacement, which grows with its force. */
-    const lanes without_own = b.here + b.there - (seen.distance - (at.now.position.w + seen.radius));
+    const lanes without_own = b.here + b.there - (seen.distance - (at.now.radius + seen.radius));
     sums->stored += elastic_energy(at, effects, seen, c);
     sums->deepest =
-        fmax(sums->deepest, WHERE(seen.occupied, c.overlap / (at.now.position.w + seen.radius), R(0)));
+        fmax(sums->deepest, WHERE(seen.occupied, c.overlap / (at.now.radius + seen.radius), R(0)));
     sums->stiffness += R(1.5) * force / fmax(R(1.5) * without_own - R(0.5) * overlap, R(0.25) * overlap);
     sums->displaced += force * b.here * b.here / overlap;
     sums->pressed += share * force * overlap;
+}
+
+/* What measure() writes of every slot. */
+typedef struct {
+    global real *force_x, *force_y, *force_z, *overlap, *arm;
+} MeasuredRows;
+
+INLINE ContactSums measure_contacts(Grain at, Batch batch, MeasuredRows rows, EXCHANGE ContactTable* table) {
+    global const Replica* restrict replica = at.replica;
+    slots partner[SLOTS_HERE], partner_slot[SLOTS_HERE];
+    lanes displacement[SLOTS_HERE], row[5][SLOTS_HERE];
+    Memories kept;
+    load_slots(batch.partner + at.row, at.count, partner);
+    load_displacements(at, batch, displacement, partner_slot);
+    load_memories(at, batch.memory, &kept);
+    ContactSums sums = {R(0), R(0), R(0), R(0), R(0)};
+    for (int v = 0; v < at.count; ++v) {
+        const Neighbours seen = see_neighbours(at, replica->effects, batch.motion, partner[v]);
+        Memory memory = recall(replica, replica->effects, &kept, v);
+        const Displaced b = displaced(at, batch, seen, displacement, partner_slot, v);
+        const Contacts c = contact_forces(at, replica->effects, seen, b, R(0), &memory);
+        add_contact_sums(at, seen, b, c, &sums);
+        if (replica->finite_contacts) tabulate(c, seen.normal, v, table);
+        row[0][v] = c.force.x, row[1][v] = c.force.y, row[2][v] = c.force.z;
+        row[3][v] = c.overlap, row[4][v] = c.arm;
+    }
+    store_row(row[0], at.count, rows.force_x + at.row, SLOTS);
+    store_row(row[1], at.count, rows.force_y + at.row, SLOTS);
+    store_row(row[2], at.count, rows.force_z + at.row, SLOTS);
+    store_row(row[3], at.count, rows.overlap + at.row, SLOTS);
+    store_row(row[4], at.count, rows.arm + at.row, SLOTS);
+    return sums;
 }
 
 /* Delayed corrections ask for short steps where contacts are stiff and displace one another much: of the
@@ -51,16 +82,17 @@ INLINE void add_contact_sums(Grain at, Neighbours seen, Displaced b, Contacts c,
    mode's frequency; the limit of stability over it is between 0.69 and 0.81 in packings up to a packing
    fraction of 0.95 (tests/truth). */
 #define LARGEST_GAIN R(0.9)
-INLINE real fastest_frequency(real mass, real stiffness, real displaced, real pressed) {
-    const real gain = pressed > R(0) ? R(2) * sqrt(displaced / pressed) : R(0);
-    return sqrt(stiffness / mass) / (R(1) - fmin(gain, LARGEST_GAIN));
+INLINE lanes fastest_frequency(lanes mass, lanes stiffness, lanes displaced, lanes pressed) {
+    const mask presses = AS_MASK(pressed > R(0));
+    const lanes gain = WHERE(presses, R(2) * sqrt(displaced / WHERE(presses, pressed, R(1))), R(0));
+    return sqrt(stiffness / mass) / (R(1) - fmin(gain, (lanes)(LARGEST_GAIN)));
 }
 
-INLINE real kinetic_energy(Grain at) {
-    const real3 velocity = at.now.velocity.xyz, spin = at.now.angular_velocity.xyz;
-    const real radius = at.now.position.w;
+INLINE lanes kinetic_energy(Grain at) {
+    const lanes3 velocity = at.now.velocity, spin = at.now.spin;
+    const lanes radius = at.now.radius;
     return R(0.5) * sphere_mass(at, radius) *
-           (dot(velocity, velocity) + R(0.4) * radius * radius * dot(spin, spin));
+           (dot3(velocity, velocity) + R(0.4) * radius * radius * dot3(spin, spin));
 }
 
 WORK_GROUP(STEP_ITEMS)
@@ -73,41 +105,35 @@ kernel void measure(global const Replica* restrict replicas, global const Materi
                     global real* restrict force_y, global real* restrict force_z,
                     global real* restrict overlap, global real* restrict arm, global real4* restrict energy,
                     global real* restrict frequency) {
-    GRAIN_OF_WORK_ITEM
+    GRAINS_OF_WORK_ITEM
     const int r = replica_of_block[block];
     global const Replica* restrict replica = replicas + r;
     const Batch batch = {motion, partner, partner_slot, displacement, memory};
-    const Grain at = grain_at(replica, materials, r, index, steps[r], motion[index]);
-    prefetch_next_displacements(at, batch);
-    ContactSums sums = {R(0), R(0), R(0), R(0), R(0)};
-    for (int v = 0; v < VECTORS; ++v) {
-        const Neighbours seen = see_neighbours(at, replica->effects, motion, LOAD_LANES(partner + at.row, v));
-        Memory remembered = load_memory(replica, replica->effects, memory_of(replica, memory, at.row), v);
-        const Displaced b = load_displacements(at, batch, v);
-        const Contacts c = contact_forces(at, replica->effects, seen, b, R(0), &remembered);
-        add_contact_sums(at, seen, b, c, &sums);
-        if (replica->finite_contacts) tabulate(c, seen.normal, v, table);
-        STORE_LANES(c.force.x, force_x + at.row, v);
-        STORE_LANES(c.force.y, force_y + at.row, v);
-        STORE_LANES(c.force.z, force_z + at.row, v);
-        STORE_LANES(c.overlap, overlap + at.row, v);
-        STORE_LANES(c.arm, arm + at.row, v);
-    }
-    const real surfaces = replica->finite_contacts ? surface_energy(at, table) : R(0);
+    const slots grain = first + LANE_NUMBERS;
+    const Grain at = grain_at(replica, materials, r, first, steps[r], load_motion(motion, grain));
+    const MeasuredRows rows = {force_x, force_y, force_z, overlap, arm};
+    const ContactSums sums = measure_contacts(at, batch, rows, table);
+    const lanes surfaces = replica->finite_contacts ? surface_energy(at, table) : (lanes)(R(0));
     share(sums.stored, 0, scratch);
     share(sums.deepest, 1, scratch);
     share(sums.stiffness, 2, scratch);
     share(sums.displaced, 3, scratch);
     share(sums.pressed, 4, scratch);
     SYNCHRONISE();
-    if (IS_LEADER && at.now.position.w > R(0)) {
-        const real3 moved =
-            deformed_way(replica, at.elapsed, at.now.position.xyz - track[index].listed_position.xyz);
-        energy[index] = (real4)(kinetic_energy(at), sum_slots(sums.stored, 0, scratch) + surfaces,
-                                dot(moved, moved), max_slots(sums.deepest, 1, scratch));
-        frequency[index] =
-            fastest_frequency(sphere_mass(at, at.now.position.w), sum_slots(sums.stiffness, 2, scratch),
-                              sum_slots(sums.displaced, 3, scratch), sum_slots(sums.pressed, 4, scratch));
+    if (IS_LEADER) {
+        const lanes4 listed = gather4((global const real4*)track, grain * TRACK_VECTORS);
+        const lanes3 way = subtract3(at.now.position, (lanes3){listed.x, listed.y, listed.z});
+        const lanes3 moved = deformed_way(replica, at.elapsed, way);
+        const mask is_grain = AS_MASK(at.now.radius > R(0));
+        const lanes4 of_grain = {kinetic_energy(at), sum_slots(sums.stored, 0, scratch) + surfaces,
+                                 dot3(moved, moved), max_slots(sums.deepest, 1, scratch)};
+        scatter4(of_grain, energy, grain);
+        STORE_LANES(WHERE(is_grain,
+                          fastest_frequency(
+                              sphere_mass(at, at.now.radius), sum_slots(sums.stiffness, 2, scratch),
+                              sum_slots(sums.displaced, 3, scratch), sum_slots(sums.pressed, 4, scratch)),
+                          R(0)),
+                    frequency + first);
     }
 }
 

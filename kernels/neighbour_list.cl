@@ -111,7 +111,7 @@ kernel void list_neighbours(const int block_count, const int slot_count,
         for (int turn = 0; turn < 4; ++turn) carry(before, after, history + (size_t)turn * slot_count + row);
     }
     for (int kind = 0; kind < replica->memory_rows; ++kind)
-        carry(before, after, memory_of(replica, memory, row) + kind * SLOTS);
+        carry(before, after, memory + row * replica->memory_rows + kind * SLOTS);
 }
 
 /* partner_slot: where the same contact stands in the neighbour's row. For walls and empty slots, the one

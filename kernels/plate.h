@@ -6,17 +6,20 @@ INLINE real plate_position(global const Replica* restrict replica, int steps) {
 }
 
 /* z of the face above or below a point. */
-INLINE real plate_height(global const Replica* restrict replica, real plate_z, real4 point) {
-    if (!(replica->effects & EFFECT_PLATE_TILT)) return plate_z;
-    return plate_z + replica->plate_tilt_x * (point.x - R(0.5) * replica->wall_position[1]) +
-           replica->plate_tilt_y * (point.y - R(0.5) * replica->wall_position[3]);
-}
+#define PLATE_HEIGHT(name, vector, number)                                                        \
+    INLINE number name(global const Replica* restrict replica, real plate_z, vector point) {      \
+        if (!(replica->effects & EFFECT_PLATE_TILT)) return plate_z;                              \
+        return plate_z + replica->plate_tilt_x * (point.x - R(0.5) * replica->wall_position[1]) + \
+               replica->plate_tilt_y * (point.y - R(0.5) * replica->wall_position[3]);            \
+    }
+PLATE_HEIGHT(plate_height, real4, real)
+PLATE_HEIGHT(plate_heights, lanes3, lanes)
 
 /* The foot of the perpendicular from a point to the face. */
-INLINE real3 plate_foot(global const Replica* restrict replica, real plate_z, real4 point) {
+INLINE lanes3 plate_foot(global const Replica* restrict replica, real plate_z, lanes3 point) {
     const real x = replica->plate_tilt_x, y = replica->plate_tilt_y;
-    const real rise = (plate_height(replica, plate_z, point) - point.z) / (R(1) + x * x + y * y);
-    return (real3)(point.x - x * rise, point.y - y * rise, point.z + rise);
+    const lanes rise = (plate_heights(replica, plate_z, point) - point.z) / (R(1) + x * x + y * y);
+    return (lanes3){point.x - x * rise, point.y - y * rise, point.z + rise};
 }
 
 /* From a point below the face to its foot. */

@@ -1,5 +1,5 @@
 /* The number types of a kernel build. Options: -DMCDEM_DOUBLE=0|1, -DLANES=16|1, -DSLOTS=16n.
-   LANES = 16: one work-item a grain, the contacts of the grain side by side in vectors (CPU).
+   LANES = 16: one work-item for 16 grains, side by side in vectors (CPU).
    LANES = 1: one work-item a slot, the slots of a grain in one work-group (GPU). */
 #if MCDEM_DOUBLE
 #pragma OPENCL EXTENSION cl_khr_fp64 : enable

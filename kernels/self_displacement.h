@@ -18,8 +18,8 @@ INLINE SelfTerms self_terms_there(Grain at, Neighbours seen) {
     return terms;
 }
 INLINE SelfTerms self_terms_here(Grain at) {
-    global const real* s = at.material->sphere_self;
-    const SelfTerms terms = {s[0], s[1], s[2], s[3], s[4], at.material->sphere_scale};
+    const SelfTerms terms = {OWN(at, sphere_self[0]), OWN(at, sphere_self[1]), OWN(at, sphere_self[2]),
+                             OWN(at, sphere_self[3]), OWN(at, sphere_self[4]), OWN(at, sphere_scale)};
     return terms;
 }
 
@@ -27,7 +27,7 @@ INLINE SelfTerms self_terms_here(Grain at) {
 INLINE lanes whole_self_displacement(Grain at, SelfTerms t, lanes relative) {
     const lanes x = clamp(relative, (lanes)(SMALLEST_RADIUS), (lanes)(LARGEST_RADIUS));
     const lanes value = t.s0 + x * (t.s2 + x * (t.s3 + x * t.s4));
-    const bool has_log = SPECIES > 1 || at.material->sphere_self[1] != R(0);
+    const bool has_log = SPECIES > 1 || at.materials->sphere_self[1] != R(0);
     return has_log ? value + t.s1 * log(x) : value;
 }
 
@@ -43,11 +43,12 @@ INLINE lanes self_displacement(Grain at, SelfTerms t, lanes relative) {
 }
 
 /* Its integral over the force, in F^2/(E R): the force goes with the cube of the radius. */
-INLINE lanes self_work(global const Material* restrict material, lanes relative) {
+INLINE lanes self_work(Grain at, lanes relative) {
     const lanes x = clamp(relative, (lanes)(SMALLEST_RADIUS), (lanes)(LARGEST_RADIUS));
-    global const real* s = material->sphere_self;
-    const lanes value = R(0.5) * s[0] + x * (R(3) / R(7) * s[2] + x * (R(0.375) * s[3] + x * (s[4] / R(3))));
-    return s[1] != R(0) ? value + s[1] * (R(0.5) * log(x) - R(1) / R(12)) : value;
+    const SelfTerms t = self_terms_here(at);
+    const lanes value = R(0.5) * t.s0 + x * (R(3) / R(7) * t.s2 + x * (R(0.375) * t.s3 + x * (t.s4 / R(3))));
+    const bool has_log = SPECIES > 1 || at.materials->sphere_self[1] != R(0);
+    return has_log ? value + t.s1 * (R(0.5) * log(x) - R(1) / R(12)) : value;
 }
 
 /* What a force moves the contact by on this side and on the other, per newton, and more force moves both by
@@ -58,13 +59,12 @@ typedef struct {
 
 /* E over a grain's own Young's modulus, on both sides. */
 typedef struct {
-    real here;
-    lanes there;
+    lanes here, there;
 } ComplianceRatio;
 
 /* Of both sides' materials; zero for a wall, whose inverse radius is zero. */
 INLINE SelfCompliance self_compliance(Grain at, SelfTerms here, SelfTerms there, ComplianceRatio ratio,
-                                      lanes contact_radius, real inverse_radius, lanes inverse_there) {
+                                      lanes contact_radius, lanes inverse_radius, lanes inverse_there) {
     SelfCompliance c;
     const lanes x = contact_radius * inverse_radius, x_there = contact_radius * inverse_there;
     c.here = self_displacement(at, here, x) * (here.scale * inverse_radius * ratio.here);
@@ -84,7 +84,7 @@ typedef struct {
    1e-6 of the overlap (tests/kernels measures it against bisection). */
 INLINE SelfConsistent self_consistent(Grain at, Neighbours seen, ComplianceRatio ratio, lanes given,
                                       lanes reduced_radius, lanes modulus) {
-    const real inverse_radius = R(1) / at.now.position.w;
+    const lanes inverse_radius = R(1) / at.now.radius;
     const lanes inverse_there = WHERE(seen.wall, R(0), R(1) / seen.radius);
     const SelfTerms here = self_terms_here(at), there = self_terms_there(at, seen);
     SelfConsistent s;

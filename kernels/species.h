@@ -1,50 +1,63 @@
 /* What a contact's constants follow from where grains are of several species: the species of the other side.
    With one species every look-up is that of a plain constant. */
 
-/* As it stands after `step` steps of the interval. `materials`: of all replicas, from number `r` on its own.
+/* As they stand after `step` steps of the interval. `materials`: of all replicas, from number `r` on its own.
  */
-INLINE Grain grain_at(global const Replica* replica, global const Material* materials, int r, int index,
-                      int step, Motion now) {
-#if SPECIES > 1
-    global const Material* own = materials + r * SPECIES;
-#else
-    global const Material* own = &replica->material;
-#endif
+INLINE Grain grain_at(global const Replica* replica, global const Material* materials, int r, int first,
+                      int step, Moving now) {
     const Grain at = {replica,
-                      own,
-                      own + SPECIES_OF(now),
-                      index,
-                      (size_t)index * SLOTS,
+                      SPECIES > 1 ? materials + r * SPECIES : &replica->material,
+                      first,
+                      (size_t)first * SLOTS,
+                      SLOTS_HERE,
                       plate_position(replica, step),
                       replica->time_step * step,
                       now};
     return at;
 }
 
-/* The entries of a row of pairs for what each slot meets. */
-INLINE lanes of_pairs(global const real* row, Neighbours seen) {
-#if SPECIES > 1
-    return gather(row, seen.species);
-#else
-    return WHERE(seen.wall, row[WALL_COLUMN], row[0]);
-#endif
-}
-
 /* Of a constant in a material, in reals, of which it is made. */
 #define PLACE_OF(member) ((int)((size_t) & ((global const Material*)0)->member / sizeof(real)))
+#define MATERIAL_REALS ((int)(sizeof(Material) / sizeof(real)))
+
+/* A constant of the grains' own materials; one number where they are of one. */
+#if SPECIES > 1 && LANES > 1
+#define OWN(at, member) \
+    gather((global const real*)(at).materials + PLACE_OF(member), AS_SLOTS((at).now.species) * MATERIAL_REALS)
+typedef lanes own_constant;
+#else
+#if SPECIES > 1
+#define SPECIES_OF(at) ((int)(at).now.species)
+#else
+#define SPECIES_OF(at) 0
+#endif
+#define OWN_MATERIAL(at) ((at).materials + SPECIES_OF(at))
+#define OWN(at, member) (OWN_MATERIAL(at)->member)
+typedef real own_constant;
+#endif
+
+/* A constant of pairs for what each lane meets. */
+#if SPECIES > 1
+#define OF_PAIRS(at, member, seen)                                \
+    gather((global const real*)(at).materials + PLACE_OF(member), \
+           AS_SLOTS((at).now.species) * MATERIAL_REALS + (seen).species)
+#else
+#define OF_PAIRS(at, member, seen) \
+    WHERE((seen).wall, (at).materials->member[WALL_COLUMN], (at).materials->member[0])
+#endif
 
 /* One constant of the neighbours' own materials, by its place; any where there is a wall. */
 INLINE lanes of_neighbours(Grain at, Neighbours seen, int place) {
     global const real* of_first = (global const real*)at.materials + place;
 #if SPECIES > 1
-    return gather(of_first, (seen.species & (MAX_SPECIES - 1)) * (int)(sizeof(Material) / sizeof(real)));
+    return gather(of_first, (seen.species & (MAX_SPECIES - 1)) * MATERIAL_REALS);
 #else
     return *of_first;
 #endif
 }
 
-INLINE real sphere_mass(Grain at, real radius) {
-    return at.material->density * (R(4) / R(3)) * PI * radius * radius * radius;
+INLINE lanes sphere_mass(Grain at, lanes radius) {
+    return OWN(at, density) * (R(4) / R(3)) * PI * radius * radius * radius;
 }
 
 /* R* and m* of each pair from one division; both sides of a pair get the same bits. */
@@ -54,15 +67,15 @@ typedef struct {
 
 /* rho_i rho_j (c_i + c_j) / (rho_i c_i + rho_j c_j) over the first species' density, c the radii's cubes:
    what unlike densities change of m*. One where they are alike, to the bit. */
-INLINE lanes relative_mass(Grain at, Neighbours seen, lanes cubes, real cube, lanes cube_there) {
-    const real here = at.material->relative_density;
+INLINE lanes relative_mass(Grain at, Neighbours seen, lanes cubes, lanes cube, lanes cube_there) {
+    const lanes here = OWN(at, relative_density);
     const lanes there = of_neighbours(at, seen, PLACE_OF(relative_density));
     const lanes both = here * there * cubes / add_alike(here * cube, there * cube_there);
     return WHERE(seen.wall, here, both);
 }
 
 INLINE Reduced reduced(Grain at, Neighbours seen) {
-    const real radius = at.now.position.w, cube = radius * radius * radius;
+    const lanes radius = at.now.radius, cube = radius * radius * radius;
     const lanes sum = radius + seen.radius, product = radius * seen.radius;
     const lanes cube_there = seen.radius * seen.radius * seen.radius;
     const lanes cubes = add_alike(cube, cube_there);

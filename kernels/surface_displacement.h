@@ -1,41 +1,62 @@
 /* delta_kc: how far the surface of a grain moves outward at (or towards) neighbour c because of the
    force at contact k. The sum over k other than c of one grain, at every slot: touching or only near. */
 
-/* The contacts of one grain as every slot of it must see them. */
+/* The contacts of a grain as every slot of it must see them. */
 typedef struct {
-    real x[SLOTS], y[SLOTS], z[SLOTS]; /* direction e; x and y then serve confinement */
-    real arm[SLOTS];                   /* distance of the contact or probed point [m] */
-    real elastic[SLOTS];               /* force, zero where there is no contact [N] */
-    real radius[SLOTS];                /* of the contact [m] */
+    lanes x[SLOTS], y[SLOTS], z[SLOTS]; /* direction e; x and y then serve confinement */
+    lanes arm[SLOTS];                   /* distance of the contact or probed point [m] */
+    lanes elastic[SLOTS];               /* force, zero where there is no contact [N] */
+    lanes radius[SLOTS];                /* of the contact [m] */
 #if LANES == 1
     real padding[16]; /* grains side by side in a work-group begin in different banks of local memory */
 #endif
 } ContactTable;
 
-/* Paper, Eq. 1, from contact k with unit force and unit prefactor, at the deformed contact points. With
-   n = -e at both, all products follow from cos(theta) = e_k . e_c and the two arms. */
-INLINE lanes half_space_displacement(global const Material* restrict material, lanes cosine, lanes arm,
-                                     real arm_k) {
-    const lanes squared = arm * arm + arm_k * arm_k - R(2) * arm * arm_k * cosine;
+/* What two contacts of a grain do at one another per unit of force and of prefactor: the first at the second,
+   and the second at the first. */
+typedef struct {
+    lanes at_second, at_first;
+} Mutual;
+
+/* Paper, Eq. 1, at the deformed contact points. With n = -e at both, all products follow from
+   cos(theta) = e_1 . e_2 and the two arms. */
+INLINE Mutual half_space_displacement(own_constant normal, own_constant shear, bool sheared, lanes cosine,
+                                      lanes arm_1, lanes arm_2) {
+    const lanes squared = arm_1 * arm_1 + arm_2 * arm_2 - (R(2) * arm_2) * arm_1 * cosine;
     const lanes inverse = inverse_root(squared);
-    const lanes along_k = (arm_k - arm * cosine) * inverse; /* n_k . u */
-    const lanes along_c = (arm_k * cosine - arm) * inverse; /* n_c . u */
-    lanes bracket = along_k * along_c + material->half_space_normal * cosine;
-    if (material->half_space_shear != R(0))
-        bracket -= material->half_space_shear * (cosine + along_c) / (R(1) + along_k);
-    return bracket * inverse;
+    const lanes along_1 = (arm_1 - arm_2 * cosine) * inverse; /* n_1 . u, u from the first to the second */
+    const lanes along_2 = (arm_1 * cosine - arm_2) * inverse; /* n_2 . u */
+    const lanes alike = along_1 * along_2 + normal * cosine;
+    Mutual b = {alike, alike};
+    if (sheared) {
+        b.at_second -= shear * (cosine + along_2) / (R(1) + along_1);
+        b.at_first -= shear * (cosine - along_1) / (R(1) - along_2);
+    }
+    b.at_second *= inverse;
+    b.at_first *= inverse;
+    return b;
 }
 
 #define SMALLEST_SINE R(0.15) /* the polynomials hold from here on: contacts 17 degrees apart */
 
-/* The polynomials P and T, even and odd powers apart: four short chains side by side instead of two long. */
-INLINE lanes point_polynomial(global const real* p, lanes s) {
+/* The polynomials P and T of each lane. */
+#if SPECIES > 1 && LANES > 1
+typedef const lanes* Coefficients;
+#else
+typedef global const real* Coefficients;
+#endif
+typedef struct {
+    Coefficients point, size;
+} SphereTerms;
+
+/* Even and odd powers apart: four short chains side by side instead of two long. */
+INLINE lanes point_polynomial(Coefficients p, lanes s) {
     const lanes q = s * s;
     const lanes even = p[0] + q * (p[2] + q * (p[4] + q * (p[6] + q * p[8])));
     const lanes odd = p[1] + q * (p[3] + q * (p[5] + q * p[7]));
     return even + s * odd;
 }
-INLINE lanes size_polynomial(global const real* t, lanes s) {
+INLINE lanes size_polynomial(Coefficients t, lanes s) {
     const lanes q = s * s;
     const lanes even = t[0] + q * (t[2] + q * (t[4] + q * t[6]));
     const lanes odd = t[1] + q * (t[3] + q * t[5]);
@@ -47,73 +68,102 @@ typedef struct {
     lanes point, size;
 } SurfaceDisplacement;
 
-/* Displacement of an elastic sphere, in F/(E R), at the angle whose cosine is given; `spread` is
-   (2/5 a_k^2 + 2/3 a_c^2)/R^2 of the two contact radii. */
-INLINE SurfaceDisplacement sphere_displacement(Grain at, lanes cosine, lanes spread) {
-    global const Material* restrict material = at.material;
+/* Displacement of an elastic sphere, in F/(E R), at the angle whose cosine is given. `size` times
+   (2/5 a_1^2 + 2/3 a_2^2)/R^2, of the radii of the loading and of the displaced contact. */
+INLINE SurfaceDisplacement sphere_displacement(SphereTerms terms, bool finite_contacts, lanes cosine) {
     const lanes squared = fmax(R(0.5) - R(0.5) * cosine, (lanes)(SMALLEST_SINE * SMALLEST_SINE));
     const lanes inverse = inverse_root(squared);
     const lanes s = squared * inverse;
-    SurfaceDisplacement b = {point_polynomial(material->sphere_point, s) * inverse, R(0)};
-    if (at.replica->finite_contacts)
-        b.size = spread * inverse * inverse * size_polynomial(material->sphere_size, s) * inverse;
+    SurfaceDisplacement b = {point_polynomial(terms.point, s) * inverse, R(0)};
+    if (finite_contacts) b.size = inverse * inverse * size_polynomial(terms.size, s) * inverse;
     return b;
 }
 
 INLINE void tabulate(Contacts c, lanes3 normal, int v, EXCHANGE ContactTable* table) {
-    STORE_LANES(normal.x, table->x, v);
-    STORE_LANES(normal.y, table->y, v);
-    STORE_LANES(normal.z, table->z, v);
-    STORE_LANES(c.arm, table->arm, v);
-    STORE_LANES(c.elastic, table->elastic, v);
-    STORE_LANES(c.radius, table->radius, v);
+    const int slot = SLOT(v);
+    table->x[slot] = normal.x;
+    table->y[slot] = normal.y;
+    table->z[slot] = normal.z;
+    table->arm[slot] = c.arm;
+    table->elastic[slot] = c.elastic;
+    table->radius[slot] = c.radius;
 }
 
-/* The sum over the contacts k of the grain, for its slots v. */
-INLINE lanes half_space_sum(Grain at, EXCHANGE const ContactTable* table, real compliance_ratio,
-                            lanes3 direction, int v) {
-    global const Material* restrict material = at.material;
-    const lanes arm = LOAD_LANES(table->arm, v);
-    lanes sum = R(0);
-    for (int k = 0; k < SLOTS; ++k) {
-        const real force = table->elastic[k];
-        if (!(force > R(0))) continue;
-        const lanes cosine =
-            direction.x * table->x[k] + direction.y * table->y[k] + direction.z * table->z[k];
-        const lanes term = half_space_displacement(material, cosine, arm, table->arm[k]) * force;
-        sum += WHERE(AS_MASK(SLOT_NUMBERS(v) == k), R(0), term);
+/* Every pair of slots once on a CPU, where both displacements of a pair cost hardly more than one; on a GPU a
+   slot looks at all others that press. */
+#if LANES == 16
+#define EACH_OTHER(other, slot, table) for (int other = 0; other < (slot); ++other)
+#else
+#define EACH_OTHER(other, slot, table)          \
+    for (int other = 0; other < SLOTS; ++other) \
+        if (other != (slot) && (table)->elastic[other] > R(0))
+#endif
+
+INLINE lanes cosine_between(EXCHANGE const ContactTable* table, int k, int c) {
+    return table->x[k] * table->x[c] + table->y[k] * table->y[c] + table->z[k] * table->z[c];
+}
+
+/* `sheared`: 1 - 2 nu is not zero; where it is known when this is compiled the loop is shorter. */
+INLINE void half_space_sums(Grain at, EXCHANGE const ContactTable* table, const bool sheared,
+                            SurfaceDisplacement* restrict b) {
+    const own_constant normal = OWN(at, half_space_normal), shear = OWN(at, half_space_shear);
+    const lanes scale = OWN(at, half_space_scale) * (R(1) + at.now.excess_compliance);
+    for (int v = 0; v < at.count; ++v) {
+        const int c = SLOT(v);
+        lanes sum = R(0);
+        EACH_OTHER(k, c, table) {
+            const Mutual unit = half_space_displacement(normal, shear, sheared, cosine_between(table, k, c),
+                                                        table->arm[k], table->arm[c]);
+            sum += unit.at_second * table->elastic[k];
+            if (LANES > 1) b[k].point += unit.at_first * table->elastic[c];
+        }
+        b[v] = (SurfaceDisplacement){sum, R(0)};
     }
-    return sum * (material->half_space_scale * compliance_ratio);
+    for (int v = 0; v < at.count; ++v) b[v].point *= scale;
 }
 
-INLINE SurfaceDisplacement sphere_sum(Grain at, EXCHANGE const ContactTable* table, real compliance_ratio,
-                                      lanes3 direction, int v) {
-    const real radius = at.now.position.w;
-    const lanes relative = LOAD_LANES(table->radius, v) / radius;
-    const lanes receiving = (R(2) / R(3)) * relative * relative;
-    SurfaceDisplacement sum = {R(0), R(0)};
-    for (int k = 0; k < SLOTS; ++k) {
-        const real force = table->elastic[k];
-        if (!(force > R(0))) continue;
-        const lanes cosine =
-            direction.x * table->x[k] + direction.y * table->y[k] + direction.z * table->z[k];
-        const real source = table->radius[k] / radius;
-        const SurfaceDisplacement b = sphere_displacement(at, cosine, receiving + R(0.4) * source * source);
-        const mask itself = AS_MASK(SLOT_NUMBERS(v) == k);
-        sum.point += WHERE(itself, R(0), b.point * force);
-        sum.size += WHERE(itself, R(0), b.size * force);
+INLINE void sphere_sums(Grain at, EXCHANGE const ContactTable* table, SurfaceDisplacement* restrict b) {
+#if SPECIES > 1 && LANES > 1
+    lanes point[POINT_TERMS], size[SIZE_TERMS];
+    for (int i = 0; i < POINT_TERMS; ++i) point[i] = OWN(at, sphere_point[i]);
+    for (int i = 0; i < SIZE_TERMS; ++i) size[i] = OWN(at, sphere_size[i]);
+    const SphereTerms terms = {point, size};
+#else
+    const SphereTerms terms = {OWN_MATERIAL(at)->sphere_point, OWN_MATERIAL(at)->sphere_size};
+#endif
+    const bool finite_contacts = at.replica->finite_contacts;
+    const lanes inverse_radius = R(1) / at.now.radius;
+    for (int v = 0; v < at.count; ++v) {
+        const int c = SLOT(v);
+        const lanes radius = table->radius[c] * inverse_radius, squared = radius * radius;
+        SurfaceDisplacement sum = {R(0), R(0)};
+        EACH_OTHER(k, c, table) {
+            const SurfaceDisplacement unit =
+                sphere_displacement(terms, finite_contacts, cosine_between(table, k, c));
+            const lanes radius_k = table->radius[k] * inverse_radius, squared_k = radius_k * radius_k;
+            sum.point += unit.point * table->elastic[k];
+            sum.size += (R(0.4) * squared_k + R(2) / R(3) * squared) * unit.size * table->elastic[k];
+            if (LANES > 1) {
+                b[k].point += unit.point * table->elastic[c];
+                b[k].size += (R(0.4) * squared + R(2) / R(3) * squared_k) * unit.size * table->elastic[c];
+            }
+        }
+        b[v] = sum;
     }
-    const real scale = at.material->sphere_scale / radius * compliance_ratio;
-    sum.point *= scale;
-    sum.size *= scale;
-    return sum;
+    const lanes scale = OWN(at, sphere_scale) * inverse_radius * (R(1) + at.now.excess_compliance);
+    for (int v = 0; v < at.count; ++v) {
+        b[v].point *= scale;
+        b[v].size *= scale;
+    }
 }
 
-/* By the contacts of the grain, at its slots v. */
-INLINE SurfaceDisplacement surface_displacement(Grain at, EXCHANGE const ContactTable* table, int v) {
-    const lanes3 direction = {LOAD_LANES(table->x, v), LOAD_LANES(table->y, v), LOAD_LANES(table->z, v)};
-    const real compliance_ratio = R(1) + at.now.velocity.w;
-    if (at.replica->surface == SURFACE_SPHERE) return sphere_sum(at, table, compliance_ratio, direction, v);
-    const SurfaceDisplacement b = {half_space_sum(at, table, compliance_ratio, direction, v), R(0)};
-    return b;
+/* By the contacts of the grain, at its slots. */
+INLINE void surface_displacement(Grain at, EXCHANGE const ContactTable* table,
+                                 SurfaceDisplacement* restrict b) {
+    if (at.replica->surface == SURFACE_SPHERE)
+        sphere_sums(at, table, b);
+    else if (SPECIES > 1 || at.materials->half_space_shear != R(0))
+        half_space_sums(at, table, true, b);
+    else
+        half_space_sums(at, table, false, b);
 }

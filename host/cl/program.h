@@ -12,20 +12,20 @@ namespace mcdem::inline opencl {
 struct KernelBuild {
     Precision precision = Precision::single_precision;
     int slots = 16;   ///< neighbour slots per grain, a multiple of 16
-    int lanes = 16;   ///< 16: one work-item per grain (CPU); 1: one work-item per slot (GPU)
+    int lanes = 16;   ///< 16: one work-item per 16 grains (CPU); 1: one work-item per slot (GPU)
     int species = 1;  ///< maximum number of materials in a replica: 1 or MAX_SPECIES of kernels/material.h
     int group = 256;  ///< maximum size of a work-group; all known GPUs support 256
 
     /// Grains per block; a work-group of a step processes one block.
-    int block() const { return std::clamp(lanes == 16 ? group : group / slots, 1, 16); }
+    int block() const { return lanes > 1 ? 16 : std::clamp(group / slots, 1, 16); }
     /// Size of a work-group of a step.
-    int work_items() const { return lanes == 16 ? block() : block() * slots; }
+    int work_items() const { return lanes > 1 ? block() / lanes : block() * slots; }
     /// Size of a work-group of the kernels that list neighbours, with one work-item per grain.
-    int list_items() const { return lanes == 16 ? block() : std::min(group, 64); }
+    int list_items() const { return std::min(group, lanes > 1 ? block() : 64); }
     std::size_t real_size() const { return precision == Precision::double_precision ? 8 : 4; }
 };
 
-/// The build for `device`: vectors of contacts on a CPU, one work-item per slot on a GPU. The environment
+/// The build for `device`: vectors of grains on a CPU, one work-item per slot on a GPU. The environment
 /// variable MCDEM_LANES (1 or 16) overrides this, so that a CPU can test the GPU layout.
 KernelBuild kernel_build(const Device& device, Precision precision, int slots);
 

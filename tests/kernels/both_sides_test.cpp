@@ -6,7 +6,7 @@
 namespace reference {
 namespace {
 
-constexpr int numbers = 3, row_size = 16;
+constexpr int numbers = 3;
 
 const char* const pair_kernel = R"(
 kernel void see_pairs(global const Replica* replicas, global const Material* materials, global const real* radii,
@@ -14,22 +14,19 @@ kernel void see_pairs(global const Replica* replicas, global const Material* mat
     const int i = get_global_id(0);
     const real here = radii[2 * i], there = radii[2 * i + 1];
     const int species = SPECIES > 1 ? i & 1 : 0; /* of the first; the second of a pair is of the other */
-    Motion now;
-    now.position = (real4)(R(0), R(0), R(0), here);
-    now.angular_velocity = (real4)(R(0), R(0), R(0), (real)species);
+    Moving now = {ZERO3, (lanes)(here), ZERO3, R(0), ZERO3, (lanes)((real)species)};
     const Grain at = grain_at(replicas, materials, 0, 0, 0, now);
     Neighbours seen;
     seen.wall = AS_MASK((slots)(0));
     seen.radius = (lanes)(there);
     seen.species = (slots)(1 - species);
     const Reduced pair = reduced(at, seen);
-    const ComplianceRatio ratio = {R(1), (lanes)(R(1))};
+    const ComplianceRatio ratio = {R(1), R(1)};
     const SelfConsistent solved = self_consistent(at, seen, ratio, (lanes)(R(0.05) * (here + there)), pair.radius,
-                                                  of_pairs(at.material->modulus, seen));
-    global real* row = out + (size_t)i * 3 * 16;
-    STORE_LANES(pair.radius, row, 0);
-    STORE_LANES(pair.mass, row + 16, 0);
-    STORE_LANES(solved.overlap, row + 32, 0);
+                                                  OF_PAIRS(at, modulus, seen));
+    out[3 * i] = LANE(real, pair.radius, i);
+    out[3 * i + 1] = LANE(real, pair.mass, i);
+    out[3 * i + 2] = LANE(real, solved.overlap, i);
 })";
 
 /// R*, m* and the elastic sphere's overlap of each pair of radii.
@@ -44,16 +41,15 @@ std::vector<float> seen(const std::vector<float>& radii, KernelBuild kernels, co
     mcdem::Field<mcdem::Constants> replica(device(), 1, sizeof constants);
     mcdem::Field<mcdem::Materials> material(device(), kept.size(), sizeof kept[0]);
     mcdem::Field<Radii> in(device(), radii.size(), sizeof(float));
-    mcdem::Field<Seen> out(device(), radii.size() / 2 * numbers * row_size, sizeof(float));
+    mcdem::Field<Seen> out(device(), radii.size() / 2 * numbers, sizeof(float));
     replica.write(&constants);
     material.write(kept.data());
     in.write(radii.data());
     mcdem::Kernel<mcdem::Field<mcdem::Constants>, mcdem::Field<mcdem::Materials>, mcdem::Field<Radii>,
                   mcdem::Field<Seen>>(device(), with_kernel(pair_kernel, kernels), "see_pairs", 1)(
         radii.size() / 2, replica, material, in, out);
-    std::vector<float> rows(radii.size() / 2 * numbers * row_size), found;
-    out.read(rows.data());
-    for (std::size_t place = 0; place < rows.size(); place += row_size) found.push_back(rows[place]);
+    std::vector<float> found(radii.size() / 2 * numbers);
+    out.read(found.data());
     return found;
 }
 

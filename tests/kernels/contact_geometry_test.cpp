@@ -1,4 +1,4 @@
-// What the slots of one grain see of its neighbours and walls, against geometry in double precision.
+// What the slots of a grain see of its neighbours and walls, against geometry in double precision.
 #include "kernels/test_kernel.h"
 
 namespace reference {
@@ -13,23 +13,20 @@ struct Seen {
 };
 
 /// Grain 0 of `motion` (position, radius, velocity, scatter, spin, species), and the partners in its slots.
-std::vector<Seen> seen(const mcdem::f32::Replica& replica, const std::vector<float>& motion,
+std::vector<Seen> seen(const mcdem::f32::Replica& replica, std::vector<float> motion,
                        std::vector<int> partner, const KernelBuild& kernels) {
     const cl::Program program = with_kernel(R"(
 kernel void see(global const Replica* replica, global const Motion* motion, global const int* partner,
                 global real* out) {
-    const Grain at = {replica, 0, 0, 0, 0, plate_position(replica, 0), R(0), motion[0]};
-    const Neighbours seen = see_neighbours(at, replica->effects, motion, LOAD_LANES(partner, 0));
-    STORE_LANES(seen.normal.x, out, 0);
-    STORE_LANES(seen.normal.y, out + SLOTS, 0);
-    STORE_LANES(seen.normal.z, out + 2 * SLOTS, 0);
-    STORE_LANES(seen.distance, out + 3 * SLOTS, 0);
-    STORE_LANES(seen.radius, out + 4 * SLOTS, 0);
-    STORE_LANES(WHERE(seen.wall, R(1), R(0)), out + 5 * SLOTS, 0);
-    STORE_LANES(seen.velocity.x, out + 6 * SLOTS, 0);
-    STORE_LANES(seen.velocity.y, out + 7 * SLOTS, 0);
-    STORE_LANES(seen.velocity.z, out + 8 * SLOTS, 0);
-    STORE_LANES(WHERE(seen.occupied, R(1), R(0)), out + 9 * SLOTS, 0);
+    const Grain at = grain_at(replica, 0, 0, 0, 0, load_motion(motion, (slots)(0)));
+    for (int v = 0; v < SLOTS_HERE; ++v) {
+        const int slot = SLOT(v);
+        const Neighbours seen = see_neighbours(at, replica->effects, motion, (slots)(partner[slot]));
+        const lanes wall = WHERE(seen.wall, R(1), R(0)), occupied = WHERE(seen.occupied, R(1), R(0));
+        const lanes all[] = {seen.normal.x, seen.normal.y, seen.normal.z, seen.distance, seen.radius, wall,
+                             seen.velocity.x, seen.velocity.y, seen.velocity.z, occupied};
+        for (int k = 0; k < 10; ++k) out[k * SLOTS + slot] = LANE(real, all[k], slot);
+    }
 })",
                                             kernels);
     struct Replicas;
@@ -37,6 +34,7 @@ kernel void see(global const Replica* replica, global const Motion* motion, glob
     struct Partner;
     struct Out;
     partner.resize(slots, NO_PARTNER);
+    motion.resize(16 * 12);  // a CPU's work-item has 16 grains
     mcdem::Field<Replicas> replicas(device(), 1, sizeof replica);
     mcdem::Field<Grains> grains(device(), motion.size() / 12, 12 * sizeof(float));
     mcdem::Field<Partner> partners(device(), slots, sizeof(int));
@@ -45,7 +43,7 @@ kernel void see(global const Replica* replica, global const Motion* motion, glob
     grains.write(motion.data());
     partners.write(partner.data());
     mcdem::Kernel<mcdem::Field<Replicas>, mcdem::Field<Grains>, mcdem::Field<Partner>, mcdem::Field<Out>>(
-        device(), program, "see", kernels.lanes == 16 ? 1 : slots)(1, replicas, grains, partners, out);
+        device(), program, "see", kernels.lanes > 1 ? 1 : slots)(1, replicas, grains, partners, out);
     Eigen::Matrix<float, slots, written> numbers;
     out.read(numbers.data());
     std::vector<Seen> all;

@@ -4,47 +4,54 @@
 namespace reference {
 namespace {
 
-constexpr int rows = 5, slots = 16;
+constexpr int rows = 5, slots = 16, grains = 48, first = 16, number = 16;
 
-/// Stores 1, 2, .. into all rows, loads them again, and returns springs, deepest and relaxed of slot 3 of
-/// grain 1, then the first number of each of its rows in memory.
+/// Stores 1000 grain + 100 row + slot for grains 16 to 31, loads it again, and returns springs, deepest and
+/// relaxed of slot 3 of the sixth, then the second number of each row of the fourth in memory.
 std::vector<float> remembered(const mcdem::f32::Replica& replica) {
     const KernelBuild cpu_like = [] {
         const KernelBuild kernels = build(Precision::single_precision);
-        return kernels.lanes == 16 ? kernels : other_way(kernels);
+        return kernels.lanes > 1 ? kernels : other_way(kernels);
     }();
     const cl::Program program = with_kernel(R"(
-kernel void remember(global const Replica* replica, global real* memory, global real* out) {
-    global real* own = memory_of(replica, memory, 1 * SLOTS);
+kernel void store_and_load(global const Replica* replica, global real* memory, global real* out) {
+    Moving now = {ZERO3, R(0), ZERO3, R(0), ZERO3, R(0)};
+    const Grain at = grain_at(replica, 0, 0, 16, 0, now);
     const int effects = replica->effects;
-    const lanes numbers = convert_float16(SLOT_NUMBERS(0));
-    const Memory stored = {{numbers + 100, numbers + 200, numbers + 300}, numbers + 400, numbers + 500};
-    store_memory(replica, effects, stored, own, 0);
-    const Memory loaded = load_memory(replica, effects, own, 0);
-    out[0] = loaded.spring.x.s3, out[1] = loaded.spring.y.s3, out[2] = loaded.spring.z.s3;
-    out[3] = loaded.deepest.s3, out[4] = loaded.relaxed.s3;
+    const lanes grain = convert_float16(LANE_NUMBERS) * 1000;
+    Memories all;
+    for (int v = 0; v < SLOTS; ++v) {
+        const lanes number = grain + R(v);
+        const Memory stored = {{number + 100, number + 200, number + 300}, number + 400, number + 500};
+        remember(replica, effects, stored, &all, v);
+    }
+    store_memories(at, &all, memory);
+    Memories again;
+    load_memories(at, memory, &again);
+    const Memory loaded = recall(replica, effects, &again, 3);
+    out[0] = loaded.spring.x.s5, out[1] = loaded.spring.y.s5, out[2] = loaded.spring.z.s5;
+    out[3] = loaded.deepest.s5, out[4] = loaded.relaxed.s5;
 })",
                                             cpu_like);
     struct Replicas;
     struct Rows;
     struct Out;
     mcdem::Field<Replicas> of(device(), 1, sizeof replica);
-    mcdem::Field<Rows> memory(device(), 2 * rows * slots, sizeof(float));
+    mcdem::Field<Rows> memory(device(), grains * rows * slots, sizeof(float));
     mcdem::Field<Out> out(device(), 5, sizeof(float));
     of.write(&replica);
-    std::vector<float> in_memory(2 * rows * slots, -1);
+    std::vector<float> in_memory(grains * rows * slots, -1);
     memory.write(in_memory.data());
     mcdem::Kernel<mcdem::Field<Replicas>, mcdem::Field<Rows>, mcdem::Field<Out>>(
-        device(), program, "remember", 1)(1, of, memory, out);
+        device(), program, "store_and_load", 1)(1, of, memory, out);
     std::vector<float> found(5);
     out.read(found.data());
     memory.read(in_memory.data());
     for (int row = 0; row < replica.memory_rows; ++row)
-        found.push_back(in_memory[static_cast<std::size_t>((replica.memory_rows + row) * slots)]);
-    const auto others = static_cast<std::size_t>(replica.memory_rows * slots);
-    EXPECT_EQ(std::vector<float>(in_memory.begin(), in_memory.begin() + static_cast<std::ptrdiff_t>(others)),
-              std::vector<float>(others, -1))
-        << "another grain's memory was written";
+        found.push_back(
+            in_memory[static_cast<std::size_t>(((first + 3) * replica.memory_rows + row) * slots + 1)]);
+    const auto written = std::ranges::count_if(in_memory, [](float value) { return value != -1; });
+    EXPECT_EQ(written, number * replica.memory_rows * slots) << "another grain's memory was written";
     return found;
 }
 
@@ -55,7 +62,8 @@ TEST(ContactMemory, KeepsEverythingWhereAllEffectsAreOn) {
     replica.deepest_row = 3;
     replica.relaxed_row = 4;
     replica.effects = EFFECT_PLASTICITY | EFFECT_VISCOELASTICITY;
-    EXPECT_EQ(remembered(replica), (std::vector<float>{103, 203, 303, 403, 503, 100, 200, 300, 400, 500}));
+    EXPECT_EQ(remembered(replica),
+              (std::vector<float>{5103, 5203, 5303, 5403, 5503, 3101, 3201, 3301, 3401, 3501}));
 }
 
 TEST(ContactMemory, KeepsOnlyWhatTheReplicaNeeds) {
@@ -63,7 +71,7 @@ TEST(ContactMemory, KeepsOnlyWhatTheReplicaNeeds) {
     replica.memory_rows = 1;
     replica.relaxed_row = 0;
     replica.effects = EFFECT_VISCOELASTICITY;
-    EXPECT_EQ(remembered(replica), (std::vector<float>{0, 0, 0, 0, 503, 500}));
+    EXPECT_EQ(remembered(replica), (std::vector<float>{0, 0, 0, 0, 5503, 3501}));
 }
 
 }  // namespace

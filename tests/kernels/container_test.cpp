@@ -39,7 +39,8 @@ TEST(Container, DeformedAndUndeformedAreInverse) {
         replica, in, 3, 3);
     const auto back = mapped_rows(
         "const Deformation f = deformation(replica, R(0));"
-        "vstore3(undeformed(f, vload3(0, in)), 0, out);",
+        "const lanes3 a = undeformed(f, (lanes3){in[0], in[1], in[2]});"
+        "out[0] = LANE(real, a.x, 0), out[1] = LANE(real, a.y, 1), out[2] = LANE(real, a.z, 2);",
         replica, out, 3, 3);
     for (std::size_t i = 0; i < 50; ++i) {
         EXPECT_LT((row(out, i) - leaning * row(in, i)).norm(), 1e-6);
@@ -92,7 +93,9 @@ TEST(Container, SidesOfABoxAreItsWalls) {
     const std::string text = R"(
         const real4 point = (real4)(in[0], in[1], R(0), R(0));
         for (int wall = 0; wall < 4; ++wall) out[wall] = side_distance(replica, wall, point);
-        out[4] = within_sides(replica, point);)";
+        const mask within = within_sides(replica, (lanes3){in[0], in[1], R(0)});
+        const lanes inside = WHERE(within, R(1), R(0));
+        out[4] = LANE(real, inside, 6);)";
     EXPECT_EQ(mapped_rows(text, replica, {0.5F, 0.25F, 2.5F, 0.75F}, 2, 5),
               (std::vector<float>{0.5F, 1.5F, 0.25F, 0.75F, 1, 2.5F, -0.5F, 0.75F, 0.25F, 0}));
 }
@@ -103,9 +106,12 @@ TEST(Container, SideOfACylinderIsOneCurvedWall) {
     replica.wall_position[1] = replica.wall_position[3] = 2;
     const std::string text = R"(
         const real4 point = (real4)(in[0], in[1], R(0.5), R(0));
-        vstore3(side_foot(replica, point), 0, out);
+        const lanes3 points = {in[0], in[1], R(0.5)}, foot = side_foot(replica, points);
+        const mask within = within_sides(replica, points);
+        const lanes inside = WHERE(within, R(1), R(0)), curved = curved_radius(replica, R(0.75));
+        out[0] = LANE(real, foot.x, 0), out[1] = LANE(real, foot.y, 1), out[2] = LANE(real, foot.z, 2);
         out[3] = side_distance(replica, 0, point), out[4] = isinf(side_distance(replica, 1, point));
-        out[5] = within_sides(replica, point), out[6] = curved_radius(replica, R(0.75));)";
+        out[5] = LANE(real, inside, 3), out[6] = LANE(real, curved, 4);)";
     const auto found = mapped_rows(text, replica, {1.3F, 1.4F, 1, 1, 2, 2}, 2, 7);
     const float expected[] = {1.6F,
                               1.8F,
@@ -133,8 +139,8 @@ TEST(Container, SideOfACylinderIsOneCurvedWall) {
 
 TEST(Container, PeriodicCoordinatesComeIntoTheCell) {
     const std::string text =
-        "out[0] = into_cell(in[0], R(2)), out[1] = nearest_image((lanes)(in[0]), R(2))"
-        "\n#if LANES == 16\n.s0\n#endif\n;";
+        "const lanes image = nearest_image((lanes)(in[0]), R(2));\n"
+        "out[0] = into_cell(in[0], R(2)), out[1] = LANE(real, image, 5);";
     EXPECT_EQ(mapped_rows(text, {}, {-0.5F, 0.5F, 1.5F, 4.25F, -3.25F}, 1, 2),
               (std::vector<float>{1.5F, -0.5F, 0.5F, 0.5F, 1.5F, -0.5F, 0.25F, 0.25F, 0.75F, 0.75F}));
 }

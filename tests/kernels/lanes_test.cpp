@@ -1,22 +1,23 @@
-// Vectors of contacts: what is read from scattered places, chosen and multiplied, slot by slot.
+// Numbers side by side: what is read from and written to scattered places, chosen and multiplied, lane by
+// lane.
 #include "kernels/test_kernel.h"
 
 namespace reference {
 namespace {
 
-constexpr int slots = 16, grains = 64;
+constexpr int numbers = 64, grains = 64;
 
-/// What a kernel of one work-group for each grain writes, a row of 16 numbers: `text` has the 16 numbers `x`
-/// and the integers `index` of its grain, and sets `result`.
-std::vector<float> by_slots(const std::string& text, const std::vector<float>& x,
+/// What a kernel with a work-item for LANES numbers writes: `text` has the numbers `x` and the integers
+/// `index` of its lanes, and sets `result`.
+std::vector<float> by_lanes(const std::string& text, const std::vector<float>& x,
                             const std::vector<int>& index, const KernelBuild& kernels) {
     const cl::Program program = with_kernel(
-        "kernel void by_slots(global const real* all_x, global const int* all_index, "
-        "global const real4* field, global real* out) {\n"
-        "const size_t row = get_group_id(0) * 16;\n"
-        "const lanes x = LOAD_LANES(all_x + row, 0);\n"
-        "const slots index = LOAD_LANES(all_index + row, 0);\nlanes result;\n" +
-            text + "\nSTORE_LANES(result, out + row, 0);\n}",
+        "kernel void by_lanes(global const real* all_x, global const int* all_index, "
+        "global real4* field, global real* out) {\n"
+        "const size_t first = get_group_id(0) * LANES;\n"
+        "const lanes x = LOAD_LANES(all_x + first);\n"
+        "const slots index = LOAD_LANES(all_index + first);\nlanes result;\n" +
+            text + "\nSTORE_LANES(result, out + first);\n}",
         kernels);
     struct X;
     struct Index;
@@ -32,7 +33,8 @@ std::vector<float> by_slots(const std::string& text, const std::vector<float>& x
     at.write(index.data());
     rows.write(field.data());
     mcdem::Kernel<mcdem::Field<X>, mcdem::Field<Index>, mcdem::Field<Rows>, mcdem::Field<Out>>(
-        device(), program, "by_slots", kernels.lanes == 16 ? 1 : slots)(x.size() / slots, from, at, rows, to);
+        device(), program, "by_lanes", 1)(x.size() / static_cast<std::size_t>(kernels.lanes), from, at, rows,
+                                          to);
     std::vector<float> out(x.size());
     to.read(out.data());
     return out;
@@ -43,17 +45,17 @@ protected:
     Lanes() {
         if (GetParam()) kernels = other_way(kernels);
         Uniform uniform(8);
-        for (int i = 0; i < 4 * slots; ++i) {
+        for (int i = 0; i < numbers; ++i) {
             x.push_back(static_cast<float>(std::exp(uniform(-6, 6))));
             index.push_back(static_cast<int>(uniform(0, grains)));
         }
     }
-    void expect_slots(const std::string& text, const std::function<double(double, int)>& expected,
+    void expect_lanes(const std::string& text, const std::function<double(double, int)>& expected,
                       double tolerance = 0) const {
-        const auto found = by_slots(text, x, index, kernels);
+        const auto found = by_lanes(text, x, index, kernels);
         for (std::size_t i = 0; i < found.size(); ++i)
             EXPECT_NEAR(found[i], expected(x[i], index[i]), tolerance * std::abs(expected(x[i], index[i])))
-                << text << ", slot " << i;
+                << text << ", number " << i;
     }
     KernelBuild kernels = build(Precision::single_precision);
     std::vector<float> x;
@@ -63,43 +65,62 @@ protected:
 TEST_P(Lanes, GatherReadsEveryComponentOfTheRowsAsked) {
     const char* const component[] = {"x", "y", "z", "w"};
     for (int c = 0; c < 4; ++c)
-        expect_slots(std::string("result = gather4(field, index).") + component[c] + ";",
+        expect_lanes(std::string("result = gather4(field, index).") + component[c] + ";",
                      [c](double, int i) { return 4 * i + c; });
-    expect_slots("result = gather((global const real*)field, index);", [](double, int i) { return i; });
+    expect_lanes("result = gather((global const real*)field, index);", [](double, int i) { return i; });
 }
 
-TEST_P(Lanes, WhereChoosesSlotBySlot) {
-    expect_slots("result = WHERE(AS_MASK(index < 20), x, -x);",
+TEST_P(Lanes, WhereChoosesLaneByLane) {
+    expect_lanes("result = WHERE(AS_MASK(index < 20), x, -x);",
                  [](double number, int i) { return i < 20 ? number : -number; });
-    expect_slots("result = where3(AS_MASK(index < 20), (lanes3){x, x, x}, ZERO3).z;",
+    expect_lanes("result = where3(AS_MASK(index < 20), (lanes3){x, x, x}, ZERO3).z;",
                  [](double number, int i) { return i < 20 ? number : 0; });
 }
 
-// Of a grain on a CPU, of a work-item's own slot on a GPU.
-TEST_P(Lanes, AnyTellsWhetherSomeSlotIs) {
-    x.assign(slots, 0);
-    for (int slot = 0; slot <= slots; ++slot) {  // the last: none
-        index.assign(slots, 0);
-        std::vector<float> expected(slots, kernels.lanes == 16 && slot < slots ? 1.0F : 0.0F);
-        if (slot < slots)
-            index[static_cast<std::size_t>(slot)] = expected[static_cast<std::size_t>(slot)] = 1;
-        EXPECT_EQ(by_slots("result = ANY(AS_MASK(index == 1)) ? R(1) : R(0);", x, index, kernels), expected);
+TEST_P(Lanes, ScatterWritesEveryComponentOfTheRowsAsked) {
+    const char* const component[] = {"x", "y", "z", "w"};
+    for (int c = 0; c < 4; ++c)  // rows in reverse, each read by the lane that has written it
+        expect_lanes(
+            std::string("const slots row = 63 - ((int)first + LANE_NUMBERS);\n"
+                        "scatter4((lanes4){x, R(2) * x, R(3) * x, R(4) * x}, field, row);\n"
+                        "result = gather4(field, row).") +
+                component[c] + ";",
+            [c](double number, int) { return (c + 1) * number; }, 1e-7);
+}
+
+TEST_P(Lanes, RowsOfSlotsComeSideBySide) {
+    const auto found = by_lanes(
+        "lanes row[SLOTS_HERE];\nload_row((global const real*)field, 16, 16, row);\n"
+        "result = row[SLOTS_HERE > 1 ? 6 : 0];",
+        x, index, kernels);
+    if (kernels.lanes == 1) return expect_lanes("result = x;", [](double number, int) { return number; });
+    for (std::size_t lane = 0; lane < 16; ++lane) EXPECT_EQ(found[lane], 16 * lane + 6);
+}
+
+// Of all lanes on a CPU, of the one on a GPU.
+TEST_P(Lanes, AnyTellsWhetherSomeLaneIs) {
+    for (int one = 0; one <= 16; ++one) {  // the last: none
+        x.assign(16, 0);
+        index.assign(16, 0);
+        std::vector<float> expected(16, kernels.lanes > 1 && one < 16 ? 1.0F : 0.0F);
+        if (one < 16) index[static_cast<std::size_t>(one)] = expected[static_cast<std::size_t>(one)] = 1;
+        EXPECT_EQ(by_lanes("result = ANY(AS_MASK(index == 1)) ? R(1) : R(0);", x, index, kernels), expected);
     }
 }
 
 // In float an estimate and a step of Newton's method: 3e-7.
 TEST_P(Lanes, InverseRootIsPrecise) {
-    expect_slots(
+    expect_lanes(
         "result = inverse_root(x);", [](double number, int) { return 1 / std::sqrt(number); }, 3e-7);
 }
 
 TEST_P(Lanes, ProductsOfVectorsAreThoseOfGeometry) {
     const std::string vectors = "const lanes3 a = {x, R(2) * x, R(0.5)}, b = {R(3), x, R(1)};\n";
-    expect_slots(
+    expect_lanes(
         vectors + "result = dot3(a, b);", [](double n, int) { return 3 * n + 2 * n * n + 0.5; }, 1e-6);
-    expect_slots(
+    expect_lanes(
         vectors + "result = cross3(a, b).z;", [](double n, int) { return n * n - 6 * n; }, 1e-4);
-    expect_slots(
+    expect_lanes(
         vectors + "result = add_scaled3(a, x, b).y;", [](double n, int) { return 2 * n + n * n; }, 1e-6);
 }
 

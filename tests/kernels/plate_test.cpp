@@ -18,8 +18,8 @@ TEST(Plate, FootAndDistanceAreThoseOfAPlane) {
         for (const double high : {0.2, 0.1, 0.14}) points.push_back(static_cast<float>(uniform(0, high)));
     const auto found = mapped_rows(R"(
         const real4 point = (real4)(in[0], in[1], in[2], R(0.01));
-        const real3 foot = plate_foot(replica, R(0.15), point);
-        vstore3(foot, 0, out);
+        const lanes3 foot = plate_foot(replica, R(0.15), (lanes3){in[0], in[1], in[2]});
+        out[0] = LANE(real, foot.x, 0), out[1] = LANE(real, foot.y, 1), out[2] = LANE(real, foot.z, 2);
         out[3] = plate_distance(replica, R(0.15), point);)",
                                    replica, points, 3, 4);
     const Vec3 up = Vec3(-0.03, 0.05, 1).normalized(), middle(0.1, 0.05, plate_z);

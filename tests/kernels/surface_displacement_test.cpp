@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "core/names.h"
@@ -55,6 +56,37 @@ TEST(SurfaceDisplacement, FollowsTheReferenceAtEverySlot) {
                 EXPECT_LT(worst_displacement(build(precision), start), tolerance(precision, model, nu))
                     << name(model) << " nu " << nu << ' ' << name(precision);
         }
+    }
+}
+
+/// Puts something that is not a number where no contact is.
+void spoil_empty_slots(std::map<std::string, std::vector<std::byte>>& saved) {
+    const auto partner = saved_values<int>(saved, "partner");
+    for (const char* const name : {"displacement", "displacement_history"}) {
+        auto values = saved_values<float>(saved, name);
+        const std::size_t copies = values.size() / partner.size();
+        for (std::size_t slot = 0; slot < partner.size(); ++slot)
+            for (std::size_t copy = 0; copy < copies && partner[slot] == NO_PARTNER; ++copy)
+                values[copy * (values.size() / copies) + slot] = std::numeric_limits<float>::quiet_NaN();
+        std::memcpy(saved.at(name).data(), values.data(), saved.at(name).size());
+    }
+}
+
+// Vectors of grains go through the empty slots of those that have fewer neighbours.
+TEST(SurfaceDisplacement, NothingComesOfEmptySlots) {
+    for (ContactModel model : {ContactModel::mc_dem, ContactModel::elastic_sphere}) {
+        const Start start = jittered_lattice(test_replica(model), 65, 3);
+        const KernelBuild kernels = build(Precision::single_precision);
+        Batch clean(kernels, start), spoiled(kernels, start);
+        clean.advance(6);
+        auto saved = clean.engine().save();
+        spoil_empty_slots(saved);
+        spoiled.engine().restore(saved);
+        clean.advance(9);
+        spoiled.advance(9);
+        EXPECT_EQ(saved_values<float>(clean.engine().save(), "motion"),
+                  saved_values<float>(spoiled.engine().save(), "motion"))
+            << name(model);
     }
 }
 

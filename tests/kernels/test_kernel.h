@@ -8,9 +8,10 @@
 
 namespace reference {
 
-/// In single precision.
+/// In single precision. `text` may use LANE(type, value, i): one number of a vector, i counted around it.
 inline cl::Program with_kernel(const std::string& text, const KernelBuild& kernels) {
-    cl::Program program(device().context(), mcdem::program_text() + text);
+    const std::string lane = "\n#define LANE(type, value, i) (((const type*)&(value))[(i) % LANES])\n";
+    cl::Program program(device().context(), mcdem::program_text() + lane + text);
     program.build(
         {device().handle()},
         fmt::format("-w -cl-std=CL1.2 -DMCDEM_DOUBLE=0 -DLANES={} -DSLOTS={} -DBLOCK={} -DLIST_ITEMS=16",

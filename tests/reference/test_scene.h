@@ -44,7 +44,7 @@ inline KernelBuild build(Precision precision, int slots = 16) {
 
 /// The other way of treating contacts: the GPU's on a CPU, the CPU's on a GPU.
 inline KernelBuild other_way(KernelBuild build) {
-    build.lanes = build.lanes == 16 ? 1 : 16;
+    build.lanes = build.lanes > 1 ? 1 : 16;
     return build;
 }
 
