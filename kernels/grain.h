@@ -1,5 +1,5 @@
 /* Which grains a work-item works for, and sums over the slots of a grain, on both kinds of device. Opens
-   every kernel that treats contacts side by side; declares block, first, table and scratch. */
+   every kernel that goes through contacts; declares block, first, table and scratch. */
 #define SLOT_SUMS 7            /* of a step: force, torque, slots in trouble */
 #define SHARED_ROW (SLOTS + 1) /* odd, so that rows begin in different banks of local memory */
 #if LANES == 16
