@@ -37,6 +37,7 @@ void without_nuisances(Evidence& evidence) { evidence.nuisances.clear(); }
 void without_pairing(Evidence& evidence) {
     Library& library = evidence.library;
     const int packings = 1 + *std::ranges::max_element(library.packing);
+    evidence.library_is_own = true;  // the baseline is not of the experiment's packing
     evidence.baseline = Eigen::MatrixXd::Zero(packings, library.baseline.cols());
     std::vector<int> replicates(static_cast<std::size_t>(packings), 0);
     for (const int packing : library.packing) ++replicates[static_cast<std::size_t>(packing)];

@@ -24,6 +24,7 @@ bool has(const std::vector<Signature>& list, const std::string& name) {
 Evidence evidence_of(const json& j, const Library& library) {
     Evidence evidence;
     evidence.library = library;
+    evidence.library_is_own = false;  // a challenge has one library for all
     evidence.seed = j.at("seed");
     evidence.observed = numbers_of(j.at("observed"));
     const auto cells = library.baseline.cols();

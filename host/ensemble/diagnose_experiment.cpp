@@ -133,6 +133,7 @@ private:
     /// Runs of the unchanged scene, one packing after the other.
     void take_baseline(Evidence& evidence, const Eigen::MatrixXd& runs) {
         if (library_is_own_) evidence.library.baseline = runs;
+        evidence.library_is_own = library_is_own_;
         evidence.packings.clear();
         for (std::size_t p = 0; p < experiments_.size(); ++p)
             evidence.packings.push_back(

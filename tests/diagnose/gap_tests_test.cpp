@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "diagnose/synthetic_evidence.h"
@@ -78,6 +79,76 @@ TEST(GapTests, PIsUniformWithTheFewestReplicates) {
         EXPECT_NEAR(omnibus[l], levels[l], 3.5 * error) << levels[l];
         EXPECT_NEAR(directed[l], levels[l], 3.5 * error) << levels[l];
     }
+}
+
+/// An experiment with eight replicates of its packing, and a library of twelve other packings with four
+/// replicates each. The scatter of a packing is one times a log-normal factor; `spread` is the standard
+/// deviation of the factor's logarithm. `own`: the factor of the experiment's packing; 0: drawn like the
+/// others.
+Evidence other_packings(SyntheticWorld& world, double spread, double own, double planted = 0) {
+    constexpr int packings = 12, replicates = 4, own_replicates = 8;
+    const auto factor = [&] { return std::exp(spread * world.random().normal()); };
+    Evidence evidence;
+    evidence.library_is_own = false;
+    evidence.library.grid = synthetic_grid;
+    const Eigen::Index cells = world.noise().size();
+    evidence.library.baseline.resize(packings * replicates, cells);
+    for (int p = 0; p < packings; ++p) {
+        const Eigen::VectorXd centre = world.noise(3);
+        const double scale = factor();
+        for (int r = 0; r < replicates; ++r) {
+            evidence.library.baseline.row(p * replicates + r) = (centre + world.noise(scale)).transpose();
+            evidence.library.packing.push_back(p);
+        }
+    }
+    const Eigen::VectorXd centre = world.noise(3);
+    const double scale = own > 0 ? own : factor();
+    evidence.baseline.resize(own_replicates, cells);
+    for (int r = 0; r < own_replicates; ++r)
+        evidence.baseline.row(r) = (centre + world.noise(scale)).transpose();
+    evidence.observed = centre + world.noise(scale);
+    world.add_effect(evidence, "adhesion", world.pattern(0.5));
+    world.add_effect(evidence, "friction", world.pattern(0.5));
+    world.add_nuisance(evidence, "modulus", world.pattern(1), 2);
+    evidence.observed += planted * evidence.library.effects[0].linear;
+    evidence.observed += 2 * world.random().normal() * evidence.library.nuisances[0].linear;
+    return evidence;
+}
+
+/// Fractions of 100 such experiments with a gap at p < 0.01 and p < 0.05 (smaller p of the two tests,
+/// doubled).
+std::array<double, 2> gaps_claimed(double spread, double own, double planted = 0) {
+    constexpr int drawn = 100;
+    std::array<double, 2> claimed{};
+    for (int k = 0; k < drawn; ++k) {
+        SyntheticWorld world(20, 900 + static_cast<std::uint64_t>(k));
+        const Evidence evidence = other_packings(world, spread, own, planted);
+        const GapData data = gap_data(evidence);
+        const int replicates = static_cast<int>(evidence.baseline.rows());
+        const GapSpace space(data.noise, replicates, data.cells, data.free);
+        const NullDistribution null(data, replicates, 1);
+        const GapStatistics s = gap_statistics(space, data, data.gap);
+        const double p = 2 * std::min(null.p_value(&GapStatistics::omnibus, s.omnibus),
+                                      null.p_value(&GapStatistics::directed, s.directed));
+        claimed[0] += p < 0.01 ? 1.0 / drawn : 0;
+        claimed[1] += p < 0.05 ? 1.0 / drawn : 0;
+    }
+    return claimed;
+}
+
+// Three standard errors above the nominal levels.
+TEST(GapTests, FalseAlarmsOfPackingsThatScatterDifferently) {
+    const auto [one, five] = gaps_claimed(0.3, 0);
+    EXPECT_LE(one, 0.04);
+    EXPECT_LE(five, 0.115);
+}
+
+TEST(GapTests, NoFalseAlarmsOfAPackingThatScattersMoreThanTheLibrary) {
+    EXPECT_LE(gaps_claimed(0.3, 1.8)[0], 0.04);
+}
+
+TEST(GapTests, PowerForAPackingThatScattersLessThanTheLibrary) {
+    EXPECT_GE(gaps_claimed(0.3, 0.6, 1.2)[0], 0.9);
 }
 
 TEST(GapTests, PowerForWhatIsPlanted) {
@@ -179,7 +250,9 @@ TEST(NullDistribution, QuantileIsTheInverseOfP) {
     world.add_nuisance(evidence, "modulus", world.pattern(1), 2);
     const GapData data = gap_data(evidence);
     const NullDistribution null(data, 24, 1);
-    EXPECT_EQ(null.draws().size(), 3 * 24u);
+    ASSERT_EQ(null.draws().size(), 1u);
+    const std::vector<GapStatistics>& draws = null.draws().begin()->second;
+    EXPECT_EQ(draws.size(), 3 * 24u);
     for (const double p : {0.5, 0.05, 0.001})
         EXPECT_NEAR(null.p_value(&GapStatistics::highest_refitted,
                                  null.quantile(&GapStatistics::highest_refitted, p)),
@@ -187,9 +260,8 @@ TEST(NullDistribution, QuantileIsTheInverseOfP) {
     EXPECT_EQ(null.p_value(&GapStatistics::directed, 0), 1);
     // As many draws lie above the median as below it: 72 draws, 4 sigma.
     const double median = null.quantile(&GapStatistics::omnibus, 0.5);
-    EXPECT_NEAR(
-        std::ranges::count_if(null.draws(), [&](const GapStatistics& s) { return s.omnibus > median; }), 36,
-        17);
+    EXPECT_NEAR(std::ranges::count_if(draws, [&](const GapStatistics& s) { return s.omnibus > median; }), 36,
+                17);
 }
 
 TEST(NullDistribution, DependsOnItsSeedOnly) {
@@ -212,6 +284,24 @@ TEST(Evidence, FoldsKeepPackingsTogether) {
     Evidence single = world.evidence(1, 12);
     const GapData alone = gap_data(single);
     for (std::size_t r = 0; r < 12; ++r) EXPECT_EQ(alone.fold[r], static_cast<int>(r) % 8);
+}
+
+TEST(Evidence, OwnReplicatesArePartOfTheNoiseWhereTheLibraryIsOfOthers) {
+    SyntheticWorld world(20, 5);
+    Evidence evidence = other_packings(world, 0.3, 0);
+    const GapData data = gap_data(evidence);
+    ASSERT_EQ(data.noise.rows(), 48 + 8);
+    const Eigen::RowVectorXd mean = evidence.baseline.colwise().mean();
+    for (int r = 0; r < 8; ++r) {
+        EXPECT_EQ(data.group[48u + static_cast<std::size_t>(r)], own_packing);
+        EXPECT_EQ(data.fold[48u + static_cast<std::size_t>(r)], 8 + r);
+        EXPECT_NEAR(data.noise(48 + r, 3), (evidence.baseline(r, 3) - mean[3]) * std::sqrt(8 / 7.0), 1e-12);
+    }
+    evidence.library_is_own = true;
+    EXPECT_EQ(gap_data(evidence).noise.rows(), 48);
+    evidence.library_is_own = false;
+    evidence.baseline.conservativeResize(3, Eigen::NoChange);  // too few to say anything
+    EXPECT_EQ(gap_data(evidence).noise.rows(), 48);
 }
 
 TEST(Evidence, GapIsObservedLessTheBaselinesMean) {

@@ -30,21 +30,22 @@ Eigen::VectorXd column_means(const Eigen::MatrixXd& rows) {
     return mean;
 }
 
+constexpr int max_folds = 8;
+
 /// Replicates of one packing are correlated through their mean. They are left out together if there are
 /// enough packings.
 std::vector<int> folds_of(const std::vector<int>& packing) {
-    constexpr int most = 8;
     const int packings = 1 + *std::ranges::max_element(packing);
     std::vector<int> fold;
     for (std::size_t r = 0; r < packing.size(); ++r)
-        fold.push_back((packings >= most ? packing[r] : static_cast<int>(r)) % most);
+        fold.push_back((packings >= max_folds ? packing[r] : static_cast<int>(r)) % max_folds);
     return fold;
 }
 
 /// Fraction of the known cells that a signature must have. Otherwise its runs failed, and using it would
 /// exclude the missing cells.
 constexpr double enough_cells = 0.5;
-constexpr std::size_t min_replicates = 8;
+constexpr std::size_t min_replicates = 8, min_own_replicates = 4;
 
 std::vector<Eigen::Index> rows_with_numbers(const Eigen::MatrixXd& rows) {
     std::vector<Eigen::Index> list;
@@ -87,6 +88,24 @@ void leave_out_signatures(const Evidence& evidence, const std::vector<Signature>
         notes.push_back(w.name + ": its runs failed (the packing runs away with it), so it cannot be tested");
         return true;
     });
+}
+
+/// Adds the replicates of the experiment's own packing to the noise, as a further packing: packings differ in
+/// their scatter. Uses those that have all selected cells. Each is left out separately, because the
+/// experiment is compared when the others are known.
+void add_own_scatter(GapData& data, const Eigen::MatrixXd& baseline) {
+    std::vector<Eigen::Index> whole;
+    for (Eigen::Index r = 0; r < baseline.rows(); ++r)
+        if (baseline.row(r)(data.cells).array().isFinite().all()) whole.push_back(r);
+    if (whole.size() < min_own_replicates) return;
+    const std::vector<int> group(whole.size(), own_packing);
+    Eigen::MatrixXd rows(data.noise.rows() + static_cast<Eigen::Index>(whole.size()), data.noise.cols());
+    rows << data.noise, apart_from_mean(baseline(whole, Eigen::all), group);
+    data.noise = rows;
+    data.group.insert(data.group.end(), group.begin(), group.end());
+    const int first = 1 + *std::ranges::max_element(data.fold);
+    for (std::size_t k = 0; k < whole.size(); ++k)
+        data.fold.push_back(first + static_cast<int>(k) % max_folds);
 }
 
 }  // namespace
@@ -137,6 +156,7 @@ GapData gap_data(const Evidence& evidence) {
     for (const NuisancePrior& prior : evidence.nuisances)
         used.push_back(&find(evidence.library.nuisances, prior.name));
     s.cells = usable_cells(evidence.library.baseline, used, s.gap);
+    if (!evidence.library_is_own) add_own_scatter(s, evidence.baseline);
     for (const NuisancePrior& prior : evidence.nuisances)
         if (prior.name == "modulus" || prior.name == "strain_offset" || prior.name == "gamma")
             s.candidates.push_back({&find(evidence.library.nuisances, prior.name), -farthest * prior.sigma,

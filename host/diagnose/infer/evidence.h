@@ -37,6 +37,7 @@ struct Evidence {
     std::vector<CandidateRange> candidates;  ///< all of library.effects
     std::vector<NuisancePrior> nuisances;    ///< all of library.nuisances
     std::uint64_t seed = 1;                  ///< for all random draws
+    bool library_is_own = true;              ///< made on the experiment's own packings
     /// For several packings, whose means (take_means) are observed and baseline. Empty: a single packing.
     std::vector<PackingEvidence> packings = {};
     int packing_count() const { return std::max(1, static_cast<int>(packings.size())); }
@@ -53,6 +54,9 @@ Eigen::MatrixXd mean_over_packings(const Eigen::MatrixXd& rows, int packings);
 /// without a signature in most of the otherwise known cells. Returns what was left out and why. Throws
 /// InputError if too few replicates remain.
 std::vector<std::string> leave_out_failures(Evidence& evidence);
+
+/// Group of the replicates of the experiment's own packing if the library is made on other packings.
+constexpr int own_packing = -1;
 
 /// The evidence on selected cells, with all derived quantities that do not depend on the observation.
 struct GapData {

@@ -62,26 +62,49 @@ private:
     std::vector<Eigen::Index> kept_, out_;
 };
 
+using PackingDraws = std::map<int, std::vector<GapStatistics>>;
+
 /// The cube root of a statistic is nearly normal (Wilson & Hilferty 1931). Its mean and variance are
-/// estimated from few replicates, so a further replicate follows Student's t.
+/// estimated from few replicates, so a further replicate follows Student's t. Packings differ in both. The
+/// mean is that of the first packing, the experiment's own if it is known. The variance is pooled over the
+/// packings; for the experiment's own it is known no better than from that packing's replicates.
 struct Predicted {
     double mean = 0, sigma = 0;
-    boost::math::students_t_distribution<> t;
+    double own_degrees = 0, pooled_degrees = 0;  ///< of freedom
 
-    double complement_at(double value) const { return cdf(complement(t, (std::cbrt(value) - mean) / sigma)); }
+    double complement_at(double value, double degrees) const {
+        const boost::math::students_t_distribution<> t(degrees);
+        return value > 0 ? cdf(complement(t, (std::cbrt(value) - mean) / sigma)) : 1;
+    }
     double quantile(double p) const {
+        const boost::math::students_t_distribution<> t(own_degrees);
         return std::pow(std::max(0.0, mean + sigma * boost::math::quantile(complement(t, p))), 3);
     }
 };
 
-Predicted predicted(const std::vector<GapStatistics>& draws, double GapStatistics::*statistic,
-                    int replicates) {
-    const double count = static_cast<double>(draws.size()), n = replicates;
-    double mean = 0, square = 0;
-    for (const GapStatistics& draw : draws) mean += std::cbrt(draw.*statistic) / count;
-    for (const GapStatistics& draw : draws) square += std::pow(std::cbrt(draw.*statistic) - mean, 2) / count;
-    const double variance = std::max(square * n / (n - 1), 1e-12 * mean * mean);
-    return {mean, std::sqrt(variance * (1 + 1 / n)), boost::math::students_t_distribution<>(n - 1)};
+double replicates_of(const std::vector<GapStatistics>& draws) {
+    return static_cast<double>(draws.size()) / draws_a_replicate;
+}
+
+double mean_root(const std::vector<GapStatistics>& draws, double GapStatistics::*statistic) {
+    double mean = 0;
+    for (const GapStatistics& draw : draws)
+        mean += std::cbrt(draw.*statistic) / static_cast<double>(draws.size());
+    return mean;
+}
+
+Predicted predicted(const PackingDraws& draws, double GapStatistics::*statistic) {
+    const std::vector<GapStatistics>& own = draws.begin()->second;
+    const double mean = mean_root(own, statistic), n = replicates_of(own);
+    double squares = 0, degrees = 0;
+    for (const auto& [_, of_packing] : draws) {
+        const double centre = mean_root(of_packing, statistic);
+        for (const GapStatistics& draw : of_packing)
+            squares += std::pow(std::cbrt(draw.*statistic) - centre, 2) / draws_a_replicate;
+        degrees += replicates_of(of_packing) - 1;
+    }
+    const double variance = std::max(squares / degrees, 1e-12 * mean * mean);
+    return {mean, std::sqrt(variance * (1 + 1 / n)), n - 1, degrees};
 }
 
 /// Statistics are larger if fewer replicates determine the covariance. Scales those of the draws by the ratio
@@ -156,6 +179,7 @@ double highest_pattern(const GapSpace& space, const Eigen::VectorXd& gap) {
 NullDistribution::NullDistribution(const GapData& data, int mean_of, std::uint64_t seed) {
     Random random(seed, Stream::null_draws);
     const double both = std::sqrt(1 + (mean_of > 0 ? 1.0 / mean_of : 0));
+    const bool own_known = std::ranges::find(data.group, own_packing) != data.group.end();
     const std::set<int> folds(data.fold.begin(), data.fold.end());
     std::vector<GapStatistics> observed;
     for (const int fold : folds) {
@@ -167,33 +191,39 @@ NullDistribution::NullDistribution(const GapData& data, int mean_of, std::uint64
                 Eigen::VectorXd gap = both * left_out.row(r);
                 for (const FreeParameter& parameter : data.free)
                     gap += parameter.sigma * random.normal() * parameter.direction;
-                draws_.push_back(gap_statistics(space, data, gap));
+                const int packing = own_known ? data.group[static_cast<std::size_t>(r)] : 0;
+                draws_[packing].push_back(gap_statistics(space, data, gap));
             }
     }
     const GapSpace whole(data.noise, mean_of, data.cells, data.free);
-    take_to_scale(draws_, observed, gap_statistics(whole, data, data.gap));
+    const GapStatistics all = gap_statistics(whole, data, data.gap);
+    for (auto& [_, draws] : draws_) take_to_scale(draws, observed, all);
 }
 
 double NullDistribution::p_value(double GapStatistics::*statistic, double value) const {
-    return value > 0 ? predicted(draws_, statistic, replicates()).complement_at(value) : 1;
+    const Predicted root = predicted(draws_, statistic);
+    return root.complement_at(value, root.own_degrees);
 }
 
 double NullDistribution::mean(double GapStatistics::*statistic) const {
+    const std::vector<GapStatistics>& own = draws_.begin()->second;
     double sum = 0;
-    for (const GapStatistics& draw : draws_) sum += draw.*statistic;
-    return sum / static_cast<double>(draws_.size());
+    for (const GapStatistics& draw : own) sum += draw.*statistic;
+    return sum / static_cast<double>(own.size());
 }
 
-int NullDistribution::replicates() const { return static_cast<int>(draws_.size()) / draws_a_replicate; }
-
 double NullDistribution::misfit_p(const GapSpace& space, const Eigen::VectorXd& left) const {
-    const double together = p_value(&GapStatistics::remainder, space.whiten(left).squaredNorm());
-    const double pattern = p_value(&GapStatistics::pattern_left, highest_pattern(space, left));
+    const auto p = [&](double GapStatistics::*statistic, double value) {
+        const Predicted root = predicted(draws_, statistic);
+        return root.complement_at(value, root.pooled_degrees);
+    };
+    const double together = p(&GapStatistics::remainder, space.whiten(left).squaredNorm());
+    const double pattern = p(&GapStatistics::pattern_left, highest_pattern(space, left));
     return std::min(1.0, 2 * std::min(together, pattern));
 }
 
 double NullDistribution::quantile(double GapStatistics::*statistic, double p) const {
-    return predicted(draws_, statistic, replicates()).quantile(p);
+    return predicted(draws_, statistic).quantile(p);
 }
 
 }  // namespace mcdem::diagnose

@@ -1,6 +1,8 @@
 // Tests for a gap: an omnibus test (any difference) and a directed test (a difference similar to a known
 // effect), both ranked against replicates that go through the same comparison.
 #pragma once
+#include <map>
+
 #include "diagnose/infer/evidence.h"
 
 namespace mcdem::inline diagnose {
@@ -26,21 +28,22 @@ double highest_pattern(const GapSpace& space, const Eigen::VectorXd& gap);
 class NullDistribution {
 public:
     NullDistribution(const GapData& data, int mean_of, std::uint64_t seed);
-    /// Probability of a statistic at least as large in a further replicate, from Student's t of its cube root
-    /// with the mean and variance of the replicates.
+    /// Probability of a statistic at least as large without a gap, from Student's t of its cube root with the
+    /// mean and the variance of the replicates.
     double p_value(double GapStatistics::*statistic, double value) const;
     /// Probability that the remainder of an explanation is noise: Bonferroni correction for two tests, its
     /// chi-square over all cells (insensitive to gaps in few cells) and its highest pattern (insensitive to
-    /// gaps spread over many cells).
+    /// gaps spread over many cells). Student's t has the degrees of freedom of all replicates, with which
+    /// the limits of the verdict were set.
     double misfit_p(const GapSpace& space, const Eigen::VectorXd& left) const;
     /// The value that a fraction `p` of the null distribution exceeds.
     double quantile(double GapStatistics::*statistic, double p) const;
     double mean(double GapStatistics::*statistic) const;
-    const std::vector<GapStatistics>& draws() const { return draws_; }
+    /// By packing, the experiment's own first. Without replicates of its own: all of them under 0.
+    const std::map<int, std::vector<GapStatistics>>& draws() const { return draws_; }
 
 private:
-    int replicates() const;
-    std::vector<GapStatistics> draws_;
+    std::map<int, std::vector<GapStatistics>> draws_;
 };
 
 }  // namespace mcdem::diagnose
