@@ -134,7 +134,12 @@ void keep_scans(const Run& pending, Checkpoint& checkpoint) {
 bool take_scans(const Checkpoint& checkpoint, const std::filesystem::path& folder, Run& pending) {
     const auto found = checkpoint.fields.find(scans_field);
     if (found == checkpoint.fields.end()) return false;
-    add_scans(found->second, pending.recordings, folder.string() + ": the checkpoint");
+    const std::string where = folder.string() + ": the checkpoint";
+    try {
+        add_scans(found->second, pending.recordings, where);
+    } catch (const InputError& error) {
+        throw InputError(fmt::format("{}; start the run again in another folder", error.what()));
+    }
     return true;
 }
 

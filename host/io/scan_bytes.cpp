@@ -57,9 +57,7 @@ public:
     }
     bool at_end() const { return place_ == bytes_.size(); }
     [[noreturn]] void refuse(const std::string& problem) const {
-        throw InputError(
-            fmt::format("{}: the scans in it cannot be read: {}; start the run again in another folder",
-                        where_, problem));
+        throw InputError(fmt::format("{}: the scans in it cannot be read: {}", where_, problem));
     }
 
 private:
