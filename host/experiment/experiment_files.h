@@ -10,8 +10,8 @@ namespace mcdem::inline experiment {
 /// Contents by file name.
 std::map<std::string, std::string> experiment_files(const Experiment& experiment, Packed packed);
 
-/// Throws InputError with the problems that read_experiment would find if these files, not compressed, were in
-/// the folder.
+/// Throws InputError with the problems that read_experiment would find if these files, not compressed, were
+/// in the folder.
 void expect_readable(const std::filesystem::path& folder, const std::map<std::string, std::string>& texts);
 
 /// SHA-256 and name of each file, in the format of `sha256sum -c`.
