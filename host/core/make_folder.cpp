@@ -12,6 +12,9 @@ namespace mcdem::inline core {
 void make_folder(const std::filesystem::path& folder) {
     std::error_code error;
     std::filesystem::create_directories(folder, error);
+    std::error_code none;
+    if (error && std::filesystem::is_symlink(folder, none) && !std::filesystem::exists(folder, none))
+        throw RunError(folder.string() + ": must be a folder, is a link to nothing that is there: remove it");
     if (error) throw RunError(folder.string() + ": cannot be made: " + error.message());
     expect_writable(folder);
 }

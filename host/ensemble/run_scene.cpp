@@ -22,6 +22,9 @@ double seconds_since(Clock::time_point start) {
 /// Maximum size of scans in memory; beyond it they are written to disk before the next checkpoint is due.
 constexpr std::size_t max_bytes_held = std::size_t{256} << 20;
 
+/// A run with more replicas stops without a segment, because that takes about 6 ms per replica.
+constexpr std::size_t max_replicas_of_quick_segment = 250;
+
 std::size_t bytes_of(const Scan& scan) {
     return sizeof(Scan) + (scan.position.size() + scan.rotation.size()) * sizeof(Vec3) +
            scan.contacts.size() * sizeof(Contact);
@@ -50,8 +53,11 @@ public:
         folder_.drop_segments_from(checkpoint ? checkpoint->segments : 0);
         if (!checkpoint) return;
         if (!checkpoint->warning.empty()) options_.on_warning(checkpoint->warning);
-        folder_.expect_whole_segments();
+        folder_.expect_whole_segments(options_.stop_wanted);
         simulation_.restore(checkpoint->fields);
+        anything_new_ = take_scans(*checkpoint, folder_.path(), pending_);
+        for (const auto& recording : pending_.recordings)
+            for (const Scan& scan : recording.scans) bytes_held_ += bytes_of(scan);
     }
 
     RunSummary run() {
@@ -75,8 +81,8 @@ private:
             stop = options_.stop_wanted();
             if (checkpoint_due() || !more || stop) write_checkpoint();
         }
-        if (!more) folder_.finish();
-        return {more ? RunEnd::interrupted : RunEnd::done, simulation_.grain_steps(), seconds_since(start)};
+        const bool done = !more && !anything_new_ && folder_.finish(options_.stop_wanted);
+        return {done ? RunEnd::done : RunEnd::interrupted, simulation_.grain_steps(), seconds_since(start)};
     }
 
     /// Called when the device or the disk has failed: writes the data recorded since the last checkpoint, if
@@ -107,21 +113,27 @@ private:
         return seconds_since(last_checkpoint_) >= interval || bytes_held_ >= max_bytes_held;
     }
 
+    /// Nothing is written if the run is to stop and a segment takes long.
+    void write_segment() {
+        const auto never = [] { return false; };
+        const bool is_quick = pending_.recordings.size() <= max_replicas_of_quick_segment;
+        if (!folder_.append_segment(pending_, is_quick ? never : options_.stop_wanted)) return;
+        for (auto& recording : pending_.recordings) {
+            recording.scans.clear();
+            recording.failure.reset();
+        }
+        anything_new_ = false;
+        bytes_held_ = 0;
+    }
+
     /// Writes the segment first, then the checkpoint that names it. A crash in between leaves one segment too
     /// many, which resume() discards.
     void write_checkpoint() {
         const auto start = Clock::now();
-        if (anything_new_ || folder_.segments() == 0) {
-            folder_.append_segment(pending_);
-            for (auto& recording : pending_.recordings) {
-                recording.scans.clear();
-                recording.failure.reset();
-            }
-            anything_new_ = false;
-            bytes_held_ = 0;
-        }
-        mcdem::write_checkpoint(folder_.path(),
-                                make_checkpoint(identity_, folder_.segments(), simulation_.save()));
+        if (anything_new_ || folder_.segments() == 0) write_segment();
+        auto checkpoint = make_checkpoint(identity_, folder_.segments(), simulation_.save());
+        if (anything_new_) keep_scans(pending_, checkpoint);
+        mcdem::write_checkpoint(folder_.path(), checkpoint);
         checkpoint_seconds_ = seconds_since(start);
         last_checkpoint_ = Clock::now();
     }
@@ -131,8 +143,8 @@ private:
     RunIdentity identity_;
     ResultFolder folder_;
     Simulation simulation_;
-    Run pending_;  ///< provenance, and the scans since the last segment
-    bool anything_new_ = false;
+    Run pending_;                ///< provenance, and the scans since the last segment
+    bool anything_new_ = false;  ///< in pending_
     std::size_t bytes_held_ = 0;
     Clock::time_point last_checkpoint_;
     double checkpoint_seconds_ = 0;  ///< duration of the last one

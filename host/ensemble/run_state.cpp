@@ -9,6 +9,7 @@
 #include "core/output_file.h"
 #include "core/parameters.h"
 #include "io/result_file.h"
+#include "io/scan_bytes.h"
 #include "scene/read_scene.h"
 
 namespace mcdem::inline ensemble {
@@ -16,6 +17,7 @@ namespace {
 
 const std::string program_field = "program";
 const std::string packings_field = "packings";
+const std::string scans_field = "scans";
 
 std::vector<std::byte> bytes_of(const std::string& text) {
     const auto* begin = reinterpret_cast<const std::byte*>(text.data());
@@ -123,6 +125,22 @@ Checkpoint make_checkpoint(const RunIdentity& identity, int segments,
     checkpoint.fields[program_field] = bytes_of(identity.program);
     checkpoint.fields[packings_field] = bytes_of(identity.packings);
     return checkpoint;
+}
+
+void keep_scans(const Run& pending, Checkpoint& checkpoint) {
+    checkpoint.fields[scans_field] = scan_bytes(pending.recordings);
+}
+
+bool take_scans(const Checkpoint& checkpoint, const std::filesystem::path& folder, Run& pending) {
+    const auto found = checkpoint.fields.find(scans_field);
+    if (found == checkpoint.fields.end()) return false;
+    const std::string where = folder.string() + ": the checkpoint";
+    try {
+        add_scans(found->second, pending.recordings, where);
+    } catch (const InputError& error) {
+        throw InputError(fmt::format("{}; start the run again in another folder", error.what()));
+    }
+    return true;
 }
 
 std::optional<Checkpoint> find_checkpoint(const ResultFolder& folder, const RunIdentity& identity) {

@@ -23,6 +23,12 @@ RunIdentity identity_of(const Device& device, const Scene& scene, const std::str
 Checkpoint make_checkpoint(const RunIdentity& identity, int segments,
                            std::map<std::string, std::vector<std::byte>> fields);
 
+/// Puts the scans that are not in a segment yet into the checkpoint.
+void keep_scans(const Run& pending, Checkpoint& checkpoint);
+
+/// Adds those scans to `pending`; returns whether there are any. Throws InputError if they do not fit.
+bool take_scans(const Checkpoint& checkpoint, const std::filesystem::path& folder, Run& pending);
+
 /// Throws InputError if the folder cannot be used for a run: it contains an experiment, answers to a
 /// challenge, or a plate.csv that is not from a run.
 void expect_room_for_run(const std::filesystem::path& folder);

@@ -27,12 +27,17 @@ namespace fs = std::filesystem;
 constexpr auto too_large =
     "is larger than an experiment's table may be: leave out frames, or split it into several experiments";
 
-/// The bytes of a file, decompressed if necessary. Always ends with a newline, because libfccp otherwise
-/// reads one byte past the end of the last line.
+/// The bytes of a file, decompressed if necessary, or of a text. Always ends with a newline, because libfccp
+/// otherwise reads one byte past the end of the last line.
 class Bytes : public io::ByteSourceBase {
 public:
-    Bytes(const fs::path& file, std::uintmax_t largest, std::string& failure)
-        : path_(file), file_(gzdopen(open_input(file), "rb")), left_(largest), failure_(failure) {
+    Bytes(const fs::path& file, const std::string* text, std::uintmax_t largest, std::string& failure)
+        : path_(file), left_(largest), failure_(failure) {
+        if (text) {
+            text_ = *text;
+            return;
+        }
+        file_ = gzdopen(open_input(file), "rb");
         if (!file_) throw std::bad_alloc();
     }
     ~Bytes() override {
@@ -40,7 +45,7 @@ public:
     }
     int read(char* buffer, int size) override {
         if (ended_) return 0;
-        int count = file_ ? gzread(file_, buffer, static_cast<unsigned>(size)) : 0;
+        int count = file_ ? gzread(file_, buffer, static_cast<unsigned>(size)) : read_text(buffer, size);
         int error = Z_OK;
         const char* reason = file_ ? gzerror(file_, &error) : "";
         if (error == Z_ERRNO) fail_reading(path_.string() + ": cannot be read", errno);
@@ -60,9 +65,15 @@ public:
     }
 
 private:
+    int read_text(char* buffer, int size) {
+        const std::size_t count = text_.copy(buffer, static_cast<std::size_t>(size));
+        text_.remove_prefix(count);
+        return static_cast<int>(count);
+    }
     fs::path path_;
-    gzFile file_;
-    std::uintmax_t left_;  ///< remaining number of bytes
+    gzFile file_ = nullptr;
+    std::string_view text_;  ///< what is left of it
+    std::uintmax_t left_;    ///< remaining number of bytes
     std::string& failure_;
     bool ended_ = false;
 };
@@ -113,8 +124,9 @@ std::optional<fs::path> find_table(const fs::path& folder, const std::string& na
 /// Iteration over the data lines.
 class Table::Lines {
 public:
-    Lines(const fs::path& file, std::uintmax_t largest)
-        : reader_(file.string(), std::unique_ptr<io::ByteSourceBase>(new Bytes(file, largest, failure_))) {}
+    Lines(const fs::path& file, const std::string* text, std::uintmax_t largest)
+        : reader_(file.string(),
+                  std::unique_ptr<io::ByteSourceBase>(new Bytes(file, text, largest, failure_))) {}
     /// Nothing at the end, or if the file cannot be read; failure() gives the reason.
     std::optional<std::string_view> next() {
         try {
@@ -136,12 +148,12 @@ private:
 };
 
 Table::Table(const fs::path& file, const std::vector<std::string>& columns, std::uintmax_t largest,
-             ExperimentProblems& problems, const std::vector<std::string>& optional)
+             ExperimentProblems& problems, const std::vector<std::string>& optional, const std::string* text)
     : name_(file.string()),
       columns_(columns),
       needed_(columns.size()),
       problems_(problems),
-      lines_(std::make_unique<Lines>(file, largest)) {
+      lines_(std::make_unique<Lines>(file, text, largest)) {
     columns_.insert(columns_.end(), optional.begin(), optional.end());
     words_.resize(columns_.size());
     read_header();

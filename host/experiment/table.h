@@ -21,9 +21,11 @@ class Table {
 public:
     /// Opens the file and reads its header, in any order of columns. It must contain all `columns` and may
     /// contain the `optional` ones, which are numbered after them; others are ignored. Reading ends with a
-    /// problem at an invalid byte, and after `largest` uncompressed bytes.
+    /// problem at an invalid byte, and after `largest` uncompressed bytes. With `text` that is read instead
+    /// of the file; it must outlive the table.
     Table(const std::filesystem::path& file, const std::vector<std::string>& columns, std::uintmax_t largest,
-          ExperimentProblems& problems, const std::vector<std::string>& optional = {});
+          ExperimentProblems& problems, const std::vector<std::string>& optional = {},
+          const std::string* text = nullptr);
     ~Table();
     /// Advances to the next row with as many columns as the header. Returns false at the end or if the header
     /// is unusable; a table without rows is a problem. Empty lines and lines that start with # are skipped.

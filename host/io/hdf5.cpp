@@ -381,9 +381,12 @@ const std::map<std::string, std::string>& File::digests() const {
     return *digests_;
 }
 
-void File::expect_whole(const std::string& beginning) const {
-    for (const auto& [object, digest] : digests())
-        if (object.starts_with(beginning)) dataset(object).expect_whole();
+void File::expect_whole(const std::string& beginning, const std::function<void()>& before_each) const {
+    for (const auto& [object, digest] : digests()) {
+        if (!object.starts_with(beginning)) continue;
+        before_each();
+        dataset(object).expect_whole();
+    }
 }
 
 }  // namespace mcdem::io::h5

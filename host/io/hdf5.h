@@ -6,6 +6,7 @@
 
 #include <array>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -142,8 +143,9 @@ public:
     /// By table name. Empty in files without digests.
     const std::map<std::string, std::string>& digests() const;
     /// Reads all tables with a digest whose names begin with `beginning`. Throws InputError if one is missing
-    /// or its digest is wrong.
-    void expect_whole(const std::string& beginning = "/") const;
+    /// or its digest is wrong. `before_each` is called before each table; what it throws is passed on.
+    void expect_whole(
+        const std::string& beginning = "/", const std::function<void()>& before_each = [] {}) const;
     template <class Number>
     void write(const std::string& object, const std::vector<Number>& values, const Extent& row = {});
     void write_texts(const std::string& object, const std::vector<std::string>& texts,

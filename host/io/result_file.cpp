@@ -210,7 +210,9 @@ std::vector<Vec3> ResultFile::vectors_at(std::size_t row, std::size_t grains,
     return vectors_in(table, static_cast<std::size_t>(found - step.begin()), grains);
 }
 
-void ResultFile::expect_whole() const { file_.expect_whole(); }
+void ResultFile::expect_whole(const std::function<void()>& before_each) const {
+    file_.expect_whole("/", before_each);
+}
 
 void ResultFile::expect_whole(std::size_t replica) const {
     file_.expect_whole(particles_path(replica) + "/position/");

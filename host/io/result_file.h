@@ -24,8 +24,10 @@ inline constexpr long result_format = 1;
 /// calls: an interrupted and resumed run gives the same file as an uninterrupted one.
 class ResultWriter {
 public:
-    /// Starts a file with the provenance and the recordings of `run`, still without scans.
-    ResultWriter(NewFile& out, const Run& run);
+    /// Starts a file with the provenance and the recordings of `run`, still without scans. `between` is
+    /// called between tables and scans; what it throws is passed on.
+    ResultWriter(
+        NewFile& out, const Run& run, std::function<void()> between = [] {});
     void append(std::size_t replica, Scan scan);
     /// Call after the last scan of a replica; `failure` says why it stopped early, if it did.
     void end(std::size_t replica, const std::optional<Failure>& failure);
@@ -51,15 +53,18 @@ private:
     void flush_contacts(Tables& tables);
 
     h5::File file_;
+    std::function<void()> between_;
     std::vector<Tables> tables_;
     std::vector<Scan> pending_;  ///< written together, in blocks whose size does not depend on the source
     h5::Handle scan_row_, contact_row_;
     bool is_double_;  ///< positions and contacts are stored as double, otherwise as float
 };
 
-/// Writes a result file with the content from `write`, reads all of it back, and moves it into place.
-void write_result_file(const std::filesystem::path& file, const Run& run,
-                       const std::function<void(ResultWriter&)>& write);
+/// Writes a result file with the content from `write`, reads all of it back, and moves it into place. Returns
+/// false, and leaves no file, if `stop_wanted` became true meanwhile.
+bool write_result_file(
+    const std::filesystem::path& file, const Run& run, const std::function<void(ResultWriter&)>& write,
+    const std::function<bool()>& stop_wanted = [] { return false; });
 
 class ResultFile {
 public:
@@ -72,7 +77,7 @@ public:
     /// False in files without digests.
     bool has_digests() const { return !file_.digests().empty(); }
     /// Reads all tables. Throws InputError with the name of the first one whose digest is wrong.
-    void expect_whole() const;
+    void expect_whole(const std::function<void()>& before_each = [] {}) const;
     /// The same for positions and contacts of one replica.
     void expect_whole(std::size_t replica) const;
 

@@ -8,6 +8,7 @@
 #include "core/atomic_file.h"
 #include "core/errors.h"
 #include "core/make_folder.h"
+#include "io/checkpoint.h"
 #include "io/parts.h"
 #include "io/result_file.h"
 
@@ -54,10 +55,11 @@ private:
 };
 
 /// Replica by replica, so that only one replica of one segment is in memory.
-void merge(const std::vector<fs::path>& files, const fs::path& merged) {
+bool merge(const std::vector<fs::path>& files, const fs::path& merged,
+           const std::function<bool()>& stop_wanted) {
     const Run run = read_run_header(files);
     Segments segments(files);
-    write_result_file(merged, run, [&](ResultWriter& writer) {
+    const auto write = [&](ResultWriter& writer) {
         for (std::size_t r = 0; r < run.recordings.size(); ++r) {
             for (std::size_t k = 0; k < segments.size(); ++k)
                 segments.with(k, [&](const ResultFile& file) {
@@ -66,7 +68,8 @@ void merge(const std::vector<fs::path>& files, const fs::path& merged) {
                 });
             writer.end(r, run.recordings[r].failure);
         }
-    });
+    };
+    return write_result_file(merged, run, write, stop_wanted);
 }
 
 }  // namespace
@@ -96,6 +99,9 @@ std::vector<fs::path> result_files(const fs::path& file_or_folder) {
             ": holds parts of a run that are not merged yet: wait for the programs that compute them, or "
             "go on with --resume");
     const auto segments = segment_files(file_or_folder);
+    if (segments.empty() && has_checkpoint(file_or_folder))
+        throw InputError(file_or_folder.string() +
+                         ": holds a run that was stopped before it wrote results: go on with --resume");
     if (segments.empty())
         throw InputError(file_or_folder.string() + ": holds no run (neither run.h5 nor segment-000000.h5)");
     return segments;
@@ -146,9 +152,10 @@ ResultFolder ResultFolder::open_for_resume(const fs::path& folder) {
 
 bool ResultFolder::is_finished() const { return fs::exists(run_file(folder_)); }
 
-int ResultFolder::append_segment(const Run& scans_since_last) {
-    write_run(segment_file(folder_, segments_), scans_since_last);
-    return segments_++;
+bool ResultFolder::append_segment(const Run& scans_since_last, const std::function<bool()>& stop_wanted) {
+    if (!write_run(segment_file(folder_, segments_), scans_since_last, stop_wanted)) return false;
+    ++segments_;
+    return true;
 }
 
 void ResultFolder::drop_segments_from(int index) {
@@ -156,15 +163,17 @@ void ResultFolder::drop_segments_from(int index) {
     for (; segments_ > index; --segments_) fs::remove(segment_file(folder_, segments_ - 1));
 }
 
-void ResultFolder::expect_whole_segments() const {
+void ResultFolder::expect_whole_segments(const std::function<bool()>& stop_wanted) const {
     try {
         const auto files = segment_files(folder_);
         if (files.empty()) return;
         const Run run = read_run_header(files);
         for (const auto& file : files) {
             const ResultFile segment(file);
-            for (std::size_t r = 0; r < run.recordings.size(); ++r)
+            for (std::size_t r = 0; r < run.recordings.size(); ++r) {
+                if (stop_wanted()) return;
                 segment.scans(run.recordings[r], r, ReadWhat::everything);
+            }
         }
     } catch (const InputError& error) {
         throw InputError(
@@ -179,7 +188,7 @@ void ResultFolder::remove_segments() {
     segments_ = 0;
 }
 
-void ResultFolder::finish() {
+bool ResultFolder::finish(const std::function<bool()>& stop_wanted) {
     const auto segments = segment_files(folder_);
     if (segments.empty()) throw RunError(folder_.string() + ": nothing was recorded");
     // Locks exclude others, but not on every network file system.
@@ -190,9 +199,10 @@ void ResultFolder::finish() {
             "of them (segments and checkpoints; parts/, run.h5 and plate.csv) elsewhere");
     if (segments.size() == 1)
         move_file(segments.front(), run_file(folder_));
-    else
-        merge(segments, run_file(folder_));
+    else if (!merge(segments, run_file(folder_), stop_wanted))
+        return false;
     remove_segments();
+    return true;
 }
 
 }  // namespace mcdem::io

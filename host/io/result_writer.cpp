@@ -12,6 +12,9 @@ namespace {
 
 constexpr std::size_t block_grains = 65536;  ///< grains times scans written at once
 
+/// Thrown by write_result_file to itself.
+struct Stopped {};
+
 }  // namespace
 
 std::string observables_path(std::size_t replica) {
@@ -21,15 +24,18 @@ std::string particles_path(std::size_t replica) { return fmt::format("/particles
 std::string contacts_path(std::size_t replica) { return fmt::format("/contacts/replica_{:05}", replica); }
 std::string parameters_path(std::size_t replica) { return fmt::format("/parameters/replica_{:05}", replica); }
 
-ResultWriter::ResultWriter(NewFile& out, const Run& run)
+ResultWriter::ResultWriter(NewFile& out, const Run& run, std::function<void()> between)
     : file_(h5::File::create(out)),
+      between_(std::move(between)),
       scan_row_(scan_row_type()),
       is_double_(run.precision == name(Precision::double_precision)) {
     contact_row_ = is_double_ ? contact_row_type<double>() : contact_row_type<float>();
     file_.keep_digests();
     write_provenance(run);
-    for (std::size_t r = 0; r < run.recordings.size(); ++r)
+    for (std::size_t r = 0; r < run.recordings.size(); ++r) {
+        between_();
         tables_.push_back(make_tables(r, run.recordings[r]));
+    }
 }
 
 void ResultWriter::write_provenance(const Run& run) {
@@ -110,6 +116,7 @@ std::vector<h5::Dataset> ResultWriter::make_vectors(const std::string& group, co
 }
 
 void ResultWriter::append(std::size_t replica, Scan scan) {
+    between_();
     Tables& tables = tables_.at(replica);
     for (const auto* vectors : {&scan.position, &scan.rotation})
         if (!vectors->empty() && vectors->size() != tables.grains)
@@ -121,6 +128,7 @@ void ResultWriter::append(std::size_t replica, Scan scan) {
 }
 
 void ResultWriter::end(std::size_t replica, const std::optional<Failure>& failure) {
+    between_();
     flush(tables_.at(replica));
     if (!failure) return;
     const std::string particles = particles_path(replica);
@@ -184,6 +192,7 @@ void ResultWriter::flush_contacts(Tables& tables) {
 
 void ResultWriter::close() {
     for (Tables& tables : tables_) {
+        between_();
         for (h5::Dataset* table : {&tables.scans, &tables.contacts, &tables.contact_offset})
             file_.finish(*table);
         for (auto* vectors : {&tables.position, &tables.rotation})
@@ -193,29 +202,38 @@ void ResultWriter::close() {
     file_.close();
 }
 
-void write_result_file(const std::filesystem::path& file, const Run& run,
-                       const std::function<void(ResultWriter&)>& write) {
+bool write_result_file(const std::filesystem::path& file, const Run& run,
+                       const std::function<void(ResultWriter&)>& write,
+                       const std::function<bool()>& stop_wanted) try {
+    const auto look = [&] {
+        if (stop_wanted()) throw Stopped{};
+    };
+    look();
     replace_file(file, [&](NewFile& out) {
-        ResultWriter writer(out, run);
+        ResultWriter writer(out, run, look);
         write(writer);
         writer.close();
         out.close();
         try {
-            ResultFile(out.temporary()).expect_whole();
+            ResultFile(out.temporary()).expect_whole(look);
         } catch (const InputError& error) {
             throw RunError(fmt::format("{}: what was written is not what is read back: {}", file.string(),
                                        error.what()));
         }
     });
+    return true;
+} catch (const Stopped&) {
+    return false;
 }
 
-void write_run(const std::filesystem::path& file, const Run& run) {
-    write_result_file(file, run, [&](ResultWriter& writer) {
+bool write_run(const std::filesystem::path& file, const Run& run, const std::function<bool()>& stop_wanted) {
+    const auto write = [&](ResultWriter& writer) {
         for (std::size_t r = 0; r < run.recordings.size(); ++r) {
             for (const Scan& scan : run.recordings[r].scans) writer.append(r, scan);
             writer.end(r, run.recordings[r].failure);
         }
-    });
+    };
+    return write_result_file(file, run, write, stop_wanted);
 }
 
 }  // namespace mcdem::io

@@ -152,7 +152,7 @@ void expect_countable_steps(const Replica& replica, double time_step) {
     if (!(time_step >= min_time_step))
         throw InputError(
             fmt::format("numerics.time_step must leave steps of at least {} s, got {} s: take larger, "
-                        "heavier or excess_compliance grains",
+                        "heavier or softer grains",
                         min_time_step, time_step));
     expect_slow_strains(replica, time_step);
     const double steps = seconds / time_step + 2 * scans;

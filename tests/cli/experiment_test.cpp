@@ -2,6 +2,8 @@
 #include "experiment/experiment.h"
 
 #include <fstream>
+#include <functional>
+#include <map>
 #include <regex>
 
 #include "cli/cli_test.h"
@@ -115,6 +117,13 @@ TEST_F(ExperimentCommandTest, AProgrammeGoesAlongFromTheRunThroughAnImport) {
     const Recording imported = read_experiment(path("i")).recording;
     EXPECT_EQ(imported.parameters, seen.parameters);
     for (std::size_t s = 0; s < seen.scans.size(); ++s) EXPECT_EQ(imported.scans[s].time, seen.scans[s].time);
+
+    mcdem::Run forged = read_run(path("a"));
+    forged.recordings[0].scans[4].time = 0;
+    write_run(path("forged.h5"), forged);
+    expect_bad_input(mcdem({"experiment", "from-run", "forged.h5", "--out", "f"}),
+                     "time_s must rise from row to row, got 0 after");
+    EXPECT_FALSE(fs::exists(path("f")));
 }
 
 TEST_F(ExperimentCommandTest, OfAProgrammeEachFrameIsAScan) {
@@ -268,6 +277,65 @@ TEST_F(ExperimentCommandTest, ARunWithoutGrainsIsNone) {
     expect_bad_input(mcdem({"experiment", "from-run", "bare.h5", "--out", "e"}),
                      "bare.h5: holds no grains of this replica");
     EXPECT_FALSE(fs::exists(path("e")));
+}
+
+/// What others can change in a run.h5, by name.
+const std::map<std::string, std::function<void(Recording&)>>& forgeries() {
+    static const std::map<std::string, std::function<void(Recording&)>> all{
+        {"grain outside", [](Recording& run) { run.scans[1].position[2].x() = 3; }},
+        {"grain under the floor", [](Recording& run) { run.scans[0].position[0].z() = -1; }},
+        {"plate under the floor", [](Recording& run) { run.scans[1].plate_z = -0.01; }},
+        {"plate far up", [](Recording& run) { run.scans[1].plate_z = 1e9; }},
+        {"force beyond all", [](Recording& run) { run.scans[1].wall_force[5].z() = 1e300; }},
+        {"cycle falls", [](Recording& run) { run.scans[0].cycle = 7; }},
+        {"cycle below zero", [](Recording& run) { run.scans[0].cycle = -7; }},
+        {"contact far away", [](Recording& run) { run.scans[3].contacts.at(0).point.x() = 5; }},
+        {"contact with itself",
+         [](Recording& run) { run.scans[3].contacts.at(0).partner = run.scans[3].contacts.at(0).grain; }},
+        {"contact twice",
+         [](Recording& run) { run.scans[3].contacts.push_back(Contact(run.scans[3].contacts.at(0))); }},
+        {"contact of no size", [](Recording& run) { run.scans[3].contacts.at(0).force *= 1e30; }},
+        {"grains of a kilometre", [](Recording& run) { run.diameter[1] = 1e3; }},
+        {"box of a kilometre", [](Recording& run) { run.box.size_x = 1e3; }},
+        {"no positions in the middle", [](Recording& run) { run.scans[2].position.clear(); }},
+        {"modulus below zero", [](Recording& run) { run.parameters["grains.youngs_modulus"] = "-5"; }},
+        {"ratio of two", [](Recording& run) { run.parameters["grains.poisson_ratio"] = "2"; }},
+        {"plate starts at the floor", [](Recording& run) { run.plate_start = 1e-30; }},
+        {"label of many lines", [](Recording& run) { run.label = "a\nb\"\x01\t#"; }},
+        {"label that is no text", [](Recording& run) { run.label = "\xff\xfe"; }},
+    };
+    return all;
+}
+
+TEST_F(ExperimentCommandTest, OfAForgedRunIsReadableOrRefused) {
+    run("a", {"--set", "contact.model=independent"});
+    int refused = 0;
+    for (const auto& [name, forge] : forgeries()) {
+        mcdem::Run forged = read_run(path("a"));
+        forge(forged.recordings.at(0));
+        write_run(path("forged.h5"), forged);
+        const auto made = mcdem({"experiment", "from-run", "forged.h5", "--out", "e"});
+        if (made.exit_code == 2) {
+            ++refused;
+            EXPECT_THAT(made.err, HasSubstr("forged.h5")) << name;
+            EXPECT_FALSE(fs::exists(path("e"))) << name << made.err;
+        } else {
+            expect_done(made);
+            EXPECT_EQ(mcdem({"experiment", "check", "e"}).exit_code, 0) << name;
+        }
+        fs::remove_all(path("e"));
+    }
+    EXPECT_GT(refused, 8);
+}
+
+TEST_F(ExperimentCommandTest, OfARunWithGrainsOutsideSaysWhatIsWrong) {
+    run("a", {"--set", "contact.model=independent"});
+    mcdem::Run forged = read_run(path("a"));
+    forgeries().at("grain outside")(forged.recordings.at(0));
+    write_run(path("forged.h5"), forged);
+    const auto made = mcdem({"experiment", "from-run", "forged.h5", "--out", "e"});
+    expect_bad_input(made, "forged.h5: makes no experiment that can be read, and none is written");
+    EXPECT_THAT(made.err, HasSubstr("e/grains.csv:"));
 }
 
 TEST_F(ExperimentCommandTest, ALibraryOfAnotherSceneIsRefused) {

@@ -79,9 +79,8 @@ TEST_F(KernelCache, FilesCutShortAreMadeAnew) {
 }
 
 TEST_F(KernelCache, ACrashSaysWhatToDo) {
-    Child child(folder_.path, run_words("out", {"--set", "protocol.relax_time=100", "--set",
-                                                "protocol.settle_unbalanced_force=1e-300"}));
-    while (child.is_running() && !fs::exists(path("out"))) usleep(1000);
+    Child child(folder_.path, run_words("out"), held_after(0));
+    wait_until_held(child);
     child.send(SIGABRT);
     const auto finished = child.wait();
     EXPECT_EQ(finished.signal, SIGABRT);

@@ -139,5 +139,12 @@ TEST_F(OutputTest, ADiagnosisReplacesItsOwnFilesOnly) {
         expect_kept(name);
 }
 
+TEST_F(OutputTest, ALinkToNothingIsNoFolder) {
+    fs::create_directory_symlink("nothing", path("link"));
+    const auto finished = mcdem(run_words("link"));
+    EXPECT_EQ(finished.exit_code, 1);
+    EXPECT_THAT(finished.err, HasSubstr("link: must be a folder, is a link to nothing that is there"));
+}
+
 }  // namespace
 }  // namespace mcdem

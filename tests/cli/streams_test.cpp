@@ -8,6 +8,7 @@
 #include "cli/cli_test.h"
 #include "cli/shell/progress.h"
 #include "cli/shell/subprocess.h"
+#include "io/results.h"
 
 namespace mcdem {
 namespace {
@@ -141,6 +142,24 @@ TEST_F(StreamsTest, ATerminalThatIsGoneEndsNoRun) {
         EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
         EXPECT_TRUE(result(out) == result("whole"));
         break;
+    }
+}
+
+TEST_F(StreamsTest, ANameFromAFileDoesNotControlTheTerminal) {
+    expect_done(mcdem(run_words("out")));
+    mcdem::Run run = read_run(path("out"));
+    for (Recording& recording : run.recordings)
+        recording.label +=
+            "\x1b]0;title\x07\xc2\x9b"
+            "2J\r\x7f";
+    write_run(path("other.h5"), run);
+    const std::string make = "$M experiment from-run other.h5 --out e";
+    for (const std::string& command : {make, make + " --replica 0", std::string("$M experiment check e"),
+                                       std::string("$M table other.h5"), std::string("$M verify e")}) {
+        const std::string said = shell(command + " 2>&1").out;
+        EXPECT_FALSE(said.empty()) << command;
+        EXPECT_EQ(said.find_first_of("\x1b\x07\r\x7f"), said.npos) << command << "\n" << said;
+        EXPECT_EQ(said.find("\xc2\x9b"), said.npos) << command << "\n" << said;
     }
 }
 

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "core/errors.h"
 #include "io/results.h"
 #include "io/synthetic_run.h"
@@ -84,7 +86,8 @@ TEST(result_folder, resuming_drops_segments_newer_than_the_checkpoint) {
     auto folder = ResultFolder::open_for_resume(place / "out");
     EXPECT_EQ(folder.segments(), 3);
     folder.drop_segments_from(1);
-    EXPECT_EQ(folder.append_segment(part_of(run, 1, 6)), 1);
+    folder.append_segment(part_of(run, 1, 6));
+    EXPECT_EQ(folder.segments(), 2);
     folder.finish();
     expect_same(run, read_run(place / "out"));
 }
@@ -140,6 +143,49 @@ TEST(result_folder, finishing_nothing_fails_and_leaves_the_folder) {
     TemporaryFolder place;
     auto folder = ResultFolder::create(place / "out");
     EXPECT_THROW(folder.finish(), RunError);
+}
+
+TEST(result_folder, stops_between_tables_and_leaves_what_is_there) {
+    TemporaryFolder place;
+    const auto run = synthetic_run({.replicas = 2, .grains = 8});
+    const auto looks_of = [](auto write) {
+        int looks = 0;
+        EXPECT_TRUE(write([&] { return ++looks < 0; }));
+        return looks;
+    };
+    const auto stop_at = [](int last, auto write) {
+        int looks = 0;
+        EXPECT_FALSE(write([&] { return ++looks >= last; }));
+        EXPECT_EQ(looks, last);  // nothing is looked at, or done, afterwards
+    };
+    const auto files = [&](const char* name) {
+        std::set<std::string> names;
+        for (const auto& entry : std::filesystem::directory_iterator(place / name))
+            names.insert(entry.path().filename());
+        return names;
+    };
+    int looks_appending = 0, looks_finishing = 0;
+    {
+        auto whole = ResultFolder::create(place / "whole");
+        whole.append_segment(part_of(run, 0, 3));
+        looks_appending = looks_of([&](auto look) { return whole.append_segment(part_of(run, 3, 6), look); });
+        looks_finishing = looks_of([&](auto look) { return whole.finish(look); });
+    }
+    auto stopped = ResultFolder::create(place / "stopped");
+    stopped.append_segment(part_of(run, 0, 3));
+    const auto one = files("stopped");
+    for (int last = 1; last <= looks_appending; ++last) {
+        stop_at(last, [&](auto look) { return stopped.append_segment(part_of(run, 3, 6), look); });
+        ASSERT_EQ(files("stopped"), one) << last;
+    }
+    stopped.append_segment(part_of(run, 3, 6));
+    const auto two = files("stopped");
+    for (int last = 1; last <= looks_finishing; ++last) {
+        stop_at(last, [&](auto look) { return stopped.finish(look); });
+        ASSERT_EQ(files("stopped"), two) << last;
+    }
+    EXPECT_TRUE(stopped.finish());
+    EXPECT_EQ(read_bytes(place / "stopped" / "run.h5"), read_bytes(place / "whole" / "run.h5"));
 }
 
 }  // namespace

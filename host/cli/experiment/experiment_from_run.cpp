@@ -130,6 +130,20 @@ void warn_of_start(const Recording& truth) {
             1e3 * truth.displacement(first));
 }
 
+/// A run that was changed by others, or extreme errors of the instrument, can make what no reader accepts.
+void expect_experiment_of(const FromRunCommand& command, const Experiment& experiment) {
+    try {
+        expect_readable(command.out, experiment_files(experiment, Packed::plain));
+    } catch (const InputError& error) {
+        std::vector<std::string> problems{
+            command.run +
+            ": makes no experiment that can be read, and none is written: run the scene again, or lower the "
+            "errors of the instrument. It would have:"};
+        for (const std::string& problem : error.problems()) problems.push_back("  " + problem);
+        throw InputError(problems);
+    }
+}
+
 /// Another time this command was here: it writes the digests first.
 bool is_begun(const fs::path& out) { return fs::exists(out / sums_file); }
 
@@ -175,6 +189,7 @@ void make_experiment(const FromRunCommand& command) {
     Experiment experiment = experiment_from(truth, command.instrument, command.seed);
     experiment.uncertainty = uncertainty;
     if (!command.name.empty()) experiment.name = command.name;
+    expect_experiment_of(command, experiment);
     write_files(command, experiment);
     std::size_t real = 0, seen = 0;
     for (const Scan& scan : truth.scans) real += scan.contacts.size();

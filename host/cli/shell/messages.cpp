@@ -1,5 +1,6 @@
 #include "cli/shell/messages.h"
 
+#include <spdlog/pattern_formatter.h>
 #include <spdlog/sinks/stdout_sinks.h>
 
 #include <filesystem>
@@ -7,10 +8,24 @@
 
 #include "cl/opencl.h"
 #include "cli/shell/commands.h"
+#include "cli/shell/standard_streams.h"
 #include "core/errors.h"
 
 namespace mcdem::inline cli {
 namespace {
+
+/// The text of a message in its pattern.
+class MessageText : public spdlog::custom_flag_formatter {
+public:
+    void format(const spdlog::details::log_msg& message, const std::tm&, spdlog::memory_buf_t& out) override {
+        const std::string text =
+            without_control(std::string_view(message.payload.data(), message.payload.size()));
+        out.append(text.data(), text.data() + text.size());
+    }
+    std::unique_ptr<spdlog::custom_flag_formatter> clone() const override {
+        return std::make_unique<MessageText>();
+    }
+};
 
 void say_lines(const std::string& text) {
     std::istringstream lines(text);
@@ -35,7 +50,9 @@ const char* remedy_of(cl_int code) {
 void set_up_messages() {
     auto logger =
         std::make_shared<spdlog::logger>("mcdem", std::make_shared<spdlog::sinks::stderr_sink_mt>());
-    logger->set_pattern("mcdem: %v");
+    auto pattern = std::make_unique<spdlog::pattern_formatter>();
+    pattern->add_flag<MessageText>('*').set_pattern("mcdem: %*");
+    logger->set_formatter(std::move(pattern));
     logger->set_error_handler([](const std::string&) {});  // ignores messages that cannot be written
     spdlog::set_default_logger(logger);
 }

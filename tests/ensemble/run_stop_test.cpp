@@ -1,0 +1,94 @@
+// A run of many replicas stops at once, whatever it is doing, and loses nothing.
+#include <gmock/gmock.h>
+
+#include <atomic>
+
+#include "core/errors.h"
+#include "ensemble/run_scene.h"
+#include "ensemble/small_scene.h"
+#include "io/checkpoint.h"
+#include "io/result_folder.h"
+#include "io/results.h"
+
+namespace mcdem {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// More replicas than a stop waits for.
+Scene many_replicas() {
+    return small_scene({"batch.replicas=130", "packing.count=4", "packing.packing_fraction=0.1",
+                        "plate.end=0.086", "protocol.scans_per_stroke=2", "protocol.settle_time=0.001",
+                        "protocol.relax_time=0.001", "output.checkpoint_minutes=1000"});
+}
+
+class RunStopTest : public testing::Test {
+protected:
+    /// Counts in `looks_` how often the run looks whether to stop. Stops it from look `stop_at` on.
+    RunEnd run(const Scene& scene, const std::string& name, Start start, int stop_at = -1) {
+        RunOptions options;
+        options.folder = folder(name);
+        options.start = start;
+        options.program = "test";
+        looks_ = 0;
+        options.stop_wanted = [this, stop_at] { return ++looks_ > stop_at && stop_at >= 0; };
+        return run_scene(device_, scene, options).end;
+    }
+    /// The same, stopped after `rounds` rounds.
+    RunEnd run_rounds(const Scene& scene, const std::string& name, int rounds) {
+        RunOptions options;
+        options.folder = folder(name);
+        options.program = "test";
+        options.on_progress = [&](double) { --rounds; };
+        options.stop_wanted = [&] { return rounds <= 0; };
+        return run_scene(device_, scene, options).end;
+    }
+    fs::path folder(const std::string& name) const { return temporary_.path / name; }
+    std::string result(const std::string& name) const { return bytes_of_file(run_file(folder(name))); }
+    std::string problem_reading(const std::string& name) const {
+        try {
+            read_run(folder(name));
+        } catch (const InputError& error) {
+            return error.what();
+        }
+        return "none";
+    }
+
+    TestFolder temporary_;
+    Device device_;
+    std::atomic<int> looks_ = 0;
+};
+
+TEST_F(RunStopTest, FewReplicasKeepTheirScansReadable) {
+    const Scene scene = small_scene();
+    ASSERT_EQ(run_rounds(scene, "a", 30), RunEnd::interrupted);
+    EXPECT_EQ(segment_files(folder("a")).size(), 1u);
+    EXPECT_EQ(problem_reading("a"), "none");
+}
+
+TEST_F(RunStopTest, DoesLittleBeforeItStopsAndGoesOnWithTheSameBits) {
+    const Scene scene = many_replicas();
+    ASSERT_EQ(run(scene, "whole", Start::fresh), RunEnd::done);
+    const int all_looks = looks_, last = static_cast<int>(scene.replicas.size());
+    ASSERT_GT(all_looks, 10 * last);  // while it writes and reads back, too
+
+    ASSERT_EQ(run_rounds(scene, "a", 8), RunEnd::interrupted);
+    EXPECT_THAT(segment_files(folder("a")), testing::IsEmpty());
+    EXPECT_EQ(read_checkpoint(folder("a"))->fields.count("scans"), 1u);
+    EXPECT_THAT(problem_reading("a"), testing::HasSubstr("go on with --resume"));
+    ASSERT_EQ(run(scene, "a", Start::resume), RunEnd::done);
+    EXPECT_TRUE(result("a") == result("whole"));
+
+    for (const int stop_at : {all_looks - 10 * last, all_looks - last / 2}) {
+        const std::string name = "stopped at " + std::to_string(stop_at);
+        ASSERT_EQ(run(scene, name, Start::fresh, stop_at), RunEnd::interrupted) << name;
+        EXPECT_LE(looks_, stop_at + 5) << name;
+        EXPECT_FALSE(fs::exists(run_file(folder(name)))) << name;
+        ASSERT_EQ(run(scene, name, Start::resume, 1), RunEnd::interrupted) << name;
+        ASSERT_EQ(run(scene, name, Start::resume), RunEnd::done) << name;
+        EXPECT_TRUE(result(name) == result("whole")) << name;
+    }
+}
+
+}  // namespace
+}  // namespace mcdem
