@@ -42,5 +42,5 @@ INLINE slots motion_status(Grain at, Moving after) {
             ? AS_MASK(fabs(x.z / replica->wall_position[5]) < MAX_DRIFT)
             : AS_MASK(x.z > replica->wall_position[4]) & AS_MASK(x.z < plate_heights(replica, at.plate_z, x));
     const mask inside = within_sides(replica, x) & between;
-    return BITS(finite & NOT(inside), STATUS_LOST) | BITS(NOT(finite), STATUS_NOT_A_NUMBER);
+    return AS_SLOTS(WHERE(finite, WHERE(inside, R(0), R(STATUS_LOST)), R(STATUS_NOT_A_NUMBER)));
 }
