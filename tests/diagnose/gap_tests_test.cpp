@@ -300,6 +300,9 @@ TEST(Evidence, OwnReplicatesArePartOfTheNoiseWhereTheLibraryIsOfOthers) {
     evidence.library_is_own = true;
     EXPECT_EQ(gap_data(evidence).noise.rows(), 48);
     evidence.library_is_own = false;
+    for (int& packing : evidence.library.packing) packing %= 7;  // the experiment's own may be among so few
+    EXPECT_EQ(gap_data(evidence).noise.rows(), 48);
+    for (std::size_t r = 0; r < 48; ++r) evidence.library.packing[r] = static_cast<int>(r / 4);
     evidence.baseline.conservativeResize(3, Eigen::NoChange);  // too few to say anything
     EXPECT_EQ(gap_data(evidence).noise.rows(), 48);
 }

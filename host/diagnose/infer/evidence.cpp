@@ -90,6 +90,12 @@ void leave_out_signatures(const Evidence& evidence, const std::vector<Signature>
     });
 }
 
+/// Whether the library is of many other packings. One of few may have been made on the experiment's own, and
+/// its replicates would be counted twice.
+bool has_other_packings(const Evidence& evidence) {
+    return !evidence.library_is_own && 1 + *std::ranges::max_element(evidence.library.packing) >= max_folds;
+}
+
 /// Adds the replicates of the experiment's own packing to the noise, as a further packing: packings differ in
 /// their scatter. Uses those that have all selected cells. Each is left out separately, because the
 /// experiment is compared when the others are known.
@@ -156,7 +162,7 @@ GapData gap_data(const Evidence& evidence) {
     for (const NuisancePrior& prior : evidence.nuisances)
         used.push_back(&find(evidence.library.nuisances, prior.name));
     s.cells = usable_cells(evidence.library.baseline, used, s.gap);
-    if (!evidence.library_is_own) add_own_scatter(s, evidence.baseline);
+    if (has_other_packings(evidence)) add_own_scatter(s, evidence.baseline);
     for (const NuisancePrior& prior : evidence.nuisances)
         if (prior.name == "modulus" || prior.name == "strain_offset" || prior.name == "gamma")
             s.candidates.push_back({&find(evidence.library.nuisances, prior.name), -farthest * prior.sigma,
