@@ -29,7 +29,7 @@ constexpr double sphere_pair =
 constexpr double finite_size_pair = 2 + 6 + 12 + 3 + 6;     // radius, spreads, polynomial, times F and sum
 constexpr double self_term = 1 + 3 * (2 + 21 + 4 + 4 + 6);  // three Newton steps
 constexpr double extrapolation = 1 + 5;
-constexpr double integration = 85;     // per grain, 35 of them for the rotation
+constexpr double integration = 85;  // per grain, 35 of them for the rotation
 
 double surface_pair(ContactModel model) {
     switch (model) {

@@ -9,8 +9,9 @@ struct StepCost {
     double flops = 0;  ///< as executed on a CPU, including empty slots
 };
 
-/// For dense packings with 16 slots and about six contacts per grain. For Poisson ratio 1/2, where two terms of Eq. 1 vanish. Without
-/// neighbour-list rebuilds (every few dozen steps) and measuring (once per interval).
+/// For dense packings with 16 slots and about six contacts per grain. For Poisson ratio 1/2, where two terms
+/// of Eq. 1 vanish. Without neighbour-list rebuilds (every few dozen steps) and measuring (once per
+/// interval).
 StepCost step_cost(ContactModel model, FrictionLaw friction, Precision precision);
 
 }  // namespace mcdem::bench

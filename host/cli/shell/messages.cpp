@@ -14,13 +14,13 @@
 namespace mcdem::inline cli {
 namespace {
 
-/// The text of a message in its pattern.
+/// The text of a message in its pattern. Allocates nothing, so that a lack of memory can be reported.
 class MessageText : public spdlog::custom_flag_formatter {
 public:
     void format(const spdlog::details::log_msg& message, const std::tm&, spdlog::memory_buf_t& out) override {
-        const std::string text =
-            without_control(std::string_view(message.payload.data(), message.payload.size()));
-        out.append(text.data(), text.data() + text.size());
+        const std::size_t before = out.size();
+        out.append(message.payload.data(), message.payload.data() + message.payload.size());
+        blank_control({out.data() + before, out.size() - before});
     }
     std::unique_ptr<spdlog::custom_flag_formatter> clone() const override {
         return std::make_unique<MessageText>();

@@ -34,17 +34,15 @@ void write_text(std::FILE* out, std::string_view text) {
         output_error = errno;
 }
 
-std::string without_control(std::string_view text) {
-    std::string clean(text);
-    for (std::size_t i = 0; i < clean.size(); ++i) {
-        const auto byte = static_cast<unsigned char>(clean[i]);
+void blank_control(std::span<char> text) {
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const auto byte = static_cast<unsigned char>(text[i]);
         const bool wanted = byte == '\n' || byte == '\t' || (byte >= 0x20 && byte != 0x7f);
-        if (!wanted) clean[i] = ' ';
+        if (!wanted) text[i] = ' ';
         // U+0080 to U+009F: some terminals take U+009B for the begin of a command.
-        if (byte == 0xc2 && i + 1 < clean.size() && static_cast<unsigned char>(clean[i + 1]) < 0xa0)
-            clean[i] = clean[i + 1] = ' ';
+        if (byte == 0xc2 && i + 1 < text.size() && static_cast<unsigned char>(text[i + 1]) < 0xa0)
+            text[i] = text[i + 1] = ' ';
     }
-    return clean;
 }
 
 int exit_code_of_output(int exit_code) {

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -16,14 +17,16 @@ void set_up_streams();
 /// Writes as much as possible and ignores errors.
 void write_text(std::FILE* out, std::string_view text);
 
-/// The text with blanks instead of control characters, except line breaks and tabs: names come from files of
-/// others and must not control a terminal.
-std::string without_control(std::string_view text);
+/// Puts blanks in place of control characters, except line breaks and tabs: names come from files of others
+/// and must not control a terminal.
+void blank_control(std::span<char> text);
 
 /// Prints results on standard output, without control characters.
 template <class... T>
 void print_out(fmt::format_string<T...> format, T&&... values) {
-    write_text(stdout, without_control(fmt::format(format, std::forward<T>(values)...)));
+    std::string text = fmt::format(format, std::forward<T>(values)...);
+    blank_control(text);
+    write_text(stdout, text);
 }
 
 /// Final exit code of a command with this exit code: exit_failed, with a message, if standard output has
