@@ -101,10 +101,9 @@ INLINE void finish_step(Grain at, slots grain, GrainSums total, int step, global
     const mask is_grain = AS_MASK(at.now.radius > R(0));
     const Moving after = chosen_motion(is_grain, integrate(at, total.force, total.torque), at.now);
     store_motion(after, motion_next, grain);
-    const lanes4 rotation = gather4(tracks + 1, place), listed = gather4(tracks, place);
+    const lanes4 rotation = gather4(tracks + 1, place);
     scatter4(rotated(rotation, scale3(at.replica->time_step, after.spin)), tracks + 1, place);
-    const lanes3 way = subtract3(after.position, (lanes3){listed.x, listed.y, listed.z});
-    const lanes3 moved = deformed_way(at.replica, at.elapsed, way);
+    const lanes3 moved = way_since_listed(at, track, grain, after.position);
     const real limit = at.replica->max_move;
     const mask far = AS_MASK(dot3(moved, moved) > limit * limit) & is_grain;
     const slots bits = BITS(is_grain, trouble_status(total.trouble) | motion_status(at, after));

@@ -1,7 +1,7 @@
 /* What a contact remembers from step to step, each side in its own slot. A grain's memory is one block of
    rows of SLOTS reals; a batch keeps the rows that some replica needs (Replica: memory_rows and where each
    begins). */
-#define MOST_MEMORY_ROWS 5
+#define MAX_MEMORY_ROWS 5
 
 typedef struct {
     lanes3 spring; /* tangential, of Mindlin friction, as seen from this grain [m] */
@@ -12,7 +12,7 @@ typedef struct {
 /* Of all slots of a work-item: a copy on a CPU, the memory itself on a GPU. */
 #if LANES == 16
 typedef struct {
-    lanes row[MOST_MEMORY_ROWS][SLOTS];
+    lanes row[MAX_MEMORY_ROWS][SLOTS];
 } Memories;
 #define ROW_ENTRY(kept, kind, v) ((kept)->row[kind][v])
 #else

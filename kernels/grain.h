@@ -120,3 +120,10 @@ INLINE Displaced displaced(Grain at, Batch batch, Neighbours seen, const lanes* 
     b.there = gather(batch.displacement, there[v]);
     return b;
 }
+
+/* The way of the grains since their neighbours were listed, from where they were then to `position`. */
+INLINE lanes3 way_since_listed(Grain at, global const Track* restrict track, slots grain, lanes3 position) {
+    const lanes4 listed = gather4((global const real4*)track, grain * TRACK_VECTORS);
+    const lanes3 way = subtract3(position, (lanes3){listed.x, listed.y, listed.z});
+    return deformed_way(at.replica, at.elapsed, way);
+}

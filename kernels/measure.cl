@@ -121,9 +121,7 @@ kernel void measure(global const Replica* restrict replicas, global const Materi
     share(sums.pressed, 4, scratch);
     SYNCHRONISE();
     if (IS_LEADER) {
-        const lanes4 listed = gather4((global const real4*)track, grain * TRACK_VECTORS);
-        const lanes3 way = subtract3(at.now.position, (lanes3){listed.x, listed.y, listed.z});
-        const lanes3 moved = deformed_way(replica, at.elapsed, way);
+        const lanes3 moved = way_since_listed(at, track, grain, at.now.position);
         const mask is_grain = AS_MASK(at.now.radius > R(0));
         const lanes4 of_grain = {kinetic_energy(at), sum_slots(sums.stored, 0, scratch) + surfaces,
                                  dot3(moved, moved), max_slots(sums.deepest, 1, scratch)};

@@ -32,10 +32,13 @@ Eigen::VectorXd column_means(const Eigen::MatrixXd& rows) {
 
 constexpr int max_folds = 8;
 
+/// `packing`: of each replicate, from 0.
+int count_packings(const std::vector<int>& packing) { return 1 + *std::ranges::max_element(packing); }
+
 /// Replicates of one packing are correlated through their mean. They are left out together if there are
 /// enough packings.
 std::vector<int> folds_of(const std::vector<int>& packing) {
-    const int packings = 1 + *std::ranges::max_element(packing);
+    const int packings = count_packings(packing);
     std::vector<int> fold;
     for (std::size_t r = 0; r < packing.size(); ++r)
         fold.push_back((packings >= max_folds ? packing[r] : static_cast<int>(r)) % max_folds);
@@ -93,7 +96,7 @@ void leave_out_signatures(const Evidence& evidence, const std::vector<Signature>
 /// Whether the library is of many other packings. One of few may have been made on the experiment's own, and
 /// its replicates would be counted twice.
 bool has_other_packings(const Evidence& evidence) {
-    return !evidence.library_is_own && 1 + *std::ranges::max_element(evidence.library.packing) >= max_folds;
+    return !evidence.library_is_own && count_packings(evidence.library.packing) >= max_folds;
 }
 
 /// Adds the replicates of the experiment's own packing to the noise, as a further packing: packings differ in
