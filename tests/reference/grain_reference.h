@@ -64,9 +64,11 @@ inline double relative_radius(const Grain& grain, const Slot& c) {
 template <class Coefficients>
 double power_sum(const Coefficients& coefficient, double x) {
     double sum = 0;
-    for (std::size_t n = 0; n < coefficient.size(); ++n) sum += coefficient[n] * std::pow(x, n);
+    for (std::size_t n = coefficient.size(); n-- > 0;) sum = coefficient[n] + x * sum;
     return sum;
 }
+
+inline double cubed(double x) { return x * x * x; }
 
 /// The sphere's law in units of 1/(E R), at c by k.
 inline double sphere_displacement(const SurfaceLaw& law, const Grain& grain, const Slot& k, const Slot& c) {
@@ -85,7 +87,7 @@ inline double whole_self_displacement(const SurfaceLaw& law, const Grain& grain,
 /// What a step knows at once; with confinement the rest of large contacts follows with the others'.
 inline double self_displacement(const SurfaceLaw& law, const Grain& grain, const Slot& c) {
     const double whole = whole_self_displacement(law, grain, c);
-    return is_confined(law) ? whole / (1 + std::pow(c.contact_radius / (0.4 * grain.radius), 3)) : whole;
+    return is_confined(law) ? whole / (1 + cubed(c.contact_radius / (0.4 * grain.radius))) : whole;
 }
 
 /// Outward works of a grain's contacts over E R^3: Hertz's, what contacts displace at themselves beyond and,

@@ -83,8 +83,8 @@ double StepReference::self_consistent_overlap(double given, const Body& a, const
         return given + compliance * force - overlap;
     };
     double low = given * 1e-3;
-    while (excess(1.02 * low) > 0 && low < a.radius) low *= 1.02;
-    double high = 1.02 * low;
+    while (excess(1.1 * low) > 0 && low < a.radius) low *= 1.1;
+    double high = 1.1 * low;
     for (int i = 0; i < 60; ++i) {
         const double middle = (low + high) / 2;
         (excess(middle) > 0 ? low : high) = middle;
