@@ -15,6 +15,8 @@ using mcdem::ContactModel;
 using mcdem::Precision;
 using mcdem::Replica;
 
+constexpr int replicas = 16;  ///< jittered copies per setting; every tolerance includes their standard error
+
 /// Loading curve of the other code: displacement [mm] -> top force [N].
 std::vector<std::pair<double, double>> other_code(const char* name) {
     std::ifstream file(authors_folder / name);
@@ -75,7 +77,7 @@ TEST(AuthorsPacking, ModelsStandAsInThePaper) {
     std::map<std::string, Setting> settings;
     for (const auto& ratio : ratios)
         settings[std::string(name(ratio.model))] = {authors_replica(ratio.model, 30)};
-    const auto curves = loading_strokes(settings, 32);
+    const auto curves = loading_strokes(settings, replicas);
     const auto& reference = curves.at("mc_dem");
     double before = 0;
     for (const auto& ratio : ratios) {
@@ -128,7 +130,7 @@ TEST(AuthorsPacking, IsQuasiStatic) {
                                          {"half time step", {half_step}},
                                          {"half speed", {half_speed}},
                                          {"half density", {half_density}}},
-                                        32);
+                                        replicas);
     for (const char* what : {"half time step", "half speed", "half density"})
         expect_same(curves.at("base"), curves.at(what), what);
 }
@@ -137,7 +139,7 @@ TEST(AuthorsPacking, FloatAgreesWithDouble) {
     SKIP_WITHOUT_AUTHORS_PACKING();
     const Replica base = authors_replica(ContactModel::mc_dem, 30);
     const auto curves =
-        loading_strokes({{"float", {base}}, {"double", {base, Precision::double_precision}}}, 32);
+        loading_strokes({{"float", {base}}, {"double", {base, Precision::double_precision}}}, replicas);
     expect_same(curves.at("float"), curves.at("double"), "double precision");
 }
 
