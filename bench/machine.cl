@@ -1,4 +1,4 @@
-/* What the machine can do at most: memory traffic, arithmetic, and the cost of a launch. */
+/* Kernels that measure the limits of the machine: memory traffic, arithmetic, and the cost of a launch. */
 
 kernel void triad(global float16* restrict a, global const float16* restrict b,
                   global const float16* restrict c, const float factor) {
@@ -6,8 +6,8 @@ kernel void triad(global float16* restrict a, global const float16* restrict b,
     a[i] = b[i] + factor * c[i];
 }
 
-/* Chains of dependent multiply-adds, enough side by side to fill the pipelines. A work-item makes
-   FMA_ROUNDS * 12 multiply-adds of `chain`: a vector on a CPU, one number on a GPU. */
+/* Twelve independent chains of multiply-adds, enough to fill the pipelines. A work-item executes
+   FMA_ROUNDS * 12 multiply-adds of type `chain`: a vector on a CPU, one number on a GPU. */
 kernel void multiply_add(global float* restrict out, const float factor, const float term) {
     const chain start = (chain)((float)get_global_id(0) * 1e-9f);
     chain x0 = start, x1 = start + 1.0f, x2 = start + 2.0f, x3 = start + 3.0f;

@@ -1,4 +1,4 @@
-"""Builds the benchmark programs, runs them and reads what they print."""
+"""Builds and runs the benchmark programs, and reads their output."""
 import json
 import os
 import pathlib
@@ -11,11 +11,11 @@ PROGRAMS = ["step_bench", "machine_bench", "compile_bench", "export_packing"]
 
 
 class Failed(Exception):
-    """A program did not do what it should; the message is for the user."""
+    """A program failed; the message is for the user."""
 
 
 def build(folder):
-    """Configures and builds in `folder`; `mcdem` too where there is one."""
+    """Configures and builds in `folder`; `mcdem` too if it is a target."""
     configure = ["cmake", "-S", ROOT, "-B", folder, "-DMCDEM_BENCH=ON", "-DMCDEM_TESTS=OFF", "-DCMAKE_BUILD_TYPE=Release"]
     subprocess.run(configure, check=True, stdout=subprocess.DEVNULL)
     targets = PROGRAMS + (["mcdem"] if (ROOT / "host/main.cpp").exists() else [])
@@ -23,7 +23,7 @@ def build(folder):
 
 
 def environment(one_core=False, **more):
-    """`one_core` holds for PoCL's CPU device."""
+    """`one_core`: limits PoCL's CPU device to one core."""
     variables = dict(os.environ, OMP_NUM_THREADS="1", **more)
     if one_core:
         variables["POCL_MAX_PTHREAD_COUNT"] = "1"
@@ -31,7 +31,7 @@ def environment(one_core=False, **more):
 
 
 def run_benchmark(folder, program, only="", min_time=1.0, env=None, repetitions=1):
-    """A Google Benchmark program's output as {"context": .., "benchmarks": [..]}; Failed where a check failed."""
+    """Output of a Google Benchmark program as {"context": .., "benchmarks": [..]}; raises Failed if a check failed."""
     command = [folder / "bench" / program, "--benchmark_format=json", f"--benchmark_min_time={min_time}",
                f"--benchmark_repetitions={repetitions}"]
     if only:
@@ -60,14 +60,14 @@ def processor():
 
 
 class OtherPrograms:
-    """How many cores programs other than our own children keep busy, from here on (Linux)."""
+    """Mean number of cores used by other programs than our own children, from here on (Linux)."""
 
     def __init__(self):
         self.busy, self.total, self.own = self.clock()
 
     @staticmethod
     def clock():
-        """Seconds of all cores together: busy, in all; and those of our children."""
+        """Seconds of all cores: busy, total; and those of our children."""
         fields = [float(f) / os.sysconf("SC_CLK_TCK") for f in open("/proc/stat").readline().split()[1:9]]
         idle = fields[3] + fields[4]
         children = resource.getrusage(resource.RUSAGE_CHILDREN)
@@ -80,7 +80,7 @@ class OtherPrograms:
 
 
 def cold_and_warm_compile(folder):
-    """Seconds from start to the first steps, with an empty kernel cache and with a full one, by precision."""
+    """Seconds from the start to the first steps, with an empty and with a full kernel cache, by precision."""
     with tempfile.TemporaryDirectory() as cache:
         env = environment(POCL_CACHE_DIR=cache, CUDA_CACHE_PATH=cache)
         runs = [run_benchmark(folder, "compile_bench", env=env) for _ in range(2)]

@@ -1,4 +1,4 @@
-"""The paper's experiment with 514 grains and gamma = 1.125: from the program's start to the written result."""
+"""The paper's experiment with 514 grains and gamma = 1.125: time from the program's start to the written result."""
 import csv
 import statistics
 import subprocess
@@ -7,7 +7,7 @@ import time
 
 from programs import ROOT, Failed, environment
 
-# What one compression and release costs, with the plate passing by the scans and with it waiting at each.
+# Duration of one compression and release, without and with stops at scans.
 SCENES = {"one cycle, plate never stops": "continuous_stroke.toml", "one cycle, 60 settled scans": "compression.toml"}
 LEAST_TOP_FORCE = 5.0  # [N] at full stroke; MC-DEM reaches well above 10
 
@@ -31,7 +31,7 @@ def top_force(out):
 
 
 def measure(folder, packing=None, repetitions=3):
-    """[{what, seconds, top_force, packing}]; the median of `repetitions` after one run that fills the kernel cache."""
+    """[{what, seconds, top_force, packing}]; the median of `repetitions` runs after one that fills the kernel cache."""
     results = []
     for what, scene in SCENES.items():
         times = []

@@ -1,4 +1,4 @@
-"""The results as Markdown."""
+"""Benchmark results as Markdown."""
 PAPER_STROKE_GRAINS = 514
 
 
@@ -62,7 +62,7 @@ def growth(results):
 
 
 def limits(output):
-    """The best of all repetitions: a limit is what the machine can do."""
+    """The best of all repetitions, because limits of the machine are wanted."""
     def best(counter):
         return max(b[counter] for b in output["benchmarks"] if b["run_type"] == "iteration" and counter in b)
     return {"bytes_per_s": best("bytes_per_s"), "flops_per_s": best("flops_per_s"), "launch_s": 1 / best("launches_per_s")}
@@ -108,7 +108,7 @@ def ours_for_peer(results, grains, one_core):
 
 
 def peers_table(results, grains=50_000):
-    """The peer on one process against one core of ours, on all cores against all of ours."""
+    """One process of the peer compared with one core of mcdem, all cores with all cores."""
     head = ["code", "contacts", "processes", "Z", "million grain-steps/s", "mcdem mc_dem, mindlin, over it",
             "mc_dem, saturated", "independent, mindlin"]
     rows = []

@@ -1,14 +1,19 @@
-/* One time step of every grain: see the neighbours, contact forces, displace the surfaces, integrate. */
+/* Kernel `advance`: one time step of every grain. For each grain it
+     1. gathers positions and velocities of the neighbours (contact_geometry.h),
+     2. computes contact forces from overlaps corrected by surface displacements (contact_forces.h),
+     3. computes the surface displacements that these forces cause (surface_displacement.h, confinement.h),
+     4. integrates the equations of motion (integrate.h). */
 
-/* Slots in trouble, two kinds counted in one sum. */
+/* Two counts in one sum: slots with too large an overlap, plus DEEP_SLOTS times the number of slots whose
+   displacement exceeds the probed gap. */
 #define DEEP_SLOTS 1024
 INLINE slots trouble_status(lanes counts) {
     const slots count = AS_SLOTS(counts), deep = count & (DEEP_SLOTS - 1);
     return BITS(deep != 0, STATUS_OVERLAP) | BITS(count != deep, STATUS_UNPROBED);
 }
 
-/* See the neighbours, then the forces of their contacts; tabulates them for the surfaces. `effects` are the
-   replica's, or a plain 0 that leaves them out when this is compiled. */
+/* Contact forces of a grain and their sums; writes the contacts to `table` for the surface displacements.
+   `effects` is the replica's value, or the constant 0, for which the compiler removes the effects. */
 INLINE GrainSums contact_sums(Grain at, const int effects, Batch batch, const slots* partner,
                               EXCHANGE ContactTable* table) {
     global const Replica* restrict replica = at.replica;
@@ -26,7 +31,7 @@ INLINE GrainSums contact_sums(Grain at, const int effects, Batch batch, const sl
         remember(replica, effects, memory, &kept, v);
         add_contacts(c, seen.normal, &sums.force, &sums.torque);
         if (effects & EFFECT_ROLLING_RESISTANCE) sums.torque = add3(sums.torque, c.couple);
-        /* Asked this way round, a displacement that is not a number counts as too deep as well. */
+        /* The negated comparison is also true for NaN. */
         const mask too_deep =
             NOT(AS_MASK(c.approach <= replica->overlap_limit * (at.now.radius + seen.radius))) &
             seen.occupied;
@@ -38,7 +43,7 @@ INLINE GrainSums contact_sums(Grain at, const int effects, Batch batch, const sl
     return sums;
 }
 
-/* Where the contacts of this step push the surface at every slot. */
+/* Surface displacement at every slot by the contact forces of this step. */
 INLINE void surface_displacements(Grain at, EXCHANGE ContactTable* table, lanes* restrict displacement) {
     SurfaceDisplacement b[SLOTS_HERE];
     surface_displacement(at, table, b);
@@ -48,11 +53,11 @@ INLINE void surface_displacements(Grain at, EXCHANGE ContactTable* table, lanes*
     for (int v = 0; v < at.count; ++v) displacement[v] = confined_displacement(at, all, b[v], v, table);
 }
 
-/* Where the contacts of this step push the surface at every slot, extrapolated to the next step:
+/* Surface displacements by the contact forces of this step, extrapolated to the next step:
      b(t + dt) = (10 b(t) - 5 b(t - 2 dt) + b(t - 4 dt)) / 6.
-   Its phase error is 8/3 sin^5(omega dt), so that the delay neither pumps nor drains energy that matters, and
-   it is stable wherever the plain delayed iteration is, for gains from -1 to 1 (ARCHITECTURE.md). `history`
-   is a ring of the last four steps, each `slot_count` long; `step` counts this replica's steps. */
+   The phase error 8/3 sin^5(omega dt) is small, so the delay adds or removes little energy. The iteration is
+   stable for gains from -1 to 1, as without extrapolation (ARCHITECTURE.md). `history` is a ring buffer of
+   the last four steps with `slot_count` values per step; `step` is the replica's step number. */
 INLINE void displace_surfaces(Grain at, EXCHANGE ContactTable* table, int step, size_t slot_count,
                               global real* restrict displacement_next, global real* restrict history) {
     global real* two_before = history + ((step + 2) & 3) * slot_count + at.row;
@@ -63,13 +68,14 @@ INLINE void displace_surfaces(Grain at, EXCHANGE ContactTable* table, int step, 
     load_row(four_before, SLOTS, at.count, four);
     for (int v = 0; v < at.count; ++v)
         two[v] = (R(10) / R(6)) * now[v] - (R(5) / R(6)) * two[v] + (R(1) / R(6)) * four[v];
-    for (int v = at.count; v % 4 != 0 && SLOTS_HERE > 1; ++v) now[v] = two[v] = R(0); /* stored as well */
+    /* store_row writes whole groups of four slots. */
+    for (int v = at.count; v % 4 != 0 && SLOTS_HERE > 1; ++v) now[v] = two[v] = R(0);
     store_row(two, at.count, displacement_next + at.row, SLOTS);
     store_row(now, at.count, four_before, SLOTS);
 }
 
-/* A replica that has made its steps keeps its state in both copies of every field, whichever is read at last.
- */
+/* Copies the state of a stopped replica to the other buffer of each double-buffered field, so that both
+   buffers contain its last state. */
 INLINE void keep_state(Grain at, slots grain, Batch batch, global Motion* restrict motion_next,
                        global real* restrict displacement_next) {
     if (IS_LEADER) store_motion(at.now, motion_next, grain);
@@ -79,7 +85,7 @@ INLINE void keep_state(Grain at, slots grain, Batch batch, global Motion* restri
     store_row(displacement, at.count, displacement_next + at.row, SLOTS);
 }
 
-/* Trouble is rare: each grain by itself. */
+/* Sets status bits grain by grain; this is rare, so it need not be fast. */
 INLINE void report_status(int first, slots bits, global int* restrict status) {
 #if LANES == 16
     int each[LANES];
@@ -91,8 +97,8 @@ INLINE void report_status(int first, slots bits, global int* restrict status) {
 #endif
 }
 
-/* The state after this step. Stops the replica where a grain is in trouble or has moved as far as the margin
-   of its neighbour list allows. */
+/* Integrates and stores the new state. Stops the replica after this step if a grain has a status bit or has
+   moved farther than `max_move` since the neighbour list was built. */
 INLINE void finish_step(Grain at, slots grain, GrainSums total, int step, global Motion* restrict motion_next,
                         global Track* restrict track, global int* restrict status,
                         global volatile int* restrict stop_at) {
@@ -127,8 +133,8 @@ kernel void advance(const int step, const int slot_count, global const Replica* 
     const Batch batch = {motion, partner, partner_slot, displacement, memory};
     const slots grain = first + LANE_NUMBERS;
     Grain at = grain_at(replica, materials, r, first, step, load_motion(motion, grain));
-    /* One answer for a work-group, so that no barrier is missed: what lowers stop_at in this step sets step
-     * + 1. */
+    /* All work-items of a group take the same branch, as barriers require: concurrent writes in this step set
+       stop_at to step + 1 at the lowest. */
     const int last = stop_at[r];
     if (step >= last) {
         if (step == last) keep_state(at, grain, batch, motion_next, displacement_next);
@@ -137,7 +143,7 @@ kernel void advance(const int step, const int slot_count, global const Replica* 
 
     slots partners[SLOTS_HERE];
     at.count = load_partners(partner + at.row, partners);
-    /* Put in place twice: where there are no effects they cost nothing. */
+    /* Inlined twice; the copy with the constant 0 contains no code for effects. */
     const GrainSums sums = RARELY(replica->effects)
                                ? contact_sums(at, replica->effects, batch, partners, table)
                                : contact_sums(at, 0, batch, partners, table);
@@ -148,7 +154,7 @@ kernel void advance(const int step, const int slot_count, global const Replica* 
 
     const GrainSums total = add_up(sums, scratch);
     if (IS_LEADER) finish_step(at, grain, total, step, motion_next, track, status, stop_at + r);
-    /* Without it PoCL lets padding grains into the block above, where work-groups that are done have left
-     * before barriers. */
+    /* Required by PoCL: without this barrier, padding grains execute the block above when work-groups of
+       stopped replicas have returned before the barriers. */
     SYNCHRONISE();
 }

@@ -1,5 +1,6 @@
-/* Which grains are in which cell: a linked list a cell. The order in a list is left to chance; the
-   neighbour list sorts what it finds. Cells far apart may share a list: the 27 around a grain never do. */
+/* Kernels `empty_cells` and `fill_cells`: sort the grains of each replica into a grid of cells, one linked
+   list per cell. The order within a list is random; the neighbour list is sorted when it is built. In large
+   boxes the grid repeats: distant cells share a list, but the 27 cells around a grain are always distinct. */
 
 INLINE int cell_along(real coordinate, real cell_size, int span) {
     return (int)fmin(fmax(floor(coordinate / cell_size), R(0)), (real)(span - 1));
@@ -21,8 +22,8 @@ INLINE int3 cell_of(global const Replica* restrict replica, real4 point) {
                   cell_along(point.z, replica->cell_size[2], replica->span_z));
 }
 
-/* The cells along one axis around one of them, each once; past an end of a span that repeats they are
- * wrapped. */
+/* Range of cells along one axis that contains a cell and its neighbours, without duplicates. In periodic
+   directions it may extend beyond the span; wrapped() maps such cells back. */
 typedef struct {
     int first, last;
 } CellRange;
@@ -34,8 +35,8 @@ INLINE CellRange near_cells(int cell, int span, bool repeats) {
 
 INLINE int wrapped(int cell, int span) { return cell < 0 ? cell + span : cell < span ? cell : cell - span; }
 
-/* The grain of a work-item of the kernels that list: blocks one after another, whatever a work-group's size;
-   -1 past the last. */
+/* The grain of a work-item in kernels that build the lists, or -1 beyond the last block. The work-group size
+   need not be BLOCK. */
 INLINE int listed_grain(global const int* restrict blocks, int block_count) {
     const int item = get_global_id(0);
     return item < block_count * BLOCK ? blocks[item / BLOCK] * BLOCK + item % BLOCK : -1;

@@ -1,5 +1,6 @@
-/* Stress of a cell, summed over its pairs of grains: half of branch times force of every slot, since each
-   pair has two. One work-group a portion, as in reduce. */
+/* Kernel `cell_stress`: the stress of a fully periodic cell times its volume, minus the sum over contacts of
+   branch vector times force (Love-Weber formula). Each contact occupies two slots, so each slot adds half of
+   its product. One work-group sums one portion of a replica, as in `reduce`. */
 
 #define STRESS_SUMS 9
 

@@ -1,35 +1,37 @@
-/* Finite strain of a grain (hyperelastic sphere). Its mean pressure P adds to the modulus, since a sphere
-   that fills its cell yields as little as the cell's shape lets it, whatever its modulus.
-     H   3/5 sum F h, h this grain's side of Hertz's overlap
-     W   outward work of what contacts displace at themselves beyond Hertz and, as points, at one another
-     Z   what their sizes add to it
-     e = (1 + c_h P)^(-2/3), g = 1/(1 + c P), all in E R^3:
-     (1 - e) H + g W + g^(5/3) Z + 4 pi (q P^3 g^2 - integral of u(P)).
-   The derivative by a contact's force is its surface displacement, so that forces have a potential. u is
-   uniform compression, which W is without. */
+/* Finite strain of a grain (contact model `hyperelastic_sphere`). A grain that fills its cell becomes stiffer
+   with its mean pressure P = sum F/(4 pi E R^2). The work of its surface displacements, in units of E R^3, is
+     (1 - e) H + g W + g^(5/3) Z + 4 pi (q P^3 g^2 - integral of u(P)),
+     e = (1 + c_h P)^(-2/3), g = 1/(1 + c P),
+     H   3/5 sum F h, with h this grain's share of the Hertz overlap
+     W   work at small strain of point forces, and of each contact's own displacement beyond Hertz
+     Z   contribution of the finite contact sizes to this work
+     u   overlap over R by uniform compression, which is not part of W.
+   The surface displacement at a contact is the derivative with respect to its force, so the forces have a
+   potential. The coefficients are fitted to finite elements of one sphere (host/elasticity). */
 
-/* Of a grain, over E R^3. */
+/* Pressure in E, energies in E R^3. */
 typedef struct {
-    lanes pressure; /* sum F / (4 pi R^2 E) */
-    lanes hertz, work, size_work;
+    lanes pressure;               /* sum F / (4 pi R^2 E) */
+    lanes hertz, work, size_work; /* H, W, Z */
 } Confined;
 
 /* 1/E_i of the grain [1/Pa]. */
 INLINE lanes own_compliance(Grain at) { return OWN(at, sphere_scale) * (R(1) + at.now.excess_compliance); }
 
-/* The grain's side of Hertz's overlap is that times F/a [m2/N]. */
+/* Factor of F/a in this grain's share of the Hertz overlap [m2/N]. */
 INLINE lanes hertz_share(Grain at) {
     return R(0.75) * OWN(at, grain_compliance) * (R(1) + at.now.excess_compliance);
 }
 
-/* Of what contacts displace at themselves beyond Hertz [J]. */
+/* Work of a contact's own displacement beyond Hertz [J]. */
 INLINE lanes own_work(Grain at, lanes force, lanes contact_radius) {
     const lanes radius = at.now.radius;
     return force * force * self_work(at, contact_radius / radius) * (own_compliance(at) / radius);
 }
 
-/* Work of slot v, as points into x and by size into y: no direction is asked for any more. The part of
-   points goes with the square of the forces, that of finite contacts with the power 8/3. */
+/* Stores the work of slot v: that of point forces in x, the contribution of contact sizes in y. This
+   overwrites the directions, which are no longer needed. The point part scales with the square of the forces
+   (factor 1/2), the size part with the power 8/3 (factor 3/8). */
 INLINE void tabulate_work(Grain at, SurfaceDisplacement b, int v, EXCHANGE ContactTable* table) {
     const int slot = SLOT(v);
     const lanes force = table->elastic[slot], contact_radius = table->radius[slot];
@@ -39,7 +41,7 @@ INLINE void tabulate_work(Grain at, SurfaceDisplacement b, int v, EXCHANGE Conta
     table->y[slot] = R(0.375) * force * b.size;
 }
 
-/* `b`: what its contacts displace at its slots. */
+/* Pressure and energies of a grain. `b`: surface displacements at its slots, at small strain. */
 INLINE Confined confined(Grain at, const SurfaceDisplacement* b, EXCHANGE ContactTable* table) {
     SYNCHRONISE();
     for (int v = 0; v < at.count; ++v) tabulate_work(at, b[v], v, table);
@@ -47,7 +49,7 @@ INLINE Confined confined(Grain at, const SurfaceDisplacement* b, EXCHANGE Contac
     const lanes radius = at.now.radius, compliance = own_compliance(at);
     lanes force = R(0);
     Confined c = {R(0), R(0), R(0), R(0)};
-#pragma unroll 1 /* a GPU has registers for little more */
+#pragma unroll 1 /* unrolling would need too many registers on GPUs */
     for (int k = 0; k < CONTACT_SLOTS(at); ++k) {
         const lanes own = table->elastic[k];
         const mask pressed = AS_MASK(own > R(0));
@@ -64,7 +66,7 @@ INLINE Confined confined(Grain at, const SurfaceDisplacement* b, EXCHANGE Contac
     return c;
 }
 
-/* What pressure leaves of the displacements. */
+/* Factors by which pressure reduces the displacements. */
 typedef struct {
     lanes hertz, work, size; /* e, g, g^(5/3) */
 } Yielding;
@@ -80,7 +82,7 @@ INLINE Yielding yielding(Grain at, lanes pressure) {
     return y;
 }
 
-/* Overlap over R by uniform compression: powers of P up to P/K = 0.3, straight beyond. */
+/* Overlap over R by uniform compression: u0 P + u1 P^2 + u2 P^3 up to P/K = 0.3, linear beyond. */
 typedef struct {
     own_constant u0, u1, u2;
 } Bulk;
@@ -103,7 +105,7 @@ INLINE lanes uniform_work(Bulk u, lanes P) {
            more * (uniform_overlap(u, p) + R(0.5) * more * uniform_slope(u, p));
 }
 
-/* The integral of the displacements below over the forces [J]. */
+/* Integral of the displacements below over the forces [J]. */
 INLINE lanes confined_work(Grain at, Confined grain) {
     const lanes radius = at.now.radius, P = grain.pressure;
     const Yielding y = yielding(at, P);
@@ -115,10 +117,10 @@ INLINE lanes confined_work(Grain at, Confined grain) {
     return sum * radius * radius * radius / own_compliance(at);
 }
 
-/* What is the same at every slot of a grain. */
+/* Values shared by all slots of a grain. */
 typedef struct {
     Yielding yielding;
-    lanes alike; /* displacement [m] */
+    lanes alike; /* displacement that is equal at all slots [m] */
 } Confinement;
 
 INLINE Confinement confinement_of(Grain at, Confined grain) {
@@ -133,8 +135,8 @@ INLINE Confinement confinement_of(Grain at, Confined grain) {
     return all;
 }
 
-/* The displacement of the grain's surface at its slot v, from that of small strain [m]; without the part of
-   a contact's own that is known at once. */
+/* Surface displacement at slot v, from that at small strain [m]. Excludes the part of the contact's own
+   displacement that is solved within the step (known_share in self_displacement.h). */
 INLINE lanes confined_displacement(Grain at, Confinement all, SurfaceDisplacement small_strain, int v,
                                    EXCHANGE const ContactTable* table) {
     const Yielding y = all.yielding;

@@ -1,9 +1,9 @@
-/* What goes beyond the plain contact, effect by effect, each off at its default. Every expression is the same
-   seen from both sides, to the last bit. */
+/* Effects beyond the plain contact model, one function per effect. Each is off at its default amplitude.
+   Every expression gives the same bits on both sides of a contact, so that momentum is conserved.
+   Formulas and sources: kernels/README.md, "Effects". */
 
-/* Grains of unequal stiffness, E_i = E / (1 + excess_compliance_i):
-   1/E* = (1 - nu_i^2)/E_i + (1 - nu_j^2)/E_j, the shear modulus likewise; a wall's excess compliance is zero.
- */
+/* Effective modulus of grains of unequal stiffness, E_i = E / (1 + excess_compliance_i):
+   1/E* = (1 - nu_i^2)/E_i + (1 - nu_j^2)/E_j; the shear modulus likewise. A wall has no excess compliance. */
 INLINE lanes scattered_modulus(Grain at, Neighbours seen, lanes modulus, lanes compliance,
                                lanes compliance_there) {
     const lanes excess = at.now.excess_compliance;
@@ -15,33 +15,34 @@ INLINE lanes scattered_modulus(Grain at, Neighbours seen, lanes modulus, lanes c
 #endif
 }
 
-/* The displacements as far as they count: only `part` of them where the grains by themselves do not overlap,
-   all of them from where the geometric overlap is as large as they are. */
+/* Surface displacements reduced to `part` of their value if the undeformed grains do not overlap. The factor
+   increases linearly with the geometric overlap, and is 1 once that overlap equals the displacements. */
 INLINE lanes counted_displacements(lanes gap, lanes outward, real part) {
     const lanes share = clamp(-gap / fmax(fabs(outward), (lanes)(R(1e-30))), (lanes)(R(0)), (lanes)(R(1)));
     return outward * (part + (R(1) - part) * share);
 }
 
-/* A part of the deepest overlap stays: d_p = p d_max. Unloading follows F(d_max) ((d - d_p)/(d_max -
-   d_p))^(3/2) (Walton & Braun 1986 with Hertz's power in place of straight lines), that is Hertz's law at the
-   overlap (d - d_p)/(1 - p); beyond d_p there is a gap of d_p - d. */
+/* Plasticity: a part d_p = p d_max of the largest overlap is permanent. Unloading follows
+   F(d_max) ((d - d_p)/(d_max - d_p))^(3/2), which is Walton & Braun (1986) with Hertz's exponent instead of
+   straight lines. It equals Hertz's law at the overlap (d - d_p)/(1 - p). Below d_p there is a gap d_p - d.
+ */
 INLINE lanes plastic_approach(lanes approach, real part, mask occupied, lanes* restrict deepest) {
     *deepest = WHERE(occupied, fmax(*deepest, approach), R(0));
     const lanes left = approach - part * *deepest;
     return WHERE(AS_MASK(left > R(0)), left / (R(1) - part), left);
 }
 
-/* Standard linear solid in each contact (Zener 1948): F = F_H - a q, dq/dt = (F_H - q)/T, with q taken over
-   the step exactly for a force that stays. A contact does not pull by it. */
+/* Standard linear solid in each contact (Zener 1948): F = max(F_H - a q, 0), dq/dt = (F_H - q)/T. The step of
+   q is exact for a constant F_H. */
 INLINE lanes relaxing_force(lanes elastic, real part, real share, lanes* restrict relaxed) {
     const lanes force = fmax(elastic - part * *relaxed, (lanes)(R(0)));
     *relaxed += share * (elastic - *relaxed);
     return force;
 }
 
-/* Attraction of touching grains, 2 pi w R* whatever the overlap (Derjaguin, Muller & Toporov 1975). In a gap
-   it fades to zero over a hundredth of R*, or as far as it takes for its slope to stay below m* / (20 dt^2).
- */
+/* Attraction of touching grains, 2 pi w R*, independent of the overlap (Derjaguin, Muller & Toporov 1975). In
+   a gap it decreases linearly to zero over 0.01 R*, or over a longer range if its slope would otherwise
+   exceed m* / (20 dt^2). The range never exceeds the probed gap. */
 typedef struct {
     lanes force, range;
 } Attraction;
@@ -58,17 +59,17 @@ INLINE Attraction attraction(global const Replica* restrict replica, lanes appro
     return a;
 }
 
-/* Hertz's force times 1 + c delta/R* at large strain; softening by 1/(1 - c delta/R*) instead, the same to
-   first order and a force that still grows with the overlap. */
+/* Hertz force times 1 + c delta/R*. For c < 0 it is divided by 1 - c delta/R* instead: equal to first order,
+   and the force still increases with the overlap. */
 INLINE lanes stiffened(global const Replica* restrict replica, lanes elastic, lanes overlap,
                        lanes reduced_radius) {
     const lanes change = replica->stiffening * overlap / reduced_radius;
     return replica->stiffening > R(0) ? elastic * (R(1) + change) : elastic / (R(1) - change);
 }
 
-/* What the springs of a contact store beyond 2/5 F delta, nothing of what has relaxed or stays behind for
-   good [J]. The integral of F over the overlap is exact for stiffening; for softening a rational function
-   meets it within 3 %. */
+/* Stored energy of a contact in excess of 2/5 F delta [J], without what relaxation and plasticity have
+   dissipated. The integral of F over the overlap is exact for stiffening; for softening it is approximated by
+   a rational function within 3 %. */
 INLINE lanes effect_energy(global const Replica* restrict replica, lanes elastic, lanes relaxed_force,
                            lanes overlap, lanes reduced_radius) {
     const lanes change = fabs(replica->stiffening) * overlap / reduced_radius;
@@ -79,14 +80,14 @@ INLINE lanes effect_energy(global const Replica* restrict replica, lanes elastic
     return lasting - R(0.4) * elastic * overlap;
 }
 
-/* Energy of the attraction, zero out of its range [J]. */
+/* Energy of the attraction, zero beyond its range [J]. */
 INLINE lanes attraction_energy(Attraction a, lanes overlap, lanes approach) {
     const lanes inside = clamp(a.range + approach, (lanes)(R(0)), a.range);
     return -a.force * (R(0.5) * inside + overlap);
 }
 
-/* Couple of constant size mu_r R* F_n against the relative angular velocity, rolling and twisting alike (Zhou
-   et al. 1999; model A of Ai et al. 2011). It fades to a viscous one as saturated friction does. */
+/* Torque of magnitude mu_r R* F_n against the relative angular velocity, rolling and twisting (Zhou et al.
+   1999; Ai et al. 2011, model A). At small velocities it is viscous, as saturated friction is. */
 INLINE lanes3 rolling_couple(Grain at, Neighbours seen, lanes normal_force, lanes reduced_radius) {
     global const Replica* restrict replica = at.replica;
     const lanes r = at.now.radius;

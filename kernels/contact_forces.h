@@ -1,35 +1,38 @@
-/* The force of each contact of a grain from its corrected overlap: Hertz, damping with constant
-   restitution, friction, and the effects that the replica has beyond them. */
+/* Contact forces of a grain, from overlaps corrected by the surface displacements of both sides:
+     Hertz      F = 4/3 E* a delta, a = sqrt(R* delta)
+     damping    2 sqrt(5/6) beta sqrt(S_n m*) v_n, S_n = 2 E* a: the restitution does not depend on the speed
+     friction   friction.h
+     effects    contact_effects.h, if the replica has any. */
 
 typedef struct {
     mask touching;
-    lanes approach;     /* delta, corrected by both displacements; negative where there is a gap [m] */
-    lanes overlap;      /* delta where touching, else zero [m] */
-    lanes radius;       /* a = sqrt(R* delta), of the contact [m] */
-    lanes elastic;      /* Hertz force, as stiffened: what displaces surfaces [N] */
-    lanes displacement; /* b of this grain's surface there, all contacts together [m] */
+    lanes approach;     /* delta, corrected by both displacements; negative for a gap [m] */
+    lanes overlap;      /* delta if touching, else zero [m] */
+    lanes radius;       /* contact radius a = sqrt(R* delta) [m] */
+    lanes elastic;      /* Hertz force including stiffening; it displaces surfaces [N] */
+    lanes displacement; /* b of this grain's surface, by all its contacts [m] */
     lanes arm;          /* from the centre to the contact point, or to the probed surface point [m] */
     lanes3 force;       /* on this grain [N] */
-    lanes3 tangential;  /* its friction part [N] */
-    lanes3 couple;      /* rolling resistance on this grain, set where there is any [N m] */
-    lanes energy;       /* stored beyond Hertz's 2/5 F delta by effects, set where there are any [J] */
+    lanes3 tangential;  /* friction part of the force [N] */
+    lanes3 couple;      /* rolling resistance on this grain; set only with that effect [N m] */
+    lanes energy;       /* stored by effects, in excess of 2/5 F delta; set only with effects [J] */
 } Contacts;
 
-/* What the elastic part of a contact leaves for the rest. */
+/* Results of the elastic part that damping, friction and effects need. */
 typedef struct {
     Reduced pair;
     lanes stiffness;          /* 2 E* a [N/m] */
-    lanes relaxed_force;      /* elastic force less what has relaxed [N] */
+    lanes relaxed_force;      /* elastic force after relaxation [N] */
     lanes displacement_there; /* of the other surface [m] */
 } Pressed;
 
-/* b of both surfaces at a row's contacts [m]. */
+/* b of both surfaces at a slot of each lane [m]. */
 typedef struct {
     lanes here, there;
 } Displaced;
 
-/* Overlap and elastic force. `effects` are the replica's, or a plain 0 that leaves them out when this is
- * compiled. */
+/* Overlap and elastic force. `effects` is the replica's value, or the constant 0, for which the compiler
+   removes the effects. */
 INLINE Pressed press(Grain at, const int effects, Neighbours seen, Displaced b, Memory* restrict memory,
                      Contacts* restrict c) {
     global const Replica* restrict replica = at.replica;
@@ -37,7 +40,7 @@ INLINE Pressed press(Grain at, const int effects, Neighbours seen, Displaced b, 
     Pressed p;
     const lanes gap = seen.distance - (radius + seen.radius);
     p.pair = reduced(at, seen);
-    if (replica->container == CONTAINER_CYLINDER) { /* the curved wall alone is not level */
+    if (replica->container == CONTAINER_CYLINDER) { /* only its curved wall is not horizontal */
         const mask curved = seen.wall & AS_MASK(fabs(seen.normal.z) < R(0.5));
         p.pair.radius = WHERE(curved, curved_radius(replica, radius), p.pair.radius);
     }
@@ -63,7 +66,7 @@ INLINE Pressed press(Grain at, const int effects, Neighbours seen, Displaced b, 
         c->approach = WHERE(c->touching, c->overlap, c->approach);
     }
 
-    /* Hertz: F = 4/3 E* a delta, stiffness S = 2 E* a. Without overlap every force is zero by itself. */
+    /* Hertz: F = 4/3 E* a delta, stiffness S = 2 E* a. Both are zero without overlap. */
     c->radius = sqrt(p.pair.radius * c->overlap);
     p.stiffness = R(2) * modulus * c->radius;
     c->elastic = (R(2) / R(3)) * p.stiffness * c->overlap;
@@ -86,7 +89,7 @@ INLINE lanes shear_stiffness(Grain at, const int effects, Neighbours seen, lanes
     return R(8) * modulus * contact_radius;
 }
 
-/* Velocity of the other surface past this one at the contact point, without what separates them. */
+/* Tangential velocity of the other surface relative to this one at the contact point. */
 INLINE lanes3 sliding_velocity(Grain at, Neighbours seen, lanes arm, lanes separating) {
     const lanes3 turn = add_scaled3(scale3(seen.distance - arm, seen.spin), arm, at.now.spin);
     return subtract3(add_scaled3(seen.velocity, -separating, seen.normal), cross3(turn, seen.normal));
@@ -104,7 +107,7 @@ INLINE Contacts contact_forces(Grain at, const int effects, Neighbours seen, Dis
     const lanes normal_force =
         pressed.relaxed_force - damping * sqrt(pressed.stiffness * pair.mass) * separating;
 
-    /* The contact point lies midway between the two displaced surfaces [paper]. */
+    /* The contact point is midway between the two displaced surfaces (Brodu et al. 2015). */
     const lanes midway =
         R(0.5) * (seen.distance + (radius + c.displacement) - (seen.radius + pressed.displacement_there));
     c.arm = WHERE(c.touching, WHERE(seen.wall, seen.distance, midway), radius + c.displacement);
@@ -127,7 +130,7 @@ INLINE Contacts contact_forces(Grain at, const int effects, Neighbours seen, Dis
     return c;
 }
 
-/* Adds the forces of contacts and their torques r_i x F_t, lane by lane. */
+/* Adds the forces of contacts and their torques r_i x F_t. */
 INLINE void add_contacts(Contacts c, lanes3 normal, lanes3* restrict force, lanes3* restrict torque) {
     *force = add3(*force, c.force);
     *torque = add_scaled3(*torque, c.arm, cross3(normal, c.tangential));

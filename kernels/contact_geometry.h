@@ -1,21 +1,20 @@
-/* Where a grain meets each of its neighbours: direction, distance and gap, for grains and walls alike. */
+/* Geometry of a grain and its neighbours: direction, distance, relative velocity. A wall is treated as a
+   neighbour of radius zero at the foot of the perpendicular, so one formula covers grains and walls. */
 
-/* What one slot of each lane sees of the other side. A wall is a neighbour of radius zero at the foot of
-   the perpendicular. */
+/* The neighbour in one slot of each lane. */
 typedef struct {
     mask occupied;
     mask wall;
     lanes3 normal;           /* e, from this grain's centre to the neighbour */
     lanes distance;          /* to the neighbour's centre, or to the wall [m] */
-    lanes radius;            /* the neighbour's, zero for a wall [m] */
-    lanes3 velocity;         /* the neighbour's less this grain's [m/s] */
-    lanes3 spin;             /* the neighbour's angular velocity [1/s] */
+    lanes radius;            /* of the neighbour, zero for a wall [m] */
+    lanes3 velocity;         /* of the neighbour relative to this grain [m/s] */
+    lanes3 spin;             /* angular velocity of the neighbour [1/s] */
     lanes excess_compliance; /* E/E_j - 1 of the neighbour, zero for a wall */
-    slots species;           /* the neighbour's, WALL_COLUMN for a wall; set where there are several */
+    slots species;           /* of the neighbour, WALL_COLUMN for a wall; set only if SPECIES > 1 */
 } Neighbours;
 
-/* The foot of the perpendicular to each wall among the partners, and the other coordinates of `there` for
- * grains. */
+/* For walls among the partners the foot of the perpendicular; for grains `there`, unchanged. */
 INLINE lanes3 wall_feet(Grain at, const int effects, slots partner, lanes3 there) {
     global const Replica* restrict replica = at.replica;
     lanes3 foot = where3(AS_MASK(partner < NO_PARTNER), at.now.position, there);
@@ -25,7 +24,7 @@ INLINE lanes3 wall_feet(Grain at, const int effects, slots partner, lanes3 there
     } else {
         foot.x = WHERE(AS_MASK(partner == WALL_PARTNER(0)), replica->wall_position[0], foot.x);
     }
-    /* Written out: a loop over axes would go through memory. */
+    /* No loop over axes: it would index vectors in memory. */
     foot.x = WHERE(AS_MASK(partner == WALL_PARTNER(1)), replica->wall_position[1], foot.x);
     foot.y = WHERE(AS_MASK(partner == WALL_PARTNER(2)), replica->wall_position[2], foot.y);
     foot.y = WHERE(AS_MASK(partner == WALL_PARTNER(3)), replica->wall_position[3], foot.y);
@@ -51,7 +50,7 @@ INLINE Neighbours see_neighbours(Grain at, const int effects, global const Motio
     seen.radius = position.w;
     seen.excess_compliance = velocity.w;
     seen.spin = (lanes3){spin.x, spin.y, spin.z};
-    if (ANY(wall)) { /* walls do not turn; the plate alone moves, along z */
+    if (ANY(wall)) { /* walls do not rotate; only the plate moves, along z */
         there = wall_feet(at, effects, partner, there);
         moving = where3(wall, ZERO3, moving);
         moving.z = WHERE(AS_MASK(partner == WALL_PARTNER(5)), at.replica->plate_velocity, moving.z);
@@ -74,7 +73,7 @@ INLINE Neighbours see_neighbours(Grain at, const int effects, global const Motio
         apart = deformed_lanes(f, listed);
         seen.velocity = add3(seen.velocity, deformed_lanes(deformation_rate(at.replica), listed));
     }
-    /* An empty slot is given a distance of one, so that nothing is divided by zero. */
+    /* Distance 1 in empty slots avoids a division by zero. */
     const lanes squared = WHERE(seen.occupied, dot3(apart, apart), R(1));
     seen.distance = sqrt(squared);
     seen.normal = scale3(inverse_root(squared), apart);

@@ -1,15 +1,15 @@
-/* What a contact remembers from step to step, each side in its own slot. A grain's memory is one block of
-   rows of SLOTS reals; a batch keeps the rows that some replica needs (Replica: memory_rows and where each
-   begins). */
+/* State of a contact that persists between steps; each side stores its own copy in its slot. The state of a
+   grain is one block of rows of SLOTS reals, one row per quantity. Only rows that the replica needs are
+   stored (Replica: memory_rows, deepest_row, relaxed_row). */
 #define MAX_MEMORY_ROWS 5
 
 typedef struct {
-    lanes3 spring; /* tangential, of Mindlin friction, as seen from this grain [m] */
-    lanes deepest; /* overlap so far, of plasticity [m] */
-    lanes relaxed; /* force that the contact has got used to, of viscoelasticity [N] */
+    lanes3 spring; /* elongation of the tangential spring (Mindlin friction), from this grain's side [m] */
+    lanes deepest; /* largest overlap so far (plasticity) [m] */
+    lanes relaxed; /* internal variable q (viscoelasticity) [N] */
 } Memory;
 
-/* Of all slots of a work-item: a copy on a CPU, the memory itself on a GPU. */
+/* Memory of all slots of a work-item: a private copy on a CPU, a pointer to global memory on a GPU. */
 #if LANES == 16
 typedef struct {
     lanes row[MAX_MEMORY_ROWS][SLOTS];

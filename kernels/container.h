@@ -1,14 +1,14 @@
-/* What holds the grains at the sides: walls of a box, the curved wall of a cylinder, or nothing in a periodic
-   cell. Positions in a periodic cell are not wrapped: a difference is taken to the nearest image.
+/* Lateral boundaries: walls of a box, the curved wall of a cylinder, or periodic sides. Positions in periodic
+   directions are not wrapped; differences use the nearest image.
 
-   A cell repeats along z as well, and is deformed. Positions in it are those that it would have undeformed,
-   and velocities those beyond its own motion: F X is where a grain is that is listed at X, and F' X + v its
-   velocity. So a cell moves its grains with it, without rounding, and images need no velocities of their own.
-   F is upper triangular, linear in time during an interval. */
+   CONTAINER_CELL is periodic along z as well, and deformed. Stored positions X are in the undeformed cell,
+   and stored velocities v are relative to the cell's own motion: a grain is at F X, its velocity is F' X + v.
+   The cell thus moves its grains without rounding errors, and images need no velocities of their own.
+   F is upper triangular and linear in time during an interval. */
 
-#define MAX_DRIFT R(8) /* cells, of a grain in a periodic one: positions must stay precise */
+#define MAX_DRIFT R(8) /* largest coordinate in periods; larger ones lose precision */
 
-/* Added and taken away again it rounds to the nearest whole number; rint() costs twice the time. */
+/* Adding and then subtracting this number rounds to the nearest integer; rint() takes twice as long. */
 #if MCDEM_DOUBLE
 #define ROUNDING R(6755399441055744.0) /* 1.5 2^52 */
 #else
@@ -17,13 +17,13 @@
 
 #define WHOLE_NUMBER(x) (((x) + ROUNDING) - ROUNDING)
 
-/* Both sides of a pair get the same bits, signs apart. */
+/* Both sides of a pair get the same bits, with opposite signs. */
 INLINE lanes nearest_image(lanes apart, real size) {
     const real inverse = R(1) / size;
     return apart - size * WHOLE_NUMBER(apart * inverse);
 }
 
-/* The image in the cell itself, or next to it by rounding. */
+/* The image in [0, size], up to rounding. */
 INLINE real into_cell(real coordinate, real size) { return coordinate - size * floor(coordinate / size); }
 
 /* F, or its rate. */
@@ -36,7 +36,7 @@ INLINE Deformation deformation_rate(global const Replica* restrict replica) {
     return (Deformation){rate[0], rate[1], rate[2], rate[3], rate[4], rate[5]};
 }
 
-/* After this time in the interval [s]. */
+/* F at the time `elapsed` in the interval [s]. */
 INLINE Deformation deformation(global const Replica* restrict replica, real elapsed) {
     global const real* f = replica->deformation;
     const Deformation rate = deformation_rate(replica);
@@ -50,13 +50,13 @@ INLINE real3 deformed(Deformation f, real3 a) {
 
 /* F^-1 a. */
 INLINE lanes3 undeformed(Deformation f, lanes3 a) {
-    const real3 inverse = R(1) / (real3)(f.xx, f.yy, f.zz); /* one division of vectors */
+    const real3 inverse = R(1) / (real3)(f.xx, f.yy, f.zz); /* one vector division */
     const lanes z = a.z * inverse.z, y = (a.y - f.yz * z) * inverse.y;
     return (lanes3){(a.x - f.xy * y - f.xz * z) * inverse.x, y, z};
 }
 
-/* From one listed position to another, as it is to the nearest image in the deformed cell. One axis after the
-   other, the last first: right for all that is nearer than half the cell's lengths, however far it leans. */
+/* Difference of two stored positions, to the nearest image in the deformed cell. Axes are treated one by one,
+   z first. The result is correct for distances below half of the cell's lengths, at any shear. */
 #define NEAREST_IN_CELL(name, vector, scalar)                                                              \
     INLINE vector name(global const Replica* restrict replica, Deformation f, vector apart) {              \
         const real3 size =                                                                                 \
@@ -82,7 +82,7 @@ INLINE real cylinder_radius(global const Replica* restrict replica) {
     return R(0.5) * replica->wall_position[1];
 }
 
-/* The foot of the perpendicular on a cylinder's wall. */
+/* Foot of the perpendicular on a cylinder's wall. */
 INLINE lanes3 side_foot(global const Replica* restrict replica, lanes3 point) {
     const real radius = cylinder_radius(replica);
     const lanes x = point.x - radius, y = point.y - radius, distance = sqrt(x * x + y * y);
@@ -93,7 +93,7 @@ INLINE lanes3 side_foot(global const Replica* restrict replica, lanes3 point) {
                     point.z};
 }
 
-/* From a wall to a point inside; far where there is no such wall. The plate is another matter (plate.h). */
+/* Distance of a point from side wall 0 to 3; infinite if the container has no such wall. */
 INLINE real side_distance(global const Replica* restrict replica, int wall, real4 point) {
     if (replica->container >= CONTAINER_PERIODIC) return INFINITY;
     if (replica->container == CONTAINER_CYLINDER) {
@@ -117,9 +117,9 @@ INLINE mask within_sides(global const Replica* restrict replica, lanes3 point) {
            AS_MASK(point.y < wall[3]);
 }
 
-/* R* of a sphere inside a cylinder, 1/R* = sqrt(1/R (1/R - 1/R_c)): the geometric mean of both directions
-   (Johnson 1985, section 4.2). Forces by it are within 0.2 % of Hertz's elliptical contact up to R = R_c/4
-   and within 1 % up to R_c/2. */
+/* R* of a sphere inside a cylinder, 1/R* = sqrt(1/R (1/R - 1/R_c)): the geometric mean of the two principal
+   relative curvatures (Johnson 1985, section 4.2). Forces agree with Hertz's elliptical contact within 0.2 %
+   up to R = R_c/4 and within 1 % up to R_c/2. */
 INLINE lanes curved_radius(global const Replica* restrict replica, lanes radius) {
     return radius / sqrt(R(1) - radius / cylinder_radius(replica));
 }

@@ -1,16 +1,17 @@
-/* Friction of a contact against sliding: two laws, or a share of each. */
+/* Tangential force of a contact. Two laws: saturated friction (Brodu et al. 2015), and a Mindlin spring cut
+   at the Coulomb limit. The effect `friction_history` uses a weighted mean of both. */
 
-/* What limits a contact's friction, beside how it slides. */
+/* Parameters of a contact's friction. */
 typedef struct {
     lanes limit;        /* mu F_n [N] */
-    lanes stiffness;    /* of the spring, 8 G* a [N/m] */
+    lanes stiffness;    /* of the Mindlin spring, 8 G* a [N/m] */
     lanes damping;      /* 2 sqrt(5/6) beta */
     lanes reduced_mass; /* m* [kg] */
     mask touching;
 } FrictionTerms;
 
-/* Always saturated [paper]: mu F_n against the sliding. Below `sliding_velocity`, and where a step's
-   friction could do more than stop the sliding, it fades to a viscous force so that it cannot chatter. */
+/* Saturated friction: mu F_n against the sliding velocity. It is viscous below `sliding_velocity`, and its
+   viscosity is at most a tenth of m* over dt, so that a time step cannot reverse the sliding. */
 INLINE lanes3 saturated_friction(global const Replica* restrict replica, FrictionTerms contact,
                                  lanes3 sliding) {
     const real slow = replica->sliding_velocity;
@@ -19,8 +20,8 @@ INLINE lanes3 saturated_friction(global const Replica* restrict replica, Frictio
     return scale3(fmin(contact.limit * inverse_speed, max_viscosity), sliding);
 }
 
-/* Mindlin spring with damping, cut at the Coulomb limit; a slipping spring keeps the elongation that carries
-   the limit. Updates `spring`. */
+/* Mindlin spring with damping, cut at the Coulomb limit. A slipping spring keeps the elongation at which its
+   force equals the limit. Updates `spring`. */
 INLINE lanes3 mindlin_friction(FrictionTerms contact, lanes3 sliding, lanes3 normal, real elapsed,
                                lanes3* restrict spring) {
     const lanes damping = contact.damping * sqrt(contact.stiffness * contact.reduced_mass);
@@ -37,7 +38,8 @@ INLINE lanes3 mindlin_friction(FrictionTerms contact, lanes3 sliding, lanes3 nor
     return force;
 }
 
-/* Saturated, with history, or as much of each as `mindlin_share` says. */
+/* Saturated friction, Mindlin friction, or with EFFECT_FRICTION_HISTORY their mean weighted by
+   `mindlin_share`. */
 INLINE lanes3 friction(global const Replica* restrict replica, const int effects, FrictionTerms contact,
                        lanes3 sliding, lanes3 normal, real elapsed, lanes3* restrict spring) {
     lanes3 with_history = ZERO3;

@@ -1,10 +1,11 @@
-/* Which grains a work-item works for, and sums over the slots of a grain, on both kinds of device. Opens
-   every kernel that goes through contacts; declares block, first, table and scratch. */
-#define SLOT_SUMS 7            /* of a step: force, torque, slots in trouble */
-#define SHARED_ROW (SLOTS + 1) /* odd, so that rows begin in different banks of local memory */
+/* Assignment of grains to work-items, and sums over the slots of a grain, for the CPU and the GPU layout.
+   Kernels that process contacts begin with GRAINS_OF_WORK_ITEM, which declares `block`, `first` (the first
+   grain of the work-item), `table` (its contact table) and `scratch` (for sums over slots). */
+#define SLOT_SUMS 7            /* sums per step: force, torque, slots with a status */
+#define SHARED_ROW (SLOTS + 1) /* odd, so that rows start in different banks of local memory */
 #if LANES == 16
 #define IS_LEADER true
-#define STEP_ITEMS (BLOCK / LANES) /* of a work-group */
+#define STEP_ITEMS (BLOCK / LANES) /* work-group size */
 #define GRAINS_OF_WORK_ITEM                                         \
     const int block = blocks[get_group_id(0)];                      \
     const int first = block * BLOCK + (int)get_local_id(0) * LANES; \
@@ -25,8 +26,8 @@ private                                                             \
     EXCHANGE real* scratch = scratches[get_local_id(0) / SLOTS];
 #endif
 
-/* Sums over the slots of a grain, and the largest. A CPU's work-item has them already. On a GPU slots share()
-   their values, and after a barrier every sum is one work-item's. */
+/* Sum and maximum over the slots of a grain. On a CPU a work-item has already combined all slots. On a GPU
+   each slot stores its value with share(); after a barrier one work-item computes each sum. */
 #if LANES == 16
 #define share(value, q, scratch)
 #define sum_slots(value, q, scratch) (value)
@@ -47,10 +48,10 @@ OVER_SLOTS(sum_slots, PLUS)
 OVER_SLOTS(max_slots, fmax)
 #endif
 
-/* What the slots of a grain add up to in a step. */
+/* Sums over the slots of a grain in a step. */
 typedef struct {
     lanes3 force, torque;
-    lanes trouble;
+    lanes trouble; /* counts for trouble_status() in advance.cl */
 } GrainSums;
 
 INLINE void share_sums(GrainSums slot, EXCHANGE real* scratch) {
@@ -63,7 +64,7 @@ INLINE void share_sums(GrainSums slot, EXCHANGE real* scratch) {
     share(slot.trouble, 6, scratch);
 }
 
-/* For the grain's leader alone. */
+/* The result is valid only in the grain's leader. */
 INLINE GrainSums add_up(GrainSums slot, EXCHANGE real* scratch) {
 #if LANES == 16
     (void)scratch;
@@ -80,8 +81,8 @@ INLINE GrainSums add_up(GrainSums slot, EXCHANGE real* scratch) {
 #endif
 }
 
-/* The partners in the slots of a work-item; returns how many slots it goes through. Rows are filled from
-   their beginning. */
+/* Loads the partners of a work-item and returns the number of slots to process. Rows are filled from the
+   start. */
 INLINE int load_partners(global const int* restrict rows, slots* restrict partner) {
 #if LANES == 16
     int count = 0;
@@ -98,9 +99,9 @@ INLINE int load_partners(global const int* restrict rows, slots* restrict partne
 #endif
 }
 
-/* The surface displacements of both sides of the contacts, predicted for this step. Those of the other side
-   lie scattered over the rows of the neighbours: a CPU calls for all of them ahead of their use, a GPU's
-   other work-items fill the wait. */
+/* Loads this grain's surface displacements, extrapolated to this step, and the slots of those of the
+   neighbours. The latter are scattered over memory: a CPU prefetches them, a GPU hides the latency with other
+   work-items. */
 INLINE void load_displacements(Grain at, Batch batch, lanes* restrict here, slots* restrict there) {
     if (at.replica->surface == SURFACE_RIGID) return;
 #if LANES == 16
@@ -111,7 +112,7 @@ INLINE void load_displacements(Grain at, Batch batch, lanes* restrict here, slot
     load_row(batch.displacement + at.row, SLOTS, at.count, here);
     load_slots(batch.partner_slot + at.row, at.count, there);
 }
-/* An empty slot may hold anything: zero, so that nothing comes of it times its force of zero. */
+/* The values of empty slots are undefined, so they are replaced by zero; NaN times a zero force is NaN. */
 INLINE Displaced displaced(Grain at, Batch batch, Neighbours seen, const lanes* here, const slots* there,
                            int v) {
     Displaced b = {R(0), R(0)};
@@ -121,7 +122,7 @@ INLINE Displaced displaced(Grain at, Batch batch, Neighbours seen, const lanes* 
     return b;
 }
 
-/* The way of the grains since their neighbours were listed, from where they were then to `position`. */
+/* Displacement of the grains since the neighbour list was built. */
 INLINE lanes3 way_since_listed(Grain at, global const Track* restrict track, slots grain, lanes3 position) {
     const lanes4 listed = gather4((global const real4*)track, grain * TRACK_VECTORS);
     const lanes3 way = subtract3(position, (lanes3){listed.x, listed.y, listed.z});

@@ -1,5 +1,7 @@
-/* Velocity Verlet in its leapfrog form: velocities stand half a step before the positions that carry the
-   forces. Weight less buoyancy, drag, inertia of a sphere. */
+/* Time integration: velocity Verlet in leapfrog form, with velocities half a step before the positions.
+   Forces are the contact forces, weight minus buoyancy, and drag; grains have the moment of inertia of a
+   homogeneous sphere. In a deformed cell the equations of motion are SLLOD (Evans & Morriss 1984),
+   X' = F^-1 v, m v' = force - m F' F^-1 v. */
 INLINE Moving integrate(Grain at, lanes3 force, lanes3 torque) {
     global const Replica* restrict replica = at.replica;
     const Moving now = at.now;
@@ -12,7 +14,6 @@ INLINE Moving integrate(Grain at, lanes3 force, lanes3 torque) {
     Moving after = now;
     after.spin = add_scaled3(now.spin, dt, turning);
     if (replica->container == CONTAINER_CELL) {
-        /* What is left of Newton's law beyond the cell's own motion (Evans & Morriss 1984, SLLOD). */
         const Deformation f = deformation(replica, at.elapsed);
         const lanes3 own = deformed_lanes(deformation_rate(replica), undeformed(f, now.velocity));
         after.velocity = add_scaled3(now.velocity, dt, subtract3(acceleration, own));
@@ -24,12 +25,12 @@ INLINE Moving integrate(Grain at, lanes3 force, lanes3 torque) {
     return after;
 }
 
-/* A rotation, and then one more by a small angle, `by` along the laboratory's axes. */
+/* A rotation followed by a rotation by the small vector `by`, given in laboratory axes. */
 INLINE lanes4 rotated(lanes4 rotation, lanes3 by) {
     const lanes3 half_angle = scale3(R(0.5), by), v = {rotation.x, rotation.y, rotation.z};
     const lanes3 q = add3(add_scaled3(v, rotation.w, half_angle), cross3(half_angle, v));
     const lanes w = rotation.w - dot3(half_angle, v);
-    const lanes to_one = R(1.5) - R(0.5) * (dot3(q, q) + w * w); /* a step of Newton's method */
+    const lanes to_one = R(1.5) - R(0.5) * (dot3(q, q) + w * w); /* normalises: one Newton step */
     return (lanes4){q.x * to_one, q.y * to_one, q.z * to_one, w * to_one};
 }
 

@@ -1,8 +1,9 @@
-/* Numbers side by side: `lanes` are one number of each grain that a work-item works for, LANES grains on a
-   CPU (vectors) and one on a GPU. WHERE(condition, yes, no) chooses lane by lane.
-   A grain has SLOTS slots, in memory a row of reals. A CPU's work-item goes through all of them, a GPU's has
-   one: arrays by slot have SLOTS_HERE entries, and entry v is of SLOT(v). What the slots of a grain must know
-   of one another goes through an EXCHANGE array: private memory on a CPU, local memory on a GPU. */
+/* Vector types and operations that hide the difference between the CPU and the GPU layout.
+   `lanes` has one number for each grain of a work-item: LANES = 16 grains on a CPU (a vector), one on a GPU.
+   WHERE(condition, yes, no) selects lane by lane. A grain has SLOTS slots, stored as a row of reals. A CPU's
+   work-item processes all of them, a GPU's only one: arrays over slots have SLOTS_HERE entries, and entry v
+   belongs to slot SLOT(v). The slots of a grain exchange data in EXCHANGE arrays: private memory on a CPU,
+   local memory on a GPU. */
 #if LANES == 16
 #if MCDEM_DOUBLE
 typedef double16 lanes;
@@ -26,7 +27,7 @@ typedef int16 slots;
 #define SYNCHRONISE()
 #define LOAD_LANES(field) vload16(0, field)
 #define STORE_LANES(value, field) vstore16(value, 0, field)
-/* Asks for a place in memory ahead of its use; OpenCL's own prefetch() does nothing in PoCL. */
+/* OpenCL's prefetch() does nothing in PoCL. */
 #if defined(__x86_64__) || defined(__aarch64__)
 #define PREFETCH(place) __builtin_prefetch((const void*)(size_t)(place))
 #else
@@ -61,12 +62,12 @@ typedef struct {
 INLINE lanes3 add3(lanes3 a, lanes3 b) { return (lanes3){a.x + b.x, a.y + b.y, a.z + b.z}; }
 INLINE lanes3 subtract3(lanes3 a, lanes3 b) { return (lanes3){a.x - b.x, a.y - b.y, a.z - b.z}; }
 INLINE lanes3 scale3(lanes factor, lanes3 a) { return (lanes3){factor * a.x, factor * a.y, factor * a.z}; }
-/* a + factor b, fused: compilers do so within one expression only. */
+/* a + factor b in one expression, so that compilers may use fused multiply-add. */
 INLINE lanes3 add_scaled3(lanes3 a, lanes factor, lanes3 b) {
     return (lanes3){a.x + factor * b.x, a.y + factor * b.y, a.z + factor * b.z};
 }
-/* a + b, never fused with the product that one of them is: where a and b belong to the two sides of a
-   contact, both sides must get the same bits. */
+/* a + b without fused multiply-add. If a and b are products that belong to the two sides of a contact, fusing
+   would round only one of them, and the two sides would get different bits. */
 INLINE lanes add_alike(lanes a, lanes b) {
 #pragma OPENCL FP_CONTRACT OFF
     return a + b;
@@ -82,7 +83,7 @@ INLINE lanes3 where3(mask condition, lanes3 yes, lanes3 no) {
 #define ZERO3 ((lanes3){R(0), R(0), R(0)})
 
 #if LANES == 16
-/* any() by halves: PoCL's own branches lane by lane. */
+/* Replaces any(), which branches on every lane in PoCL. */
 INLINE bool any_lane(mask m) {
 #if MCDEM_DOUBLE
     const long8 eight = m.lo | m.hi;
@@ -96,16 +97,16 @@ INLINE bool any_lane(mask m) {
     return (two.x | two.y) != 0;
 }
 
-/* Nothing to the processor; to the compiler a value it cannot see through. LLVM else takes the vectors of a
-   transposition apart into loads of single numbers, twice the instructions. */
+/* Optimisation barrier without instructions. Without it LLVM splits the vectors of a transposition into loads
+   of single numbers, which doubles the number of instructions. */
 #if defined(__AVX__) && !MCDEM_DOUBLE
 #define KEEP_WHOLE(vector) __asm__("" : "+x"(vector))
 #else
 #define KEEP_WHOLE(vector)
 #endif
 
-/* Eight rows of four numbers and four vectors of eight, turned into one another: every fourth row lies in one
-   vector, so that two rounds of interleaving within halves bring the lanes into order. */
+/* Transposition between eight rows of four numbers and four vectors of eight. Each intermediate vector
+   contains rows i and i + 4, so two rounds of interleaving within 128-bit halves give the lanes in order. */
 #define INTERLEAVE_LOW(type, a, b) (type)(a.s0, b.s0, a.s1, b.s1, a.s4, b.s4, a.s5, b.s5)
 #define INTERLEAVE_HIGH(type, a, b) (type)(a.s2, b.s2, a.s3, b.s3, a.s6, b.s6, a.s7, b.s7)
 #define LOW_PAIRS(type, a, b) (type)(a.s01, b.s01, a.s45, b.s45)
@@ -170,7 +171,7 @@ INLINE lanes gather(global const real* restrict field, slots index) {
                    field[index.sf]);
 }
 
-/* The first `count` slots of LANES rows, `stride` reals apart, and up to three more. */
+/* Loads the first `count` slots of LANES rows that are `stride` reals apart, in groups of four slots. */
 INLINE void load_row(global const real* restrict rows, int stride, int count, lanes* restrict slot) {
     for (int v = 0; v < count; v += 4) {
         const lanes4 four = gather4((global const real4*)(rows + v), LANE_NUMBERS * (stride / 4));
@@ -212,8 +213,8 @@ INLINE void store_row(const lanes* restrict slot, int count, global real* restri
 }
 #endif
 
-/* 1 / sqrt(x). In float on x86 to 3e-7: the processor's estimate and one step of Newton's method, where the
-   root and the division would keep its one divider busy for most of the loop over pairs of contacts. */
+/* 1 / sqrt(x). In float on x86 the processor's estimate is refined by one Newton step, with a relative error
+   below 3e-7. Root and division would occupy the divider for most of the loop over pairs of contacts. */
 INLINE lanes inverse_root(lanes x) {
 #if LANES == 16 && defined(__AVX__) && !MCDEM_DOUBLE
     real8 low, high;

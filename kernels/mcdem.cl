@@ -1,4 +1,4 @@
-/* The program: every kernel, in the order in which one concept needs another. */
+/* The OpenCL program: includes all kernel files in order of their dependencies. */
 /* clang-format off */
 #include "real.h"
 #include "material.h"

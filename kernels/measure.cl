@@ -1,28 +1,33 @@
-/* The state between two intervals of steps: contact forces slot by slot, energies grain by grain, and
-   their sums replica by replica, each in one fixed order. */
+/* Kernels `measure` and `reduce`: the state at the end of an interval of steps. `measure` computes the force,
+   overlap and arm of every slot, and the energies and the highest frequency of every grain. `reduce` computes
+   sums and maxima over each portion of a replica, in a fixed order. */
 
-/* What a grain's contacts add up to beside forces, lane by lane. */
+/* Sums (and a maximum) over a grain's contacts. */
 typedef struct {
-    lanes stored;             /* energy [J] */
-    lanes deepest;            /* corrected overlap over the sum of radii */
-    lanes stiffness;          /* dF/d(approach) of each by itself [N/m] */
-    lanes displaced, pressed; /* F b^2/delta and F delta, this grain's half of it [J] */
+    lanes stored;    /* energy [J] */
+    lanes deepest;   /* largest corrected overlap over the sum of radii */
+    lanes stiffness; /* sum of dF/d(approach), each contact on its own [N/m] */
+    lanes displaced; /* sum of F b^2/delta [J] */
+    lanes pressed;   /* sum of F delta, half of it for contacts with grains [J] */
 } ContactSums;
 
-/* Hertz energy 2/5 F delta, half of it this grain's, less the work of its own surface displacement b; and
-   what effects store. Models of points take F b/2 for the energy that b stores, spheres the integral of b by
-   F. */
+/* Elastic energy of a contact that is attributed to this grain: Hertz's 2/5 F delta (half of it for contacts
+   with grains), minus the work F b of its own surface displacement, plus the energy stored by that
+   displacement and by effects. The displacement stores F b/2 in models of point forces. In sphere models it
+   stores the integral of b over F: the contact's own part is added here, that of other contacts in
+   surface_energy. */
 INLINE lanes elastic_energy(Grain at, int effects, Neighbours seen, Contacts c) {
     global const Replica* restrict replica = at.replica;
     lanes displaced = R(0.5) * c.elastic * c.displacement;
-    if (replica->finite_contacts) /* by itself; others' in surface_energy */
+    if (replica->finite_contacts)
         displaced = replica->confinement ? (lanes)(R(0)) : own_work(at, c.elastic, c.radius);
     lanes energy = c.elastic * (WHERE(seen.wall, R(0.4), R(0.2)) * c.overlap - c.displacement) + displaced;
     if (effects) energy += WHERE(seen.wall, R(1), R(0.5)) * c.energy;
     return energy;
 }
 
-/* The integral of what the contacts of a grain displace at one another, spheres only [J]. */
+/* Sphere models: energy stored by the surface displacements of a grain, the integral of b over the forces.
+   With confinement it includes the contacts' own displacements [J]. */
 INLINE lanes surface_energy(Grain at, EXCHANGE ContactTable* table) {
     SYNCHRONISE();
     SurfaceDisplacement b[SLOTS_HERE];
@@ -34,7 +39,7 @@ INLINE void add_contact_sums(Grain at, Neighbours seen, Displaced b, Contacts c,
     const int effects = at.replica->effects;
     const lanes share = WHERE(seen.wall, R(1), R(0.5)), force = c.elastic;
     const lanes overlap = WHERE(c.touching, c.overlap, R(1));
-    /* Before the contact's own displacement, which grows with its force. */
+    /* Overlap without the contact's own displacement, which increases with its force. */
     const lanes without_own = b.here + b.there - (seen.distance - (at.now.radius + seen.radius));
     sums->stored += elastic_energy(at, effects, seen, c);
     sums->deepest =
@@ -44,7 +49,7 @@ INLINE void add_contact_sums(Grain at, Neighbours seen, Displaced b, Contacts c,
     sums->pressed += share * force * overlap;
 }
 
-/* What measure() writes of every slot. */
+/* Fields that measure() writes, one value per slot. */
 typedef struct {
     global real *force_x, *force_y, *force_z, *overlap, *arm;
 } MeasuredRows;
@@ -76,11 +81,11 @@ INLINE ContactSums measure_contacts(Grain at, Batch batch, MeasuredRows rows, EX
     return sums;
 }
 
-/* Delayed corrections ask for short steps where contacts are stiff and displace one another much: of the
-   gain, the force that surface displacements cause over the force that causes them, an estimate is twice the
-   ratio of their root mean squares, for the two sides of a contact. The result is of the order of the fastest
-   mode's frequency; the limit of stability over it is between 0.69 and 0.81 in packings up to a packing
-   fraction of 0.95 (tests/truth). */
+/* Estimate of a grain's highest vibration frequency, sqrt(stiffness/mass) / (1 - gain). The gain of the
+   surface displacements is the force that they cause over the force that causes them. It is estimated from
+   the root mean squares of b and delta as 2 sqrt(displaced/pressed); the 2 is for both sides of a contact.
+   The largest stable time step of the delayed corrections is 0.69 to 0.81 over this frequency, measured up to
+   packing fractions of 0.95. */
 #define LARGEST_GAIN R(0.9)
 INLINE lanes fastest_frequency(lanes mass, lanes stiffness, lanes displaced, lanes pressed) {
     const mask presses = AS_MASK(pressed > R(0));
@@ -135,10 +140,10 @@ kernel void measure(global const Replica* restrict replicas, global const Materi
     }
 }
 
-/* One work-group a portion of a replica: each work-item sums every 64th grain, then a fixed tree. The host
-   adds portions in their order. */
+/* One work-group per portion of a replica. Each work-item sums every 64th grain; a fixed tree combines these
+   sums. The host adds the portions in order. */
 #define REDUCERS 64
-#define SUMS 20 /* kinetic, elastic, 18 wall force components */
+#define SUMS 20 /* kinetic energy, elastic energy, 18 wall force components */
 
 INLINE void add_wall_forces(global const int* partner, global const real* x, global const real* y,
                             global const real* z, real* sums) {

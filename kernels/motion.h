@@ -1,25 +1,27 @@
-/* A grain as its neighbours see it. Side by side in memory, so that one line of it brings most of what a
- * contact needs. */
+/* State of grains in memory and in registers: loading, storing, and the structs passed between the functions
+   of a step. */
+
+/* State of a grain that its neighbours read; stored contiguously, so that it takes few cache lines. */
 typedef struct {
     real4 position;         /* w: radius, zero for padding [m] */
     real4 velocity;         /* w: excess compliance, E/E_i - 1 [m/s] */
     real4 angular_velocity; /* w: species, from 0 [1/s] */
 } Motion;
-#define MOTION_VECTORS 3 /* the real4 of one grain */
+#define MOTION_VECTORS 3 /* real4 per grain */
 
-/* What a step keeps of a grain that no neighbour looks at. */
+/* State of a grain that neighbours do not read. */
 typedef struct {
-    real4 listed_position; /* where it was when its neighbours were listed [m] */
-    real4 rotation;        /* since the start: a quaternion, its real part is w */
+    real4 listed_position; /* position when the neighbour list was built [m] */
+    real4 rotation;        /* since the start; quaternion with real part w */
 } Track;
 #define TRACK_VECTORS 2
 
-/* One quantity of grains, lane by lane; `vector` counts the real4 of a Motion. */
+/* One real4 of the Motion of each lane's grain: 0 position, 1 velocity, 2 angular velocity. */
 INLINE lanes4 gather_motion(global const Motion* restrict motion, slots grain, int vector) {
     return gather4((global const real4*)motion + vector, grain * MOTION_VECTORS);
 }
 
-/* A Motion of each lane. */
+/* The Motion of each lane's grain. */
 typedef struct {
     lanes3 position;
     lanes radius;
@@ -56,35 +58,35 @@ INLINE Moving chosen_motion(mask condition, Moving yes, Moving no) {
     return m;
 }
 
-/* What one work-item of a step works for: grains side by side in memory, all of one replica. */
+/* The LANES grains of a work-item: contiguous in memory, all of one replica. */
 typedef struct {
     global const Replica* replica;
     global const Material* materials; /* of all species of the replica */
-    int first;                        /* grain, among all of the batch */
-    size_t row;                       /* its first slot */
-    int count;                        /* of slots that are gone through; on a GPU one, its own */
-    real plate_z;                     /* where the plate is now [m] */
-    real elapsed;                     /* of the interval [s] */
+    int first;                        /* index of the first grain in the batch */
+    size_t row;                       /* index of its first slot */
+    int count;                        /* slots to process; on a GPU one, the work-item's own */
+    real plate_z;                     /* current position of the plate [m] */
+    real elapsed;                     /* time since the start of the interval [s] */
     Moving now;
 } Grain;
 
-/* Slots that a grain may have contacts in. */
+/* Number of slots that may contain contacts. */
 #if LANES == 16
 #define CONTACT_SLOTS(at) ((at).count)
 #else
 #define CONTACT_SLOTS(at) SLOTS
 #endif
 
-/* Without -DSPECIES all grains of a replica are of one material, known when this is compiled. */
+/* Without -DSPECIES all grains of a replica have one material. */
 #ifndef SPECIES
 #define SPECIES 1
 #endif
 
-/* The batch as a step finds it. */
+/* Fields of the batch that a step reads. */
 typedef struct {
     global const Motion* motion;
-    global const int* partner;       /* a slot */
-    global const int* partner_slot;  /* where the same contact stands in the neighbour's row */
-    global const real* displacement; /* b of the surface at a slot, outward [m] */
+    global const int* partner;       /* neighbour in each slot (partner.h) */
+    global const int* partner_slot;  /* slot of the same contact in the neighbour's row */
+    global const real* displacement; /* surface displacement b at each slot, outward [m] */
     global real* memory;             /* contact_memory.h */
 } Batch;

@@ -1,8 +1,8 @@
-/* Who is near whom: each grain's row of grains and walls within the probed gap plus the margin, grains
-   first in order of index. What a slot remembers (surface displacements, springs, ..) moves with its
-   neighbour. */
+/* Kernels `list_neighbours` and `link_partner_slots`: build the neighbour lists. A grain's row contains all
+   grains and walls within `probe_gap` + `skin`: first grains in order of index, then walls. The state stored
+   per slot (surface displacements, springs, ..) moves with the neighbour to its new slot. */
 
-/* Puts `entry` into the sorted grains of a row; `count` goes on counting past a full row. */
+/* Inserts `entry` into the sorted row. If the row is full, the entry is dropped, but counted. */
 INLINE int insert_sorted(int* row, int count, int entry) {
     if (count < SLOTS) {
         int at = count;
@@ -64,8 +64,8 @@ INLINE int near_walls(global const Replica* restrict replica, real4 own, int* ro
     return count;
 }
 
-/* Rearranges one remembered row: the value that went with a neighbour stays with it, new neighbours get zero.
- */
+/* Reorders one row of stored values: each value follows its neighbour to the new slot; new neighbours start
+   from zero. */
 INLINE void carry(const int* before, const int* after, global real* restrict values) {
     real kept[SLOTS];
     for (int c = 0; c < SLOTS; ++c) kept[c] = values[c];
@@ -114,8 +114,8 @@ kernel void list_neighbours(const int block_count, const int slot_count,
         carry(before, after, memory + row * replica->memory_rows + kind * SLOTS);
 }
 
-/* partner_slot: where the same contact stands in the neighbour's row. For walls and empty slots, the one
-   place past all rows, where displacements are always zero. */
+/* partner_slot: the slot of the same contact in the neighbour's row. For walls and empty slots it is
+   `slot_count`, one element beyond all rows, where the displacement is always zero. */
 WORK_GROUP(LIST_ITEMS)
 kernel void link_partner_slots(const int block_count, const int slot_count, global const int* restrict blocks,
                                global const int* restrict partner, global int* restrict partner_slot) {

@@ -1,4 +1,3 @@
-/* What an entry of a grain's row stands for: a grain by its index, or one of these. Shared by host and
- * device. */
+/* Values of a slot in a grain's row: the index of a grain, NO_PARTNER, or a wall. Shared with the host. */
 #define NO_PARTNER (-1)
 #define WALL_PARTNER(w) (-2 - (w))

@@ -1,11 +1,11 @@
-/* The plate: a plane that moves along z and may lean. Its lower face is at
+/* The plate: a plane that moves along z and may be tilted. Its lower face is at
    z = plate_z + tilt_x (x - Lx/2) + tilt_y (y - Ly/2). */
 
 INLINE real plate_position(global const Replica* restrict replica, int steps) {
     return replica->wall_position[5] + replica->plate_velocity * (replica->time_step * steps);
 }
 
-/* z of the face above or below a point. */
+/* z of the face at the x and y of a point. */
 #define PLATE_HEIGHT(name, vector, number)                                                        \
     INLINE number name(global const Replica* restrict replica, real plate_z, vector point) {      \
         if (!(replica->effects & EFFECT_PLATE_TILT)) return plate_z;                              \
@@ -22,7 +22,7 @@ INLINE lanes3 plate_foot(global const Replica* restrict replica, real plate_z, l
     return (lanes3){point.x - x * rise, point.y - y * rise, point.z + rise};
 }
 
-/* From a point below the face to its foot. */
+/* Distance of a point below the face from the face. */
 INLINE real plate_distance(global const Replica* restrict replica, real plate_z, real4 point) {
     return (plate_height(replica, plate_z, point) - point.z) /
            sqrt(R(1) + replica->plate_tilt_x * replica->plate_tilt_x +

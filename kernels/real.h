@@ -1,6 +1,6 @@
-/* The number types of a kernel build. Options: -DMCDEM_DOUBLE=0|1, -DLANES=16|1, -DSLOTS=16n.
-   LANES = 16: one work-item for 16 grains, side by side in vectors (CPU).
-   LANES = 1: one work-item a slot, the slots of a grain in one work-group (GPU). */
+/* Number types and compiler attributes. Build options: -DMCDEM_DOUBLE=0|1, -DLANES=16|1, -DSLOTS=16n.
+   LANES = 16: one work-item per 16 grains, vectors across the grains (CPU).
+   LANES = 1: one work-item per slot, all slots of a grain in one work-group (GPU). */
 #if MCDEM_DOUBLE
 #pragma OPENCL EXTENSION cl_khr_fp64 : enable
 typedef double real;
@@ -15,11 +15,11 @@ typedef float3 real3;
 typedef float4 real4;
 typedef float8 real8;
 #endif
-/* Every function is put in place: a call would pass vectors through memory. */
+/* All functions are inlined; calls would pass vectors through memory. */
 #define INLINE static inline __attribute__((always_inline))
-/* Work-items of a work-group: compilers give a kernel no more registers than so many can have. */
+/* Fixed work-group size; compilers limit the registers of a kernel accordingly. */
 #define WORK_GROUP(items) __attribute__((reqd_work_group_size(items, 1, 1)))
-/* Keeps what is hardly ever needed out of the way of what always is. */
+/* Branch hint: the condition is usually false. */
 #ifdef __has_builtin
 #if __has_builtin(__builtin_expect)
 #define RARELY(condition) __builtin_expect((condition) != 0, 0)

@@ -1,11 +1,12 @@
-/* What a contact of finite size moves its own point beyond Hertz (elastic sphere): the overlap that
-   agrees with the force it causes. */
+/* Displacement of a contact by its own force beyond Hertz (sphere models), S(nu, a/R) F/(E R) with
+   S = S0 + S1 ln(a/R) + S2 a/R + S3 (a/R)^2 + S4 (a/R)^3. It is not delayed: self_consistent() solves for the
+   overlap that is consistent with the force it causes. */
 
 #define SMALLEST_RADIUS R(1e-3)
 #define LARGEST_RADIUS R(0.64)
 #define SATURATED_RADIUS R(0.4)
 
-/* S0 to S4 of one side's materials and 1/E [1/Pa]. */
+/* Coefficients S0 to S4 of one side's material, and scale = 1/E [1/Pa]. */
 typedef struct {
     lanes s0, s1, s2, s3, s4, scale;
 } SelfTerms;
@@ -23,7 +24,7 @@ INLINE SelfTerms self_terms_here(Grain at) {
     return terms;
 }
 
-/* In F/(E R); `relative` is a/R. */
+/* S(a/R), in F/(E R); `relative` is a/R. */
 INLINE lanes whole_self_displacement(Grain at, SelfTerms t, lanes relative) {
     const lanes x = clamp(relative, (lanes)(SMALLEST_RADIUS), (lanes)(LARGEST_RADIUS));
     const lanes value = t.s0 + x * (t.s2 + x * (t.s3 + x * t.s4));
@@ -31,8 +32,9 @@ INLINE lanes whole_self_displacement(Grain at, SelfTerms t, lanes relative) {
     return has_log ? value + t.s1 * log(x) : value;
 }
 
-/* With confinement, the part of it that is known at once; the rest follows a step later. The force goes with
-   the cube of the radius, so that the part tends to a constant displacement. */
+/* Fraction of the self displacement that is solved within the step: all of it without confinement. With
+   confinement the rest is delayed with the other surface displacements. The force is proportional to the cube
+   of the contact radius, so the part solved within the step tends to a constant displacement. */
 INLINE lanes known_share(Grain at, lanes relative) {
     if (!at.replica->confinement) return R(1);
     const lanes x = relative / SATURATED_RADIUS;
@@ -42,7 +44,8 @@ INLINE lanes self_displacement(Grain at, SelfTerms t, lanes relative) {
     return whole_self_displacement(at, t, relative) * known_share(at, relative);
 }
 
-/* Its integral over the force, in F^2/(E R): the force goes with the cube of the radius. */
+/* Integral of the self displacement over the force, in F^2/(E R); the force is proportional to the cube of
+   the contact radius. */
 INLINE lanes self_work(Grain at, lanes relative) {
     const lanes x = clamp(relative, (lanes)(SMALLEST_RADIUS), (lanes)(LARGEST_RADIUS));
     const SelfTerms t = self_terms_here(at);
@@ -51,18 +54,18 @@ INLINE lanes self_work(Grain at, lanes relative) {
     return has_log ? value + t.s1 * (R(0.5) * log(x) - R(1) / R(12)) : value;
 }
 
-/* What a force moves the contact by on this side and on the other, per newton, and more force moves both by
-   [m/N]. */
+/* Self displacement over force, on this side and on the other; and the derivative of their sum with respect
+   to the force, at constant S [m/N]. */
 typedef struct {
     lanes here, there, slope;
 } SelfCompliance;
 
-/* E over a grain's own Young's modulus, on both sides. */
+/* E/E_i of this grain, E/E_j of the neighbour. */
 typedef struct {
     lanes here, there;
 } ComplianceRatio;
 
-/* Of both sides' materials; zero for a wall, whose inverse radius is zero. */
+/* The inverse radius of a wall is zero, and so is its compliance. */
 INLINE SelfCompliance self_compliance(Grain at, SelfTerms here, SelfTerms there, ComplianceRatio ratio,
                                       lanes contact_radius, lanes inverse_radius, lanes inverse_there) {
     SelfCompliance c;
@@ -73,15 +76,15 @@ INLINE SelfCompliance self_compliance(Grain at, SelfTerms here, SelfTerms there,
     return c;
 }
 
-/* The overlap that agrees with the force it causes. */
+/* The overlap that is consistent with the force it causes. */
 typedef struct {
     lanes overlap;
     SelfCompliance compliance;
 } SelfConsistent;
 
-/* Solves overlap = given + compliance F(overlap), F = 4/3 E* sqrt(R* overlap) overlap, by Newton's method;
-   the compliance goes slowly with the contact radius and is taken anew at each step. Three steps leave some
-   1e-6 of the overlap (tests/kernels measures it against bisection). */
+/* Solves overlap = given + compliance F(overlap), F = 4/3 E* sqrt(R* overlap) overlap, by Newton's method.
+   The compliance depends weakly on the contact radius and is updated in each iteration. After three
+   iterations the error is about 1e-6 of the overlap (compared with bisection in tests/kernels). */
 INLINE SelfConsistent self_consistent(Grain at, Neighbours seen, ComplianceRatio ratio, lanes given,
                                       lanes reduced_radius, lanes modulus) {
     const lanes inverse_radius = R(1) / at.now.radius;

@@ -1,8 +1,8 @@
-/* What a contact's constants follow from where grains are of several species: the species of the other side.
-   With one species every look-up is that of a plain constant. */
+/* Pair constants of a contact: E*, G*, damping and friction from the species of both sides, reduced radius R*
+   and reduced mass m*. With a single species every look-up is one constant. */
 
-/* As they stand after `step` steps of the interval. `materials`: of all replicas, from number `r` on its own.
- */
+/* The grains of a work-item after `step` steps of the interval. `materials`: those of all replicas; replica
+   `r` has the SPECIES materials that start at r * SPECIES. */
 INLINE Grain grain_at(global const Replica* replica, global const Material* materials, int r, int first,
                       int step, Moving now) {
     const Grain at = {replica,
@@ -16,11 +16,11 @@ INLINE Grain grain_at(global const Replica* replica, global const Material* mate
     return at;
 }
 
-/* Of a constant in a material, in reals, of which it is made. */
+/* Offset of a member in Material, in reals. */
 #define PLACE_OF(member) ((int)((size_t) & ((global const Material*)0)->member / sizeof(real)))
 #define MATERIAL_REALS ((int)(sizeof(Material) / sizeof(real)))
 
-/* A constant of the grains' own materials; one number where they are of one. */
+/* A constant of the grains' own materials; a scalar if SPECIES is 1 or LANES is 1. */
 #if SPECIES > 1 && LANES > 1
 #define OWN(at, member) \
     gather((global const real*)(at).materials + PLACE_OF(member), AS_SLOTS((at).now.species) * MATERIAL_REALS)
@@ -36,7 +36,7 @@ typedef lanes own_constant;
 typedef real own_constant;
 #endif
 
-/* A constant of pairs for what each lane meets. */
+/* A pair constant of each lane's grain and neighbour. */
 #if SPECIES > 1
 #define OF_PAIRS(at, member, seen)                                \
     gather((global const real*)(at).materials + PLACE_OF(member), \
@@ -46,7 +46,7 @@ typedef real own_constant;
     WHERE((seen).wall, (at).materials->member[WALL_COLUMN], (at).materials->member[0])
 #endif
 
-/* One constant of the neighbours' own materials, by its place; any where there is a wall. */
+/* A constant of the neighbours' own materials, given by its PLACE_OF; arbitrary for walls. */
 INLINE lanes of_neighbours(Grain at, Neighbours seen, int place) {
     global const real* of_first = (global const real*)at.materials + place;
 #if SPECIES > 1
@@ -60,13 +60,13 @@ INLINE lanes sphere_mass(Grain at, lanes radius) {
     return OWN(at, density) * (R(4) / R(3)) * PI * radius * radius * radius;
 }
 
-/* R* and m* of each pair from one division; both sides of a pair get the same bits. */
+/* R* and m* of each pair, with one division; both sides of a pair get the same bits. */
 typedef struct {
     lanes radius, mass;
 } Reduced;
 
-/* rho_i rho_j (c_i + c_j) / (rho_i c_i + rho_j c_j) over the first species' density, c the radii's cubes:
-   what unlike densities change of m*. One where they are alike, to the bit. */
+/* Factor of m* for unequal densities: rho_i rho_j (c_i + c_j) / (rho_i c_i + rho_j c_j), with densities rho
+   relative to the first species and cubes c of the radii. Exactly 1 for two grains of the first species. */
 INLINE lanes relative_mass(Grain at, Neighbours seen, lanes cubes, lanes cube, lanes cube_there) {
     const lanes here = OWN(at, relative_density);
     const lanes there = of_neighbours(at, seen, PLACE_OF(relative_density));

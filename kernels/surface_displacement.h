@@ -1,25 +1,28 @@
-/* delta_kc: how far the surface of a grain moves outward at (or towards) neighbour c because of the
-   force at contact k. The sum over k other than c of one grain, at every slot: touching or only near. */
+/* Surface displacements delta_kc: the outward displacement of a grain's surface at slot c by the force at
+   contact k, summed over all k other than c. Computed for touching and for near neighbours c. Two models:
+     half space   Brodu et al. 2015, Eq. 1, at the deformed contact points
+     sphere       point force P(s)/s F/(E R), plus (2/5 a_k^2 + 2/3 a_c^2)/R^2 T(s)/s^3 F/(E R) by the finite
+                  contact sizes, s = sin(theta/2); the host fits the polynomials P and T. */
 
-/* The contacts of a grain as every slot of it must see them. */
+/* Contacts of a grain, readable by all its slots. */
 typedef struct {
-    lanes x[SLOTS], y[SLOTS], z[SLOTS]; /* direction e; x and y then serve confinement */
-    lanes arm[SLOTS];                   /* distance of the contact or probed point [m] */
-    lanes elastic[SLOTS];               /* force, zero where there is no contact [N] */
-    lanes radius[SLOTS];                /* of the contact [m] */
+    lanes x[SLOTS], y[SLOTS], z[SLOTS]; /* direction e; confinement.h reuses x and y */
+    lanes arm[SLOTS];                   /* distance of the contact or probed point from the centre [m] */
+    lanes elastic[SLOTS];               /* elastic force, zero without contact [N] */
+    lanes radius[SLOTS];                /* contact radius [m] */
 #if LANES == 1
-    real padding[16]; /* grains side by side in a work-group begin in different banks of local memory */
+    real padding[16]; /* the tables of a work-group start in different banks of local memory */
 #endif
 } ContactTable;
 
-/* What two contacts of a grain do at one another per unit of force and of prefactor: the first at the second,
-   and the second at the first. */
+/* Displacements of two contacts of a grain by each other, per unit of force and prefactor: at the second by
+   the first, and at the first by the second. */
 typedef struct {
     lanes at_second, at_first;
 } Mutual;
 
-/* Paper, Eq. 1, at the deformed contact points. With n = -e at both, all products follow from
-   cos(theta) = e_1 . e_2 and the two arms. */
+/* Brodu et al. 2015, Eq. 1, at the deformed contact points. With n = -e at both, all scalar products follow
+   from cos(theta) = e_1 . e_2 and the two arms. */
 INLINE Mutual half_space_displacement(own_constant normal, own_constant shear, bool sheared, lanes cosine,
                                       lanes arm_1, lanes arm_2) {
     const lanes squared = arm_1 * arm_1 + arm_2 * arm_2 - (R(2) * arm_2) * arm_1 * cosine;
@@ -37,7 +40,7 @@ INLINE Mutual half_space_displacement(own_constant normal, own_constant shear, b
     return b;
 }
 
-#define SMALLEST_SINE R(0.15) /* the polynomials hold from here on: contacts 17 degrees apart */
+#define SMALLEST_SINE R(0.15) /* the polynomials are valid from here: contacts 17 degrees apart */
 
 /* The polynomials P and T of each lane. */
 #if SPECIES > 1 && LANES > 1
@@ -49,7 +52,7 @@ typedef struct {
     Coefficients point, size;
 } SphereTerms;
 
-/* Even and odd powers apart: four short chains side by side instead of two long. */
+/* Even and odd powers are summed separately, which shortens the dependency chains. */
 INLINE lanes point_polynomial(Coefficients p, lanes s) {
     const lanes q = s * s;
     const lanes even = p[0] + q * (p[2] + q * (p[4] + q * (p[6] + q * p[8])));
@@ -63,13 +66,13 @@ INLINE lanes size_polynomial(Coefficients t, lanes s) {
     return even + s * odd;
 }
 
-/* Outward, of contacts as points and what their finite size adds. */
+/* Outward displacement: by point forces, and the contribution of the finite contact sizes. */
 typedef struct {
     lanes point, size;
 } SurfaceDisplacement;
 
-/* Displacement of an elastic sphere, in F/(E R), at the angle whose cosine is given. `size` times
-   (2/5 a_1^2 + 2/3 a_2^2)/R^2, of the radii of the loading and of the displaced contact. */
+/* Displacement of an elastic sphere, in F/(E R), at the angle with the given cosine. The caller multiplies
+   `size` by (2/5 a_1^2 + 2/3 a_2^2)/R^2, with the radii of the loading and of the displaced contact. */
 INLINE SurfaceDisplacement sphere_displacement(SphereTerms terms, bool finite_contacts, lanes cosine) {
     const lanes squared = fmax(R(0.5) - R(0.5) * cosine, (lanes)(SMALLEST_SINE * SMALLEST_SINE));
     const lanes inverse = inverse_root(squared);
@@ -89,8 +92,8 @@ INLINE void tabulate(Contacts c, lanes3 normal, int v, EXCHANGE ContactTable* ta
     table->radius[slot] = c.radius;
 }
 
-/* Every pair of slots once on a CPU, where both displacements of a pair cost hardly more than one; on a GPU a
-   slot looks at all others that press. */
+/* On a CPU each pair of slots once: both displacements of a pair cost little more than one. On a GPU all
+   other slots with a force. */
 #if LANES == 16
 #define EACH_OTHER(other, slot, table) for (int other = 0; other < (slot); ++other)
 #else
@@ -103,7 +106,7 @@ INLINE lanes cosine_between(EXCHANGE const ContactTable* table, int k, int c) {
     return table->x[k] * table->x[c] + table->y[k] * table->y[c] + table->z[k] * table->z[c];
 }
 
-/* `sheared`: 1 - 2 nu is not zero; where it is known when this is compiled the loop is shorter. */
+/* `sheared`: 1 - 2 nu is not zero. The constant false makes the loop shorter. */
 INLINE void half_space_sums(Grain at, EXCHANGE const ContactTable* table, const bool sheared,
                             SurfaceDisplacement* restrict b) {
     const own_constant normal = OWN(at, half_space_normal), shear = OWN(at, half_space_shear);
@@ -157,7 +160,7 @@ INLINE void sphere_sums(Grain at, EXCHANGE const ContactTable* table, SurfaceDis
     }
 }
 
-/* By the contacts of the grain, at its slots. */
+/* Surface displacements at the slots of a work-item by the contacts of its grains. */
 INLINE void surface_displacement(Grain at, EXCHANGE const ContactTable* table,
                                  SurfaceDisplacement* restrict b) {
     if (at.replica->surface == SURFACE_SPHERE)

@@ -1,10 +1,10 @@
-"""Every command in the documentation works: runs the ```sh blocks as they stand, in their order.
+"""Every command in the documentation works: runs the ```sh blocks of the documents in order.
 
 documented_commands_test.py SOURCE_FOLDER FOLDER_OF_PROGRAM DOCUMENT..
 
-Of each block the lines that begin with `mcdem` or `python3 examples/` are run, all in one folder that looks
-like the source folder but is thrown away; a command must end with exit code 0. Lines that end with `# long`
-are left out, and so are commands on data that is not there (folder data/).
+Runs the lines of each block that begin with `mcdem` or `python3 examples/`, all in one temporary folder that has the
+same layout as the source folder. A command must end with exit code 0. Lines that end with `# long`, and commands on
+data that is not available (folder data/), are skipped.
 """
 import os
 import pathlib
@@ -17,7 +17,7 @@ TIME_LIMIT = 600  # seconds for one command
 
 
 def commands(text):
-    """The commands of a document; lines that end with a backslash go on."""
+    """The commands of a document, with continued lines joined."""
     for block in re.findall(r"^```sh\n(.*?)^```", text, re.DOTALL | re.MULTILINE):
         for line in block.replace("\\\n", " ").splitlines():
             line = line.strip().removeprefix("$ ")
@@ -36,7 +36,7 @@ def working_folder(source, folder):
 
 
 def failures(source, program, document, folder):
-    # Debian's modules are those of its own Python.
+    # Debian's modules are installed only for its own Python.
     environment = dict(os.environ, PATH=f"{program}:/usr/bin:{os.environ['PATH']}", MPLCONFIGDIR=str(folder))
     for command in commands(document.read_text()):
         where = document.relative_to(source)

@@ -1,12 +1,12 @@
-"""The order of the house: what each floor of host/ may include, and how long files and functions may be.
+"""Layers: which headers each layer of host/ may include. Limits for the length of files and functions.
 
-floors_test.py SOURCE_FOLDER; lists what breaks the rules, exit code 1 where something does.
+floors_test.py SOURCE_FOLDER; lists violations, exit code 1 if there are any.
 """
 import pathlib
 import re
 import sys
 
-# Floor -> the floors whose headers it may include, besides its own.
+# Layer -> the layers whose headers it may include, in addition to its own.
 FLOORS = {
     "core": [],
     "elasticity": ["core"],
@@ -39,7 +39,7 @@ def sources(root, folders=("host", "kernels", "tests", "bench")):
 
 
 def floor_of(include):
-    """The floor that an include names; kernels/ stands for itself, libraries for nothing."""
+    """The layer of an included file; kernels/ is a layer of its own, libraries are none."""
     first = include.split("/")[0]
     return first if first in FLOORS or first == "kernels" else None
 
@@ -58,7 +58,7 @@ def wrong_includes(root):
 
 
 def types_twice(root):
-    """Two types of one name in one namespace break the one-definition rule; each floor has one namespace."""
+    """Two types with one name in one namespace violate the one-definition rule; each layer has one namespace."""
     for floor in FLOORS:
         seen = {}
         for file in sorted((root / "host" / floor).rglob("*.h")):
@@ -82,7 +82,7 @@ def long_files(root):
 
 
 def functions(text):
-    """First line and length of each block that follows a parameter list, by the indentation of its brace."""
+    """First line and length of each block that follows a parameter list, found by the indentation of its brace."""
     lines = text.splitlines()
     for first, line in enumerate(lines):
         if not re.search(r"\)[\w\s:<>,&*()-]*\{$", line) or re.match(r"\s*(if|for|while|switch|namespace|})\b", line):
@@ -107,7 +107,7 @@ def long_functions(root):
 
 
 def self_test():
-    """A checker that finds nothing anywhere would be of no use."""
+    """Checks that the checker finds violations."""
     body = "void f(int a) {\n" + "    g();\n" * 80 + "}\nvoid g() {\n}\n"
     assert list(functions(body)) == [(1, 82), (83, 2)], list(functions(body))
     constructor = "    A(int a,\n      int b)\n        : a_(a) {\n        f();\n    }\n"

@@ -1,6 +1,6 @@
-"""Sources are as clang-format writes them (.clang-format).
+"""Sources are formatted by clang-format (.clang-format).
 
-format_test.py SOURCE_FOLDER; skipped (77) where clang-format 14 is missing: other versions format differently.
+format_test.py SOURCE_FOLDER; skipped (77) if clang-format 14 is missing: other versions format differently.
 """
 import pathlib
 import shutil

@@ -1,5 +1,5 @@
-# cmake -DPROGRAM=.. -DNAME=.. -DLIST=.. -P list_suites.cmake: writes the tests of a test program into LIST, for CTest: one a
-# suite. Its tests run in one process, which builds the kernels once and makes what the suite shares once.
+# cmake -DPROGRAM=.. -DNAME=.. -DLIST=.. -P list_suites.cmake: writes the suites of a test program into LIST, one CTest test per
+# suite. The tests of a suite run in one process, which builds the kernels and the suite's common data once.
 execute_process(COMMAND ${PROGRAM} --gtest_list_tests OUTPUT_VARIABLE listed COMMAND_ERROR_IS_FATAL ANY)
 string(REGEX MATCHALL "[^\n]+" lines "${listed}")
 set(tests "")

@@ -1,4 +1,4 @@
-// What nearly every test includes, compiled once (tests/CMakeLists.txt).
+// Headers that nearly every test includes, precompiled (tests/CMakeLists.txt).
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

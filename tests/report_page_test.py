@@ -1,7 +1,7 @@
-"""Reports of a plate and of a cell as a reader sees them: opened in headless Chromium without a network, pointed at, moved, darkened, printed.
+"""Reports of a plate and of a cell, opened in headless Chromium without a network: hover, camera, dark theme, print.
 
-report_page_test.py PROGRAM FOLDER; makes a run, a diagnosis and their reports in FOLDER, and leaves screenshots there.
-Exit code 77: a program or module that it needs is not there.
+report_page_test.py PROGRAM FOLDER; makes a run, a diagnosis and their reports in FOLDER, and saves screenshots there.
+Exit code 77: a required program or module is missing.
 """
 import json
 import pathlib
@@ -46,7 +46,8 @@ REFERENCE = ", ".join(f"{NAME}, {replica}" for replica in EXPERIMENTS.values())
 
 
 def make_reports(program, folder):
-    """Two settings with two replicas each and a diagnosis on one page; on another the run against two experiments."""
+    """One page has two settings with two replicas each and a diagnosis; another compares the run with two
+    experiments."""
     def mcdem(*words):
         subprocess.run([program, *words], cwd=folder, check=True, stdout=subprocess.DEVNULL, timeout=500)
 
@@ -73,7 +74,7 @@ def ink(reader):
 
 
 def check_themes(reader):
-    """The screen's wish, then the reader's, which counts for more."""
+    """The theme of the system, and the reader's choice, which takes precedence."""
     light, dark = "rgb(255, 255, 255)", "rgb(22, 24, 27)"
     assert background(reader) == light and ink(reader) == "rgb(28, 31, 35)"
     reader.picture("light")
@@ -100,7 +101,7 @@ def check_tables(reader, program, run, diagnosis):
 
 
 def check_report(reader, program, run):
-    """The run alone and its diagnosis."""
+    """Checks the page of the run alone and its diagnosis."""
     diagnosis = json.loads((reader.folder / "diagnosis/diagnosis.json").read_text())
     check_texts(reader)
     check_tables(reader, program, run, diagnosis)
@@ -116,14 +117,14 @@ def check_report(reader, program, run):
 
 
 def shown_threshold(reader, setting):
-    """[N], from the name of the setting's curve of contacts per grain; the curve's band has a name of its own."""
+    """Thresholds [N], from the names of the curves of contacts per grain; a curve's band has another name."""
     curve, = {trace["name"] for trace in reader.traces("coordination")
               if trace["name"].startswith(setting) and not trace["name"].endswith("standard error")}
     return float(re.fullmatch(r".*, tau (\S+) mN", curve)[1]) * 1e-3
 
 
 def check_against(reader, program, run):
-    """The run held against experiments: their points, and contacts per grain above the thresholds that fit best."""
+    """The run compared with experiments: their points, and contacts per grain above the best thresholds."""
     settings = page_truth.settings_of(run)
     experiments = [page_truth.recording_of_experiment(reader.folder / folder) for folder in EXPERIMENTS]
     thresholds = {name: page_truth.threshold_near(recordings, experiments, shown_threshold(reader, name))

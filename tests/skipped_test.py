@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""scripts/skipped: a test that did not run is listed, and is an error unless it needs a GPU or double precision."""
+"""scripts/skipped lists tests that did not run; such a test is an error unless it requires a GPU or double
+precision."""
 import pathlib
 import subprocess
 import sys

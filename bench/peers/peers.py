@@ -1,4 +1,4 @@
-"""LIGGGHTS and LAMMPS on the packing that the step benchmarks run on: grain-steps a second of each."""
+"""LIGGGHTS and LAMMPS with the packing of the step benchmarks: grain-steps per second of each."""
 import json
 import math
 import os
@@ -11,10 +11,10 @@ from programs import Failed, environment
 
 HERE = pathlib.Path(__file__).resolve().parent
 GAMMA = 1.125
-TIME_LIMIT = 300  # [s] a run
-OVERLAP = 0.05  # of a radius: where the dampings of LAMMPS's two styles are alike
+TIME_LIMIT = 300  # [s] per run
+OVERLAP = 0.05  # over the radius; the dampings of both LAMMPS styles agree at this overlap
 
-# skin [m]: the fastest of 1, 2.7 and 4 mm for each; LIGGGHTS's own example of its multi-contact model has 4 mm.
+# skin [m]: the fastest of 1, 2.7 and 4 mm for each; LIGGGHTS's example of its multi-contact model uses 4 mm.
 CODES = [
     {"code": "LAMMPS, granular", "contacts": "independent", "program": "lmp", "input": "lammps.in", "law": "granular",
      "variables": {"skin": 0.001, "warm_up": 100, "steps": 400}},
@@ -25,11 +25,11 @@ CODES = [
     {"code": "LIGGGHTS", "contacts": "multi-contact", "program": "liggghts", "input": "liggghts.in",
      "variables": {"skin": 0.004, "warm_up": 20, "steps": 60, "surface": "multicontact", "multicontact": 1}},
 ]
-LEAST_CONTACTS, MOST_CONTACTS = 4, 8  # a grain, walls not counted
+LEAST_CONTACTS, MOST_CONTACTS = 4, 8  # per grain, without walls
 
 
 def write_plate(folder, parameters):
-    """The plate as two triangles at height 0, a little wider than the box."""
+    """The plate as two triangles at height 0, slightly larger than the box."""
     low = -0.005
     high_x, high_y = parameters["size_x"] + 0.005, parameters["size_y"] + 0.005
     corners = [(low, low), (high_x, low), (high_x, high_y), (low, high_y)]
@@ -49,7 +49,8 @@ def export(build, folder, grains):
 
 
 def lammps_law(style, parameters):
-    """The words of a contact law for grains and walls: `granular` from E, nu and e, `gran/hertz/history` from stiffnesses."""
+    """Arguments of a contact law for grains and walls: `granular` from E, nu and e, `gran/hertz/history` from
+    stiffnesses."""
     modulus, poisson, restitution, friction, diameter, density = (parameters[key] for key in (
         "youngs_modulus", "poisson_ratio", "restitution", "friction", "diameter", "density"))
     if style == "granular":
@@ -58,7 +59,7 @@ def lammps_law(style, parameters):
     reduced_modulus = modulus / (2 * (1 - poisson**2))
     normal = 4 / 3 * reduced_modulus
     shear = 2 * modulus / ((1 + poisson) * (2 - poisson))
-    # Both dampings are linear in the velocity; this one grows with another power of the overlap.
+    # Both dampings are linear in the velocity; this one increases with another power of the overlap.
     reduced_radius, reduced_mass = diameter / 4, density * math.pi * diameter**3 / 12
     contact_radius = math.sqrt(reduced_radius * OVERLAP * diameter / 2)
     loss = -math.log(restitution) / math.hypot(math.pi, math.log(restitution))
@@ -79,7 +80,7 @@ def command_of(code, folder, parameters, processes):
 
 
 def parse(output, returncode, grains):
-    """Grain-steps a second of the last run in `output`, and Z at its end; Failed where there is none."""
+    """Grain-steps per second of the last run in `output`, and Z at its end; raises Failed if there is none."""
     if returncode != 0:
         raise Failed("crashed: " + (re.findall(r"MPI_ERR_\w+|^ERROR: .*", output, re.MULTILINE) or [f"exit code {returncode}"])[0])
     loops = re.findall(r"Loop time of (\S+) on \d+ procs for (\d+) steps", output)
@@ -116,7 +117,7 @@ def run_code(code, folder, parameters, processes):
 
 
 def measure(build, grains=50_000):
-    """Every code on one process and on as many as there are cores."""
+    """Every code on one process, and on as many as there are cores."""
     folder = build / f"bench_peers_{grains}"
     parameters = export(build, folder, grains)
     counts = sorted({1, os.cpu_count() or 1})

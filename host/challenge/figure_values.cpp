@@ -41,7 +41,7 @@ std::string column_of(const Answer& answer) {
     return answer.verdict == Verdict::effect && answer.group.size() == 2 ? two_effects : answer.group.front();
 }
 
-/// No gap, effects, two of them, unknown, calibration.
+/// Order of rows and columns: no gap, single effects, two effects, unknown, not converged, calibration.
 std::vector<std::string> in_order(std::set<std::string> names) {
     std::vector<std::string> list, last;
     if (names.erase(verdict_name(Verdict::no_gap))) list.push_back(verdict_name(Verdict::no_gap));
@@ -84,8 +84,8 @@ Json confusion_values(const std::vector<ScoredCase>& cases) {
             {"right", right}};
 }
 
-/// The part of the cases that are hits, with its interval, in bins of `x_of` a case with these upper edges.
-/// Null where none counts.
+/// Fraction of the cases that are hits, with its interval, in bins of `x_of` with these upper edges; null
+/// for empty bins.
 template <class X, class Hit>
 Json measured(const std::vector<ScoredCase>& cases, std::vector<double> edges, X x_of, Hit is_hit) {
     struct Bin {
@@ -111,7 +111,7 @@ Json measured(const std::vector<ScoredCase>& cases, std::vector<double> edges, X
     return points;
 }
 
-/// By amplitude over the predicted detection limit.
+/// Power against the amplitude over the predicted detection limit.
 Json power_values(std::vector<ScoredCase> cases, double false_alarm) {
     std::erase_if(cases, [](const ScoredCase& c) { return !(c.over_limit > 0); });
     Json points = measured(
@@ -133,7 +133,7 @@ Json power_values(std::vector<ScoredCase> cases, double false_alarm) {
     return json;
 }
 
-/// By the probability that the verdict states.
+/// Success rate against the probability that the diagnosis states.
 Json confidence_values(std::vector<ScoredCase> cases) {
     std::erase_if(cases, [](const ScoredCase& c) { return !c.answer.names(); });
     Json points = measured(

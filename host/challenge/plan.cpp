@@ -19,7 +19,7 @@ constexpr std::string_view tried[] = {"cross_contact",   "friction",   "adhesion
                                       "modulus_scatter", "plate_tilt", "plate_compliance", "force_bias",
                                       "gauge_drift"};
 
-/// Pairs of effects that are the same in another direction.
+/// Pairs of effects that differ only in direction.
 constexpr std::array<std::string_view, 2> twins[] = {{"plate_tilt", "plate_tilt_y"}};
 
 constexpr int every_struck =
@@ -76,14 +76,14 @@ private:
     Random random_;
 };
 
-/// The effect and its twin.
+/// The effect, and the same effect in another direction if there is one.
 std::vector<std::string> with_twin(const std::string& name) {
     for (const auto& pair : twins)
         if (std::ranges::find(pair, name) != pair.end()) return {std::string(pair[0]), std::string(pair[1])};
     return {name};
 }
 
-/// By kind, in order.
+/// Cases of all kinds, sorted by kind.
 std::vector<ChallengeCase> draw_cases(const ChallengeSize& size, const std::vector<std::string>& effects,
                                       Drawing& draw) {
     std::vector<ChallengeCase> cases;

@@ -111,7 +111,7 @@ fs::path kernel_cache_folder() {
 
 void prepare_kernel_cache() {
     static const bool once = [] {
-        setenv("PATH", "/usr/bin:/bin", 0);  // without any, PoCL finds no linker, and aborts
+        setenv("PATH", "/usr/bin:/bin", 0);  // without PATH, PoCL finds no linker and aborts
         if (!can_write_in(kernel_cache_folder()))
             if (const auto folder = private_folder()) setenv("POCL_CACHE_DIR", folder->c_str(), 1);
         remove_what_is_cut_short(kernel_cache_folder());

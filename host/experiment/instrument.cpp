@@ -28,7 +28,7 @@ public:
           position_noise_(seed, Stream::measured_positions),
           force_noise_(seed, Stream::measured_forces) {}
 
-    /// `path`: part of the path of whole cycles that the plate has gone up to this scan.
+    /// `path`: path length of the plate up to this scan, over that of all cycles.
     Scan read(const Scan& truth, std::size_t frame, double path) const {
         Scan scan = unknown_scan();
         scan.frame = static_cast<int>(frame);
@@ -70,7 +70,7 @@ private:
         return centre_ + (1 + instrument_.position_bias) * (point - centre_);
     }
 
-    /// A contact is seen between its two centres, a wall's beside its grain, and errs with them.
+    /// The point of a contact has the mean error of its two centres; at a wall, that of the grain.
     void add(const Contact& truth, std::size_t frame, const std::vector<Vec3>& shift,
              std::vector<Contact>& seen) const {
         Contact contact = truth;
@@ -84,7 +84,7 @@ private:
         seen.push_back(contact);
     }
 
-    /// Never negative: an instrument does not turn a force round.
+    /// Not negative: errors do not reverse a force.
     double gain(const Contact& contact, std::size_t frame) const {
         double gain = 1 + instrument_.force_bias;
         if (instrument_.stated.force_error > 0) {
@@ -99,12 +99,12 @@ private:
     double highest_;  ///< top force [N]
     Vec3 centre_;
     std::size_t grains_;
-    bool has_times_;  ///< of strokes displacements count, not times
+    bool has_times_;  ///< without a programme, displacements are used instead of times
     KeyedNormal position_noise_, force_noise_;
 };
 
-/// How far the plate has gone, up and down, up to each scan, over the path of whole cycles; 0 where it does
-/// not move. A recording need not go to the end of its last cycle.
+/// Path length of the plate up to each scan, over that of complete cycles; 0 if the plate does not move. A
+/// recording may end before its last cycle is complete.
 std::vector<double> parts_of_path(const Recording& recording) {
     std::vector<double> path;
     double gone = 0, before = recording.plate_start, lowest = before;

@@ -11,8 +11,8 @@
 namespace mcdem::inline experiment {
 namespace {
 
-/// A row that deviates more from the programme belongs to another scan; over the stroke, the force, the time
-/// of the hold.
+/// Rows with larger deviations belong to other scans; relative to the stroke, the force and the duration of
+/// the hold.
 constexpr double far_position = 0.25, far_force = 0.5, far_time = 0.1;
 constexpr double other_force = 0.01;  // relative to the prescribed force
 

@@ -139,7 +139,7 @@ double time_step_of(const Replica& replica, const GrainMaterial& material, doubl
     return replica.numerics.time_step * pi * radius / rayleigh_speed(material);
 }
 
-/// Of the pair of species with the smallest loss of energy.
+/// Restitution of the pair of species with the smallest energy loss.
 double max_restitution(const Replica& replica) {
     double most = 0;
     for (std::size_t i = 0; i < std::max<std::size_t>(1, replica.species.size()); ++i)

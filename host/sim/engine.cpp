@@ -226,8 +226,8 @@ void Engine::find_neighbours(const std::vector<char>& active) {
     }
 }
 
-/// Makes an even number of launches, so that every double-buffered field ends in its original copy. A replica
-/// that has made its steps does nothing.
+/// The number of launches is even, so that every double-buffered field ends in its original buffer. Replicas
+/// that have made their steps are skipped.
 void Engine::make_steps(int steps) {
     auto& f = fields_;
     for (int s = 0; s < steps + steps % 2; ++s) {
@@ -251,7 +251,7 @@ void Engine::measure() {
                              f.partner, f.force_x, f.force_y, f.force_z, f.cell_moments);
 }
 
-/// For active replicas that are cells, with these strains.
+/// Stresses of active replicas that are cells, at these strains.
 std::vector<Mat3> Engine::read_stresses(const std::vector<Strain>& strain) const {
     std::vector<Mat3> stress(replicas_.size(), Mat3::Zero());
     if (!fields_.has_cells()) return stress;

@@ -14,11 +14,11 @@ namespace {
 
 using testing::HasSubstr;
 
-/// Rises from Hertz at gamma = 0 as the real response does, steeper and steeper.
+/// Starts from Hertz at gamma = 0 and increases with increasing slope, like the real response.
 double force(double gamma) { return 6.7 * std::exp(0.5 * gamma + 0.2 * gamma * gamma); }
 
 struct Simulator {
-    double noise = 0;  ///< relative sd
+    double noise = 0;  ///< relative standard deviation
     double limit = std::numeric_limits<double>::infinity();
     int seed = 1;
     int calls = 0;
@@ -56,7 +56,7 @@ TEST(CalibrateGamma, finds_the_root_of_a_smooth_response) {
     EXPECT_EQ(found.rounds.back().root, found.gamma);
 }
 
-TEST(CalibrateGamma, standard_error_is_honest_under_noise) {
+TEST(CalibrateGamma, standard_error_is_correct_under_noise) {
     double squares = 0;
     const int repeats = 200;
     for (int seed = 1; seed <= repeats; ++seed) {
@@ -70,7 +70,7 @@ TEST(CalibrateGamma, standard_error_is_honest_under_noise) {
     EXPECT_LT(std::sqrt(squares / repeats), 1.4);
 }
 
-TEST(CalibrateGamma, a_runaway_above_the_root_does_no_harm) {
+TEST(CalibrateGamma, a_runaway_above_the_root_is_harmless) {
     Simulator simulator{.noise = 0.003, .limit = 1.2};
     const auto found = calibrate_gamma(std::ref(simulator), force(1.125), {0.4, 3.0}, {.rounds = 12});
     EXPECT_TRUE(found.converged);
@@ -78,7 +78,7 @@ TEST(CalibrateGamma, a_runaway_above_the_root_does_no_harm) {
     EXPECT_GE(found.runs_away_at, 1.2);
 }
 
-TEST(CalibrateGamma, explores_below_a_runaway_without_asking_twice) {
+TEST(CalibrateGamma, continues_below_a_runaway_without_repeating_simulations) {
     Simulator simulator{.limit = 1.2};
     const auto found = calibrate_gamma(std::ref(simulator), force(1.125), {1.0, 5.0});
     EXPECT_NEAR(found.gamma, 1.125, 1e-3);
@@ -90,7 +90,7 @@ TEST(CalibrateGamma, explores_below_a_runaway_without_asking_twice) {
     }
 }
 
-TEST(CalibrateGamma, what_survives_above_a_runaway_is_not_believed) {
+TEST(CalibrateGamma, results_above_a_runaway_are_ignored) {
     const auto found = calibrate_gamma(
         [](const std::vector<double>& gammas) {
             std::vector<double> forces;
@@ -102,7 +102,7 @@ TEST(CalibrateGamma, what_survives_above_a_runaway_is_not_believed) {
     EXPECT_NEAR(found.gamma, 1.1, 1e-3);
 }
 
-TEST(CalibrateGamma, runaway_before_the_target_is_told) {
+TEST(CalibrateGamma, runaway_before_the_target_is_reported) {
     Simulator simulator{.limit = 0.9};
     EXPECT_THAT(message_of([&] {
                     calibrate_gamma(std::ref(simulator), force(1.1), {0.4, 1.6});
@@ -115,7 +115,7 @@ TEST(CalibrateGamma, runaway_before_the_target_is_told) {
                 HasSubstr("runs away already at gamma = 0.4"));
 }
 
-TEST(CalibrateGamma, target_out_of_the_bracket_is_told) {
+TEST(CalibrateGamma, target_outside_the_bracket_is_reported) {
     Simulator simulator;
     EXPECT_THAT(message_of([&] {
                     calibrate_gamma(std::ref(simulator), force(0.2), {0.4, 1.6});
@@ -127,7 +127,7 @@ TEST(CalibrateGamma, target_out_of_the_bracket_is_told) {
                 HasSubstr("ends higher than 1.6"));
 }
 
-TEST(CalibrateGamma, rounds_used_up_is_not_converged) {
+TEST(CalibrateGamma, exhausted_rounds_are_not_converged) {
     Simulator simulator{.noise = 0.05};
     const auto found =
         calibrate_gamma(std::ref(simulator), force(1.1), {0.4, 1.6}, {.tolerance = 1e-5, .rounds = 3});
@@ -136,7 +136,7 @@ TEST(CalibrateGamma, rounds_used_up_is_not_converged) {
     EXPECT_NEAR(found.gamma, 1.1, 0.1);
 }
 
-TEST(CalibrateGamma, all_problems_of_the_input_are_told_at_once) {
+TEST(CalibrateGamma, all_input_problems_are_reported_at_once) {
     const auto told = message_of([] {
         calibrate_gamma([](const auto& g) { return g; }, -1, {1.5, 0.5},
                         {.tolerance = 0, .batch = 1, .rounds = 0});
@@ -145,7 +145,7 @@ TEST(CalibrateGamma, all_problems_of_the_input_are_told_at_once) {
         EXPECT_THAT(told, HasSubstr(word));
 }
 
-TEST(CalibrateGamma, a_simulator_that_answers_wrongly_is_told) {
+TEST(CalibrateGamma, a_wrong_result_of_the_simulator_is_reported) {
     EXPECT_THAT(message_of([] {
                     calibrate_gamma([](const auto&) { return std::vector<double>{1}; }, 10, {0.5, 1.5});
                 }),

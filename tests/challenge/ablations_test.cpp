@@ -1,5 +1,5 @@
-// Parts of the method taken away from evidence whose answer is known; what is kept of a diagnosis comes back
-// as it was.
+// Ablations: parts of the method are removed for evidence with a known result. Stored evidence and findings
+// are read back unchanged.
 #include "challenge/ablations.h"
 
 #include <gmock/gmock.h>
@@ -30,8 +30,8 @@ Signature signature(const std::string& name, const Eigen::VectorXd& linear) {
     return {name, 1, linear, zero, zero, linear.transpose().replicate(8, 1)};
 }
 
-/// Noise of 1 from replicate to replicate and of 3 from packing to packing. "adhesion" shows where positions
-/// are needed and nowhere else, "friction" in the top force alone, "modulus" in every cell.
+/// Noise of 1 between replicates and of 3 between packings. "adhesion" is visible only in observables that
+/// require positions, "friction" only in the top force, "modulus" in every cell.
 Evidence evidence(double adhesion, double friction, double modulus = 0) {
     Random random(7, Stream::null_draws);
     Evidence e;
@@ -74,26 +74,26 @@ const SimplerMethod& method(std::string_view name) {
     return *std::ranges::find(simpler_methods(), name, &SimplerMethod::name);
 }
 
-TEST(Ablations, WithoutConfirmingRunsSignaturesNameTheEffect) {
+TEST(Ablations, WithoutConfirmationRunsSignaturesNameTheEffect) {
     const Answer answer = answer_without("without confirming runs", evidence(2, 0));
     ASSERT_TRUE(answer.names());
     EXPECT_EQ(answer.group.front(), "adhesion");
     EXPECT_FALSE(answer_without("without confirming runs", evidence(0, 0)).detected());
 }
 
-TEST(Ablations, WithoutConditionalObservablesWhatShowsThereIsNotSeen) {
+TEST(Ablations, WithoutConditionalObservablesTheirEffectIsNotDetected) {
     EXPECT_FALSE(answer_without("without conditional observables", evidence(2, 0)).detected());
     EXPECT_TRUE(answer_without("without conditional observables", evidence(0, 8)).detected());
 }
 
-TEST(Ablations, TopForceAloneSeesWhatShowsInIt) {
+TEST(Ablations, TopForceAloneDetectsItsEffect) {
     EXPECT_FALSE(answer_without("top force alone", evidence(2, 0)).detected());
     EXPECT_TRUE(answer_without("top force alone", evidence(0, 8)).detected());
 }
 
-TEST(Ablations, WithoutPairingThePackingsScatterHidesIt) {
-    // Over packings sigma is 3: gains fall by a factor of ten, and the mean is of eight packings. Some of it
-    // comes back by the covariance of 32 rows, another amount by every draw.
+TEST(Ablations, WithoutPairingTheScatterOfPackingsHidesTheEffect) {
+    // Over packings sigma is 3: gains decrease by a factor of ten, and the mean is over eight packings. The
+    // covariance from 32 rows recovers part of it; the rest varies between draws.
     const Evidence e = evidence(1.5, 0);
     const double paired = ablated_findings(e, ablation("without confirming runs")).gain.at(0);
     const double unpaired = ablated_findings(e, ablation("without pairing")).gain.at(0);
@@ -119,12 +119,12 @@ TEST(SimplerMethods, RmseRankingAlwaysNames) {
     EXPECT_TRUE(method("RMSE ranking").answer(evidence(0, 0)).names());
 }
 
-TEST(SimplerMethods, BicNamesWhatIsWorthItsParameter) {
+TEST(SimplerMethods, BicNamesAnEffectOnlyIfItIsWorthItsParameter) {
     EXPECT_EQ(method("BIC").answer(evidence(3, 0)).group, std::vector<std::string>{"adhesion"});
     EXPECT_FALSE(method("BIC").answer(evidence(0, 0)).detected());
 }
 
-TEST(KeptEvidence, ComesBackAsItWas) {
+TEST(KeptEvidence, IsReadBackUnchanged) {
     TestFolder folder;
     Evidence e = evidence(1, 2);
     e.observed[3] = std::numeric_limits<double>::quiet_NaN();
@@ -156,7 +156,7 @@ TEST(KeptEvidence, OfAnotherLibraryIsRefused) {
                 testing::ThrowsMessage<InputError>(testing::HasSubstr("other observables")));
 }
 
-TEST(KeptFindings, ComeBackAsTheyWere) {
+TEST(KeptFindings, AreReadBackUnchanged) {
     TestFolder folder;
     const Findings f{0.004,
                      {"adhesion", "modulus"},

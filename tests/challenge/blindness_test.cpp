@@ -1,5 +1,5 @@
-// Nothing that diagnoses can read what is sealed: the sources that it is made of do not even include the
-// header.
+// Code that makes diagnoses cannot read sealed data: its sources do not include the header, directly or
+// indirectly.
 #include <gtest/gtest.h>
 
 #include <regex>
@@ -13,7 +13,7 @@ namespace {
 namespace fs = std::filesystem;
 const fs::path host = fs::path(MCDEM_SOURCE_DIR) / "host";
 
-/// All headers of the project that a source includes, directly or not, and their sources beside them.
+/// All headers of the project that a source includes, directly or indirectly, and their source files.
 std::set<std::string> reached_from(const std::set<std::string>& roots) {
     static const std::regex include("#include \"([^\"]+)\"");
     std::set<std::string> seen;
@@ -30,18 +30,18 @@ std::set<std::string> reached_from(const std::set<std::string>& roots) {
     return seen;
 }
 
-TEST(ChallengeBlindness, WhatDiagnosesCannotReadTheTruth) {
+TEST(ChallengeBlindness, DiagnosingCodeDoesNotIncludeTheTruth) {
     const auto reached = reached_from({"challenge/run.cpp", "ensemble/diagnose_experiment.cpp"});
     EXPECT_TRUE(reached.contains("diagnose/infer/proposals.cpp")) << "the search itself must search";
     for (const char* sealed : {"challenge/truth.h", "challenge/case.h", "challenge/plan.h"})
         EXPECT_FALSE(reached.contains(sealed)) << sealed;
 }
 
-TEST(ChallengeBlindness, WhatScoresReadsIt) {
+TEST(ChallengeBlindness, ScoringCodeIncludesTheTruth) {
     EXPECT_TRUE(reached_from({"cli/challenge/challenge_score.cpp"}).contains("challenge/truth.h"));
 }
 
-TEST(ChallengeBlindness, TheRunDoesNotSpeakOfIt) {
+TEST(ChallengeBlindness, RunningCodeDoesNotMentionTheTruth) {
     for (const char* name :
          {"challenge/run.cpp", "challenge/run.h", "cli/challenge/challenge_run.cpp",
           "ensemble/diagnose_experiment.cpp", "challenge/files.cpp", "challenge/evidence.cpp"})

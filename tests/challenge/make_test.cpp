@@ -1,4 +1,5 @@
-// Realities that run away are weakened before they are sealed; an interruption loses nothing that was sealed.
+// Simulated experiments that run away are weakened before they are sealed; sealed ones survive an
+// interruption.
 #include "challenge/make.h"
 
 #include <gmock/gmock.h>
@@ -15,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// 27 grains, very dense at the end: contacts that feel one another strongly have no static solution there.
+/// 27 grains, very dense at the end: strongly interacting contacts have no static solution there.
 Scene dense_scene() {
     return parse_scene(R"(name = "dense"
 [box]
@@ -55,7 +56,7 @@ Challenge drawn(Device& device, const ChallengeOptions& options) {
                           seal_of(scene.text), *options.seed);
 }
 
-TEST(MakeChallenge, WeakensWhatRunsAwayBeforeItSeals) {
+TEST(MakeChallenge, WeakensRunAwayExperimentsBeforeSealing) {
     TestFolder folder;
     Device device;
     const ChallengeOptions options = options_for(folder.path);
@@ -77,7 +78,7 @@ TEST(MakeChallenge, WeakensWhatRunsAwayBeforeItSeals) {
     EXPECT_EQ(make_challenge(device, dense_scene(), options), seal) << "what is sealed stays";
 }
 
-TEST(MakeChallenge, GoesOnAfterAnInterruption) {
+TEST(MakeChallenge, ContinuesAfterAnInterruption) {
     TestFolder folder;
     Device device;
     ChallengeOptions options = options_for(folder.path);
@@ -108,7 +109,7 @@ TEST(MakeChallenge, GoesOnAfterAnInterruption) {
     EXPECT_GT(last, 0.9);
 }
 
-TEST(MakeChallenge, WithoutASeedNobodyKnowsIt) {
+TEST(MakeChallenge, WithoutASeedItIsRandomAndSecret) {
     TestFolder folder;
     Device device;
     ChallengeOptions options = options_for(folder.path);

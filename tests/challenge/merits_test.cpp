@@ -1,4 +1,4 @@
-// Figures of merit, counted by hand on a few cases, and limits that are set to improve them.
+// Figures of merit compared with hand counts, and the choice of limits.
 #include "challenge/merits.h"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ void expect_share(const Share& share, int hits, int of) {
     EXPECT_EQ(share.of, of);
 }
 
-TEST(Merits, OfRealitiesWithoutAnEffect) {
+TEST(Merits, WithoutAnEffectAreCountedCorrectly) {
     const ChallengeCase none = truth(CaseKind::none);
     const Merits m = merits_of(std::vector<ScoredCase>{
         {&none, {}}, {&none, {Verdict::unknown_effect, {}, 0}}, {&none, named({"friction"})}});
@@ -35,7 +35,7 @@ TEST(Merits, OfRealitiesWithoutAnEffect) {
     EXPECT_EQ(m.brier, 1);
 }
 
-TEST(Merits, OfOneEffect) {
+TEST(Merits, WithOneEffectAreCountedCorrectly) {
     const ChallengeCase adhesion = truth(CaseKind::effect, {"adhesion"}),
                         tilt = truth(CaseKind::effect, {"plate_tilt"});
     const Merits m = merits_of(std::vector<ScoredCase>{
@@ -59,7 +59,7 @@ TEST(Merits, OfOneEffect) {
     expect_share(m.named_by_effect.at("plate_tilt"), 1, 4);
 }
 
-TEST(Merits, OfTwoEffects) {
+TEST(Merits, WithTwoEffectsAreCountedCorrectly) {
     const ChallengeCase pair = truth(CaseKind::pair, {"adhesion", "plate_tilt"});
     const Merits m = merits_of(std::vector<ScoredCase>{{&pair, named({"plate_tilt"})},
                                                        {&pair, named({"plate_tilt", "adhesion"})},
@@ -71,7 +71,7 @@ TEST(Merits, OfTwoEffects) {
     expect_share(m.detected, 0, 0);
 }
 
-TEST(Merits, OfTheUnknown) {
+TEST(Merits, WithAnUnknownEffectAreCountedCorrectly) {
     const ChallengeCase soft = truth(CaseKind::unknown, {"soft_walls"}),
                         struck = truth(CaseKind::unknown, {"friction"}, {"friction"});
     const ChallengeCase shifted = truth(CaseKind::outside_prior);
@@ -97,8 +97,9 @@ Findings findings(double p, double gain, double other_gain, double reduction) {
             {{{0}, {1}, {0.1}, gain, 0.5, {}, {}, reduction}}};
 }
 
-TEST(ChooseLimits, MakesUnknownEffectsAbstainWithoutLosingTheKnown) {
-    // Here known effects take away 0.9 of their gap, and those of the library 0.65 of an unknown one's.
+TEST(ChooseLimits, UnknownEffectsGetNoNameWithoutLosingKnownOnes) {
+    // Known effects remove 0.9 of their gap; effects of the library remove 0.65 of the gap of an unknown
+    // one.
     const ChallengeCase known = truth(CaseKind::effect, {"adhesion"}),
                         unknown = truth(CaseKind::unknown, {"soft_walls"});
     const Findings fits = findings(1e-6, 50, 0, 0.9), does_not = findings(1e-6, 50, 0, 0.65);
@@ -110,7 +111,7 @@ TEST(ChooseLimits, MakesUnknownEffectsAbstainWithoutLosingTheKnown) {
     EXPECT_EQ(limits.false_alarm, Limits{}.false_alarm) << "what does not matter stays";
 }
 
-TEST(ChooseLimits, KeepsFalseAlarmsDown) {
+TEST(ChooseLimits, FalseAlarmsAreLimited) {
     const ChallengeCase none = truth(CaseKind::none);
     const Findings chance = findings(0.03, 5, 0, 0.9);
     const std::vector<LimitCase> cases{{&none, &chance, 0}};

@@ -1,4 +1,4 @@
-// What realities are made of: drawn from one seed, as many as asked for, as strong as said, dealt evenly.
+// The plan of a challenge: drawn from one seed, with the given numbers, amplitudes and an even distribution.
 #include "challenge/plan.h"
 
 #include <gmock/gmock.h>
@@ -42,13 +42,13 @@ double prior(const std::string& name) {
     return NAN;
 }
 
-TEST(ChallengePlan, OneSeedIsOneChallenge) {
+TEST(ChallengePlan, OneSeedGivesOneChallenge) {
     EXPECT_EQ(draw(5), draw(5));
     EXPECT_EQ(truth_text(draw(5)), truth_text(draw(5)));
     EXPECT_NE(seal_of(truth_text(draw(5))), seal_of(truth_text(draw(6))));
 }
 
-TEST(ChallengePlan, HasAsManyOfEachKindAsAskedFor) {
+TEST(ChallengePlan, HasTheGivenNumberOfEachKind) {
     const Challenge challenge = draw(1);
     EXPECT_GE(all_tried().size(), 10u);
     EXPECT_EQ(of_kind(challenge, CaseKind::none).size(), 60u);
@@ -61,7 +61,7 @@ TEST(ChallengePlan, HasAsManyOfEachKindAsAskedFor) {
     EXPECT_EQ(challenge.cases.front().folder, "case_0001");
 }
 
-TEST(ChallengePlan, AmplitudesSpanWhatTheLibraryKnows) {
+TEST(ChallengePlan, AmplitudesSpanTheRangeOfTheLibrary) {
     const Model m = model();
     ChallengeSize size;
     size.per_effect = 40;
@@ -77,7 +77,7 @@ TEST(ChallengePlan, AmplitudesSpanWhatTheLibraryKnows) {
     }
 }
 
-TEST(ChallengePlan, SignsAreRandomWhereBothArePlausible) {
+TEST(ChallengePlan, SignsAreRandomIfBothArePlausible) {
     ChallengeSize size;
     size.per_effect = 40;
     std::map<std::string, std::set<bool>> signs;
@@ -87,7 +87,7 @@ TEST(ChallengePlan, SignsAreRandomWhereBothArePlausible) {
     EXPECT_EQ(signs["diameter_error"].size(), 2u);
     EXPECT_EQ(signs["adhesion"], std::set{true});
     EXPECT_EQ(signs["friction"],
-              std::set{true});  // -1 is as low as it can be, and less than the library's own amplitudes
+              std::set{true});  // -1 is the lower bound, and smaller than the library's own amplitudes
 }
 
 TEST(ChallengePlan, PairsAreTwoDifferentEffects) {
@@ -118,7 +118,7 @@ TEST(ChallengePlan, UnknownEffectsAreNotInTheLibraryOfTheirDiagnosis) {
     EXPECT_EQ(struck, 10);
 }
 
-TEST(ChallengePlan, NuisancesComeFromTheirPriorsOrFarOutside) {
+TEST(ChallengePlan, NuisancesAreDrawnFromTheirPriorsOrFarOutside) {
     double square = 0;
     int count = 0, far = 0;
     for (const ChallengeCase& c : draw(6).cases)
@@ -136,7 +136,7 @@ TEST(ChallengePlan, NuisancesComeFromTheirPriorsOrFarOutside) {
     EXPECT_NEAR(square / count, 1, 4 * std::sqrt(2.0 / count));  // chi-square, four sigmas
 }
 
-TEST(ChallengePlan, EveryKindIsDealtToBothHalves) {
+TEST(ChallengePlan, EveryKindIsInBothHalves) {
     std::map<std::string, std::array<int, 2>> dealt;
     std::array<int, 24> by_packing{};
     for (const ChallengeCase& c : draw(7).cases) {
@@ -150,8 +150,8 @@ TEST(ChallengePlan, EveryKindIsDealtToBothHalves) {
     EXPECT_LE(most - fewest, 1);
 }
 
-TEST(ChallengePlan, OrderTellsNothing) {
-    // Mean place of the cases without an effect: the middle, within four standard errors.
+TEST(ChallengePlan, OrderIsRandom) {
+    // Mean position of the cases without an effect: the middle, within four standard errors.
     const Challenge challenge = draw(8);
     double sum = 0;
     int count = 0;
@@ -161,7 +161,7 @@ TEST(ChallengePlan, OrderTellsNothing) {
     EXPECT_NEAR(sum / count, (n - 1) / 2, 4 * n / std::sqrt(12.0 * count));
 }
 
-TEST(ChallengePlan, SaysWhatDoesNotSuit) {
+TEST(ChallengePlan, InvalidOptionsAreReported) {
     ChallengeSize size;
     size.packings = 3;
     size.pairs = -1;
@@ -175,7 +175,7 @@ TEST(ChallengePlan, SaysWhatDoesNotSuit) {
                            testing::HasSubstr("magic is not an effect"))));
 }
 
-TEST(ChallengeTruth, ComesBackAsItWasWritten) {
+TEST(ChallengeTruth, IsReadBackAsWritten) {
     const Challenge challenge = draw(9);
     EXPECT_EQ(parse_truth(truth_text(challenge), "truth.json"), challenge);
 }
@@ -193,7 +193,7 @@ Recording two_scans() {
     return recording;
 }
 
-TEST(OutsideEffects, ChangeTheReadingAsTheySay) {
+TEST(OutsideEffects, ChangeTheMeasurementAsDescribed) {
     Recording stretched = two_scans();
     find_outside_effect("vertical_stretch")->change_reading(stretched, 0.01);
     EXPECT_NEAR(stretched.scans[1].position[0].z(), 0.0404, 1e-15);
@@ -206,7 +206,7 @@ TEST(OutsideEffects, ChangeTheReadingAsTheySay) {
     EXPECT_NEAR(loose.scans[1].plate_z, 0.101, 1e-15);
 }
 
-TEST(OutsideEffects, ChangeTheModelAsTheySay) {
+TEST(OutsideEffects, ChangeTheModelAsDescribed) {
     Replica replica;
     find_outside_effect("soft_walls")->change_model(replica, 2);
     EXPECT_EQ(replica.walls.youngs_modulus, 2 * replica.grains.youngs_modulus);

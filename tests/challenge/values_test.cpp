@@ -6,8 +6,8 @@
 namespace mcdem {
 namespace {
 
-TEST(WilsonInterval, is_that_of_newcombe_1998) {
-    // Newcombe, Statistics in Medicine 17 (1998) 857, Table I, method 3: to its four decimals
+TEST(WilsonInterval, agrees_with_newcombe_1998) {
+    // Newcombe, Statistics in Medicine 17 (1998) 857, Table I, method 3, to four decimals
     const auto expect = [](int successes, int trials, double low, double high) {
         const auto interval = wilson_interval(successes, trials);
         EXPECT_NEAR(interval[0], low, 5.1e-5) << successes;
@@ -21,10 +21,10 @@ TEST(WilsonInterval, is_that_of_newcombe_1998) {
     EXPECT_DOUBLE_EQ(wilson_interval(20, 20)[1], 1);
 }
 
-TEST(IdealPower, goes_through_what_was_stated) {
+TEST(IdealPower, has_the_stated_values) {
     EXPECT_NEAR(ideal_power(0.05, 0), 0.05, 1e-12);
     EXPECT_NEAR(ideal_power(0.05, 1), 0.8, 1e-5);  // the other sign adds 1e-6
-    // half of the cases at 1.96 sigma, the limit being 1.960 + 0.8416 sigma
+    // half of the cases at 1.96 sigma; the limit is 1.960 + 0.8416 sigma
     EXPECT_NEAR(ideal_power(0.05, 1.95996 / (1.95996 + 0.84162)), 0.5, 1e-4);
     EXPECT_GT(ideal_power(0.05, 2), 0.999);
 }
@@ -32,7 +32,7 @@ TEST(IdealPower, goes_through_what_was_stated) {
 const ChallengeCase no_effect{}, adhesion{.kind = CaseKind::effect, .effects = {{"adhesion", 1e-3}}};
 const Answer nothing{}, right{Verdict::effect, {"adhesion"}, 0.9}, unknown{Verdict::unknown_effect, {}, 0};
 
-/// The figures of so many cases of each kind.
+/// The figures for these numbers of cases of each kind.
 nlohmann::ordered_json figures_of(const std::vector<std::pair<int, ScoredCase>>& cases) {
     ChallengeScore score;
     score.arms.push_back({"whole", "", true, {.false_alarm = 0.05}, {}, {}});
@@ -40,7 +40,7 @@ nlohmann::ordered_json figures_of(const std::vector<std::pair<int, ScoredCase>>&
     return score_figure_values(score);
 }
 
-TEST(ScoreFigures, count_cases_and_mark_right_answers) {
+TEST(ScoreFigures, count_cases_and_mark_correct_answers) {
     const auto values = figures_of({{9, {&no_effect, nothing}},
                                     {1, {&no_effect, right}},
                                     {2, {&adhesion, nothing}},
@@ -52,7 +52,7 @@ TEST(ScoreFigures, count_cases_and_mark_right_answers) {
     EXPECT_EQ(values["right"], (nlohmann::json{{0, 0}, {1, 1}}));
 }
 
-TEST(ScoreFigures, power_is_parts_with_intervals_and_leaves_out_empty_bins) {
+TEST(ScoreFigures, power_is_a_fraction_with_an_interval_and_omits_empty_bins) {
     const auto values = figures_of({{20, {&adhesion, nothing, 0.5}}, {20, {&adhesion, right, 2}}})["power"];
     EXPECT_EQ(values["measured"]["x"], (nlohmann::json{0.5, 2.0}));
     EXPECT_EQ(values["measured"]["part"], (nlohmann::json{0.0, 1.0}));
@@ -62,14 +62,14 @@ TEST(ScoreFigures, power_is_parts_with_intervals_and_leaves_out_empty_bins) {
                      ideal_power(0.05, values["predicted"]["x"][50].get<double>()));
 }
 
-TEST(ScoreFigures, confidence_is_parts_over_what_was_stated) {
+TEST(ScoreFigures, confidence_is_the_success_rate_over_the_stated_one) {
     const auto values = figures_of({{15, {&adhesion, right}}, {5, {&no_effect, right}}})["confidence"];
     EXPECT_EQ(values["measured"]["x"], (nlohmann::json{0.9}));
     EXPECT_EQ(values["measured"]["part"], (nlohmann::json{0.75}));
     EXPECT_NEAR(values["measured"]["interval"][0][0].get<double>(), 0.531, 5e-4);
 }
 
-TEST(ScoreFigures, are_those_that_there_are) {
+TEST(ScoreFigures, exist_only_with_data) {
     EXPECT_TRUE(figures_of({}).empty());
     EXPECT_EQ(figures_of({{1, {&no_effect, nothing}}}).size(), 1u);
 }

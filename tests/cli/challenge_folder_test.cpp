@@ -1,4 +1,4 @@
-// One folder, one work: who comes where a challenge is answered, or to answer one where a run is, is refused.
+// One kind of work per folder: a second command in the folder of a running challenge or run is refused.
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -32,7 +32,7 @@ protected:
         words.insert(words.end(), more.begin(), more.end());
         return words;
     }
-    /// A challenge held in the middle: it has its folder until it is let go on.
+    /// A challenge that is blocked in the middle and holds its folder until released.
     std::unique_ptr<Child> held_challenge(const Words& more = {}) const {
         auto child = std::make_unique<Child>(folder_.path, challenge_words(more), held_after(100));
         wait_until_held(*child);
@@ -43,7 +43,7 @@ protected:
     }
 };
 
-TEST_F(ChallengeFolderTest, IsRefusedWhereOneProgramAnswersAChallenge) {
+TEST_F(ChallengeFolderTest, ASecondProcessIsRefusedWhileOneAnswers) {
     const auto one = held_challenge();
     expect_refused(challenge_words(), alone);
     expect_refused(run_words("out"), alone);
@@ -58,7 +58,7 @@ TEST_F(ChallengeFolderTest, IsRefusedWhereOneProgramAnswersAChallenge) {
     EXPECT_TRUE(file_of_a_run(path("out")).empty());
 }
 
-TEST_F(ChallengeFolderTest, OneProgramMakesAChallenge) {
+TEST_F(ChallengeFolderTest, OnlyOneProcessMakesAChallenge) {
     const Words words{"challenge", "make",      "tiny.toml", "--out",        "other", "--none",
                       "1",         "--pairs",   "0",         "--per-effect", "0",     "--unknown",
                       "0",         "--outside", "0",         "--packings",   "2"};
@@ -83,12 +83,12 @@ TEST_F(ChallengeFolderTest, NothingIsWrittenOutsideTheFolder) {
     }
 }
 
-TEST_F(ChallengeFolderTest, IsNotAnsweredBeforeItIsMade) {
+TEST_F(ChallengeFolderTest, CannotBeAnsweredBeforeItIsComplete) {
     fs::remove(path("challenge/case_0001/experiment.toml"));
     expect_refused(challenge_words(), "challenge: case_0001 is not made yet");
 }
 
-TEST_F(ChallengeFolderTest, WhatLiesThereIsNoCaseOfIt) {
+TEST_F(ChallengeFolderTest, OtherFilesAreNotTakenAsCases) {
     fs::create_directories(path("other/case_0001"));
     std::ofstream(path("other/case_0001/contacts.csv")) << "measured";
     Words words{"challenge", "make",      "tiny.toml", "--out",        "other", "--none",
@@ -109,7 +109,7 @@ TEST_F(ChallengeFolderTest, ALibraryOfAnotherSceneIsRefusedBeforeAnyWork) {
     auto library = nlohmann::json::parse(bytes_of_file(path("library.json")));
     for (const auto& [option, value] : {std::pair{"--out", "second"}, {"--library", "changed.json"}})
         *(std::ranges::find(words, option) + 1) = value;
-    library.erase("sha256");  // that of the content before it is changed
+    library.erase("sha256");  // as before the content is changed
     library["origin"]["grains.friction"] = "0.9";
     std::string origin;
     for (const auto& [name, value] : library["origin"].items())
@@ -126,7 +126,7 @@ TEST_F(ChallengeFolderTest, ALibraryOfAnotherSceneIsRefusedBeforeAnyWork) {
     expect_refused(words, "out/library.json: is another library than changed.json");
 }
 
-TEST_F(ChallengeFolderTest, IsRefusedWhereProgramsShareAChallenge) {
+TEST_F(ChallengeFolderTest, ASingleProcessIsRefusedWhileOthersShareTheChallenge) {
     const auto one = held_challenge({"--part=0"});
     expect_refused(challenge_words(), shared);
     expect_refused(run_words("out"), shared);
@@ -137,7 +137,7 @@ TEST_F(ChallengeFolderTest, IsRefusedWhereProgramsShareAChallenge) {
     EXPECT_TRUE(file_of_a_run(path("out")).empty());
 }
 
-TEST_F(ChallengeFolderTest, InPartsTheAnswersAreTheSame) {
+TEST_F(ChallengeFolderTest, AnswersInPartsAreTheSame) {
     Words alone = challenge_words();
     *(std::ranges::find(alone, "--out") + 1) = "alone";
     *(std::ranges::find(alone, "--library") + 1) = "alone.json";
@@ -161,7 +161,7 @@ TEST_F(ChallengeFolderTest, InPartsTheAnswersAreTheSame) {
         EXPECT_EQ(bytes_of_file(path("out") / file), bytes_of_file(path("alone") / file));
 }
 
-TEST_F(ChallengeFolderTest, OtherOptionsThanItWasBegunWithAreRefused) {
+TEST_F(ChallengeFolderTest, OtherOptionsThanAtTheStartAreRefused) {
     Words words = challenge_words();
     expect_done(mcdem(words));
     for (const char* option : {"--replicates", "--confirmations", "--library-packings"}) {
@@ -177,9 +177,9 @@ TEST_F(ChallengeFolderTest, OtherOptionsThanItWasBegunWithAreRefused) {
     EXPECT_EQ(bytes_of_file(path("out/manifest.json")), manifest);
 }
 
-TEST_F(ChallengeFolderTest, IsRefusedWhereARunIsWritten) {
+TEST_F(ChallengeFolderTest, IsRefusedInTheFolderOfARun) {
     {
-        const auto run = ResultFolder::create(path("out"));  // as of a run before its first checkpoint
+        const auto run = ResultFolder::create(path("out"));  // as for a run before its first checkpoint
         expect_refused(challenge_words(), alone);
         for (const char* how : {"--part=0", "--device=all"})
             expect_refused(challenge_words({how}), not_shared);

@@ -1,4 +1,4 @@
-// A small challenge from its realities to its score: blind, sealed, and telling nothing.
+// A small challenge from its realities to its score: blind, sealed, without hints about the truth.
 #include <zlib.h>
 
 #include <map>
@@ -17,7 +17,7 @@ using testing::HasSubstr;
 namespace fs = std::filesystem;
 const Words score_words{"challenge", "score", "challenge", "answers", "--truth", "sealed/truth.json"};
 
-/// Bytes of all files below, by path; compressed ones unpacked.
+/// Contents of all files below a folder, by path; compressed files are unpacked.
 std::map<std::string, std::string> contents_of(const fs::path& folder) {
     std::map<std::string, std::string> contents;
     for (const auto& entry : fs::recursive_directory_iterator(folder)) {
@@ -32,7 +32,7 @@ std::map<std::string, std::string> contents_of(const fs::path& folder) {
     return contents;
 }
 
-/// Realities and diagnoses are made once; the truth is out of reach while they are diagnosed.
+/// Realities and diagnoses are made once; the truth is not accessible during the diagnoses.
 class ChallengeTest : public testing::Test {
 protected:
     static void SetUpTestSuite() {
@@ -64,13 +64,13 @@ protected:
     static inline Finished *made_ = nullptr, *ran_ = nullptr;
 };
 
-TEST_F(ChallengeTest, TheSealIsThatOfTheTruth) {
+TEST_F(ChallengeTest, SealIsThatOfTheTruth) {
     const std::string seal = Sha256().add(bytes_of_file(path("sealed/truth.json"))).hex();
     EXPECT_THAT(made_->out, HasSubstr(seal));
     EXPECT_EQ(json_of("challenge/challenge.json").at("sealed_sha256"), seal);
 }
 
-/// Sum of the contact forces at the plate over the plate's own reading, all scans together.
+/// Sum of the contact forces at the plate over the measured force of the plate, over all scans.
 double plate_contacts_over_reading(const Recording& recording) {
     double contacts = 0, reading = 0;
     for (const Scan& scan : recording.scans) {
@@ -81,7 +81,7 @@ double plate_contacts_over_reading(const Recording& recording) {
     return contacts / reading;
 }
 
-TEST_F(ChallengeTest, RealitiesHaveWhatTheTruthSays) {
+TEST_F(ChallengeTest, RealitiesHaveTheEffectsOfTheTruth) {
     const auto truth = json_of("sealed/truth.json");
     ASSERT_EQ(truth.at("cases").size(), static_cast<std::size_t>(cases));
     for (const auto& c : truth.at("cases")) {
@@ -96,7 +96,7 @@ TEST_F(ChallengeTest, RealitiesHaveWhatTheTruthSays) {
         double bias = 0;
         for (const auto& effect : c.at("effects"))
             if (effect.at("name") == "force_bias") bias = effect.at("amplitude");
-        // Some 250 contacts with 5 % noise each and unequal forces, and the weakest are not seen: 2 %.
+        // About 250 contacts with 5 % noise each and unequal forces; the weakest are not detected: 2 %.
         EXPECT_NEAR(plate_contacts_over_reading(recording), 1 + bias, 0.02) << c;
     }
 }
@@ -126,7 +126,7 @@ TEST_F(ChallengeTest, IsScored) {
     EXPECT_THAT(bytes_of_file(path("answers/score.md")), HasSubstr("| whole method"));
 }
 
-TEST_F(ChallengeTest, RefusesATruthThatWasTouched) {
+TEST_F(ChallengeTest, RefusesAModifiedTruth) {
     std::string truth = bytes_of_file(path("sealed/truth.json"));
     truth.replace(truth.find("\"none\""), 6, "\"pair\"");
     std::ofstream(path("sealed/touched.json")) << truth;
@@ -135,7 +135,7 @@ TEST_F(ChallengeTest, RefusesATruthThatWasTouched) {
     expect_bad_input(mcdem(words), "is not the truth that was sealed");
 }
 
-TEST_F(ChallengeTest, FoldersTellNothing) {
+TEST_F(ChallengeTest, FilesGiveNoHintsAboutTheTruth) {
     const auto contents = contents_of(path("challenge"));
     EXPECT_EQ(contents.size(), 1u + 4u * cases);
     std::vector<std::string> words{"none", "pair", "unknown", "outside", "seed", "amplitude", "struck"};
@@ -145,7 +145,7 @@ TEST_F(ChallengeTest, FoldersTellNothing) {
     for (const auto& [name, text] : contents) {
         if (name == "challenge.json") continue;
         const fs::path file = name;
-        // Words of any experiment.toml: grains.friction is stated there.
+        // Words of any experiment.toml, which states grains.friction.
         if (file.filename() == "experiment.toml") {
             const std::string nameless = text.substr(text.find('['));
             if (settings.empty()) settings = nameless;
@@ -158,7 +158,7 @@ TEST_F(ChallengeTest, FoldersTellNothing) {
     }
 }
 
-TEST_F(ChallengeTest, OnlyStruckCandidatesShowInTheOpenFile) {
+TEST_F(ChallengeTest, OpenFileListsCandidatesOnlyIfSomeAreStruck) {
     const auto challenge = json_of("challenge/challenge.json");
     int with_candidates = 0;
     for (const auto& c : challenge.at("cases")) {
@@ -176,7 +176,7 @@ TEST_F(ChallengeTest, OnlyStruckCandidatesShowInTheOpenFile) {
     EXPECT_EQ(challenge.size(), 4u) << challenge;
 }
 
-TEST_F(ChallengeTest, GoesOnWhereItStopped) {
+TEST_F(ChallengeTest, ResumesAfterAnInterruption) {
     const auto before = contents_of(path("challenge"));
     fs::copy(path("sealed/truth.json"), path("challenge/truth.json"));
     fs::remove(path("challenge/case_0004/experiment.toml"));
@@ -191,7 +191,7 @@ TEST_F(ChallengeTest, GoesOnWhereItStopped) {
 
     const std::string kept = bytes_of_file(path("answers/case_0001.json"));
     EXPECT_EQ(mcdem(run_challenge_words).exit_code, 0);
-    EXPECT_EQ(bytes_of_file(path("answers/case_0001.json")), kept);  // its seconds would differ
+    EXPECT_EQ(bytes_of_file(path("answers/case_0001.json")), kept);  // its time would differ
 }
 
 TEST_F(ChallengeTest, RefusesAFolderOfAnotherChallenge) {

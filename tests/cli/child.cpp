@@ -17,7 +17,7 @@ std::string text_of(const std::filesystem::path& file) {
     return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// Only what may be called between fork and exec.
+/// Only functions that are allowed between fork and exec.
 [[noreturn]] void become(const char* folder, const char* out, const char* err, char* const* arguments,
                          char* const* environment) {
     const bool ready = ::chdir(folder) == 0 && ::dup2(::open("/dev/null", O_RDONLY), 0) >= 0 &&

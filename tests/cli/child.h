@@ -1,4 +1,4 @@
-// The program as a child process: started, interrupted, killed, and what it said.
+// The program as a child process: start, interruption, kill, output.
 #pragma once
 #include <sys/types.h>
 
@@ -9,14 +9,14 @@
 namespace mcdem {
 
 struct Finished {
-    int exit_code = -1;  ///< -1 where a signal ended it
+    int exit_code = -1;  ///< -1 if a signal ended it
     int signal = 0;
     std::string out, err;
 };
 
 class Child {
 public:
-    /// Starts the program with these arguments in `folder`; `environment` is added: "NAME=value".
+    /// Starts the program with these arguments in `folder`; `environment` ("NAME=value") is added.
     Child(const std::filesystem::path& folder, const std::vector<std::string>& arguments,
           const std::vector<std::string>& environment = {});
     ~Child();

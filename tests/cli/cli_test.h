@@ -1,4 +1,4 @@
-// What the tests of the program share: a folder with a small scene in it, and the program run there.
+// Shared by the tests of the program: a folder with a small scene, and functions that run the program there.
 #pragma once
 #include <gmock/gmock.h>
 
@@ -20,20 +20,20 @@ protected:
                    const std::vector<std::string>& environment = {}) const {
         return run_program(folder_.path, arguments, environment);
     }
-    /// The words of a run of the small scene into `out`, and more.
+    /// Arguments of a run of the small scene into `out`, and further ones.
     static std::vector<std::string> run_words(const std::string& out, std::vector<std::string> more = {}) {
         std::vector<std::string> words{"run", "small.toml", "--out", out, "--no-figures"};
         words.insert(words.end(), more.begin(), more.end());
         return words;
     }
-    /// The environment in which a run waits after so many launches of a kernel, until it is let go on; it
-    /// launches one a step.
+    /// Environment in which a run blocks after this number of launches of a kernel (one per step), until
+    /// released.
     std::vector<std::string> held_after(long launches) const {
         std::filesystem::create_directories(path("held"));
         return {"OPENCL_LAYERS=" MCDEM_DEVICE_LAYER, "MCDEM_TEST_KERNELS=" + std::to_string(launches),
                 "MCDEM_TEST_HOLD=" + path("held").string()};
     }
-    /// Waits until the child is held; fails where it has ended.
+    /// Waits until the child is blocked; fails if it has ended.
     void wait_until_held(Child& child) const {
         while (!std::filesystem::exists(held_file(child))) {
             if (!child.is_running())
@@ -50,7 +50,7 @@ protected:
     TestFolder folder_;
 };
 
-/// Bad input: the exit code, and a part of what is said about it; every line begins with the name.
+/// Bad input: checks the exit code and a part of the message; every line begins with the program's name.
 inline void expect_bad_input(const Finished& finished, const std::string& part) {
     EXPECT_EQ(finished.exit_code, 2) << finished.err;
     EXPECT_THAT(finished.err, testing::HasSubstr(part));

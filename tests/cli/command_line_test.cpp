@@ -1,4 +1,4 @@
-// What the program says to a command line: help, versions, errors and their exit codes.
+// Output and exit codes for help, versions and errors of the command line.
 #include "cli/cli_test.h"
 
 namespace mcdem {
@@ -9,7 +9,7 @@ using testing::HasSubstr;
 const std::vector<std::string> commands{"devices", "validate",  "run",    "table",     "compare",
                                         "figures", "calibrate", "export", "experiment"};
 
-TEST_F(CliTest, HelpNamesAllCommandsAndEachTeachesByExample) {
+TEST_F(CliTest, HelpNamesAllCommandsAndEachHasAnExample) {
     const auto help = mcdem({"--help"});
     EXPECT_EQ(help.exit_code, 0);
     EXPECT_EQ(help.err, "");
@@ -30,7 +30,7 @@ TEST_F(CliTest, VersionIsPrinted) {
     EXPECT_THAT(version.out, testing::MatchesRegex("mcdem [0-9]+\\.[0-9]+\\.[0-9]+.*\n"));
 }
 
-TEST_F(CliTest, MistakesOnTheCommandLineAreBadInput) {
+TEST_F(CliTest, WrongOptionsAreBadInput) {
     expect_bad_input(mcdem({}), "subcommand");
     expect_bad_input(mcdem({"walk"}), "walk");
     expect_bad_input(mcdem({"run"}), "SCENE is required");
@@ -57,7 +57,7 @@ TEST_F(CliTest, MissingFilesAreBadInput) {
     expect_bad_input(mcdem({"table", "small.toml"}), "small.toml");
 }
 
-TEST_F(CliTest, AllProblemsOfASceneAreSaidEachOnItsLine) {
+TEST_F(CliTest, AllProblemsOfASceneAreListedOnePerLine) {
     std::ofstream(path("bad.toml")) << "[grains]\nfriction = -1\npoisson_ratio = \"soft\"\ncolour = 3\n";
     const auto validated = mcdem({"validate", "bad.toml"});
     expect_bad_input(validated, "mcdem: bad.toml:2: ");
@@ -71,7 +71,7 @@ TEST_F(CliTest, AllProblemsOfASceneAreSaidEachOnItsLine) {
                      "--set grains.friction");
 }
 
-TEST_F(CliTest, ValidateSaysWhatWouldRun) {
+TEST_F(CliTest, ValidateSummarisesTheRun) {
     const auto validated = mcdem({"validate", "small.toml", "--set", "batch.replicas=20"});
     expect_done(validated);
     EXPECT_THAT(validated.out, HasSubstr("small.toml: good\n40 replicas of 30 grains, float precision"));
@@ -79,7 +79,7 @@ TEST_F(CliTest, ValidateSaysWhatWouldRun) {
     EXPECT_THAT(validated.out, HasSubstr("and 28 more"));
 }
 
-TEST_F(CliTest, WhatTheDeviceCannotHoldIsRefusedBeforeAnythingIsMade) {
+TEST_F(CliTest, ARunThatExceedsTheDeviceIsRefusedBeforeItStarts) {
     expect_done(mcdem({"validate", "small.toml"}));
     EXPECT_THAT(mcdem({"validate", "small.toml"}).out, HasSubstr(" MB of memory on the device"));
     const std::vector<std::vector<std::string>> too_much{
@@ -111,7 +111,7 @@ TEST_F(CliTest, DevicesAreListedAndUnknownOnesRefused) {
                                         HasSubstr("mcdem:   0  ")));
 }
 
-TEST_F(CliTest, NoDeviceAtAllIsAFailure) {
+TEST_F(CliTest, NoDeviceIsAFailure) {
     std::filesystem::create_directory(path("no_vendors"));
     const auto devices = mcdem({"devices"}, {"OCL_ICD_VENDORS=" + path("no_vendors").string()});
     EXPECT_EQ(devices.exit_code, 1);

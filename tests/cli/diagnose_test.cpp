@@ -1,4 +1,4 @@
-// Diagnoses of realities made by the program itself, in a scene of 64 grains.
+// Diagnoses of simulated experiments, with a scene of 64 grains.
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -15,7 +15,7 @@ class DiagnoseTest : public CliTest {
 protected:
     DiagnoseTest() { write_tiny_scene(folder_.path); }
 
-    /// An experiment of another packing, the scene but for `changes`.
+    /// An experiment with another packing, and the scene with these changes.
     void experiment(const Words& changes, const std::string& folder = "e", int seed = 5) {
         Words run{"run",
                   "tiny.toml",
@@ -44,8 +44,8 @@ const Words few{
     "--replicates",    "16", "--pairs",      "4",
     "--confirmations", "4",  "--candidates", "friction,wall_friction,rolling_resistance,plate_speed"};
 
-// A plate ten times slower than the scene's is no effect: it is the scene that is too fast.
-TEST_F(DiagnoseTest, ASlowRealityWithoutEffectIsGivenNone) {
+// A real plate ten times slower than the scene's is not an effect: the scene's plate is too fast.
+TEST_F(DiagnoseTest, ASlowExperimentWithoutEffectGetsNoEffect) {
     experiment({"plate.speed=0.02"});
     Words never = few, refined = few;
     never.insert(never.end(), {"--refine", "1"});
@@ -64,8 +64,8 @@ TEST_F(DiagnoseTest, ASlowRealityWithoutEffectIsGivenNone) {
     EXPECT_THAT(std::string(slow["sentence"]), HasSubstr("with plate.speed = "));
 }
 
-// A plate that follows the load is slow already: nothing has to be refined.
-TEST_F(DiagnoseTest, WithAToleranceASlowRealityIsLikeTheScene) {
+// With a rate tolerance the scene's plate is slow enough and need not be refined.
+TEST_F(DiagnoseTest, WithAToleranceASlowExperimentAgreesWithTheScene) {
     const Words scene{"protocol.rate_tolerance=0.01"};
     experiment({"plate.speed=0.01"});
     Words words = few;
@@ -98,10 +98,10 @@ TEST_F(DiagnoseTest, SeveralPackingsGetOneVerdict) {
     expect_bad_input(mcdem(twice), "--experiment: a is given twice");
 }
 
-// A packing in a cylinder, and one between floor and plate that repeats: without an effect, and with one.
+// A cylinder and a periodic container, each without and with an effect.
 class DiagnoseContainerTest : public DiagnoseTest, public testing::WithParamInterface<const char*> {};
 
-TEST_P(DiagnoseContainerTest, NamesWhatIsThereAndNothingElse) {
+TEST_P(DiagnoseContainerTest, NamesOnlyThePlantedEffect) {
     std::stringstream scene;
     scene << std::ifstream(path("tiny.toml")).rdbuf();
     const std::string box = "[box]\nsize_x = 0.083\nsize_y = 0.083\n";
@@ -126,8 +126,8 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values("[container]\nshape = \"cylinder\"\nradius = 0.047\n",
                     "[container]\nshape = \"periodic\"\nsize_x = 0.08\nsize_y = 0.085\n"));
 
-// Plate, positions and no contacts: what the force on the plate tells, and what it does not.
-TEST_F(DiagnoseTest, PlateAndPositionsAreEnough) {
+// Plate and positions without contacts.
+TEST_F(DiagnoseTest, PlateAndPositionsAreSufficient) {
     experiment({});
     std::filesystem::remove(path("e/contacts.csv"));
     EXPECT_THAT(mcdem({"experiment", "check", "e"}).out, HasSubstr("needs beside it: nothing"));
@@ -137,9 +137,9 @@ TEST_F(DiagnoseTest, PlateAndPositionsAreEnough) {
     for (const auto& cell : told["cells"]) EXPECT_EQ(cell["observable"], "top_force");
 }
 
-// With all bulges gone free surfaces move out too far, and the runs stop. The least numbers that are accepted
-// are enough, and make no gap where there is none.
-TEST_F(DiagnoseTest, ACandidateWhoseRunsFailCostsItselfAtMost) {
+// Without any of the surface displacements free surfaces move too far, and the runs stop. The smallest
+// accepted numbers of runs are sufficient, and give no false gap.
+TEST_F(DiagnoseTest, ACandidateWhoseRunsFailAffectsOnlyItself) {
     const Words scene{"contact.model=mc_dem", "contact.gamma=1.08"};
     experiment(scene);
     Words words{"--replicates",    "8", "--pairs",      "2",
@@ -150,8 +150,8 @@ TEST_F(DiagnoseTest, ACandidateWhoseRunsFailCostsItselfAtMost) {
     EXPECT_GT(told["cells"].size(), 100u);
 }
 
-// Cut short after the library was put in place, before its other name was gone.
-TEST_F(DiagnoseTest, WhatACutLeavesBesideALibraryGoesWithTheNext) {
+// Interrupted after the library was moved into place, before its temporary name was removed.
+TEST_F(DiagnoseTest, RemnantsOfAnInterruptedLibraryAreRemovedByTheNext) {
     experiment({});
     const Words options{"--replicates",    "8", "--pairs",      "2",       "--library", "library.json",
                         "--confirmations", "0", "--candidates", "friction"};
@@ -191,7 +191,7 @@ TEST_F(DiagnoseTest, WithItsLibraryInPartsIsTheSame) {
     EXPECT_EQ(simulations("parts"), simulations("d"));
 }
 
-/// A scene of scenes/ in place of the tiny one, and three candidates.
+/// A scene of scenes/ instead of the tiny one, and three candidates.
 class DiagnoseHoldTest : public DiagnoseTest {
 protected:
     void take(const char* scene) {
@@ -206,7 +206,7 @@ protected:
     }
 };
 
-TEST_F(DiagnoseHoldTest, RelaxingGrainsAreToldFromPlasticOnes) {
+TEST_F(DiagnoseHoldTest, DistinguishesRelaxationFromPlasticity) {
     take("relaxation.toml");
     EXPECT_EQ(verdict_on("plain", {})["verdict"], "no_gap");
     for (const std::string effect : {"viscoelasticity", "plasticity"}) {
@@ -217,7 +217,7 @@ TEST_F(DiagnoseHoldTest, RelaxingGrainsAreToldFromPlasticOnes) {
     }
 }
 
-TEST_F(DiagnoseHoldTest, UnderSetForcesGrainsThatCreepAreNamed) {
+TEST_F(DiagnoseHoldTest, NamesCreepUnderPrescribedForces) {
     take("creep.toml");
     EXPECT_EQ(verdict_on("plain", {})["verdict"], "no_gap");
     const auto told = verdict_on("creeping", {"effects.viscoelasticity=0.25"});
@@ -225,7 +225,7 @@ TEST_F(DiagnoseHoldTest, UnderSetForcesGrainsThatCreepAreNamed) {
     EXPECT_EQ(told["causes"][0]["effect"], "viscoelasticity");
 }
 
-TEST_F(DiagnoseTest, AProgrammeOfTheSceneMustBeTheExperiments) {
+TEST_F(DiagnoseTest, ProgrammesOfSceneAndExperimentMustAgree) {
     experiment({});
     fs::copy_file(fs::path(MCDEM_SOURCE_DIR) / "scenes/relaxation.toml", path("tiny.toml"),
                   fs::copy_options::overwrite_existing);

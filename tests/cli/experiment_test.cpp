@@ -1,4 +1,4 @@
-// Experiments made of runs, and checked.
+// Experiments from runs, and `experiment check`.
 #include "experiment/experiment.h"
 
 #include <fstream>
@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 class ExperimentCommandTest : public CliTest {
 protected:
-    /// A run of both models that begins with the packing at rest.
+    /// A run of both models that starts with a scan of the packing at rest.
     void run(const std::string& out, std::vector<std::string> more = {}) {
         more.insert(more.end(), {"--set", "protocol.scan_at_start=true"});
         expect_done(mcdem(run_words(out, more)));
@@ -31,7 +31,7 @@ protected:
     }
 };
 
-TEST_F(ExperimentCommandTest, ARunBecomesAnExperimentWithNothingOddAboutIt) {
+TEST_F(ExperimentCommandTest, ARunBecomesAnExperimentWithoutWarnings) {
     run("a");
     const auto made = from_run("e", {"--replica", "elastic_sphere", "--uncertainty",
                                      "grains.youngs_modulus=500", "--uncertainty", "walls.friction=0.01"});
@@ -61,7 +61,7 @@ TEST_F(ExperimentCommandTest, ARunBecomesAnExperimentWithNothingOddAboutIt) {
     expect_done(mcdem({"compare", "a", "--against", "e"}));
 }
 
-TEST_F(ExperimentCommandTest, APerfectInstrumentGivesTheRunBack) {
+TEST_F(ExperimentCommandTest, APerfectInstrumentReproducesTheRun) {
     run("a");
     expect_done(from_run("e", {"--replica", "1", "--position-error", "0", "--diameter-error", "0",
                                "--force-error", "0", "--force-threshold", "0", "--strain-offset", "1e-3"}));
@@ -78,7 +78,7 @@ TEST_F(ExperimentCommandTest, APerfectInstrumentGivesTheRunBack) {
     }
 }
 
-/// Stages with a hold of the position and one of the force that is then there.
+/// Stages with a hold of the position, and a hold of the force at that moment.
 constexpr auto stages = R"(
 [[programme]]
 strain = 0.1
@@ -96,7 +96,7 @@ keep = "force"
 time = 0.02
 )";
 
-TEST_F(ExperimentCommandTest, AProgrammeGoesAlongFromTheRunThroughAnImport) {
+TEST_F(ExperimentCommandTest, AProgrammeIsKeptFromTheRunThroughAnImport) {
     std::string scene = bytes_of_file(path("small.toml"));
     for (const char* key : {"scans_per_stroke", "cycles"})  // of strokes
         if (const auto at = scene.find(key); at != scene.npos) scene.erase(at, scene.find('\n', at) - at);
@@ -126,7 +126,7 @@ TEST_F(ExperimentCommandTest, AProgrammeGoesAlongFromTheRunThroughAnImport) {
     EXPECT_FALSE(fs::exists(path("f")));
 }
 
-TEST_F(ExperimentCommandTest, OfAProgrammeEachFrameIsAScan) {
+TEST_F(ExperimentCommandTest, EachFrameOfAProgrammeIsAScan) {
     std::string scene = bytes_of_file(path("small.toml"));
     for (const char* key : {"scans_per_stroke", "cycles"})
         if (const auto at = scene.find(key); at != scene.npos) scene.erase(at, scene.find('\n', at) - at);
@@ -138,7 +138,7 @@ TEST_F(ExperimentCommandTest, OfAProgrammeEachFrameIsAScan) {
         "it to its end, with protocol.scan_at_start = true");
 }
 
-TEST_F(ExperimentCommandTest, TheSeedDecidesTheNoise) {
+TEST_F(ExperimentCommandTest, SeedDeterminesTheNoise) {
     run("a");
     for (const auto& [out, seed] : {std::pair{"e", "3"}, std::pair{"same", "3"}, std::pair{"other", "4"}})
         expect_done(from_run(out, {"--replica", "0", "--seed", seed}));
@@ -155,7 +155,7 @@ TEST_F(ExperimentCommandTest, TheSeedDecidesTheNoise) {
     EXPECT_EQ(packed.recording.scans[5].mean_force, plain.recording.scans[5].mean_force);
 }
 
-TEST_F(ExperimentCommandTest, WhatARunLacksIsSaid) {
+TEST_F(ExperimentCommandTest, DataThatARunLacksAreNamed) {
     expect_done(mcdem(run_words("a", {"--set", "contact.model=mc_dem"})));
     const auto loaded = from_run("e", {});
     expect_done(loaded);
@@ -172,7 +172,7 @@ TEST_F(ExperimentCommandTest, WhatARunLacksIsSaid) {
     EXPECT_THAT(mcdem({"experiment", "check", "bare"}).out, HasSubstr("diameters and positions: "));
 }
 
-TEST_F(ExperimentCommandTest, MistakesAreBadInput) {
+TEST_F(ExperimentCommandTest, WrongOptionsAreBadInput) {
     run("a");
     const auto problem = [&](std::vector<std::string> more, const char* part) {
         expect_bad_input(from_run("e", more), part);
@@ -212,7 +212,7 @@ TEST_F(ExperimentCommandTest, MeasuredDataAreNotOverwritten) {
     EXPECT_THAT(unwritable.err, HasSubstr("/proc/nowhere: cannot be made"));
 }
 
-TEST_F(ExperimentCommandTest, SpoiledTablesAreToldWithTheirLines) {
+TEST_F(ExperimentCommandTest, ErrorsInTablesAreReportedWithTheirLines) {
     run("a");
     expect_done(from_run("e", {"--replica", "0"}));
     std::string text = bytes_of_file(path("e/plate.csv"));
@@ -224,8 +224,8 @@ TEST_F(ExperimentCommandTest, SpoiledTablesAreToldWithTheirLines) {
     EXPECT_THAT(checked.err, HasSubstr("grain must be a grain of grains.csv, 0 to 29, got 77"));
 }
 
-// What is missing is said by both in the same words, and before anything is simulated.
-TEST_F(ExperimentCommandTest, WhatADiagnosisNeedsIsToldByCheckAndDiagnoseAlike) {
+// Both commands name missing data in the same words, before any simulation.
+TEST_F(ExperimentCommandTest, CheckAndDiagnoseReportTheSameMissingData) {
     run("a");
     expect_done(from_run("e", {"--replica", "0"}));
     EXPECT_THAT(mcdem({"experiment", "check", "e"}).out,
@@ -249,7 +249,7 @@ TEST_F(ExperimentCommandTest, WhatADiagnosisNeedsIsToldByCheckAndDiagnoseAlike) 
     told("grains.csv must have the positions of frame 0");
 }
 
-TEST_F(ExperimentCommandTest, IsDiagnosedByOneProgramAFolder) {
+TEST_F(ExperimentCommandTest, IsDiagnosedByOneProcessPerFolder) {
     run("a");
     expect_done(from_run("e", {"--replica", "1"}));
     fs::create_directory(path("out"));
@@ -262,7 +262,7 @@ TEST_F(ExperimentCommandTest, IsDiagnosedByOneProgramAFolder) {
     expect_bad_input(mcdem(words), "other programs share work there");
 }
 
-TEST_F(ExperimentCommandTest, ARunWithoutGrainsIsNone) {
+TEST_F(ExperimentCommandTest, ARunWithoutGrainsIsRefused) {
     run("a");
     mcdem::Run bare = read_run(path("a"));
     bare.recordings.resize(1);
@@ -279,7 +279,7 @@ TEST_F(ExperimentCommandTest, ARunWithoutGrainsIsNone) {
     EXPECT_FALSE(fs::exists(path("e")));
 }
 
-/// What others can change in a run.h5, by name.
+/// Fields of run.h5 that others can change, by name.
 const std::map<std::string, std::function<void(Recording&)>>& forgeries() {
     static const std::map<std::string, std::function<void(Recording&)>> all{
         {"grain outside", [](Recording& run) { run.scans[1].position[2].x() = 3; }},
@@ -307,7 +307,7 @@ const std::map<std::string, std::function<void(Recording&)>>& forgeries() {
     return all;
 }
 
-TEST_F(ExperimentCommandTest, OfAForgedRunIsReadableOrRefused) {
+TEST_F(ExperimentCommandTest, AForgedRunIsReadableOrRefused) {
     run("a", {"--set", "contact.model=independent"});
     int refused = 0;
     for (const auto& [name, forge] : forgeries()) {
@@ -328,7 +328,7 @@ TEST_F(ExperimentCommandTest, OfAForgedRunIsReadableOrRefused) {
     EXPECT_GT(refused, 8);
 }
 
-TEST_F(ExperimentCommandTest, OfARunWithGrainsOutsideSaysWhatIsWrong) {
+TEST_F(ExperimentCommandTest, ARunWithGrainsOutsideTheBoxIsExplained) {
     run("a", {"--set", "contact.model=independent"});
     mcdem::Run forged = read_run(path("a"));
     forgeries().at("grain outside")(forged.recordings.at(0));

@@ -1,5 +1,5 @@
-// `mcdem experiment import`: a run, told as a laboratory and as another program would, comes back as from-run
-// gives it.
+// `mcdem experiment import`: a run, written in the format of a laboratory and of another program, is
+// imported as from-run converts it.
 #include <zlib.h>
 
 #include <fstream>
@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 class ImportCommandTest : public CliTest {
 protected:
-    /// A run with the packing at rest first, and the same as a perfect instrument measures it, folder "seen".
+    /// A run that starts at rest; folder "seen" has its data from a perfect instrument.
     void run() {
         expect_done(
             mcdem(run_words("a", {"--set", "protocol.scan_at_start=true", "--set", "contact.model=mc_dem"})));
@@ -74,7 +74,7 @@ protected:
     Recording truth_;
 };
 
-TEST_F(ImportCommandTest, ALaboratorysTablesBecomeTheExperimentOfTheirRun) {
+TEST_F(ImportCommandTest, TablesOfALaboratoryBecomeTheExperimentOfTheirRun) {
     run();
     write_lab({});
     const auto done = import(lab_words("lab"));
@@ -89,7 +89,8 @@ TEST_F(ImportCommandTest, ALaboratorysTablesBecomeTheExperimentOfTheirRun) {
     expect_done(checked);
     EXPECT_THAT(checked.out, HasSubstr("30 grains"));
     EXPECT_FALSE(fs::exists(path("lab.importing")));
-    // The mapping that was kept reads the same tables again, and others of the laboratory, packed ones too.
+    // The stored mapping reads the same tables again, and other tables of the laboratory, also compressed
+    // ones.
     const gzFile packed = gzopen(path("plate2.csv.gz").c_str(), "wb");
     gzputs(packed, text_of("plate.csv").c_str());
     gzclose(packed);
@@ -100,7 +101,7 @@ TEST_F(ImportCommandTest, ALaboratorysTablesBecomeTheExperimentOfTheirRun) {
     EXPECT_THAT(text_of("again/mapping.toml"), HasSubstr("files = [\"plate2.csv.gz\"]"));
 }
 
-TEST_F(ImportCommandTest, WhatIsNotSafeIsConfirmedInTheMapping) {
+TEST_F(ImportCommandTest, UncertainGuessesMustBeConfirmedInTheMapping) {
     run();
     write_lab({';', ',', false, 1e3, 1e3});
     const auto refused = import({"contacts.csv", "plate.csv", "grains.csv", "--out", "lab"});
@@ -136,7 +137,7 @@ TEST_F(ImportCommandTest, WhatIsNotSafeIsConfirmedInTheMapping) {
     EXPECT_EQ(text_of("lab/mapping.toml"), mapping);
 }
 
-TEST_F(ImportCommandTest, DumpsOfAnotherProgram) {
+TEST_F(ImportCommandTest, DumpsOfAnotherProgramAreImported) {
     run();
     std::string plate = "step plate_z top_force\n";
     for (const Scan& scan : truth_.scans)
@@ -152,7 +153,7 @@ TEST_F(ImportCommandTest, DumpsOfAnotherProgram) {
     expect_done(mcdem({"experiment", "check", "dumped"}));
 }
 
-TEST_F(ImportCommandTest, OnlyItsOwnFilesAreTouched) {
+TEST_F(ImportCommandTest, ReplacesOnlyItsOwnFiles) {
     run();
     write_lab({});
     fs::create_directories(path("lab.importing/kept"));
@@ -171,7 +172,7 @@ TEST_F(ImportCommandTest, OnlyItsOwnFilesAreTouched) {
         EXPECT_THAT(entry.path().string(), Not(HasSubstr(".importing-")));
 }
 
-TEST_F(ImportCommandTest, MistakesAreBadInput) {
+TEST_F(ImportCommandTest, WrongOptionsAreBadInput) {
     std::ofstream(path("odd.csv")) << "a,b\n1,2\n1,2,3\n";
     expect_bad_input(import({"--out", "e"}), "TABLE: must be at least one file, or --mapping must name them");
     expect_bad_input(import({"none", "odd.csv", "--out", "e"}), "none: must be a table, got no such file");

@@ -1,4 +1,5 @@
-// Killed, interrupted, damaged, out of space: a run that goes on ends with the bits of one that did not stop.
+// Killed, interrupted, with damaged files or a full disk: a resumed run ends with the same bits as an
+// uninterrupted one.
 #include <sys/mount.h>
 
 #include <chrono>
@@ -18,7 +19,7 @@ using namespace std::chrono_literals;
 /// Checkpoints as often as the disk allows.
 const std::vector<std::string> often{"--set", "output.checkpoint_minutes=1e-6"};
 
-/// Of some 4,500 that the run of the small scene makes.
+/// of about 4,500 launches in a run of the small scene
 constexpr int some_launches = 1500;
 
 class InterruptionTest : public CliTest {
@@ -28,7 +29,7 @@ protected:
         if (resume) all.push_back("--resume");
         return all;
     }
-    /// The run, held when it has written checkpoints and has others to write.
+    /// A run that is blocked after it has written some, but not all, of its checkpoints.
     std::unique_ptr<Child> held(const std::string& out) const {
         auto child = std::make_unique<Child>(folder_.path, words(out, false), held_after(some_launches));
         wait_until_held(*child);
@@ -36,7 +37,7 @@ protected:
     }
     std::string result(const std::string& out) const { return bytes_of_file(path(out) / "run.h5"); }
 
-    /// Resumed, it ends with the bits of the run that did not stop.
+    /// The resumed run ends with the bits of the uninterrupted run.
     void expect_goes_on(const std::string& out) const {
         expect_done(mcdem(words(out, true)));
         EXPECT_TRUE(result(out) == result("whole"));
@@ -51,12 +52,13 @@ protected:
     }
 };
 
-TEST_F(InterruptionTest, KilledAtAnyMomentAndResumedGivesTheSameBits) {
+TEST_F(InterruptionTest, KilledAtAnyTimeAndResumedGivesTheSameBits) {
     expect_done(mcdem(words("whole", false)));
     std::mt19937 random(1);
     std::uniform_int_distribution<int> launches(1, some_launches), microseconds(0, 5000);
     const int max_kills = 100,
-              kills_while_held = 3;  // within half of the launches, so that there are as many at any speed
+              kills_while_held =
+                  3;  // within half of the launches, so that the number does not depend on the speed
     int kills = 0;
     for (bool resume = false;; resume = true) {
         const bool stays_held = kills < kills_while_held;
@@ -82,7 +84,7 @@ TEST_F(InterruptionTest, KilledAtAnyMomentAndResumedGivesTheSameBits) {
     EXPECT_EQ(bytes_of_file(path("killed/plate.csv")), bytes_of_file(path("whole/plate.csv")));
 }
 
-TEST_F(InterruptionTest, KilledBeforeItsFirstCheckpointStartsAnew) {
+TEST_F(InterruptionTest, KilledBeforeItsFirstCheckpointStartsAgain) {
     expect_done(mcdem(words("whole", false)));
     Child child(folder_.path, words("killed", false), held_after(0));
     wait_until_held(child);
@@ -91,7 +93,7 @@ TEST_F(InterruptionTest, KilledBeforeItsFirstCheckpointStartsAnew) {
     expect_goes_on("killed");
 }
 
-TEST_F(InterruptionTest, InterruptedSaysHowToGoOn) {
+TEST_F(InterruptionTest, InterruptedSaysHowToResume) {
     expect_done(mcdem(words("whole", false)));
     for (int signal : {SIGINT, SIGTERM}) {
         const auto out = "stopped by " + std::to_string(signal);
@@ -100,13 +102,13 @@ TEST_F(InterruptionTest, InterruptedSaysHowToGoOn) {
         EXPECT_THAT(stopped.err,
                     HasSubstr("mcdem run small.toml --set output.checkpoint_minutes=1e-6 --out '" + out +
                               "' --resume"));
-        expect_done(mcdem({"table", out}));  // what is there can be read
+        expect_done(mcdem({"table", out}));  // existing scans can be read
         expect_done(mcdem(words(out, true)));
         EXPECT_TRUE(result(out) == result("whole"));
     }
 }
 
-/// Scenes of programmes, cut short, by name: a plate's holds and forces, a cell's strains.
+/// Shortened scenes with programmes, by name: holds and forces of a plate, strains of a cell.
 class ProgrammeInterruptionTest : public InterruptionTest, public testing::WithParamInterface<const char*> {
 protected:
     std::vector<std::string> programme(const std::string& out, bool resume) const {
@@ -164,7 +166,7 @@ TEST_F(InterruptionTest, OneThreadOrTwoGiveACellTheSameBits) {
     EXPECT_TRUE(result("1") == result("2"));
 }
 
-TEST_F(InterruptionTest, ACellUnderStressGivesTheSameBitsKilledOnThreadsOrInParts) {
+TEST_F(InterruptionTest, ACellUnderStressGivesTheSameBitsKilledWithThreadsOrInParts) {
     const auto stressed = [&](const std::string& out, const std::vector<std::string>& more = {}) {
         std::vector<std::string> words{"run", "stressed.toml", "--out", out, "--no-figures"};
         words.insert(words.end(), more.begin(), more.end());
@@ -213,7 +215,7 @@ replicas = 2
     EXPECT_TRUE(result("parts") == result("whole"));
 }
 
-TEST_F(InterruptionTest, TruncatedCheckpointIsRefusedOrTheOneBeforeTaken) {
+TEST_F(InterruptionTest, TruncatedCheckpointIsRefusedOrThePreviousOneUsed) {
     expect_done(mcdem(words("whole", false)));
     interrupt("a", SIGINT);
     const auto newest = path("a/checkpoint.h5"), previous = path("a/checkpoint.previous.h5");
@@ -231,7 +233,7 @@ TEST_F(InterruptionTest, TruncatedCheckpointIsRefusedOrTheOneBeforeTaken) {
     EXPECT_THAT(refused.err, HasSubstr("no checkpoint can be read"));
 }
 
-TEST_F(InterruptionTest, FoldersThatDoNotSuitAreRefused) {
+TEST_F(InterruptionTest, UnsuitableFoldersAreRefused) {
     interrupt("a", SIGINT);
     const auto problem = [&](const std::vector<std::string>& arguments, const char* part) {
         const auto finished = mcdem(arguments);
@@ -247,7 +249,7 @@ TEST_F(InterruptionTest, FoldersThatDoNotSuitAreRefused) {
     EXPECT_THAT(unwritable.err, HasSubstr("mcdem: /proc/nowhere: cannot be made"));
 }
 
-TEST_F(InterruptionTest, TwoProgramsDoNotWriteToOneFolder) {
+TEST_F(InterruptionTest, TwoProcessesDoNotWriteToOneFolder) {
     const auto child = held("a");
     const fs::path elsewhere = path("elsewhere");
     fs::create_directory(elsewhere);
@@ -260,7 +262,7 @@ TEST_F(InterruptionTest, TwoProgramsDoNotWriteToOneFolder) {
     expect_done(child->wait());
 }
 
-/// A disk of 32 MB, for those who may mount one.
+/// A disk of 32 MB, for users who may mount one.
 class SmallDisk {
 public:
     explicit SmallDisk(const fs::path& folder) : folder_(folder) {
@@ -280,7 +282,7 @@ public:
         }
     }
     void empty() const { fs::remove(folder_ / "filler"); }
-    /// Works with files open for writing too: what they have written stays, nothing new comes in.
+    /// Also affects files that are open for writing: their contents stay, new writes fail.
     bool make_read_only() const {
         return ::mount("", folder_.c_str(), nullptr, MS_REMOUNT | MS_RDONLY, nullptr) == 0;
     }
@@ -291,7 +293,7 @@ private:
     bool mounted_ = false;
 };
 
-TEST_F(InterruptionTest, FullDiskEndsTheRunWhichGoesOnOnceThereIsSpace) {
+TEST_F(InterruptionTest, FullDiskEndsTheRunWhichCanBeResumedLater) {
     const SmallDisk disk(path("disk"));
     if (!disk.is_there()) GTEST_SKIP() << "needs the right to mount a small disk";
     expect_done(mcdem(words("whole", false)));
@@ -304,7 +306,7 @@ TEST_F(InterruptionTest, FullDiskEndsTheRunWhichGoesOnOnceThereIsSpace) {
     expect_goes_on("disk/a");
 }
 
-TEST_F(InterruptionTest, DiskThatFillsUpOnTheWayCostsNoScan) {
+TEST_F(InterruptionTest, DiskThatFillsUpDuringTheRunLosesNoScan) {
     const SmallDisk disk(path("disk"));
     if (!disk.is_there()) GTEST_SKIP() << "needs the right to mount a small disk";
     expect_done(mcdem(words("whole", false)));
@@ -332,14 +334,14 @@ TEST_F(InterruptionTest, FolderThatCannotBeWrittenToIsRefusedAtOnce) {
         EXPECT_EQ(refused.exit_code, 1) << refused.err;
         EXPECT_THAT(refused.err, HasSubstr("mcdem: " + arguments[3]));
         EXPECT_THAT(refused.err,
-                    HasSubstr(problem));  // what a check says before the work, and no write after it
+                    HasSubstr(problem));  // from a check before the run, not from a failed write
     };
     expect_refused(words("disk/empty", false), "cannot be written to: Read-only file system");
     expect_refused(words("disk/begun", true), "cannot be written to: Read-only file system");
     expect_refused(run_words("disk/shared", {"--part=0"}), "cannot be written to: Read-only file system");
 }
 
-TEST_F(InterruptionTest, FolderThatTurnsReadOnlyEndsTheRunWhichGoesOnLater) {
+TEST_F(InterruptionTest, FolderThatBecomesReadOnlyEndsTheRunWhichCanBeResumedLater) {
     const SmallDisk disk(path("disk"));
     if (!disk.is_there()) GTEST_SKIP() << "needs the right to mount a small disk";
     expect_done(mcdem(words("whole", false)));
@@ -354,7 +356,7 @@ TEST_F(InterruptionTest, FolderThatTurnsReadOnlyEndsTheRunWhichGoesOnLater) {
     expect_goes_on("disk/a");
 }
 
-TEST_F(InterruptionTest, DamagedScansAreFoundBeforeTheWorkGoesOn) {
+TEST_F(InterruptionTest, DamagedScansAreFoundBeforeResuming) {
     interrupt("a", SIGINT);
     const auto segment = path("a/segment-000000.h5");
     ASSERT_TRUE(fs::exists(segment));

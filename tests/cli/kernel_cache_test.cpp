@@ -1,4 +1,4 @@
-// The folder of compiled kernels: not writable, of somebody else, or with files cut short.
+// The cache folder of compiled kernels: read-only, of another user, or with truncated files.
 #include <sys/stat.h>
 
 #include "cli/cli_test.h"
@@ -22,7 +22,7 @@ protected:
     }
 };
 
-TEST_F(KernelCache, ThatCannotBeWrittenIsReplacedByAPrivateOne) {
+TEST_F(KernelCache, ReadOnlyFolderIsReplacedByAPrivateOne) {
     fs::create_directory(path("tmp"));
     expect_done(mcdem({"devices"}, nowhere_to_write()));
     EXPECT_EQ(mode_of(private_folder()), 0700u);
@@ -30,7 +30,7 @@ TEST_F(KernelCache, ThatCannotBeWrittenIsReplacedByAPrivateOne) {
     EXPECT_EQ(std::distance(fs::directory_iterator(path("tmp")), {}), 1) << "the same again";
 }
 
-TEST_F(KernelCache, OfSomebodyElseIsNotTaken) {
+TEST_F(KernelCache, FolderOfAnotherUserIsNotUsed) {
     fs::create_directory(path("tmp"));
     fs::create_directory(path("theirs"));
     fs::create_directory_symlink(path("theirs"), private_folder());
@@ -43,7 +43,7 @@ TEST_F(KernelCache, OfSomebodyElseIsNotTaken) {
     EXPECT_TRUE(fs::is_empty(private_folder()));
 }
 
-TEST_F(KernelCache, CannotBeWrittenAnywhere) {
+TEST_F(KernelCache, FailsIfNoFolderIsWritable) {
     auto environment = nowhere_to_write();
     environment.back() = "TMPDIR=/proc";
     const auto devices = mcdem({"devices"}, environment);
@@ -51,7 +51,7 @@ TEST_F(KernelCache, CannotBeWrittenAnywhere) {
     EXPECT_THAT(devices.err, testing::HasSubstr("set POCL_CACHE_DIR to a folder"));
 }
 
-TEST_F(KernelCache, FilesCutShortAreMadeAnew) {
+TEST_F(KernelCache, TruncatedFilesAreBuiltAgain) {
     const std::string cache = "POCL_CACHE_DIR=" + path("cache").string();
     expect_done(mcdem(run_words("first"), {cache}));
     const std::string run = bytes_of_file(path("first/run.h5"));
@@ -73,12 +73,12 @@ TEST_F(KernelCache, FilesCutShortAreMadeAnew) {
         ASSERT_EQ(again.exit_code, 0) << part << ": " << again.err;
         EXPECT_TRUE(bytes_of_file(path(out) / "run.h5") == run) << part;
     }
-    for (const fs::path& file : files)  // of the right size, the content lost
+    for (const fs::path& file : files)  // the right size, without the content
         if (is_kept(file)) std::ofstream(file, std::ios::binary) << std::string(fs::file_size(file), '\0');
     expect_done(mcdem(run_words("zeros"), {cache}));
 }
 
-TEST_F(KernelCache, ACrashSaysWhatToDo) {
+TEST_F(KernelCache, ACrashNamesTheRemedy) {
     Child child(folder_.path, run_words("out"), held_after(0));
     wait_until_held(child);
     child.send(SIGABRT);

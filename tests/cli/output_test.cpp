@@ -1,4 +1,4 @@
-// What commands write never replaces what they did not write themselves.
+// Commands do not overwrite files that mcdem did not write.
 #include <sys/stat.h>
 
 #include "cli/cli_test.h"
@@ -18,13 +18,13 @@ protected:
         std::ofstream(path(name), std::ios::binary) << text;
     }
     std::string text(const std::string& name) const { return bytes_of_file(path(name)); }
-    /// A run from rest, and the experiment that measured it.
+    /// A run that starts at rest, and the experiment that measured it.
     void make_experiment() const {
         expect_done(mcdem(run_words("begun", {"--set", "protocol.scan_at_start=true"})));
         expect_done(
             mcdem({"experiment", "from-run", "begun", "--replica", "elastic_sphere", "--out", "lab"}));
     }
-    /// All files below the folder with their bytes.
+    /// All files below the folder with their contents.
     std::map<std::string, std::string> all(const std::string& folder) const {
         std::map<std::string, std::string> files;
         for (const auto& entry : fs::recursive_directory_iterator(path(folder)))
@@ -33,7 +33,7 @@ protected:
     }
 };
 
-TEST_F(OutputTest, NothingIsWrittenIntoAnExperimentHoweverItsPathIsSpelled) {
+TEST_F(OutputTest, NothingIsWrittenIntoAnExperimentWhateverItsPath) {
     make_experiment();
     fs::create_directory_symlink("lab", path("link"));
     fs::create_directory(path("begun/sub"));
@@ -58,7 +58,7 @@ TEST_F(OutputTest, NothingIsWrittenIntoAnExperimentHoweverItsPathIsSpelled) {
     EXPECT_TRUE(all("lab") == before);
 }
 
-TEST_F(OutputTest, ARunTakesNoTableForItsOwn) {
+TEST_F(OutputTest, ARunDoesNotReplaceTables) {
     for (const std::string table :
          {"frame,cycle,phase,plate_z_m,top_force_N\n0,0,load,0.1,0\n", "my notes"}) {
         write("tables/plate.csv", table);
@@ -73,7 +73,7 @@ TEST_F(OutputTest, ARunTakesNoTableForItsOwn) {
     expect_done(mcdem(run_words("a")));
 }
 
-TEST_F(OutputTest, AReportReplacesPagesOnly) {
+TEST_F(OutputTest, AReportReplacesOnlyPages) {
     expect_done(mcdem(run_words("a")));
     const auto run = text("a/run.h5");
     write("own.html", "<!doctype html>\n<html><head><title>mine</title></head></html>\n");
@@ -93,7 +93,7 @@ TEST_F(OutputTest, AReportReplacesPagesOnly) {
         expect_done(mcdem({"report", "a", "--out", out}));
 }
 
-TEST_F(OutputTest, WhatIsWrittenIsWrittenAgain) {
+TEST_F(OutputTest, OwnFilesAreReplaced) {
     expect_done(mcdem(run_words("a")));
     for (int k = 0; k < 2; ++k) {
         expect_done(mcdem({"export", "a", "--vtk", "--xyz", "--out", "view"}));
@@ -125,7 +125,7 @@ TEST_F(OutputTest, FilesOfOthersAreKept) {
     expect_kept("11/convergence.png", {"converge", "small.toml", "--out", "11"});
 }
 
-TEST_F(OutputTest, ADiagnosisReplacesItsOwnFilesOnly) {
+TEST_F(OutputTest, ADiagnosisReplacesOnlyItsOwnFiles) {
     make_experiment();
     const auto expect_kept = [&](const std::string& file) {
         write(file, "of mine\n");
@@ -139,7 +139,7 @@ TEST_F(OutputTest, ADiagnosisReplacesItsOwnFilesOnly) {
         expect_kept(name);
 }
 
-TEST_F(OutputTest, ALinkToNothingIsNoFolder) {
+TEST_F(OutputTest, ADanglingLinkIsNotAFolder) {
     fs::create_directory_symlink("nothing", path("link"));
     const auto finished = mcdem(run_words("link"));
     EXPECT_EQ(finished.exit_code, 1);

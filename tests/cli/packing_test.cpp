@@ -1,4 +1,4 @@
-// Packings that scenes read from what the program has written itself.
+// Packings read from files that mcdem wrote.
 #include "cli/cli_test.h"
 #include "io/results.h"
 
@@ -17,7 +17,7 @@ protected:
     }
 };
 
-TEST_F(PackingTest, GrainsOfAnExperimentAndOfARunAreOnePacking) {
+TEST_F(PackingTest, OfAnExperimentAndOfARunAreTheSame) {
     expect_done(
         mcdem(run_words("a", {"--set", "protocol.scan_at_start=true", "--set", "contact.model=mc_dem"})));
     expect_done(mcdem(

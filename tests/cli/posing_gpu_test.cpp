@@ -1,5 +1,5 @@
-// A CPU that poses as a GPU (tests/layers/gpu_layer.cpp): what users are told. What it computes is
-// test_kernels' matter.
+// A CPU that emulates a GPU (tests/layers/gpu_layer.cpp): messages for users. Its results are tested by
+// test_kernels.
 #include "cli/cli_test.h"
 
 namespace mcdem {
@@ -15,7 +15,7 @@ TEST_F(PosingGpuTest, IsListedAsAGpu) {
     EXPECT_THAT(devices.out, HasSubstr("GPU"));
 }
 
-TEST_F(PosingGpuTest, AKernelWithoutRegistersForItsWorkGroupIsRefusedWithWhatToDo) {
+TEST_F(PosingGpuTest, AKernelWithTooFewRegistersIsRefusedWithARemedy) {
     const auto refused = mcdem(run_words("a", {"--set", "numerics.slots=64"}),
                                {"OPENCL_LAYERS=" MCDEM_GPU_LAYER, "MCDEM_TEST_KERNEL_GROUP=128"});
     EXPECT_EQ(refused.exit_code, 2) << refused.err;
@@ -24,7 +24,7 @@ TEST_F(PosingGpuTest, AKernelWithoutRegistersForItsWorkGroupIsRefusedWithWhatToD
     EXPECT_THAT(refused.err, HasSubstr("numerics.precision"));
 }
 
-TEST_F(PosingGpuTest, SmallWorkGroupsTakeFewerGrains) {
+TEST_F(PosingGpuTest, SmallWorkGroupsUseFewerGrains) {
     const auto done = mcdem(run_words("a", {"--set", "protocol.scans_per_stroke=1"}),
                             {"OPENCL_LAYERS=" MCDEM_GPU_LAYER, "MCDEM_TEST_GROUP=64"});
     expect_done(done);

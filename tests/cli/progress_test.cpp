@@ -9,7 +9,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// A progress display on a clock of its own.
+/// A progress display with an artificial clock.
 class ProgressTest : public testing::Test {
 protected:
     explicit ProgressTest() : out_(open_memstream(&text_, &size_)) {}
@@ -30,17 +30,17 @@ protected:
     std::FILE* out_;
 };
 
-TEST_F(ProgressTest, LinesComeEveryTenthOrTenSeconds) {
+TEST_F(ProgressTest, LinesAppearEveryTenthOrTenSeconds) {
     Progress progress = make(ProgressStyle::lines);
     for (int i = 0; i < 1000; ++i) {  // 20 s, evenly
         progress.show(i / 1000.0 + 1e-9);
         now_ += milliseconds(20);
     }
     EXPECT_THAT(text(), testing::StartsWith("mcdem: 10 % done, 18 s left\nmcdem: 20 % done, 16 s left\n"));
-    EXPECT_EQ(std::count(text_, text_ + size_, '\n'), 9);  // the tenth would come as all is done
+    EXPECT_EQ(std::count(text_, text_ + size_, '\n'), 9);  // the tenth would coincide with the end
 }
 
-TEST_F(ProgressTest, SlowWorkStillSpeaksAndFastWorkDoesNotFlood) {
+TEST_F(ProgressTest, SlowWorkIsReportedAndFastWorkIsNotVerbose) {
     Progress slow = make(ProgressStyle::lines);
     for (int i = 0; i <= 30; ++i) {
         slow.show(i / 1000.0);
@@ -53,7 +53,7 @@ TEST_F(ProgressTest, SlowWorkStillSpeaksAndFastWorkDoesNotFlood) {
     EXPECT_EQ(std::count(text_, text_ + size_, '\n'), 3);
 }
 
-TEST_F(ProgressTest, TimeLeftOfAResumedRunCountsFromWhereItBegan) {
+TEST_F(ProgressTest, TimeLeftOfAResumedRunCountsFromItsStart) {
     Progress progress = make(ProgressStyle::lines);
     progress.show(0.5);
     now_ += milliseconds(10'000);
@@ -61,7 +61,7 @@ TEST_F(ProgressTest, TimeLeftOfAResumedRunCountsFromWhereItBegan) {
     EXPECT_EQ(text(), "mcdem: 60 % done, 40 s left\n");
 }
 
-TEST_F(ProgressTest, BarIsRedrawnAndTakenAway) {
+TEST_F(ProgressTest, BarIsRedrawnAndRemoved) {
     {
         Progress progress = make(ProgressStyle::bar);
         progress.show(0);
@@ -73,7 +73,7 @@ TEST_F(ProgressTest, BarIsRedrawnAndTakenAway) {
                             "\r\\[-+\\]   0 %\x1b\\[K\r\\[#+-+\\]  50 %, 2 s left\x1b\\[K\r\x1b\\[K"));
 }
 
-TEST(DurationText, SaysWhatMatters) {
+TEST(DurationText, ShowsAtMostTwoUnits) {
     EXPECT_EQ(duration_text(0.4), "0 s");
     EXPECT_EQ(duration_text(59.4), "59 s");
     EXPECT_EQ(duration_text(60), "1 min 00 s");

@@ -1,5 +1,4 @@
-// Commands written in Python: started with their arguments, interrupted with the program, missing with a
-// reason.
+// Commands written in Python: arguments, interruption, and the message if a part is missing.
 #include "cli/shell/python_program.h"
 
 #include <unistd.h>
@@ -45,14 +44,14 @@ protected:
     mutable std::string out_, err_;
 };
 
-TEST_F(PythonProgramTest, ArgumentsOutputAndExitCodePass) {
+TEST_F(PythonProgramTest, ArgumentsOutputAndExitCodeArePassed) {
     EXPECT_EQ(run("import sys\nprint(sys.argv[1:])\nsys.exit(7)\n", {"a b", "", "--out", "\xc3\xa9"}), 7);
     EXPECT_EQ(out_, "['a b', '', '--out', '\xc3\xa9']\n");
     EXPECT_EQ(run("print(__name__)\n"), 0);
     EXPECT_EQ(out_, "__main__\n");
 }
 
-TEST_F(PythonProgramTest, ErrorsHaveTheExitCodesAndTheLookOfTheProgram) {
+TEST_F(PythonProgramTest, ErrorsHaveTheExitCodesAndFormatOfTheProgram) {
     EXPECT_EQ(run("from mcdem.errors import InputError\nraise InputError(['a: b', 'c: d'])\n"), 2);
     EXPECT_EQ(err_, "mcdem: a: b\nmcdem: c: d\n");
     EXPECT_EQ(run("from mcdem.errors import RunError\nraise RunError('no disk')\n"), 1);
@@ -63,7 +62,7 @@ TEST_F(PythonProgramTest, ErrorsHaveTheExitCodesAndTheLookOfTheProgram) {
     EXPECT_THAT(err_, AllOf(HasSubstr("install python3-no_such_package"), HasSubstr("MCDEM_PYTHON")));
 }
 
-TEST_F(PythonProgramTest, WhatIsMissingIsNamed) {
+TEST_F(PythonProgramTest, MissingPartsAreNamed) {
     set("MCDEM_PYTHON", path("no_python").string());
     EXPECT_THAT(
         [&] { run_python_module("tried", {}); },
@@ -85,7 +84,7 @@ TEST_F(PythonProgramTest, AModuleInTheCurrentFolderIsNotUsed) {
     EXPECT_EQ(exit_code, 0);
 }
 
-TEST_F(PythonProgramTest, AnInterruptedCommandPutsThingsInOrderFirst) {
+TEST_F(PythonProgramTest, AnInterruptedCommandCleansUpFirst) {
     for (const int signal : {SIGINT, SIGTERM}) {
         std::thread user([&] {
             while (!fs::exists(path("started"))) std::this_thread::sleep_for(std::chrono::milliseconds(1));

@@ -11,7 +11,7 @@ using testing::Not;
 
 std::string page_at(const std::filesystem::path& file) { return bytes_of_file(file); }
 
-/// A diagnosis without anything in it.
+/// An empty diagnosis.
 const char* const bare_diagnosis =
     R"({"verdict": "no_gap", "gap": {"detected": false, "p_value": 0.5, "p_omnibus": 0.5, "p_directed": 0.5},
 "where": [], "causes": [], "shrink": null, "detection_limits": [], "not_measured": ["<script>alert(1)</script>"],
@@ -46,7 +46,7 @@ TEST_F(CliTest, AReportMixesRunsDiagnosesAndAReference) {
     expect_bad_input(mcdem({"report", "d", "--out", "x.html", "--against", "a"}), "--against: needs a run");
 }
 
-TEST_F(CliTest, ScansThatAreLeftOutOfAReportAreNamed) {
+TEST_F(CliTest, ScansThatAReportOmitsAreNamed) {
     expect_done(mcdem(run_words("a")));
     const auto whole = mcdem({"report", "a", "--out", "whole.html"});
     EXPECT_THAT(whole.err, Not(HasSubstr("scans")));
@@ -59,7 +59,7 @@ TEST_F(CliTest, ScansThatAreLeftOutOfAReportAreNamed) {
               std::filesystem::file_size(path("whole.html")));
 }
 
-TEST_F(CliTest, NamesInAReportAreTexts) {
+TEST_F(CliTest, NamesInAReportAreEscaped) {
     expect_done(mcdem(run_words("<b onclick=x>", {"--set", "name='</script><script>alert(1)</script>'"})));
     expect_done(mcdem({"report", "<b onclick=x>", "--out", "hostile.html"}));
     const auto page = page_at(path("hostile.html"));
@@ -69,7 +69,7 @@ TEST_F(CliTest, NamesInAReportAreTexts) {
     EXPECT_TRUE(page.find("&lt;b onclick=x&gt;") != std::string::npos);
 }
 
-TEST_F(CliTest, WhatCannotBeReportedIsSaid) {
+TEST_F(CliTest, InputsThatCannotBeReportedAreExplained) {
     expect_bad_input(mcdem({"report", "nothing", "--out", "x.html"}), "nothing: must be a result folder");
     std::ofstream(path("wrong.json")) << "{}";
     expect_bad_input(mcdem({"report", "wrong.json", "--out", "x.html"}),

@@ -1,4 +1,4 @@
-// Runs from the command line, and what is made of their results.
+// Runs from the command line, and commands on their results.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -23,7 +23,7 @@ std::vector<std::string> row_of(const std::string& table, const std::string& nam
     return {};
 }
 
-TEST_F(CliTest, CompilesItsKernelsInSilence) {
+TEST_F(CliTest, CompilesItsKernelsSilently) {
     const Finished run = mcdem(run_words("cold"), {"POCL_CACHE_DIR=" + path("cache").string()});
     expect_done(run);
     std::istringstream lines(run.err);
@@ -43,7 +43,7 @@ TEST_F(CliTest, RunPrintsSummaryTableAndPaths) {
     EXPECT_THAT(run.err, testing::StartsWith("mcdem: small: 2 replicas of 30 grains on "));
 }
 
-TEST_F(CliTest, OneModelNeedsNoTable) {
+TEST_F(CliTest, OneModelGetsNoTable) {
     const auto run = mcdem(run_words("a", {"--set", "contact.model=mc_dem"}));
     expect_done(run);
     EXPECT_THAT(run.out, HasSubstr("1 of 1 replica done"));
@@ -69,7 +69,7 @@ TEST_F(CliTest, ARunComparedWithItselfIsAPerfectFit) {
     EXPECT_TRUE(fs::exists(path("pictures/top_force.png")));
 }
 
-TEST_F(CliTest, TheReferenceSettingMustBeClear) {
+TEST_F(CliTest, ReferenceSettingMustBeUnique) {
     expect_done(mcdem(run_words("a")));
     expect_bad_input(mcdem({"compare", "a", "--against", "a"}),
                      "choose one with --setting, of independent, elastic_sphere");
@@ -77,7 +77,7 @@ TEST_F(CliTest, TheReferenceSettingMustBeClear) {
     expect_bad_input(mcdem({"table", "a", "--over", "jelly"}), "got jelly");
 }
 
-TEST_F(CliTest, SeveralRunsAreToldApart) {
+TEST_F(CliTest, SeveralRunsAreDistinguished) {
     expect_done(mcdem(run_words("a", {"--set", "contact.model=mc_dem"})));
     expect_done(mcdem(run_words("b", {"--set", "contact.model=mc_dem", "--set", "contact.gamma=0.5"})));
     const auto table = mcdem({"table", "a", "b", "--over", "b: mc_dem"});
@@ -93,7 +93,7 @@ TEST_F(CliTest, SeveralRunsAreToldApart) {
     EXPECT_THAT(drawn.out, HasSubstr("pictures/top_force.png\n"));
 }
 
-TEST_F(CliTest, ExportWritesFilesOfGrainsContactsForcesAndWallsAScan) {
+TEST_F(CliTest, ExportWritesFilesOfGrainsContactsForcesAndWallsPerScan) {
     expect_done(mcdem(run_words("a")));
     const auto exported = mcdem({"export", "a", "--vtk", "--out", "paraview"});
     expect_done(exported);
@@ -103,7 +103,7 @@ TEST_F(CliTest, ExportWritesFilesOfGrainsContactsForcesAndWallsAScan) {
     expect_bad_input(mcdem({"export", "bare", "--vtk", "--out", "other"}), "output.positions");
 }
 
-TEST_F(CliTest, CalibrationFindsTheGammaOfARunAndWritesIt) {
+TEST_F(CliTest, CalibrationFindsAndWritesTheGammaOfARun) {
     std::ofstream(path("grain.csv")) << "x_m,y_m,z_m,diameter_m\n0.03,0.03,0.01,0.02\n";
     const std::vector<std::string> one_grain{
         "--set", "packing.file=grain.csv", "--set", "contact.model=mc_dem",
@@ -136,7 +136,7 @@ TEST_F(CliTest, CalibrationFindsTheGammaOfARunAndWritesIt) {
     expect_bad_input(mcdem(calibrate), "rubber");
 }
 
-TEST_F(CliTest, OneFailedReplicaIsNamedAllFailedIsAFailure) {
+TEST_F(CliTest, OneFailedReplicaIsNamedAndIfAllFailItIsAFailure) {
     const auto one = mcdem(run_words("one", {"--set", "batch.vary.numerics.overlap_limit=[0.0005, 0.5]",
                                              "--set", "contact.model=elastic_sphere"}));
     expect_done(one);
@@ -147,7 +147,7 @@ TEST_F(CliTest, OneFailedReplicaIsNamedAllFailedIsAFailure) {
     EXPECT_EQ(all.exit_code, 1);
     EXPECT_THAT(all.out, HasSubstr("0 of 2 replicas done, 2 stopped early"));
     EXPECT_THAT(all.err, HasSubstr("mcdem: no replica came to its end"));
-    expect_done(mcdem({"table", "all"}));  // what was recorded stays readable
+    expect_done(mcdem({"table", "all"}));  // recorded scans stay readable
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Work in parts: what is said of it, and that no name reaches a shell as a command.
+// Work in parts: messages, and names that must not be executed by a shell.
 #include <cstdlib>
 #include <memory>
 #include <sstream>
@@ -20,16 +20,16 @@ const std::vector<std::string> odd_words{"plain", "",          "with blank", "it
                                          "`a`",   "new\nline", "\\",         "\"double\"", "*?[a]",
                                          "~",     "-e",        "a;b&c|d",    "#SBATCH",    "\xc3\xa4"};
 
-TEST(ShellWords, AShellTakesThemAsTheyWere) {
+TEST(ShellWords, AreQuotedForAShell) {
     for (const auto& word : odd_words) {
-        // Without a blank behind it, the shell would take away newlines at the end.
+        // The trailing character protects newlines, which the shell would remove at the end.
         const auto end = output_of({"bash", "-c", "printf '%s|' " + shell_word(word)});
         ASSERT_TRUE(end);
         EXPECT_EQ(end->out, word + "|");
     }
 }
 
-TEST(Subprocess, ThatIsNotThereIsToldFromOneThatFails) {
+TEST(Subprocess, MissingProgramsAndFailingProgramsAreDistinguished) {
     EXPECT_FALSE(output_of({"no-such-program-anywhere"}));
     EXPECT_EQ(output_of({"false"})->exit_code, 1);
     EXPECT_EQ(output_of({"bash", "-c", "kill -9 $$"})->signal, 9);
@@ -37,7 +37,7 @@ TEST(Subprocess, ThatIsNotThereIsToldFromOneThatFails) {
 
 class SharingTest : public CliTest {
 protected:
-    /// A part of a run, held in the middle: it has its folder until it is let go on.
+    /// A part of a run that is blocked in the middle and holds its folder until released.
     std::unique_ptr<Child> held_part(const std::string& out) const {
         auto part = std::make_unique<Child>(folder_.path, run_words(out, {"--part", "0"}), held_after(100));
         wait_until_held(*part);
@@ -45,7 +45,7 @@ protected:
     }
 };
 
-TEST_F(SharingTest, AJobScriptRunsTheWordsAsTheyAre) {
+TEST_F(SharingTest, AJobScriptPassesArgumentsUnchanged) {
     SlurmJob job;
     job.words = {"printf", "%s|"};
     job.words.insert(job.words.end(), odd_words.begin(), odd_words.end());
@@ -64,7 +64,7 @@ TEST_F(SharingTest, AJobScriptRunsTheWordsAsTheyAre) {
     EXPECT_THAT(job_script(job, {}), HasSubstr("--slurm-lines.\n#SBATCH --account=mine\nparts=()\n"));
 }
 
-TEST_F(SharingTest, AnotherJobScriptIsKept) {
+TEST_F(SharingTest, AnotherJobScriptIsNotOverwritten) {
     fs::create_directories(path("out/slurm"));
     std::ofstream(path("out/slurm/job.sh")) << "#!/bin/bash\nmine\n";
     expect_bad_input(mcdem(run_words("out", {"--slurm"})), "job.sh: is not a job script of mcdem");
@@ -76,7 +76,7 @@ TEST_F(SharingTest, MissingSlurmIsBadInput) {
     expect_bad_input(finished, "the program sbatch is not there");
 }
 
-TEST_F(SharingTest, OptionsThatDoNotGoTogetherAreRefused) {
+TEST_F(SharingTest, ConflictingOptionsAreRefused) {
     for (const std::vector<std::string>& words : {std::vector<std::string>{"--mpi", "--slurm"},
                                                   {"--part", "1", "--mpi"},
                                                   {"--missing", "--merge"},
@@ -84,7 +84,7 @@ TEST_F(SharingTest, OptionsThatDoNotGoTogetherAreRefused) {
         EXPECT_EQ(mcdem(run_words("out", words)).exit_code, 2) << words.front();
 }
 
-TEST_F(SharingTest, PartsOneByOneGiveTheWholeResult) {
+TEST_F(SharingTest, PartsComputedOneByOneGiveTheWholeResult) {
     expect_done(mcdem(run_words("alone")));
     const auto missing = mcdem(run_words("shared", {"--part-replicas", "1", "--missing"}));
     expect_done(missing);
@@ -106,7 +106,7 @@ TEST_F(SharingTest, PartsOneByOneGiveTheWholeResult) {
         EXPECT_TRUE(bytes_of_file(path("shared") / file) == bytes_of_file(path("alone") / file)) << file;
 }
 
-TEST_F(SharingTest, AnotherProgramsRunIsRefused) {
+TEST_F(SharingTest, ARunOfAnotherProgramIsRefused) {
     expect_done(mcdem(run_words("out")));
     const auto finished =
         mcdem(run_words("out", {"--device", "all", "--set", "protocol.scans_per_stroke=2"}));
@@ -114,7 +114,7 @@ TEST_F(SharingTest, AnotherProgramsRunIsRefused) {
     EXPECT_THAT(finished.err, testing::ContainsRegex("; protocol\\.scans_per_stroke is 2, was [0-9]+: give"));
 }
 
-TEST_F(SharingTest, WhereAPartIsComputedNoneWritesAlone) {
+TEST_F(SharingTest, ASingleProcessIsRefusedWhileAPartIsComputed) {
     expect_done(mcdem(run_words("alone")));
     const auto part = held_part("shared");
     expect_bad_input(mcdem(run_words("shared", {"--set", "grains.friction=0.3"})),
@@ -125,8 +125,8 @@ TEST_F(SharingTest, WhereAPartIsComputedNoneWritesAlone) {
     EXPECT_TRUE(bytes_of_file(path("shared/run.h5")) == bytes_of_file(path("alone/run.h5")));
 }
 
-TEST_F(SharingTest, WhereOneProgramWritesNoPartIsComputed) {
-    const auto one = ResultFolder::create(path("out"));  // as of a run before its first checkpoint
+TEST_F(SharingTest, PartsAreRefusedWhileASingleProcessWrites) {
+    const auto one = ResultFolder::create(path("out"));  // as for a run before its first checkpoint
     for (const char* how : {"--part=0", "--device=all", "--missing", "--merge"})
         expect_bad_input(mcdem(run_words("out", {how})), "another program is writing there alone");
     EXPECT_FALSE(fs::exists(path("out/parts")));

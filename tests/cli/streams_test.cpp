@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 class StreamsTest : public CliTest {
 protected:
-    /// Of bash, in the folder; the program is $M.
+    /// Runs bash in the folder; the program is $M.
     ProgramEnd shell(const std::string& script) const {
         return *output_of({"bash", "-c", "cd " + folder_.path.string() + "; M=" MCDEM_BINARY "; " + script});
     }
@@ -27,7 +27,7 @@ protected:
 
 const std::string run_into = "$M run small.toml --no-figures --out ";
 
-TEST_F(StreamsTest, AFullOrClosedStandardErrorEndsNoRun) {
+TEST_F(StreamsTest, AFullOrClosedStandardErrorDoesNotEndARun) {
     expect_done(mcdem(run_words("whole")));
     EXPECT_EQ(shell(run_into + "full 2>/dev/full").exit_code, 0);
     EXPECT_EQ(shell(run_into + "closed 2>&- <&-").exit_code, 0);
@@ -50,7 +50,7 @@ TEST_F(StreamsTest, ResultsThatCannotBePrintedAreAFailureAndTheRunIsKept) {
     }
 }
 
-TEST_F(StreamsTest, APipeWithoutAReaderIsAFailureAndNoSignal) {
+TEST_F(StreamsTest, APipeWithoutAReaderIsAFailureNotASignal) {
     const auto end = shell("exec 3> >(:); wait $!; $M --help 2>&1 >&3");
     EXPECT_EQ(end.signal, 0);
     EXPECT_EQ(end.exit_code, 1);
@@ -60,7 +60,7 @@ TEST_F(StreamsTest, APipeWithoutAReaderIsAFailureAndNoSignal) {
     EXPECT_TRUE(result("out") == result("whole"));
 }
 
-TEST_F(StreamsTest, ALimitOfTheFileSizeIsAnErrorAndNoSignal) {
+TEST_F(StreamsTest, AFileSizeLimitIsAnErrorNotASignal) {
     expect_done(mcdem(run_words("whole")));
     const auto exported = shell("ulimit -c 0; ulimit -f 8; $M export whole --vtk --out view 2>&1");
     EXPECT_EQ(exported.signal, 0);
@@ -75,7 +75,7 @@ TEST_F(StreamsTest, ALimitOfTheFileSizeIsAnErrorAndNoSignal) {
     EXPECT_TRUE(result("out") == result("whole"));
 }
 
-TEST_F(StreamsTest, TooFewOpenFilesAreAnErrorAndAFewMoreAreRaised) {
+TEST_F(StreamsTest, TooFewFileDescriptorsAreAnErrorAndASmallLimitIsRaised) {
     const auto end = shell("ulimit -c 0; ulimit -n 10; " + run_into + "out 2>&1");
     EXPECT_EQ(end.signal, 0);
     EXPECT_EQ(end.exit_code, 1) << end.out;
@@ -83,7 +83,7 @@ TEST_F(StreamsTest, TooFewOpenFilesAreAnErrorAndAFewMoreAreRaised) {
     EXPECT_EQ(shell("ulimit -S -n 10; " + run_into + "out 2>&1").exit_code, 0);
 }
 
-/// The program on a terminal of its own, with SIGHUP ignored.
+/// Runs the program on a pseudo-terminal, with SIGHUP ignored.
 class OnATerminal {
 public:
     OnATerminal(const fs::path& folder, std::vector<std::string> words) {
@@ -108,7 +108,7 @@ public:
         if (process_ > 0) ::kill(process_, SIGKILL), ::waitpid(process_, nullptr, 0);
         if (terminal_ >= 0) ::close(terminal_);
     }
-    /// Waits for its first words, and holds it there; false where it was at its end already.
+    /// Waits for the first output and blocks the run there; false if it had already ended.
     bool hold_after_first_words() {
         char some;
         if (::read(terminal_, &some, 1) != 1) return false;
@@ -131,12 +131,12 @@ private:
     pid_t process_ = -1;
 };
 
-TEST_F(StreamsTest, ATerminalThatIsGoneEndsNoRun) {
+TEST_F(StreamsTest, AClosedTerminalDoesNotEndARun) {
     expect_done(mcdem(run_words("whole")));
     for (int attempt = 0;; ++attempt) {
         const auto out = "out" + std::to_string(attempt);
         OnATerminal run(folder_.path, run_words(out));
-        if (!run.hold_after_first_words()) continue;  // quicker than this test: once more
+        if (!run.hold_after_first_words()) continue;  // it was faster than this test: try again
         run.take_away();
         const int status = run.go_on();
         EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
@@ -145,7 +145,7 @@ TEST_F(StreamsTest, ATerminalThatIsGoneEndsNoRun) {
     }
 }
 
-TEST_F(StreamsTest, ANameFromAFileDoesNotControlTheTerminal) {
+TEST_F(StreamsTest, NamesFromFilesDoNotControlTheTerminal) {
     expect_done(mcdem(run_words("out")));
     mcdem::Run run = read_run(path("out"));
     for (Recording& recording : run.recordings)
@@ -163,7 +163,7 @@ TEST_F(StreamsTest, ANameFromAFileDoesNotControlTheTerminal) {
     }
 }
 
-TEST(ProgressStream, ThatIsFullIsNoError) {
+TEST(ProgressStream, IgnoresAFullStream) {
     for (const auto style : {ProgressStyle::bar, ProgressStyle::lines}) {
         std::FILE* full = std::fopen("/dev/full", "w");
         ASSERT_TRUE(full);

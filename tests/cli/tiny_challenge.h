@@ -1,4 +1,4 @@
-// What the tests of challenges share: a small scene, and the words that make and run a challenge of it.
+// Shared by the tests of challenges: a small scene, and arguments that make and run a challenge with it.
 #pragma once
 #include "cli/cli_test.h"
 
@@ -6,7 +6,7 @@ namespace mcdem {
 
 using Words = std::vector<std::string>;
 
-/// tiny.toml, of which a challenge is made: 64 grains, as dense as the challenge's.
+/// tiny.toml, the scene of the challenge: 64 grains, as dense as in the full challenge.
 inline void write_tiny_scene(const std::filesystem::path& folder) {
     std::filesystem::copy_file(std::filesystem::path(MCDEM_SOURCE_DIR) / "tests/ensemble/tiny_challenge.toml",
                                folder / "tiny.toml");

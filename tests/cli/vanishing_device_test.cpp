@@ -1,5 +1,5 @@
-// A device that stops answering in the middle of a run: what was recorded stays, and the run goes on
-// elsewhere or later.
+// A device that fails during a run: recorded scans are kept, and the run is resumed on another device or
+// later.
 #include <sstream>
 
 #include "cli/cli_test.h"
@@ -13,7 +13,7 @@ using testing::HasSubstr;
 using testing::Lt;
 using testing::SizeIs;
 
-/// The last column of `mcdem table` in the rows of one phase: how many scans are used.
+/// The last column of `mcdem table` for one phase: the number of scans used.
 std::vector<int> levels(const std::string& table, const std::string& phase) {
     std::vector<int> found;
     std::istringstream lines(table);
@@ -36,13 +36,13 @@ protected:
     }
 };
 
-TEST_F(VanishingDeviceTest, TheRunSaysSoKeepsWhatItHasAndGoesOn) {
+TEST_F(VanishingDeviceTest, TheRunReportsItKeepsItsScansAndResumes) {
     expect_done(mcdem(words("whole", false)));
     constexpr int most = 50;
     int vanished = 0;
     Finished finished;
     while (vanished < most) {
-        finished = run_until_it_vanishes("a", 1500, vanished > 0);  // a third of what the run launches
+        finished = run_until_it_vanishes("a", 1500, vanished > 0);  // a third of the run's launches
         if (finished.exit_code == 0) break;
         ++vanished;
         EXPECT_EQ(finished.exit_code, 1) << finished.err;
@@ -59,7 +59,7 @@ TEST_F(VanishingDeviceTest, CompletedScansCanBeRead) {
     ASSERT_EQ(finished.exit_code, 1) << finished.err;
     const auto table = mcdem({"table", "a"});
     expect_done(table);
-    // The whole stroke, or less of it where a disk is so slow that checkpoints become rare.
+    // The whole stroke, or less if the disk is so slow that checkpoints are rare.
     EXPECT_THAT(levels(table.out, "load"), testing::AllOf(SizeIs(2), Each(Gt(0)))) << table.out;
     EXPECT_THAT(levels(table.out, "unload"), testing::AllOf(SizeIs(2), Each(Lt(4)))) << table.out;
 }
@@ -78,7 +78,7 @@ TEST_F(VanishingDeviceTest, ScansSinceTheLastCheckpointCanBeReadToo) {
     EXPECT_TRUE(bytes_of_file(path("a/run.h5")) == bytes_of_file(path("whole/run.h5")));
 }
 
-TEST_F(VanishingDeviceTest, FromTheStart) {
+TEST_F(VanishingDeviceTest, AtTheStart) {
     const auto finished = run_until_it_vanishes("a", 0, false);
     EXPECT_EQ(finished.exit_code, 1);
     EXPECT_THAT(finished.err, HasSubstr("the device or its driver has failed"));

@@ -1,4 +1,4 @@
-// Files put into place whole, and what is refused as a file.
+// Files that are moved into place as a whole; paths that are not regular files are refused.
 #include "core/atomic_file.h"
 
 #include <gmock/gmock.h>
@@ -30,7 +30,7 @@ protected:
     fs::path folder_;
 };
 
-TEST_F(AtomicFileTest, TemporaryNamesCannotBeForeseen) {
+TEST_F(AtomicFileTest, TemporaryNamesAreUnpredictable) {
     std::set<fs::path> names;
     for (int k = 0; k < 20; ++k) {
         const NewFile out(folder_ / "run.h5");
@@ -41,7 +41,7 @@ TEST_F(AtomicFileTest, TemporaryNamesCannotBeForeseen) {
     EXPECT_TRUE(fs::is_empty(folder_));
 }
 
-TEST_F(AtomicFileTest, OneOfManyIsFirstAndItsTextStays) {
+TEST_F(AtomicFileTest, OfSeveralThreadsOneCreatesTheFile) {
     std::atomic<int> first{0}, winner{-1};
     {
         std::vector<std::jthread> threads;
@@ -57,7 +57,7 @@ TEST_F(AtomicFileTest, OneOfManyIsFirstAndItsTextStays) {
     EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 1) << "temporaries stay";
 }
 
-TEST_F(AtomicFileTest, ALinkInItsPlaceIsReplacedAndNotFollowed) {
+TEST_F(AtomicFileTest, ALinkIsReplacedAndNotFollowed) {
     std::ofstream(folder_ / "thesis") << "mine";
     fs::create_symlink(folder_ / "thesis", folder_ / "run.h5");
     replace_file(folder_ / "run.h5", "results");
@@ -65,7 +65,7 @@ TEST_F(AtomicFileTest, ALinkInItsPlaceIsReplacedAndNotFollowed) {
     EXPECT_EQ(read_file(folder_ / "run.h5"), "results");
 }
 
-TEST_F(AtomicFileTest, OnlyItsOwnTemporariesAreRemoved) {
+TEST_F(AtomicFileTest, OnlyTemporariesOfThisProgramAreRemoved) {
     for (const char* name :
          {"run.h5.0123456789abcdef.tmp", "mine.tmp", "run.h5.tmp", "a.0123456789ABCDEF.tmp"})
         std::ofstream(folder_ / name) << "text";
@@ -83,8 +83,8 @@ std::string error_of_reading(const fs::path& file) {
     return "none";
 }
 
-// Programs that share a folder remove what killed ones have left there, while others write.
-TEST_F(AtomicFileTest, WhatIsBeingWrittenIsNotTakenForAbandoned) {
+// Processes that share a folder remove files of killed ones while others write.
+TEST_F(AtomicFileTest, FilesBeingWrittenAreNotRemoved) {
     std::atomic<bool> done = false;
     std::jthread sweeper([&] {
         while (!done) remove_temporaries(folder_);
@@ -97,7 +97,7 @@ TEST_F(AtomicFileTest, WhatIsBeingWrittenIsNotTakenForAbandoned) {
     done = true;
 }
 
-TEST_F(AtomicFileTest, WhatIsNoFileIsRefusedAtOnce) {
+TEST_F(AtomicFileTest, WhatIsNotARegularFileIsRefusedAtOnce) {
     ASSERT_EQ(::mkfifo((folder_ / "pipe").c_str(), 0600), 0);
     EXPECT_THAT(error_of_reading(folder_ / "pipe"), HasSubstr("is a pipe or device"));
     EXPECT_THAT(error_of_reading("/dev/zero"), HasSubstr("is a pipe or device"));
@@ -106,7 +106,7 @@ TEST_F(AtomicFileTest, WhatIsNoFileIsRefusedAtOnce) {
     EXPECT_THROW(read_file(folder_ / "none"), InputError);
 }
 
-TEST_F(AtomicFileTest, WhatTheSystemRefusesSaysNothingOfTheFile) {
+TEST_F(AtomicFileTest, SystemErrorsAreNotInputErrors) {
     fs::create_symlink(folder_ / "loop", folder_ / "loop");
     EXPECT_THROW(read_file(folder_ / "loop"), RunError);
     EXPECT_THAT(error_of_reading(folder_ / "loop"), HasSubstr("try again when the cause is gone"));

@@ -8,7 +8,7 @@
 namespace mcdem {
 namespace {
 
-TEST(InParallel, DoesEveryPieceOnce) {
+TEST(InParallel, ProcessesEveryPieceOnce) {
     for (const std::size_t count : {0, 1, 2, 1000}) {
         std::vector<int> times(count, 0);
         in_parallel(count, [&](std::size_t i) { ++times[i]; });
@@ -16,7 +16,7 @@ TEST(InParallel, DoesEveryPieceOnce) {
     }
 }
 
-TEST(InParallel, ThrowsWhatAPieceThrows) {
+TEST(InParallel, RethrowsExceptionsOfPieces) {
     std::atomic<int> begun{0};
     const auto work = [&](std::size_t i) {
         ++begun;

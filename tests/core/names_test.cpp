@@ -12,7 +12,7 @@ class NamesTest : public testing::Test {};
 using Sets = testing::Types<ContactModel, FrictionLaw, Wall, Phase, Precision>;
 TYPED_TEST_SUITE(NamesTest, Sets);
 
-TYPED_TEST(NamesTest, EveryWordComesBackAsItself) {
+TYPED_TEST(NamesTest, EveryWordIsReadBackAsItself) {
     const auto& list = Names<TypeParam>::list;
     for (std::size_t i = 0; i < list.size(); ++i) {
         const auto value = parse<TypeParam>(list[i]);
@@ -22,18 +22,18 @@ TYPED_TEST(NamesTest, EveryWordComesBackAsItself) {
     }
 }
 
-TYPED_TEST(NamesTest, NoWordStandsForTwoValues) {
+TYPED_TEST(NamesTest, NoWordHasTwoValues) {
     const auto& list = Names<TypeParam>::list;
     EXPECT_EQ(std::set(list.begin(), list.end()).size(), list.size());
 }
 
-TYPED_TEST(NamesTest, OtherWordsAreNoValue) {
+TYPED_TEST(NamesTest, OtherWordsAreRefused) {
     const std::string first(Names<TypeParam>::list[0]);
     for (const std::string& word : {std::string(), first + " ", " " + first, first + "s", first.substr(1)})
         EXPECT_FALSE(parse<TypeParam>(word).has_value()) << '"' << word << '"';
 }
 
-TEST(Names, WordsStandForTheirValues) {
+TEST(Names, WordsGiveTheirValues) {
     EXPECT_EQ(name(ContactModel::independent), "independent");
     EXPECT_EQ(name(ContactModel::point_force_on_sphere), "point_force_on_sphere");
     EXPECT_EQ(name(ContactModel::sphere_to_sphere), "sphere_to_sphere");

@@ -1,4 +1,4 @@
-// Stress and fabric where they can be worked out by hand.
+// Stress and fabric, compared with hand calculations.
 #include "core/stress.h"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ Contact contact(int grain, int partner, const Vec3& point, const Vec3& force) {
 const Box box{0.5, 0.4};
 const std::vector<double> diameters{0.2, 0.2};
 
-/// Two grains side by side, pressed by 3 N along x and rubbed by 1 N along y; the first also by 5 N from the
+/// Two grains side by side, with 3 N along x and friction of 1 N along y; the first also has 5 N from the
 /// floor.
 Scan pair() {
     Scan scan;
@@ -32,7 +32,7 @@ Scan pair() {
     return scan;
 }
 
-TEST(Stress, OfAGrainIsItsContactsOverItsVolume) {
+TEST(Stress, OfAGrainIsTheSumOverItsContactsPerVolume) {
     const auto stress = grain_stress(box, diameters, pair());
     const double volume = std::numbers::pi / 6 * 0.008;
     Mat3 first;
@@ -43,7 +43,7 @@ TEST(Stress, OfAGrainIsItsContactsOverItsVolume) {
     EXPECT_TRUE(stress[1].isApprox(second / volume, 1e-12)) << stress[1];
 }
 
-TEST(Stress, OfThePackingIsTheSumOverItsVolume) {
+TEST(Stress, OfThePackingIsTheSumPerVolume) {
     Mat3 sum;
     sum << 0.19 * 3, -0.19, 0, 0, 0, 0, 0, 0, 0.09 * 5;
     EXPECT_TRUE(packing_stress(box, pair()).isApprox(sum / (0.5 * 0.4 * 0.3), 1e-12));
@@ -56,15 +56,15 @@ TEST(Stress, FabricCountsContactsBetweenGrains) {
     EXPECT_TRUE(std::isnan(packing_fabric(box, alone)(0, 0)));
 }
 
-TEST(Stress, NormalForceIsThePartAlongTheCentres) {
+TEST(Stress, NormalForceIsTheComponentAlongTheCentres) {
     const Scan scan = pair();
     EXPECT_DOUBLE_EQ(normal_force(box, scan, scan.contacts[0]), 5);
     EXPECT_DOUBLE_EQ(normal_force(box, scan, scan.contacts[1]), 3);
 }
 
-// The contact reaches over the border: the second grain lies 0.41 to the right of the first, 0.09 to the left
+// The contact crosses the boundary: the second grain is 0.41 to the right of the first, and 0.09 to the left
 // of its image.
-TEST(Stress, OfAPeriodicCellTakesTheNearestImages) {
+TEST(Stress, OfAPeriodicContainerUsesNearestImages) {
     const Box cell{0.5, 0.4, ContainerShape::periodic};
     Scan scan = pair();
     scan.position[1].x() = 0.1 - 0.19 + 3 * 0.5;
@@ -76,7 +76,7 @@ TEST(Stress, OfAPeriodicCellTakesTheNearestImages) {
     EXPECT_NEAR(normal_force(cell, scan, scan.contacts[0]), 3, 1e-12);
 }
 
-TEST(Stress, OfACylinderIsOverItsVolume) {
+TEST(Stress, OfACylinderUsesItsVolume) {
     const Box cylinder{0.5, 0.5, ContainerShape::cylinder};
     const double share = packing_stress({0.5, 0.5}, pair())(2, 2) / packing_stress(cylinder, pair())(2, 2);
     EXPECT_NEAR(share, std::numbers::pi / 4, 1e-12);

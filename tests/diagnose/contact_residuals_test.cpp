@@ -1,5 +1,5 @@
-// Overlaps that forces imply and positions show, against Hertz' formula and published numbers worked out by
-// hand.
+// Overlaps from forces and from positions, compared with Hertz's formula and with published values computed
+// by hand.
 #include "diagnose/observe/contact_residuals.h"
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ double hertz(double effective_modulus, double reduced_radius, double overlap) {
     return 4.0 / 3 * effective_modulus * std::sqrt(reduced_radius * overlap) * overlap;
 }
 
-TEST(ContactResiduals, OfTwoUnequalGrains) {
+TEST(ContactResiduals, AgreeWithHertzForTwoUnequalGrains) {
     const ReferenceMaterial material = soft_material();
     const double here = 0.010, there = 0.015, reduced = 0.006, seen = 4e-4, implied = 5e-4;
     Scan scan;
@@ -46,10 +46,10 @@ TEST(ContactResiduals, OfTwoUnequalGrains) {
     EXPECT_NEAR(c.implied, implied / reduced, 1e-12);
     EXPECT_NEAR(c.measured, seen / reduced, 1e-12);
     EXPECT_NEAR(c.residual(), (implied - seen) / reduced, 1e-12);
-    EXPECT_EQ(c.cross_contact, 0);  // nothing else touches them
+    EXPECT_EQ(c.cross_contact, 0);  // no other contacts
 }
 
-TEST(ContactResiduals, AtEveryWall) {
+TEST(ContactResiduals, AgreeWithHertzAtEveryWall) {
     const ReferenceMaterial material = soft_material();
     const double radius = 0.01, seen = 3e-4, implied = 5e-4;
     const double force = hertz(1 / (compliance(20e3, 0.5) + compliance(60e3, 0.3)), radius, implied);
@@ -74,8 +74,8 @@ TEST(ContactResiduals, AtEveryWall) {
     }
 }
 
-// Inside a cylinder with twice a grain's radius R, 1/R* = sqrt(1/R (1/R - 1/(2 R))).
-TEST(ContactResiduals, AtTheSideOfACylinder) {
+// In a cylinder of radius 2 R, 1/R* = sqrt(1/R (1/R - 1/(2 R))).
+TEST(ContactResiduals, AgreeWithHertzAtTheSideOfACylinder) {
     const ReferenceMaterial material = soft_material();
     const double radius = 0.05, seen = 3e-4;
     Recording recording = grains_of({radius});
@@ -93,7 +93,7 @@ TEST(ContactResiduals, AtTheSideOfACylinder) {
     EXPECT_NEAR(c.measured * c.reduced_radius, seen, 1e-12);
 }
 
-TEST(ContactResiduals, OverTheEdgeOfAPeriodicContainer) {
+TEST(ContactResiduals, UseNearestImagesInAPeriodicContainer) {
     const double radius = 0.01, seen = 4e-4;
     Recording recording = grains_of({radius, radius});
     recording.box.shape = ContainerShape::periodic;
@@ -105,7 +105,8 @@ TEST(ContactResiduals, OverTheEdgeOfAPeriodicContainer) {
     EXPECT_NEAR(c.measured * c.reduced_radius, seen, 1e-12);
 }
 
-/// Of contact 0 of a grain with two partners at an angle, in F/(E R) of the other's force.
+/// Cross-contact displacement of contact 0 of a grain with two partners at an angle, in F/(E R) of the other
+/// force.
 double cross_contact_at(double degrees, double nu) {
     ReferenceMaterial material = soft_material();
     material.poisson_ratio = nu;
@@ -121,8 +122,8 @@ double cross_contact_at(double degrees, double nu) {
     return c[0].cross_contact * c[0].reduced_radius / (second / (material.youngs_modulus * radius));
 }
 
-TEST(ContactResiduals, CrossContactOfSphereToSphere) {
-    // Gonzalez & Cuitino 2012 at nu = 1/2: 3/(8 pi) (3 s^2 - 1)/s, to the digits tabulated.
+TEST(ContactResiduals, CrossContactAgreesWithSphereToSphere) {
+    // Gonzalez & Cuitino 2012 at nu = 1/2: 3/(8 pi) (3 s^2 - 1)/s, to the tabulated digits.
     EXPECT_NEAR(cross_contact_at(60, 0.5), -0.0597, 5e-5);
     EXPECT_NEAR(cross_contact_at(90, 0.5), 0.0844, 5e-5);
     EXPECT_NEAR(cross_contact_at(120, 0.5), 0.1723, 5e-5);
@@ -130,12 +131,12 @@ TEST(ContactResiduals, CrossContactOfSphereToSphere) {
     EXPECT_NEAR(cross_contact_at(180, 0.3), 1.3 / (4 * pi) * (-1.4 - 0.8 + 4.6), 1e-12);
 }
 
-TEST(ContactResiduals, NearlyTheSamePlaceDoesNotRunAway) {
+TEST(ContactResiduals, CrossContactIsBoundedForVeryCloseContacts) {
     EXPECT_NEAR(cross_contact_at(0.1, 0.5), cross_contact_at(10, 0.5), 1e-12);
     EXPECT_LT(cross_contact_at(18, 0.5), 0);
 }
 
-TEST(ContactResiduals, BothGrainsBulge) {
+TEST(ContactResiduals, CrossContactAddsBothGrains) {
     const double radius = 0.01, force = 0.04;
     const ReferenceMaterial material = soft_material();
     Scan scan;
@@ -149,7 +150,7 @@ TEST(ContactResiduals, BothGrainsBulge) {
     EXPECT_NEAR(c[2].cross_contact, one_side, 1e-12);
 }
 
-TEST(ContactResiduals, FrictionIsSetApartAndAttractionIsNegative) {
+TEST(ContactResiduals, FrictionIsSeparatedAndAttractionIsNegative) {
     const double radius = 0.01;
     Scan scan;
     scan.position = {Vec3(0.1, 0.1, 0.1), Vec3(0.1, 0.1, 0.1205), Vec3(0.1, 0.1, 0.0805)};
@@ -162,7 +163,7 @@ TEST(ContactResiduals, FrictionIsSetApartAndAttractionIsNegative) {
     EXPECT_NEAR(c[1].push, -0.01, 1e-15);
     const double effective = 1 / (2 * compliance(20e3, 0.5));
     EXPECT_NEAR(c[1].implied, -std::pow(3 * 0.01 / (4 * effective * 0.005 * 0.005), 2.0 / 3), 1e-12);
-    EXPECT_EQ(c[0].cross_contact, 0);  // what pulls is no source of bulges
+    EXPECT_EQ(c[0].cross_contact, 0);  // attraction does not displace surfaces
     EXPECT_GT(c[1].cross_contact, 0);
 }
 

@@ -1,4 +1,4 @@
-// Errors of the numerics from paired runs: recovered where they are known, and told from chance.
+// Discretisation errors from paired runs: known errors are found, and are separated from chaotic scatter.
 #include "diagnose/infer/convergence.h"
 
 #include <gtest/gtest.h>
@@ -14,12 +14,12 @@ constexpr int replicas = 64;
 Grid one_place() { return {{0.01}, 0.002, 0.02}; }
 Eigen::Index cell_count_of(const Grid& grid) { return static_cast<Eigen::Index>(cells_of(grid).size()); }
 
-/// Replicas with a scatter of their own, and of each step as much as `chaos`.
+/// Replicas with a scatter of their own; each step adds a scatter of `chaos`.
 struct Made {
     Eigen::MatrixXd base;
     RefinedRuns refinement{"plate speed", "plate.speed = 0.1 / {0:.2g}", {}, {}};
 
-    /// What a step leaves of the error is `left(remaining)`.
+    /// `left(remaining)`: fraction of the error in the refined run.
     template <class Left>
     Made(const std::vector<double>& remaining, double error, double chaos, Left left) {
         const Grid grid = one_place();
@@ -40,19 +40,19 @@ struct Made {
 
 double linear(double part) { return part; }
 
-TEST(Convergence, FindsAnErrorThatFollowsItsOrder) {
+TEST(Convergence, FindsAnErrorOfTheExpectedOrder) {
     const Convergence c = Made({0.5, 0.25, 0.125}, 0.03, 0.01, linear).result();
     int missed = 0;
     for (const CellError& cell : c.causes[0].cells) {
         EXPECT_TRUE(cell.follows_order);
         missed += std::abs(cell.value - 0.03) > 2 * cell.standard_error;
     }
-    // Two standard errors are missed by chance in 1 of 20 cells.
+    // Two standard errors are exceeded by chance in 1 of 20 cells.
     EXPECT_LT(missed, 0.15 * static_cast<double>(c.cells.size()));
     EXPECT_GT(missed, 0) << "standard errors are no larger than the scatter";
 }
 
-TEST(Convergence, AnErrorThatDoesNotFollowItsOrderIsSaidToBeAtLeastAsLarge) {
+TEST(Convergence, AnErrorOfAnotherOrderIsReportedAsALowerBound) {
     const Convergence c =
         Made({0.5, 0.25, 0.125}, 0.1, 0.005, [](double part) { return part < 0.2 ? 0.2 : 1.0; }).result();
     for (const CellError& cell : c.causes[0].cells) {
@@ -61,7 +61,7 @@ TEST(Convergence, AnErrorThatDoesNotFollowItsOrderIsSaidToBeAtLeastAsLarge) {
     }
 }
 
-TEST(Convergence, OnlyWhatIsLargeAndSureIsBeyondALimit) {
+TEST(Convergence, OnlyLargeAndSignificantErrorsExceedALimit) {
     const Convergence small = Made({0.5}, 0.002, 1e-5, linear).result(),
                       large = Made({0.5}, 0.2, 0.001, linear).result(),
                       unsure = Made({0.5}, 0.2, 1.0, linear).result();
@@ -74,7 +74,7 @@ TEST(Convergence, OnlyWhatIsLargeAndSureIsBeyondALimit) {
     EXPECT_GE(large.worst_beyond(large.causes[0]), 0);
 }
 
-TEST(Convergence, ForcesHaveARelativeLimitAllElseOneInStandardDeviations) {
+TEST(Convergence, LimitsAreRelativeForForcesAndInStandardDeviationsOtherwise) {
     const Convergence c = Made({0.5}, 0.01, 0.01, linear).result();
     for (std::size_t cell = 0; cell < c.cells.size(); ++cell) {
         const auto& observable = observables()[static_cast<std::size_t>(c.cells[cell].observable)];
@@ -85,7 +85,7 @@ TEST(Convergence, ForcesHaveARelativeLimitAllElseOneInStandardDeviations) {
     }
 }
 
-// Copies that do not rearrange hardly differ: what an observable resolves is allowed all the same.
+// If copies hardly rearrange, their scatter is tiny; the resolution of the observable is then allowed.
 TEST(Convergence, ADifferenceBelowTheResolutionIsWithinTheLimit) {
     Made made({0.5}, 1e-4, 0, linear);
     made.base.setConstant(1 + 1e-4);
@@ -99,8 +99,8 @@ TEST(Convergence, ADifferenceBelowTheResolutionIsWithinTheLimit) {
     }
 }
 
-// A replica that failed in one step is left out of that cell, in every step alike.
-TEST(Convergence, AFailedReplicaCostsItselfOnly) {
+// A replica that failed in one step is excluded from that cell in all steps.
+TEST(Convergence, AFailedReplicaAffectsOnlyItself) {
     Made made({0.5, 0.25}, 0.03, 0.001, linear);
     made.refinement.observed[1].row(3).setConstant(std::nan(""));
     const Convergence c = made.result();

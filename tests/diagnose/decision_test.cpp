@@ -11,7 +11,7 @@ namespace {
 
 using ::testing::ElementsAre;
 
-/// One that takes away nearly all of the gap.
+/// A gap reduction of nearly the whole gap.
 Proposal proposal(std::vector<std::size_t> candidates, double gain, double misfit_p,
                   double reduction = 0.96) {
     Proposal p;
@@ -24,7 +24,7 @@ Proposal proposal(std::vector<std::size_t> candidates, double gain, double misfi
     return p;
 }
 
-/// Four effects and a nuisance beyond its prior, a clear gap, explained by the second effect.
+/// Four effects, a nuisance beyond its prior, and a clear gap that the second effect explains.
 Findings clear_case() {
     Findings f;
     f.p_value = 1e-4;
@@ -40,10 +40,10 @@ double all_confidence(const Decision& d) {
     return std::accumulate(d.confidence.begin(), d.confidence.end(), 0.0);
 }
 
-// A leader that takes clearly enough away is right as often as such leaders are.
+// If the best effect reduces the gap clearly, the confidence is the measured success rate of such effects.
 void expect_sum_of_known(const Decision& d) { EXPECT_NEAR(all_confidence(d), Limits{}.right_above, 1e-12); }
 
-TEST(Decision, OneEffect) {
+TEST(Decision, NamesOneEffect) {
     const Decision d = decide(clear_case(), {});
     EXPECT_EQ(d.verdict, Verdict::effect);
     EXPECT_EQ(d.proposal, 0);
@@ -52,7 +52,7 @@ TEST(Decision, OneEffect) {
     EXPECT_GT(d.confidence[1], 0.99 * Limits{}.right_above);
 }
 
-TEST(Decision, ConfidenceFallsWithWhatIsTakenAway) {
+TEST(Decision, ConfidenceDecreasesWithTheReduction) {
     Findings f = clear_case();
     const Limits limits;
     const auto confidence = [&](double reduction) {
@@ -72,7 +72,7 @@ TEST(Decision, ConfidenceFallsWithWhatIsTakenAway) {
     EXPECT_NEAR(confidence(-1), limits.right_below, 1e-12);
 }
 
-TEST(Decision, NoGap) {
+TEST(Decision, ReportsNoGap) {
     Findings f = clear_case();
     const Limits limits;
     f.p_value = limits.false_alarm;
@@ -84,7 +84,7 @@ TEST(Decision, NoGap) {
     EXPECT_EQ(decide(f, limits).proposal, -1);
 }
 
-TEST(Decision, GroupWithinTheMarginByGain) {
+TEST(Decision, GroupContainsEffectsWithinTheMarginOfTheGain) {
     Findings f = clear_case();
     f.gain = {47.5, 50, 48.5, 46.9, 20};
     Limits limits;
@@ -97,7 +97,7 @@ TEST(Decision, GroupWithinTheMarginByGain) {
     EXPECT_NEAR(d.confidence[0] / d.confidence[1], std::exp(-2.5), 1e-12);
 }
 
-TEST(Decision, MarginGrowsWithTheLeadersGain) {
+TEST(Decision, MarginGrowsWithTheGainOfTheBest) {
     Findings f = clear_case();
     f.gain = {481, 500, 479, 0, 0};
     f.proposals = {proposal({1}, 500, 0.5)};
@@ -109,25 +109,25 @@ TEST(Decision, MarginGrowsWithTheLeadersGain) {
     EXPECT_NEAR(d.confidence[0] / d.confidence[1], std::exp(-19 * 3.0 / 20), 1e-12);
 }
 
-TEST(Decision, GroupsHoldNothingThatGainsNothing) {
+TEST(Decision, GroupsExcludeEffectsWithoutGain) {
     Findings f = clear_case();
     f.gain = {0, 2, -0.5, 1e-3, 0};
     f.proposals = {proposal({1}, 2, 0.5)};
     EXPECT_THAT(decide(f, {}).group, ElementsAre(1, 3));
 }
 
-TEST(Decision, CalibrationIsSuspectWhereANuisanceLeads) {
+TEST(Decision, CalibrationIsSuspectIfANuisanceIsBest) {
     Findings f = clear_case();
     f.gain = {10, 58, 2, 0, 60};
     f.proposals = {proposal({4}, 60, 0.5), proposal({1}, 58, 0.5)};
     const Decision d = decide(f, {});
     EXPECT_EQ(d.verdict, Verdict::calibration_suspect);
     EXPECT_THAT(d.group, ElementsAre(4, 1));
-    f.effects = 5;  // were it an effect
+    f.effects = 5;  // if it were an effect
     EXPECT_EQ(decide(f, {}).verdict, Verdict::group);
 }
 
-TEST(Decision, CalibrationIsSuspectWhereANuisanceDoesNearlyAsWell) {
+TEST(Decision, CalibrationIsSuspectIfANuisanceIsNearlyAsGood) {
     Findings f = clear_case();
     const Limits limits;
     f.gain[4] = 50 - 0.99 * limits.group;
@@ -144,8 +144,8 @@ TEST(Decision, CalibrationIsSuspectWhereANuisanceDoesNearlyAsWell) {
     EXPECT_EQ(d.proposal, 0);
 }
 
-// The simulation itself is the first suspect: before effects, and before stated parameters.
-TEST(Decision, NotConvergedWhereNumericsDoNearlyAsWell) {
+// Numerical errors are suspected first: before effects and before stated parameters.
+TEST(Decision, NotConvergedIfNumericsAreNearlyAsGood) {
     Findings f = clear_case();
     f.gain = {49, 50, 48.5, 0, 49};
     f.proposals = {proposal({1}, 50, 0.5), proposal({2}, 48.5, 0.5), proposal({4}, 49, 0.5)};
@@ -162,7 +162,7 @@ TEST(Decision, NotConvergedWhereNumericsDoNearlyAsWell) {
     EXPECT_EQ(decide(f, {}).verdict, Verdict::effect) << "far behind";
 }
 
-TEST(Decision, NotConvergedWhereNumericsAreOneOfTwo) {
+TEST(Decision, NotConvergedIfNumericsArePartOfThePair) {
     Findings f = clear_case();
     f.proposals[0].misfit_p = 1e-6;
     f.proposals[0].reduction = 0.7;
@@ -174,7 +174,7 @@ TEST(Decision, NotConvergedWhereNumericsAreOneOfTwo) {
     EXPECT_THAT(d.group, ElementsAre(3, 1));
 }
 
-TEST(Decision, UnknownWhereRealRunsLeaveNoGain) {
+TEST(Decision, UnknownIfConfirmationRunsHaveNoGain) {
     Findings f = clear_case();
     for (Proposal& p : f.proposals) p.confirmed_gain = -1;
     EXPECT_EQ(decide(f, {}).verdict, Verdict::unknown_effect);
@@ -182,7 +182,7 @@ TEST(Decision, UnknownWhereRealRunsLeaveNoGain) {
     EXPECT_EQ(decide(f, {}).verdict, Verdict::effect);
 }
 
-TEST(Decision, UnknownWhereTheBestTakesAwayLittle) {
+TEST(Decision, UnknownIfTheBestReducesTheGapLittle) {
     Findings f = clear_case();
     const Limits limits;
     f.proposals[0].reduction = limits.reduction - 0.01;
@@ -194,7 +194,7 @@ TEST(Decision, UnknownWhereTheBestTakesAwayLittle) {
     EXPECT_EQ(decide(f, limits).verdict, Verdict::unknown_effect) << "real runs count";
 }
 
-TEST(Decision, UnknownWhereAPlaceboDoesNearlyAsWell) {
+TEST(Decision, UnknownIfAPlaceboIsNearlyAsGood) {
     Findings f = clear_case();
     const Limits limits;
     f.placebo = f.proposals[0].reduction - 0.99 * limits.over_placebo;
@@ -203,8 +203,8 @@ TEST(Decision, UnknownWhereAPlaceboDoesNearlyAsWell) {
     EXPECT_EQ(decide(f, limits).verdict, Verdict::effect);
 }
 
-// What takes most of a gap away and leaves a clear part of it is not what is behind it.
-TEST(Decision, UnknownWhereMoreThanALittleRemainsThatIsNoNoise) {
+// An effect that removes most of a gap, but leaves a clear part of it, is not the cause.
+TEST(Decision, UnknownIfASignificantPartOfTheGapRemains) {
     Findings f = clear_case();
     const Limits limits;
     f.proposals[0].reduction = 1 - 1.01 * limits.remainder;
@@ -220,8 +220,8 @@ TEST(Decision, UnknownWhereMoreThanALittleRemainsThatIsNoNoise) {
     EXPECT_EQ(decide(f, limits).verdict, Verdict::effect);
 }
 
-// A setting of the numerics is refined first, whatever it leaves.
-TEST(Decision, NotConvergedWhateverNumericsLeave) {
+// If numerics are best they must be refined first, whatever part of the gap remains.
+TEST(Decision, NotConvergedEvenIfNumericsLeaveAGap) {
     Findings f = clear_case();
     f.proposals[0].reduction = 0.7;
     f.proposals[0].misfit_p = 1e-9;
@@ -229,7 +229,7 @@ TEST(Decision, NotConvergedWhateverNumericsLeave) {
     EXPECT_EQ(decide(f, {}).verdict, Verdict::not_converged);
 }
 
-TEST(Decision, ASmallRemainderIsStatedAndRefusesNothing) {
+TEST(Decision, ASmallRemainderIsStatedAndDoesNotChangeTheVerdict) {
     Findings f = clear_case();
     const Limits limits;
     f.proposals[0].confirmed_reduction = 0.97;
@@ -247,7 +247,7 @@ TEST(Decision, ASmallRemainderIsStatedAndRefusesNothing) {
     EXPECT_FALSE(explanation_of(f, decide(f, limits), limits)) << "no gap, nothing to explain";
 }
 
-TEST(Decision, APairWhereOneIsNotEnough) {
+TEST(Decision, NamesAPairIfOneEffectIsNotSufficient) {
     Findings f = clear_case();
     const Limits limits;
     f.proposals[0].misfit_p = 1e-6;
@@ -280,8 +280,9 @@ TEST(Decision, APairWhereOneIsNotEnough) {
     EXPECT_EQ(decide(large, limits).proposal, 2);
 }
 
-// One effect takes away 80 %. Two leave more than noise too: they count where they leave half of the 20 %.
-TEST(Decision, APairThatLeavesSomethingMustLeaveMuchLess) {
+// One effect removes 80 %. A pair that leaves more than noise counts only if it leaves at most half of the
+// 20 %.
+TEST(Decision, APairThatLeavesAGapMustLeaveMuchLess) {
     Findings f = clear_case();
     const Limits limits;
     f.proposals[0].misfit_p = 1e-6;
@@ -292,7 +293,7 @@ TEST(Decision, APairThatLeavesSomethingMustLeaveMuchLess) {
     EXPECT_EQ(decide(f, limits).proposal, 2);
 }
 
-TEST(Decision, RealRunsTakeOver) {
+TEST(Decision, ConfirmationRunsReplaceSignatures) {
     Findings f = clear_case();
     f.gain = {10, 50, 2, 0, 49};
     f.proposals = {proposal({1}, 50, 0.5), proposal({4}, 49, 0.5)};
@@ -309,19 +310,20 @@ TEST(Decision, RealRunsTakeOver) {
     EXPECT_EQ(decide(f, {}).verdict, Verdict::calibration_suspect);
 }
 
-// Adhesion was not run. By signatures it lay 1 behind the leader, of whose gain half was left by real runs.
-TEST(Decision, WhatWasNotRunStaysAsFarBehindAsBySignatures) {
+// Adhesion was not simulated. By signatures it was 1 behind the best effect, half of whose gain remained in
+// the confirmation runs.
+TEST(Decision, EffectsWithoutConfirmationKeepTheirDistanceBySignatures) {
     Findings f = clear_case();
     f.gain = {49, 50, 2, 0, 20};
     f.proposals[0].confirmed_gain = 25;
     const Decision d = decide(f, {});
     EXPECT_THAT(d.group, ElementsAre(1, 0));
     EXPECT_NEAR(d.confidence[0] / d.confidence[1], std::exp(-1.0), 1e-12);
-    f.gain[0] = 30;  // more than what real runs left of the leader's 50
+    f.gain[0] = 30;  // more than the part of the best effect's 50 that remained in the confirmation runs
     EXPECT_THAT(decide(f, {}).group, ElementsAre(1));
 }
 
-TEST(Decision, SameFindingsSameDecision) {
+TEST(Decision, IsAFunctionOfTheFindings) {
     const Findings f = clear_case();
     const Decision a = decide(f, {}), b = decide(f, {});
     EXPECT_EQ(a.verdict, b.verdict);

@@ -1,4 +1,4 @@
-// What could be detected: held against experiments drawn with just that amplitude.
+// Detection limits, compared with simulated experiments with that amplitude.
 #include "diagnose/infer/detection_limits.h"
 
 #include <gmock/gmock.h>
@@ -17,7 +17,7 @@ using ::testing::Not;
 constexpr int replicates = 32;
 
 struct Case {
-    /// `huge`: the prior of the nuisance is as good as none.
+    /// `huge`: the prior of the nuisance is so wide that it has no effect.
     Case() : world(4, 1), evidence(make()), data(gap_data(evidence)) {}
 
     Evidence make() {
@@ -49,14 +49,14 @@ struct Case {
     NullDistribution null{data, replicates, 1};
 };
 
-TEST(DetectionLimits, OneAnEffect) {
+TEST(DetectionLimits, OnePerEffect) {
     const Case c;
     const auto list = c.limits();
-    ASSERT_EQ(list.size(), 6u);  // not of the modulus
+    ASSERT_EQ(list.size(), 6u);  // none for the modulus
     for (std::size_t k = 0; k < list.size(); ++k) EXPECT_EQ(list[k].effect, c.evidence.candidates[k].name);
 }
 
-TEST(DetectionLimits, ExpectedGainIsTheThresholdsAndFourFifths) {
+TEST(DetectionLimits, ExpectedGainGivesAPowerOfFourFifths) {
     const Case c;
     const auto list = c.limits();
     const double threshold = c.null.quantile(&GapStatistics::directed, 0.025);
@@ -66,7 +66,7 @@ TEST(DetectionLimits, ExpectedGainIsTheThresholdsAndFourFifths) {
     EXPECT_NEAR(list[1].minimum_amplitude, 2 * list[0].minimum_amplitude, 1e-6);
 }
 
-TEST(DetectionLimits, FourOutOfFiveAreDetectedThere) {
+TEST(DetectionLimits, FourInFiveAreDetectedAtTheLimit) {
     Case c;
     const double amplitude = c.limits()[2].minimum_amplitude;
     int detected = 0;
@@ -77,27 +77,28 @@ TEST(DetectionLimits, FourOutOfFiveAreDetectedThere) {
         const GapStatistics s = gap_statistics(c.space, c.data, gap);
         detected += c.null.p_value(&GapStatistics::directed, s.directed) < 0.025;
     }
-    // 300 draws: 2.3 %; the covariance of 32 replicates and the best of several candidates a few more.
+    // 300 draws: 2.3 %; the covariance of 32 replicates and the best of several candidates add a few per
+    // cent.
     EXPECT_GT(detected, 0.65 * draws);
     EXPECT_LT(detected, 0.95 * draws);
 }
 
-TEST(DetectionLimits, InfiniteWhereNothingShows) {
+TEST(DetectionLimits, AreInfiniteForEffectsThatCannotBeDetected) {
     const auto list = Case().limits();
     EXPECT_TRUE(std::isinf(list[3].minimum_amplitude));
     EXPECT_TRUE(std::isinf(list[4].minimum_amplitude));
     EXPECT_TRUE(std::isinf(list[5].minimum_amplitude));
-    EXPECT_EQ(list[3].absorbed_by_calibration, 0);  // there is nothing to absorb
+    EXPECT_EQ(list[3].absorbed_by_calibration, 0);  // nothing to absorb
 }
 
-TEST(DetectionLimits, EitherSignWillDo) {
+TEST(DetectionLimits, UseTheEasierSign) {
     Case c;
     c.data.candidates[0].high = 1e-3;
     const double down = c.limits()[0].minimum_amplitude;
     EXPECT_NEAR(down, Case().limits()[0].minimum_amplitude, 1e-6);
 }
 
-TEST(DetectionLimits, Groups) {
+TEST(DetectionLimits, ListEffectsWithTheSameSignature) {
     const auto list = Case().limits();
     EXPECT_THAT(list[0].group, Contains("the_same"));
     EXPECT_THAT(list[1].group, Contains("adhesion"));
@@ -106,9 +107,9 @@ TEST(DetectionLimits, Groups) {
     EXPECT_THAT(list[2].group, IsEmpty());
 }
 
-TEST(DetectionLimits, AbsorbedByCalibration) {
+TEST(DetectionLimits, ReportThePartAbsorbedByCalibration) {
     EXPECT_NEAR(Case().limits()[4].absorbed_by_calibration, 1, 1e-4);
-    // Made orthogonal to the modulus in the metric of the noise, none of it is.
+    // Orthogonal to the modulus in the metric of the noise: nothing is absorbed.
     Case c;
     const GapSpace fixed(c.data.noise, replicates, c.data.cells, {});
     const Eigen::VectorXd modulus = c.evidence.library.nuisances[0].linear;

@@ -1,4 +1,4 @@
-// A planted effect from evidence to what the diagnosis says of it.
+// A planted effect, from the evidence to the text of the diagnosis.
 #include "diagnose/decide/diagnose.h"
 
 #include <gmock/gmock.h>
@@ -37,7 +37,7 @@ TEST(DiagnosisBuilder, FindsAndMeasuresAPlantedEffect) {
     EXPECT_THAT(d.not_measured, ElementsAre(HasSubstr("grains.csv")));
 }
 
-TEST(DiagnosisBuilder, AParameterPulledFarOutIsASymptom) {
+TEST(DiagnosisBuilder, AParameterFarFromItsStatedValueIsASymptom) {
     SyntheticWorld world(6, 4);
     Evidence evidence = world.evidence(1, 32);
     world.add_effect(evidence, "adhesion", world.pattern(1));
@@ -49,7 +49,7 @@ TEST(DiagnosisBuilder, AParameterPulledFarOutIsASymptom) {
     EXPECT_EQ(d.causes.at(0).effect, "modulus");
 }
 
-/// Runs of a few replicates that come out `shift` off the baseline.
+/// Runs of a few replicates that differ by `shift` from the baseline.
 Eigen::MatrixXd runs_at(SyntheticWorld& world, const Evidence& evidence, const Eigen::VectorXd& shift) {
     Eigen::MatrixXd runs(64, shift.size());
     const Eigen::VectorXd centre = evidence.baseline.colwise().mean().transpose() + shift;
@@ -57,9 +57,9 @@ Eigen::MatrixXd runs_at(SyntheticWorld& world, const Evidence& evidence, const E
     return runs;
 }
 
-// Effect and parameter act alike; the effect's runs meet the data, the parameter's stop short and leave a
-// little more.
-TEST(DiagnosisBuilder, AParameterThatTrailsIsRunAgainWhereItsRunsAskForMore) {
+// Effect and parameter have the same signature. The effect's runs agree with the data; those of the
+// parameter do not reach them and leave a slightly larger gap.
+TEST(DiagnosisBuilder, AParameterIsRunAgainIfItsRunsRequireALargerAmplitude) {
     SyntheticWorld world(6, 4);
     Evidence evidence = world.evidence(1, 32);
     const Eigen::VectorXd pattern = world.pattern(2);

@@ -1,4 +1,4 @@
-// Amplitudes recovered from synthetic gaps, and their scores in closed form.
+// Amplitudes and scores from synthetic gaps, compared with closed-form solutions.
 #include "diagnose/infer/effect_fit.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ struct Setting {
     Eigen::VectorXd direction = world.pattern(1);
 };
 
-TEST(EffectFit, LinearSignatureInClosedForm) {
+TEST(EffectFit, LinearSignatureAgreesWithTheClosedForm) {
     Setting s;
     const Signature signature = s.world.signature("adhesion", s.world.pattern(0.5));
     const Eigen::VectorXd gap = 3 * signature.linear + s.world.noise();
@@ -34,7 +34,7 @@ TEST(EffectFit, LinearSignatureInClosedForm) {
     EXPECT_FALSE(fit.at_bound);
 }
 
-TEST(EffectFit, ErrorIsTheScatterOfAmplitudes) {
+TEST(EffectFit, ErrorIsTheScatterOfTheAmplitudes) {
     Setting s(2);
     const Signature signature = s.world.signature("adhesion", s.world.pattern(0.5));
     const GapSpace space = s.space();
@@ -46,15 +46,15 @@ TEST(EffectFit, ErrorIsTheScatterOfAmplitudes) {
         const EffectFit fit = fit_effect(space, {&signature, -20, 20}, gap);
         square += std::pow((fit.amplitude - 2) / fit.error, 2) / draws;
     }
-    EXPECT_NEAR(square, 1, 0.4);  // 400 draws: 0.07; the space knows the covariance from 40 rows: some 0.2
+    EXPECT_NEAR(square, 1, 0.4);  // 400 draws: 0.07; the covariance is known from 40 rows: about 0.2
 }
 
-// Pairs that differ by a tenth in how strongly they show the effect, and by less than chaos does.
-TEST(DrawError, IsWhatPairsDifferBy) {
+// Pairs whose responses differ by a tenth, more than by chaos.
+TEST(DrawError, IsTheScatterBetweenPairs) {
     Setting s(4);
     Signature signature = s.world.signature("polydispersity", s.world.pattern(0.5));
     const GapSpace space = s.space();
-    signature.reach = 1e3;  // chaos is nothing to it
+    signature.reach = 1e3;  // chaos is negligible
     const Eigen::Vector4d part(0.9, 1.1, 1.1, 0.9);
     signature.slopes = part * signature.linear.transpose();
     EXPECT_NEAR(draw_error(space, {&signature, 0, 8}, -3), 3 * std::sqrt(0.04 / 3 * (1 + 1.0 / 4)), 1e-4);
@@ -64,21 +64,22 @@ TEST(DrawError, IsWhatPairsDifferBy) {
     EXPECT_EQ(draw_error(space, {&signature, 0, 8}, 3), 0);
 }
 
-TEST(EffectFit, CurvedSignature) {
+TEST(EffectFit, CurvedSignatureIsFitted) {
     Setting s(3);
     Signature signature = s.world.signature("stiffening", s.world.pattern(1));
     signature.curvature = s.world.pattern(0.4);
     signature.reach = 1.5;
-    for (const double amplitude : {-1.2, 0.4, 1.5, 3.7})  // the last beyond the reach
+    for (const double amplitude : {-1.2, 0.4, 1.5, 3.7})  // the last one is beyond the reach
         EXPECT_NEAR(fit_effect(s.space(), {&signature, -2, 4}, signature.at(amplitude)).amplitude, amplitude,
                     1e-4);
-    // At amplitude a the slope of the signature, not its linear part, says how well it is known.
+    // The error follows from the slope of the signature at the amplitude a, not from its linear part.
     const EffectFit fit = fit_effect(s.space(), {&signature, -2, 4}, signature.at(0.4));
     EXPECT_NEAR(fit.error, 1 / s.space().whiten(signature.slope(fit.amplitude)).norm(), 1e-9);
 }
 
-// Least squares of two: amplitudes, errors and gain in closed form, also where signatures are alike to 0.98.
-TEST(EffectFit, TwoAtOnceInClosedForm) {
+// Least squares with two signatures: amplitudes, errors and gain in closed form, even for a correlation of
+// 0.98.
+TEST(EffectFit, TwoSignaturesAgreeWithTheClosedForm) {
     Setting s(5);
     for (const double apart : {3.0, 0.2}) {
         const Signature first = s.world.signature("friction", s.world.pattern(0.5));
@@ -93,14 +94,14 @@ TEST(EffectFit, TwoAtOnceInClosedForm) {
         for (const int k : {0, 1}) {
             const auto at = static_cast<std::size_t>(k);
             EXPECT_NEAR(fit.errors[at], std::sqrt(covariance(k, k)), 1e-6 * fit.errors[at]);
-            EXPECT_NEAR(fit.amplitudes[at], best[k], 0.05 * fit.errors[at]);  // where the search stops
+            EXPECT_NEAR(fit.amplitudes[at], best[k], 0.05 * fit.errors[at]);  // tolerance of the search
         }
         EXPECT_NEAR(fit.score, 0.5 * moment.dot(best), 2e-3 * fit.score);
     }
 }
 
-// Effects that do the same cannot be told apart: their sum fits, no amplitude is known.
-TEST(EffectFit, TwoThatAreOne) {
+// Two identical signatures: the sum of the amplitudes is determined, the amplitudes are not.
+TEST(EffectFit, TwoIdenticalSignaturesHaveNoAmplitudes) {
     Setting s(6);
     const Signature one = s.world.signature("friction", s.world.pattern(0.5));
     const JointFit fit = fit_effects(s.space(), {{&one, -8, 8}, {&one, -8, 8}}, 3 * one.linear);
@@ -118,7 +119,7 @@ TEST(EffectFit, StaysWithinItsBounds) {
     EXPECT_EQ(below.amplitude, 0);
     EXPECT_EQ(below.score, 0);
     EXPECT_FALSE(below.at_bound);
-    // Near a bound that is no effect at all is at no bound.
+    // Near a bound that means no effect, a fit is not at a bound.
     EXPECT_FALSE(fit_effect(s.space(), {&signature, 0, 5000}, signature.linear).at_bound);
     const EffectFit lowest = fit_effect(s.space(), {&signature, -1, 2}, -5 * signature.linear);
     EXPECT_NEAR(lowest.amplitude, -1, 2e-3);

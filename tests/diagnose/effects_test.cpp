@@ -1,4 +1,4 @@
-// The table of effects: each moves what it says and nothing else.
+// The table of effects: each effect changes its own parameter and nothing else.
 #include "diagnose/infer/effects.h"
 
 #include <gmock/gmock.h>
@@ -13,7 +13,7 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::UnorderedElementsAreArray;
 
-/// Every number of a model that an effect may move.
+/// Every number of a model that an effect may change.
 std::map<std::string, double> numbers_of(const Model& m) {
     const Replica& r = m.replica;
     const Effects& e = r.effects;
@@ -72,7 +72,7 @@ std::set<std::string> moved(const Model& before, const Model& after) {
     return names;
 }
 
-/// What each effect moves.
+/// The parameter that each effect changes.
 const std::map<std::string, std::set<std::string>> moves{
     {"cross_contact", {"contact.model", "contact.gamma"}},
     {"bulge_contacts", {"bulge_contacts"}},
@@ -112,7 +112,7 @@ Model plain_model() {
     return model;
 }
 
-/// A model that has some of everything already.
+/// A model in which no effect is zero.
 Model full_model() {
     Model model = plain_model();
     model.replica.contact.model = ContactModel::mc_dem;
@@ -141,7 +141,7 @@ Model full_model() {
     return model;
 }
 
-/// The names in the table of host/diagnose/README.md, in its order.
+/// The names in the table of host/diagnose/README.md, in order.
 std::vector<std::string> names_of_readme() {
     std::ifstream in(MCDEM_SOURCE_DIR "/host/diagnose/README.md");
     std::vector<std::string> names;
@@ -157,7 +157,7 @@ std::vector<std::string> names_of_readme() {
     return names;
 }
 
-TEST(Effects, AreThoseDocumented) {
+TEST(Effects, AgreeWithTheDocumentation) {
     std::vector<std::string> names;
     for (const Effect& effect : effects()) names.emplace_back(effect.name);
     std::vector<std::string> documented;
@@ -185,7 +185,7 @@ TEST(Effects, AmplitudesLieWithinTheirBounds) {
     }
 }
 
-TEST(Effects, MoveTheirOwnFieldOnly) {
+TEST(Effects, ChangeOnlyTheirOwnParameter) {
     for (const Effect& e : effects())
         for (const double amplitude : {e.first, e.second}) {
             Model model = plain_model();
@@ -194,13 +194,13 @@ TEST(Effects, MoveTheirOwnFieldOnly) {
         }
 }
 
-TEST(Effects, OfAmplitudeZeroAreNone) {
+TEST(Effects, OfAmplitudeZeroChangeNothing) {
     for (const Effect& e : effects())
         for (const Model& start : {plain_model(), full_model()}) {
             if (!e.hindrance(start).empty()) continue;
             Model model = start;
             e.apply(model, 0);
-            // Eq. 1 with gamma = 0 is independent contacts.
+            // Eq. 1 with gamma = 0 means independent contacts.
             if (e.name == "cross_contact")
                 EXPECT_EQ(model.replica.contact.gamma, 0);
             else
@@ -208,7 +208,7 @@ TEST(Effects, OfAmplitudeZeroAreNone) {
         }
 }
 
-TEST(Effects, AddToWhatTheModelHas) {
+TEST(Effects, AddToTheModelsAmplitude) {
     for (const Effect& e : effects()) {
         const Model start = full_model();
         if (!e.hindrance(start).empty()) continue;
@@ -217,7 +217,7 @@ TEST(Effects, AddToWhatTheModelHas) {
         ASSERT_EQ(moved(start, model), moves.at(std::string(e.name))) << e.name;
         const std::string field = *moves.at(std::string(e.name)).begin();
         const double before = numbers_of(start).at(field), after = numbers_of(model).at(field);
-        // The amplitudes of the paired runs are positive at last; the bulges' part and numerics fall.
+        // The amplitudes of paired runs are positive in the end; only bulge_contacts and numerics decrease.
         if (field == "bulge_contacts" || is_numerical(e.name))
             EXPECT_LT(after, before);
         else
@@ -225,7 +225,7 @@ TEST(Effects, AddToWhatTheModelHas) {
     }
 }
 
-TEST(Effects, SharesStayShares) {
+TEST(Effects, FractionsStayBetweenZeroAndOne) {
     for (const char* name : {"viscoelasticity", "friction_history", "bulge_contacts"}) {
         Model model = full_model();
         find_effect(name)->apply(model, find_effect(name)->high);
@@ -260,7 +260,7 @@ TEST(Effects, FrictionIsNeverNegative) {
     }
 }
 
-TEST(Effects, HindrancesSayWhy) {
+TEST(Effects, ReasonsForExclusionAreGiven) {
     const Model independent = plain_model();
     Model interacting = independent, smooth = independent, unlimited = independent;
     interacting.replica.contact.model = ContactModel::elastic_sphere;
@@ -288,8 +288,9 @@ TEST(Effects, HindrancesSayWhy) {
     EXPECT_THAT(hindered(slow), ElementsAre("bulge_contacts", "finite_strain"));
 }
 
-// A plate that keeps an inertial number is slowed down by that; plate.speed, its highest, goes along.
-TEST(Effects, ThePlatesSpeedIsItsToleranceWhereThereIsOne) {
+// With a rate tolerance the plate's speed is reduced through the tolerance; plate.speed, its maximum, is
+// reduced too.
+TEST(Effects, PlateSpeedIsReducedThroughTheRateTolerance) {
     const Effect& effect = *find_effect("plate_speed");
     Model model = plain_model();
     model.replica.plate.speed = 0.1;
@@ -303,7 +304,7 @@ TEST(Effects, ThePlatesSpeedIsItsToleranceWhereThereIsOne) {
     EXPECT_DOUBLE_EQ(model.replica.plate.speed, 0.05);
 }
 
-TEST(Nuisances, MoveTheirParameter) {
+TEST(Nuisances, ChangeTheirParameter) {
     Model model = plain_model();
     Experiment experiment;
     auto list = nuisances(model, experiment);

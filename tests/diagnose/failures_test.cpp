@@ -1,4 +1,4 @@
-// A simulation that fails costs what it was made for, and nothing else.
+// A failed simulation affects only the candidate or nuisance for which it was run.
 #include <gmock/gmock.h>
 
 #include "core/errors.h"
@@ -24,14 +24,14 @@ struct World {
     Evidence evidence = synthetic.evidence(1, 16);
 };
 
-TEST(Failures, NothingIsLeftOutOfWhatIsWhole) {
+TEST(Failures, NothingIsExcludedFromCompleteEvidence) {
     World w;
     EXPECT_THAT(leave_out_failures(w.evidence), IsEmpty());
     EXPECT_EQ(w.evidence.candidates.size(), 2u);
     EXPECT_EQ(w.evidence.library.baseline.rows(), 16);
 }
 
-TEST(Failures, ACandidateThatRunsAwayCostsItselfAlone) {
+TEST(Failures, ACandidateThatRunsAwayIsExcludedAlone) {
     World w;
     w.evidence.library.effects[1].linear.setConstant(not_available);
     EXPECT_THAT([&] { DiagnosisBuilder(w.evidence, {}); },
@@ -42,7 +42,7 @@ TEST(Failures, ACandidateThatRunsAwayCostsItselfAlone) {
     EXPECT_EQ(d.causes.at(0).effect, "adhesion");
 }
 
-TEST(Failures, ANuisanceThatRunsAwayCostsItselfAlone) {
+TEST(Failures, ANuisanceThatRunsAwayIsExcludedAlone) {
     World w;
     w.evidence.library.nuisances[0].curvature.setConstant(not_available);
     EXPECT_THAT(leave_out_failures(w.evidence), ElementsAre(HasSubstr("modulus: its runs failed")));
@@ -50,14 +50,14 @@ TEST(Failures, ANuisanceThatRunsAwayCostsItselfAlone) {
     EXPECT_NO_THROW(DiagnosisBuilder(w.evidence, {}));
 }
 
-TEST(Failures, AFewCellsThatACandidateLacksAreNotCompared) {
+TEST(Failures, CellsThatACandidateLacksAreNotCompared) {
     World w;
     w.evidence.library.effects[1].linear[5] = not_available;
     EXPECT_THAT(leave_out_failures(w.evidence), IsEmpty());
     EXPECT_EQ(gap_data(w.evidence).cells.size(), static_cast<std::size_t>(w.synthetic.known()) - 1);
 }
 
-TEST(Failures, ReplicatesWithoutNumbersAreLeftOut) {
+TEST(Failures, ReplicatesWithoutNumbersAreExcluded) {
     World w;
     for (const Eigen::Index r : {2, 7}) {
         w.evidence.library.baseline.row(r).setConstant(not_available);
@@ -74,8 +74,8 @@ TEST(Failures, ReplicatesWithoutNumbersAreLeftOut) {
                 ThrowsMessage<InputError>(HasSubstr("runs of the scene")));
 }
 
-// Two experiments drawn from the same noise, an effect of which no observable knows: it has no amplitude.
-TEST(Failures, WhatTheDataDoNotShowHasNoAmplitude) {
+// Two experiments drawn from the same noise, and an effect that no observable shows.
+TEST(Failures, AnEffectThatNoObservableShowsHasNoAmplitude) {
     World w;
     w.synthetic.add_effect(w.evidence, "force_bias", Eigen::VectorXd::Zero(w.evidence.observed.size()));
     const Diagnosis d = DiagnosisBuilder(w.evidence, {}).diagnosis();

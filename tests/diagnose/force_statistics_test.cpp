@@ -1,4 +1,4 @@
-// Numbers of one scan's forces, worked out by hand.
+// Statistics of the forces of one scan, compared with values computed by hand.
 #include "diagnose/observe/force_statistics.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ Contact at_wall(Wall wall, const Vec3& point, const Vec3& force) {
     return {0, wall_partner(wall), point, force};
 }
 
-TEST(WallLoads, OfAFewContacts) {
+TEST(WallLoads, AreCorrectForAFewContacts) {
     Recording recording;
     recording.box = {0.2, 0.1};
     Scan scan;
@@ -36,17 +36,17 @@ TEST(WallLoads, OfAFewContacts) {
     EXPECT_NEAR(loads[4], 0.5, near);
 }
 
-TEST(WallLoads, NeedAForceOnThePlate) {
+TEST(WallLoads, RequireAForceOnThePlate) {
     Recording recording;
     recording.box = {0.2, 0.1};
     Scan scan;
     scan.contacts = {at_wall(Wall::floor, Vec3::Zero(), Vec3(0, 0, 5))};
     for (const double load : wall_loads(recording, scan)) EXPECT_TRUE(std::isnan(load));
-    scan.wall_force[static_cast<int>(Wall::plate)].z() = 4.4;  // read, but no contact seen
+    scan.wall_force[static_cast<int>(Wall::plate)].z() = 4.4;  // measured, but without a contact
     for (const double load : wall_loads(recording, scan)) EXPECT_TRUE(std::isnan(load));
 }
 
-TEST(ForceDistribution, OfOneToAHundred) {
+TEST(ForceDistribution, IsCorrectForForcesFromOneToAHundred) {
     Recording recording;
     recording.diameter.assign(50, 0.02);
     Scan scan;
@@ -65,7 +65,7 @@ TEST(ForceDistribution, OfOneToAHundred) {
     EXPECT_NEAR(d[6], 95 / 50.5, near);
 }
 
-TEST(ForceDistribution, StrongForces) {
+TEST(ForceDistribution, IsCorrectForStrongForces) {
     Recording recording;
     recording.diameter.assign(10, 0.02);
     Scan scan;
@@ -86,7 +86,7 @@ ContactResidual residual(int grain, int partner, const Vec3& normal, double push
     return c;
 }
 
-/// A lattice at rest whose side walls carry 1 mN upwards wherever a grain touches one.
+/// A lattice at rest; its side walls exert 1 mN upwards on each grain that touches them.
 Lattice lattice_with_wall_friction(int n) {
     constexpr double push = 0.01, carried = 0.001;
     Lattice lattice(n);
@@ -107,7 +107,7 @@ Lattice lattice_with_wall_friction(int n) {
     return lattice;
 }
 
-TEST(SectionLoad, IsThePlatesWhereverItIsCarried) {
+TEST(SectionLoad, EqualsThePlatesForceWhateverTheWallsCarry) {
     Lattice lattice = lattice_with_wall_friction(4);
     EXPECT_LT(wall_loads(lattice.recording, lattice.scan)[0], 0.8);  // the walls carry the rest
     EXPECT_NEAR(section_load(lattice.scan), 1, near);
@@ -122,9 +122,8 @@ TEST(SectionLoad, IsThePlatesWhereverItIsCarried) {
     EXPECT_TRUE(std::isnan(section_load(lattice.scan)));
 }
 
-// Of a column's six vertical contacts four lie a fifth of the sections apart, those at both ends half of
-// that: errors are sqrt(4 + 2/4)/5 of the plate's, which are 5 % / sqrt(25). 400 draws give them within 3.5
-// %.
+// Four of a column's six vertical contacts are a fifth of the height apart, those at both ends half of that.
+// The error is sqrt(4 + 2/4)/5 of the plate's, which is 5 % / sqrt(25). 400 draws determine it within 3.5 %.
 TEST(SectionLoad, AveragesOverAllContacts) {
     const Lattice exact(5);
     Random random(7, Stream::measured_forces);
@@ -139,7 +138,7 @@ TEST(SectionLoad, AveragesOverAllContacts) {
     EXPECT_NEAR(std::sqrt(all / at_plate), std::sqrt(4.5) / 5, 0.06);
 }
 
-TEST(Fabric, AnisotropyAndAttraction) {
+TEST(Fabric, AnisotropyAndAttractionAreFound) {
     const Lattice lattice(2);
     Recording recording = lattice.recording;
     recording.scans = {lattice.scan};
@@ -153,7 +152,7 @@ TEST(Fabric, AnisotropyAndAttraction) {
     EXPECT_NEAR(fabric(recording, lattice.scan, steep)[3], 0.5, near);
 }
 
-TEST(Fabric, GradientWithDepth) {
+TEST(Fabric, GradientWithDepthIsFound) {
     const Lattice lattice(4);
     Recording recording = lattice.recording;
     recording.scans = {lattice.scan};
@@ -161,17 +160,17 @@ TEST(Fabric, GradientWithDepth) {
     double sum = 0, number = 0;
     for (const Contact& contact : lattice.scan.contacts) {
         const bool wall = is_wall(contact.partner);
-        const double push = wall ? 7 : 3 - 20 * contact.point.z();  // walls do not count
+        const double push = wall ? 7 : 3 - 20 * contact.point.z();  // contacts with walls do not count
         contacts.push_back(residual(contact.grain, contact.partner, -contact.force.normalized(), push));
         if (!wall) sum += push, ++number;
     }
-    // The contact point of spheres in the lattice lies half an edge, not half a diameter, from the centre.
+    // In the lattice the contact point is half an edge from the centre, not half a diameter.
     recording.diameter.assign(recording.diameter.size(), Lattice::edge);
     EXPECT_NEAR(fabric(recording, lattice.scan, contacts)[1], 20 * lattice.scan.plate_z / (sum / number),
                 1e-9);
 }
 
-TEST(Fabric, DisplacementsThatNoAffineMapGives) {
+TEST(Fabric, NonAffineDisplacementsAreFound) {
     Lattice lattice(2);
     Recording recording = lattice.recording;
     recording.scans = {lattice.scan};
@@ -179,7 +178,7 @@ TEST(Fabric, DisplacementsThatNoAffineMapGives) {
     map << 0.9, 0.1, 0, 0.02, 1.05, 0.03, 0, -0.04, 0.8;
     for (Vec3& position : lattice.scan.position) position = map * position + Vec3(1e-3, 2e-3, 3e-3);
     EXPECT_NEAR(fabric(recording, lattice.scan, {})[2], 0, 1e-9);
-    // Signs x y z at the corners of a cube are orthogonal to every affine function.
+    // The signs of x y z at the corners of a cube are orthogonal to every affine function.
     const double length = 5e-4;
     for (int grain = 0; grain < 8; ++grain) {
         const int sign = (grain & 1 ? -1 : 1) * (grain & 2 ? -1 : 1) * (grain & 4 ? -1 : 1);
@@ -190,7 +189,7 @@ TEST(Fabric, DisplacementsThatNoAffineMapGives) {
     EXPECT_TRUE(std::isnan(fabric(recording, lattice.scan, {})[2]));
 }
 
-TEST(FrictionNumbers, OfStrongEnoughContacts) {
+TEST(FrictionNumbers, UseOnlyStrongEnoughContacts) {
     Recording recording;
     recording.diameter.assign(2, 0.02);
     std::vector<ContactResidual> contacts;
@@ -212,7 +211,7 @@ TEST(FrictionNumbers, OfStrongEnoughContacts) {
     EXPECT_TRUE(std::isnan(friction_numbers(recording, {}, contacts, smooth)[2]));
 }
 
-TEST(FrictionNumbers, TorqueOfBalancedGrainsCancels) {
+TEST(FrictionNumbers, TorqueOfBalancedGrainsIsZero) {
     Recording recording;
     recording.diameter.assign(2, 0.02);
     ContactResidual left = residual(0, wall_partner(Wall::x_min), -Vec3::UnitX(), 1);
@@ -224,11 +223,11 @@ TEST(FrictionNumbers, TorqueOfBalancedGrainsCancels) {
     EXPECT_NEAR(friction_numbers(recording, {}, std::vector{left, right}, soft_material())[5], 1, near);
     right.force.y() = 0.01;
     EXPECT_NEAR(friction_numbers(recording, {}, std::vector{left, right}, soft_material())[5], 1.0 / 3, near);
-    // Between two grains both turn the same way: here each has nothing against it.
+    // Two grains in contact have torques of the same sign, which nothing balances.
     ContactResidual pair = residual(0, 1, Vec3::UnitX(), 1);
     pair.force = Vec3(-1, 0, 0.03);
     EXPECT_NEAR(friction_numbers(recording, {}, std::vector{pair}, soft_material())[5], 1, near);
-    // The middle one of three is turned both ways.
+    // The middle one of three has opposite torques.
     recording.diameter.assign(3, 0.02);
     ContactResidual next = residual(1, 2, Vec3::UnitX(), 1);
     next.force = Vec3(-1, 0, -0.03);

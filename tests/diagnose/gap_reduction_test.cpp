@@ -1,4 +1,4 @@
-// A planted effect takes its gap away on data that were not fitted; where there is none, nothing does.
+// A planted effect closes its gap on held-out data; without a gap, no effect reduces anything.
 #include "diagnose/infer/gap_reduction.h"
 
 #include <gtest/gtest.h>
@@ -38,7 +38,7 @@ struct Case {
 TEST(Split, FitsTheFirstPartOfLoading) {
     const Case c(0);
     ASSERT_EQ(c.split.fitted.size() + c.split.held_out.size(), 48u);
-    EXPECT_EQ(c.split.fitted.size(), 6 * 3u);  // three of four displacements lie below 85 % of the stroke
+    EXPECT_EQ(c.split.fitted.size(), 6 * 3u);  // three of four displacements are below 85 % of the stroke
     const auto cells = cells_of(synthetic_grid);
     for (const auto cell : c.split.fitted) {
         EXPECT_EQ(cells[static_cast<std::size_t>(cell)].phase, Phase::load);
@@ -55,13 +55,13 @@ TEST(GapSize, OfNoiseIsZeroOnAverage) {
         mean += gap_size(c.data, c.split.held_out, gap, 1) / draws;
         twice += gap_size(c.data, c.split.held_out, gap + c.world.noise(), 1, 1) / draws;
     }
-    // Thirty cells with a scatter of 2 sqrt 2: 0.4 over 2000 draws; variances from 32 replicates err by 0.25
-    // a cell.
+    // Thirty cells with a scatter of 2 sqrt 2: 0.4 over 2000 draws; variances from 32 replicates have an
+    // error of 0.25 per cell.
     EXPECT_NEAR(mean, 0, 5);
     EXPECT_NEAR(twice, 0, 8);
 }
 
-TEST(GapSize, OfWhatIsThereIsItsSquareInSigmas) {
+TEST(GapSize, OfAGapIsItsSquareInSigmas) {
     Case c(0);
     double mean = 0;
     constexpr int draws = 500;
@@ -76,7 +76,7 @@ TEST(GapSize, OfWhatIsThereIsItsSquareInSigmas) {
     EXPECT_NEAR(mean, expected, 0.03 * expected);
 }
 
-TEST(GapReduction, APlantedEffectTakesItsGapAway) {
+TEST(GapReduction, APlantedEffectClosesItsGap) {
     const Case c(4);
     const GapReduction s = c.gap_reduction({0});
     EXPECT_GT(s.fraction, 0.9);
@@ -92,7 +92,7 @@ TEST(GapReduction, APlantedEffectTakesItsGapAway) {
     EXPECT_TRUE(held_out_gap(c.data, c.split, replicates).shows());
 }
 
-TEST(GapReduction, WhereThereIsNoGapTheHeldOutDataShowNone) {
+TEST(GapReduction, WithoutAGapHeldOutDataShowNone) {
     int shown = 0;
     for (std::uint64_t seed = 50; seed < 90; ++seed) {
         const Case c(0, seed);
@@ -101,8 +101,8 @@ TEST(GapReduction, WhereThereIsNoGapTheHeldOutDataShowNone) {
     EXPECT_LE(shown, 8) << "beyond two sigmas of a skewed distribution";
 }
 
-// Runs that meet the data take the gap away, whatever the signature says; failed ones do not count.
-TEST(GapReduction, RealRunsSayWhatTheyTakeAway) {
+// Runs that agree with the data close the gap, whatever the signature predicts; failed runs do not count.
+TEST(GapReduction, ConfirmationRunsReplaceThePrediction) {
     Case c(4);
     const Eigen::VectorXd centre = c.evidence.baseline.colwise().mean().transpose();
     Eigen::MatrixXd runs(9, centre.size());
@@ -120,8 +120,8 @@ TEST(GapReduction, RealRunsSayWhatTheyTakeAway) {
     EXPECT_FALSE(reduction_by_runs(c.data, c.split, c.evidence.observed, runs, replicates));
 }
 
-// The signature says half of what the effect does: fitted again from runs, the amplitude is right.
-TEST(GapReduction, RunsMendTheFitOfAPart) {
+// The signature has half of the effect's true size: the amplitude is corrected by a second fit with runs.
+TEST(GapReduction, RunsCorrectTheAmplitude) {
     Case c(4);
     const Eigen::VectorXd shape = c.evidence.library.effects[0].linear;
     c.evidence.library.effects[0].linear *= 0.5;
@@ -137,7 +137,7 @@ TEST(GapReduction, RunsMendTheFitOfAPart) {
                 1e-9);
 }
 
-TEST(GapReduction, AnotherEffectDoesNot) { EXPECT_LT(Case(4).gap_reduction({1}).fraction, 0.3); }
+TEST(GapReduction, AnotherEffectDoesNotCloseTheGap) { EXPECT_LT(Case(4).gap_reduction({1}).fraction, 0.3); }
 
 TEST(GapReduction, TwoEffectsAreFittedTogether) {
     Case c(4);
@@ -145,22 +145,22 @@ TEST(GapReduction, TwoEffectsAreFittedTogether) {
     EXPECT_GT(c.gap_reduction({0, 1}).fraction, 0.9);
     EXPECT_LT(c.gap_reduction({0}).fraction, 0.8);
     const PartialFit fit = fit_part(c.data, c.split.fitted, c.data.gap, {0, 1}, replicates);
-    EXPECT_NEAR(fit.amplitudes[0], 4, 1.2);  // 18 correlated cells of noise one: 0.3 each
+    EXPECT_NEAR(fit.amplitudes[0], 4, 1.2);  // 18 correlated cells with noise 1: 0.3 each
     EXPECT_NEAR(fit.amplitudes[1], -3, 1.2);
     EXPECT_EQ(fit.nuisances.size(), 1);
 }
 
-TEST(GapReduction, OfNoiseIsNothingForSure) {
+TEST(GapReduction, OfNoiseIsNotSignificant) {
     int covered = 0;
     constexpr int cases = 20;
     for (int k = 0; k < cases; ++k) {
         const GapReduction s = Case(0, 50 + static_cast<std::uint64_t>(k)).gap_reduction({0});
         covered += s.interval[0] <= 0.1;
     }
-    EXPECT_GE(covered, 16);  // a 90 % interval of the part, whose true value is none
+    EXPECT_GE(covered, 16);  // a 90 % interval of the fraction, whose true value is zero
 }
 
-TEST(GapReduction, OnePartMissing) {
+TEST(GapReduction, IsZeroIfOnePartIsMissing) {
     const Case c(4);
     Proposal p;
     p.candidates = {0};

@@ -1,4 +1,4 @@
-// Covariances, whitening and refitted nuisances against formulas written out.
+// Covariances, whitening and fitted nuisances, compared with explicit formulas.
 #include "diagnose/infer/gap_space.h"
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ CellChoice first_cells(Eigen::Index number) {
     return cells;
 }
 
-/// Ledoit & Wolf 2004, written as sums over rows and pairs of cells, on standardised columns.
+/// Ledoit & Wolf 2004, as sums over rows and pairs of cells, for standardised columns.
 Eigen::MatrixXd by_double_loop(const Eigen::MatrixXd& x) {
     const Eigen::Index n = x.rows(), p = x.cols();
     Eigen::VectorXd sigma(p);
@@ -48,29 +48,29 @@ Eigen::MatrixXd by_double_loop(const Eigen::MatrixXd& x) {
     return covariance;
 }
 
-TEST(ShrunkCovariance, IsLedoitAndWolfs) {
+TEST(ShrunkCovariance, AgreesWithLedoitAndWolf) {
     for (const int rows : {6, 30}) {
         const Eigen::MatrixXd x = pick_columns(noise_rows(rows, 2, 5), first_cells(12)) * 1e-3;
         EXPECT_LT((shrunk_covariance(x) - by_double_loop(x)).norm(), 1e-12 * by_double_loop(x).norm());
     }
 }
 
-TEST(ShrunkCovariance, ManyRowsNeedNoShrinkage) {
+TEST(ShrunkCovariance, IsHardlyShrunkForManyRows) {
     const Eigen::MatrixXd x = pick_columns(noise_rows(5000, 1, 6), first_cells(8));
     const Eigen::MatrixXd sample = x.transpose() * x / 5000;
     EXPECT_LT((shrunk_covariance(x) - sample).norm(), 0.01 * sample.norm());
     EXPECT_NEAR(shrunk_covariance(x)(3, 4) / shrunk_covariance(x)(3, 3), 0.5, 0.05);
 }
 
-TEST(ShrunkCovariance, FewRowsStayPositiveDefinite) {
+TEST(ShrunkCovariance, IsPositiveDefiniteForFewRows) {
     const Eigen::MatrixXd x = pick_columns(noise_rows(5, 10, 7), first_cells(80));
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(shrunk_covariance(x));
     EXPECT_GT(eigen.eigenvalues().minCoeff(), 0.01);
     const Eigen::VectorXd variance = x.colwise().squaredNorm() / 5;
-    EXPECT_LT((shrunk_covariance(x).diagonal() - variance).norm(), 1e-12);  // variances are not touched
+    EXPECT_LT((shrunk_covariance(x).diagonal() - variance).norm(), 1e-12);  // variances are not changed
 }
 
-TEST(UsableCells, AreFiniteEverywhereAndVary) {
+TEST(UsableCells, AreFiniteInAllRowsAndVary) {
     SyntheticWorld world(2, 8);
     Evidence evidence = world.evidence(1, 6);
     world.add_effect(evidence, "adhesion", world.pattern(1));
@@ -85,7 +85,7 @@ TEST(UsableCells, AreFiniteEverywhereAndVary) {
               (CellChoice{0, 1, 3, 4, 6, 8, 10, 12, 13, 14, 15}));
 }
 
-TEST(Resolutions, AreTheObservables) {
+TEST(Resolutions, AreThoseOfTheObservables) {
     const auto list = resolutions({0, 7, 8, 15}, static_cast<Eigen::Index>(8 * observables().size()));
     EXPECT_EQ(list[0], observables()[0].resolution);
     EXPECT_EQ(list[1], observables()[0].resolution);
@@ -93,7 +93,7 @@ TEST(Resolutions, AreTheObservables) {
     EXPECT_EQ(list[3], observables()[1].resolution);
 }
 
-/// A space with two nuisances, extra variance and a mean of four, and its matrices.
+/// A space with two nuisances, an extra variance and a mean of four, and its matrices.
 struct DenseSpace {
     DenseSpace() {
         SyntheticWorld world(2, 9);
@@ -125,16 +125,16 @@ TEST(GapSpace, MarginalisesNuisances) {
     EXPECT_NEAR(d.space().whiten(d.gap).squaredNorm(), expected, 1e-9 * expected);
 }
 
-TEST(GapSpace, SigmasAreDrawnTowardsTheirObservables) {
+TEST(GapSpace, StandardDeviationsAreShrunkTowardsTheirObservable) {
     const DenseSpace d;
     const Eigen::ArrayXd own = d.noise_covariance.diagonal(), sigma = d.space().sigma();
     const double first = own.head(4).mean(), second = own.tail(3).mean();
-    // Twenty replicates and eight more that showed the mean.
+    // Twenty replicates, and eight more for the mean.
     for (Eigen::Index k = 0; k < 7; ++k)
         EXPECT_NEAR(sigma[k] * sigma[k], (20 * own[k] + 8 * (k < 4 ? first : second)) / 28, 1e-12) << k;
 }
 
-// The normal density of four cells, written out with the inverse and the determinant.
+// The normal density of four cells, written with the inverse and the determinant.
 TEST(GapSpace, LogLikelihoodIsTheNormalDensity) {
     Random random(5, Stream::positions);
     const auto cells_all = static_cast<Eigen::Index>(cells_of(synthetic_grid).size());
@@ -158,7 +158,7 @@ TEST(GapSpace, LogLikelihoodIsTheNormalDensity) {
 
 TEST(GapSpace, FitsNuisancesAsRidgeRegression) {
     const DenseSpace d;
-    // |L^-1 (gap - S shift)|^2 + |shift / prior|^2 as one system of least squares.
+    // |L^-1 (gap - S shift)|^2 + |shift / prior|^2 as one least-squares system.
     const Eigen::LLT<Eigen::MatrixXd> factor(d.noise_covariance);
     Eigen::MatrixXd system(9, 2);
     system.topRows(7) = factor.matrixL().solve(d.directions);
@@ -171,7 +171,7 @@ TEST(GapSpace, FitsNuisancesAsRidgeRegression) {
     EXPECT_LT((d.space().nuisance_errors() - covariance.diagonal().cwiseSqrt()).norm(), 1e-10);
 }
 
-TEST(GapSpace, SquareOfWhatIsWhitenedCountsTheCells) {
+TEST(GapSpace, SquareOfWhitenedNoiseIsTheNumberOfCells) {
     SyntheticWorld world(2, 11);
     const int rows = 2000;
     Eigen::MatrixXd noise(rows, world.noise().size());
@@ -183,7 +183,7 @@ TEST(GapSpace, SquareOfWhatIsWhitenedCountsTheCells) {
     for (int k = 0; k < draws; ++k)
         sum += space.whiten(world.noise() - world.noise() + 2 * world.random().normal() * free[0].direction)
                    .squaredNorm();
-    // Chi-square of 16: 3000 draws know the mean to 0.10, 2000 rows of noise their covariance to 1 %.
+    // Chi-square of 16: 3000 draws determine the mean to 0.10, 2000 rows of noise the covariance to 1 %.
     EXPECT_NEAR(sum / draws, 16, 0.5);
 }
 

@@ -1,4 +1,4 @@
-// False alarms and power of the two tests, by experiments drawn at random.
+// False alarms and power of the two tests, with random synthetic experiments.
 #include "diagnose/infer/gap_tests.h"
 
 #include <gtest/gtest.h>
@@ -14,10 +14,10 @@ namespace {
 constexpr int experiments = 200;
 
 struct Shares {
-    double omnibus = 0, directed = 0;  ///< of the experiments with p < 0.05
+    double omnibus = 0, directed = 0;  ///< fraction of experiments with p < 0.05
 };
 
-/// Everything is drawn anew for each experiment, the library included. `planted`: amplitude of the candidate.
+/// Every experiment has evidence and a library of its own. `planted`: amplitude of the candidate.
 Shares alarms(int packings, int replicates, double planted, int observables_known = 4) {
     Shares shares;
     for (int k = 0; k < experiments; ++k) {
@@ -38,7 +38,8 @@ Shares alarms(int packings, int replicates, double planted, int observables_know
     return shares;
 }
 
-// Of 200 experiments 5 % +- 1.5 % raise a false alarm; the null's own 32 replicates add as much again.
+// Of 200 experiments 5 % +- 1.5 % give a false alarm; the null distribution from 32 replicates adds as much
+// again.
 void expect_about_one_in_twenty(const Shares& shares) {
     EXPECT_GE(shares.omnibus, 0.005);
     EXPECT_LE(shares.omnibus, 0.12);
@@ -48,12 +49,12 @@ void expect_about_one_in_twenty(const Shares& shares) {
 
 TEST(GapTests, FalseAlarmsWithOnePacking) { expect_about_one_in_twenty(alarms(1, 32, 0)); }
 
-// Two replicates of a packing are mirror images of each other about their mean: only if they are left out
-// together does the null not know them.
+// Two replicates of a packing are mirror images of each other about their mean. The null distribution must
+// leave out both together.
 TEST(GapTests, FalseAlarmsWithManyPackings) { expect_about_one_in_twenty(alarms(16, 2, 0)); }
 
-/// Of 400 experiments without an effect, diagnosed with the fewest replicates that are accepted and as many
-/// cells as a whole experiment has, the parts with p below 0.01, 0.05, 0.2 and 0.5.
+/// 400 experiments without an effect, with the smallest number of replicates and the number of cells of a
+/// complete experiment: fractions with p below 0.01, 0.05, 0.2 and 0.5.
 TEST(GapTests, PIsUniformWithTheFewestReplicates) {
     constexpr int drawn = 400, replicates = 8;
     const double levels[] = {0.01, 0.05, 0.2, 0.5};
@@ -83,8 +84,7 @@ TEST(GapTests, PIsUniformWithTheFewestReplicates) {
 
 /// An experiment with eight replicates of its packing, and a library of twelve other packings with four
 /// replicates each. The scatter of a packing is one times a log-normal factor; `spread` is the standard
-/// deviation of the factor's logarithm. `own`: the factor of the experiment's packing; 0: drawn like the
-/// others.
+/// deviation of its logarithm. `own`: factor of the experiment's packing, or 0 to draw it like the others.
 Evidence other_packings(SyntheticWorld& world, double spread, double own, double planted = 0) {
     constexpr int packings = 12, replicates = 4, own_replicates = 8;
     const auto factor = [&] { return std::exp(spread * world.random().normal()); };
@@ -151,15 +151,15 @@ TEST(GapTests, PowerForAPackingThatScattersLessThanTheLibrary) {
     EXPECT_GE(gaps_claimed(0.3, 0.6, 1.2)[0], 0.9);
 }
 
-TEST(GapTests, PowerForWhatIsPlanted) {
-    // Amplitude 2.5 of a signature of 0.5 in each of 32 cells with noise one: some 6 sigma before
+TEST(GapTests, PowerForAPlantedEffect) {
+    // Amplitude 2.5 of a signature of 0.5 in each of 32 cells with noise 1: about 6 sigma without
     // correlations.
     const Shares shares = alarms(1, 32, 2.5);
     EXPECT_GT(shares.directed, 0.9);
     EXPECT_GT(shares.omnibus, 0.3);
 }
 
-TEST(GapTests, StatisticsOfOneGap) {
+TEST(GapTests, StatisticsOfOneGapAreCorrect) {
     SyntheticWorld world(3, 1);
     Evidence evidence = world.evidence(1, 30);
     world.add_effect(evidence, "adhesion", world.pattern(0.5));
@@ -170,7 +170,7 @@ TEST(GapTests, StatisticsOfOneGap) {
     const Eigen::VectorXd gap =
         data.gap + 4 * evidence.library.effects[1].linear + 3 * evidence.library.nuisances[0].linear;
     const GapStatistics s = gap_statistics(space, data, gap);
-    ASSERT_EQ(s.fits.size(), 3u);  // the modulus beyond its prior is a candidate too
+    ASSERT_EQ(s.fits.size(), 3u);  // the modulus beyond its prior is also a candidate
     EXPECT_EQ(s.best, 1u);
     EXPECT_EQ(data.name(s.best), "friction");
     EXPECT_EQ(data.effects, 2);
@@ -192,7 +192,7 @@ TEST(GapTests, StatisticsOfOneGap) {
     EXPECT_NEAR(s.highest_refitted, refitted, 1e-12);
 }
 
-double correlated_size(const Eigen::VectorXd& weights) {  // of SyntheticWorld's noise
+double correlated_size(const Eigen::VectorXd& weights) {  // of the noise of SyntheticWorld
     double square = 0;
     for (Eigen::Index i = 0; i < weights.size(); ++i)
         for (Eigen::Index j = 0; j < weights.size(); ++j)
@@ -200,20 +200,20 @@ double correlated_size(const Eigen::VectorXd& weights) {  // of SyntheticWorld's
     return std::sqrt(square);
 }
 
-TEST(GapTests, PatternsOfOneObservable) {
+TEST(GapTests, PatternsOfOneObservableAreDetected) {
     SyntheticWorld world(3, 5);
     const Evidence evidence = world.evidence(1, 2000, 0);
     const GapData data = gap_data(evidence);
     const GapSpace space(data.noise, 0, data.cells, {});
-    // As the plate passes them: the first four on the way down, the last four, listed by displacement, going
-    // up.
+    // In the plate's order: the first four while it moves down; the last four, listed by displacement, while
+    // it moves up.
     Eigen::VectorXd trend{{-3.5, -2.5, -1.5, -0.5, 3.5, 2.5, 1.5, 0.5}};
     const auto in_second_observable = [&](const Eigen::VectorXd& values) {
         Eigen::VectorXd gap = Eigen::VectorXd::Zero(data.mean.size());
         gap.segment(8, 8) = values;
         return gap;
     };
-    // 2000 replicates know variances to 3 %, and the smallest of correlations are shrunk away.
+    // 2000 replicates determine variances to 3 %; the smallest correlations are removed by shrinkage.
     EXPECT_NEAR(highest_pattern(space, in_second_observable(trend)),
                 trend.squaredNorm() / correlated_size(trend),
                 0.06 * trend.squaredNorm() / correlated_size(trend));
@@ -225,7 +225,7 @@ TEST(GapTests, PatternsOfOneObservable) {
     EXPECT_NEAR(highest_pattern(space, in_second_observable(one)), 7, 0.06 * 7);
 }
 
-TEST(GapTests, MisfitSeesAPatternThatDrownsInTheSum) {
+TEST(GapTests, MisfitDetectsAPatternThatTheSumDoesNotShow) {
     constexpr int tries = 100;
     int even = 0, thin = 0;
     for (int k = 0; k < tries; ++k) {
@@ -236,7 +236,7 @@ TEST(GapTests, MisfitSeesAPatternThatDrownsInTheSum) {
         const NullDistribution null(data, 32, 1);
         even += null.misfit_p(space, data.gap) < 0.05;
         Eigen::VectorXd left = data.gap;
-        left.segment(8, 8).array() += 3;  // one of twenty observables: chi-square 160 +- 18, and 24 more
+        left.segment(8, 8).array() += 3;  // one of twenty observables: chi-square 160 +- 18, plus 24
         thin += null.misfit_p(space, left) < 0.05;
     }
     EXPECT_LE(even, 14) << "5 +- 2.2 of them, and the null's own error";
@@ -258,13 +258,13 @@ TEST(NullDistribution, QuantileIsTheInverseOfP) {
                                  null.quantile(&GapStatistics::highest_refitted, p)),
                     p, 1e-9);
     EXPECT_EQ(null.p_value(&GapStatistics::directed, 0), 1);
-    // As many draws lie above the median as below it: 72 draws, 4 sigma.
+    // Equal numbers of draws above and below the median: 72 draws, 4 sigma.
     const double median = null.quantile(&GapStatistics::omnibus, 0.5);
     EXPECT_NEAR(std::ranges::count_if(draws, [&](const GapStatistics& s) { return s.omnibus > median; }), 36,
                 17);
 }
 
-TEST(NullDistribution, DependsOnItsSeedOnly) {
+TEST(NullDistribution, DependsOnlyOnItsSeed) {
     SyntheticWorld world(2, 3);
     Evidence evidence = world.evidence(1, 16);
     world.add_nuisance(evidence, "modulus", world.pattern(1), 2);
@@ -276,7 +276,7 @@ TEST(NullDistribution, DependsOnItsSeedOnly) {
     EXPECT_NE(p(1), p(2));
 }
 
-TEST(Evidence, FoldsKeepPackingsTogether) {
+TEST(Evidence, FoldsDoNotSplitPackings) {
     SyntheticWorld world(1, 4);
     Evidence evidence = world.evidence(9, 3);
     const GapData data = gap_data(evidence);
@@ -286,7 +286,7 @@ TEST(Evidence, FoldsKeepPackingsTogether) {
     for (std::size_t r = 0; r < 12; ++r) EXPECT_EQ(alone.fold[r], static_cast<int>(r) % 8);
 }
 
-TEST(Evidence, OwnReplicatesArePartOfTheNoiseWhereTheLibraryIsOfOthers) {
+TEST(Evidence, OwnReplicatesJoinTheNoiseOfALibraryOfOtherPackings) {
     SyntheticWorld world(20, 5);
     Evidence evidence = other_packings(world, 0.3, 0);
     const GapData data = gap_data(evidence);
@@ -300,14 +300,15 @@ TEST(Evidence, OwnReplicatesArePartOfTheNoiseWhereTheLibraryIsOfOthers) {
     evidence.library_is_own = true;
     EXPECT_EQ(gap_data(evidence).noise.rows(), 48);
     evidence.library_is_own = false;
-    for (int& packing : evidence.library.packing) packing %= 7;  // the experiment's own may be among so few
+    for (int& packing : evidence.library.packing)
+        packing %= 7;  // the experiment's own packing may be among them
     EXPECT_EQ(gap_data(evidence).noise.rows(), 48);
     for (std::size_t r = 0; r < 48; ++r) evidence.library.packing[r] = static_cast<int>(r / 4);
-    evidence.baseline.conservativeResize(3, Eigen::NoChange);  // too few to say anything
+    evidence.baseline.conservativeResize(3, Eigen::NoChange);  // too few to be used
     EXPECT_EQ(gap_data(evidence).noise.rows(), 48);
 }
 
-TEST(Evidence, GapIsObservedLessTheBaselinesMean) {
+TEST(Evidence, GapIsObservedMinusTheBaselinesMean) {
     SyntheticWorld world(1, 5);
     Evidence evidence = world.evidence(2, 3);
     evidence.baseline(1, 4) = not_available;
@@ -318,7 +319,7 @@ TEST(Evidence, GapIsObservedLessTheBaselinesMean) {
     EXPECT_EQ(data.cells, (CellChoice{0, 1, 2, 3, 4, 5, 6, 7}));
 }
 
-TEST(Evidence, EveryNameNeedsASignature) {
+TEST(Evidence, EveryNameRequiresASignature) {
     SyntheticWorld world(1, 6);
     Evidence evidence = world.evidence(1, 8);
     evidence.candidates.push_back({"adhesion", "", 0, 1});

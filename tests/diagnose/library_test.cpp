@@ -1,4 +1,4 @@
-// Libraries survive their file; what is no library of this program is refused.
+// Libraries are read back as they were written; files that are not valid libraries are refused.
 #include "diagnose/infer/library.h"
 
 #include <gmock/gmock.h>
@@ -28,7 +28,7 @@ protected:
         world.add_nuisance(evidence, "modulus", world.pattern(1.0 / 3), 1);
         library = evidence.library;
         library.effects[0].curvature = world.pattern(1e-17);
-        library.effects[0].variance = world.noise();  // not-a-number beyond the first cells
+        library.effects[0].variance = world.noise();  // NaN beyond the first cells
         library.provenance = {{"program", "0.1"}, {"device", "\"any\""}};
         library.origin = {{"grains.friction", "0.03"}};
         library.grid.force.assign(library.grid.displacement.size(), 0.1);
@@ -54,7 +54,7 @@ private:
     std::filesystem::path folder_;
 };
 
-/// Bit for bit, but one not-a-number is as good as another.
+/// True if all bits are equal; any two NaN are equal.
 void expect_same(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
     ASSERT_EQ(a.rows(), b.rows());
     ASSERT_EQ(a.cols(), b.cols());
@@ -75,7 +75,7 @@ void expect_same(const std::vector<Signature>& a, const std::vector<Signature>& 
     }
 }
 
-TEST_F(LibraryFile, RoundTrip) {
+TEST_F(LibraryFile, IsReadBackAsWritten) {
     const Library back = read_library(file());
     EXPECT_EQ(back.grid.displacement, library.grid.displacement);
     EXPECT_EQ(back.grid.width, library.grid.width);
@@ -91,12 +91,12 @@ TEST_F(LibraryFile, RoundTrip) {
     expect_same(back.nuisances, library.nuisances);
 }
 
-TEST_F(LibraryFile, Missing) {
+TEST_F(LibraryFile, IsRefusedIfMissing) {
     std::filesystem::remove(file());
     expect_refused("there is no signature library");
 }
 
-TEST_F(LibraryFile, Damaged) {
+TEST_F(LibraryFile, IsRefusedIfDamaged) {
     std::ifstream in(file());
     const std::string text{std::istreambuf_iterator<char>(in), {}};
     replace(text.substr(0, text.size() / 2));
@@ -110,42 +110,42 @@ TEST_F(LibraryFile, Damaged) {
     expect_refused("not a signature library");
 }
 
-TEST_F(LibraryFile, OfAnotherVersion) {
+TEST_F(LibraryFile, IsRefusedIfOfAnotherVersion) {
     auto json = content();
     json["format"] = json["format"].get<int>() + 1;
     replace(json.dump());
     expect_refused("of another version");
 }
 
-TEST_F(LibraryFile, WhoseOriginWasChanged) {
+TEST_F(LibraryFile, IsRefusedIfItsOriginWasChanged) {
     auto json = content();
     json["origin"]["grains.friction"] = "0.9";
     replace(json.dump());
     expect_refused("what it says of its origin was changed");
 }
 
-TEST_F(LibraryFile, WhoseNumbersWereChanged) {
+TEST_F(LibraryFile, IsRefusedIfItsNumbersWereChanged) {
     auto json = content();
     json["baseline"][0][0] = 7.5;
     replace(json.dump());
     expect_refused("it was changed since it was written");
 }
 
-TEST_F(LibraryFile, IsNotWrittenTwice) {
+TEST_F(LibraryFile, IsNotOverwritten) {
     const auto before = content();
     EXPECT_THAT([&] { write_library(file(), library); },
                 ThrowsMessage<InputError>(HasSubstr("is not replaced")));
     EXPECT_EQ(content(), before);
 }
 
-TEST_F(LibraryFile, OfOtherObservables) {
+TEST_F(LibraryFile, IsRefusedIfItHasOtherObservables) {
     auto json = content();
     json["baseline"][2].erase(0);
     replace(json.dump());
     expect_refused("it has other observables than this program");
 }
 
-TEST_F(LibraryFile, WithASignatureOfAnotherLength) {
+TEST_F(LibraryFile, IsRefusedIfASignatureHasAnotherLength) {
     for (const char* part : {"linear", "curvature", "variance"}) {
         replace(library_text(library));
         auto json = content();
@@ -160,7 +160,7 @@ TEST_F(LibraryFile, WithASignatureOfAnotherLength) {
     expect_refused("it has other observables than this program");
 }
 
-TEST_F(LibraryFile, WithoutReplicates) {
+TEST_F(LibraryFile, IsRefusedWithoutReplicates) {
     auto json = content();
     json["packing"] = nlohmann::json::array();
     replace(json.dump());
@@ -177,7 +177,7 @@ TEST(Scatter, IsThatOfOneReplicateWithinItsPacking) {
     EXPECT_LT((apart - Eigen::Matrix<double, 5, 1>(-two, -10 * three, two, 0, 10 * three)).norm(), 1e-12);
 }
 
-TEST(Scatter, OfSingleReplicatesIsThatOverPackings) {
+TEST(Scatter, IsTheScatterOverPackingsIfReplicatesAreSingle) {
     Library library;
     library.packing = {0, 1, 2};
     library.baseline.resize(3, 1);

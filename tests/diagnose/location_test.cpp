@@ -1,4 +1,4 @@
-// A planted difference is found where it is, and nowhere on replicates.
+// A planted difference is located at its cells; replicates without a difference have none.
 #include "diagnose/decide/location.h"
 
 #include <gtest/gtest.h>
@@ -32,10 +32,10 @@ struct Case {
     NullDistribution null{data, replicates, 1};
 };
 
-/// Of the library's observables: the third, unloading, second and third displacement.
+/// Observable of the library: the third, unloading, second and third displacement.
 constexpr Eigen::Index planted = 8 * 2 + 4 + 1;
 
-TEST(Location, PlantedCellsWithTheirRange) {
+TEST(Location, FindsPlantedCellsAndTheirRange) {
     const Case c(1);
     Eigen::VectorXd gap = Eigen::VectorXd::Constant(c.data.mean.size(), not_available);
     gap.head(c.world.known()).setZero();
@@ -59,7 +59,7 @@ TEST(Location, PlantedCellsWithTheirRange) {
         1e-9);
 }
 
-TEST(Location, NeverBeyondTheStroke) {
+TEST(Location, RangesDoNotExceedTheStroke) {
     const Case c(1);
     Eigen::VectorXd gap = Eigen::VectorXd::Zero(c.data.mean.size());
     gap[3] = -9;
@@ -69,12 +69,12 @@ TEST(Location, NeverBeyondTheStroke) {
     EXPECT_LT(found.entries[0].z_score, 0);
 }
 
-TEST(Location, LargestFirst) {
+TEST(Location, LargestIsFirst) {
     const Case c(1);
     Eigen::VectorXd gap = Eigen::VectorXd::Zero(c.data.mean.size());
     gap[0] = 8;
     gap[8] = -12;
-    gap[2] = 9;  // not a neighbour of the first: the cell between them stands out by nothing
+    gap[2] = 9;  // not adjacent to the first: the cell between them has no difference
     const Location found = c.locate_gap(gap);
     ASSERT_EQ(found.entries.size(), 3u);
     EXPECT_EQ(found.entries[0].observable, observables()[1].name);
@@ -93,7 +93,7 @@ TEST(Location, AllCellsAreListed) {
     EXPECT_NEAR(found.cells[planted].z_score, c.data.gap[planted] / c.space.sigma()[planted], 1e-12);
 }
 
-TEST(Location, NothingStandsOutOfReplicates) {
+TEST(Location, ReplicatesHaveNoSignificantCells) {
     int alarms = 0;
     constexpr int draws = 200;
     for (int k = 0; k < draws; ++k) {

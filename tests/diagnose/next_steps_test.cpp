@@ -1,4 +1,4 @@
-// What would help most, predicted from the signatures.
+// Recommended next measurements, predicted from the signatures.
 #include "diagnose/decide/next_steps.h"
 
 #include <gmock/gmock.h>
@@ -18,7 +18,7 @@ using ::testing::Field;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// Two effects that act alike but for `apart`, the first of them planted.
+/// Two effects whose signatures differ by `apart`; the first one is planted.
 Evidence two_alike(SyntheticWorld& world, double apart, double amplitude) {
     Evidence evidence = world.evidence(1, 32);
     const Eigen::VectorXd shape = world.pattern(1);
@@ -29,7 +29,7 @@ Evidence two_alike(SyntheticWorld& world, double apart, double amplitude) {
     return evidence;
 }
 
-TEST(NextSteps, OfAGroupDistinguishItsMembers) {
+TEST(NextSteps, DistinguishTheMembersOfAGroup) {
     SyntheticWorld world(6, 3);
     const Evidence evidence = two_alike(world, 0.05, 4);
     const DiagnosisBuilder draft(evidence, {});
@@ -42,7 +42,7 @@ TEST(NextSteps, OfAGroupDistinguishItsMembers) {
     EXPECT_THAT(steps, Contains(Field(&NextStep::what, HasSubstr("hold the plate"))));
     for (std::size_t k = 1; k < steps.size(); ++k)
         EXPECT_LE(steps[k].power.value_or(0), steps[k - 1].power.value_or(0)) << "the most useful first";
-    // Twice as far apart, more of such experiments would tell.
+    // At twice the difference, more of such experiments would distinguish them.
     SyntheticWorld again(6, 3);
     const Evidence farther = two_alike(again, 0.1, 4);
     const DiagnosisBuilder other(farther, {});
@@ -51,8 +51,8 @@ TEST(NextSteps, OfAGroupDistinguishItsMembers) {
     }
 }
 
-// The power that is predicted is the part of experiments in which the likelihoods part by the margin.
-TEST(NextSteps, PredictedPowerIsMet) {
+// The predicted power equals the fraction of experiments in which the likelihoods differ by the margin.
+TEST(NextSteps, PredictedPowerIsCorrect) {
     constexpr int drawn = 60;
     double predicted = 0;
     int told = 0, groups = 0;
@@ -65,7 +65,7 @@ TEST(NextSteps, PredictedPowerIsMet) {
             if (step.what.find("3 more packings") != std::string::npos) {
                 predicted += *step.power;
                 ++groups;
-                // The mean of four experiments, seen with half the scatter.
+                // The mean of four experiments has half the scatter.
                 Evidence four = evidence;
                 four.observed = evidence.baseline.colwise().mean().transpose() +
                                 4 * evidence.library.effects[0].linear + 0.5 * world.noise();
@@ -81,7 +81,7 @@ TEST(NextSteps, PredictedPowerIsMet) {
     EXPECT_NEAR(static_cast<double>(told) / groups, predicted / groups, 0.2);
 }
 
-TEST(NextSteps, WithoutAGapTheLimitsFall) {
+TEST(NextSteps, WithoutAGapTheyLowerTheDetectionLimits) {
     SyntheticWorld world(6, 5);
     Evidence evidence = world.evidence(1, 32);
     const Eigen::VectorXd modulus = world.pattern(2);

@@ -1,4 +1,4 @@
-// Recordings as vectors: local lines through the scans near a cell.
+// Recordings as vectors: local linear regression through the scans near a cell.
 #include "diagnose/observe/observation.h"
 
 #include <fmt/format.h>
@@ -32,7 +32,7 @@ Recording recording_of(std::vector<Scan> scans) {
 
 const Grid grid{{0.01, 0.02}, 0.004, stroke};
 
-/// Top force, loading at both displacements, then unloading.
+/// Top force while loading at both displacements, then while unloading.
 std::array<double, 4> top_forces(const Recording& recording, int discard = 0) {
     const Eigen::VectorXd all = observe(recording, grid, soft_material(), discard);
     EXPECT_EQ(all.size(), static_cast<Eigen::Index>(cells_of(grid).size()));
@@ -40,7 +40,7 @@ std::array<double, 4> top_forces(const Recording& recording, int discard = 0) {
     return {all[0], all[1], all[2], all[3]};
 }
 
-TEST(Observation, LocalLineIsExactForLinearData) {
+TEST(Observation, LocalRegressionIsExactForLinearData) {
     for (const double shift : {0.0, 0.3e-3, 0.7e-3, 1.1e-3}) {
         Recording recording = recording_of({});
         for (double d = shift; d <= stroke; d += 1.3e-3) {
@@ -55,16 +55,16 @@ TEST(Observation, LocalLineIsExactForLinearData) {
     }
 }
 
-TEST(Observation, TriangularWeights) {
-    // Scans at -3/4, 0 and 1/2 of the width: weights 1/4, 1, 1/2. Weighted line through (0.8, 1, 1.5), by
-    // hand.
+TEST(Observation, LocalRegressionHasTriangularWeights) {
+    // Scans at -3/4, 0 and 1/2 of the width have the weights 1/4, 1, 1/2. The weighted line through (0.8, 1,
+    // 1.5) was computed by hand.
     const Recording recording =
         recording_of({plate_scan(0.007, 0.8), plate_scan(0.010, 1.0), plate_scan(0.012, 1.5)});
     const double n = 1.75, x = -0.1875 + 0.25, xx = 0.140625 + 0.125, y = 0.2 + 1 + 0.75, xy = -0.15 + 0.375;
     EXPECT_NEAR(top_forces(recording)[0], (xx * y - x * xy) / (n * xx - x * x), 1e-9);
 }
 
-TEST(Observation, BeyondTheWidthNothingCounts) {
+TEST(Observation, ScansBeyondTheWidthDoNotCount) {
     const std::vector<Scan> inside{plate_scan(0.009, 1), plate_scan(0.011, 2)};
     auto outside = inside;
     outside.push_back(plate_scan(0.0141, 9));
@@ -74,19 +74,19 @@ TEST(Observation, BeyondTheWidthNothingCounts) {
     EXPECT_NE(top_forces(recording_of(outside))[0], top_forces(recording_of(inside))[0]);
 }
 
-TEST(Observation, OneScanCountsWhereItIsNear) {
+TEST(Observation, ASingleScanCountsIfItIsNear) {
     EXPECT_NEAR(top_forces(recording_of({plate_scan(0.0103, 1.7)}))[0], 1.7, 1e-12);
     EXPECT_TRUE(std::isnan(top_forces(recording_of({plate_scan(0.011, 1.7)}))[0]));
     EXPECT_TRUE(std::isnan(top_forces(recording_of({}))[0]));
 }
 
-TEST(Observation, NeedsAForceOnThePlate) {
+TEST(Observation, RequiresAForceOnThePlate) {
     Recording recording = recording_of({plate_scan(0.009, 1), plate_scan(0.010, 1), plate_scan(0.011, 1)});
     recording.scans[1].wall_force = no_wall_forces();
     EXPECT_NEAR(top_forces(recording)[0], 1, 1e-12);
 }
 
-TEST(Observation, CyclesAreAveragedAfterThoseDiscarded) {
+TEST(Observation, CyclesAreAveragedWithoutTheDiscardedOnes) {
     Recording recording = recording_of({});
     for (int cycle = 0; cycle < 3; ++cycle)
         for (double d = 0.0005; d < stroke; d += 0.001)
@@ -97,7 +97,7 @@ TEST(Observation, CyclesAreAveragedAfterThoseDiscarded) {
     EXPECT_NEAR(top_forces(recording)[1], 2 + 4, 1e-9);
 }
 
-TEST(Observation, CellsByObservableThenPhaseThenDisplacement) {
+TEST(Observation, CellsAreOrderedByObservableThenPhaseThenDisplacement) {
     const auto cells = cells_of(grid);
     ASSERT_EQ(cells.size(), 4 * observables().size());
     for (std::size_t k = 0; k < cells.size(); ++k) {
@@ -107,7 +107,7 @@ TEST(Observation, CellsByObservableThenPhaseThenDisplacement) {
     }
 }
 
-TEST(Observation, OtherObservablesStandInTheirCells) {
+TEST(Observation, OtherObservablesAreInTheirCells) {
     const Lattice lattice(5);
     Recording recording = lattice.recording;
     recording.scans = {lattice.scan, lattice.scan};
@@ -129,7 +129,7 @@ TEST(Observation, OtherObservablesStandInTheirCells) {
     }
 }
 
-/// `scans` a stroke, at equal distances down to `stroke`, and up again.
+/// `scans` per stroke, at equal distances down to `stroke` and up again.
 Recording strokes(int scans, int cycles) {
     Recording recording = recording_of({plate_scan(0, 0)});
     recording.scans.clear();
@@ -153,7 +153,7 @@ TEST(Grid, FollowsTheStrokeAndTheScans) {
     }
 }
 
-/// Down in three scans, held at 20 mm, up again.
+/// Down in three scans, a hold at 20 mm, up again.
 Recording held_recording(const std::string& keep) {
     Stage down, hold, up;
     down.position = start - 0.02;
@@ -171,13 +171,13 @@ Recording held_recording(const std::string& keep) {
     return recording;
 }
 
-/// Of one observable: loading at all displacements, then unloading.
+/// Cells of one observable: loading at all displacements, then unloading.
 Eigen::VectorXd values_of(const Recording& recording, const Grid& g, Eigen::Index observable) {
     const auto each = static_cast<Eigen::Index>(2 * g.displacement.size());
     return observe(recording, g, soft_material()).segment(observable * each, each);
 }
 
-TEST(Observation, AHoldOfThePositionShowsRelaxationWhereItIs) {
+TEST(Observation, APositionHoldShowsRelaxationInItsCell) {
     const Recording recording = held_recording("position");
     const Grid g = grid_of(recording);
     ASSERT_EQ(g.holds.size(), 1u);
@@ -191,14 +191,14 @@ TEST(Observation, AHoldOfThePositionShowsRelaxationWhereItIs) {
     EXPECT_FALSE(values_of(recording, g, index_of(OfProgramme::displacement)).array().isFinite().any());
 }
 
-TEST(Observation, AHoldOfTheForceShowsCreep) {
+TEST(Observation, AForceHoldShowsCreep) {
     const Recording recording = held_recording("force");
     const Eigen::VectorXd creep = values_of(recording, grid_of(recording), index_of(OfProgramme::creep));
     EXPECT_NEAR(creep[3], 0.001 / 0.021, 1e-12);
 }
 
-// What was measured while the plate stood still belongs to no stroke.
-TEST(Observation, ScansOfAHoldAreNoneOfTheStroke) {
+// Scans of a hold are not part of a stroke.
+TEST(Observation, ScansOfAHoldAreNotPartOfTheStroke) {
     Recording recording = held_recording("position");
     const Grid g = grid_of(recording);
     const Eigen::VectorXd before = values_of(recording, g, 0);
@@ -208,7 +208,7 @@ TEST(Observation, ScansOfAHoldAreNoneOfTheStroke) {
         EXPECT_TRUE(before[k] == after[k] || (std::isnan(before[k]) && std::isnan(after[k])));
 }
 
-TEST(Observation, AHoldWithoutAScanBeforeItBeginsWithItsFirst) {
+TEST(Observation, AHoldWithoutAScanBeforeItStartsWithItsFirst) {
     Recording recording = held_recording("position");
     recording.parameters["programme.1.scan_at"] = fmt::format("[{}]", start - 0.01);
     std::erase_if(recording.scans, [](const Scan& scan) {
@@ -220,8 +220,9 @@ TEST(Observation, AHoldWithoutAScanBeforeItBeginsWithItsFirst) {
     EXPECT_EQ(g.holds[0].end, 3);
 }
 
-// Under set forces the displacement is what differs, at forces that loading has at the displacements.
-TEST(Observation, WhereForcesAreSetDisplacementsAreCompared) {
+// With prescribed forces displacements are compared, at the forces that loading has at the displacements of
+// the grid.
+TEST(Observation, DisplacementsAreComparedIfForcesArePrescribed) {
     Recording recording = recording_of({});
     for (double d = 0; d <= stroke; d += stroke / 30) {
         recording.scans.push_back(plate_scan(d, std::log(100 * d)));

@@ -1,4 +1,4 @@
-// Regressions recover what was put in.
+// Regressions find the coefficients from which data were generated.
 #include "diagnose/observe/overlap_regression.h"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ ContactResidual contact(int grain, int partner, double implied, double cross_con
     return c;
 }
 
-/// Six contacts a grain between random partners, implied overlaps uniform in 0.02 to 0.14.
+/// Six contacts per grain with random partners; overlaps from forces are uniform in 0.02 to 0.14.
 std::vector<ContactResidual> random_contacts(int grains, std::uint64_t seed) {
     Random random(seed, Stream::positions);
     std::vector<ContactResidual> contacts;
@@ -39,13 +39,13 @@ Recording grains_of(std::size_t number) {
     return recording;
 }
 
-TEST(GrainOverlaps, CoefficientsThatWerePutIn) {
+TEST(GrainOverlaps, CoefficientsAreFound) {
     auto contacts = random_contacts(50, 1);
     for (ContactResidual& c : contacts)
         c.measured =
             c.implied - (0.01 + 0.2 * c.implied - 1.5 * c.implied * c.implied + 0.7 * c.cross_contact);
     for (int k = 0; k < 30; ++k)
-        contacts.push_back(contact(k, wall_partner(Wall::floor), 0.1, 0.3, 5));  // not looked at
+        contacts.push_back(contact(k, wall_partner(Wall::floor), 0.1, 0.3, 5));  // ignored
     const auto fit = grain_overlaps(grains_of(50), contacts);
     EXPECT_NEAR(fit[0], 0.01, 1e-9);
     EXPECT_NEAR(fit[1], 0.2, 1e-8);
@@ -54,7 +54,7 @@ TEST(GrainOverlaps, CoefficientsThatWerePutIn) {
     EXPECT_NEAR(fit[4], 0, 1e-9);
 }
 
-TEST(GrainOverlaps, ScatterOfContactsAndOfGrains) {
+TEST(GrainOverlaps, ScatterOfContactsAndOfGrainsIsSeparated) {
     const int grains = 2000;
     auto contacts = random_contacts(grains, 2);
     Random random(3, Stream::positions);
@@ -64,13 +64,13 @@ TEST(GrainOverlaps, ScatterOfContactsAndOfGrains) {
         c.measured = c.implied - own[static_cast<std::size_t>(c.grain)] -
                      own[static_cast<std::size_t>(c.partner)] - 0.003 * random.normal();
     const auto fit = grain_overlaps(grains_of(own.size()), contacts);
-    // 2000 values of `own` know their standard deviation to 1.6 %; four of those errors.
+    // 2000 values of `own` determine their standard deviation to 1.6 %; four of those errors.
     EXPECT_NEAR(fit[4], std::sqrt(2 * 0.004 * 0.004 + 0.003 * 0.003), 0.065 * 0.0064);
     EXPECT_NEAR(fit[5], 0.004, 0.065 * 0.004);
     EXPECT_LT(fit[6], 0.0012);
 }
 
-TEST(GrainOverlaps, ScatterInProportionToTheOverlap) {
+TEST(GrainOverlaps, ScatterProportionalToTheOverlapIsFound) {
     const int grains = 2000;
     auto contacts = random_contacts(grains, 2);
     Random random(3, Stream::positions);
@@ -86,7 +86,7 @@ TEST(GrainOverlaps, ScatterInProportionToTheOverlap) {
     EXPECT_LT(fit[5], 0.2 * 0.02 * variance / (mean * mean) + 0.0005);
 }
 
-TEST(GrainOverlaps, NeedFiveContactsATerm) {
+TEST(GrainOverlaps, RequireFiveContactsPerTerm) {
     auto contacts = random_contacts(50, 1);
     contacts.resize(19);
     for (const double value : grain_overlaps(grains_of(50), contacts)) EXPECT_TRUE(std::isnan(value));
@@ -95,7 +95,7 @@ TEST(GrainOverlaps, NeedFiveContactsATerm) {
     for (const double value : grain_overlaps(grains_of(50), contacts)) EXPECT_TRUE(std::isfinite(value));
 }
 
-TEST(ContactOccurrence, AcrossGapsAndSilent) {
+TEST(ContactOccurrence, ContactsAcrossGapsAndOverlapsWithoutForceAreCounted) {
     const double d = 0.02;
     Recording recording = grains_of(5);
     recording.box = {0.2, 0.2};
@@ -104,7 +104,7 @@ TEST(ContactOccurrence, AcrossGapsAndSilent) {
     const Vec3 start(0.05, 0.05, 0.05);
     scan.position = {start, start + Vec3(0.97 * d, 0, 0), start + Vec3(1.99 * d, 0, 0),
                      start + Vec3(0, 0.97 * d, 0), start + Vec3(1.99 * d, 0.997 * d, 0)};
-    // 0-1 overlap and touch, 2-1 touch across a gap, 0-3 overlap silently, 2-4 hardly overlap.
+    // 0-1 overlap and touch, 2-1 touch across a gap, 0-3 overlap without force, 2-4 hardly overlap.
     const std::vector<ContactResidual> contacts{contact(0, 1, 0.1, 0, 0), contact(2, 1, 0.01, 0, 0.05),
                                                 contact(3, wall_partner(Wall::floor), 0.01, 0, 0.05),
                                                 contact(4, 1, 0.1, 0, 0)};
@@ -113,7 +113,7 @@ TEST(ContactOccurrence, AcrossGapsAndSilent) {
     EXPECT_NEAR(occurrence[1], 1 / 5.0, 1e-12);
 }
 
-TEST(WallOverlaps, OffsetsAndSlopes) {
+TEST(WallOverlaps, OffsetsAndSlopesAreFound) {
     Recording recording = grains_of(40);
     recording.box = {0.2, 0.1};
     Scan scan;
@@ -133,13 +133,14 @@ TEST(WallOverlaps, OffsetsAndSlopes) {
     const auto fit = wall_overlaps(recording, scan, contacts);
     const double put_in[] = {0.005, -0.3, -0.04, 0.01, 0.02, -0.03};
     for (int k = 0; k < 6; ++k) EXPECT_NEAR(fit[static_cast<std::size_t>(k)], put_in[k], 1e-10) << k;
-    contacts.resize(4 * 14);  // 14 plate contacts are too few for three terms, 14 at the sides enough for two
+    contacts.resize(
+        4 * 14);  // 14 plate contacts are too few for three terms, 14 side contacts are sufficient for two
     const auto fewer = wall_overlaps(recording, scan, contacts);
     EXPECT_TRUE(std::isnan(fewer[3]));
     EXPECT_NEAR(fewer[0], 0.005, 1e-10);
 }
 
-TEST(WallOverlaps, TiltOfThePlate) {
+TEST(WallOverlaps, TiltOfThePlateIsFound) {
     const double radius = 0.01, slope = 0.02, overlap = 0.05;  // over R
     Lattice lattice(5, 2 * radius);
     const auto material = soft_material();
@@ -155,7 +156,7 @@ TEST(WallOverlaps, TiltOfThePlate) {
                                    contact_residuals(lattice.recording, lattice.scan, material));
     EXPECT_NEAR(fit[3], 0, 1e-10);
     EXPECT_NEAR(fit[4], -slope * 0.05 / radius,
-                1e-10);  // where the plate is higher, less overlap than measured
+                1e-10);  // where the plate is higher, the overlap is smaller than measured
     EXPECT_NEAR(fit[5], 0, 1e-10);
 }
 

@@ -1,4 +1,4 @@
-// Several packings of one experiment: what they share, and what sets them apart.
+// Several packings of one experiment: common effects and differences.
 #include "diagnose/decide/packings.h"
 
 #include <gmock/gmock.h>
@@ -14,8 +14,8 @@ using ::testing::IsEmpty;
 
 constexpr int replicates = 16;
 
-/// Two packings that differ as packings do; "adhesion", of this size in every cell, acts on them with the
-/// amplitudes given.
+/// Two packings with the scatter of packings. "adhesion" acts on every cell of both, with the given
+/// amplitudes.
 Evidence two_packings(double first, double second, std::uint64_t seed, double size = 0.4) {
     SyntheticWorld world(6, seed);
     Evidence evidence = world.evidence(2, replicates);
@@ -34,7 +34,7 @@ Evidence two_packings(double first, double second, std::uint64_t seed, double si
     return evidence;
 }
 
-TEST(Packings, OneEffectIsGivenOneAmplitude) {
+TEST(Packings, ACommonEffectHasOneAmplitude) {
     const Evidence evidence = two_packings(3, 3, 5);
     const Diagnosis d = DiagnosisBuilder(evidence, {}).diagnosis();
     ASSERT_EQ(d.verdict, Verdict::effect);
@@ -51,7 +51,7 @@ TEST(Packings, OneEffectIsGivenOneAmplitude) {
     }
 }
 
-TEST(Packings, AnEffectInOneOfThemIsNotShared) {
+TEST(Packings, AnEffectInOneOfThemIsNotCommon) {
     const Diagnosis d = DiagnosisBuilder(two_packings(5, -5, 5), {}).diagnosis();
     ASSERT_EQ(d.packings.size(), 2u);
     for (const PackingAgreement& packing : d.packings) {
@@ -60,15 +60,14 @@ TEST(Packings, AnEffectInOneOfThemIsNotShared) {
     }
 }
 
-// Signatures are known to a tenth: packings may answer a strong effect that differently.
-TEST(Packings, AStrongEffectIsNotQuiteTheSameInBoth) {
+// Signatures have an error of a tenth: packings may respond to a strong effect with this difference.
+TEST(Packings, AStrongEffectMayDifferSlightlyBetweenPackings) {
     const Diagnosis d = DiagnosisBuilder(two_packings(8, 7.4, 5, 3), {}).diagnosis();
     ASSERT_EQ(d.verdict, Verdict::effect);
     for (const PackingAgreement& packing : d.packings) EXPECT_FALSE(packing.differs);
 }
 
-/// Over experiments without an effect the joint p and that of agreement are below a level as often as it
-/// says.
+/// Experiments without an effect: the joint p and the p of agreement are uniformly distributed.
 TEST(Packings, WithoutAnEffectAllPAreUniform) {
     constexpr int drawn = 200;
     constexpr double level = 0.1;
@@ -83,14 +82,14 @@ TEST(Packings, WithoutAnEffectAllPAreUniform) {
     for (const int found : {gaps, alone, apart}) EXPECT_NEAR(found, level * drawn, 3.5 * error);
 }
 
-TEST(Packings, ASinglePackingIsNotComparedWithItself) {
+TEST(Packings, ASinglePackingHasNoTestOfAgreement) {
     SyntheticWorld world(6, 1);
     Evidence evidence = world.evidence(1, replicates);
     world.add_effect(evidence, "adhesion", world.pattern(1));
     EXPECT_THAT(DiagnosisBuilder(evidence, {}).diagnosis().packings, IsEmpty());
 }
 
-TEST(Packings, RowsAreAveragedReplicateByReplicate) {
+TEST(Packings, RowsAreAveragedByReplicate) {
     Eigen::MatrixXd rows(4, 1);
     rows << 1, 2, 5, 10;
     const Eigen::MatrixXd means = mean_over_packings(rows, 2);

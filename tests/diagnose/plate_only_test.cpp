@@ -1,4 +1,4 @@
-// An experiment with nothing but the force on its plate.
+// An experiment with only the force on its plate.
 #include <gmock/gmock.h>
 
 #include "core/errors.h"
@@ -26,7 +26,7 @@ TEST(NotMeasured, NamesTheFilesThatAreMissing) {
     EXPECT_THAT(not_measured(observed, synthetic_grid), IsEmpty());
 }
 
-/// Only the top force; on it the effect looks as the modulus does.
+/// Only the top force, on which the effect has the signature of the modulus.
 Evidence plate_evidence(double shift, std::uint64_t seed) {
     SyntheticWorld world(1, seed);
     Evidence evidence = world.evidence(1, 32);
@@ -37,7 +37,7 @@ Evidence plate_evidence(double shift, std::uint64_t seed) {
     return evidence;
 }
 
-TEST(PlateOnly, WithinThePriorThereIsNoGap) {
+TEST(PlateOnly, WithinThePriorOfTheModulusThereIsNoGap) {
     int alarms = 0;
     for (std::uint64_t seed = 1; seed <= 20; ++seed) {
         const Evidence evidence = plate_evidence(1, seed);
@@ -46,12 +46,12 @@ TEST(PlateOnly, WithinThePriorThereIsNoGap) {
     EXPECT_LE(alarms, 4);
 }
 
-TEST(PlateOnly, FarBeyondItNothingIsBlamedAlone) {
+TEST(PlateOnly, FarBeyondThePriorNoSingleCauseIsNamed) {
     for (std::uint64_t seed = 1; seed <= 10; ++seed) {
         const Evidence evidence = plate_evidence(9, seed);
         const Diagnosis d = DiagnosisBuilder(evidence, {}).diagnosis();
         ASSERT_TRUE(d.detected) << seed;
-        // With eight cells a placebo may do as well.
+        // With eight cells a placebo may be as good.
         EXPECT_NE(d.verdict, Verdict::effect) << seed;
         ASSERT_EQ(d.causes.size(), 2u) << seed;
         EXPECT_THAT(d.causes[0].group, ::testing::UnorderedElementsAre("diameter_error", "modulus")) << seed;
@@ -61,7 +61,7 @@ TEST(PlateOnly, FarBeyondItNothingIsBlamedAlone) {
     }
 }
 
-TEST(PlateOnly, LimitsSayThatTheEffectHidesInTheModulus) {
+TEST(PlateOnly, LimitsStateThatTheModulusAbsorbsTheEffect) {
     const Evidence evidence = plate_evidence(0, 1);
     const Diagnosis d = DiagnosisBuilder(evidence, {}).diagnosis();
     ASSERT_EQ(d.detection_limits.size(), 1u);
@@ -69,7 +69,7 @@ TEST(PlateOnly, LimitsSayThatTheEffectHidesInTheModulus) {
     EXPECT_THAT(d.detection_limits[0].group, Contains("modulus"));
 }
 
-TEST(PlateOnly, NeedsAFewCells) {
+TEST(PlateOnly, RequiresAFewCells) {
     Evidence evidence = plate_evidence(0, 1);
     evidence.observed.head(5).setConstant(not_available);
     EXPECT_THROW(DiagnosisBuilder(evidence, {}), InputError);

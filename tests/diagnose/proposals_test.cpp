@@ -1,4 +1,4 @@
-// What is proposed for a planted gap, and what real runs make of it.
+// Proposed explanations of a planted gap, and their change by confirmation runs.
 #include "diagnose/infer/proposals.h"
 
 #include <gmock/gmock.h>
@@ -16,7 +16,7 @@ using ::testing::UnorderedElementsAre;
 constexpr int replicates = 32;
 const Eigen::VectorXd at_priors = Eigen::VectorXd::Zero(1);
 
-/// A gap of `amplitudes` of the four effects.
+/// A gap from these `amplitudes` of the four effects.
 struct Case {
     explicit Case(const std::vector<double>& amplitudes, std::uint64_t seed = 1)
         : world(4, seed), evidence(make(amplitudes)), data(gap_data(evidence)) {}
@@ -40,7 +40,7 @@ struct Case {
     GapStatistics statistics = gap_statistics(space, data, data.gap);
 };
 
-TEST(Proposals, OneEffectThatExplainsIt) {
+TEST(Proposals, OneEffectExplainsTheGap) {
     const Case c({0, 4});
     const auto list = c.proposals();
     ASSERT_FALSE(list.empty());
@@ -51,7 +51,7 @@ TEST(Proposals, OneEffectThatExplainsIt) {
     for (const Proposal& p : list) EXPECT_EQ(p.candidates.size(), 1u);
 }
 
-TEST(Proposals, TwoEffectsTogether) {
+TEST(Proposals, TwoEffectsExplainTheGapTogether) {
     const Case c({0, 4, 0, -3});
     const auto list = c.proposals();
     const Proposal& pair = list.back();
@@ -66,9 +66,9 @@ TEST(Proposals, TwoEffectsTogether) {
                 1e-6 * pair.gain);
 }
 
-// One cancels most of what the other does, so that a third effect, which looks like what is left, leads
-// alone.
-TEST(Proposals, TwoEffectsOfWhichNeitherLeads) {
+// The two effects cancel most of each other, so a third effect with the signature of the remainder is the
+// best single one.
+TEST(Proposals, TwoEffectsNeitherOfWhichIsBestAlone) {
     Case c({});
     const Eigen::VectorXd large = c.world.pattern(3), small = c.world.pattern(0.5),
                           decoy = c.world.pattern(0.2);
@@ -88,8 +88,8 @@ TEST(Proposals, TwoEffectsOfWhichNeitherLeads) {
     EXPECT_NEAR(list.back().amplitudes[1], 8, 4 * list.back().errors[1]);
 }
 
-/// What is proposed for a gap in the first effect's direction, where `others` gain 1, 2, .. less and the
-/// nuisance beyond its prior `behind` less.
+/// Proposals for a gap in the direction of the first effect. The gains of `others` are lower by 1, 2, ..,
+/// that of the nuisance beyond its prior by `behind`.
 std::vector<std::size_t> singles_with_nuisance(Case& c, double behind) {
     GapStatistics statistics = c.statistics;
     for (std::size_t k = 0; k < statistics.fits.size(); ++k) {
@@ -104,16 +104,16 @@ std::vector<std::size_t> singles_with_nuisance(Case& c, double behind) {
     return list;
 }
 
-TEST(Proposals, ANuisanceIsAlwaysRun) {
+TEST(Proposals, ANuisanceWithGainIsAlwaysConfirmed) {
     Case c({4});
     ASSERT_EQ(c.data.candidates.size(), 5u);
     EXPECT_THAT(singles_with_nuisance(c, 10), ElementsAre(0, 1, 2, 4));
     EXPECT_THAT(singles_with_nuisance(c, 49), ElementsAre(0, 1, 2, 4));
-    EXPECT_THAT(singles_with_nuisance(c, 51), ElementsAre(0, 1, 2));  // gains nothing
+    EXPECT_THAT(singles_with_nuisance(c, 51), ElementsAre(0, 1, 2));  // without gain
     EXPECT_THAT(singles_with_nuisance(c, 0.5), ElementsAre(0, 4, 1));
 }
 
-TEST(Proposals, ExplainedBySignatures) {
+TEST(Proposals, ExplanationBySignaturesIsFound) {
     const Case c({});
     Proposal p;
     p.candidates = {0, 2};
@@ -123,7 +123,7 @@ TEST(Proposals, ExplainedBySignatures) {
     EXPECT_LT((explained_by(p, c.data) - sum).norm(), 1e-12);
 }
 
-TEST(Proposals, OfWhatGainsNothingThereAreNone) {
+TEST(Proposals, EffectsWithoutGainAreNotProposed) {
     Case c({});
     GapStatistics nothing = c.statistics;
     for (EffectFit& fit : nothing.fits) fit = {};
@@ -138,7 +138,7 @@ Eigen::MatrixXd runs(Case& c, const Eigen::VectorXd& shift, int number) {
     return rows;
 }
 
-TEST(Confirmation, RunsThatMeetTheData) {
+TEST(Confirmation, RunsThatAgreeWithTheData) {
     Case c({0, 4}, 2);
     Proposal p = c.proposals().at(0);
     const auto step = confirm(p, c.data, c.null, c.evidence.observed, at_priors,
@@ -149,7 +149,7 @@ TEST(Confirmation, RunsThatMeetTheData) {
     EXPECT_NEAR(*p.confirmed_gain, p.gain, 0.25 * p.gain);
 }
 
-TEST(Confirmation, RunsThatDoNotMeetTheData) {
+TEST(Confirmation, RunsThatDoNotAgreeWithTheData) {
     Case c({0, 4}, 2);
     Proposal p = c.proposals().at(0);
     confirm(p, c.data, c.null, c.evidence.observed, at_priors,
@@ -158,8 +158,8 @@ TEST(Confirmation, RunsThatDoNotMeetTheData) {
     EXPECT_LT(*p.confirmed_gain, 0.6 * p.gain);
 }
 
-// The same runs explain the data equally well; what it took to make them counts.
-TEST(Confirmation, NuisancesCostTheirPrior) {
+// The runs explain the data equally well; the nuisance shifts that they require are penalised.
+TEST(Confirmation, NuisanceShiftsArePenalisedByTheirPrior) {
     Case c({0, 4}, 2);
     Proposal p = c.proposals().at(0), far = p;
     const Eigen::MatrixXd meet = runs(c, 4 * c.evidence.library.effects[1].linear, 16);
@@ -168,9 +168,8 @@ TEST(Confirmation, NuisancesCostTheirPrior) {
     EXPECT_NEAR(*p.confirmed_gain - *far.confirmed_gain, 4.5, 1e-9);
 }
 
-// An effect that scatters by itself leaves less chi-square; that it would have scattered and the data did not
-// counts.
-TEST(Confirmation, ScatterThatTheDataDoNotShowCosts) {
+// An effect with a large scatter reduces chi-square. It is penalised if the data do not show this scatter.
+TEST(Confirmation, ScatterThatTheDataDoNotShowIsPenalised) {
     Case c({});
     Signature& scattering = c.evidence.library.effects[1];
     scattering.slopes =
@@ -186,16 +185,16 @@ TEST(Confirmation, ScatterThatTheDataDoNotShowCosts) {
     EXPECT_LT(*p.confirmed_gain, -10);
 }
 
-TEST(Confirmation, StepSaysHowFarTheAmplitudeMissed) {
+TEST(Confirmation, StepIsTheErrorOfTheAmplitude) {
     Case c({0, 4}, 2);
     Proposal p = c.proposals().at(0);
     const auto step = confirm(p, c.data, c.null, c.evidence.observed, at_priors,
                               runs(c, 3 * c.evidence.library.effects[1].linear, 200));
     ASSERT_TRUE(step);
-    EXPECT_NEAR((*step)[1], 1, 0.6);  // one sigma of the amplitude is 0.2, and the prior pulls a little
+    EXPECT_NEAR((*step)[1], 1, 0.6);  // one sigma of the amplitude is 0.2, and the prior has some influence
 }
 
-TEST(Confirmation, FailedRunsAreLeftOut) {
+TEST(Confirmation, FailedRunsAreExcluded) {
     Case c({0, 4}, 2);
     Proposal p = c.proposals().at(0), without = p;
     Eigen::MatrixXd failed = runs(c, 4 * c.evidence.library.effects[1].linear, 4);
@@ -207,7 +206,7 @@ TEST(Confirmation, FailedRunsAreLeftOut) {
     EXPECT_EQ(*p.confirmed_misfit_p, *without.confirmed_misfit_p);
 }
 
-TEST(Confirmation, WithOneRunLeftThereIsNone) {
+TEST(Confirmation, RequiresMoreThanOneRun) {
     Case c({0, 4}, 2);
     Proposal p = c.proposals().at(0);
     Eigen::MatrixXd failed = runs(c, Eigen::VectorXd::Zero(c.data.mean.size()), 4);

@@ -1,4 +1,4 @@
-// The vector of one scan: which number stands where, and what is missing when data are.
+// The observables of one scan: their positions in the vector, and NaN where data are missing.
 #include "diagnose/observe/scan_observables.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 namespace mcdem {
 namespace {
 
-/// A lattice with something to tell for each observable: friction, and some contacts that pull.
+/// A lattice with nonzero values of all observables: friction, and some attractive contacts.
 Lattice rubbed_lattice() {
     Lattice lattice(5);
     for (std::size_t k = 0; k < lattice.scan.contacts.size(); ++k) {
@@ -38,7 +38,7 @@ void expect_known(const Eigen::VectorXd& row, const std::set<Needs>& known) {
             << observables()[q].name;
 }
 
-TEST(ScanObservables, NamesAreUniqueAndInformative) {
+TEST(ScanObservables, NamesAreUniqueAndComplete) {
     std::set<std::string_view> names;
     for (const Observable& observable : observables()) {
         EXPECT_TRUE(names.insert(observable.name).second) << observable.name;
@@ -47,14 +47,14 @@ TEST(ScanObservables, NamesAreUniqueAndInformative) {
     }
 }
 
-TEST(ScanObservables, AllOfAFullScan) {
+TEST(ScanObservables, AFullScanHasAllValues) {
     const Lattice lattice = rubbed_lattice();
     const auto row = scan_observables(lattice.recording, lattice.scan, soft_material());
     ASSERT_EQ(row.size(), static_cast<Eigen::Index>(observables().size()));
     expect_known(row, {Needs::plate, Needs::contacts, Needs::positions});
 }
 
-TEST(ScanObservables, StandWhereTheTableSays) {
+TEST(ScanObservables, ValuesAreInTheOrderOfTheTable) {
     Lattice lattice = rubbed_lattice();
     for (Vec3& position : lattice.scan.position) position.z() += 1e-4 * position.x() / 0.05;
     for (Contact& contact : lattice.scan.contacts)
@@ -73,7 +73,7 @@ TEST(ScanObservables, StandWhereTheTableSays) {
     EXPECT_NEAR(value_of(row, "wall_friction_ratio"), 0.01 * std::sqrt(2.0), 1e-3);
     EXPECT_EQ(value_of(row, "gap_contacts"), 0);
     EXPECT_EQ(value_of(row, "silent_overlaps"), 0);
-    // At the plate and the floor the lattice was shifted up by 0.1 mm over half the box, 0.0098 R.
+    // At the plate and the floor, half of the lattice was shifted up by 0.1 mm, which is 0.0098 R.
     EXPECT_GT(value_of(row, "floor_overlap_offset"), value_of(row, "plate_overlap_offset"));
     EXPECT_LT(value_of(row, "plate_overlap_tilt_x"), value_of(row, "plate_overlap_tilt_y"));
 }

@@ -1,4 +1,4 @@
-// What is learnt from paired runs: parabolas come back, noise does not.
+// Signatures from paired runs: parabolas are found, noise is shrunk to zero.
 #include "diagnose/infer/signature.h"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 namespace mcdem {
 namespace {
 
-/// Rows alike but for noise: linear a + curvature a^2.
+/// Identical rows plus noise: linear a + curvature a^2.
 Eigen::MatrixXd differences(double a, const Eigen::VectorXd& linear, const Eigen::VectorXd& curvature,
                             int pairs, double noise = 0, std::uint64_t seed = 1) {
     Random random(seed, Stream::positions);
@@ -22,7 +22,7 @@ Eigen::MatrixXd differences(double a, const Eigen::VectorXd& linear, const Eigen
 
 const Eigen::Vector3d linear(1, -0.5, 2), curvature(0.3, 0.4, -0.7);
 
-TEST(Signature, ParabolaThroughExactData) {
+TEST(Signature, ParabolaThroughExactDataIsExact) {
     for (const auto& [first, second] : {std::pair{0.5, 1.0}, {-0.7, 2.5}, {-0.2, 0.2}}) {
         const Signature s =
             learn_signature("adhesion", first, second, differences(first, linear, curvature, 4),
@@ -39,7 +39,7 @@ TEST(Signature, ParabolaThroughExactData) {
     }
 }
 
-TEST(Signature, GoesStraightOnBeyondItsReach) {
+TEST(Signature, IsLinearBeyondItsReach) {
     const Signature s{"", 2, linear, curvature, {}, {}};
     for (const double side : {-1.0, 1.0}) {
         const Eigen::Vector3d end = side * 2 * linear + 4 * curvature, slope = linear + side * 4 * curvature;
@@ -49,24 +49,25 @@ TEST(Signature, GoesStraightOnBeyondItsReach) {
     }
 }
 
-TEST(Signature, NoiseIsShrunkToNothing) {
+TEST(Signature, NoiseIsShrunkToZero) {
     const int cells = 2000, pairs = 8;
     const Eigen::VectorXd zero = Eigen::VectorXd::Zero(cells);
     const Signature s = learn_signature("", -1, 1, differences(-1, zero, zero, pairs, 1, 1),
                                         differences(1, zero, zero, pairs, 1, 2));
-    // Of a normal mean over its known error, 68 % lie below one; with the error from 8 pairs 65 %.
+    // 68 % of normal means are below one of their known error; with the error from 8 pairs, 65 %.
     const double nothing = (s.linear.array() == 0).cast<double>().mean();
     EXPECT_NEAR((s.curvature.array() == 0).cast<double>().mean(), 0.65, 0.05);
     EXPECT_GT(nothing, 0.4);
     EXPECT_LT(s.at(1).squaredNorm() / cells,
-              0.7 / pairs);  // the mean of the second amplitude's runs: 1/pairs
+              0.7 / pairs);  // mean of the runs with the second amplitude: 1/pairs
 }
 
 TEST(Signature, ClearEffectsAreKept) {
     const Eigen::VectorXd one = Eigen::VectorXd::Constant(500, 1.0), zero = Eigen::VectorXd::Zero(500);
     const Signature s = learn_signature("", 0.5, 1, differences(0.5, one, zero, 8, 0.1, 1),
                                         differences(1, one, zero, 8, 0.1, 2));
-    // The mean of 8 pairs errs by 0.035; its slope by little more, and by more where a curvature is believed.
+    // The mean of 8 pairs has an error of 0.035. The error of the slope is slightly larger, and larger again
+    // if a curvature is accepted.
     EXPECT_NEAR(s.at(1).mean(), 1, 0.01);
     EXPECT_LT((s.at(1) - one).norm() / std::sqrt(500), 0.06);
 }
@@ -79,8 +80,8 @@ TEST(Signature, SpreadIsThatOfPairsOverTheAmplitude) {
     EXPECT_NEAR(s.spread()[0], 7.0 / 4, 1e-12);
 }
 
-// Of a setting a half is off already; of what is left another part b: in all 1/2 + b/2.
-TEST(Signature, GoesOnFromWhatIsDone) {
+// Numerics: half of the error is already removed; a further part b of the rest gives 1/2 + b/2 in total.
+TEST(Signature, ContinuesFromAPartiallyRefinedModel) {
     const Signature s = learn_signature("plate_speed", 0.5, 0.75, differences(0.5, linear, curvature, 4),
                                         differences(0.75, linear, curvature, 4));
     for (const double done : {0.5, 0.75, 0.875})
@@ -90,8 +91,8 @@ TEST(Signature, GoesOnFromWhatIsDone) {
         }
 }
 
-// A pair of which one run failed says nothing; where the larger amplitude runs away, the smaller one tells.
-TEST(Signature, FailedRunsAreLeftOut) {
+// A pair with a failed run is ignored; if the larger amplitude runs away, the smaller one is used.
+TEST(Signature, FailedRunsAreExcluded) {
     Eigen::MatrixXd first = differences(0.5, linear, curvature, 4),
                     second = differences(1, linear, curvature, 4);
     second.row(2).setConstant(NAN);

@@ -1,5 +1,4 @@
-// Evidence without simulations: normal noise of known covariance on a few observables, signatures as one
-// likes.
+// Evidence without simulations: normal noise of known covariance on a few observables, and given signatures.
 #pragma once
 #include <utility>
 
@@ -11,7 +10,8 @@ namespace mcdem {
 
 inline const Grid synthetic_grid{{0.0126, 0.0183, 0.0240, 0.0294}, 0.0036, 0.03};
 
-/// Cells of the first `observables_known` observables are known; neighbouring cells' noise is correlated.
+/// Cells of the first `observables_known` observables have values; the noise of adjacent cells is
+/// correlated.
 class SyntheticWorld {
 public:
     SyntheticWorld(int observables_known, std::uint64_t seed)
@@ -22,7 +22,7 @@ public:
     Eigen::Index known() const { return known_; }
     Random& random() { return random_; }
 
-    /// Variance one, correlation of neighbouring cells a half; not-a-number where nothing is known.
+    /// Variance 1, correlation 1/2 between adjacent cells; NaN for unknown cells.
     Eigen::VectorXd noise(double size = 1) {
         Eigen::VectorXd values = Eigen::VectorXd::Constant(cells_, not_available);
         for (Eigen::Index cell = 0; cell < known_; ++cell)
@@ -31,7 +31,7 @@ public:
         return size * values;
     }
 
-    /// `size` at each cell, with a sign of its own.
+    /// `size` at each cell, with random signs.
     Eigen::VectorXd pattern(double size) {
         Eigen::VectorXd values = Eigen::VectorXd::Zero(cells_);
         for (Eigen::Index cell = 0; cell < known_; ++cell)
@@ -44,8 +44,8 @@ public:
         return {name, 10, linear, zero, zero, linear.transpose().replicate(8, 1)};
     }
 
-    /// Replicates of packings that differ by `packing_scatter`; the last packing is the experiment's, whose
-    /// replicates are the baseline. The observed is one more of it. No candidates yet.
+    /// Replicates of packings that differ by `packing_scatter`. The last packing is that of the experiment;
+    /// its replicates are the baseline, and the observation is one more of them. No candidates.
     Evidence evidence(int packings, int replicates, double packing_scatter = 3) {
         Evidence evidence;
         evidence.library.grid = synthetic_grid;

@@ -1,4 +1,4 @@
-// Scans put together by hand: grains where one likes, contacts with the forces one likes.
+// Artificial scans with given grains and contact forces.
 #pragma once
 #include "diagnose/observe/contact_residuals.h"
 
@@ -8,14 +8,14 @@ inline ReferenceMaterial soft_material() {
     ReferenceMaterial material;
     material.youngs_modulus = 20e3;
     material.poisson_ratio = 0.5;
-    material.wall_youngs_modulus = 60e3;  // not much stiffer than the grains, so that it shows
+    material.wall_youngs_modulus = 60e3;  // not much stiffer than the grains, so that its compliance matters
     material.wall_poisson_ratio = 0.3;
     material.friction = 0.03;
     material.wall_friction = 0.02;
     return material;
 }
 
-/// `n`^3 grains of a cubic lattice between the walls, every neighbour and every wall in contact.
+/// `n`^3 grains on a cubic lattice between the walls, with contacts to all neighbours and walls.
 class Lattice {
 public:
     static constexpr double edge = 0.02;  ///< [m]
@@ -32,7 +32,7 @@ public:
     }
 
     Recording recording;  ///< without scans
-    Scan scan;            ///< all contacts push with 10 mN; the plate reads their sum
+    Scan scan;            ///< all contacts have 10 mN; the plate's force is their sum
 
 private:
     static constexpr double push_ = 0.01;

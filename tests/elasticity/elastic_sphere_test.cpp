@@ -38,18 +38,18 @@ TEST(ElasticSphere, ModesSolveTheirTractions) {
     }
 }
 
-TEST(ElasticSphere, UniformPressureCompressesIt) {
+TEST(ElasticSphere, UniformPressureGivesTheBulkModulus) {
     EXPECT_DOUBLE_EQ(surface_mode(0.3, 0).radial, 1 - 2 * 0.3);  // p R (1 - 2 nu)/E
 }
 
-TEST(ElasticSphere, FilteredSeriesIsTheOneSummedInClosedForm) {
+TEST(ElasticSphere, FilteredSeriesAgreesWithTheClosedForm) {
     for (double nu : {0.0, 0.3, 0.45, 0.5})
         for (double s : {0.1, 0.15, 0.3, 0.5, 0.7, 0.9, 1.0})
             EXPECT_NEAR(sphere_displacement(nu, s).point, point_force_on_sphere(nu, 2 * std::asin(s)), 1e-8)
                 << "nu " << nu << " s " << s;
 }
 
-TEST(ElasticSphere, SizeTermByAngle) {
+TEST(ElasticSphere, SizeTermIsExactAtSeveralAngles) {
     struct Row {
         double nu, at_60, at_90, at_120, at_180;
     };
@@ -63,8 +63,8 @@ TEST(ElasticSphere, SizeTermByAngle) {
     }
 }
 
-// What is left out is of fourth order in the contact radii: halving them leaves a sixteenth.
-TEST(ElasticSphere, SizeTermIsTheSecondOrderOfSpreadLoads) {
+// The remainder is of fourth order in the contact radii: halving them reduces it to a sixteenth.
+TEST(ElasticSphere, SizeTermIsTheSecondOrderForDistributedLoads) {
     for (double nu : {0.0, 0.3, 0.5}) {
         const SphereSeries series(nu);
         for (double s : {0.5, 0.8, 1.0}) {
@@ -80,7 +80,7 @@ TEST(ElasticSphere, SizeTermIsTheSecondOrderOfSpreadLoads) {
     }
 }
 
-TEST(ElasticSphere, SelfTermByContactRadius) {
+TEST(ElasticSphere, SelfTermIsExactAtSeveralContactRadii) {
     struct Row {
         double nu;
         std::array<double, 5> fitted;  // at a/R = 0.1, 0.2, .. 0.5
@@ -102,7 +102,7 @@ TEST(ElasticSphere, SelfTermAgreesWithAnotherQuadrature) {
     }
 }
 
-TEST(ElasticSphere, PolynomialsKeepTheirStatedErrors) {
+TEST(ElasticSphere, PolynomialsHaveTheStatedErrors) {
     struct Row {
         double nu, point, size, self;  // largest errors for s from 0.15 to 1, a/R from 0.03 to 0.64
     };
@@ -125,7 +125,7 @@ TEST(ElasticSphere, PolynomialsKeepTheirStatedErrors) {
     }
 }
 
-TEST(ElasticSphere, IsAHalfSpaceCloseToTheLoad) {
+TEST(ElasticSphere, AgreesWithAHalfSpaceCloseToTheLoad) {
     for (double nu : {0.0, 0.3, 0.5}) {
         const ElasticSphere sphere = elastic_sphere(nu);
         const double half_space = -(1 - nu * nu) / pi;  // times F/(E d), d = 2 R s
@@ -136,7 +136,7 @@ TEST(ElasticSphere, IsAHalfSpaceCloseToTheLoad) {
     EXPECT_EQ(elastic_sphere(0.5).self[1], 0) << "no logarithm, so that kernels may leave it out";
 }
 
-TEST(ElasticSphere, AnyThreadMayAsk) {
+TEST(ElasticSphere, IsThreadSafe) {
     std::array<ElasticSphere, 4> result;
     {
         std::array<std::jthread, 4> threads;

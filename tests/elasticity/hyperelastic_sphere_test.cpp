@@ -1,5 +1,5 @@
-// The contact model "hyperelastic sphere": against finite elements of one neo-Hookean sphere between plates,
-// and what its energy demands.
+// The contact model "hyperelastic sphere", compared with finite elements of one neo-Hookean sphere between
+// plates; forces have a potential.
 #include "elasticity/hyperelastic_sphere.h"
 
 #include <fmt/core.h>
@@ -19,7 +19,7 @@ using reference::Plate;
 using reference::solve_plates;
 using std::numbers::pi;
 
-/// One load of an arrangement: every plate with the force that finite elements have on it.
+/// One load of an arrangement: every plate with its force by finite elements.
 struct Load {
     std::string name;
     double poisson_ratio;
@@ -27,12 +27,12 @@ struct Load {
     std::vector<double> force;
 };
 
-/// How many axes an arrangement is symmetric along, x first.
+/// Number of symmetry planes of an arrangement, x first.
 int mirrors_of(const std::string& name) {
     return name.starts_with("asymmetric") ? 0 : name.starts_with("random") ? 2 : 3;
 }
 
-/// A plate and its images by so many mirrors, at x = 0, y = 0 and z = 0.
+/// A plate and its mirror images at x = 0, y = 0 and z = 0, for this number of planes.
 std::vector<Vec3> images(const Vec3& normal, int mirrors) {
     std::vector<Vec3> all;
     for (int signs = 0; signs < 1 << mirrors; ++signs) {
@@ -88,7 +88,8 @@ std::optional<reference::PlateSolution> forces(ContactModel model, double poisso
     return solve_plates(surface_law(model, poisson_ratio, 1), poisson_ratio, plates);
 }
 
-/// Seen from where the forces of a model on the sphere cancel, near where those of finite elements do.
+/// Relative to the origin at which the forces of a model on the sphere cancel, close to that of finite
+/// elements.
 std::optional<reference::PlateSolution> forces_at_rest(ContactModel model, double poisson_ratio,
                                                        std::vector<Plate> plates) {
     for (int iteration = 0;; ++iteration) {
@@ -107,9 +108,9 @@ std::optional<reference::PlateSolution> forces_at_rest(ContactModel model, doubl
 
 using WorstErrors = std::map<std::string, std::array<double, 3>>;
 
-/// The worst relative error of a model's force up to overlap/R 0.10, 0.15 and 0.20, by arrangement, of loads
-/// whose mean pressure over E is in a range. From 0.12 on the grain nearly fills its cell, where an overlap
-/// decides on any force.
+/// Largest relative error of a model's force up to overlap/R 0.10, 0.15 and 0.20, for each arrangement, over
+/// loads whose mean pressure over E is in a range. From 0.12 on the grain nearly fills its cell, where
+/// forces depend strongly on the overlap.
 WorstErrors worst_errors(ContactModel model, double least_pressure, double most_pressure) {
     WorstErrors worst;
     for (const Load& load : finite_elements()) {
@@ -118,7 +119,8 @@ WorstErrors worst_errors(ContactModel model, double least_pressure, double most_
                                                     : forces_at_rest(model, load.poisson_ratio, load.plates);
         for (std::size_t c = 0; c < load.plates.size(); ++c) {
             const double overlap = load.plates[c].overlap;
-            if (overlap < 0.03 || overlap > 0.2005) continue;  // below, the mesh of the finite elements shows
+            if (overlap < 0.03 || overlap > 0.2005)
+                continue;  // smaller overlaps are not resolved by the mesh
             double& error = worst[load.name][overlap < 0.1005 ? 0 : overlap < 0.1505 ? 1 : 2];
             error = std::max(error, solution ? std::abs(solution->force[c] / load.force[c] - 1) : 1);
         }
@@ -132,7 +134,7 @@ void print(const char* what, const WorstErrors& worst) {
         fmt::print("{:19}{:6.1f}{:6.1f}{:6.1f}\n", name, 100 * error[0], 100 * error[1], 100 * error[2]);
 }
 
-TEST(HyperelasticSphere, FollowsFiniteElementsInEveryArrangement) {
+TEST(HyperelasticSphere, AgreesWithFiniteElementsInEveryArrangement) {
     print("elastic sphere, P to 0.12", worst_errors(ContactModel::elastic_sphere, 0, 0.12));
     const auto worst = worst_errors(ContactModel::hyperelastic_sphere, 0, 0.12);
     print("P to 0.12", worst);
@@ -144,8 +146,8 @@ TEST(HyperelasticSphere, FollowsFiniteElementsInEveryArrangement) {
     }
 }
 
-// Forces there are steep: d ln F / d ln overlap is 3 to 10.
-TEST(HyperelasticSphere, FollowsFiniteElementsWhereCellsAreNearlyFilled) {
+// Forces are steep there: d ln F / d ln overlap is 3 to 10.
+TEST(HyperelasticSphere, AgreesWithFiniteElementsInNearlyFilledCells) {
     const auto nearly = worst_errors(ContactModel::hyperelastic_sphere, 0.12, 0.3);
     print("P 0.12 to 0.3", nearly);
     for (const auto& [name, error] : nearly)
@@ -155,7 +157,7 @@ TEST(HyperelasticSphere, FollowsFiniteElementsWhereCellsAreNearlyFilled) {
     for (const auto& [name, error] : filled) EXPECT_LT(std::ranges::max(error), 0.2) << name;
 }
 
-TEST(HyperelasticSphere, IsTheElasticSphereAtSmallOverlaps) {
+TEST(HyperelasticSphere, EqualsTheElasticSphereAtSmallOverlaps) {
     for (double nu : {0.0, 0.3, 0.4, 0.49, 0.5})
         for (double overlap : {1e-5, 1e-4, 1e-3}) {
             const std::vector<Plate> plates{{Vec3::UnitZ(), overlap},
@@ -169,8 +171,8 @@ TEST(HyperelasticSphere, IsTheElasticSphereAtSmallOverlaps) {
         }
 }
 
-/// Work on a grain between three pairs of plates around a closed path of overlaps, over the work that goes to
-/// and fro.
+/// Work on a grain between three pairs of plates along a closed path of overlaps, over the integral of the
+/// absolute power.
 double work_around(ContactModel model, double poisson_ratio) {
     constexpr int points = 48;
     const std::array<Vec3, 3> axes{Vec3::UnitX(), Vec3(0.5, 0.8, 0.3).normalized(),
@@ -194,14 +196,14 @@ double work_around(ContactModel model, double poisson_ratio) {
     return closed / absolute;
 }
 
-TEST(HyperelasticSphere, DoesNoWorkAroundAClosedPath) {
+TEST(HyperelasticSphere, WorkAlongAClosedPathIsZero) {
     for (double nu : {0.3, 0.4, 0.49})
         EXPECT_NEAR(work_around(ContactModel::hyperelastic_sphere, nu), 0, 1e-7) << nu;
     EXPECT_GT(std::abs(work_around(ContactModel::elastic_half_space, 0.3)), 5e-6)
         << "the half space has no potential";
 }
 
-/// Hertz's contact of two grains, or of one and a plate (other radius 0).
+/// Hertz contact of two grains, or of a grain and a plate (other radius 0).
 struct Touch {
     double overlap, radius;
 };
@@ -213,8 +215,8 @@ Touch touch(double poisson_ratio, double force, double radius, double other_radi
     return {overlap, std::sqrt(reduced * overlap)};
 }
 
-/// How far plates come nearer to two spheres in a row, or to the middle one of three between four plates
-/// more.
+/// Displacement of the plates at the ends of a row of two spheres, or of three spheres of which the middle
+/// one is between four more plates.
 class Row {
 public:
     Row(ContactModel model, double poisson_ratio)
@@ -225,7 +227,7 @@ public:
         const Touch between = touch(poisson_ratio_, force, 1, radius);
         return between.overlap + end(force, 1, between) + end(force, radius, between);
     }
-    /// Of three equal ones, at an end and at a side.
+    /// For three equal spheres: displacement at an end, and at a side plate.
     std::pair<double, double> of_three(double force, double side_force) const {
         const Touch between = touch(poisson_ratio_, force, 1, 1),
                     side = touch(poisson_ratio_, side_force, 1, 0);
@@ -240,7 +242,7 @@ public:
     }
 
 private:
-    /// Of the sphere at an end, beside the Hertzian overlap with the next one.
+    /// Overlap of the sphere at an end, including the Hertz overlap with the next one.
     double end(double force, double radius, const Touch& between) const {
         const Touch plate = touch(poisson_ratio_, force, radius, 0);
         const reference::Grain grain{
@@ -263,9 +265,9 @@ double solve_force(double least, double most, auto&& excess) {
     return least;
 }
 
-// The contact of two spheres of unequal radii, and of equal ones under unequal loads, is neither flat nor
-// shared alike.
-TEST(HyperelasticSphere, APlateStandsForAGrain) {
+// Contacts of spheres with unequal radii, or of equal spheres under unequal loads, are curved and not
+// symmetric.
+TEST(HyperelasticSphere, PlatesReplaceNeighbouringGrains) {
     const auto rows = cells_of("neo_hookean_chain.csv", 7);
     EXPECT_GE(rows.size(), 12u);
     for (const auto& cells : rows) {
@@ -274,7 +276,7 @@ TEST(HyperelasticSphere, APlateStandsForAGrain) {
         const auto [nu, parameter, overlap, force, side, side_force] =
             std::tuple(c[0], c[1], c[2], c[3], c[4], c[5]);
         const Row law(ContactModel::hyperelastic_sphere, nu);
-        if (overlap < 0.08) continue;  // the mesh shows
+        if (overlap < 0.08) continue;  // not resolved by the mesh
         const std::string where = fmt::format("{} nu {} overlap {}", cells[0], nu, overlap);
         if (cells[0] == "unequal") {
             const double found = solve_force(force / 3, 3 * force,
@@ -294,8 +296,8 @@ TEST(HyperelasticSphere, APlateStandsForAGrain) {
     }
 }
 
-// Two plates push the equator out: a third one is met that far from the sphere.
-TEST(HyperelasticSphere, FirstContactByBulgingWithinThreePerCent) {
+// Two plates move the equator outward; a third plate touches it at this distance.
+TEST(HyperelasticSphere, FirstContactOfTheEquatorWithinThreePerCent) {
     int judged = 0;
     for (const auto& c : cells_of("neo_hookean_plates.csv", 10)) {
         const double nu = std::stod(c[1]), load = std::stod(c[2]);
@@ -309,9 +311,9 @@ TEST(HyperelasticSphere, FirstContactByBulgingWithinThreePerCent) {
     EXPECT_EQ(judged, 21);
 }
 
-// Grains among twelve equal neighbours, pressed far past the volume they have: forces grow on and on, none
-// runs away.
-TEST(HyperelasticSphere, GrowsWithoutRunningAway) {
+// Grains with twelve equal neighbours, compressed far beyond the available volume: forces increase and
+// remain finite.
+TEST(HyperelasticSphere, ForcesIncreaseWithoutRunAway) {
     for (double nu : {0.3, 0.4, 0.49}) {
         double before = 0;
         for (double overlap = 0.02; overlap < 0.14; overlap += 0.02) {

@@ -1,5 +1,5 @@
 // Static forces on one sphere between plates: every contact model against solutions of the elastic problem
-// itself, by finite elements and by the series solver in tests/truth.
+// by finite elements and by the series of tests/truth.
 #include <fmt/core.h>
 #include <gtest/gtest.h>
 
@@ -23,7 +23,7 @@ using Row = std::map<std::string, std::string>;
 
 const std::string fem_folder = MCDEM_SHARED_DATA "/fem/";
 
-/// A table of plain comma separated values, by the names in its first line.
+/// A table of comma-separated values, by the column names in its first line.
 std::vector<Row> read_table(const std::string& file) {
     const auto split = [](const std::string& line) {
         std::vector<std::string> cells;
@@ -57,7 +57,7 @@ Directions joined(std::initializer_list<Directions> parts) {
     return all;
 }
 
-/// One group of plates, or two with an overlap each (overlap1, overlap2 of the tables).
+/// One group of plates, or two groups with different overlaps (overlap1, overlap2 of the tables).
 std::vector<Directions> arrangement(const std::string& name) {
     const Directions x = pair(Vec3::UnitX()), y = pair(Vec3::UnitY()), z = pair(Vec3::UnitZ());
     const Directions triangle{{1, 0, 0}, {-.5, std::sqrt(.75), 0}, {-.5, -std::sqrt(.75), 0}};
@@ -95,7 +95,7 @@ std::optional<PlateSolution> solve(ContactModel model, double nu, const std::vec
     return solve_plates(surface_law(model, nu, 1.125), nu, plates);
 }
 
-/// Force of the model over that of the table's row; not-a-number where the model has no solution.
+/// Force of the model over that of the table's row; NaN if the model has no solution.
 double fem_ratio(ContactModel model, const Row& row) {
     const auto solution = solve(model, number(row, "poisson_ratio"), arrangement(row.at("case")),
                                 {number(row, "overlap_over_R")});
@@ -115,16 +115,17 @@ protected:
     std::vector<Row> forces_, bulges_;
 };
 
-TEST_F(FiniteElements, ElasticSphereFollowsThemWithinOnePerCent) {
+TEST_F(FiniteElements, ElasticSphereAgreesWithinOnePerCent) {
     for (const Row& row : forces_)
         EXPECT_NEAR(fem_ratio(ContactModel::elastic_sphere, row), 1, 0.01)
             << row.at("case") << " nu " << row.at("poisson_ratio") << " overlap " << row.at("overlap_over_R");
 }
 
-TEST_F(FiniteElements, BulgeOfTheEquatorWithinOnePerCent) {
+TEST_F(FiniteElements, DisplacementOfTheEquatorWithinOnePerCent) {
     for (const Row& row : bulges_) {
         const double overlap = number(row, "overlap_over_R");
-        const Directions z = pair(Vec3::UnitZ()), probed{Vec3::UnitX()};  // the third plate is far off
+        const Directions z = pair(Vec3::UnitZ()),
+                         probed{Vec3::UnitX()};  // the third plate is too far to touch
         const auto solution =
             solve(ContactModel::elastic_sphere, number(row, "poisson_ratio"), {z, probed}, {overlap, -0.5});
         ASSERT_TRUE(solution);
@@ -134,8 +135,8 @@ TEST_F(FiniteElements, BulgeOfTheEquatorWithinOnePerCent) {
     }
 }
 
-// What the other models miss, at overlap/R = 0.1: also shows that the comparison can fail.
-TEST_F(FiniteElements, OtherModelsMissThemByWhatIsKnown) {
+// Errors of the other models at overlap/R = 0.1; this also shows that the comparison can fail.
+TEST_F(FiniteElements, OtherModelsHaveTheKnownErrors) {
     struct Known {
         ContactModel model;
         double two_at_03, two_at_049, six_at_03, six_at_049;
@@ -155,17 +156,17 @@ TEST_F(FiniteElements, OtherModelsMissThemByWhatIsKnown) {
         }
 }
 
-// Past overlap/R of about (1 - nu^2)^2/(12 c^2 gamma^2), c = sum of delta/(F/(E R)) over the other contacts,
-// a half space has no static solution. For six plates c = 4 * 0.0825 + 0.237: 0.15 with the points held on
-// the sphere, less at the deformed points. The elastic sphere has a solution.
-TEST(Plates, RunAwayIsSeen) {
+// Above overlap/R of about (1 - nu^2)^2/(12 c^2 gamma^2), with c = sum of delta/(F/(E R)) over the other
+// contacts, a half space has no static solution. For six plates c = 4 * 0.0825 + 0.237, which gives 0.15
+// with points on the sphere, and less at the deformed points. The elastic sphere has a solution.
+TEST(Plates, RunAwayIsDetected) {
     const auto six = arrangement("six_plates");
     EXPECT_FALSE(solve(ContactModel::elastic_half_space, 0.49, six, {0.15}));
     EXPECT_FALSE(solve(ContactModel::sphere_to_sphere, 0.49, six, {0.15}));
     EXPECT_TRUE(solve(ContactModel::elastic_sphere, 0.49, six, {0.15}));
 }
 
-/// Prints the force of every model over that of each row; returns each model's worst miss.
+/// Prints the force of every model over that of each row; returns the largest error of each model.
 std::map<std::string, double> print_table(const char* material, const std::vector<Row>& rows) {
     std::map<std::string, double> worst;
     for (const Row& row : rows) {
@@ -201,9 +202,9 @@ TEST_F(FiniteElements, TableOfModels) {
     }
 }
 
-/// How far the elastic sphere may be from the truth. Half a per cent everywhere, for the part of the second
-/// order that perturbation about Hertz leaves out and for the truth's own error where its caps are
-/// axisymmetric; more where a contact radius nears half a radius and the neighbouring caps nearly meet.
+/// Tolerance of the elastic sphere. Half a per cent in general, for the second-order terms that perturbation
+/// about Hertz neglects and for the error of the reference with axisymmetric caps; more for contact radii
+/// near half a radius, where neighbouring caps nearly touch.
 double tolerance(const std::string& name, double overlap) {
     if (name == "twelve_fcc")
         return overlap > 0.07 ? 0.025 : overlap > 0.05 ? 0.008 : 0.005;  // near run-away
@@ -212,7 +213,7 @@ double tolerance(const std::string& name, double overlap) {
     return 0.005;
 }
 
-TEST(SeriesTruth, ElasticSphereFollowsItInOtherArrangements) {
+TEST(SeriesTruth, ElasticSphereAgreesInOtherArrangements) {
     const auto rows = read_table(MCDEM_SOURCE_DIR "/tests/truth/other_arrangements.csv");
     ASSERT_EQ(rows.size(), 218u);
     for (const Row& row : rows) {
@@ -233,8 +234,8 @@ TEST(SeriesTruth, ElasticSphereFollowsItInOtherArrangements) {
     }
 }
 
-// Two plates at overlap 0.1 push the equator out; plates standing exactly at R then feel a force.
-TEST(SeriesTruth, BulgingCreatesContacts) {
+// Two plates at an overlap of 0.1 move the equator outward; plates at exactly R then have a force.
+TEST(SeriesTruth, DisplacedSurfacesCreateContacts) {
     const auto solution = solve(ContactModel::elastic_sphere, 0.3, arrangement("two_plus_four"), {0.1, 0});
     ASSERT_TRUE(solution);
     EXPECT_NEAR(solution->force[2], 0.00134655, 0.005 * 0.00134655);

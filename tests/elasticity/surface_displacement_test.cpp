@@ -20,7 +20,7 @@ constexpr double rounding = 1e-13;
 
 Vec3 at(double theta) { return {std::sin(theta), 0, std::cos(theta)}; }
 
-/// R = E = 1, a unit force at the pole, one probed point on the undeformed sphere at `theta` from it.
+/// R = E = 1, a unit force at the pole, and one probed point on the undeformed sphere at the angle `theta`.
 Grain probed_at(double theta, double poisson_ratio) {
     return {1, 1, poisson_ratio, {{at(0), 1, 1, 0}, {at(theta), 1, 0, 0}}};
 }
@@ -29,21 +29,21 @@ double displacement(ContactModel model, double poisson_ratio, double theta, doub
     return surface_displacement(surface_law(model, poisson_ratio, gamma), probed_at(theta, poisson_ratio))[1];
 }
 
-TEST(SurfaceDisplacement, PointForceOnIncompressibleSphere) {
+TEST(SurfaceDisplacement, PointForceOnIncompressibleSphereIsExact) {
     EXPECT_NEAR(point_force_on_sphere(0.5, 60 * degree), 0.1420, 5e-5);
     EXPECT_NEAR(point_force_on_sphere(0.5, 90 * degree), 0.1036, 5e-5);
     EXPECT_NEAR(point_force_on_sphere(0.5, 120 * degree), -0.0171, 5e-5);
     EXPECT_NEAR(point_force_on_sphere(0.5, 180 * degree), -0.1765, 5e-5);
 }
 
-TEST(SurfaceDisplacement, PointForceAtRightAnglesByPoissonRatio) {
+TEST(SurfaceDisplacement, PointForceAtRightAnglesIsExactForSeveralPoissonRatios) {
     EXPECT_NEAR(point_force_on_sphere(0.49, pi / 2), 0.1025, 5e-5);
     EXPECT_NEAR(point_force_on_sphere(0.45, pi / 2), 0.0980, 5e-5);
     EXPECT_NEAR(point_force_on_sphere(0.30, pi / 2), 0.0808, 5e-5);
 }
 
-// Averages of u P_n over the sphere. That of u alone is the change of volume, which any elastic body under
-// forces f at x has without solving for a field: (1 - 2 nu)/E sum(f . x), here -(1 - 2 nu) over 4 pi.
+// Averages of u P_n over the sphere. The average of u itself is the change of volume, which for forces f at
+// x is (1 - 2 nu)/E sum(f . x) in any elastic body; here -(1 - 2 nu) over 4 pi.
 TEST(SurfaceDisplacement, PointForceHasTheMomentsOfItsSeries) {
     for (double nu : {0.0, 0.2, 0.3, 0.45, 0.5}) {
         double mean = 0, first = 0, second = 0;
@@ -61,7 +61,7 @@ TEST(SurfaceDisplacement, PointForceHasTheMomentsOfItsSeries) {
     }
 }
 
-TEST(SurfaceDisplacement, PointForceModelFollowsTheSeries) {
+TEST(SurfaceDisplacement, PointForceModelAgreesWithTheSeries) {
     for (double nu : {0.0, 0.1, 0.25, 0.3, 0.4, 0.45, 0.49, 0.5})
         for (double theta = 18 * degree; theta <= pi; theta += degree)
             EXPECT_NEAR(displacement(ContactModel::point_force_on_sphere, nu, theta),
@@ -69,7 +69,7 @@ TEST(SurfaceDisplacement, PointForceModelFollowsTheSeries) {
                 << "nu " << nu << " theta " << theta / degree;
 }
 
-TEST(SurfaceDisplacement, SphereToSphereOfIncompressibleGrains) {
+TEST(SurfaceDisplacement, SphereToSphereOfIncompressibleGrainsIsExact) {
     const auto model = ContactModel::sphere_to_sphere;
     EXPECT_NEAR(displacement(model, 0.5, 60 * degree), -0.0597, 5e-5);
     EXPECT_NEAR(displacement(model, 0.5, 90 * degree), 0.0844, 5e-5);
@@ -79,15 +79,15 @@ TEST(SurfaceDisplacement, SphereToSphereOfIncompressibleGrains) {
         EXPECT_NEAR(displacement(model, 0.5, 2 * std::asin(s)), 3 / (8 * pi) * (3 * s * s - 1) / s, rounding);
 }
 
-TEST(SurfaceDisplacement, HalfSpaceAtRightAnglesByPoissonRatio) {
+TEST(SurfaceDisplacement, HalfSpaceAtRightAnglesIsExactForSeveralPoissonRatios) {
     const auto model = ContactModel::elastic_half_space;
     EXPECT_NEAR(displacement(model, 0.49, pi / 2), 0.0825, 5e-5);
     EXPECT_NEAR(displacement(model, 0.45, pi / 2), 0.0748, 5e-5);
     EXPECT_NEAR(displacement(model, 0.30, pi / 2), 0.0489, 5e-5);
 }
 
-// The paper says so for nu = 1/2; it holds for all.
-TEST(SurfaceDisplacement, HalfSpaceWithPointsOnTheSphereIsSphereToSphere) {
+// The paper states this for nu = 1/2; it is true for all nu.
+TEST(SurfaceDisplacement, HalfSpaceWithPointsOnTheSphereEqualsSphereToSphere) {
     for (double nu : {0.5, 0.49, 0.3, 0.0})
         for (double theta = 18 * degree; theta <= pi; theta += degree)
             EXPECT_NEAR(displacement(ContactModel::elastic_half_space, nu, theta),
@@ -103,13 +103,13 @@ TEST(SurfaceDisplacement, McDemIsTheHalfSpaceTimesGamma) {
         << "gamma is mc_dem's alone";
 }
 
-TEST(SurfaceDisplacement, IndependentContactsDoNotMove) {
+TEST(SurfaceDisplacement, IndependentContactsHaveNone) {
     const SurfaceLaw law = surface_law(ContactModel::independent, 0.5, 1.125);
     EXPECT_EQ(law.shape, SurfaceShape::rigid);
     EXPECT_EQ(surface_displacement(law, probed_at(1.0, 0.5)), (std::vector<double>{0, 0}));
 }
 
-TEST(SurfaceDisplacement, OnlyTheElasticSphereMovesItsOwnContacts) {
+TEST(SurfaceDisplacement, OnlyTheElasticSphereHasSelfDisplacements) {
     for (auto model : {ContactModel::point_force_on_sphere, ContactModel::sphere_to_sphere,
                        ContactModel::elastic_half_space, ContactModel::mc_dem})
         EXPECT_EQ(surface_displacement(surface_law(model, 0.4, 1), probed_at(1, 0.4))[0], 0) << name(model);
@@ -119,7 +119,7 @@ TEST(SurfaceDisplacement, OnlyTheElasticSphereMovesItsOwnContacts) {
     EXPECT_NEAR(surface_displacement(law, grain)[0], 0.3170, 1e-4);
 }
 
-/// Unequal forces, radii, arms and directions: nothing cancels.
+/// Unequal forces, radii, arms and directions, so that nothing cancels.
 Grain crowded_grain(double poisson_ratio, unsigned seed) {
     std::mt19937 random(seed);
     std::normal_distribution<double> normal;
@@ -138,11 +138,11 @@ Grain crowded_grain(double poisson_ratio, unsigned seed) {
     return grain;
 }
 
-TEST(SurfaceDisplacement, LawsFollowTheirModels) {
+TEST(SurfaceDisplacement, LawsAgreeWithTheirModels) {
     for (double nu : {0.1, 0.3, 0.5})
         for (std::size_t m = 0; m < Names<ContactModel>::list.size(); ++m) {
             const auto model = static_cast<ContactModel>(m);
-            if (model == ContactModel::hyperelastic_sphere) continue;  // has no series, but finite elements
+            if (model == ContactModel::hyperelastic_sphere) continue;  // no series exists for it
             const Grain grain = crowded_grain(nu, 5);
             const auto by_law = surface_displacement(surface_law(model, nu, 1.125), grain);
             const auto by_series = surface_displacement_by_series(model, 1.125, grain);
@@ -151,7 +151,7 @@ TEST(SurfaceDisplacement, LawsFollowTheirModels) {
         }
 }
 
-TEST(SurfaceDisplacement, TurnsWithTheGrain) {
+TEST(SurfaceDisplacement, RotatesWithTheGrain) {
     const Eigen::Matrix3d turn = Eigen::AngleAxisd(1.1, Vec3(1, 2, -3).normalized()).toRotationMatrix();
     for (auto model : {ContactModel::elastic_half_space, ContactModel::elastic_sphere}) {
         const SurfaceLaw law = surface_law(model, 0.35, 1);

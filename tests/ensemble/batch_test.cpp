@@ -1,4 +1,4 @@
-// A replica's result is the same bit for bit alone, in a batch of any size, and in any place in it.
+// The results of a replica are bit-identical alone, in batches of any size, and at any position in them.
 #include <gmock/gmock.h>
 
 #include "ensemble/make_packings.h"
@@ -9,7 +9,7 @@
 namespace mcdem {
 namespace {
 
-/// The replicas of `scene` with these numbers, in this order.
+/// The replicas of `scene` with these indices, in this order.
 std::vector<std::string> bits_of_batch(Device& device, const Scene& scene, const std::vector<int>& numbers) {
     Scene batch = scene;
     batch.replicas.clear();
@@ -20,7 +20,7 @@ std::vector<std::string> bits_of_batch(Device& device, const Scene& scene, const
     return bits;
 }
 
-/// Replicas that have nothing in common: model, friction law, grains, seed.
+/// Replicas that differ in model, friction law, grains and seed.
 Scene mixed_scene() {
     Scene scene =
         small_scene({"batch.replicas=2", "batch.vary.contact.friction_law=[\"saturated\", \"mindlin\"]"});
@@ -29,7 +29,7 @@ Scene mixed_scene() {
     return scene;
 }
 
-TEST(Batch, ReplicaDoesNotDependOnItsCompany) {
+TEST(Batch, ReplicaDoesNotDependOnTheOthers) {
     Device device;
     const Scene scene = mixed_scene();
     ASSERT_EQ(scene.replicas.size(), 8u);
@@ -44,10 +44,10 @@ TEST(Batch, ReplicaDoesNotDependOnItsCompany) {
     EXPECT_TRUE(elsewhere[2] == together[5]);
     EXPECT_TRUE(elsewhere[3] == together[0]);
     EXPECT_TRUE(elsewhere[4] == together[3]);
-    EXPECT_FALSE(together[0] == together[1]);  // or the comparison could not fail
+    EXPECT_FALSE(together[0] == together[1]);  // checks that the comparison can fail
 }
 
-TEST(Batch, ManyReplicasAreEachAsAlone) {
+TEST(Batch, EachOfManyReplicasIsAsAlone) {
     Device device;
     Scene scene = small_scene({"protocol.scans_per_stroke=1", "plate.end=0.087"});
     std::vector<int> many(100, 0);

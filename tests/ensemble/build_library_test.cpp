@@ -1,4 +1,4 @@
-// Libraries of tiny packings: what is in them, and from which runs.
+// Libraries of tiny packings: their contents, and the runs from which they are made.
 #include "ensemble/build_library.h"
 
 #include <gmock/gmock.h>
@@ -35,7 +35,7 @@ TEST(BaselineTrials, HaveDifferentSeeds) {
     }
 }
 
-TEST(BuildLibrary, BaselineEffectsAndNuisances) {
+TEST(BuildLibrary, ContainsBaselineEffectsAndNuisances) {
     const SmallTrials small;
     Device device;
     LibraryPlan plan;
@@ -61,10 +61,11 @@ TEST(BuildLibrary, BaselineEffectsAndNuisances) {
     EXPECT_EQ(library.nuisances[0].reach, plan.nuisances[0].sigma);
     EXPECT_EQ(library.provenance.at("program"), "test");
 
-    // The plate's reading is not a contact force: no bias of those is seen on it.
+    // The plate's force is not a contact force: a bias of contact forces does not change it.
     EXPECT_EQ(library.effects[0].linear[0], 0);
-    EXPECT_GT(library.nuisances[0].linear[1], 0.3);  // ln F grows by one with ln E, less what rearranges
-    // The same from trials made by hand.
+    EXPECT_GT(library.nuisances[0].linear[1],
+              0.3);  // ln F increases by one with ln E, except for rearrangements
+    // The same signature from trials made here.
     std::vector<Trial> trials = baseline_trials(plan);
     const Eigen::MatrixXd before = observe_trials(device, small.question, trials, small.store, {});
     EXPECT_TRUE(same(before.row(2), library.baseline.row(2)));
@@ -79,7 +80,7 @@ TEST(BuildLibrary, BaselineEffectsAndNuisances) {
     EXPECT_TRUE(same(tilt.curvature, library.effects[1].curvature));
 }
 
-TEST(BuildLibrary, SeveralPackings) {
+TEST(BuildLibrary, UsesSeveralPackings) {
     const SmallTrials small;
     Device device;
     LibraryPlan plan;
@@ -96,7 +97,7 @@ TEST(BuildLibrary, SeveralPackings) {
     EXPECT_FALSE(same(library.baseline.row(0), library.baseline.row(2)));
 }
 
-TEST(ChooseCandidates, AllThatTheModelCanHave) {
+TEST(ChooseCandidates, AllThatTheModelAllows) {
     Model model = SmallTrials().model;
     model.replica.contact.model = ContactModel::independent;
     const CandidateChoice all = choose_candidates(model, {});
@@ -109,7 +110,7 @@ TEST(ChooseCandidates, AllThatTheModelCanHave) {
     EXPECT_EQ(some.hindered.size(), 1u);
 }
 
-TEST(ChooseCandidates, NamesWhatIsNoEffect) {
+TEST(ChooseCandidates, UnknownEffectsAreNamed) {
     const Model model = SmallTrials().model;
     EXPECT_THAT(
         [&] {

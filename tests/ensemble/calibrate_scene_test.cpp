@@ -20,7 +20,7 @@ Scene one_grain(const std::filesystem::path& folder, double gamma) {
                         "protocol.scans_per_stroke=2", "grains.poisson_ratio=0.45"});
 }
 
-TEST(CalibrateScene, FindsTheGammaThatTheReferenceWasMadeWith) {
+TEST(CalibrateScene, FindsTheGammaOfTheReference) {
     TestFolder folder;
     Device device;
     const Scene made_with = one_grain(folder.path, 0.8765);
@@ -40,7 +40,7 @@ TEST(CalibrateScene, FindsTheGammaThatTheReferenceWasMadeWith) {
     EXPECT_EQ(rounds, static_cast<int>(result.found.rounds.size()));
 }
 
-// Forces go with the modulus: the law is fitted by E alone.
+// Forces are proportional to the modulus: the model is fitted by E alone.
 TEST(CalibrateScene, FindsTheModulusForAModelWithoutGamma) {
     TestFolder folder;
     Device device;
@@ -66,7 +66,7 @@ TEST(CalibrateScene, FindsTheModulusForAModelWithoutGamma) {
                 testing::ThrowsMessage<RunError>(testing::HasSubstr("E over the scene's = 0.6")));
 }
 
-TEST(CalibrateScene, RefusesAPlateThatStopsShort) {
+TEST(CalibrateScene, RefusesAPlateThatStopsEarly) {
     TestFolder folder;
     Device device;
     const Scene scene = one_grain(folder.path, 1);
@@ -85,7 +85,7 @@ TEST(CalibrateScene, RunsOneMcDemReplicaForEachPacking) {
     }
 }
 
-TEST(CalibrateScene, RefusesWhatElseVaries) {
+TEST(CalibrateScene, RefusesOtherVariedKeys) {
     const auto scene = small_scene({"batch.vary.grains.friction=[0.01, 0.02]"});
     EXPECT_THAT([&] { calibration_replicas(scene); },
                 testing::ThrowsMessage<InputError>(testing::HasSubstr("grains.friction must be the same")));

@@ -1,4 +1,4 @@
-// Runs of containers of several shapes at once, and what is not done with them.
+// Runs with containers of several shapes in one batch, and commands that do not support them.
 #include "core/container.h"
 #include "core/errors.h"
 #include "ensemble/diagnose_experiment.h"
@@ -29,7 +29,7 @@ relax_time = 0.001
 "container.shape" = ["box", "cylinder", "periodic"]
 )";
 
-TEST(Containers, OfSeveralShapesRunTogetherAndComeBack) {
+TEST(Containers, OfSeveralShapesRunInOneBatchAndAreReadBack) {
     TestFolder folder;
     Device device;
     RunOptions options;
@@ -57,7 +57,7 @@ TEST(Containers, WithEqualSizesHaveDifferentPackings) {
     EXPECT_NE(packings[0].position, packings[2].position);
 }
 
-TEST(Containers, OtherThanBoxesAreNotDiagnosed) {
+TEST(Containers, OtherThanBoxesCannotBeDiagnosed) {
     Scene scene = parse_scene(three_shapes, "three.toml", {});
     Experiment experiment;
     Recording& recording = experiment.recording;

@@ -1,5 +1,5 @@
-// Converging a small scene: a slow plate is found to be converged, a fast one is not, and the plate's speed
-// is named.
+// Convergence of a small scene: a slow plate is converged, a fast one is not, and the plate's speed is named
+// as the cause.
 #include "ensemble/converge_scene.h"
 
 #include <fmt/format.h>
@@ -43,8 +43,8 @@ struct ConvergeScene : testing::Test {
     std::set<std::string> causes;
 };
 
-// At 2 m/s, an inertial number of 0.3, the plate throws the grains about.
-TEST_F(ConvergeScene, BlamesAFastPlate) {
+// At 2 m/s the inertial number is 0.3.
+TEST_F(ConvergeScene, NamesAFastPlateAsTheCause) {
     const Convergence fast = converge(pressed({"plate.speed=2"}));
     EXPECT_GE(fast.worst_beyond(of(fast, "plate speed")), 0);
     EXPECT_GE(fast.worst_beyond(of(fast, "inertia")), 0);
@@ -72,8 +72,8 @@ scans = 6
                        speed);
 }
 
-// The speeds of a programme's stages are refined, and what a hold shows is looked at.
-TEST_F(ConvergeScene, AProgramme) {
+// The speeds of a programme's stages are refined, and the observables of holds are compared.
+TEST_F(ConvergeScene, RefinesAProgramme) {
     const Convergence fast = converge(pressed({"plate.end=0.046"}, programme_at(1)));
     EXPECT_GE(fast.worst_beyond(of(fast, "plate speed")), 0);
     EXPECT_THAT(of(fast, "plate speed").remedy, HasSubstr("speeds of stages"));
@@ -87,7 +87,7 @@ TEST_F(ConvergeScene, AProgramme) {
     EXPECT_GT(fast.mean[worst], error.value);
 }
 
-TEST_F(ConvergeScene, AProgrammeThatStopsIsToldAtOnce) {
+TEST_F(ConvergeScene, AProgrammeThatStopsIsReportedAtOnce) {
     try {
         converge(pressed({"plate.end=0.015"}, "[[programme]]\nposition = 0.015\n"));
         FAIL();
@@ -96,8 +96,8 @@ TEST_F(ConvergeScene, AProgrammeThatStopsIsToldAtOnce) {
     }
 }
 
-// One grain between floor and plate: whatever its place, the force is the same, and copies tell nothing.
-TEST_F(ConvergeScene, DrawsPackingsAnewWhereCopiesHardlyDiffer) {
+// One grain between floor and plate: the force does not depend on its position, so copies have no scatter.
+TEST_F(ConvergeScene, DrawsNewPackingsIfCopiesHardlyDiffer) {
     const std::vector<std::string> one_grain{"packing.count=1",
                                              "packing.packing_fraction=0.382",
                                              "box.size_x=0.025",
@@ -116,8 +116,8 @@ TEST_F(ConvergeScene, DrawsPackingsAnewWhereCopiesHardlyDiffer) {
     EXPECT_THAT(of(drawn, "plate speed").remedy, HasSubstr("times as long"));
 }
 
-// A simulation that is kept is not made again, and gives the same.
-TEST_F(ConvergeScene, GoesOnWithWhatIsKept) {
+// Stored simulations are not repeated and give the same result.
+TEST_F(ConvergeScene, ReusesStoredSimulations) {
     const Scene scene = pressed({"plate.speed=0.5"});
     const Convergence first = converge(scene);
     const auto files = std::distance(std::filesystem::recursive_directory_iterator(folder.path), {});
@@ -130,7 +130,7 @@ TEST_F(ConvergeScene, GoesOnWithWhatIsKept) {
             }
 }
 
-TEST_F(ConvergeScene, APlateThatNeverTouchesIsToldAtOnce) {
+TEST_F(ConvergeScene, APlateThatNeverTouchesIsReportedAtOnce) {
     try {
         converge(pressed({"plate.start=0.2", "plate.end=0.19"}));
         FAIL();

@@ -1,4 +1,4 @@
-// A library is taken for what it was made from, and for nothing else.
+// A library is accepted only with the scene, instrument and program from which it was made.
 #include "ensemble/library_origin.h"
 
 #include <gmock/gmock.h>
@@ -35,7 +35,7 @@ protected:
     }();
 };
 
-TEST_F(LibraryOrigin, KeysOfTheSceneAreNamedWithBothValues) {
+TEST_F(LibraryOrigin, DifferingKeysAreNamedWithBothValues) {
     expect_taken();
     model.replica.grains.friction = 0.9;
     model.replica.contact.model = ContactModel::point_force_on_sphere;
@@ -45,7 +45,7 @@ TEST_F(LibraryOrigin, KeysOfTheSceneAreNamedWithBothValues) {
                 ThrowsMessage<InputError>(HasSubstr("needed is 0.9")));
 }
 
-TEST_F(LibraryOrigin, EveryKeyOfAReplicaIsInItButThoseOfThePacking) {
+TEST_F(LibraryOrigin, ContainsEveryKeyOfAReplicaExceptThoseOfThePacking) {
     for (const Key& key : keys())
         if (key.scope == Scope::replica) {
             EXPECT_EQ(origin().contains(std::string(key.name)), !key.name.starts_with("packing."))
@@ -73,7 +73,7 @@ TEST_F(LibraryOrigin, InstrumentPrecisionVersionAndKernelsMustBeTheSame) {
     expect_refused("kernels = others");
 }
 
-TEST_F(LibraryOrigin, WhatExperimentsBringMayDiffer) {
+TEST_F(LibraryOrigin, DataOfTheExperimentMayDiffer) {
     model.replica.packing.seed += 1;
     model.replica.plate.start += 1e-3;
     model.replica.plate.end += 1e-3;
@@ -89,12 +89,12 @@ TEST_F(LibraryOrigin, WhatExperimentsBringMayDiffer) {
     expect_refused("mean diameter");
 }
 
-TEST_F(LibraryOrigin, WithoutOneNothingIsTaken) {
+TEST_F(LibraryOrigin, LibrariesWithoutOriginAreRefused) {
     library.origin.clear();
     expect_refused("grains.friction = nothing");
 }
 
-TEST_F(LibraryOrigin, ItsPackingsCarryTheLoadOfTheExperiments) {
+TEST_F(LibraryOrigin, PackingsHaveTheLoadOfTheExperiments) {
     library.grid = {{0.01, 0.02}, 0.005, 0.022};
     const std::vector<Cell> cells = cells_of(library.grid);
     library.baseline = Eigen::MatrixXd::Constant(3, static_cast<Eigen::Index>(cells.size()), 0.5);

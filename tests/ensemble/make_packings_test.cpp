@@ -23,7 +23,7 @@ TEST(MakePackings, GivesEveryReplicaItsOwn) {
     EXPECT_NE(packings[0].diameter, packings[1].diameter);
 }
 
-TEST(MakePackings, ReportsAllThatIsWrongOnce) {
+TEST(MakePackings, ReportsAllProblemsAtOnce) {
     Scene scene = small_scene({"batch.replicas=2"});
     scene.replicas[0].packing.source = PackingFile{"nowhere.data"};
     scene.replicas[1].packing.source = PackingFile{"nowhere.data"};
@@ -37,7 +37,7 @@ TEST(MakePackings, ReportsAllThatIsWrongOnce) {
     }
 }
 
-TEST(MakePackings, GivesUpWhenAsked) {
+TEST(MakePackings, StopsOnRequest) {
     EXPECT_TRUE(make_packings(small_scene(), [] { return true; }).empty());
 }
 

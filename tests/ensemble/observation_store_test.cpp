@@ -1,4 +1,4 @@
-// What is kept is found again, and nothing else is.
+// Stored observations are found again; other, damaged and foreign files are not used.
 #include "ensemble/observation_store.h"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ struct Store {
     }
 };
 
-TEST(ObservationStore, FindsWhatWasKept) {
+TEST(ObservationStore, FindsStoredObservations) {
     const Store s;
     const Eigen::VectorXd kept = Eigen::Vector4d(1.0 / 3, not_available, -INFINITY, 1e-300);
     EXPECT_FALSE(s.store.find("name"));
@@ -37,7 +37,7 @@ TEST(ObservationStore, FindsWhatWasKept) {
     EXPECT_EQ(*ObservationStore(s.file("")).find("name"), Eigen::Vector2d(7, 8));
 }
 
-TEST(ObservationStore, DoesNotBelieveDamagedFiles) {
+TEST(ObservationStore, IgnoresDamagedFiles) {
     const Store s;
     s.store.keep("name", Eigen::VectorXd(Eigen::Vector3d(1, 2, 3)));
     const auto file = s.file("name.obs");
@@ -57,7 +57,7 @@ TEST(ObservationStore, DoesNotBelieveDamagedFiles) {
     EXPECT_TRUE(s.store.find("name"));
 }
 
-TEST(ObservationStore, KeepsRecordings) {
+TEST(ObservationStore, StoresRecordings) {
     const Store s;
     Recording recording;
     recording.label = "seen";
@@ -70,7 +70,7 @@ TEST(ObservationStore, KeepsRecordings) {
     EXPECT_THROW(s.store.recording("name"), InputError);
     s.store.keep("name", recording);
     EXPECT_TRUE(s.store.has_recording("name"));
-    EXPECT_FALSE(s.store.find("name"));  // an observation of that name is another thing
+    EXPECT_FALSE(s.store.find("name"));  // an observation of that name is separate
     const Recording back = s.store.recording("name");
     EXPECT_EQ(back.label, "seen");
     EXPECT_EQ(back.plate_start, 0.3);
@@ -78,7 +78,7 @@ TEST(ObservationStore, KeepsRecordings) {
     EXPECT_EQ(back.scans[1].plate_z, 0.25);
     std::ofstream(s.file("name.h5"), std::ios::binary) << "no longer";
     EXPECT_THROW(s.store.recording("name"), InputError);
-    EXPECT_FALSE(s.store.has_recording("name"));  // and is made anew
+    EXPECT_FALSE(s.store.has_recording("name"));  // and is computed again
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
-// Trials: the same alone and in company, fresh and from the store; and never mistaken for one another.
+// Trials: the same results alone and in a batch, new and from the store; different trials have different
+// names.
 #include "ensemble/observe_trials.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +16,7 @@
 namespace mcdem {
 namespace {
 
-TEST(ObserveTrials, SameAloneAndInABatch) {
+TEST(ObserveTrials, AreTheSameAloneAndInABatch) {
     const SmallTrials small;
     Device device;
     Trial tilted = small.trial(2), biased = small.trial(3);
@@ -34,7 +35,7 @@ TEST(ObserveTrials, SameAloneAndInABatch) {
     }
 }
 
-/// Counts the calls of progress: none where nothing is simulated.
+/// Counts the calls of progress: zero if nothing is simulated.
 struct Watched {
     int calls = 0;
     TrialOptions options() {
@@ -48,7 +49,7 @@ struct Watched {
     }
 };
 
-TEST(ObserveTrials, FromTheStoreNothingIsSimulated) {
+TEST(ObserveTrials, StoredTrialsAreNotSimulated) {
     const SmallTrials small;
     Device device;
     Watched first, second, third;
@@ -63,7 +64,7 @@ TEST(ObserveTrials, FromTheStoreNothingIsSimulated) {
     EXPECT_TRUE(same(more.row(1), fresh.row(0)));
 }
 
-TEST(ObserveTrials, AnotherInstrumentSharesTheSimulation) {
+TEST(ObserveTrials, AnotherInstrumentUsesTheSameSimulation) {
     const SmallTrials small;
     Device device;
     Trial biased = small.trial(1);
@@ -75,11 +76,11 @@ TEST(ObserveTrials, AnotherInstrumentSharesTheSimulation) {
         observe_trials(device, fresh.question, {fresh.trial(1), biased}, fresh.store, two.options());
     EXPECT_FALSE(same(rows.row(0), rows.row(1)));
     EXPECT_EQ(files_in(fresh.folder.path / "simulations"), 2);
-    // One simulation goes through as many stretches however many look at it.
+    // The number of intervals is that of one simulation, for any number of instruments.
     EXPECT_EQ(two.calls, one.calls);
 }
 
-TEST(ObserveTrials, InterruptedAndGoingOn) {
+TEST(ObserveTrials, ContinueAfterAnInterruption) {
     const SmallTrials small;
     Device device;
     TrialOptions impatient;
@@ -93,7 +94,7 @@ TEST(ObserveTrials, InterruptedAndGoingOn) {
         same(later.row(0), observe_trials(device, fresh.question, {fresh.trial(1)}, fresh.store, {}).row(0)));
 }
 
-TEST(ObserveTrials, KeptRecordings) {
+TEST(ObserveTrials, StoreRecordings) {
     const SmallTrials small;
     Device device;
     observe_trials(device, small.question, {small.trial(1)}, small.store, {});
@@ -108,7 +109,7 @@ TEST(ObserveTrials, KeptRecordings) {
     const Eigen::VectorXd seen = observe(recordings[0], small.question.grid, small.question.material);
     for (Eigen::Index cell = 0; cell < seen.size(); ++cell)
         if (std::isfinite(seen[cell])) {
-            EXPECT_NEAR(seen[cell], row(0, cell), 1e-4) << cell;  // positions are kept as floats: 1e-8 m
+            EXPECT_NEAR(seen[cell], row(0, cell), 1e-4) << cell;  // positions are stored as floats: 1e-8 m
         }
     EXPECT_EQ(seen.array().isFinite().count(), row.array().isFinite().count());
     Watched again;
@@ -116,9 +117,9 @@ TEST(ObserveTrials, KeptRecordings) {
     EXPECT_EQ(again.calls, 0);
 }
 
-TEST(ObserveTrials, EndOnceThePlateHasLeftTheCells) {
+TEST(ObserveTrials, EndWhenNoCellNeedsMoreScans) {
     SmallTrials small;
-    small.question.grid.width = 0.003;  // the scan at 3.3 mm on the way back is the first that no cell needs
+    small.question.grid.width = 0.003;  // the scan at 3.3 mm during unloading is the first that no cell needs
     Device device;
     Trial kept = small.trial(1);
     kept.keep_recording = true;
@@ -131,7 +132,7 @@ TEST(ObserveTrials, EndOnceThePlateHasLeftTheCells) {
     EXPECT_TRUE(same(row.row(0), row_of_whole.row(0)));
 }
 
-/// Whether a trial's observation is found where only that of small.trial(1) is kept.
+/// Tests whether a trial is given the stored observation of small.trial(1), the only one in the store.
 class Names {
 public:
     Names() { observe_trials(device_, small.question, {small.trial(1)}, small.store, {}); }
@@ -145,7 +146,7 @@ public:
         } catch (const Interrupted&) {
             return false;
         } catch (const std::exception&) {
-            return false;  // not found, and too strange to be simulated
+            return false;  // not found, and it cannot be simulated
         }
     }
     bool taken_for_the_kept(const Trial& trial) { return taken_for_the_kept(small.question, trial); }
@@ -156,7 +157,7 @@ private:
     Device device_;
 };
 
-TEST(TrialNames, TheSameAgain) {
+TEST(TrialNames, AreReproducible) {
     Names names;
     EXPECT_TRUE(names.taken_for_the_kept(names.small.trial(1)));
     Trial relabelled = names.small.trial(1);
@@ -164,7 +165,7 @@ TEST(TrialNames, TheSameAgain) {
     EXPECT_TRUE(names.taken_for_the_kept(relabelled));
 }
 
-TEST(TrialNames, TellSeedsJittersAndPackingsApart) {
+TEST(TrialNames, DifferForSeedsJittersAndPackings) {
     Names names;
     const auto expect_apart = [&](const char* what, const std::function<void(Trial&)>& change) {
         Trial trial = names.small.trial(1);
@@ -179,18 +180,18 @@ TEST(TrialNames, TellSeedsJittersAndPackingsApart) {
     expect_apart("diameter", [](Trial& t) { t.packing.diameter[3] += 1e-12; });
 }
 
-TEST(TrialNames, TellLargeSeedsApart) {
+TEST(TrialNames, DifferForLargeSeeds) {
     SmallTrials small;
     Device device;
     const std::uint64_t seed =
-        std::numeric_limits<std::uint64_t>::max() - 1;  // a double does not tell it from the next
+        std::numeric_limits<std::uint64_t>::max() - 1;  // as a double it equals the next number
     const auto rows =
         observe_trials(device, small.question, {small.trial(seed), small.trial(seed + 1)}, small.store, {});
     EXPECT_FALSE(same(rows.row(0), rows.row(1)));
     EXPECT_EQ(files_in(small.folder.path / "simulations"), 2);
 }
 
-/// The value of a key moved a little, to the next word or the other truth.
+/// Changes the value of a key slightly, to the next word, or to the other truth value.
 void move(Settings& settings, const Key& key) {
     std::visit(
         [&](auto member) {
@@ -212,12 +213,12 @@ void move(Settings& settings, const Key& key) {
         key.member);
 }
 
-TEST(TrialNames, TellEveryKeyOfAReplicaApart) {
+TEST(TrialNames, DifferForEveryKeyOfAReplica) {
     Names names;
     int tried = 0;
     for (const Key& key : keys()) {
         if (key.scope != Scope::replica || is_generator_key(key.name) || key.name == "packing.file" ||
-            key.name == "packing.frame" || key.name == "container.radius" ||  // in the sizes of the box
+            key.name == "packing.frame" || key.name == "container.radius" ||  // part of the sizes of the box
             key.name == "container.height")  // of a cell, which has no trials
             continue;
         Trial trial = names.small.trial(1);
@@ -231,8 +232,8 @@ TEST(TrialNames, TellEveryKeyOfAReplicaApart) {
     EXPECT_GT(tried, 40);
 }
 
-// The table of keys and the struct agree: a member without a key would be forgotten in names too.
-TEST(TrialNames, TellEveryEffectApart) {
+// Checks the table of keys against the struct: a member without a key would be missing in names.
+TEST(TrialNames, DifferForEveryEffect) {
     Names names;
     constexpr std::size_t count = sizeof(Effects) / sizeof(double);
     for (std::size_t k = 0; k < count; ++k) {
@@ -242,7 +243,7 @@ TEST(TrialNames, TellEveryEffectApart) {
     }
 }
 
-/// Every double of a struct that holds nothing else, moved one after the other.
+/// Changes every double of a struct that contains only doubles, one after the other.
 template <class Plain>
 void for_each_number(Plain& plain, const std::function<void(std::size_t)>& look) {
     static_assert(std::is_trivially_copyable_v<Plain> && sizeof(Plain) % sizeof(double) == 0);
@@ -255,14 +256,14 @@ void for_each_number(Plain& plain, const std::function<void(std::size_t)>& look)
     }
 }
 
-TEST(TrialNames, TellInstrumentsApart) {
+TEST(TrialNames, DifferForInstruments) {
     Names names;
     Trial trial = names.small.trial(1);
     for_each_number(trial.model.instrument,
                     [&](std::size_t k) { EXPECT_FALSE(names.taken_for_the_kept(trial)) << k; });
 }
 
-TEST(TrialNames, TellQuestionsApart) {
+TEST(TrialNames, DifferForQuestions) {
     Names names;
     Question question = names.small.question;
     const auto expect_apart = [&](const char* what) {
@@ -285,13 +286,12 @@ TEST(TrialNames, TellQuestionsApart) {
     expect_apart("precision");
 }
 
-TEST(ObserveTrials, InPartsTheyAreTheSame) {
+TEST(ObserveTrials, InPartsAreTheSame) {
     const SmallTrials small, alone;
     const std::vector<Trial> trials{small.trial(1), small.trial(2), small.trial(1)};
     Device device;
     const auto expected = observe_trials(device, alone.question, trials, alone.store, {});
-    const std::size_t enough =
-        8'192 / trials.front().packing.size() + 2;  // for one more than fits into a part
+    const std::size_t enough = 8'192 / trials.front().packing.size() + 2;  // one more than fits into a part
     std::vector<Trial> many;
     while (many.size() < enough) many.push_back(small.trial(many.size()));
     const auto parts = parts_of_trials(small.question, many);

@@ -1,4 +1,4 @@
-// The paper's metrics before and after, on recordings whose forces are known.
+// The paper's metrics before and after a gap is closed, for recordings with known forces.
 #include "ensemble/paper_metrics.h"
 
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 namespace mcdem {
 namespace {
 
-/// Loading and unloading with a top force of `stiffness` times the displacement squared.
+/// Loading and unloading; the top force is `stiffness` times the square of the displacement.
 Recording stroke(double stiffness) {
     Recording recording;
     recording.plate_start = 0.1;
@@ -26,14 +26,14 @@ Recording stroke(double stiffness) {
     return recording;
 }
 
-TEST(PaperMetrics, BeforeAndAfter) {
+TEST(PaperMetrics, BeforeAndAfterAreCorrect) {
     GapReduction gap_reduction;
     const double stiffness = 1e4;  // 1 N at 10 mm
     add_paper_metrics(gap_reduction, stroke(stiffness),
                       {{stroke(0.5 * stiffness), stroke(0.7 * stiffness)}, {stroke(1.1 * stiffness)}});
     EXPECT_NEAR(gap_reduction.metrics.at("Rtop")[0], 0.6, 1e-12);
     EXPECT_NEAR(gap_reduction.metrics.at("Rtop")[1], 1.1, 1e-12);
-    // Root mean square over the levels, of which loading and unloading have the same: 0.04 k^2 N.
+    // Root mean square over the levels, equal for loading and unloading: 0.04 k^2 N.
     const double mean_square = 0.04 * 0.04 * (1 + 16 + 81 + 256 + 625) / 5;
     EXPECT_NEAR(gap_reduction.metrics.at("errf")[0], 0.4 * std::sqrt(mean_square), 1e-12);
     EXPECT_NEAR(gap_reduction.metrics.at("errf")[1], 0.1 * std::sqrt(mean_square), 1e-12);

@@ -1,5 +1,5 @@
-// A tiny scene drawn at random: containers, programmes, models, effects, species, sizes, precision, slots,
-// friction laws.
+// A random tiny scene: containers, programmes, models, effects, species, sizes, precision, slots, friction
+// laws.
 #pragma once
 #include <fmt/format.h>
 
@@ -18,7 +18,7 @@ class RandomScene {
 public:
     explicit RandomScene(unsigned seed) : engine_(seed) {}
 
-    /// As TOML. Replicas differ in model, and some in grains or an effect as well.
+    /// As TOML. Replicas differ in model, some also in grains or an effect.
     std::string text() {
         draw_container();
         draw_packing();
@@ -57,7 +57,7 @@ private:
 
     bool is_cell() const { return shape_ == ContainerShape::cell; }
 
-    /// Grains that fill a cell, which must be wider than they and what is near them.
+    /// Grains that fill a cell. The cell must be wider than a grain with its neighbours.
     void draw_cell(double widest, double fraction) {
         const double grains = count_ * std::numbers::pi / 6 * mean_ * mean_ * mean_;
         const double width = std::cbrt(grains / fraction) * between(0.97, 1.03);
@@ -108,7 +108,7 @@ private:
             text_ += fmt::format("scans_per_stroke = {}\n", whole(1, 3));
     }
 
-    /// Goes down and part of the way back, to strains or to a force that may not be there to reach; waits.
+    /// Down and part of the way back, to strains or to a force that may not be reachable; then a hold.
     void draw_plate_programme() {
         const double most = 1 - end_ / start_;
         const auto move = [&](double share) {
@@ -128,7 +128,7 @@ private:
         if (chance(0.2)) text_ += "[[programme]]\nstage = \"repeat\"\nstages = 1\n";
     }
 
-    /// Compressed, sheared and held.
+    /// Compression, shear, hold.
     void draw_cell_programme() {
         text_ += fmt::format("[[programme]]\nstrain = {}\nrate = {}\nscans = {}\n", between(0.005, 0.04),
                              between(1, 5), whole(1, 2));

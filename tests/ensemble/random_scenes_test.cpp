@@ -1,6 +1,6 @@
-// Scenes drawn at random: the same bits alone, in a batch, in parts, and on any number of threads; every
-// number is one; walls and grains push one another alike. MCDEM_RANDOM_SCENES says how many,
-// MCDEM_RANDOM_SEED from which seed on.
+// Random scenes: bit-identical alone, in a batch, in parts, and with any number of threads; all values are
+// finite; forces on walls and grains are opposite. MCDEM_RANDOM_SCENES is the number of scenes,
+// MCDEM_RANDOM_SEED the first seed.
 #include <gmock/gmock.h>
 #include <sys/wait.h>
 
@@ -24,7 +24,7 @@ int setting(const char* variable, int otherwise) {
     return text ? std::atoi(text) : otherwise;
 }
 
-/// Everything that is told of a replica, as one text.
+/// All output of a replica as one text.
 std::string told_of(const Recording& recording) {
     std::string told = bits_of(recording);
     if (recording.failure)
@@ -33,7 +33,7 @@ std::string told_of(const Recording& recording) {
     return told;
 }
 
-/// Replicas from `first` up to `last`, in a batch of their own.
+/// Replicas from `first` to `last` (excluded), in a batch of their own.
 std::vector<Recording> simulate_some(Device& device, const Scene& scene, const std::vector<Packing>& packings,
                                      std::size_t first, std::size_t last) {
     Scene some = scene;
@@ -50,8 +50,8 @@ void expect_numbers(const Scan& scan) {
     EXPECT_TRUE(std::isfinite(scan.elastic_energy));
 }
 
-/// What the grains' contacts say of the walls is what the walls say. (Adhesion attracts across gaps, where
-/// there is no contact.)
+/// The wall forces equal the sums of the contact forces at the walls. (Not with adhesion, which acts across
+/// gaps without contact.)
 void expect_action_is_reaction(const Scan& scan, Precision precision) {
     auto from_contacts = no_wall_forces();
     double size = 0;
@@ -65,7 +65,7 @@ void expect_action_is_reaction(const Scan& scan, Precision precision) {
         EXPECT_LE((from_contacts[wall] - scan.wall_force[wall]).norm(), allowed) << "wall " << wall;
 }
 
-/// The stress of a cell is what its contacts say, and the forces through its faces are area times stress.
+/// The stress of a cell equals that of its contacts; the forces through its faces are area times stress.
 void expect_stress_of_contacts(const Recording& recording, const Scan& scan, Precision precision) {
     const Mat3 stress = packing_stress(recording.box, scan);
     double size = 0;
@@ -80,7 +80,7 @@ void expect_stress_of_contacts(const Recording& recording, const Scan& scan, Pre
             << "face " << wall;
 }
 
-/// What all replicas tell of a scene that has been simulated whole. `more`: also in parts and alone.
+/// Output of all replicas of a complete simulation. `more`: also checks parts and single replicas.
 std::string check(Device& device, unsigned seed, bool more) {
     const std::string text = RandomScene(seed).text();
     SCOPED_TRACE(fmt::format("seed {}:\n{}", seed, text));
@@ -114,7 +114,7 @@ std::string check(Device& device, unsigned seed, bool more) {
     return told;
 }
 
-/// Hashes of what random scenes tell, by a process of its own with that many threads.
+/// Hashes of the output of random scenes, from a separate process with this number of threads.
 std::string hashes_on_threads(int threads, const std::filesystem::path& folder) {
     const auto file = folder / std::to_string(threads);
     const pid_t child = fork();

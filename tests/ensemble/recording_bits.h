@@ -1,4 +1,4 @@
-// Every bit that a recording's scans hold.
+// All bits of a recording's scans.
 #pragma once
 #include <string>
 

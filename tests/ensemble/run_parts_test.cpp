@@ -1,4 +1,5 @@
-// A run in parts: the bytes of one program's, whoever computed them, and whatever happened to them.
+// A run in parts: bit-identical to the run of one process, whichever process computes a part and whatever
+// interrupts it.
 #include "ensemble/parts/run_parts.h"
 
 #include <fmt/format.h>
@@ -21,7 +22,7 @@ class RunPartsTest : public testing::Test {
 protected:
     RunPartsTest() { whole_again(); }
 
-    /// The run of the scene as it is now, by one program.
+    /// The run of the present scene by one process.
     void whole_again() {
         fs::remove_all(folder("whole"));
         RunOptions options;
@@ -38,12 +39,12 @@ protected:
         RunParts parts(scene_, options, {part_replicas, 1});
         return parts;
     }
-    /// As another process would.
+    /// As another process would do it.
     void compute(const std::string& name, std::initializer_list<std::size_t> numbers) {
         RunParts parts = parts_of(name);
         for (const std::size_t part : numbers) EXPECT_TRUE(parts.compute(device_, part));
     }
-    /// Leaves a part after so many rounds, with a checkpoint.
+    /// Interrupts a part after this number of rounds, with a checkpoint.
     void interrupt(const std::string& name, std::size_t part, int rounds) {
         RunParts parts = parts_of(name);
         rounds_ = rounds;
@@ -51,7 +52,7 @@ protected:
         EXPECT_FALSE(parts.compute(device_, part));
         rounds_ = -1;
     }
-    /// What is missing, until all is merged.
+    /// Computes the missing parts until all are merged.
     void finish(const std::string& name, std::size_t part_replicas = 1) {
         RunParts parts = parts_of(name, part_replicas);
         do
@@ -100,10 +101,10 @@ protected:
     Device device_;
     Scene scene_ = small_scene({"batch.replicas=3", "protocol.scans_per_stroke=2"});  // 6 replicas
     std::vector<std::string> warnings_;
-    int rounds_ = -1;  ///< until it is interrupted; -1: never
+    int rounds_ = -1;  ///< until the interruption; -1: never
 };
 
-TEST_F(RunPartsTest, GiveTheBytesOfARunByOneProgramWhateverTheirSize) {
+TEST_F(RunPartsTest, GiveTheBytesOfASingleProcessForAnyPartSize) {
     for (const std::size_t size : {0, 1, 4, 100}) {
         const auto name = "parts of " + std::to_string(size);
         finish(name, size);
@@ -114,7 +115,7 @@ TEST_F(RunPartsTest, GiveTheBytesOfARunByOneProgramWhateverTheirSize) {
     expect_like_whole("parts of 4");
 }
 
-/// Programmes of every container in one run, with species.
+/// Programmes for every container in one run, with species.
 class ProgrammePartsTest : public RunPartsTest, public testing::WithParamInterface<const char*> {
 protected:
     ProgrammePartsTest() {
@@ -177,7 +178,7 @@ stage = "hold"
 time = 0.004
 )";
 
-TEST_P(ProgrammePartsTest, InPartsAndInterruptedGiveTheBytesOfARunByOneProgram) {
+TEST_P(ProgrammePartsTest, InPartsAndInterruptedGiveTheBytesOfASingleProcess) {
     for (const std::size_t size : {1, 3}) {
         const auto name = "parts of " + std::to_string(size);
         finish(name, size);
@@ -192,7 +193,7 @@ TEST_P(ProgrammePartsTest, InPartsAndInterruptedGiveTheBytesOfARunByOneProgram) 
 INSTANTIATE_TEST_SUITE_P(Containers, ProgrammePartsTest, testing::Values(plate_programme, cell_programme),
                          [](const auto& about) { return about.index == 0 ? "Cylinder" : "Cell"; });
 
-TEST_F(RunPartsTest, AreCutForAsManyWorkersAsAreKnown) {
+TEST_F(RunPartsTest, PartSizeFollowsTheNumberOfWorkers) {
     RunOptions options;
     options.folder = folder("cut");
     EXPECT_EQ(RunParts(scene_, options, {0, 1}).count(), 2u);
@@ -201,7 +202,7 @@ TEST_F(RunPartsTest, AreCutForAsManyWorkersAsAreKnown) {
     EXPECT_EQ(RunParts(scene_, options, {0, 3}).count(), 6u);
 }
 
-TEST_F(RunPartsTest, AreComputedInAnyOrderAndThoseThereAreNotComputedAgain) {
+TEST_F(RunPartsTest, AreComputedInAnyOrderAndOnlyOnce) {
     compute("two", {4, 1});
     EXPECT_THAT(parts_of("two").missing(), ElementsAre(0, 2, 3, 5));
     EXPECT_FALSE(parts_of("two").merge());
@@ -214,7 +215,7 @@ TEST_F(RunPartsTest, AreComputedInAnyOrderAndThoseThereAreNotComputedAgain) {
     expect_like_whole("two");
 }
 
-TEST_F(RunPartsTest, ByTwoProcessesAtATimeAreTheSame) {
+TEST_F(RunPartsTest, ComputedByTwoProcessesAreTheSame) {
     RunParts one = parts_of("twice");
     bool done = false;
     one.on_progress = [&](double) {
@@ -226,7 +227,7 @@ TEST_F(RunPartsTest, ByTwoProcessesAtATimeAreTheSame) {
     expect_like_whole("twice");
 }
 
-TEST_F(RunPartsTest, GoOnFromTheCheckpointOfAnInterruptedOne) {
+TEST_F(RunPartsTest, ContinueFromTheCheckpointOfAnInterruptedPart) {
     interrupt("often", 0, 1);
     const auto checkpoint = work_folder("often") / "checkpoint.h5";
     ASSERT_TRUE(fs::exists(checkpoint));
@@ -243,7 +244,7 @@ TEST_F(RunPartsTest, GoOnFromTheCheckpointOfAnInterruptedOne) {
     expect_like_whole("often");
 }
 
-TEST_F(RunPartsTest, LeaveACheckpointThatIsInUse) {
+TEST_F(RunPartsTest, DoNotTouchACheckpointInUse) {
     interrupt("held", 0, 1);
     const auto work = work_folder("held");
     {
@@ -255,7 +256,7 @@ TEST_F(RunPartsTest, LeaveACheckpointThatIsInUse) {
     expect_like_whole("held");
 }
 
-TEST_F(RunPartsTest, WhatIsOfNoUseOfAPartIsThrownAway) {
+TEST_F(RunPartsTest, UnusableFilesOfAPartAreDeleted) {
     interrupt("lost", 0, 1);
     for (const char* name : {"checkpoint.h5", "checkpoint.previous.h5", "segment-000000.h5"})
         std::ofstream(work_folder("lost") / name) << "damaged";
@@ -278,7 +279,7 @@ TEST_F(RunPartsTest, ADamagedPartIsComputedAgain) {
     }
 }
 
-TEST_F(RunPartsTest, AnotherPartInItsPlaceIsComputedAgain) {
+TEST_F(RunPartsTest, APartWithOtherReplicasIsComputedAgain) {
     compute("copied", {0, 1});
     fs::copy_file(file("copied", "00000.h5"), file("copied", "00001.h5"),
                   fs::copy_options::overwrite_existing);
@@ -287,7 +288,7 @@ TEST_F(RunPartsTest, AnotherPartInItsPlaceIsComputedAgain) {
     expect_like_whole("copied");
 }
 
-TEST_F(RunPartsTest, AnInvalidSizeIsRefused) {
+TEST_F(RunPartsTest, AnInvalidPartSizeIsRefused) {
     compute("none", {0});
     const auto manifest = file("none", "manifest.json");
     const std::string whole = bytes_of_file(manifest), size = "\"replicas of a part\": \"1\"";
@@ -303,7 +304,7 @@ TEST_F(RunPartsTest, AnInvalidSizeIsRefused) {
     expect_like_whole("none");
 }
 
-TEST_F(RunPartsTest, ADamagedManifestIsMadeAnewFromTheFinishedParts) {
+TEST_F(RunPartsTest, ADamagedManifestIsRebuiltFromTheFinishedParts) {
     const Scene mine = scene_;
     for (const char* damaged : {"", "{\"program\"", "[]", "{\"replicas of a part\": [1]}"}) {
         scene_ = mine;
@@ -314,7 +315,7 @@ TEST_F(RunPartsTest, ADamagedManifestIsMadeAnewFromTheFinishedParts) {
         EXPECT_THAT(problem(name), HasSubstr("are of another scene or program"));
         scene_ = mine;
         warnings_.clear();
-        finish(name, 4);  // in the parts that were begun, of one replica
+        finish(name, 4);  // keeps the size of the existing parts, one replica
         EXPECT_THAT(warnings_, ElementsAre(HasSubstr("is damaged, and rebuilt from the finished parts")));
         expect_like_whole(name);
     }
@@ -329,8 +330,8 @@ TEST_F(RunPartsTest, OfAnotherDeviceAreRefused) {
     expect_like_whole("device");
 }
 
-TEST_F(RunPartsTest, AMergeThatWasCutShortIsEnded) {
-    compute("cut", {0, 1, 2, 4, 5});  // 3 is not looked at any more
+TEST_F(RunPartsTest, AnInterruptedMergeIsCompleted) {
+    compute("cut", {0, 1, 2, 4, 5});  // 3 is not needed any more
     fs::copy_file(folder("whole") / "run.h5", folder("cut") / "run.h5");
     finish("cut");
     expect_like_whole("cut");
@@ -348,7 +349,7 @@ TEST_F(RunPartsTest, OtherRunsAreRefused) {
     EXPECT_THAT(problem("one"), HasSubstr("--resume"));
 }
 
-TEST_F(RunPartsTest, ARunOfOneProgramUnderWayIsNotJoined) {
+TEST_F(RunPartsTest, ARunningSingleProcessIsNotJoined) {
     std::string joining;
     EXPECT_EQ(run_alone("one", Start::fresh,
                         [&] {
@@ -360,7 +361,7 @@ TEST_F(RunPartsTest, ARunOfOneProgramUnderWayIsNotJoined) {
     expect_like_whole("one");
 }
 
-TEST_F(RunPartsTest, WherePartsAreComputedNoneWritesAlone) {
+TEST_F(RunPartsTest, SingleProcessesAreRefusedWherePartsAreComputed) {
     std::vector<std::string> problems;
     RunParts parts = parts_of("many");
     parts.on_progress = [&](double) {
@@ -373,15 +374,15 @@ TEST_F(RunPartsTest, WherePartsAreComputedNoneWritesAlone) {
                                       HasSubstr("other programs share work there")));
 }
 
-TEST_F(RunPartsTest, AreNotResumedAsARunOfOneProgram) {
+TEST_F(RunPartsTest, AreNotResumedByASingleProcess) {
     compute("parts", {0});
     EXPECT_THAT(problem_of([&] { run_alone("parts", Start::resume); }), HasSubstr("holds parts of a run"));
     finish("parts");
     expect_like_whole("parts");
 }
 
-/// As on a network disk whose locks do not reach from one machine to the other.
-TEST_F(RunPartsTest, WithoutLocksTwoRunsAreLeftAsTheyAre) {
+/// As on a network disk without locks between machines.
+TEST_F(RunPartsTest, WithoutLocksNeitherOfTwoRunsIsOverwritten) {
     const auto mine = scene_;
     compute("both", {0, 1, 2, 3, 4, 5});
     set_another_scene();

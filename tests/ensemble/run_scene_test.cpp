@@ -1,4 +1,4 @@
-// Runs into a folder: what they leave, and that an interruption leaves no trace.
+// Runs into a folder: the files they write, and interrupted runs that end with the same bytes.
 #include "ensemble/run_scene.h"
 
 #include <gmock/gmock.h>
@@ -36,7 +36,7 @@ protected:
     fs::path folder(const std::string& name) const { return temporary_.path / name; }
     std::string result(const std::string& name) const { return bytes_of_file(run_file(folder(name))); }
 
-    /// The problem that resuming `name` with this scene meets.
+    /// The error of resuming `name` with this scene.
     std::string problem_resuming(const Scene& scene, const std::string& name) {
         try {
             run(scene, name, Start::resume);
@@ -52,7 +52,7 @@ protected:
     std::vector<std::string> failed_, warnings_;
 };
 
-TEST_F(RunSceneTest, LeavesResultAndSummaryAlone) {
+TEST_F(RunSceneTest, WritesOnlyResultAndSummary) {
     const auto summary = run(small_scene(), "a");
     EXPECT_EQ(summary.end, RunEnd::done);
     EXPECT_GT(summary.grain_steps, 0);
@@ -74,7 +74,7 @@ TEST_F(RunSceneTest, TwoFreshRunsHaveTheSameBytes) {
     run(small_scene(), "b");
     EXPECT_EQ(result("a"), result("b"));
     run(small_scene({"packing.seed=2"}), "c");
-    EXPECT_NE(result("a"), result("c"));  // or the comparison could not fail
+    EXPECT_NE(result("a"), result("c"));  // checks that the comparison can fail
 }
 
 TEST_F(RunSceneTest, ResumedRunEndsWithTheSameBytes) {
@@ -98,14 +98,14 @@ TEST_F(RunSceneTest, SegmentNewerThanTheCheckpointIsDropped) {
     const auto checkpoint = bytes_of_file(folder("a") / "checkpoint.h5");
     run(small_scene(), "a", Start::resume, 25);
     ASSERT_GT(segment_files(folder("a")).size(), 1u);
-    // As if the power had gone between the segment and its checkpoint.
+    // As if the power had failed between the segment and its checkpoint.
     fs::remove(folder("a") / "checkpoint.previous.h5");
     std::ofstream(folder("a") / "checkpoint.h5", std::ios::binary) << checkpoint;
     run(small_scene(), "a", Start::resume);
     EXPECT_TRUE(result("a") == result("whole"));
 }
 
-TEST_F(RunSceneTest, BeginsAnewWhereNoCheckpointWasWritten) {
+TEST_F(RunSceneTest, StartsAgainIfThereIsNoCheckpoint) {
     run(small_scene(), "whole");
     run(small_scene(), "a", Start::fresh, 3);
     remove_checkpoints(folder("a"));
@@ -113,21 +113,21 @@ TEST_F(RunSceneTest, BeginsAnewWhereNoCheckpointWasWritten) {
     EXPECT_TRUE(result("a") == result("whole"));
 }
 
-TEST_F(RunSceneTest, FinishedRunIsLeftAsItIs) {
+TEST_F(RunSceneTest, FinishedRunIsNotChanged) {
     run(small_scene(), "a");
     const auto before = result("a");
-    fs::remove(folder("a") / "plate.csv");  // as if stopped right after run.h5 was there
+    fs::remove(folder("a") / "plate.csv");  // as if stopped right after writing run.h5
     EXPECT_EQ(run(small_scene(), "a", Start::resume).end, RunEnd::was_done);
     EXPECT_EQ(result("a"), before);
     EXPECT_TRUE(fs::exists(folder("a") / "plate.csv"));
     EXPECT_THAT(problem_resuming(small_scene({"packing.seed=2"}), "a"), testing::HasSubstr("scene"));
 }
 
-TEST_F(RunSceneTest, RefusesToGoOnWithSomethingElse) {
+TEST_F(RunSceneTest, RefusesToResumeAnotherScene) {
     const auto changed = small_scene({"grains.friction=0.1"});
     run(small_scene(), "a", Start::fresh, 10);
     EXPECT_THAT(problem_resuming(changed, "a"), testing::HasSubstr("scene it was begun with"));
-    remove_checkpoints(folder("a"));  // the segments know too
+    remove_checkpoints(folder("a"));  // the segments also identify the scene
     EXPECT_THAT(problem_resuming(changed, "a"), testing::HasSubstr("scene it was begun with"));
     EXPECT_THAT(problem_resuming(small_scene(), "nowhere"), testing::HasSubstr("nothing to resume"));
 
@@ -154,14 +154,14 @@ TEST_F(RunSceneTest, RefusesAPackingFileThatHasChanged) {
     EXPECT_EQ(problem_resuming(scene_with("0.0100"), "a"), "none");
 }
 
-TEST_F(RunSceneTest, WarnsWhenAnotherProgramGoesOn) {
+TEST_F(RunSceneTest, WarnsIfAnotherProgramVersionResumes) {
     run(small_scene(), "a", Start::fresh, 10);
     program_ = "newer";
     run(small_scene(), "a", Start::resume);
     EXPECT_THAT(warnings_, testing::ElementsAre(testing::HasSubstr("was begun by test, goes on with newer")));
 }
 
-TEST_F(RunSceneTest, FailedReplicaIsRecordedAndTheOtherGoesOn) {
+TEST_F(RunSceneTest, FailedReplicaIsRecordedAndTheOtherContinues) {
     const auto scene = small_scene(
         {"batch.vary.numerics.overlap_limit=[0.0005, 0.5]", "batch.vary.contact.model=[\"elastic_sphere\"]"});
     run(scene, "whole");

@@ -1,4 +1,4 @@
-// A run of many replicas stops at once, whatever it is doing, and loses nothing.
+// A run of many replicas stops promptly, whatever it is doing, without loss of data.
 #include <gmock/gmock.h>
 
 #include <atomic>
@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// More replicas than a stop waits for.
+/// More replicas than a stop may wait for.
 Scene many_replicas() {
     return small_scene({"batch.replicas=130", "packing.count=4", "packing.packing_fraction=0.1",
                         "plate.end=0.086", "protocol.scans_per_stroke=2", "protocol.settle_time=0.001",
@@ -24,7 +24,7 @@ Scene many_replicas() {
 
 class RunStopTest : public testing::Test {
 protected:
-    /// Counts in `looks_` how often the run looks whether to stop. Stops it from look `stop_at` on.
+    /// Counts in `looks_` the checks for a stop; requests a stop from check `stop_at` on.
     RunEnd run(const Scene& scene, const std::string& name, Start start, int stop_at = -1) {
         RunOptions options;
         options.folder = folder(name);
@@ -59,18 +59,18 @@ protected:
     std::atomic<int> looks_ = 0;
 };
 
-TEST_F(RunStopTest, FewReplicasKeepTheirScansReadable) {
+TEST_F(RunStopTest, AFewReplicasKeepTheirScansReadable) {
     const Scene scene = small_scene();
     ASSERT_EQ(run_rounds(scene, "a", 30), RunEnd::interrupted);
     EXPECT_EQ(segment_files(folder("a")).size(), 1u);
     EXPECT_EQ(problem_reading("a"), "none");
 }
 
-TEST_F(RunStopTest, DoesLittleBeforeItStopsAndGoesOnWithTheSameBits) {
+TEST_F(RunStopTest, StopsPromptlyAndResumesWithTheSameBits) {
     const Scene scene = many_replicas();
     ASSERT_EQ(run(scene, "whole", Start::fresh), RunEnd::done);
     const int all_looks = looks_, last = static_cast<int>(scene.replicas.size());
-    ASSERT_GT(all_looks, 10 * last);  // while it writes and reads back, too
+    ASSERT_GT(all_looks, 10 * last);  // also while it writes and reads back
 
     ASSERT_EQ(run_rounds(scene, "a", 8), RunEnd::interrupted);
     EXPECT_THAT(segment_files(folder("a")), testing::IsEmpty());

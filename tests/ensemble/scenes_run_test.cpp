@@ -1,5 +1,5 @@
-// Every scene of the folder scenes/ runs: its first millimetre, one scan each way; a programme as a whole,
-// each cycle once.
+// Every scene of the folder scenes/ runs: the first millimetre with one scan per stroke; a programme
+// completely, with one cycle each.
 #include <gtest/gtest.h>
 
 #include "ensemble/run_scene.h"
@@ -13,7 +13,7 @@ namespace {
 namespace fs = std::filesystem;
 constexpr std::size_t max_replicas = 6;
 
-/// The scene, cut short.
+/// The scene, shortened.
 Scene beginning_of(const std::string& name) {
     Scene scene = read_scene(fs::path(MCDEM_SOURCE_DIR) / "scenes" / (name + ".toml"));
     if (scene.replicas.size() > max_replicas) scene.replicas.resize(max_replicas);

@@ -1,4 +1,4 @@
-// A scene that runs in a moment and still has everything: rearranging grains, two models, settling scans.
+// A scene that runs quickly but has rearranging grains, two models and scans at rest.
 #pragma once
 #include <cstdlib>
 #include <filesystem>
@@ -33,7 +33,7 @@ inline Scene small_scene(const std::vector<std::string>& overrides = {}) {
     return parse_scene(small_scene_text, "small.toml", overrides);
 }
 
-/// A folder of its own for one test, removed afterwards.
+/// A temporary folder for one test.
 struct TestFolder {
     TestFolder() {
         auto pattern = (std::filesystem::temp_directory_path() / "mcdem-test-XXXXXX").string();

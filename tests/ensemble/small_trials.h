@@ -1,4 +1,4 @@
-// Trials that run in a moment: a few dozen grains, three scans.
+// Trials that run quickly: a few dozen grains, three scans.
 #pragma once
 #include "ensemble/build_library.h"
 #include "ensemble/make_packings.h"
@@ -28,7 +28,7 @@ struct SmallTrials {
     ObservationStore store{folder.path / "simulations"};
 };
 
-/// Bit for bit, but one not-a-number is as good as another.
+/// True if all bits are equal; any two NaN are equal.
 inline bool same(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
     if (a.size() != b.size()) return false;
     for (Eigen::Index k = 0; k < a.size(); ++k)

@@ -1,5 +1,4 @@
-// Folders that hold something else than an experiment: told in a line, never a crash, a hang or an exhausted
-// memory.
+// Folders that are not valid experiments: an error in one line, without a crash, a hang or exhausted memory.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -31,7 +30,7 @@ std::string bytes_of(const fs::path& file) {
     return {std::istreambuf_iterator<char>(in), {}};
 }
 
-TEST(bad_folder, an_empty_table_is_told) {
+TEST(bad_folder, an_empty_table_is_reported) {
     for (const std::string table : tables) {
         ExperimentFolder folder;
         const std::string header = folder[table].substr(0, folder[table].find('\n'));
@@ -47,7 +46,7 @@ TEST(bad_folder, an_empty_table_is_told) {
     }
 }
 
-TEST(bad_folder, bytes_that_are_no_table_are_told) {
+TEST(bad_folder, bytes_that_are_no_table_are_reported) {
     Random random(1, Stream::positions);
     std::string junk;
     for (int i = 0; i < 100000; ++i) junk += static_cast<char>(random.uniform(1, 256));
@@ -58,7 +57,7 @@ TEST(bad_folder, bytes_that_are_no_table_are_told) {
         EXPECT_THAT(folder.error(), StartsWith(table + ":"));
         folder[table] = text + std::string(1, '\0');
         EXPECT_EQ(folder.error(), table + ": holds zero bytes and is no table: save it as text in UTF-8");
-        std::string wide = "\xFF\xFE";  // UTF-16, as spreadsheets save
+        std::string wide = "\xFF\xFE";  // UTF-16, as saved by spreadsheets
         for (const char c : text) wide += {c, '\0'};
         folder[table] = wide;
         EXPECT_THAT(folder.error(), HasSubstr("save it as text in UTF-8"));
@@ -67,7 +66,7 @@ TEST(bad_folder, bytes_that_are_no_table_are_told) {
     }
 }
 
-TEST(bad_folder, other_separators_are_told_once) {
+TEST(bad_folder, other_separators_are_reported_once) {
     for (const char separator : {';', '\t'}) {
         ExperimentFolder folder;
         std::string& text = folder["plate.csv"];
@@ -76,14 +75,14 @@ TEST(bad_folder, other_separators_are_told_once) {
     }
 }
 
-TEST(bad_folder, a_byte_order_mark_is_passed_over) {
+TEST(bad_folder, a_byte_order_mark_is_skipped) {
     ExperimentFolder folder;
     for (const char* file : {"experiment.toml", "plate.csv", "grains.csv", "contacts.csv"})
         folder[file].insert(0, "\xEF\xBB\xBF");
     EXPECT_EQ(folder.error(), "no error");
 }
 
-TEST(bad_folder, damaged_packed_tables_are_told) {
+TEST(bad_folder, damaged_compressed_tables_are_reported) {
     for (const std::string table : tables) {
         ExperimentFolder folder;
         folder.write();
@@ -104,12 +103,12 @@ TEST(bad_folder, damaged_packed_tables_are_told) {
     }
 }
 
-TEST(bad_folder, tables_larger_than_the_limit_are_refused_unread) {
+TEST(bad_folder, too_large_tables_are_refused_without_reading_them) {
     for (const std::string table : tables) {
         ExperimentFolder folder;
         folder.write();
         fs::resize_file(folder.path() / table,
-                        10ull << 30);  // takes no space, and would take minutes to read
+                        10ull << 30);  // a sparse file that would take minutes to read
         EXPECT_EQ(folder.error_as_it_lies(),
                   table +
                       ": is larger than an experiment's table may be: leave out frames, or split it into "
@@ -117,7 +116,7 @@ TEST(bad_folder, tables_larger_than_the_limit_are_refused_unread) {
     }
 }
 
-TEST(bad_folder, packed_tables_larger_than_the_limit_are_read_no_further) {
+TEST(bad_folder, too_large_compressed_tables_are_read_only_to_the_limit) {
     ExperimentFolder folder;
     folder.write();
     fs::remove(folder.path() / "plate.csv");
@@ -129,7 +128,7 @@ TEST(bad_folder, packed_tables_larger_than_the_limit_are_read_no_further) {
     EXPECT_THAT(folder.error_as_it_lies(1000), StartsWith("plate.csv.gz: is larger than an experiment's"));
 }
 
-TEST(bad_folder, tables_that_are_no_files_are_told) {
+TEST(bad_folder, tables_that_are_not_files_are_reported) {
     const auto error_with = [](const std::string& name, const auto& put) {
         ExperimentFolder folder;
         folder.write();
@@ -152,7 +151,7 @@ TEST(bad_folder, tables_that_are_no_files_are_told) {
     }
 }
 
-TEST(bad_folder, what_is_no_folder_is_told) {
+TEST(bad_folder, what_is_not_a_folder_is_reported) {
     const auto error = [](const fs::path& folder) -> std::string {
         try {
             read_experiment(folder);
@@ -176,7 +175,7 @@ TEST(bad_folder, what_is_no_folder_is_told) {
     EXPECT_THAT(error(path), StartsWith(path + ": must hold plate.csv or plate.csv.gz"));
 }
 
-TEST(bad_folder, settings_that_are_no_settings_are_told) {
+TEST(bad_folder, invalid_settings_are_reported) {
     ExperimentFolder folder;
     for (const std::string& text :
          {std::string(1'000'001, '\n'), std::string(1000, '\0'), std::string("\xFF\xFE\x00\x01", 4),
@@ -193,8 +192,8 @@ TEST(bad_folder, settings_that_are_no_settings_are_told) {
     EXPECT_THAT(folder.error(), StartsWith("experiment.toml: must be a text of at most 1 MB"));
 }
 
-/// Bytes of a good folder changed, taken out and doubled at random: it reads, or says what is wrong.
-TEST(bad_folder, any_damage_is_an_error_of_input) {
+/// Changes, removes and duplicates random bytes of a valid folder: it is read, or there is an error.
+TEST(bad_folder, random_damage_gives_an_input_error_or_data) {
     Random random(2, Stream::positions);
     const char bytes[] =
         "0179.,-+eEnN\n\r\"#=[]; \t\x80\xFF"

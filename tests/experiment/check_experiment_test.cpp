@@ -1,5 +1,4 @@
-// A lattice of spheres, at rest by construction: nothing about it is odd. Then one thing at a time is
-// spoiled.
+// A lattice of spheres in equilibrium has no warnings. Then one property at a time is made wrong.
 #include "experiment/check_experiment.h"
 
 #include <fmt/format.h>
@@ -25,13 +24,13 @@ constexpr double diameter = 0.02, width = side * 0.0193, density = 100, weight =
 
 int number(int x, int y, int z) { return (z * side + y) * side + x; }
 
-/// Hertz, E = 23.3 kPa and nu = 1/2.
+/// Hertz force with E = 23.3 kPa and nu = 1/2.
 double force_at(double spacing) {
     return 4.0 / 3 * 23300 / 1.5 * std::sqrt(diameter / 4) * std::pow(diameter - spacing, 1.5);
 }
 
-/// One chain along an axis: spheres pressed against each other and the walls by `force` + `more` for each
-/// sphere on.
+/// A chain along an axis: spheres pressed against each other and the walls by `force`, increased by `more`
+/// with each sphere.
 void add_chain(Scan& scan, int axis, int a, int b, double force, double more) {
     const auto grain = [&](int k) {
         return axis == 0 ? number(k, a, b) : axis == 1 ? number(a, k, b) : number(a, b, k);
@@ -39,7 +38,7 @@ void add_chain(Scan& scan, int axis, int a, int b, double force, double more) {
     const double half = 0.5 * (axis == 2 ? scan.plate_z : width) / side;
     for (int k = 0; k <= side; ++k) {
         const Vec3 push =
-            (force + more * (side - k)) * Vec3::Unit(axis);  // by what is below, on what is above
+            (force + more * (side - k)) * Vec3::Unit(axis);  // by the lower sphere, on the upper one
         Contact contact;
         const bool at_low_wall = k == 0, at_high_wall = k == side;
         contact.grain = at_low_wall ? grain(0) : grain(k - 1);
@@ -71,7 +70,7 @@ Scan scan_at(double plate_z) {
     return scan;
 }
 
-/// Five levels down and up again, as an instrument sees them.
+/// Five levels of loading and unloading, as measured by an instrument.
 Experiment lattice() {
     Recording truth;
     truth.label = "lattice";
@@ -91,14 +90,14 @@ Experiment lattice() {
     return experiment;
 }
 
-TEST(check_experiment, finds_nothing_odd_in_a_packing_at_rest) {
+TEST(check_experiment, a_packing_at_rest_has_no_warnings) {
     const ExperimentCheck check = check_experiment(lattice());
     EXPECT_THAT(check.of(Severity::odd), IsEmpty());
     EXPECT_THAT(check.of(Severity::missing),
                 ElementsAre(HasSubstr("forces at walls"), HasSubstr("forces between grains")));
 }
 
-TEST(check_experiment, notes_say_what_there_is) {
+TEST(check_experiment, notes_list_the_available_data) {
     const Experiment experiment = lattice();
     const auto notes = check_experiment(experiment).of(Severity::note);
     const std::string text = fmt::format("{}", fmt::join(notes, "\n"));
@@ -114,8 +113,8 @@ TEST(check_experiment, notes_say_what_there_is) {
         EXPECT_THAT(text, HasSubstr(part));
 }
 
-// Without noise all cancels, weight included: what remains is the sum's last digits.
-TEST(check_experiment, weight_counts_in_the_balance) {
+// Without noise all forces including the weight cancel, up to rounding of the sum.
+TEST(check_experiment, weight_is_part_of_the_balance) {
     Experiment experiment = lattice();
     Recording truth;
     truth.box = {width, width};
@@ -202,7 +201,7 @@ void leave_out_all_contacts(Experiment& e) {
 
 class spoiled_lattice : public ::testing::TestWithParam<Spoil> {};
 
-TEST_P(spoiled_lattice, is_found) {
+TEST_P(spoiled_lattice, is_reported) {
     Experiment experiment = lattice();
     const auto before = check_experiment(experiment).of(GetParam().severity);
     GetParam().spoil(experiment);
@@ -302,14 +301,14 @@ INSTANTIATE_TEST_SUITE_P(
                             "[uncertainty] of grains.friction: "}),
     [](const auto& info) { return info.param.name; });
 
-TEST(check_experiment, slow_ways_are_no_jumps) {
+TEST(check_experiment, slow_motion_is_not_a_jump) {
     Experiment experiment = lattice();
     for (std::size_t s = 0; s < scans(experiment).size(); ++s)
         scans(experiment)[s].position[31].x() += 0.0035 * static_cast<double>(s);
     EXPECT_THAT(check_experiment(experiment).of(odd), testing::Not(Contains(HasSubstr("grains jump"))));
 }
 
-TEST(check_experiment, contacts_below_the_threshold_may_miss_at_a_weakly_loaded_plate) {
+TEST(check_experiment, missing_weak_contacts_at_a_weakly_loaded_plate_are_allowed) {
     Experiment experiment = lattice();
     for (Scan& scan : scans(experiment)) scan.wall_force[5].z() = 0.5;
     for_contacts(experiment, [](Contact& contact) {
@@ -318,7 +317,7 @@ TEST(check_experiment, contacts_below_the_threshold_may_miss_at_a_weakly_loaded_
     EXPECT_THAT(check_experiment(experiment).of(odd), testing::Not(Contains(HasSubstr("add up to"))));
 }
 
-TEST(check_experiment, forces_of_the_other_sign_are_found) {
+TEST(check_experiment, forces_with_the_wrong_sign_are_reported) {
     Experiment experiment = lattice();
     for_contacts(experiment, [](Contact& contact) { contact.force = -contact.force; });
     const auto found = check_experiment(experiment).of(odd);
@@ -326,7 +325,7 @@ TEST(check_experiment, forces_of_the_other_sign_are_found) {
     EXPECT_THAT(found, Contains(HasSubstr("the contacts with the plate add up to -0.9")));
 }
 
-TEST(check_experiment, radii_for_diameters_are_found) {
+TEST(check_experiment, radii_instead_of_diameters_are_reported) {
     Experiment experiment = lattice();
     for (double& d : experiment.recording.diameter) d /= 2;
     EXPECT_THAT(check_experiment(experiment).of(odd), Contains(HasSubstr("are diameters radii")));
@@ -334,14 +333,14 @@ TEST(check_experiment, radii_for_diameters_are_found) {
     EXPECT_THAT(check_experiment(experiment).of(odd), Contains(HasSubstr("are diameters too large")));
 }
 
-TEST(check_experiment, tangential_forces_are_noticed) {
+TEST(check_experiment, tangential_forces_are_reported) {
     Experiment experiment = lattice();
     for_contacts(experiment,
                  [](Contact& contact) { contact.force += 0.05 * contact.force.norm() * Vec3::Ones(); });
     EXPECT_THAT(check_experiment(experiment).of(missing), IsEmpty());
 }
 
-TEST(experiment_from, states_what_the_run_was_made_of) {
+TEST(experiment_from, states_the_parameters_of_the_run) {
     Recording truth;
     truth.label = "run, replica";
     truth.parameters = {

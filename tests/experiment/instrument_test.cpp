@@ -13,7 +13,7 @@ namespace {
 
 constexpr int grains = 400, scans = 5;
 
-/// A packing that could not stand, but with all that a simulation records.
+/// A packing that is not in equilibrium but has everything that a simulation records.
 Recording truth() {
     Recording recording;
     recording.label = "true";
@@ -74,7 +74,7 @@ void expect_same(const Scan& a, const Scan& b) {
 
 const Instrument noisy{{1e-4, 5e-5, 0.05, 0.02}, 0.03, -0.01, 0.002, 1e-4};
 
-TEST(measured, is_what_a_folder_gives_back) {
+TEST(measured, equals_what_a_folder_returns) {
     for (const Instrument& instrument : {noisy, Instrument{}}) {
         const Recording seen = measured(truth(), instrument, 7);
         ExperimentFolder folder;
@@ -95,7 +95,8 @@ TEST(measured, is_exact_with_a_perfect_instrument) {
         const Scan &p = real.scans[s], &q = seen.scans[s];
         EXPECT_EQ(q.plate_z, p.plate_z);
         EXPECT_EQ(q.top_force(), p.top_force());
-        for (int i = 0; i < grains; ++i)  // 1 ulp: stretched by 1 from the middle of the floor
+        for (int i = 0; i < grains;
+             ++i)  // 1 ulp: positions are scaled by a factor of 1 about the middle of the floor
             EXPECT_LT((p.position[i] - q.position[i]).norm(), 1e-15);
         ASSERT_EQ(p.contacts.size(), q.contacts.size());
         Vec3 on_floor = Vec3::Zero();
@@ -116,13 +117,13 @@ struct Moments {
     double sd() const { return std::sqrt(squares / count - mean() * mean()); }
 };
 
-/// Mean 0 and the given sd, within 4.5 sigma of what this many numbers allow.
+/// Mean 0 and the given standard deviation, within 4.5 sigma for this many numbers.
 void expect_noise(const Moments& moments, double sd) {
     EXPECT_NEAR(moments.mean(), 0, 4.5 * sd / std::sqrt(moments.count));
     EXPECT_NEAR(moments.sd(), sd, 4.5 * sd / std::sqrt(2 * moments.count));
 }
 
-TEST(measured, noise_has_the_stated_size_and_no_memory) {
+TEST(measured, noise_has_the_stated_size_and_is_uncorrelated) {
     const Recording real = truth(), seen = measured(real, {{2e-4, 1e-4, 0.05, 0}, 0, 0, 0, 0}, 3);
     Moments diameter, coordinate, between_scans, between_axes, size, between_partners, between_forces;
     const auto shift = [&](int s, int i) {
@@ -154,14 +155,14 @@ TEST(measured, noise_has_the_stated_size_and_no_memory) {
         }
     expect_noise(diameter, 1e-4);
     expect_noise(coordinate, 2e-4);
-    expect_noise(between_scans, 4e-8);  // product of two: their sigmas' product
+    expect_noise(between_scans, 4e-8);  // product of two values: the product of their sigmas
     expect_noise(between_axes, 4e-8);
     expect_noise(size, 0.05);
     expect_noise(between_partners, 0.05 * 0.05);
     expect_noise(between_forces, 0.05 * 0.05);
 }
 
-TEST(measured, noise_belongs_to_what_is_measured_and_to_the_seed) {
+TEST(measured, noise_depends_only_on_the_quantity_and_the_seed) {
     const Instrument instrument{{1e-4, 1e-4, 0.05, 0}, 0, 0, 0, 0};
     const Recording real = truth();
     Recording fewer = real;
@@ -179,7 +180,7 @@ TEST(measured, noise_belongs_to_what_is_measured_and_to_the_seed) {
     EXPECT_NE(a.scans[1].contacts[0].force, other.scans[1].contacts[0].force);
 }
 
-TEST(measured, biases_stretch_lengths_forces_and_plate_positions) {
+TEST(measured, biases_scale_lengths_forces_and_plate_positions) {
     const Instrument instrument{{}, 0.1, 0, 0.02, 3e-4};
     const Recording real = truth(), seen = measured(real, instrument, 1);
     for (int s = 0; s < scans; ++s) {
@@ -198,7 +199,7 @@ TEST(measured, biases_stretch_lengths_forces_and_plate_positions) {
     EXPECT_EQ(seen.diameter, real.diameter);
 }
 
-TEST(measured, gauge_drifts_with_the_plates_path_up_and_down) {
+TEST(measured, gauge_drifts_with_the_path_length_of_the_plate) {
     Recording real = truth();
     const double path[] = {0, 0.01, 0.03, 0.04};  // down, down, up
     const double height[] = {0.1, 0.09, 0.07, 0.08};
@@ -219,7 +220,7 @@ TEST(measured, gauge_drifts_with_the_plates_path_up_and_down) {
     EXPECT_EQ(measured(real, drifting, 1).scans[0].top_force(), real.scans[0].top_force());
 }
 
-TEST(measured, gauge_drift_is_alike_where_a_recording_ends_early) {
+TEST(measured, gauge_drift_does_not_depend_on_the_end_of_the_recording) {
     Recording real = truth();
     real.plate_start = 0.1;
     real.scans.resize(8, real.scans.back());
@@ -236,7 +237,7 @@ TEST(measured, gauge_drift_is_alike_where_a_recording_ends_early) {
     for (int s = 0; s < 7; ++s) EXPECT_EQ(cut.scans[s].top_force(), whole.scans[s].top_force());
 }
 
-TEST(measured, zero_drifts_by_a_part_of_the_highest_force) {
+TEST(measured, zero_drifts_by_a_fraction_of_the_largest_force) {
     Recording real = truth();
     const double path[] = {0, 0.01, 0.03, 0.04};  // down, down, up
     const double height[] = {0.1, 0.09, 0.07, 0.08}, force[] = {0, 0.5, 2, 0.25};
@@ -254,7 +255,7 @@ TEST(measured, zero_drifts_by_a_part_of_the_highest_force) {
         EXPECT_DOUBLE_EQ(seen.scans[s].top_force(), force[s] - 0.03 * 2 * path[s] / 0.06);
 }
 
-TEST(measured, a_gauge_with_hysteresis_reads_another_force_on_the_way_up) {
+TEST(measured, a_gauge_with_hysteresis_reads_another_force_while_unloading) {
     Recording real = truth();
     real.scans.resize(6, real.scans.back());
     const double force[] = {0, 1, 4, 2, 1, 0}, read[] = {0, 1, 4, 2.4, 1.3, 0};
@@ -282,7 +283,7 @@ TEST(measured, strong_contact_forces_saturate) {
     EXPECT_EQ(seen.scans[1].top_force(), real.scans[1].top_force());
 }
 
-TEST(measured, threshold_is_the_true_one_and_counts_what_is_read) {
+TEST(measured, actual_threshold_includes_its_error_and_averages_use_the_stated_one) {
     const Recording real = truth();
     for (const double shift : {-0.05, 0.0, 0.05}) {
         const Instrument instrument{{0, 0, 0, 0.1}, 0.25, shift, 0, 0};
@@ -301,7 +302,7 @@ TEST(measured, threshold_is_the_true_one_and_counts_what_is_read) {
     }
 }
 
-TEST(measured, large_errors_do_not_turn_forces_round) {
+TEST(measured, large_errors_do_not_reverse_forces) {
     const Recording real = truth(), seen = measured(real, {{0, 0, 3, 0}, 0, 0, 0, 0}, 1);
     for (std::size_t c = 0; c < seen.scans[1].contacts.size(); ++c)
         EXPECT_GE(seen.scans[1].contacts[c].force.dot(real.scans[1].contacts[c].force), 0);

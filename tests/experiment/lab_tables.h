@@ -1,4 +1,4 @@
-// A recording as tables that a laboratory or another program would have written of it.
+// A recording as tables of a laboratory or of another program.
 #pragma once
 #include <fmt/format.h>
 
@@ -14,11 +14,11 @@ struct LabStyle {
     char separator = ';';
     char decimal = ',';
     bool units_named = true;
-    double length = 1e3;  ///< the table's units in a metre
-    double force = 1e3;   ///< .. in a newton
+    double length = 1e3;  ///< units of the table per metre
+    double force = 1e3;   ///< .. per newton
 };
 
-/// A table by names and rows of cells; numbers with nine digits.
+/// A table from column names and rows of cells; numbers have nine digits.
 class LabTable {
 public:
     LabTable(const LabStyle& style, const std::vector<std::string>& names) : style_(style) { add(names); }
@@ -41,7 +41,7 @@ private:
     std::string text_;
 };
 
-/// Without phase and cycle; frames by their time, half a second each.
+/// Without phase and cycle; frames are numbered by time, half a second each.
 inline std::string lab_plate(const Recording& recording, const LabStyle& style) {
     const std::string mm = style.units_named ? " [mm]" : "", mN = style.units_named ? " [mN]" : "";
     LabTable table(style, {"Kraft" + mN, "Zeit [s]", "Hoehe" + mm});
@@ -51,7 +51,7 @@ inline std::string lab_plate(const Recording& recording, const LabStyle& style) 
     return table.text();
 }
 
-/// Radii, ids from 1.
+/// Radii; ids start at 1.
 inline std::string lab_grains(const Recording& recording, const LabStyle& style) {
     const std::string mm = style.units_named ? " [mm]" : "";
     LabTable table(style, {"Radius" + mm, "z" + mm, "Nr.", "x" + mm, "Zeit [s]", "y" + mm});
@@ -64,7 +64,7 @@ inline std::string lab_grains(const Recording& recording, const LabStyle& style)
     return table.text();
 }
 
-/// Walls by names, other columns in between.
+/// Walls by name; other columns in between.
 inline std::string lab_contacts(const Recording& recording, const LabStyle& style) {
     const std::string mm = style.units_named ? " [mm]" : "", mN = style.units_named ? " [mN]" : "";
     const char* const walls[] = {"links", "rechts", "vorn", "hinten", "Boden", "Deckel"};
@@ -81,7 +81,7 @@ inline std::string lab_contacts(const Recording& recording, const LabStyle& styl
     return table.text();
 }
 
-/// LAMMPS' `dump custom`, timesteps 100 apart, ids from 1, rows in any order.
+/// LAMMPS' `dump custom`: timesteps 100 apart, ids from 1, rows in any order.
 inline std::string dump_of_grains(const Recording& recording) {
     std::string text;
     for (const Scan& scan : recording.scans) {
@@ -98,8 +98,8 @@ inline std::string dump_of_grains(const Recording& recording) {
     return text;
 }
 
-/// LIGGGHTS' `dump local` of `compute pair/gran/local id force` (walls: of wall/gran/local, with mesh numbers
-/// from 0).
+/// LIGGGHTS' `dump local` of `compute pair/gran/local id force`; for walls of wall/gran/local, with mesh
+/// numbers from 0.
 inline std::string dump_of_contacts(const Recording& recording, bool walls) {
     std::string text;
     for (const Scan& scan : recording.scans) {

@@ -1,4 +1,4 @@
-// Programmes of experiments: written from runs, read back, and refused where the rows are not their scans.
+// Programmes of experiments: written from runs, read back, and refused if the rows are not their scans.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// Down to 19 mm and held there, then up to 0.1 N and held there too.
+/// Down to 19 mm and a hold there, then up to 0.1 N and a hold there.
 constexpr auto stages = R"([plate]
 start = 0.022
 [[programme]]
@@ -61,7 +61,7 @@ TEST_F(Programmes, AreReadWithTheirTimes) {
     EXPECT_EQ(recording.scans[3].time, 3.1);
 }
 
-TEST_F(Programmes, ComeBackAsWritten) {
+TEST_F(Programmes, AreReadBackAsWritten) {
     folder["experiment.toml"] += "[[programme]]\nstage = \"repeat\"\nstages = 2\ntimes = 2\n";
     folder["plate.csv"] +=
         "7,0,unload,0.0211,0.1,0.1,9\n8,0,unload,0.0211,0.1,0.1,11\n9,0,unload,0.0211,0.1,0.1,13\n";
@@ -74,7 +74,7 @@ TEST_F(Programmes, ComeBackAsWritten) {
         EXPECT_EQ(back.recording.scans[s].time, experiment.recording.scans[s].time);
 }
 
-TEST_F(Programmes, PlacesOfScansFollowFromTheStages) {
+TEST_F(Programmes, PositionsOfScansFollowFromTheStages) {
     const auto places = scan_places(programme_of(folder.read().recording.parameters), {0.022, 0});
     ASSERT_EQ(places.size(), 6u);
     EXPECT_EQ(places[0].set, 0.019);
@@ -87,7 +87,7 @@ TEST_F(Programmes, PlacesOfScansFollowFromTheStages) {
     EXPECT_EQ(places[5].time, 4);
 }
 
-TEST_F(Programmes, TimesAreNeededAndRise) {
+TEST_F(Programmes, TimesAreRequiredAndMustIncrease) {
     folder.replace("plate.csv", ",time_s", ",t");
     EXPECT_THAT(folder.error(), HasSubstr("plate.csv:1: the header must name time_s where experiment.toml"));
     folder["plate.csv"] = rows;
@@ -96,7 +96,7 @@ TEST_F(Programmes, TimesAreNeededAndRise) {
                 HasSubstr("plate.csv:4: time_s must rise from row to row, got 1.1 after 1.1"));
 }
 
-TEST_F(Programmes, RowsAreTheScansOfTheStages) {
+TEST_F(Programmes, RowsMustBeTheScansOfTheStages) {
     folder.replace("plate.csv", "6,0,unload,0.02085,0.1,0.1,8\n", "");
     EXPECT_THAT(folder.error(), HasSubstr("plate.csv: must have 7 rows, one of the packing at rest and one "
                                           "for each of the 6 scans of [[programme]]"));
@@ -118,7 +118,7 @@ TEST_F(Programmes, RowsAreTheScansOfTheStages) {
     }
 }
 
-TEST_F(Programmes, StagesAreCheckedAsThoseOfAScene) {
+TEST_F(Programmes, StagesAreCheckedAsInAScene) {
     folder.replace("experiment.toml", "keep = \"force\"", "kept = \"force\"");
     EXPECT_THAT(folder.error(), HasSubstr(": programme.4.kept must be a key of a stage, got an unknown one"));
     folder.replace("experiment.toml", "kept = \"force\"", "keep = \"stress\"");

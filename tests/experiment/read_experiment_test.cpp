@@ -14,13 +14,13 @@ using ::testing::StartsWith;
 
 Vec3 on(const Scan& scan, Wall wall) { return scan.wall_force[static_cast<std::size_t>(wall)]; }
 
-TEST(read_experiment, settings_and_plate) {
+TEST(read_experiment, settings_and_plate_are_read) {
     ExperimentFolder folder;
     const Experiment experiment = folder.read();
     EXPECT_EQ(experiment.name, "two grains");
     EXPECT_EQ(experiment.recording.label, "two grains");
     EXPECT_EQ(experiment.recording.box.size_y, 0.03);
-    EXPECT_EQ(experiment.recording.plate_start, 0.022);  // the highest, where none is given
+    EXPECT_EQ(experiment.recording.plate_start, 0.022);  // the highest position, if none is given
     const std::map<std::string, double> materials{{"grains.youngs_modulus", 23300},
                                                   {"grains.poisson_ratio", 0.5},
                                                   {"grains.friction", 0.03},
@@ -42,12 +42,13 @@ TEST(read_experiment, settings_and_plate) {
     EXPECT_EQ(experiment.recording.displacement(scans[1]), 0.022 - 0.019);
 }
 
-TEST(read_experiment, averages_come_from_the_contacts_above_the_threshold) {
+TEST(read_experiment, averages_use_only_contacts_above_the_threshold) {
     ExperimentFolder folder;
     const auto recording = folder.read().recording;
     const Scan& scan = recording.scans[1];
     ASSERT_EQ(scan.contacts.size(), 5u);
-    EXPECT_DOUBLE_EQ(scan.coordination_number, (2 + 3) / 2.0);  // one pair, three walls; x_min is below 5 mN
+    EXPECT_DOUBLE_EQ(scan.coordination_number,
+                     (2 + 3) / 2.0);  // one pair, three walls; the contact at x_min is below 5 mN
     EXPECT_DOUBLE_EQ(scan.mean_force, (0.05 + 0.2 + 0.3 + 0.2) / 4);
     EXPECT_DOUBLE_EQ(scan.branch_length, 0.0305 - 0.0095);
     EXPECT_TRUE(std::isnan(scan.packing_fraction));
@@ -55,11 +56,11 @@ TEST(read_experiment, averages_come_from_the_contacts_above_the_threshold) {
     EXPECT_TRUE(std::isnan(scan.contacts[0].overlap));
     EXPECT_DOUBLE_EQ(on(scan, Wall::floor).z(), -0.5);
     EXPECT_DOUBLE_EQ(on(scan, Wall::x_min).x(), -0.004);
-    EXPECT_EQ(on(scan, Wall::plate).z(), 0.4);           // the gauge's, not the contacts'
-    EXPECT_TRUE(std::isnan(on(scan, Wall::x_max).x()));  // no contact with it was ever measured
+    EXPECT_EQ(on(scan, Wall::plate).z(), 0.4);           // from the gauge, not from the contacts
+    EXPECT_TRUE(std::isnan(on(scan, Wall::x_max).x()));  // no contact with this wall was measured
 }
 
-TEST(read_experiment, a_contact_from_the_other_side_is_turned_round) {
+TEST(read_experiment, a_contact_from_the_other_side_is_reversed) {
     ExperimentFolder folder;
     const auto recording = folder.read().recording;
     const Contact& contact = recording.scans[1].contacts[0];
@@ -68,7 +69,7 @@ TEST(read_experiment, a_contact_from_the_other_side_is_turned_round) {
     EXPECT_EQ(contact.force, Vec3(-0.03, 0, -0.04));
 }
 
-TEST(read_experiment, frames_without_contacts_or_positions_are_not_known) {
+TEST(read_experiment, frames_without_contacts_or_positions_have_unknown_values) {
     ExperimentFolder folder;
     const auto recording = folder.read().recording;
     EXPECT_TRUE(std::isnan(recording.scans[2].coordination_number));
@@ -77,7 +78,7 @@ TEST(read_experiment, frames_without_contacts_or_positions_are_not_known) {
     EXPECT_EQ(recording.scans[0].position.size(), 2u);
 }
 
-TEST(read_experiment, the_plate_alone_is_enough) {
+TEST(read_experiment, the_plate_alone_is_sufficient) {
     ExperimentFolder folder;
     folder.remove("grains.csv");
     folder.remove("contacts.csv");
@@ -88,7 +89,7 @@ TEST(read_experiment, the_plate_alone_is_enough) {
     EXPECT_FALSE(experiment.name.empty());
 }
 
-TEST(read_experiment, packed_tables_comments_other_columns_and_line_ends) {
+TEST(read_experiment, compressed_tables_comments_other_columns_and_line_ends_are_read) {
     ExperimentFolder folder;
     const auto expected = folder.read().recording;
     folder["plate.csv"] =
@@ -109,7 +110,7 @@ struct Spoiled {
 };
 class spoiled_experiment : public ::testing::TestWithParam<Spoiled> {};
 
-TEST_P(spoiled_experiment, is_told_with_line_and_remedy) {
+TEST_P(spoiled_experiment, is_reported_with_line_and_remedy) {
     ExperimentFolder folder;
     folder.replace(GetParam().file, GetParam().from, GetParam().to);
     EXPECT_THAT(folder.error(), StartsWith(GetParam().message));
@@ -204,7 +205,7 @@ INSTANTIATE_TEST_SUITE_P(
                               "experiment.toml:11: uncertainty.youngs_modulus must be a number >= 0"},
                       Spoiled{"experiment.toml", "[grains]", "[grains", "experiment.toml:4: "}));
 
-TEST(read_experiment, all_problems_are_told_at_once_up_to_a_number) {
+TEST(read_experiment, all_problems_are_reported_at_once_up_to_a_limit) {
     ExperimentFolder folder;
     folder.replace("experiment.toml", "0.5", "0.7");
     folder.replace("plate.csv", "unload", "up");
@@ -221,7 +222,7 @@ TEST(read_experiment, all_problems_are_told_at_once_up_to_a_number) {
     EXPECT_THAT(many, HasSubstr(".. and 82 more"));
 }
 
-TEST(read_experiment, a_whole_column_in_millimetres_is_told_once) {
+TEST(read_experiment, a_column_in_millimetres_is_reported_once) {
     ExperimentFolder folder;
     folder["plate.csv"] =
         "frame,cycle,phase,plate_z_m,top_force_N\n0,0,load,22,0\n1,0,load,19,0.4\n2,0,unload,21,0\n";
@@ -229,7 +230,7 @@ TEST(read_experiment, a_whole_column_in_millimetres_is_told_once) {
     EXPECT_EQ(std::count(error.begin(), error.end(), '\n'), 0) << error;
 }
 
-TEST(read_experiment, missing_and_empty_files) {
+TEST(read_experiment, missing_and_empty_files_are_reported) {
     {
         ExperimentFolder folder;
         folder.remove("plate.csv");

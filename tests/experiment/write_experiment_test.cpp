@@ -43,7 +43,7 @@ void expect_same(const Experiment& a, const Experiment& b) {
     }
 }
 
-/// Numbers that no short decimal stands for, and every kind of contact.
+/// Numbers without a short decimal representation, and all kinds of contacts.
 Experiment awkward() {
     Experiment experiment;
     experiment.name = "quotes \" and \\ and µ";
@@ -73,7 +73,7 @@ Experiment awkward() {
     return experiment;
 }
 
-TEST(write_experiment, comes_back_to_the_last_digit) {
+TEST(write_experiment, is_read_back_to_the_last_digit) {
     ExperimentFolder folder;
     for (Packed packed : {Packed::plain, Packed::gzip, Packed::plain}) {
         write_experiment(folder.path(), awkward(), packed);
@@ -81,7 +81,7 @@ TEST(write_experiment, comes_back_to_the_last_digit) {
     }
 }
 
-TEST(write_experiment, containers_come_back_with_their_walls) {
+TEST(write_experiment, containers_are_read_back_with_their_walls) {
     ExperimentFolder folder;
     for (const ContainerShape shape : {ContainerShape::cylinder, ContainerShape::periodic}) {
         Experiment experiment = awkward();
@@ -110,7 +110,7 @@ TEST(write_experiment, containers_come_back_with_their_walls) {
     EXPECT_THROW(experiment_from(cell, {}, 1), InputError);
 }
 
-/// The two grains in a cylinder with a radius of 20 mm.
+/// The two grains, in a cylinder with a radius of 20 mm.
 class InACylinder : public ExperimentFolder {
 public:
     InACylinder() {
@@ -120,7 +120,7 @@ public:
     }
 };
 
-TEST(read_experiment, of_a_cylinder) {
+TEST(read_experiment, a_cylinder_is_read) {
     InACylinder folder;
     const Recording read = folder.read().recording;
     EXPECT_EQ(read.box.size_x, 0.04);
@@ -132,7 +132,7 @@ TEST(read_experiment, of_a_cylinder) {
         << folder.error();
 }
 
-TEST(read_experiment, of_a_cylinder_that_does_not_hold_its_grains_or_has_no_radius) {
+TEST(read_experiment, a_cylinder_without_radius_or_with_grains_outside_is_refused) {
     InACylinder outside;
     outside.replace("grains.csv", "1,0,0.0095,0.015", "1,0,0.0095,0.001");
     EXPECT_NE(outside.error().find("grains.csv:4: centres must lie in the cylinder with a radius of 20 mm"),
@@ -149,8 +149,8 @@ TEST(read_experiment, of_a_cylinder_that_does_not_hold_its_grains_or_has_no_radi
         << cell.error();
 }
 
-// What wraps the grains of a periodic container may do so anew in every frame.
-TEST(read_experiment, follows_grains_over_the_edges_of_a_periodic_container) {
+// Grains of a periodic container may be wrapped differently in each frame.
+TEST(read_experiment, follows_grains_across_periodic_boundaries) {
     ExperimentFolder folder;
     folder["experiment.toml"] += "[container]\nshape = \"periodic\"\n";
     folder.replace("contacts.csv", "1,0,x_min,0,0.015,0.0095,0.004,0,0\n", "");
@@ -172,7 +172,7 @@ TEST(write_experiment, contacts_below_the_stated_threshold_are_kept) {
     expect_same(experiment, read_experiment(folder.path()));
 }
 
-TEST(write_experiment, without_grains_and_contacts_leaves_those_tables_out) {
+TEST(write_experiment, without_grains_and_contacts_those_tables_are_not_written) {
     ExperimentFolder folder;
     Experiment experiment = awkward();
     write_experiment(folder.path(), experiment, Packed::gzip);
@@ -181,7 +181,7 @@ TEST(write_experiment, without_grains_and_contacts_leaves_those_tables_out) {
         scan.position.clear();
         scan.contacts.clear();
     }
-    write_experiment(folder.path(), experiment);  // over the packed one: no old table may stay
+    write_experiment(folder.path(), experiment);  // replaces the compressed table: no old table may remain
     expect_same(experiment, read_experiment(folder.path()));
 }
 

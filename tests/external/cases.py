@@ -1,14 +1,14 @@
-"""Realities that other codes make: what each has that the diagnosed scene leaves out."""
+"""Simulated experiments by other codes: the effects of each that the diagnosed scene lacks."""
 
-E, NU, RESTITUTION, FRICTION = 23.3e3, 0.5, 0.95, 0.03  # the scene's: scenes/challenge.toml and the defaults
+E, NU, RESTITUTION, FRICTION = 23.3e3, 0.5, 0.95, 0.03  # those of scenes/challenge.toml and the defaults
 STIFF_WALL = 50e6                                       # [Pa]
 ABSTAIN = ["unknown_effect"]
 
 
 def liggghts(further="", tangential="history", tangential_damping="off", moduli=(E,), wall_youngs_modulus=STIFF_WALL,
              friction=FRICTION, wall_friction=FRICTION, floor_friction=None, cohesion_energy=0, rolling=0, gamma=0, skin=0.001):
-    """Variables of liggghts.in. LIGGGHTS adds the damping of sticking contacts to friction without a limit, so that f_t/f_n
-    reaches 0.1 where mu is 0.03; without that damping Coulomb's limit holds, as it does in the scene."""
+    """Variables of liggghts.in. LIGGGHTS adds the damping of sticking contacts to friction without a limit, so that
+    f_t/f_n reaches 0.1 at mu = 0.03. Without that damping Coulomb's limit holds, as in the scene."""
     count = len(moduli)
     types = count + 2  # of grains, walls, floor
 
@@ -28,9 +28,9 @@ def liggghts(further="", tangential="history", tangential_damping="off", moduli=
 
 def lammps(work=0, modulus=E, friction=FRICTION, wall_friction=FRICTION, floor_friction=None,
            wall_stiffness=1, further=""):
-    """Variables of lammps.in. The modulus given to a wall of the version of 29 Sep 2021 is E* itself where nu = 0.5 (for
-    grains E* = E / (2 (1 - nu^2))): E / (1 - nu^2) makes a rigid one, its shear stiffness 8 G* = 8 G / (2 - nu) is written
-    out. `work`: of adhesion, of which LAMMPS takes half: it attracts by 4 pi (w/2) R*."""
+    """Variables of lammps.in. In the version of 29 Sep 2021 the modulus of a wall is E* itself for nu = 0.5 (for grains
+    E* = E / (2 (1 - nu^2))): E / (1 - nu^2) gives a rigid wall, whose shear stiffness 8 G* = 8 G / (2 - nu) is given
+    explicitly. `work`: of adhesion. LAMMPS takes half of it, because its attraction is 4 pi (w/2) R*."""
     shear = 8 * modulus / (2 * (1 + NU) * (2 - NU))
     wall_modulus = wall_stiffness * modulus / (1 - NU**2)
     sticking = f" {work / 2}" if work else ""

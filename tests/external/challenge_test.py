@@ -1,6 +1,6 @@
-"""The challenge of other codes: what is hidden is what is said, the truth is sealed, and the score counts right.
+"""The challenge with other codes: hidden effects are as stated, the truth is sealed, and the score is correct.
 
-challenge_test.py MCDEM FOLDER; exit code 77 where one of the programs is missing.
+challenge_test.py MCDEM FOLDER; exit code 77 if one of the programs is missing.
 """
 import copy
 import hashlib
@@ -28,7 +28,7 @@ def load_challenge():
 
 
 def scans():
-    """Three grains in a row, a contact of two and one at the floor; down once and back."""
+    """Three grains in a row, with one contact between two of them and one with the floor; one stroke down and up."""
     grains = [(0.02, 0.03 + 0.02 * n, 0.0625, 0.01) for n in range(3)]
     contacts = [(0, 1, [0.04, 0.0625, 0.01], [0.3, 0.0, 0.4]), (2, "floor", [0.07, 0.0625, 0.0], [0.0, 0.0, 1.0])]
     return [{"height": 0.12 - 0.01 * depth, "phase": phase, "top": top, "grains": list(grains), "contacts": list(contacts)}

@@ -1,6 +1,6 @@
-"""Packings in a cylinder, a periodic container and a cell against LAMMPS: the force on the plate and on the cylinder's side, or the
-stress of the cell, once from the very positions of the last scan and once by LAMMPS's own way from the scan before:
-containers_test.py MCDEM FOLDER"""
+"""Packings in a cylinder, a periodic container and a cell compared with LAMMPS: forces on the plate and the cylinder's
+side, or the stress of the cell. Once at the positions of the last scan, once after LAMMPS's own simulation from the
+scan before: containers_test.py MCDEM FOLDER"""
 import math
 import pathlib
 import shutil
@@ -47,13 +47,13 @@ precision = "double"
 CASES = {"cylinder": ("shape = \"cylinder\"\nradius = 0.06", 140), "periodic": ("shape = \"periodic\"\nsize_x = 0.1\nsize_y = 0.11", 140)}
 LAW = "hertz/material {:.9g} 0.5 0.5 tangential linear_nohistory 0 0 damping tsuji"
 YOUNGS_MODULUS = 23.3e3
-# This version of LAMMPS gives walls E/(2 (1 - nu)) where two grains of the same material have E/(2 (1 - nu^2)).
+# This version of LAMMPS uses E/(2 (1 - nu)) for walls and E/(2 (1 - nu^2)) for two grains of the same material.
 WALL_LAW, LAW = LAW.format(YOUNGS_MODULUS / 1.5), LAW.format(YOUNGS_MODULUS)
 
 
 def mcdem_run(mcdem, folder, shape):
-    """Size of the container, diameters, and (positions, plate, force on it, radial force on the side) of the last scan but one and of
-    the lowest."""
+    """Size of the container, diameters, and (positions, plate, force on it, radial force on the side) of the last two
+    scans of loading."""
     container, count = CASES[shape]
     folder.mkdir(parents=True, exist_ok=True)
     (folder / f"{shape}.toml").write_text(SCENE.format(container=container, count=count, start=START, end=START - 0.01, speed=SPEED))
@@ -82,7 +82,7 @@ def write_data(path, shape, size, diameters, positions):
 
 
 def lammps(folder, shape, size, diameters, positions, plate, moving, resting, time_step):
-    """Forces on the plate and, radial, on the side after these steps."""
+    """Forces on the plate and (radial) on the side after these steps."""
     write_data(folder / f"{shape}.data", shape, size, diameters, positions)
     output = execute("lmp", "containers.in", folder, {
         "shape": shape, "law": LAW, "wall_law": WALL_LAW, "size_x": size[0], "size_y": size[1], "start": plate, "time_step": time_step, "plate_speed": SPEED,
@@ -123,7 +123,7 @@ precision = "double"
 
 
 def cell_run(mcdem, folder):
-    """Lengths of the cell at start, diameters, and (positions, strain, stress) of the last three scans."""
+    """Initial lengths of the cell, diameters, and (positions, strain, stress) of the last three scans."""
     (folder / "cell.toml").write_text(CELL)
     out = folder / "cell_run"
     shutil.rmtree(out, ignore_errors=True)
@@ -147,7 +147,8 @@ def write_cell(path, edges, strain, diameters, positions):
 
 
 def lammps_cell(folder, edges, diameters, start, end, moving, resting):
-    """Mean and xx, yy, zz, xz of LAMMPS's stress [Pa] where it has gone from one scan to the strain of another."""
+    """Mean and xx, yy, zz, xz of LAMMPS's stress [Pa] after it has deformed the cell from one scan to the strain of
+    another."""
     positions, strain, _ = start
     write_cell(folder / "cell.data", edges, strain, diameters, positions)
     last = edges * (1 - end[1][:3])
@@ -170,7 +171,7 @@ def compare_cell(mcdem, folder):
         assert math.isclose(pressure, found[0], rel_tol=allowed), "pressures differ"
         for (row, column), other in zip(((0, 0), (1, 1), (2, 2), (0, 2)), found[1:]):
             print(f"    stress {'xyz'[row]}{'xyz'[column]} {other:.6g} Pa, mcdem {mine[row, column]:.6g} Pa")
-            assert abs(mine[row, column] - other) < 3 * allowed * pressure, "stresses differ"  # frictionless grains slide in jerks
+            assert abs(mine[row, column] - other) < 3 * allowed * pressure, "stresses differ"  # frictionless grains rearrange suddenly
 
 
 STRESS = FRICTIONLESS + """settle_unbalanced_force = 2e-4
@@ -187,7 +188,8 @@ replicas = 6
 
 
 def lammps_lengths(folder, edges, diameters, scan, pressure, modulus):
-    """Lengths of the cell [m] at which LAMMPS's barostat finds the pressure, begun with a scan; its stresses there."""
+    """Lengths of the cell [m] at which LAMMPS's barostat reaches the pressure, starting from a scan; its stresses
+    there."""
     write_cell(folder / "cell.data", edges, scan[1], diameters, scan[0])
     steps = 200000
     output = execute("lmp", "stress.in", folder, {"law": LAW, "time_step": 5e-5, "skin": 0.002, "pressure": pressure, "modulus": modulus,
@@ -198,7 +200,7 @@ def lammps_lengths(folder, edges, diameters, scan, pressure, modulus):
 
 
 def compare_stress(mcdem, folder):
-    """The volume at a pressure, from the same packing at a lower one."""
+    """The volume at a pressure, starting from the packing at a lower one."""
     (folder / "stress.toml").write_text(STRESS)
     out = folder / "stress_run"
     shutil.rmtree(out, ignore_errors=True)
@@ -238,7 +240,8 @@ def main():
         for what, found, allowed in (("at the same positions", there, 1e-4), ("after its own stroke", stroke, 3e-3)):
             for of, mine, other in (("plate", last[2], found[0]), ("side", last[3], found[1]))[:2 if shape == "cylinder" else 1]:
                 print(f"{shape}, LAMMPS {what}: force on the {of} {other:.6g} N, mcdem {mine:.6g} N, ratio {mine / other:.5f}")
-                # The side's radius of curvature is LAMMPS's arithmetic mean, mcdem's geometric: 0.3 % at R = R_c/5.
+                # LAMMPS uses the arithmetic mean of the side's curvature radii, mcdem the geometric one: 0.3 % at R =
+                # R_c/5.
                 assert math.isclose(mine, other, rel_tol=allowed + (0.004 if of == "side" else 0)), "forces differ"
     compare_cell(mcdem, folder)
     compare_stress(mcdem, folder)

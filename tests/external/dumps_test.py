@@ -1,6 +1,6 @@
-"""Real dumps of LIGGGHTS and LAMMPS become experiments by `mcdem experiment import`, equal to what was dumped.
+"""Real dumps of LIGGGHTS and LAMMPS are imported by `mcdem experiment import`; the values equal the dumped ones.
 
-dumps_test.py MCDEM FOLDER; exit code 77 where one of the programs is missing.
+dumps_test.py MCDEM FOLDER; exit code 77 if one of the programs is missing.
 """
 import csv
 import pathlib
@@ -43,7 +43,7 @@ force_on = "grain"
 
 
 def write_plate(folder, scans):
-    """A row for every step that was dumped; before the stroke the plate rests."""
+    """A row for every dumped step; before the stroke the plate is at rest."""
     steps = sorted(realities.read_dump(folder / "grains.dump"))
     with (folder / "plate.txt").open("w") as file:
         file.write("step plate_z top_force\n")
@@ -54,7 +54,7 @@ def write_plate(folder, scans):
 
 
 def corrected(text, folder, program):
-    """What a user puts into the mapping: the walls, which no names tell, and both parts of a force."""
+    """Entries that a user adds to the mapping: the walls, which have no names, and both parts of a force."""
     tables = text.split("\n[[table]]\n")
     kept = [table for table in tables if "walls.dump" not in table]
     text = "\n[[table]]\n".join(kept).replace('"?', '"')
@@ -90,7 +90,7 @@ def expect_near(read, expected, tolerance, what):
 
 
 def compare(out, scans, before):
-    """`before` frames were dumped before the stroke."""
+    """`before`: number of frames before the stroke."""
     grains, contacts = {}, {}
     for row in rows_of(out / "grains.csv"):
         grains.setdefault(int(row["frame"]) - before, []).append(row)
@@ -100,7 +100,7 @@ def compare(out, scans, before):
         assert len(grains[n]) == len(scan["grains"])
         for row, grain in zip(grains[n], scan["grains"]):
             expect_near([row[key] for key in ("diameter_m", "x_m", "y_m", "z_m")], grain, 1e-10, f"scan {n}")
-        touching = [contact for contact in scan["contacts"] if any(contact[3])]  # LAMMPS lists grains that are only near, too
+        touching = [contact for contact in scan["contacts"] if any(contact[3])]  # LAMMPS also lists grains that do not touch
         assert len(contacts[n]) == len(touching), f"scan {n}: {len(contacts[n])} contacts for {len(touching)}"
         for i, partner, point, force in touching:
             turned = not isinstance(partner, str) and partner < i

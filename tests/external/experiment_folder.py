@@ -1,4 +1,5 @@
-"""An experiment folder (host/experiment/README.md) of what another code simulated, measured with errors."""
+"""Writes an experiment folder (host/experiment/README.md) from a simulation by another code, with errors of
+measurement."""
 import csv
 import math
 import random
@@ -36,7 +37,7 @@ def write_table(path, columns, rows):
 
 
 def write(folder, name, box, scans, seed):
-    """`scans` as realities.simulate returns them. Noise is drawn anew for each frame, for diameters once."""
+    """`scans` as returned by realities.simulate. Noise is drawn for each frame, for diameters once."""
     chance = random.Random(seed)
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "experiment.toml").write_text(SETTINGS.format(

@@ -1,8 +1,8 @@
-"""What the realities of a sealed challenge hide: an effect of mcdem's library, or something that no library has, as another code
-simulates it or as an instrument would read it.
+"""Effects hidden in the simulated experiments of a sealed challenge: effects of mcdem's library, or others that no
+library has, simulated by another code or applied to the measurements.
 
-An entry changes the arguments of cases.liggghts() or cases.lammps(), the reality itself (realities.DEFAULTS), or the scans that
-were measured. Amplitudes are those of host/diagnose/infer/effects.cpp.
+An entry changes the arguments of cases.liggghts() or cases.lammps(), the keys of the experiment (realities.DEFAULTS),
+or the measured scans. Amplitudes are defined as in host/diagnose/infer/effects.cpp.
 """
 import dataclasses
 import math
@@ -14,18 +14,18 @@ import cases
 import realities
 
 EXCESS_DENSITY = realities.DENSITY
-MATERIALS = 8  # of grains whose modulus scatters
+MATERIALS = 8  # grains with scattered moduli are distributed over this number
 
 
 @dataclasses.dataclass
 class Hidden:
-    low: float                                       # of the amplitude, drawn log-uniform
+    low: float                                       # of the amplitude, drawn log-uniformly
     high: float
     meaning: str
-    signed: bool = False                             # either sign
+    signed: bool = False                             # both signs are possible
     codes: tuple = ("liggghts", "lammps")
     arguments: typing.Callable = None                # (code, amplitude, chance) -> arguments of cases.liggghts or cases.lammps
-    reality: typing.Callable = None                  # amplitude -> further keys of the reality
+    reality: typing.Callable = None                  # amplitude -> further keys of the experiment
     reading: typing.Callable = None                  # (scans, amplitude, chance): changes them
 
     def draw(self, chance):
@@ -40,23 +40,23 @@ def rolling(code, amplitude, chance):
 
 
 def scattered_moduli(code, amplitude, chance):
-    """The quantiles of a log-normal distribution with that standard deviation, one a material."""
+    """Quantiles of a log-normal distribution with this standard deviation, one per material."""
     moduli = [statistics.NormalDist().inv_cdf((k + 0.5) / MATERIALS) for k in range(MATERIALS)]
     spread = math.sqrt(sum(m * m for m in moduli) / MATERIALS)
     return {"moduli": tuple(cases.E * math.exp(amplitude * m / spread) for m in moduli)}
 
 
 def soft_walls(code, amplitude, chance):
-    """`amplitude`: modulus of the walls over that of the grains. A wall as stiff as a is a contact stiffness of 1 / (1 + 1/a)."""
+    """`amplitude` a: modulus of the walls over that of the grains; contact stiffness is reduced to 1 / (1 + 1/a)."""
     if code == "lammps":
         return {"wall_stiffness": 1 / (1 + 1 / amplitude)}
     return {"wall_youngs_modulus": amplitude * cases.E}
 
 
-# What instruments do. Scans as realities.simulate returns them.
+# Errors of instruments. Scans are as returned by realities.simulate.
 
 def change_diameters(scans, error):
-    """`error`: of the stated diameter, by grain."""
+    """`error(i)`: error of grain i's diameter [m]."""
     for scan in scans:
         scan["grains"] = [(d - error(i), *centre) for i, (d, *centre) in enumerate(scan["grains"])]
 
@@ -71,7 +71,7 @@ def polydispersity(scans, amplitude, chance):
 
 
 def change_points(scans, change):
-    """Of grains and contacts alike."""
+    """Applies to grains and contacts."""
     for scan in scans:
         scan["grains"] = [(d, *change(centre)) for d, *centre in scan["grains"]]
         scan["contacts"] = [(i, j, change(point), force) for i, j, point, force in scan["contacts"]]
@@ -89,7 +89,8 @@ def vertical_stretch(scans, amplitude, chance):
 
 
 def barrel(scans, amplitude, chance):
-    """Lateral distances from the axis are read too large by this part at a side's middle, by its square less inside."""
+    """Lateral distances from the axis are too large: by this fraction at a side's middle, decreasing inside with the
+    square of the distance."""
     def change(point):
         out = [p - m for p, m in zip(point[:2], MIDDLE)]
         part = amplitude * sum(o * o for o in out) / (realities.BOX / 2)**2
@@ -98,7 +99,7 @@ def barrel(scans, amplitude, chance):
 
 
 def change_forces(scans, factor):
-    """Of contacts: factor(grain, partner, size of the force)."""
+    """Multiplies contact forces by factor(grain, partner, force)."""
     for scan in scans:
         scan["contacts"] = [(i, j, point, [factor(i, j, math.hypot(*force)) * f for f in force])
                             for i, j, point, force in scan["contacts"]]
@@ -109,7 +110,7 @@ def force_bias(scans, amplitude, chance):
 
 
 def force_saturation(scans, amplitude, chance):
-    """Forces are read as f / (1 + f/f0), with f0 = 1/amplitude."""
+    """Measured forces are f / (1 + f/f0), with f0 = 1/amplitude."""
     change_forces(scans, lambda i, j, size: 1 / (1 + amplitude * size))
 
 
@@ -118,13 +119,13 @@ def dim_walls(scans, amplitude, chance):
 
 
 def missing_contacts(scans, amplitude, chance):
-    """Every contact of two grains is overlooked with this probability, whatever its force."""
+    """Each contact of two grains is missed with this probability, whatever its force."""
     for scan in scans:
         scan["contacts"] = [c for c in scan["contacts"] if isinstance(c[1], str) or chance.random() >= amplitude]
 
 
 def missing_grains(scans, amplitude, chance):
-    """The part of the grains that is not found, with its contacts."""
+    """This fraction of the grains is missing, with their contacts."""
     count = len(scans[0]["grains"])
     kept = sorted(chance.sample(range(count), count - round(amplitude * count)))
     number = {grain: n for n, grain in enumerate(kept)}
@@ -151,15 +152,15 @@ def gauge_drift(scans, amplitude, chance):
 
 
 def late_force(scans, amplitude, chance):
-    """The gauge's clock is late by this part of the time between scans."""
+    """The gauge's clock is late by this fraction of the time between scans."""
     tops = [scan["top"] for scan in scans]
     for scan, before, now in zip(scans[1:], tops, tops[1:]):
         scan["top"] = now + amplitude * (before - now)
 
 
 def gauge_hysteresis(scans, amplitude, chance):
-    """On the way back the gauge reads too much: nothing where it turns and at no force, this part of the highest force at half
-    of it."""
+    """While unloading, the gauge reads too much: zero at the turning point and without force, this fraction of the
+    largest force at half of it."""
     highest = max(scan["top"] for scan in scans)
     for scan in scans:
         if scan["phase"] == "unload":
@@ -167,7 +168,7 @@ def gauge_hysteresis(scans, amplitude, chance):
 
 
 def zero_drift(scans, amplitude, chance):
-    """The gauge's zero moves, by this part of the highest force in the end."""
+    """The gauge's zero drifts; in the end by this fraction of the largest force."""
     highest = max(scan["top"] for scan in scans)
     for n, scan in enumerate(scans):
         scan["top"] += amplitude * highest * n / (len(scans) - 1)
@@ -220,7 +221,7 @@ def find(name):
 
 
 def simulated(folder, case):
-    """The scans of a case (challenge's), as its instrument reads them but for noise."""
+    """The scans of a case of the challenge, as measured by its instrument, without noise."""
     chance = random.Random(case["seed"])
     arguments, further = {}, {"slower": case["slower"], "held": case["held"]}
     modulus = cases.E * math.exp(case["modulus"])

@@ -1,4 +1,4 @@
-"""One stroke in LIGGGHTS or LAMMPS on a packing that LAMMPS made: what was dumped, scan by scan."""
+"""Simulates one stroke with LIGGGHTS or LAMMPS on a packing made by LAMMPS, and reads the dumped scans."""
 import math
 import pathlib
 import random
@@ -7,9 +7,9 @@ import subprocess
 
 HERE = pathlib.Path(__file__).resolve().parent
 BOX = 0.125                        # [m]
-START, STROKE = 0.1240, 0.0223     # of the plate, as challenge.toml has it [m]
+START, STROKE = 0.1240, 0.0223     # of the plate, as in challenge.toml [m]
 SPEED = 0.1                        # of the plate [m/s]
-SCANS = 12                         # a stroke
+SCANS = 12                         # per stroke
 STEPS = 170                        # between scans at that speed: a time step of 0.08 Rayleigh times
 TIME_STEP = STROKE / (SCANS * STEPS * SPEED)
 RELAXED = 12 * STEPS               # steps with a drag,
@@ -42,7 +42,7 @@ def execute(program, script, folder, variables):
 
 
 def write_data(path, rows, types=2, materials=None):
-    """A data file that both codes read: diameter and centre of every grain. `materials`: their types, all 1 where left out."""
+    """A data file for both codes, with diameter and centre of every grain. `materials`: atom types, default 1."""
     lines = ["packing", "", f"{len(rows)} atoms", f"{types} atom types", "", f"-0.01 {BOX + 0.01} xlo xhi", f"-0.01 {BOX + 0.01} ylo yhi",
              "-0.01 0.9 zlo zhi", "", "Atoms", ""]
     materials = materials or [1] * len(rows)
@@ -52,7 +52,7 @@ def write_data(path, rows, types=2, materials=None):
 
 
 def read_dump(path):
-    """Rows of numbers by step."""
+    """Rows of numbers for each step."""
     frames, title, step = {}, "", None
     for line in path.read_text().splitlines():
         if line.startswith("ITEM:"):
@@ -66,7 +66,7 @@ def read_dump(path):
 
 
 def loose_grains(seed):
-    """Truncated normal diameters on a wide lattice, shaken."""
+    """Grains with truncated normal diameters on a wide lattice with random offsets."""
     chance = random.Random(seed)
     sizes = []
     while len(sizes) < GRAINS:
@@ -88,12 +88,12 @@ def make_packing(folder, seed, modulus):
 
 
 def plate_height(height, tilt, x):
-    """Of the plate's face at x: it is tilted about the middle of the box."""
+    """Height of the plate's face at x; it is tilted about the middle of the box."""
     return height + tilt * (x - BOX / 2)
 
 
 def write_walls(folder, tilt):
-    """Every wall as two triangles, a little wider than the box."""
+    """Every wall as two triangles, slightly larger than the box."""
     low, high, top = -0.005, BOX + 0.005, 0.16
     left, right = plate_height(START, tilt, low), plate_height(START, tilt, high)
     planes = {"x_min": [(0, low, low), (0, high, low), (0, high, top), (0, low, top)],
@@ -111,14 +111,15 @@ def write_walls(folder, tilt):
 
 
 def top_forces(program, output):
-    """Upward force on the plate by step: the third column of the thermodynamic output, in LAMMPS of the force on grains."""
+    """Upward force on the plate at each step: third column of the thermodynamic output; in LAMMPS the force on the
+    grains."""
     sign = -1 if program == "lmp" else 1
     rows = [line.split() for line in output.splitlines()]
     return {int(row[0]): sign * float(row[2]) for row in rows if len(row) == 3 and row[0].isdigit()}
 
 
 def pairs_of(program, rows):
-    """(grain, partner, force on grain), grains numbered from 0."""
+    """(grain, partner, force on grain); grains are numbered from 0."""
     if program == "lmp":
         return [(int(i) - 1, int(j) - 1, [n + t for n, t in zip(f[:3], f[3:])]) for i, j, *f in rows]
     return [(int(i) - 1, int(j) - 1, force) for i, j, *force in rows]
@@ -132,7 +133,7 @@ def wall_contacts_of(program, rows):
 
 
 def point_of(grains, i, partner, height, tilt):
-    """Midway between the surfaces of two grains; a wall's point under the centre."""
+    """Midway between the surfaces of two grains; for a wall, the foot of the perpendicular from the centre."""
     d, *centre = grains[i]
     if isinstance(partner, str):
         axis = "xyz".index(partner[0]) if partner[1] == "_" else 2
@@ -145,9 +146,9 @@ def point_of(grains, i, partner, height, tilt):
 
 
 def expect_all_contacts(scan, atoms, contacts, gravity):
-    """The force on every grain is that of its contacts and its weight. LIGGGHTS computes contacts anew for its list, from
-    bulges one step younger: 8 % of the mean contact force apart at most, where grains rearrange; a contact that is missing
-    shows by all of its force."""
+    """Checks that the force on every grain is that of its contacts and its weight. LIGGGHTS recomputes contacts for its
+    list with the displacements of the previous step, so forces differ by up to 8 % of the mean contact force if grains
+    rearrange. A missing contact would cause a difference of its whole force."""
     missing = [[f - math.pi / 6 * row[1]**3 * DENSITY * g for f, g in zip(row[5:8], gravity)] for row in atoms]
     for i, partner, force in contacts:
         for axis in range(3):
@@ -174,13 +175,14 @@ def scan_of(reality, n, top, atoms, pairs, walls):
 
 
 def gravity_of(reality):
-    """[m/s2], along x, y and z. `lean`: tangent of the angle by which the box stands crooked."""
+    """[m/s2], along x, y and z. `lean`: tangent of the angle by which the box is inclined."""
     down = GRAVITY * reality["weight"] / math.hypot(1, reality["lean"])
     return [down * reality["lean"], 0.0, -down]
 
 
 def schedule(reality):
-    """Steps between scans, and those at which the plate starts, has reached the lowest place, leaves it, and is back."""
+    """Steps between scans, and the steps at which the plate starts, reaches the lowest position, leaves it, and is
+    back."""
     steps = round(STEPS * reality["slower"])
     begin = steps * math.ceil(BEGIN / steps)
     turn = begin + SCANS * steps
@@ -188,21 +190,21 @@ def schedule(reality):
     return steps, begin, turn, back, back + SCANS * steps
 
 
-# What a reality has besides what its input script asks for.
+# Further keys of an experiment, in addition to those of its input script.
 DEFAULTS = {
-    "slower": 1,       # times than SPEED
-    "held": 0,         # intervals between scans for which the plate rests at its lowest place
+    "slower": 1,       # factor by which the plate is slower than SPEED
+    "held": 0,         # number of intervals for which the plate rests at its lowest position
     "tilt": 0,         # slope of the plate along x
-    "weight": 1,       # over that of grains of DENSITY
-    "lean": 0,         # of the box along x
-    "types": 2,        # of atoms in the packing's file
-    "materials": None  # number of materials of grains, dealt at random; types 1, 2, ..
+    "weight": 1,       # relative to grains of DENSITY
+    "lean": 0,         # inclination of the box along x
+    "types": 2,        # number of atom types in the packing's file
+    "materials": None  # number of grain materials, assigned at random; types 1, 2, ..
 }
 
 
 def simulate(folder, seed, reality):
-    """Scans of the case: plate position, phase and force, grains as (diameter, x, y, z), contacts as (grain, partner, point,
-    force on grain)."""
+    """Scans of the case: plate position, phase and force; grains as (diameter, x, y, z); contacts as (grain, partner,
+    point, force on grain)."""
     folder.mkdir(parents=True, exist_ok=True)
     reality = {**DEFAULTS, **reality}
     packing = make_packing(folder, seed, 23.3e3)

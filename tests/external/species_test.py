@@ -1,5 +1,5 @@
-"""A packing of two materials against LAMMPS: the force of every contact between grains, from the very positions of the last scan, for
-pairs of the same species and of both: species_test.py MCDEM FOLDER"""
+"""A packing of two materials compared with LAMMPS: the force of every contact between grains at the positions of the
+last scan, for pairs of the same and of different species: species_test.py MCDEM FOLDER"""
 import pathlib
 import shutil
 import subprocess
@@ -53,7 +53,7 @@ precision = "double"
 
 
 def mcdem_run(mcdem, folder):
-    """Positions, diameters, species and contacts between grains of the lowest scan."""
+    """Positions, diameters, species and contacts between grains of the scan with the lowest plate."""
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "species.toml").write_text(SCENE)
     out = folder / "species_run"

@@ -1,4 +1,4 @@
-"""Tables on the terminal, which are Markdown too."""
+"""Tables for the terminal, in Markdown."""
 
 
 def print_table(columns, rows):

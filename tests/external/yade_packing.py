@@ -1,14 +1,14 @@
-"""Run by Yade (yade -n -x) in an empty folder: soft spheres squeezed by a plate, in the files of Yade's own exporters, and the
-same numbers unrounded in printed.json."""
+"""Run by Yade (yade -n -x) in an empty folder: compresses soft spheres with a plate and writes the files of Yade's own
+exporters, and the same numbers unrounded in printed.json."""
 import json
 import random
 
 from yade import export
 from yade.utils import PWaveTimeStep, sphere, wall
 
-SIZE, HEIGHT, STROKE, SPEED = 0.08, 0.061, 0.006, 0.05  # of the box, of the plate at rest [m]; of the plate [m/s]
+SIZE, HEIGHT, STROKE, SPEED = 0.08, 0.061, 0.006, 0.05  # of the box, of the plate at the start [m]; of the plate [m/s]
 FRAMES = 4
-RADIUS = 0.0101  # a little more than the lattice has room for [m]
+RADIUS = 0.0101  # slightly larger than the lattice allows without overlap [m]
 
 random.seed(5)
 grain = O.materials.append(FrictMat(young=23300, poisson=0.3, density=200, frictionAngle=0.3))

@@ -1,6 +1,6 @@
-"""A packing that Yade squeezes becomes an experiment by `mcdem experiment import`, equal to what Yade printed.
+"""A packing compressed by Yade is imported by `mcdem experiment import`; the values equal those of Yade.
 
-yade_test.py MCDEM FOLDER; exit code 77 where Yade is missing.
+yade_test.py MCDEM FOLDER; exit code 77 if Yade is missing.
 """
 import json
 import pathlib
@@ -33,7 +33,7 @@ def import_files(mcdem, folder, files, size, out):
 
 
 def contact_of(first, second, force):
-    """Grain, partner and the force on the grain, as an experiment lists them; `force` is on the second."""
+    """Grain, partner and force on the grain, as in an experiment; `force` is that on the second body."""
     if first < len(WALLS):
         return str(second - len(WALLS)), WALLS[first], force
     return str(first - len(WALLS)), str(second - len(WALLS)), [-f for f in force]

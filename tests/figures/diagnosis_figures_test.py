@@ -1,4 +1,4 @@
-"""Figures of a diagnosis show what diagnosis.json says. diagnosis_figures_test.py PROGRAM"""
+"""Figures of a diagnosis have the values of diagnosis.json. diagnosis_figures_test.py PROGRAM"""
 import json
 import pathlib
 import shutil
@@ -26,7 +26,7 @@ def cause(effect, score, group, amplitude, confirmed):
 
 
 def diagnosis():
-    """As `mcdem diagnose` writes it: two effects that cannot be told apart, one of them simulated in full."""
+    """As written by `mcdem diagnose`: two indistinguishable effects, one of them simulated."""
     score = np.random.default_rng(1).normal(0, 3.5, (len(OBSERVABLES), len(ORDER)))
     cells = [{"observable": name, "phase": phase, "displacement_mm": at, "z_score": score[row][column],
               "z_score_refitted": score[row][column] / 2}

@@ -1,4 +1,4 @@
-"""What was drawn, read back from axes and files, and what the tests of figures share."""
+"""Reads drawn figures back from axes and files; shared by the tests of figures."""
 import pathlib
 import subprocess
 import sys
@@ -31,7 +31,7 @@ class Program:
 
 
 def lines_of(axes, colour, linestyle):
-    """x and y of the lines of a colour and style that have more than no points; of markers, linestyle is "None"."""
+    """x and y of the nonempty lines with this colour and style; for markers, linestyle is "None"."""
     return [line.get_xydata().T for line in axes.lines
             if line.get_color() == colour and line.get_linestyle() == linestyle and len(line.get_xdata())]
 
@@ -46,14 +46,14 @@ def bars_of(axes, colour):
 
 
 def bands_of(axes, colour):
-    """Corner points of the bands of a colour."""
+    """Corner points of the bands with this colour."""
     return [band.get_paths()[0].vertices for band in axes.collections
             if isinstance(band, matplotlib.collections.PolyCollection)
             and matplotlib.colors.same_color(band.get_facecolor()[0][:3], colour)]
 
 
 def words_of(axes):
-    """Of the key, from top to bottom."""
+    """Labels of the key, from top to bottom."""
     return [text.get_text() for text in axes.get_legend().get_texts()]
 
 
@@ -62,7 +62,7 @@ def texts_of_svg(file):
 
 
 def main():
-    """The tests of the calling module with the program that the command line names."""
+    """Runs the tests of the calling module with the program named on the command line."""
     import unittest
     test = sys.modules["__main__"]
     test.PROGRAM = sys.argv.pop(1)

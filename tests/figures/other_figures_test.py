@@ -1,4 +1,4 @@
-"""Figures of a convergence study and of a challenge show what figures.json says. other_figures_test.py PROGRAM"""
+"""Figures of a convergence study and of a challenge have the values of figures.json. other_figures_test.py PROGRAM"""
 import json
 import pathlib
 import shutil
@@ -48,7 +48,7 @@ class Convergence(unittest.TestCase):
 
     def test_errors_with_two_standard_errors(self):
         speed, step = self.points("#0072B2", "s"), self.points("#D55E00", "o")
-        np.testing.assert_allclose([x for x, _ in speed], [2, -3.95])  # what lies far out stands at the edge
+        np.testing.assert_allclose([x for x, _ in speed], [2, -3.95])  # outliers are drawn at the edge
         self.assertEqual([round(y) for _, y in speed + step], [0, 1, 1])
         self.assertEqual([x for x, _ in step], [0.5])
         bars = [line.get_xdata() for line in self.axes.lines if len(line.get_xdata()) == 2]

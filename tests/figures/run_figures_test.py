@@ -1,4 +1,4 @@
-"""Figures of runs show what run.h5 says. run_figures_test.py PROGRAM"""
+"""Figures of runs have the values of run.h5. run_figures_test.py PROGRAM"""
 import os
 import pathlib
 import shutil
@@ -220,7 +220,7 @@ class Files(unittest.TestCase):
 
 
 class WithoutMatplotlib(unittest.TestCase):
-    """A run succeeds and says once what to install; a command whose only purpose is a figure fails."""
+    """A run succeeds and names once what to install; a command whose only purpose is a figure fails."""
     @classmethod
     def setUpClass(cls):
         bare = folder / "bare"

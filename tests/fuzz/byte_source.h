@@ -1,4 +1,4 @@
-// The fuzzer's bytes as choices: what to change in a valid file, and into what.
+// Interprets the fuzzer's bytes as choices: what to change in a valid file, and how.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -11,7 +11,7 @@ class ByteSource {
 public:
     ByteSource(const std::uint8_t* bytes, std::size_t size) : bytes_(bytes, size) {}
     bool empty() const { return bytes_.empty(); }
-    /// 0 past the end.
+    /// 0 after the last byte.
     std::uint8_t byte() {
         if (bytes_.empty()) return 0;
         const std::uint8_t first = bytes_.front();
@@ -23,7 +23,7 @@ public:
         const std::size_t value = byte() | std::size_t(byte()) << 8;
         return value % count;
     }
-    /// Numbers at which counting and comparing break.
+    /// Extreme numbers for counts and comparisons.
     std::int64_t integer() {
         static constexpr std::int64_t odd[] = {0,
                                                1,

@@ -1,5 +1,5 @@
-// The JSON documents that the program reads back, and its observations, changed at the level of their
-// structure: read or an InputError. The first byte chooses the document, the others what is changed.
+// Changes the structure of the JSON documents and observations that the program reads back. They must be
+// read or give an InputError. The first byte selects the document, the others the changes.
 #include <map>
 
 #include "challenge/evidence.h"
@@ -83,7 +83,7 @@ void try_document(const Document& document, ByteSource& source) {
     }
 }
 
-/// Observations of any length and content, with or without their digest: what was kept comes back, or
+/// Observations of any length and content, with or without digest: the stored values are returned, or
 /// nothing.
 void try_observation(ByteSource& source) {
     const ObservationStore store(scratch_folder());

@@ -1,6 +1,5 @@
-// Any four files as an experiment's folder: it is read and checked, or refused with an InputError. The files
-// stand one after the other, parted by lines that are "%%%": experiment.toml, plate.csv, grains.csv,
-// contacts.csv.
+// Reads any four files as an experiment folder: it is read and checked, or refused with an InputError. The
+// files are concatenated, separated by lines "%%%": experiment.toml, plate.csv, grains.csv, contacts.csv.
 #include <unistd.h>
 
 #include <cstdint>
@@ -13,7 +12,7 @@
 
 namespace {
 
-/// One folder a process, in memory where the system has such a place.
+/// One folder per process, in memory if the system supports it.
 const std::filesystem::path& folder() {
     static const std::filesystem::path path = [] {
         const std::filesystem::path memory = "/dev/shm";

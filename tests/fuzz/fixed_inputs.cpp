@@ -1,5 +1,5 @@
-// A fuzz target on inputs that are the same every time, without a fuzzer: FIRST and COUNT of them. One that
-// breaks the reader is named, to be tried again alone.
+// Runs a fuzz target without a fuzzer on inputs that are always the same, numbers FIRST to FIRST + COUNT -
+// 1. An input that crashes the reader is named, so that it can be run alone.
 #include <unistd.h>
 
 #include <csignal>
@@ -20,10 +20,10 @@ int broken_length = 0;
 void say_which(int signal) {
     const ssize_t written = write(STDERR_FILENO, broken, static_cast<std::size_t>(broken_length));
     (void)written;
-    raise(signal);  // its default again
+    raise(signal);  // with the default handler
 }
 
-/// To be called for every input: PoCL's compiler changes what signals do.
+/// Must be called for every input: PoCL's compiler changes signal handlers.
 void listen() {
     for (const int signal : {SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGALRM}) {
         struct sigaction action {};

@@ -41,7 +41,7 @@ Handle some_type(ByteSource& source) {
     return row;
 }
 
-/// Small, or so large that nobody can hold it.
+/// Small, or too large to be allocated.
 hsize_t some_extent(hsize_t before, ByteSource& source) {
     switch (source.below(8)) {
         case 0:
@@ -68,7 +68,7 @@ std::vector<hsize_t> extent_of(hid_t set) {
     return extent;
 }
 
-/// Puts odd numbers at a few places of the values' own bytes.
+/// Overwrites a few positions of the values with extreme numbers.
 void change_values(hid_t set, ByteSource& source) {
     const Handle type(H5Dget_type(set), H5Tclose), space(H5Dget_space(set), H5Sclose);
     const hssize_t count = H5Sget_simple_extent_npoints(space);
@@ -188,7 +188,7 @@ void mutate_hdf5(const std::filesystem::path& path, ByteSource& source) {
     const Handle file(H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose);
     const bool believed = source.byte() % 4 != 0;
     for (int change = 0; change < 4 && !source.empty(); ++change) mutate_once(file, source);
-    // A file without digests is one of an earlier version: what it holds is believed.
+    // Files without digests are from earlier versions and are read without verification.
     if (believed) H5Ldelete(file, "digests", H5P_DEFAULT);
 }
 

@@ -1,4 +1,4 @@
-// Changes a valid HDF5 file at the level of its structure: objects, shapes, types, values, attributes, links.
+// Changes the structure of a valid HDF5 file: objects, shapes, types, values, attributes, links.
 #pragma once
 #include <filesystem>
 
@@ -6,7 +6,7 @@
 
 namespace mcdem::fuzz {
 
-/// A few changes, as many as `source` has bytes for.
+/// Makes a few changes, as many as `source` has bytes for.
 void mutate_hdf5(const std::filesystem::path& file, ByteSource& source);
 
 }  // namespace mcdem::fuzz

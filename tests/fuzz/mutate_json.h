@@ -1,4 +1,4 @@
-// Changes a valid JSON document at the level of its structure: values, types, names, nesting.
+// Changes the structure of a valid JSON document: values, types, names, nesting.
 #pragma once
 #include <nlohmann/json.hpp>
 #include <string>
@@ -56,7 +56,7 @@ inline void mutate_one(nlohmann::json& root, ByteSource& source) {
 
 }  // namespace detail
 
-/// A few changes to what `text` says, as many as `source` has bytes for.
+/// Makes a few changes to `text`, as many as `source` has bytes for.
 inline std::string mutate_json(const std::string& text, ByteSource& source) {
     auto root = nlohmann::json::parse(text);
     for (int change = 0; change < 4 && !source.empty(); ++change) detail::mutate_one(root, source);

@@ -1,4 +1,4 @@
-// Any bytes as a packing, in each format: grains with sound numbers come out or an InputError.
+// Reads any bytes as a packing, in each format: valid grains or an InputError.
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>

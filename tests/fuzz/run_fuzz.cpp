@@ -1,5 +1,5 @@
-// Result files and checkpoints changed at the level of their structure: every reader gives numbers or an
-// InputError. The first byte chooses the kind of file, the others what is changed.
+// Changes the structure of result files and checkpoints: every reader returns data or throws an InputError.
+// The first byte selects the kind of file, the others the changes.
 #include "core/errors.h"
 #include "ensemble/make_packings.h"
 #include "ensemble/small_scene.h"
@@ -13,7 +13,7 @@
 #include "metrics/model_table.h"
 #include "sim/simulation.h"
 
-/// HDF5 1.10 loses some memory when it meets damaged metadata; what it loses is not ours to find.
+/// HDF5 1.10 leaks memory when it reads damaged metadata; these leaks are not checked here.
 extern "C" const char* __lsan_default_suppressions() { return "leak:libhdf5"; }
 
 namespace {
@@ -22,7 +22,7 @@ using namespace mcdem;
 using fuzz::ByteSource;
 using fuzz::scratch_folder;
 
-/// What is wrong with a file is an error that is reported; one that says it is enormous may find no memory.
+/// Errors in a file are reported. A file that claims an enormous size may also cause std::bad_alloc.
 template <class Read>
 void expect_read_or_refused(Read read) {
     try {
@@ -58,7 +58,7 @@ void try_run(ByteSource& source) {
     read_with_everything(scratch_folder());
 }
 
-/// A small simulation with everything that has a memory.
+/// A small simulation with all kinds of contact memory.
 class Restarted {
 public:
     Restarted()
@@ -88,7 +88,7 @@ private:
     Checkpoint saved_;
 };
 
-/// Its sum is made anew, so that what it holds is believed.
+/// The checksum is recomputed, so that the contents are accepted.
 void try_checkpoint(ByteSource& source) {
     static Restarted simulation;
     Checkpoint checkpoint = simulation.saved();

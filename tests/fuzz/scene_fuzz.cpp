@@ -1,4 +1,4 @@
-// Any bytes as a scene: replicas come out or an InputError.
+// Reads any bytes as a scene: replicas or an InputError.
 #include <cstdint>
 
 #include "core/errors.h"

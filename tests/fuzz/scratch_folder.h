@@ -1,4 +1,4 @@
-// One folder a process, in memory where the system has such a place; gone when it ends.
+// One temporary folder per process, in memory if the system supports it.
 #pragma once
 #include <unistd.h>
 

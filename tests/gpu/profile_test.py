@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""MCDEM_PROFILE=1: every kernel's launches and time at a run's end, and the same results.
+"""MCDEM_PROFILE=1 reports the launches and time of every kernel at the end of a run, with the same results.
 
 profile_test.py MCDEM SOURCES
 """
@@ -43,7 +43,7 @@ def main():
         said = run(folder, "profiled", MCDEM_PROFILE="1")
         assert (folder / "plain/run.h5").read_bytes() == (folder / "profiled/run.h5").read_bytes()
     rows = {row[0]: row[1:] for row in re.findall(r"^(\w+) +(\d+) +([\d.]+) +[\d.]+ +([\d.]+) %$", said, flags=re.M)}
-    assert set(rows) == kernels - {"cell_stress"}, said  # of cells, and the scene is none
+    assert set(rows) == kernels - {"cell_stress"}, said  # only for cells; the scene has none
     launches = {kernel: int(row[0]) for kernel, row in rows.items()}
     assert launches["advance"] > launches["measure"] == launches["reduce"] > 0, said
     assert launches["fill_cells"] == launches["list_neighbours"] == launches["empty_cells"] > 0, said

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""The kernels compiled for GPUs of two makers, without any GPU: what each needs is held against tests/gpu/budget.csv.
+"""Compiles the kernels for GPUs of two vendors, without a GPU, and compares their resources with tests/gpu/budget.csv.
 
-registers_test.py SOURCES [--write]; skipped (77) without Clang and libclc. AMD's registers come from Clang itself, NVIDIA's from
-ptxas where it is found (PATH, PTXAS, or PyPI's nvidia-cuda-nvcc). --write puts what was counted into the budget.
+registers_test.py SOURCES [--write]; skipped (77) without Clang and libclc. AMD's registers are counted by Clang,
+NVIDIA's by ptxas if it is found (PATH, PTXAS, or PyPI's nvidia-cuda-nvcc). --write updates the budget.
 """
 import csv
 import glob
@@ -14,9 +14,9 @@ import subprocess
 import sys
 import tempfile
 
-ITEMS = 256  # of a work-group: host/cl/program.h
+ITEMS = 256  # work-group size: host/cl/program.h
 KERNELS = ("advance", "measure")
-GRANULE = 8  # registers are given to a work-item by so many
+GRANULE = 8  # registers are allocated per work-item in multiples of this
 COLUMNS = ("target", "kernel", "precision", "slots", "registers", "local_bytes", "barriers")
 CLC = "/usr/lib/clc"
 
@@ -27,7 +27,7 @@ def skip(reason):
 
 
 def find_clang():
-    """Clang and libclc of one version: newer bitcode cannot be read."""
+    """Clang and libclc of the same version, because older versions cannot read newer bitcode."""
     for folder in sorted(glob.glob("/usr/lib/llvm-*"), key=lambda path: -int(path.rsplit("-", 1)[1])):
         version = folder.rsplit("-", 1)[1]
         owned = subprocess.run(["dpkg-query", "-W", "-f", "${Status}", f"libclc-{version}"], capture_output=True, text=True)
@@ -51,7 +51,7 @@ def compile_kernels(clang, sources, target, library, options, out):
 
 
 def of_kernels(text, begin, barrier):
-    """Barriers of each kernel in an assembler's text; `begin` matches a kernel's first line."""
+    """Number of barriers of each kernel in assembler code; `begin` matches a kernel's first line."""
     parts = re.split(begin, text, flags=re.M)
     return {name: len(re.findall(barrier, body)) for name, body in zip(parts[1::2], parts[2::2])}
 

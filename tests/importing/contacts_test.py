@@ -1,4 +1,5 @@
-"""Contacts that a table lists twice, in other frames than the grains, or by their sizes: right, or refused."""
+"""Contacts that a table lists twice, in other frames than the grains, or by magnitude only: imported correctly, or
+refused."""
 import copy
 import unittest
 
@@ -11,14 +12,14 @@ from mcdem.importing.mapping import Guess, mapping_text
 
 class Contacts(ImportCase):
     def mapping(self, **entries):
-        """The mapping of the laboratory's tables, its contacts with these entries."""
+        """The mapping of the laboratory's tables with these entries for contacts."""
         mapping = mapping_of(self.guess(self.write_lab()))
         for key, word in entries.items():
             next(table for table in mapping if table.role == "contacts")[key] = Guess([word])
         return mapping_text(mapping)
 
     def problems_with_each_pair_again(self, change, mapping):
-        """Of contacts of which each pair is listed a second time, changed so."""
+        """The table of contacts in which each pair is listed a second time, with this change."""
         listed = copy.deepcopy(self.truth)
         for scan in listed.scans:
             scan.contacts += [change(contact) for contact in scan.contacts if not contact.is_wall]

@@ -1,4 +1,4 @@
-"""Tables and mappings that cannot be imported: told with file and line."""
+"""Tables and mappings that cannot be imported: errors name file and line."""
 import unittest
 
 from lab import ImportCase, Style, lab_contacts, lab_grains, lab_plate

@@ -1,4 +1,5 @@
-"""Which frames of a laboratory's tables belong together: by numbers, times or order, and when none is safe."""
+"""Which frames of a laboratory's tables belong together: by numbers, times or order; or an error if none is
+reliable."""
 import unittest
 
 import numpy as np
@@ -8,7 +9,7 @@ from lab import ImportCase
 
 class Frames(ImportCase):
     def plate(self, frame, first=0.0, step=1.0, rows=None):
-        """Frames by a column of that name, `first` and on, `step` apart."""
+        """Adds a column of frames with this name, starting at `first`, `step` apart."""
         names = f"{frame},plate_z [m],force [N]\n" if frame else "plate_z [m],force [N]\n"
         scans = rows or self.truth.scans
         return self.write("plate.csv", names + "".join(
@@ -22,7 +23,7 @@ class Frames(ImportCase):
         return self.write("grains.csv", frame + ",id,x_m,y_m,z_m,d_m\n" + "".join(self.rows(f, f"{step * f!r},") for f in which))
 
     def grain_files(self, names):
-        """One file a frame."""
+        """One file per frame."""
         return [self.write(name, "id,x_m,y_m,z_m,d_m\n" + self.rows(f, "")) for f, name in names]
 
     def contacts(self, frame, first, start):
@@ -64,7 +65,7 @@ class Frames(ImportCase):
         self.expect_one(self.unclear(self.guess([self.plate("time [s]")] + numbered)), "numbers in file names here, time numbers [s] there")
 
     def test_files_are_numbered_by_the_plates_rows(self):
-        """A tomogram at every twelfth row of a plate that is read more often."""
+        """Frames of a tomograph at every twelfth row of a plate that is measured more often."""
         heights = np.interp(np.arange(37), 6 * np.arange(7), [s.plate_z for s in self.truth.scans])
         forces = np.interp(np.arange(37), 6 * np.arange(7), [s.top_force for s in self.truth.scans])
 

@@ -1,4 +1,4 @@
-"""Tables and mappings changed at random, the same every time: imported, or told as bad input; never a traceback."""
+"""Random changes (reproducible) of tables and mappings: they are imported or give an input error, never a traceback."""
 import random
 import sys
 import time
@@ -51,7 +51,7 @@ class Hostile(ImportCase):
         super().setUp()
         self.truth.scans = self.truth.scans[:3]
         self.draw = random.Random(20)
-        # What broken numbers overflow to is refused; that it was infinite on the way there is of no interest.
+        # Overflows of damaged numbers are refused later; warnings about them are ignored.
         kept = warnings.catch_warnings()
         kept.__enter__()
         self.addCleanup(kept.__exit__, None, None, None)
@@ -71,7 +71,7 @@ class Hostile(ImportCase):
         ]
 
     def expect_told(self, error):
-        """Each with its place, but for the last, which may count the rest."""
+        """Each problem has a position, except the last one, which may count the rest."""
         self.assertTrue(error.problems and all(": " in problem or problem.startswith(".. and ") for problem in error.problems), error)
 
     def import_all(self, files):

@@ -1,4 +1,4 @@
-"""Experiments made of other tables: what is guessed, when it is not safe, and that it comes out right."""
+"""Experiments from foreign tables: the guess, what it marks as uncertain, and the imported values."""
 import re
 import unittest
 
@@ -40,7 +40,7 @@ class Import(ImportCase):
         problems = self.unclear(tables)
         self.expect_among(problems, 'length_unit must be confirmed, got "?mm": no name says it, and the box is not known')
         self.expect_among(problems, "force_unit must be confirmed")
-        # As it is written it is refused, line by line; confirmed it is read.
+        # The guess as written is refused, line by line; when confirmed it is accepted.
         text = mapping_text(mapping_of(tables))
         self.assertTrue(any(re.match(r'm:[0-9]+: length_unit must be confirmed, got "\?mm": put in what is right, ', problem)
                             for problem in self.problems_of(lambda: parse_mapping(text, "m"))))

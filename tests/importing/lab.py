@@ -1,4 +1,4 @@
-"""A compression as tables that a laboratory or another program would have written of it, and what an import must give back."""
+"""A compression as tables of a laboratory or of another program, and the values that an import must return."""
 import copy
 import importlib.util
 import itertools
@@ -28,7 +28,7 @@ GERMAN_WALLS = ["links", "rechts", "vorn", "hinten", "Boden", "Deckel"]
 @dataclass
 class Contact:
     grain: int
-    partner: int  # a grain, or -1 - the place of a wall in WALLS
+    partner: int  # a grain, or -1 - the index of a wall in WALLS
     point: np.ndarray
     force: np.ndarray
 
@@ -57,7 +57,7 @@ class Truth:
 
 
 def contacts_of(truth, scan):
-    """Forces by Hertz's law from the overlaps."""
+    """Forces from overlaps by Hertz's law."""
     modulus, radius, found = 23300 / 0.75, truth.diameter / 2, []
 
     def add(i, partner, line, overlap, r, stiffness, point):
@@ -78,7 +78,7 @@ def contacts_of(truth, scan):
 
 
 def pressed_packing():
-    """3 x 4 x 3 grains about 20 mm wide on a shaken lattice, seven frames of one stroke down and up."""
+    """3 x 4 x 3 grains of about 20 mm on a lattice with random offsets; seven frames of one stroke down and up."""
     random = np.random.default_rng(7)
     lattice = np.array([(n % 3 + 0.5, n // 3 % 4 + 0.5, n // 12 + 0.5) for n in range(36)]) + random.uniform(-0.02, 0.02, (36, 3))
     truth = Truth(0.0207 + random.uniform(-3e-4, 3e-4, 36), [])
@@ -97,9 +97,9 @@ PRESSED = pressed_packing()
 class Style:
     separator: str = ";"
     decimal: str = ","
-    named: bool = True  # units
-    length: float = 1e3  # the table's units in a metre
-    force: float = 1e3  # .. in a newton
+    named: bool = True  # units in column names
+    length: float = 1e3  # the table's units per metre
+    force: float = 1e3  # .. per newton
 
     def table(self, names, rows):
         """Numbers with nine digits."""
@@ -116,13 +116,13 @@ class Style:
 
 
 def lab_plate(truth, style=Style()):
-    """Without phase and cycle; frames by their time, half a second each."""
+    """Without phase and cycle; frames are numbered by time, half a second each."""
     return style.table(["Kraft" + style.mN, "Zeit [s]", "Hoehe" + style.mm],
                        ((style.force * s.top_force, 0.5 * s.frame, style.length * s.plate_z) for s in truth.scans))
 
 
 def lab_grains(truth, style=Style()):
-    """Radii, ids from 1."""
+    """Radii; ids start at 1."""
     mm, k = style.mm, style.length
     return style.table(["Radius" + mm, "z" + mm, "Nr.", "x" + mm, "Zeit [s]", "y" + mm],
                        ((k * truth.diameter[i] / 2, k * z, str(i + 1), k * x, 0.5 * s.frame, k * y)
@@ -130,7 +130,7 @@ def lab_grains(truth, style=Style()):
 
 
 def lab_contacts(truth, style=Style()):
-    """Walls by names, other columns in between."""
+    """Walls by name; other columns in between."""
     mm, mN, k = style.mm, style.mN, style.length
     return style.table(["fz" + mN, "Korn 2", "fx" + mN, "x" + mm, "fy" + mN, "z" + mm, "Guete", "y" + mm, "Korn 1", "Zeit [s]"],
                        ((style.force * c.force[2], c.partner_text(1, GERMAN_WALLS), style.force * c.force[0], k * c.point[0],
@@ -144,20 +144,21 @@ def _dump(frame, kind, columns, rows):
 
 
 def dump_of_grains(truth):
-    """LAMMPS' `dump custom`, timesteps 100 apart, ids from 1, rows in any order."""
+    """LAMMPS' `dump custom`: timesteps 100 apart, ids from 1, rows in any order."""
     return "".join(_dump(s.frame, "ATOMS", "id type x y z radius", [(k + 1, 1, *s.position[k], truth.diameter[k] / 2)
                                                                     for k in reversed(range(len(s.position)))]) for s in truth.scans)
 
 
 def dump_of_contacts(truth, walls):
-    """LIGGGHTS' `dump local` of `compute pair/gran/local id force` (walls: of wall/gran/local, with mesh numbers from 0)."""
+    """LIGGGHTS' `dump local` of `compute pair/gran/local id force`; for walls of wall/gran/local, mesh numbers from
+    0."""
     return "".join(_dump(s.frame, "ENTRIES", "c_p[1] c_p[2] c_p[3] c_p[4] c_p[5] c_p[6]",
                          [((-1 - c.partner, 0, c.grain + 1) if walls else (c.grain + 1, c.partner + 1, 0)) + tuple(c.force)
                           for c in s.contacts if c.is_wall == walls]) for s in truth.scans)
 
 
 def plain_plate(truth, separator=",", frames="step", step=100):
-    """Metres and newtons; `frames` names a column of numbers `step` apart, or none."""
+    """In metres and newtons; `frames` names a column of numbers `step` apart, or none."""
     names = ([frames] if frames else []) + ["plate_z_m", "force_N"]
     rows = (([step * s.frame] if frames else []) + [float(s.plate_z), float(s.top_force)] for s in truth.scans)
     return "".join(separator.join(map(str, row)) + "\n" for row in itertools.chain([names], rows))
@@ -190,7 +191,7 @@ class ImportCase(unittest.TestCase):
         return import_tables(tables, self.known)
 
     def unclear(self, tables):
-        """What is unclear in the guess, without the folder's path."""
+        """Uncertain entries of the guess, without the folder's path."""
         return [line.replace(self.folder + "/", "") for line in unclear_entries(mapping_text(mapping_of(tables)), "m")]
 
     def by_mapping(self, text, files=()):

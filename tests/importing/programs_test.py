@@ -1,4 +1,4 @@
-"""Tables as Yade, scikit-image, trackpy and SPAM write them, and tables that state less than a force."""
+"""Tables in the formats of Yade, scikit-image, trackpy and SPAM, and tables with less than a full force vector."""
 import unittest
 
 import numpy as np
@@ -23,7 +23,7 @@ def vtk_of_spheres(truth, scan):
 
 
 def vtk_of_interactions(scan):
-    """exportInteractions(what={'id1': .., 'id2': .., 'force': ..}), the smaller id first, the force on it."""
+    """exportInteractions(what={'id1': .., 'id2': .., 'force': ..}): the smaller id first, the force on it."""
     n = len(scan.contacts)
     ids = [(-1 - c.partner, c.grain + YADE_WALLS) if c.is_wall else (c.grain + YADE_WALLS, c.partner + YADE_WALLS) for c in scan.contacts]
     forces = [-c.force if c.is_wall else c.force for c in scan.contacts]
@@ -61,14 +61,15 @@ class Forces(ImportCase):
     def test_of_a_plate_are_measured_by_its_contacts(self):
         files = self.write_lab()
         self.write("kraft.csv", lab_plate(self.truth).replace(" [mN]", "", 1))
-        self.known = Known(box=BOX)  # no Hertz's law
+        self.known = Known(box=BOX)  # without Hertz's law
         tables = self.guess(files)
         self.assertEqual(self.of(tables, "plate").word("force_unit"), "mN")
         self.assertEqual(self.unclear(tables), [])
 
 
 class Images(ImportCase):
-    """Grains of every frame as programs that analyse images write them, in voxels, and the plate's table of the laboratory."""
+    """Grains of every frame in voxels, as written by image analysis programs, and the plate's table of the
+    laboratory."""
 
     def setUp(self):
         super().setUp()
@@ -76,7 +77,7 @@ class Images(ImportCase):
             scan.contacts = []
 
     def frames(self, name, columns, row):
-        """A file for each frame; `row` gives the cells of grain i at x, y, z in voxels."""
+        """One file per frame; `row` gives the cells of grain i at x, y, z in voxels."""
         files = [self.write("plate.csv", lab_plate(self.truth))]
         for scan in self.truth.scans:
             rows = (row(i, *at) for i, at in enumerate(scan.position / VOXEL))
@@ -120,7 +121,7 @@ class Images(ImportCase):
         self.expect_truth(tables)
 
     def test_trackpys_size_is_no_radius(self):
-        """The features of all frames in one table; mass and size of the brightness."""
+        """Features of all frames in one table; mass and size refer to the brightness."""
         self.known.voxel_size = VOXEL
         columns = ["", "z", "y", "x", "mass", "size", "ecc", "signal", "raw_mass", "ep", "frame", "particle"]
         rows = ((str(i), *(at[::-1] / VOXEL), 900.5, 0.77 * self.truth.diameter[i] / VOXEL / 2, 0.1, 30.5, 1000.5, 0.05, str(scan.frame), str(i))
@@ -138,7 +139,7 @@ class Images(ImportCase):
         self.expect_truth(self.by_mapping(text))
 
     def spam_labels(self, radius=True):
-        """Positions in the first image and displacements since; label 0 is the background."""
+        """Positions in the first image and displacements relative to it; label 0 is the background."""
         columns = ["Label", "Zpos", "Ypos", "Xpos", "Zdisp", "Ydisp", "Xdisp", "returnStatus"] + (["EquivRadius"] if radius else [])
         first, files = self.truth.scans[0].position / VOXEL, [self.write("plate.csv", lab_plate(self.truth))]
         for scan in self.truth.scans:

@@ -1,4 +1,5 @@
-"""Tables of laboratories and other programs: cut into named columns whatever they look like, and told where they cannot."""
+"""Tables of laboratories and other programs are split into named columns, whatever their format; errors are
+reported."""
 import gzip
 import io
 import math
@@ -31,7 +32,7 @@ class Tables(ImportCase):
         return self.problems_of(lambda: table(text, form))
 
     def expect_table(self, text, columns):
-        """Columns x and F of 1.5, 2 and 2.5, -4, in the middle of whatever is around."""
+        """Columns x and F with the values 1.5, 2 and 2.5, -4, within the given text."""
         read = table(text)
         self.assertEqual(read.columns, columns)
         self.assertEqual(values(read), [[1.5, 2], [2.5, -4]])

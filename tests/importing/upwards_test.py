@@ -1,4 +1,4 @@
-"""Tables whose z points downwards: turned round where that is certain, refused where it is not."""
+"""Tables whose z axis points down: inverted if this is certain, otherwise refused."""
 import copy
 import re
 import unittest
@@ -9,7 +9,7 @@ from mcdem.importing.mapping import mapping_text
 
 
 def downwards(truth, begin):
-    """The same with z counted downwards from `begin` [m]."""
+    """The same tables with z measured downwards from `begin` [m]."""
     truth = copy.deepcopy(truth)
     for scan in truth.scans:
         scan.plate_z = begin - scan.plate_z
@@ -23,7 +23,7 @@ def downwards(truth, begin):
 
 class Upwards(ImportCase):
     def write_downwards(self, begin, *which):
-        """The laboratory's tables, those named counted downwards."""
+        """The laboratory's tables; those named have z measured downwards."""
         truth = {True: downwards(self.truth, begin), False: self.truth}
         return [self.write("kraft.csv", lab_plate(truth["plate" in which])), self.write("koerner.csv", lab_grains(truth["grains" in which])),
                 self.write("kontakte.csv", lab_contacts(truth["contacts" in which]))]

@@ -1,6 +1,6 @@
-"""Completion: what the shells offer, asked of the shells themselves.
+"""Shell completion, tested in the shells themselves.
 
-completion_test.py PROGRAM; exit code 77: all is well, but a shell is not installed.
+completion_test.py PROGRAM; exit code 77: no errors, but a shell is not installed.
 """
 import os
 import pathlib
@@ -17,7 +17,7 @@ def run(*words, **more):
 
 
 def bash(script, *words):
-    """What bash completes the last word to. compopt works only while somebody types."""
+    """Completions of the last word by bash. compopt works only in interactive shells, so it is replaced."""
     code = ('compopt() { :; }; source "$1"; shift; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _mcdem; '
             'printf "%s\\n" "${COMPREPLY[@]}"')
     return set(run("bash", "-c", code, "bash", script, "mcdem", *words).split())
@@ -30,7 +30,8 @@ def fish(script, *words):
 
 
 def zsh(script, *words):
-    """compadd and its like work only while somebody types; _describe and the others are asked what they were given."""
+    """compadd and similar functions work only in interactive shells; _describe and the others print their arguments
+    instead."""
     code = ('compdef() { :; }; compadd() { print -l -- "$@" }; _files() { print files "$@" }; _message() { :; }; '
             '_describe() { print -l -- "${(@P)@[-1]%%:*}" }; source "$1"; shift; words=("$@"); CURRENT=$#; _mcdem')
     return set(run("zsh", "-f", "-c", code, "zsh", script, "mcdem", *words).split())
@@ -47,7 +48,7 @@ def check(complete, script):
 
 
 def check_all_commands(script):
-    """Every command that the help lists, and every option of `run`."""
+    """Every command listed by the help, and every option of `run`."""
     listed = [line.split()[0] for line in run(program, "--help").split("Subcommands:")[1].split("\n\n")[0].splitlines()
               if line]
     assert len(listed) > 8 and set(listed) <= bash(script, ""), listed

@@ -1,6 +1,6 @@
-"""The Debian packages: made by CPack, unpacked into an empty root, and used from there.
+"""The Debian packages: built by CPack, unpacked into an empty root, and used there.
 
-debian_test.py SOURCE BUILD CMAKE [PYTHON]; exit code 77 where Debian's tools are missing.
+debian_test.py SOURCE BUILD CMAKE [PYTHON]; exit code 77 if Debian's tools are missing.
 """
 import os
 import pathlib
@@ -14,7 +14,7 @@ from installed import arguments, check_described, check_module, check_program, r
 
 
 def check_installable(files):
-    """apt finds all that the packages depend on, and would install them."""
+    """apt finds all dependencies of the packages and would install them."""
     done = subprocess.run(["apt-get", "-s", "--no-install-recommends", "install", *map(str, files)], text=True,
                           capture_output=True, env={**os.environ, "LC_ALL": "C"})
     assert done.returncode == 0, done.stdout + done.stderr

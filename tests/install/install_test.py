@@ -1,6 +1,6 @@
 """`cmake --install` into an empty prefix: program, manual, module, and a project that embeds the engine.
 
-install_test.py SOURCE BUILD CMAKE [PYTHON]; exit code 77: all is well, but man or groff is missing
+install_test.py SOURCE BUILD CMAKE [PYTHON]; exit code 77: no errors, but man or groff is missing
 """
 import pathlib
 import shutil
@@ -12,7 +12,7 @@ from installed import arguments, check_described, check_module, check_program, e
 
 
 def check_manual(prefix):
-    """man finds nothing to complain of in any page; false where it is not there to ask."""
+    """Checks that man reports no warnings for any page; false if man is missing."""
     text = (prefix / "share/man/man1/mcdem-run.1").read_text()
     for part in (".TH MCDEM\\-RUN 1", "\\-\\-out DIR", "\\-\\-resume", "mcdem run scenes/small.toml".replace("-", "\\-")):
         assert part in text, part
@@ -27,7 +27,7 @@ def check_manual(prefix):
 
 
 def check_embedding(source, cmake, prefix, folder):
-    """A project outside that knows nothing but the prefix."""
+    """An external project that uses only the prefix."""
     run(cmake, "-S", source / "tests/install/outside", "-B", folder / "outside", f"-DCMAKE_PREFIX_PATH={prefix}")
     run(cmake, "--build", folder / "outside")
     said = run(folder / "outside/outside", prefix / "share/mcdem/scenes/small.toml", folder / "embedded",
@@ -36,7 +36,7 @@ def check_embedding(source, cmake, prefix, folder):
 
 
 def check_no_source(source, prefix):
-    """What was installed must not point back to where it was built."""
+    """Installed files must not contain paths of the build."""
     for file in (prefix / "lib/cmake/mcdem").iterdir():
         assert str(source) not in file.read_text(), f"{file}: names {source}"
 

@@ -1,4 +1,4 @@
-"""What the tests of installed files share: commands, and what an installed program must be able to do."""
+"""Shared by the tests of installed files: commands, and checks of an installed program."""
 import os
 import pathlib
 import subprocess
@@ -6,7 +6,7 @@ import sys
 
 
 def run(*words, **more):
-    """Runs a command and returns what it prints; ends the test with all it said where it fails."""
+    """Runs a command and returns its output; if it fails, ends the test with all output."""
     done = subprocess.run([str(word) for word in words], text=True, capture_output=True, **more)
     if done.returncode != 0:
         sys.exit(f"exit code {done.returncode}: {' '.join(map(str, words))}\n{done.stdout}{done.stderr}")
@@ -14,13 +14,13 @@ def run(*words, **more):
 
 
 def environment_without_source(**more):
-    """The kernels and modules of a build tree must not help out."""
+    """An environment without the kernels and modules of the build tree."""
     kept = {name: value for name, value in os.environ.items() if name not in ("MCDEM_KERNELS", "PYTHONPATH")}
     return {**kept, **{name: str(value) for name, value in more.items()}}
 
 
 def check_program(prefix, folder):
-    """Says its version, and takes an installed scene through a short run."""
+    """Checks the version, and a short run of an installed scene."""
     program, scene = prefix / "bin/mcdem", prefix / "share/mcdem/scenes/small.toml"
     environment = environment_without_source()
     assert run(program, "--version", env=environment).startswith("mcdem "), program
@@ -30,7 +30,7 @@ def check_program(prefix, folder):
 
 
 def check_described(prefix):
-    """Manual and completions lie where man and the shells look, and are this program's."""
+    """Manual and completions are in the folders that man and the shells search, and belong to this program."""
     pages = {page.name for page in (prefix / "share/man/man1").iterdir()}
     assert {"mcdem.1", "mcdem-run.1", "mcdem-experiment.1", "mcdem-experiment-check.1"} <= pages, pages
     for shell, file in {"bash": "bash-completion/completions/mcdem", "zsh": "zsh/vendor-completions/_mcdem",
@@ -40,7 +40,7 @@ def check_described(prefix):
 
 
 def check_module(python, prefix):
-    """Installed for the interpreter that it was built with."""
+    """The module is installed for the interpreter for which it was built."""
     modules = sorted(prefix.glob("lib/python3*/*-packages/mcdem/_engine*.so"))
     assert len(modules) == 1, f"{prefix}: {modules}"
     site = modules[0].parent.parent
@@ -51,6 +51,6 @@ def check_module(python, prefix):
 
 
 def arguments():
-    """SOURCE BUILD CMAKE PYTHON; PYTHON is empty where the module is not built."""
+    """SOURCE BUILD CMAKE PYTHON; PYTHON is empty if the module was not built."""
     source, build = (pathlib.Path(word).resolve() for word in sys.argv[1:3])
     return source, build, sys.argv[3], sys.argv[4] if len(sys.argv) > 4 else ""

@@ -1,4 +1,4 @@
-"""An installed program finds what it needs beside it, wherever that is, and says what is missing where it does not.
+"""An installed program finds its files after it was moved, and names missing ones.
 
 moved_test.py SOURCE BUILD CMAKE [PYTHON]
 """

@@ -31,7 +31,7 @@ void expect_same(const Checkpoint& a, const Checkpoint& b) {
     EXPECT_TRUE(a.fields == b.fields);
 }
 
-TEST(checkpoint, comes_back_bit_for_bit) {
+TEST(checkpoint, is_read_back_bit_for_bit) {
     TemporaryFolder folder;
     EXPECT_FALSE(read_checkpoint(folder.path()).has_value());
     write_checkpoint(folder.path(), example(3));
@@ -41,7 +41,7 @@ TEST(checkpoint, comes_back_bit_for_bit) {
     EXPECT_EQ(found->warning, "");
 }
 
-TEST(checkpoint, damaged_newest_gives_the_previous_with_a_warning) {
+TEST(checkpoint, a_damaged_newest_gives_the_previous_one_with_a_warning) {
     TemporaryFolder folder;
     write_checkpoint(folder.path(), example(3));
     write_checkpoint(folder.path(), example(4));
@@ -54,7 +54,7 @@ TEST(checkpoint, damaged_newest_gives_the_previous_with_a_warning) {
     EXPECT_THAT(found->warning, HasSubstr("going on from checkpoint.previous.h5"));
 }
 
-TEST(checkpoint, missing_newest_gives_the_previous) {
+TEST(checkpoint, a_missing_newest_gives_the_previous_one) {
     TemporaryFolder folder;
     write_checkpoint(folder.path(), example(3));
     std::filesystem::rename(folder / "checkpoint.h5", folder / "checkpoint.previous.h5");
@@ -63,7 +63,7 @@ TEST(checkpoint, missing_newest_gives_the_previous) {
     EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 
-TEST(checkpoint, both_damaged_is_an_error_that_names_both) {
+TEST(checkpoint, if_both_are_damaged_the_error_names_both) {
     TemporaryFolder folder;
     write_bytes(folder / "checkpoint.h5", "no");
     write_bytes(folder / "checkpoint.previous.h5", "");
@@ -76,7 +76,7 @@ TEST(checkpoint, both_damaged_is_an_error_that_names_both) {
     }
 }
 
-TEST(checkpoint, bytes_changed_behind_the_librarys_checksums_are_noticed) {
+TEST(checkpoint, changed_bytes_with_correct_library_checksums_are_detected) {
     TemporaryFolder folder;
     write_checkpoint(folder.path(), example(5));
     {
@@ -94,7 +94,7 @@ TEST(checkpoint, bytes_changed_behind_the_librarys_checksums_are_noticed) {
     }
 }
 
-TEST(checkpoint, any_flipped_bit_is_noticed_or_harmless) {
+TEST(checkpoint, any_flipped_bit_is_detected_or_harmless) {
     TemporaryFolder folder;
     const Checkpoint written = example(5);
     write_checkpoint(folder.path(), written);

@@ -1,4 +1,4 @@
-// Damaged, foreign and half-written result files: a clear error, never a crash, never wrong numbers.
+// Damaged, foreign and incomplete result files: a clear error, no crash, no wrong numbers.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -18,7 +18,7 @@
 #include "io/results.h"
 #include "io/synthetic_run.h"
 
-/// HDF5 1.10 loses some memory when it meets damaged metadata; what it loses is not ours to find.
+/// HDF5 1.10 leaks memory when it reads damaged metadata; these leaks are not checked here.
 extern "C" const char* __lsan_default_suppressions() { return "leak:libhdf5"; }
 
 namespace mcdem::test {
@@ -35,7 +35,7 @@ std::string read_error(const std::filesystem::path& file) {
     return "no error";
 }
 
-TEST(damaged_files, truncated_at_every_tenth) {
+TEST(damaged_files, truncation_at_every_tenth_is_detected) {
     TemporaryFolder folder;
     const auto file = folder / "run.h5";
     write_run(file, synthetic_run());
@@ -46,7 +46,7 @@ TEST(damaged_files, truncated_at_every_tenth) {
     }
 }
 
-TEST(damaged_files, flipped_bits_are_noticed_or_harmless) {
+TEST(damaged_files, flipped_bits_are_detected_or_harmless) {
     TemporaryFolder folder;
     const auto file = folder / "run.h5";
     const auto run = synthetic_run();
@@ -69,7 +69,7 @@ TEST(damaged_files, flipped_bits_are_noticed_or_harmless) {
     EXPECT_GT(noticed, 100);
 }
 
-TEST(damaged_files, scrambled_stretches_are_noticed) {
+TEST(damaged_files, scrambled_ranges_are_detected) {
     TemporaryFolder folder;
     const auto file = folder / "run.h5";
     const auto run = synthetic_run();
@@ -90,7 +90,7 @@ TEST(damaged_files, scrambled_stretches_are_noticed) {
     }
 }
 
-TEST(damaged_files, foreign_files_are_named_as_such) {
+TEST(damaged_files, foreign_files_are_named) {
     TemporaryFolder folder;
     write_bytes(folder / "text.h5", "frame,cycle\n0,0\n");
     EXPECT_THAT(read_error(folder / "text.h5"), HasSubstr("cannot be opened as HDF5"));
@@ -119,14 +119,14 @@ TEST(damaged_files, missing_tables_are_named) {
     }
 }
 
-/// Writes a result file, replaces the object `path` by `values` and returns the error of reading it.
+/// Writes a result file, replaces the object `path` by `values`, and returns the error of reading it.
 template <class Number>
 std::string error_with(const std::string& path, const std::vector<Number>& values) {
     TemporaryFolder folder;
     write_run(folder / "run.h5", synthetic_run({.replicas = 1, .scans = 2}));
     {
         const h5::Handle file(H5Fopen((folder / "run.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose);
-        H5Ldelete(file, "/digests", H5P_DEFAULT);  // what remains must be noticed without them
+        H5Ldelete(file, "/digests", H5P_DEFAULT);  // the change must be detected without digests
         H5Ldelete(file, path.c_str(), H5P_DEFAULT);
         const hsize_t size = values.size();
         const h5::Handle space(H5Screate_simple(1, &size, nullptr), H5Sclose);
@@ -138,7 +138,7 @@ std::string error_with(const std::string& path, const std::vector<Number>& value
     return read_error(folder / "run.h5");
 }
 
-TEST(damaged_files, wrong_types_and_sizes_are_named) {
+TEST(damaged_files, wrong_types_and_sizes_are_reported) {
     EXPECT_THAT(error_with("/observables/replica_00000", std::vector<double>{1, 2}),
                 HasSubstr("named fields"));
     EXPECT_THAT(error_with("/parameters/scene", std::vector<double>{1}),
@@ -155,7 +155,7 @@ TEST(damaged_files, wrong_types_and_sizes_are_named) {
                 HasSubstr("one row for each of step"));
 }
 
-TEST(damaged_files, sizes_that_are_none_are_refused) {
+TEST(damaged_files, invalid_sizes_are_refused) {
     TemporaryFolder folder;
     const auto error_after = [&](const std::function<void(Recording&)>& change) {
         auto run = synthetic_run({.replicas = 1, .scans = 2});
@@ -174,7 +174,7 @@ TEST(damaged_files, sizes_that_are_none_are_refused) {
     }
 }
 
-/// Lets `change` do something to a result file with the library alone, and returns the error of reading it.
+/// Changes a result file by `change` with the HDF5 library alone, and returns the error of reading it.
 std::string error_after(const std::function<void(hid_t file, const std::filesystem::path& folder)>& change) {
     TemporaryFolder folder;
     write_run(folder / "run.h5", synthetic_run({.replicas = 1, .scans = 2}));
@@ -190,7 +190,7 @@ h5::Handle one_row() {
     return {H5Screate_simple(1, &one, nullptr), H5Sclose};
 }
 
-TEST(damaged_files, nothing_outside_the_file_is_read) {
+TEST(damaged_files, external_links_and_files_are_not_read) {
     const std::string scene = "/parameters/scene", refused = scene + ": lies outside this file";
     const h5::Handle text = h5::text_type(20);
     EXPECT_THAT(
@@ -222,7 +222,7 @@ TEST(damaged_files, nothing_outside_the_file_is_read) {
         HasSubstr(refused));
 }
 
-/// One value of the table becomes another, as if it had been written so.
+/// Changes one value of a table as if it had been written so.
 void change_first_byte(hid_t file, const std::string& object) {
     const h5::Handle table(H5Dopen2(file, object.c_str(), H5P_DEFAULT), H5Dclose);
     const h5::Handle type(H5Dget_type(table), H5Tclose), space(H5Dget_space(table), H5Sclose);
@@ -233,7 +233,7 @@ void change_first_byte(hid_t file, const std::string& object) {
     H5Dwrite(table, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, bytes.data());
 }
 
-TEST(damaged_files, values_other_than_those_written_are_noticed_in_every_table) {
+TEST(damaged_files, changed_values_are_detected_in_every_table) {
     for (const std::string object :
          {"/observables/replica_00000", "/contacts/replica_00000/contact",
           "/particles/replica_00000/diameter", "/particles/replica_00000/position/value",
@@ -241,13 +241,13 @@ TEST(damaged_files, values_other_than_those_written_are_noticed_in_every_table) 
         const std::string error =
             error_after([&](hid_t file, const std::filesystem::path&) { change_first_byte(file, object); });
         if (object.ends_with("/time"))
-            EXPECT_EQ(error, "no error");  // not read: the scans say when they were
+            EXPECT_EQ(error, "no error");  // not read: scans contain the time
         else
             EXPECT_THAT(error, HasSubstr(object + ": does not have the digest"));
     }
 }
 
-TEST(damaged_files, a_run_read_scan_by_scan_is_looked_at_before) {
+TEST(damaged_files, a_run_read_scan_by_scan_is_verified_first) {
     TemporaryFolder folder;
     write_run(folder / "run.h5", synthetic_run({.replicas = 2, .scans = 2}));
     {
@@ -259,7 +259,7 @@ TEST(damaged_files, a_run_read_scan_by_scan_is_looked_at_before) {
     EXPECT_THROW(reader.read_scan(1, 1), InputError);
 }
 
-TEST(damaged_files, files_without_digests_are_read) {
+TEST(damaged_files, files_without_digests_can_be_read) {
     TemporaryFolder folder;
     const auto run = synthetic_run();
     write_run(folder / "run.h5", run);
@@ -272,7 +272,7 @@ TEST(damaged_files, files_without_digests_are_read) {
     EXPECT_FALSE(ResultFile(folder / "run.h5").has_digests());
 }
 
-TEST(damaged_files, a_contact_of_a_grain_that_is_not_there_is_refused) {
+TEST(damaged_files, contacts_of_missing_grains_are_refused) {
     TemporaryFolder folder;
     auto run = synthetic_run();
     run.recordings[1].scans[0].contacts[0].partner = 27;
@@ -305,11 +305,11 @@ TEST(damaged_files, killed_while_writing_leaves_the_old_file) {
     EXPECT_EQ(read_bytes(file), before);
     remove_temporaries(folder.path());
     EXPECT_EQ(files_in(folder.path()), 1);
-    write_run(file, synthetic_run({.replicas = 1}));  // the left-over does not stand in the way
+    write_run(file, synthetic_run({.replicas = 1}));  // the left-over file is not in the way
     EXPECT_EQ(read_run(file).recordings.size(), 1u);
 }
 
-TEST(damaged_files, a_folder_opened_again_keeps_nothing_of_killed_programs) {
+TEST(damaged_files, reopening_a_folder_removes_files_of_killed_processes) {
     TemporaryFolder folder;
     std::filesystem::create_directory(folder / "simulations");
     for (const auto* name : {"run.h5", "run.h5.0123456789abcdef.tmp", "simulations/a.obs",
@@ -322,13 +322,13 @@ TEST(damaged_files, a_folder_opened_again_keeps_nothing_of_killed_programs) {
     EXPECT_TRUE(std::filesystem::exists(folder / "simulations/a.obs"));
 }
 
-TEST(damaged_files, files_that_are_being_written_are_not_taken_for_left_overs) {
+TEST(damaged_files, files_being_written_are_not_removed) {
     TemporaryFolder folder;
     {
         NewFile out(folder / "run.h5");
         remove_temporaries(folder.path());
         EXPECT_EQ(files_in(folder.path()), 1);
-        out.close();  // and not yet in its place
+        out.close();  // before it is moved into place
         remove_temporaries(folder.path());
         EXPECT_EQ(files_in(folder.path()), 1);
         out.put_in_place();
@@ -363,7 +363,7 @@ TEST(damaged_files, full_disk_is_an_error_and_leaves_the_old_file) {
     EXPECT_EQ(files_in(folder.path()), 1);
 }
 
-TEST(damaged_files, unwritable_folder_is_named) {
+TEST(damaged_files, an_unwritable_folder_is_named) {
     EXPECT_THROW(write_run("/proc/nowhere/run.h5", synthetic_run()), RunError);
     EXPECT_THROW(replace_file("/proc/nowhere/text", "text"), RunError);
 }

@@ -1,4 +1,4 @@
-// CSV and example scripts, read by the programs that users read them with.
+// CSV files and example scripts, read and run by the programs for which they are meant.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -55,7 +55,7 @@ TEST(csv, a_row_per_scan_reads_back_exactly) {
     EXPECT_EQ(value("settled"), "1");
 }
 
-TEST(csv, side_forces_are_those_of_walls_that_are_there) {
+TEST(csv, side_forces_are_those_of_existing_walls) {
     auto run = synthetic_run({.replicas = 3, .scans = 1});
     run.recordings[1].box.shape = ContainerShape::cylinder;
     run.recordings[2].box.shape = ContainerShape::periodic;
@@ -95,7 +95,7 @@ TEST(csv, cells_have_strains_and_forces_through_their_faces) {
     for (std::size_t column = 10; column < 14; ++column) EXPECT_NE(cells(cell)[column], "nan");
 }
 
-TEST(csv, what_is_not_the_same_in_all_replicas_has_a_column) {
+TEST(csv, keys_that_differ_between_replicas_have_columns) {
     auto run = synthetic_run();
     ASSERT_GE(run.recordings.size(), 2u);
     for (auto& recording : run.recordings) recording.parameters = {{"contact.gamma", "1"}, {"name", "\"a\""}};
@@ -146,12 +146,12 @@ TEST_F(examples, scan_table_prints_means_of_each_replica_and_phase) {
     EXPECT_THAT(finished.output, HasSubstr("unload"));
 }
 
-TEST_F(examples, scripts_make_pictures) {
+TEST_F(examples, scripts_draw_figures) {
     expect_picture("plot_top_force.py");
     expect_picture("force_chains.py");
 }
 
-TEST_F(examples, scripts_say_what_is_wrong) {
+TEST_F(examples, scripts_report_errors) {
     for (const std::string script : {"read_run.py", "plot_top_force.py", "force_chains.py"}) {
         EXPECT_THAT(example(script, "").output, HasSubstr("usage")) << script;
         const Finished finished = example(script, "/nowhere");

@@ -1,4 +1,4 @@
-// Parts of a run, merged: the bytes of the file that one program writes.
+// Merged parts of a run: the same bytes as the file of a single process.
 #include "io/parts.h"
 
 #include <gmock/gmock.h>
@@ -11,7 +11,7 @@
 namespace mcdem::test {
 namespace {
 
-/// The run with these replicas alone, in a file.
+/// A file that contains only these replicas of the run.
 std::filesystem::path write_part(const TemporaryFolder& place, Run run, std::size_t first, std::size_t last) {
     run.recordings = {run.recordings.begin() + static_cast<std::ptrdiff_t>(first),
                       run.recordings.begin() + static_cast<std::ptrdiff_t>(last)};
@@ -35,15 +35,15 @@ protected:
     std::vector<std::filesystem::path> parts_;
 };
 
-TEST_P(PartsTest, MergedAreTheBytesOfTheWholeRun) {
+TEST_P(PartsTest, MergedPartsHaveTheBytesOfTheWholeRun) {
     merge_parts(parts_, place_ / "merged.h5");
     EXPECT_TRUE(read_bytes(place_ / "merged.h5") == read_bytes(place_ / "whole.h5"));
     expect_same(read_run(place_ / "whole.h5"), read_run(place_ / "merged.h5"));
 }
 
-TEST_P(PartsTest, ADamagedOneIsNamedAndNothingIsWritten) {
+TEST_P(PartsTest, ADamagedPartIsNamedAndNothingIsWritten) {
     auto bytes = read_bytes(parts_[1]);
-    for (std::size_t k = bytes.size() / 2; k < bytes.size(); k += 64) bytes[k] ^= 1;  // not in gaps alone
+    for (std::size_t k = bytes.size() / 2; k < bytes.size(); k += 64) bytes[k] ^= 1;  // not only in gaps
     for (const std::string& damaged : {bytes, bytes.substr(0, bytes.size() / 2)}) {
         write_bytes(parts_[1], damaged);
         try {
@@ -59,7 +59,7 @@ TEST_P(PartsTest, ADamagedOneIsNamedAndNothingIsWritten) {
 
 INSTANTIATE_TEST_SUITE_P(Precisions, PartsTest, testing::Values("double", "float"));
 
-TEST(result_folder, with_parts_in_it_is_not_begun_anew_nor_taken_for_a_run) {
+TEST(result_folder, with_parts_is_neither_a_new_folder_nor_a_run) {
     TemporaryFolder place;
     std::filesystem::create_directories(parts_folder(place / "out"));
     EXPECT_THROW(ResultFolder::create(place / "out"), InputError);

@@ -1,4 +1,4 @@
-"""Reads one exported scan as ParaView would and compares it with what the test says.
+"""Reads one exported scan with VTK, as ParaView does, and compares it with the arguments.
 
 read_vtk.py FOLDER SCAN GRAINS CONTACTS FORCE_Z_OF_LAST_CONTACT PLATE_Z; exit code 77: no VTK for Python.
 """
@@ -31,7 +31,7 @@ of_species = {"species"} if sys.argv[7:] == ["species"] else set()
 grid = read(f"{folder}/grains_{scan}.hdf")
 assert grid.GetNumberOfPoints() == grid.GetNumberOfCells() == grains, grid
 points = arrays(grid.GetPointData())
-of_contacts = {"coordination_number", "force_magnitude", "stress", "pressure"} if contacts else set()  # else they were not recorded
+of_contacts = {"coordination_number", "force_magnitude", "stress", "pressure"} if contacts else set()  # otherwise not recorded
 assert set(points) == {"grain", "diameter", "displacement", "displacement_since_last_scan", "rotation",
                        "rotation_since_last_scan"} | of_species | of_contacts, points
 assert not of_species or (points["species"] == [grain % 2 for grain in range(grains)]).all()

@@ -23,7 +23,7 @@ std::string message_of(const std::function<void()>& call) {
     return "no error";
 }
 
-/// Appends `run` in segments that end at the given scans.
+/// Appends `run` in segments that end at these scans.
 void append_in_parts(ResultFolder& folder, const Run& run, const std::vector<std::size_t>& ends) {
     std::size_t first = 0;
     for (std::size_t end : ends) {
@@ -32,7 +32,7 @@ void append_in_parts(ResultFolder& folder, const Run& run, const std::vector<std
     }
 }
 
-TEST(result_folder, segments_read_like_the_merged_run_and_like_the_run_itself) {
+TEST(result_folder, segments_read_the_same_as_the_merged_run_and_the_run_itself) {
     TemporaryFolder place;
     auto run = synthetic_run({.replicas = 3, .scans = 8});
     run.recordings[1].scans.resize(3);  // a replica that stopped
@@ -52,9 +52,9 @@ TEST(result_folder, segments_read_like_the_merged_run_and_like_the_run_itself) {
     EXPECT_EQ(std::distance(std::filesystem::directory_iterator(place / "out"), {}), 1);
 }
 
-TEST(result_folder, the_merged_file_is_the_same_to_the_byte_however_the_run_was_cut) {
+TEST(result_folder, merged_bytes_do_not_depend_on_the_segments) {
     TemporaryFolder place;
-    auto run = synthetic_run({.replicas = 3, .grains = 600, .scans = 120});  // more than a block of scans
+    auto run = synthetic_run({.replicas = 3, .grains = 600, .scans = 120});  // more than one block of scans
     run.recordings[1].failure = Failure{77, 3, "lost a grain"};
     write_run(place / "whole.h5", run);
     const std::vector<std::vector<std::size_t>> cuts{{120}, {1, 2, 120}, {60, 119, 119, 120}};
@@ -76,7 +76,7 @@ TEST(result_folder, one_segment_becomes_the_run) {
     expect_same(run, read_run(run_file(place / "out")), 6e-8);
 }
 
-TEST(result_folder, resuming_drops_segments_newer_than_the_checkpoint) {
+TEST(result_folder, resuming_deletes_segments_newer_than_the_checkpoint) {
     TemporaryFolder place;
     const auto run = synthetic_run();
     {
@@ -92,7 +92,7 @@ TEST(result_folder, resuming_drops_segments_newer_than_the_checkpoint) {
     expect_same(run, read_run(place / "out"));
 }
 
-TEST(result_folder, finish_cut_short_after_its_last_write_is_completed_on_resuming) {
+TEST(result_folder, an_interrupted_finish_is_completed_by_resuming) {
     TemporaryFolder place;
     const auto run = synthetic_run();
     { ResultFolder::create(place / "out").append_segment(run); }
@@ -145,7 +145,7 @@ TEST(result_folder, finishing_nothing_fails_and_leaves_the_folder) {
     EXPECT_THROW(folder.finish(), RunError);
 }
 
-TEST(result_folder, stops_between_tables_and_leaves_what_is_there) {
+TEST(result_folder, stops_between_tables_and_keeps_existing_files) {
     TemporaryFolder place;
     const auto run = synthetic_run({.replicas = 2, .grains = 8});
     const auto looks_of = [](auto write) {
@@ -156,7 +156,7 @@ TEST(result_folder, stops_between_tables_and_leaves_what_is_there) {
     const auto stop_at = [](int last, auto write) {
         int looks = 0;
         EXPECT_FALSE(write([&] { return ++looks >= last; }));
-        EXPECT_EQ(looks, last);  // nothing is looked at, or done, afterwards
+        EXPECT_EQ(looks, last);  // no checks and no work afterwards
     };
     const auto files = [&](const char* name) {
         std::set<std::string> names;

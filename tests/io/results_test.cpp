@@ -16,7 +16,7 @@
 namespace mcdem::test {
 namespace {
 
-TEST(results, double_run_comes_back_bit_for_bit) {
+TEST(results, double_run_is_read_back_bit_for_bit) {
     TemporaryFolder folder;
     const auto run = synthetic_run();
     write_run(folder / "run.h5", run);
@@ -32,7 +32,7 @@ TEST(results, float_run_keeps_observables_exactly_and_geometry_to_float) {
     EXPECT_NE(run.recordings[0].scans[1].position[1].x(), found.recordings[0].scans[1].position[1].x());
 }
 
-TEST(results, containers_come_back) {
+TEST(results, containers_are_read_back) {
     TemporaryFolder folder;
     auto run = synthetic_run();
     for (const ContainerShape shape : {ContainerShape::cylinder, ContainerShape::periodic}) {
@@ -42,7 +42,7 @@ TEST(results, containers_come_back) {
     }
 }
 
-TEST(results, cells_come_back_with_their_strains) {
+TEST(results, cells_are_read_back_with_their_strains) {
     TemporaryFolder folder;
     auto run = synthetic_run();
     Recording& cell = run.recordings[0];
@@ -56,7 +56,7 @@ TEST(results, cells_come_back_with_their_strains) {
     EXPECT_EQ(found.recordings[0].scans[0].strain, Strain{});
 }
 
-TEST(results, comparison_notices_a_changed_bit) {
+TEST(results, comparison_detects_a_changed_bit) {
     const auto run = synthetic_run();
     auto other = run;
     double& x = other.recordings[1].scans[2].contacts[3].force.x();
@@ -70,7 +70,7 @@ TEST(results, comparison_notices_a_changed_bit) {
     EXPECT_EQ(failures.size(), 1);
 }
 
-TEST(results, ragged_and_missing_parts_come_back) {
+TEST(results, ragged_and_missing_parts_are_read_back) {
     TemporaryFolder folder;
     auto run = synthetic_run({.replicas = 4});
     run.recordings[0].scans.clear();
@@ -108,13 +108,13 @@ TEST(results, files_of_earlier_versions_have_no_rotations) {
     EXPECT_TRUE(RunReader(folder / "run.h5").read_scan(0, 1).rotation.empty());
 }
 
-TEST(results, empty_run_comes_back) {
+TEST(results, empty_run_is_read_back) {
     TemporaryFolder folder;
     write_run(folder / "run.h5", mcdem::Run{});
     expect_same(mcdem::Run{}, read_run(folder / "run.h5"));
 }
 
-TEST(results, light_reading_leaves_out_what_was_not_asked_for) {
+TEST(results, partial_reading_leaves_out_what_was_not_requested) {
     TemporaryFolder folder;
     const auto run = synthetic_run();
     write_run(folder / "run.h5", run);
@@ -146,7 +146,7 @@ TEST(results, reader_gives_single_scans) {
     expect_same(run, found);
 }
 
-TEST(results, positions_of_another_number_of_grains_are_refused_and_nothing_is_written) {
+TEST(results, a_wrong_number_of_positions_is_refused_and_nothing_is_written) {
     TemporaryFolder folder;
     auto run = synthetic_run();
     run.recordings[1].scans[3].position.pop_back();
@@ -154,7 +154,7 @@ TEST(results, positions_of_another_number_of_grains_are_refused_and_nothing_is_w
     EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 
-TEST(results, species_that_there_are_not_are_refused) {
+TEST(results, unknown_species_are_refused) {
     for (const std::vector<int>& wrong :
          {std::vector<int>(27, 2), std::vector<int>(27, -1), std::vector<int>(26, 0)}) {
         TemporaryFolder folder;
@@ -171,7 +171,7 @@ TEST(results, species_that_there_are_not_are_refused) {
     }
 }
 
-TEST(results, missing_file_and_folder_without_a_run_say_so) {
+TEST(results, a_missing_file_and_a_folder_without_a_run_are_reported) {
     TemporaryFolder folder;
     for (const auto& path : {folder / "nowhere", folder.path()}) {
         try {
@@ -183,7 +183,7 @@ TEST(results, missing_file_and_folder_without_a_run_say_so) {
     }
 }
 
-TEST(results, the_same_run_gives_the_same_bytes_at_another_time) {
+TEST(results, the_same_run_gives_the_same_bytes_later) {
     TemporaryFolder folder;
     write_run(folder / "a.h5", synthetic_run());
     std::this_thread::sleep_for(std::chrono::milliseconds(1100));  // times in files are in seconds
@@ -191,7 +191,7 @@ TEST(results, the_same_run_gives_the_same_bytes_at_another_time) {
     EXPECT_TRUE(read_bytes(folder / "a.h5") == read_bytes(folder / "b.h5"));
 }
 
-TEST(results, long_texts_come_back) {
+TEST(results, long_texts_are_read_back) {
     TemporaryFolder folder;
     auto run = synthetic_run({.replicas = 1});
     run.scene = std::string(300000, 'x') + "end";

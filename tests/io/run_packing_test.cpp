@@ -1,4 +1,4 @@
-// A recorded run as a packing.
+// A recorded run used as a packing.
 #include "io/run_packing.h"
 
 #include <gmock/gmock.h>
@@ -14,7 +14,7 @@ namespace {
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
-TEST(RunPacking, IsTheFirstFrameOrTheStatedOne) {
+TEST(RunPacking, IsTheFirstFrameOrTheGivenOne) {
     const TemporaryFolder folder;
     const auto run = synthetic_run({1, 27, 6});
     write_run(folder / "run.h5", run);

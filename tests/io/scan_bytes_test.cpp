@@ -1,4 +1,4 @@
-// Scans as bytes come back as they were; bytes that cannot be right are refused.
+// Serialised scans are read back unchanged; invalid bytes are refused.
 #include "io/scan_bytes.h"
 
 #include <gmock/gmock.h>
@@ -35,7 +35,7 @@ std::string problem(const std::vector<std::byte>& bytes) {
     return "none";
 }
 
-TEST(ScanBytes, ComeBackAsTheyWere) {
+TEST(ScanBytes, AreReadBackUnchanged) {
     const mcdem::Run run = run_with_failure();
     const auto bytes = scan_bytes(run.recordings);
     mcdem::Run back = without_scans(run);
@@ -48,7 +48,7 @@ TEST(ScanBytes, ComeBackAsTheyWere) {
     EXPECT_EQ(back.recordings[1].failure->step, 17);
 }
 
-TEST(ScanBytes, OfAnyOtherLengthAreRefused) {
+TEST(ScanBytes, OfWrongLengthAreRefused) {
     const auto bytes = scan_bytes(run_with_failure().recordings);
     for (std::size_t size = 0; size < bytes.size(); ++size)
         EXPECT_THAT(problem({bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size)}),

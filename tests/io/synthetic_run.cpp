@@ -39,7 +39,7 @@ Recording synthetic_recording(const Size& size, int replica) {
         for (int i = 0; i < size.grains; ++i)
             scan.position.emplace_back((i % side + 0.5) * spacing, (i / side % side + 0.5) * spacing,
                                        (i / side / side + 0.5) * spacing - 1e-4 * depth + 1e-5 * replica);
-        for (int i = 0; i < size.grains && replica % 3 != 2; ++i)  // measured ones have none
+        for (int i = 0; i < size.grains && replica % 3 != 2; ++i)  // measured recordings have none
             scan.rotation.emplace_back(0.01 * i, -0.02 * depth, 0.1 / (1 + replica));
         for (int i = 0; i < size.grains; ++i) {
             Contact contact;

@@ -1,4 +1,4 @@
-// A made-up run with everything in it, the same for the same numbers, and what tests do with files.
+// An artificial run with all kinds of data, the same for the same arguments, and helpers for files.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -14,17 +14,17 @@ struct Size {
     std::string precision = "double";
 };
 
-/// Grains on a lattice in a box, pressed by a plate, with plausible contacts and forces.
+/// Grains on a lattice in a box, compressed by a plate, with plausible contacts and forces.
 Run synthetic_run(const Size& size = {});
 
-/// Scans first .. last - 1 of every recording, as a run of its own.
+/// Scans first .. last - 1 of every recording, as a run.
 Run part_of(const Run& run, std::size_t first, std::size_t last);
 
-/// Fails the test, naming the first difference, unless both runs are the same. Positions and contacts agree
-/// to `tolerance` relative (0: the same bits); not-a-numbers are equal.
+/// Fails the test with the first difference unless both runs are equal. Positions and contacts agree within
+/// the relative `tolerance` (0: bit for bit); NaN equals NaN.
 void expect_same(const Run& expected, const Run& found, double tolerance = 0);
 
-/// A folder that goes when the test does.
+/// A temporary folder.
 class TemporaryFolder {
 public:
     TemporaryFolder();
@@ -39,7 +39,7 @@ private:
 std::string read_bytes(const std::filesystem::path& file);
 void write_bytes(const std::filesystem::path& file, const std::string& bytes);
 
-/// What a shell command printed (both streams) and its exit code.
+/// Output (both streams) and exit code of a shell command.
 struct Finished {
     int exit_code;
     std::string output;

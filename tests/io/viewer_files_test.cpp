@@ -1,4 +1,4 @@
-// Exports for ParaView and OVITO: what lies in the files, and which are written.
+// Exports for ParaView and OVITO: the contents of the files, and which files are written.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <hdf5.h>
@@ -23,14 +23,14 @@ constexpr int module_missing = 77;
 const std::string source = MCDEM_SOURCE_DIR;
 const std::string first_name = "replica_00000_mc_dem_packing_0";
 
-TEST(export_name, holds_the_label_in_characters_that_every_shell_leaves_alone) {
+TEST(export_name, contains_the_label_in_shell_safe_characters) {
     EXPECT_EQ(export_name(3, "mc_dem, friction=0.03 #2"), "replica_00003_mc_dem_friction=0.03_2");
     EXPECT_EQ(export_name(0, ""), "replica_00000");
     EXPECT_EQ(export_name(0, "../$(rm -r) `x`/."), "replica_00000_.._rm_-r_x");
     EXPECT_EQ(export_name(0, std::string(300, 'a')).size(), 13u + 1 + 80);
 }
 
-TEST(vtk, the_guide_lists_the_replicas_with_what_differs) {
+TEST(vtk, the_guide_lists_the_replicas_with_their_differences) {
     TemporaryFolder folder;
     auto run = synthetic_run({.replicas = 2, .scans = 1});
     for (auto& recording : run.recordings) recording.parameters = {{"contact.gamma", "1"}, {"name", "a"}};
@@ -44,7 +44,7 @@ TEST(vtk, the_guide_lists_the_replicas_with_what_differs) {
     EXPECT_THAT(read_bytes(folder / "one/OVITO.txt"), testing::EndsWith(":\n" + second));
 }
 
-TEST(vtk, vtk_reads_grains_and_contacts) {
+TEST(vtk, grains_and_contacts_are_read_by_vtk) {
     TemporaryFolder folder;
     const auto run = synthetic_run({.replicas = 2, .scans = 3});
     write_run(folder / "run.h5", run);
@@ -63,7 +63,7 @@ TEST(vtk, vtk_reads_grains_and_contacts) {
     EXPECT_EQ(finished.exit_code, 0) << finished.output;
 }
 
-TEST(vtk, scans_without_positions_are_left_out) {
+TEST(vtk, scans_without_positions_are_omitted) {
     TemporaryFolder folder;
     auto run = synthetic_run({.replicas = 1, .scans = 4});
     run.recordings[0].scans[1].position.clear();
@@ -85,7 +85,7 @@ std::vector<double> point_data(const std::filesystem::path& file, const std::str
     return h5::File::open(file).dataset("/VTKHDF/PointData/" + name).read_all<double>();
 }
 
-TEST(vtk, displacements_count_from_the_first_scan_and_from_the_last) {
+TEST(vtk, displacements_are_relative_to_the_first_and_to_the_previous_scan) {
     TemporaryFolder folder;
     auto run = synthetic_run({.replicas = 1, .scans = 3});
     auto& scans = run.recordings[0].scans;
@@ -103,14 +103,14 @@ TEST(vtk, displacements_count_from_the_first_scan_and_from_the_last) {
     EXPECT_NEAR(last[2], -0.02, 1e-7);
 }
 
-TEST(vtk, rotations_count_from_the_start_and_from_the_last_scan) {
+TEST(vtk, rotations_are_relative_to_the_start_and_to_the_previous_scan) {
     TemporaryFolder folder;
     auto run = synthetic_run({.replicas = 1, .scans = 3});
     auto& scans = run.recordings[0].scans;
     scans[1].rotation.assign(scans[1].rotation.size(), {0.5, 0, 0});
     scans[2].rotation.assign(scans[2].rotation.size(), {0.8, 0, 0});
     scans[2].rotation[1] =
-        2 * std::numbers::pi / 3 * Vec3(1, 1, -1).normalized();  // a quarter about x, then y
+        2 * std::numbers::pi / 3 * Vec3(1, 1, -1).normalized();  // a quarter turn about x, then about y
     scans[1].rotation[1] = {std::numbers::pi / 2, 0, 0};
     write_run(folder / "run.h5", run);
     EXPECT_EQ(export_vtk(folder / "run.h5", folder.path(), {.scans = {2}}), 4);
@@ -128,7 +128,7 @@ TEST(vtk, rotations_count_from_the_start_and_from_the_last_scan) {
                  std::exception);
 }
 
-TEST(vtk, only_what_is_chosen_is_written) {
+TEST(vtk, only_selected_scans_are_written) {
     TemporaryFolder folder;
     write_run(folder / "run.h5", synthetic_run({.replicas = 2, .scans = 4}));
     EXPECT_EQ(export_vtk(folder / "run.h5", folder / "a", {.replicas = {1}, .scans = {1, 3}}), 8);
@@ -139,12 +139,12 @@ TEST(vtk, only_what_is_chosen_is_written) {
     EXPECT_THROW(export_xyz(folder / "run.h5", folder / "c", {.replicas = {2}}), InputError);
 }
 
-/// Ends of the contacts in an exported file, two points each.
+/// End points of the contacts in an exported file, two per contact.
 std::vector<double> points_in(const std::filesystem::path& file) {
     return h5::File::open(file).dataset("/VTKHDF/Points").read_all<double>();
 }
 
-TEST(vtk, contacts_end_at_round_walls_and_at_nearest_images) {
+TEST(vtk, contacts_end_at_curved_walls_and_at_nearest_images) {
     TemporaryFolder folder;
     auto run = synthetic_run({.replicas = 2, .scans = 1});
     for (auto& recording : run.recordings) {
@@ -173,7 +173,7 @@ std::vector<int> cell_data(const std::filesystem::path& file, const std::string&
     return h5::File::open(file).dataset("/VTKHDF/CellData/" + name).read_all<int>();
 }
 
-TEST(vtk, forces_are_where_the_contacts_are) {
+TEST(vtk, forces_are_at_the_contacts) {
     TemporaryFolder folder;
     const auto run = synthetic_run({.replicas = 1, .scans = 1});
     write_run(folder / "run.h5", run);
@@ -189,7 +189,7 @@ TEST(vtk, forces_are_where_the_contacts_are) {
         }
 }
 
-/// Walls of a container 0.1 m wide, the plate at 0.08 m after a start at 0.09 m.
+/// Walls of a container 0.1 m wide; the plate is at 0.08 m after a start at 0.09 m.
 std::filesystem::path walls_of(const TemporaryFolder& folder, ContainerShape shape,
                                const Strain& strain = {}) {
     auto run = synthetic_run({.replicas = 1, .scans = 1});
@@ -203,7 +203,7 @@ std::filesystem::path walls_of(const TemporaryFolder& folder, ContainerShape sha
     return folder / first_name / "walls_000000.hdf";
 }
 
-TEST(vtk, walls_are_surfaces_with_the_forces_on_them) {
+TEST(vtk, walls_are_surfaces_with_their_forces) {
     TemporaryFolder folder;
     const auto file = walls_of(folder, ContainerShape::box);
     EXPECT_THAT(cell_data(file, "wall"), testing::ElementsAre(2, 1, 3, 0, 4, 5));
@@ -216,7 +216,7 @@ TEST(vtk, walls_are_surfaces_with_the_forces_on_them) {
     EXPECT_EQ(force.back(), synthetic_run({.replicas = 1, .scans = 1}).recordings[0].scans[0].top_force());
 }
 
-TEST(vtk, a_cylinder_is_round_and_what_repeats_has_edges) {
+TEST(vtk, a_cylinder_is_round_and_periodic_containers_have_edges) {
     TemporaryFolder round, open, cell;
     const auto points = points_in(walls_of(round, ContainerShape::cylinder));
     for (std::size_t n = 0; n < points.size(); n += 3)
@@ -233,7 +233,7 @@ TEST(vtk, a_cylinder_is_round_and_what_repeats_has_edges) {
     EXPECT_EQ(h5::File::open(edges).dataset("/VTKHDF/FieldData/shear_xz").read_all<double>().at(0), 0.3);
 }
 
-TEST(vtk, displacements_in_a_cell_are_those_beyond_its_own_motion) {
+TEST(vtk, displacements_in_a_cell_are_relative_to_its_own_motion) {
     TemporaryFolder folder;
     auto run = synthetic_run({.replicas = 1, .scans = 2});
     Recording& recording = run.recordings[0];
@@ -259,7 +259,7 @@ TEST(vtk, displacements_in_a_cell_are_those_beyond_its_own_motion) {
         EXPECT_NEAR(found[n], moved[static_cast<int>(n % 3)], 1e-12);
 }
 
-TEST(vtk, a_scan_without_contacts_still_makes_files) {
+TEST(vtk, a_scan_without_contacts_gives_files) {
     TemporaryFolder folder;
     auto run = synthetic_run({.replicas = 1, .scans = 1});
     run.recordings[0].scans[0].contacts.clear();
@@ -275,7 +275,7 @@ TEST(vtk, a_scan_without_contacts_still_makes_files) {
     EXPECT_EQ(finished.exit_code, 0) << finished.output;
 }
 
-TEST(vtk, grains_that_touch_nothing_have_no_stress_but_zero) {
+TEST(vtk, grains_without_contacts_have_zero_stress) {
     TemporaryFolder folder;
     auto run = synthetic_run({.replicas = 1, .scans = 1});
     run.recordings[0].scans[0].contacts.clear();
@@ -285,7 +285,7 @@ TEST(vtk, grains_that_touch_nothing_have_no_stress_but_zero) {
     EXPECT_THAT(point_data(folder / first_name / "grains_000000.hdf", "stress"), testing::Each(0));
 }
 
-TEST(vtk, the_kind_of_grid_is_in_the_characters_that_paraview_takes) {
+TEST(vtk, the_type_of_grid_is_written_as_paraview_requires) {
     TemporaryFolder folder;
     write_run(folder / "run.h5", synthetic_run({.replicas = 1, .scans = 1}));
     export_vtk(folder / "run.h5", folder.path());
@@ -299,7 +299,7 @@ TEST(vtk, the_kind_of_grid_is_in_the_characters_that_paraview_takes) {
     H5Fclose(id);
 }
 
-TEST(xyz, scans_without_positions_are_left_out) {
+TEST(xyz, scans_without_positions_are_omitted) {
     TemporaryFolder folder;
     auto run = synthetic_run({.replicas = 2, .scans = 4});
     run.recordings[0].scans[1].position.clear();
@@ -320,7 +320,7 @@ TEST(xyz, a_label_cannot_end_its_quotes_or_its_line) {
     EXPECT_THAT(read_bytes(folder / "replica_00000_a_b_c.xyz"), HasSubstr(" label=\"a 'b' c\"\nX "));
 }
 
-TEST(xyz, what_cannot_be_written_is_an_error) {
+TEST(xyz, failed_writes_are_errors) {
     TemporaryFolder folder;
     write_bytes(folder / "file", "");
     write_run(folder / "run.h5", synthetic_run());

@@ -1,11 +1,11 @@
 // Whole steps of the engine against the double-precision reference: every contact model and friction law,
-// awkward sizes, batches, both precisions, one and two vectors of slots, the CPU's and the GPU's way.
+// various numbers of grains, batches, both precisions, 16 and 32 slots, the CPU and the GPU layout.
 #include "kernels/steps_as_reference.h"
 
 namespace reference {
 namespace {
 
-/// A far probed gap gives a grain 18 neighbours and more.
+/// A large probed gap gives grains 18 or more neighbours.
 Start with_many_neighbours(Start start) {
     start.replica.numerics.probe_gap = 0.85;
     return start;
@@ -29,7 +29,7 @@ TEST(Step, FollowsTheReferenceWithMindlinFriction) {
     }
 }
 
-TEST(Step, FollowsTheReferenceWithThousandGrains) {
+TEST(Step, FollowsTheReferenceWithAThousandGrains) {
     for (Precision precision : precisions())
         expect_steps_as_reference(build(precision),
                                   {start_of(ContactModel::mc_dem, FrictionLaw::mindlin, 1000, 5),
@@ -69,7 +69,7 @@ TEST(Step, FollowsTheReferenceInABatchOfDifferentReplicas) {
     }
 }
 
-TEST(Step, FollowsTheReferenceWithTwoVectorsOfSlots) {
+TEST(Step, FollowsTheReferenceWith32Slots) {
     for (Precision precision : precisions()) {
         std::vector<Start> starts;
         for (ContactModel model : all_models)
@@ -78,7 +78,7 @@ TEST(Step, FollowsTheReferenceWithTwoVectorsOfSlots) {
     }
 }
 
-/// One work-item a slot where the device takes one a grain, and the reverse.
+/// The GPU layout on a CPU, the CPU layout on a GPU.
 void expect_other_way_as_reference(Precision precision) {
     std::vector<Start> starts;
     for (ContactModel model : all_models) starts.push_back(start_of(model, FrictionLaw::mindlin, 17, 13));
@@ -88,16 +88,17 @@ void expect_other_way_as_reference(Precision precision) {
     expect_steps_as_reference(other_way(build(precision, 32)), starts, 16);
 }
 
-TEST(Step, FollowsTheReferenceTheOtherWay) { expect_other_way_as_reference(Precision::single_precision); }
+TEST(Step, FollowsTheReferenceInTheOtherLayout) {
+    expect_other_way_as_reference(Precision::single_precision);
+}
 
-TEST(Step, FollowsTheReferenceTheOtherWayInDouble) {
+TEST(Step, FollowsTheReferenceInTheOtherLayoutInDouble) {
     if (!has_double()) GTEST_SKIP() << "the device has no double precision";
     expect_other_way_as_reference(Precision::double_precision);
 }
 
-// The comparison itself can fail: a reference whose material is excess_compliance by a thousandth is told
-// apart.
-TEST(Step, AnotherMaterialIsToldApart) {
+// Checks the comparison itself: it detects a Young's modulus that is wrong by a thousandth.
+TEST(Step, ComparisonDetectsAWrongModulus) {
     const Start start = start_of(ContactModel::mc_dem, FrictionLaw::saturated, 63, 1);
     Batch batch(build(Precision::single_precision), start);
     Start excess_compliance = start;

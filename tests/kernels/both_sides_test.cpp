@@ -1,4 +1,4 @@
-// What a contact takes from both of its grains has the same bits seen from either, however unequal they are.
+// Pair quantities have the same bits when computed from either grain of a contact.
 #include "kernels/test_kernel.h"
 #include "sim/device_material.h"
 #include "sim/device_replica.h"
@@ -29,7 +29,7 @@ kernel void see_pairs(global const Replica* replicas, global const Material* mat
     out[3 * i + 2] = LANE(real, solved.overlap, i);
 })";
 
-/// R*, m* and the elastic sphere's overlap of each pair of radii.
+/// R*, m* and the elastic sphere's overlap for each pair of radii.
 std::vector<float> seen(const std::vector<float>& radii, KernelBuild kernels, const Replica& scene) {
     const Start start = jittered_lattice(scene, 8, 1);
     kernels.species = mcdem::materials_kept({scene});
@@ -67,7 +67,7 @@ void expect_same_from_both_sides(const Replica& scene, double overlap) {
         const auto here = seen(radii, way, scene);
         EXPECT_GT(here[2], overlap * (radii[0] + radii[1]));
         EXPECT_NEAR(here[0], double(radii[0]) * radii[1] / (radii[0] + radii[1]), 1e-6 * radii[0]);
-        // Of two species, each pair comes in both orders of species too.
+        // With two species, each pair also occurs with the species exchanged.
         const auto there = seen(swapped, way, scene);
         for (std::size_t pair = 0; pair < radii.size() / 2; ++pair)
             for (int k = 0; k < numbers; ++k)
@@ -76,11 +76,11 @@ void expect_same_from_both_sides(const Replica& scene, double overlap) {
     }
 }
 
-TEST(BothSides, OfAPairOfUnequalGrainsHaveTheSameBits) {
+TEST(BothSides, HaveTheSameBitsForGrainsOfUnequalSize) {
     expect_same_from_both_sides(test_replica(ContactModel::elastic_sphere), 0.01);
 }
 
-TEST(BothSides, OfAPairOfTwoSpeciesHaveTheSameBits) {
+TEST(BothSides, HaveTheSameBitsForGrainsOfTwoSpecies) {
     Replica scene = test_replica(ContactModel::elastic_sphere);
     scene.species = {{"soft", {1e4, 0.49, 900, 900, 0.1, 0.9}}, {"stiff", {7e5, 0.2, 2500, 2500, 0.4, 0.6}}};
     expect_same_from_both_sides(scene, 0.01);

@@ -1,4 +1,4 @@
-// The two kernels of the cell list by themselves: every grain is in the list of its cell, once.
+// The two kernels of the cell list: every grain is in the list of its cell exactly once.
 #include <cmath>
 
 #include "reference/test_scene.h"
@@ -7,7 +7,7 @@
 namespace reference {
 namespace {
 
-/// A batch's fields with positions and replicas uploaded (float).
+/// Fields of a batch (float) with positions and replicas uploaded.
 struct CellScene {
     explicit CellScene(const std::vector<Start>& starts)
         : kernels(build(Precision::single_precision)),
@@ -102,7 +102,7 @@ TEST(CellList, HoldsEveryGrainOnceInItsCell) {
     std::vector<Start> starts;
     for (int count : {1, 63, 64, 65, 4096, 9000})
         starts.push_back(jittered_lattice(test_replica(), count, count));
-    starts[1].packing.position[5].x() = -0.001;  // outside the box: the nearest cell
+    starts[1].packing.position[5].x() = -0.001;  // outside the box: belongs to the nearest cell
     starts[1].packing.position[6].z() = 0.5;
     CellScene scene(starts);
     scene.fill({0, 1, 2, 3, 4, 5});

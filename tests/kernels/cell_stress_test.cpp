@@ -1,4 +1,4 @@
-// The stress of a cell, summed over its contacts: branch vectors across the ends of a leaning cell.
+// Kernel cell_stress: the stress of a sheared cell, with contacts across its periodic boundaries.
 #include "kernels/test_kernel.h"
 
 namespace reference {
@@ -11,7 +11,7 @@ struct Contact {
     Vec3 force;  ///< on `grain` [N]
 };
 
-/// Of grains at these listed positions, a slot for each contact: sums of force times branch [N m].
+/// Sums of force times branch [N m] for grains at these stored positions, with one slot per contact.
 Eigen::Matrix3d moments(const mcdem::f32::Replica& replica, const std::vector<Vec3>& position,
                         const std::vector<Contact>& contacts) {
     struct Replicas;
@@ -75,7 +75,7 @@ mcdem::f32::Replica leaning_cell(int grains) {
 }
 const Eigen::Matrix3d leaning = (Eigen::Matrix3d() << 0.8, 0.4, -0.3, 0, 1.1, 0.2, 0, 0, 0.7).finished();
 
-TEST(CellStress, IsForceTimesBranchAcrossTheEnds) {
+TEST(CellStress, IsForceTimesBranchAcrossPeriodicBoundaries) {
     const Vec3 here(0.95, 0.1, 0.5), there(0.05, 0.95, 0.55), force(1, -2, 3);
     const Vec3 branch = leaning * Vec3(0.1, -0.15, 0.05);
     const auto found = moments(leaning_cell(2), {here, there}, {{0, 1, -force}, {1, 0, force}});
@@ -98,7 +98,7 @@ TEST(CellStress, SumsAllGrains) {
     EXPECT_LT((moments(leaning_cell(301), position, contacts) - sum).norm(), 1e-5 * sum.norm() + 1e-5);
 }
 
-TEST(CellStress, IsNothingInAnotherContainer) {
+TEST(CellStress, IsZeroInOtherContainers) {
     auto replica = leaning_cell(2);
     replica.container = CONTAINER_PERIODIC;
     EXPECT_EQ(moments(replica, {Vec3::Zero(), Vec3::Constant(0.1)}, {{0, 1, Vec3::Ones()}}).norm(), 0);

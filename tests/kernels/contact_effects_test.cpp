@@ -1,5 +1,6 @@
-// Steps with effects against the double-precision reference: each alone, some of one batch, all together;
-// every contact model, both precisions, one and two vectors of slots, the CPU's and the GPU's way.
+// Steps with effects against the double-precision reference: each effect alone, replicas with different
+// effects in one batch, all effects together; every contact model, both precisions, 16 and 32 slots, both
+// layouts.
 #include "kernels/steps_as_reference.h"
 
 namespace reference {
@@ -12,7 +13,7 @@ Effects all_effects() {
     Effects effects;
     effects.adhesion = 0.02;
     effects.viscoelasticity = 0.3;
-    effects.relaxation_time = 2e-3;  // some steps
+    effects.relaxation_time = 2e-3;  // a few steps
     effects.stiffening = 0.8;
     effects.plasticity = 0.2;
     effects.bulge_contacts = 0.4;
@@ -24,7 +25,7 @@ Effects all_effects() {
     return effects;
 }
 
-/// One replica an effect, and one with none.
+/// One replica per effect, and one without effects.
 std::vector<Effects> one_by_one() {
     const Effects all = all_effects();
     std::vector<Effects> each(11);
@@ -43,11 +44,11 @@ std::vector<Effects> one_by_one() {
     return each;
 }
 
-/// Overlaps are a third of those of the plain steps, so that roundings of positions weigh more, and the slope
-/// of adhesion in a gap is steeper than that of any contact.
+/// Overlaps are a third of those in advance_test.cpp, so rounding errors of positions weigh more. Adhesion
+/// in a gap is also steeper than any contact.
 constexpr double slack = 5;
 
-/// Smaller grains: half of the neighbours have a gap, some of them within the reach of adhesion.
+/// Smaller grains: half of the neighbours have a gap, some of them within the range of adhesion.
 Start with_effects(const Effects& effects, ContactModel model, FrictionLaw law, int count, unsigned seed) {
     Start start = start_of(model, law, count, seed);
     for (auto& diameter : start.packing.diameter) diameter *= 0.96;
@@ -75,20 +76,20 @@ TEST(EffectSteps, AllTogetherFollowTheReferenceForEveryModel) {
     }
 }
 
-TEST(EffectSteps, AllTogetherFollowTheReferenceTheOtherWay) {
+TEST(EffectSteps, AllTogetherFollowTheReferenceInTheOtherLayout) {
     for (Precision precision : precisions()) {
         std::vector<Start> starts;
         for (ContactModel model : all_models)
             starts.push_back(with_effects(all_effects(), model, FrictionLaw::mindlin, 17, 36));
         expect_steps_as_reference(other_way(build(precision)), starts, 37, slack);
-        for (Start& start : starts) start.replica.numerics.probe_gap = 0.85;  // 18 neighbours and more
+        for (Start& start : starts) start.replica.numerics.probe_gap = 0.85;  // 18 or more neighbours
         expect_steps_as_reference(build(precision, 32), starts, 38, slack);
         expect_steps_as_reference(other_way(build(precision, 32)), starts, 38, slack);
     }
 }
 
-// The comparison would notice: a reference without the effect is told apart from the engine with it.
-TEST(EffectSteps, EachIsToldApartFromNone) {
+// Checks the comparison itself: it detects each effect if the reference lacks it.
+TEST(EffectSteps, ComparisonDetectsEachMissingEffect) {
     auto each = one_by_one();
     each.pop_back();
     for (std::size_t k = 0; k < each.size(); ++k) {

@@ -1,4 +1,4 @@
-// A collision of two grains, or of a grain with the floor, against Hertz's closed form.
+// Collisions of two grains, or of a grain with the floor, against the closed-form solution for Hertz's law.
 #include <fmt/core.h>
 
 #include <cmath>
@@ -14,7 +14,7 @@ namespace {
 using std::numbers::pi;
 constexpr double radius = 0.01, other_radius = 0.007, speed = 0.2;
 
-/// How the centres stand in the line of the collision: two free grains, or one above the floor.
+/// Two free grains, or one grain above the floor.
 enum class Against { grain, floor };
 
 Replica collision_replica(double restitution, double time_step) {
@@ -37,7 +37,7 @@ Start collision(Against against, double restitution, double time_step, double ga
     return start;
 }
 
-/// F = stiffness delta^(3/2) with reduced mass `mass`, approaching at `speed`.
+/// F = stiffness delta^(3/2) with reduced mass `mass` and impact velocity `speed`.
 struct Hertz {
     double mass, stiffness;
     explicit Hertz(Against against) {
@@ -49,9 +49,9 @@ struct Hertz {
         mass = pair ? m * n / (m + n) : m;
         stiffness = 4.0 / 3 * modulus * std::sqrt(r);
     }
-    /// From energy: m v^2 / 2 = 2/5 k delta^(5/2).
+    /// From conservation of energy: m v^2 / 2 = 2/5 k delta^(5/2).
     double deepest() const { return std::pow(5 * mass * speed * speed / (4 * stiffness), 0.4); }
-    /// 2 delta/v times the integral of (1 - x^(5/2))^(-1/2) from 0 to 1 = 2.943 delta/v.
+    /// 2 delta/v times the integral of (1 - x^(5/2))^(-1/2) from 0 to 1, which is 2.943 delta/v.
     double duration() const {
         return 4.0 / 5 * std::sqrt(pi) * std::tgamma(0.4) / std::tgamma(0.9) * deepest() / speed;
     }
@@ -61,7 +61,7 @@ struct Outcome {
     double duration = 0, deepest = 0, restitution = 0;
 };
 
-/// Step by step; touch and parting between two steps by interpolation.
+/// Advances step by step; the times of touch and separation are interpolated between steps.
 Outcome collide(Against against, double restitution, double time_step) {
     const Start start = collision(against, restitution, time_step);
     Batch batch(build(finest()), start);
@@ -84,7 +84,7 @@ Outcome collide(Against against, double restitution, double time_step) {
         outcome.deepest = std::max(outcome.deepest, now);
         if (touch < 0 && now > 0) touch = crossing;
         if (touch >= 0 && before > 0 && now <= 0) {
-            batch.advance(1);  // the force is gone
+            batch.advance(1);  // the contact has ended
             const auto after = engine.state(0).velocity;
             outcome.duration = crossing - touch;
             outcome.restitution = pair ? (after[1] - after[0]).x() / speed : after[0].z() / speed;
@@ -96,7 +96,7 @@ Outcome collide(Against against, double restitution, double time_step) {
     return outcome;
 }
 
-TEST(Collision, LastsAsLongAndGoesAsDeepAsHertzSays) {
+TEST(Collision, DurationAndDepthAgreeWithHertz) {
     for (Against against : {Against::grain, Against::floor}) {
         const Outcome outcome = collide(against, 1, 0.1);
         const Hertz hertz(against);
@@ -106,7 +106,7 @@ TEST(Collision, LastsAsLongAndGoesAsDeepAsHertzSays) {
     }
 }
 
-/// Relative errors of the restitution when the touch falls anywhere in a step.
+/// Relative errors of the restitution if the touch occurs at different times within a step.
 std::vector<double> restitution_errors(Against against, double restitution, double time_step) {
     constexpr double slow = 0.02;
     constexpr int phases = 16;
@@ -130,9 +130,9 @@ std::vector<double> restitution_errors(Against against, double restitution, doub
     return errors;
 }
 
-// A collision takes some 30 steps, and with strong damping it makes a difference of a per cent where in a
-// step it begins; over many collisions that is the mean, which falls with the time step.
-TEST(Collision, GivesBackTheRestitutionAskedFor) {
+// A collision takes about 30 steps. With strong damping the result depends by about one per cent on where in
+// a step the collision starts; the mean error over many collisions decreases with the time step.
+TEST(Collision, HasThePrescribedRestitution) {
     for (Against against : {Against::grain, Against::floor})
         for (double restitution : {0.95, 0.7, 0.5}) {
             std::vector<double> means;
@@ -149,9 +149,9 @@ TEST(Collision, GivesBackTheRestitutionAskedFor) {
         }
 }
 
-// After an elastic collision the grains part at the speed at which they met, later than they met by the
-// duration: the position at a given time is known. The error is of second order.
-TEST(Collision, ErrorGoesWithTheSquareOfTheTimeStep) {
+// After an elastic collision the grains separate at their impact velocity, delayed by the duration of the
+// contact. The position at a given time is therefore known. The error is of second order.
+TEST(Collision, ErrorIsOfSecondOrderInTheTimeStep) {
     if (!has_double()) GTEST_SKIP() << "the device has no double precision";
     const Hertz hertz(Against::floor);
     std::vector<double> error;
@@ -168,7 +168,8 @@ TEST(Collision, ErrorGoesWithTheSquareOfTheTimeStep) {
     }
     fmt::print("error of the position after a collision: {:.2e} {:.2e} {:.2e} {:.2e} m\n", error[0], error[1],
                error[2], error[3]);
-    // Hertz's force has no second derivative at the touch, where the steps fall at random: not 4 each time.
+    // The second derivative of Hertz's force is singular at the touch, which falls at random within a step:
+    // the ratio is not 4 each time.
     EXPECT_GT(error[0] / error[2], 10);
     EXPECT_GT(error[1] / error[3], 10);
     EXPECT_LT(error[0] / error[3], 200);

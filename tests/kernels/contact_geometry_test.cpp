@@ -1,4 +1,4 @@
-// What the slots of a grain see of its neighbours and walls, against geometry in double precision.
+// Neighbours and walls in the slots of a grain, against geometry in double precision.
 #include "kernels/test_kernel.h"
 
 namespace reference {
@@ -12,7 +12,8 @@ struct Seen {
     bool wall, occupied;
 };
 
-/// Grain 0 of `motion` (position, radius, velocity, scatter, spin, species), and the partners in its slots.
+/// Evaluates grain 0 of `motion` (position, radius, velocity, excess compliance, spin, species), with the
+/// partners in its slots.
 std::vector<Seen> seen(const mcdem::f32::Replica& replica, std::vector<float> motion,
                        std::vector<int> partner, const KernelBuild& kernels) {
     const cl::Program program = with_kernel(R"(
@@ -34,7 +35,7 @@ kernel void see(global const Replica* replica, global const Motion* motion, glob
     struct Partner;
     struct Out;
     partner.resize(slots, NO_PARTNER);
-    motion.resize(16 * 12);  // a CPU's work-item has 16 grains
+    motion.resize(16 * 12);  // a CPU work-item has 16 grains
     mcdem::Field<Replicas> replicas(device(), 1, sizeof replica);
     mcdem::Field<Grains> grains(device(), motion.size() / 12, 12 * sizeof(float));
     mcdem::Field<Partner> partners(device(), slots, sizeof(int));
@@ -89,7 +90,7 @@ protected:
     std::vector<float> motion;
 };
 
-TEST_P(ContactGeometry, OfGrainsAndWallsOfABox) {
+TEST_P(ContactGeometry, IsCorrectForGrainsAndWallsOfABox) {
     const auto found = seen(
         replica, motion, {3, WALL_PARTNER(0), WALL_PARTNER(3), 5, WALL_PARTNER(4), WALL_PARTNER(5)}, kernels);
     const Vec3 at = position[0], still = -velocity[0];
@@ -103,7 +104,7 @@ TEST_P(ContactGeometry, OfGrainsAndWallsOfABox) {
     EXPECT_EQ(found[6].distance, 1) << "nothing is divided by zero";
 }
 
-TEST_P(ContactGeometry, OfNearestImagesInAPeriodicContainer) {
+TEST_P(ContactGeometry, UsesNearestImagesInAPeriodicContainer) {
     replica.container = CONTAINER_PERIODIC;
     const auto found = seen(replica, motion, {1, 2, 3, 4, 5, 6, 7}, kernels);
     for (std::size_t j = 1; j < 8; ++j) {
@@ -114,7 +115,7 @@ TEST_P(ContactGeometry, OfNearestImagesInAPeriodicContainer) {
     }
 }
 
-TEST_P(ContactGeometry, OfTheWallOfACylinder) {
+TEST_P(ContactGeometry, IsCorrectForTheWallOfACylinder) {
     replica.container = CONTAINER_CYLINDER;
     replica.wall_position[3] = 0.2F;
     const auto found = seen(replica, motion, {WALL_PARTNER(0), WALL_PARTNER(4)}, kernels);
@@ -123,7 +124,7 @@ TEST_P(ContactGeometry, OfTheWallOfACylinder) {
     expect(found[1], Vec3(0, 0, -position[0].z()), -velocity[0], 0, true);
 }
 
-TEST_P(ContactGeometry, OfACellThatMovesItsGrainsWithIt) {
+TEST_P(ContactGeometry, IncludesTheMotionOfADeformedCell) {
     replica.container = CONTAINER_CELL;
     const Eigen::Matrix3d f = (Eigen::Matrix3d() << 0.9, 0.2, 0.1, 0, 1.1, -0.1, 0, 0, 0.8).finished();
     const float rate = 0.5F;
@@ -141,7 +142,7 @@ TEST_P(ContactGeometry, OfACellThatMovesItsGrainsWithIt) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(BothWays, ContactGeometry, testing::Bool());
+INSTANTIATE_TEST_SUITE_P(BothLayouts, ContactGeometry, testing::Bool());
 
 }  // namespace
 }  // namespace reference

@@ -1,4 +1,4 @@
-// What contacts remember comes back as it was stored, in the rows that a replica keeps.
+// The memory of contacts is loaded as it was stored, in the rows that a replica needs.
 #include "kernels/test_kernel.h"
 
 namespace reference {
@@ -6,8 +6,8 @@ namespace {
 
 constexpr int rows = 5, slots = 16, grains = 48, first = 16, number = 16;
 
-/// Stores 1000 grain + 100 row + slot for grains 16 to 31, loads it again, and returns springs, deepest and
-/// relaxed of slot 3 of the sixth, then the second number of each row of the fourth in memory.
+/// Stores 1000 grain + 100 row + slot for grains 16 to 31 and loads it again. Returns spring, deepest and
+/// relaxed of slot 3 of the sixth grain, then the second number of each row of the fourth grain in memory.
 std::vector<float> remembered(const mcdem::f32::Replica& replica) {
     const KernelBuild cpu_like = [] {
         const KernelBuild kernels = build(Precision::single_precision);
@@ -55,7 +55,7 @@ kernel void store_and_load(global const Replica* replica, global real* memory, g
     return found;
 }
 
-TEST(ContactMemory, KeepsEverythingWhereAllEffectsAreOn) {
+TEST(ContactMemory, KeepsAllRowsIfAllEffectsAreOn) {
     mcdem::f32::Replica replica{};
     replica.mindlin = 1;
     replica.memory_rows = 5;
@@ -66,7 +66,7 @@ TEST(ContactMemory, KeepsEverythingWhereAllEffectsAreOn) {
               (std::vector<float>{5103, 5203, 5303, 5403, 5503, 3101, 3201, 3301, 3401, 3501}));
 }
 
-TEST(ContactMemory, KeepsOnlyWhatTheReplicaNeeds) {
+TEST(ContactMemory, KeepsOnlyTheRowsThatTheReplicaNeeds) {
     mcdem::f32::Replica replica{};
     replica.memory_rows = 1;
     replica.relaxed_row = 0;

@@ -1,4 +1,4 @@
-// The sides of the four containers, against geometry in double precision.
+// Walls and periodic boundaries of the four containers, against geometry in double precision.
 #include "kernels/test_kernel.h"
 
 namespace reference {
@@ -6,7 +6,7 @@ namespace {
 
 using Matrix = Eigen::Matrix3d;
 
-/// A cell of these lengths, deformed by an upper triangular F.
+/// A cell of these lengths with an upper triangular F.
 mcdem::f32::Replica deformed_cell(const Vec3& lengths, const Matrix& f) {
     mcdem::f32::Replica replica{};
     replica.container = CONTAINER_CELL;
@@ -59,8 +59,8 @@ TEST(Container, DeformationIsLinearInTime) {
     EXPECT_EQ(found, (std::vector<float>{1, 1.5F, 2, 1.5F, 2, 2.5F}));
 }
 
-// Right for all that is nearer than half of each of the cell's lengths, however far it leans: of 11 x 11 x 11
-// images none is nearer.
+// Correct for distances below half of each of the cell's lengths, at any shear: none of 11 x 11 x 11 images
+// is nearer.
 TEST(Container, NearestImageInADeformedCellIsTheNearest) {
     const Vec3 lengths(0.06, 0.05, 0.07);
     const auto replica = deformed_cell(lengths, leaning);
@@ -119,14 +119,14 @@ TEST(Container, SideOfACylinderIsOneCurvedWall) {
                               0.5F,
                               1,
                               1,
-                              1.5F,  // 0.5 from the axis, 3:4
+                              1.5F,  // 0.5 from the axis, direction 3:4
                               2,
                               1,
                               0.5F,
                               1,
                               1,
                               1,
-                              1.5F,  // on the axis: some foot
+                              1.5F,  // on the axis: any foot is correct
                               1 + std::sqrt(0.5F),
                               1 + std::sqrt(0.5F),
                               0.5F,
@@ -137,7 +137,7 @@ TEST(Container, SideOfACylinderIsOneCurvedWall) {
     for (std::size_t i = 0; i < found.size(); ++i) EXPECT_NEAR(found[i], expected[i], 1e-6) << i;
 }
 
-TEST(Container, PeriodicCoordinatesComeIntoTheCell) {
+TEST(Container, PeriodicCoordinatesAreWrappedIntoTheCell) {
     const std::string text =
         "const lanes image = nearest_image((lanes)(in[0]), R(2));\n"
         "out[0] = into_cell(in[0], R(2)), out[1] = LANE(real, image, 5);";

@@ -1,5 +1,5 @@
-// Friction with history at one contact with the floor, the grain moved by hand: Mindlin's stiffness, the
-// Coulomb limit and the loop of a shear back and forth.
+// Mindlin friction at one contact with the floor, with prescribed motion of the grain: Mindlin's stiffness,
+// the Coulomb limit, and the hysteresis loop of cyclic shear.
 #include <cmath>
 #include <numbers>
 
@@ -10,13 +10,13 @@ namespace {
 
 constexpr double radius = 0.01, friction = 0.2, youngs_modulus = 1e6, poisson_ratio = 0.3, gravity = 9.81;
 
-/// A grain that rests on the floor with restitution 1, so that springs act without dashpots.
+/// A grain on the floor with restitution 1, so that there is no damping.
 class ShearedGrain {
 public:
     ShearedGrain() : batch_(build(finest()), start()) {}
 
-    /// Moves the grain along x, `distance` in `steps` steps. Returns the floor's force on it along x after
-    /// every step [N].
+    /// Moves the grain along x by `distance` in `steps` steps. Returns the floor's force on it along x after
+    /// each step [N].
     std::vector<double> shear(double distance, int steps) {
         const double velocity = distance / (steps * batch_.engine().time_step(0));
         std::vector<double> forces;
@@ -32,12 +32,12 @@ public:
         const double modulus = youngs_modulus / (1 - poisson_ratio * poisson_ratio);
         return std::pow(weight() / (4.0 / 3 * modulus * std::sqrt(radius)), 2.0 / 3);
     }
-    /// 8 G* a, 1/G* = (2 - nu)/G against a rigid floor.
+    /// 8 G* a; 1/G* = (2 - nu)/G for a rigid floor.
     static double stiffness() {
         const double shear_modulus = youngs_modulus / (2 * (1 + poisson_ratio));
         return 8 * shear_modulus / (2 - poisson_ratio) * std::sqrt(radius * overlap());
     }
-    /// StepInterval at which the contact begins to slip.
+    /// Displacement at which the contact begins to slip.
     static double slip() { return friction * weight() / stiffness(); }
 
 private:
@@ -53,7 +53,7 @@ private:
     Batch batch_;
 };
 
-TEST(Mindlin, SmallShearMeetsMindlinsStiffness) {
+TEST(Mindlin, SmallShearHasMindlinsStiffness) {
     ShearedGrain grain;
     const double distance = 0.5 * ShearedGrain::slip();
     const auto forces = grain.shear(distance, 20);
@@ -63,7 +63,7 @@ TEST(Mindlin, SmallShearMeetsMindlinsStiffness) {
     EXPECT_NEAR(back.back() / forces.back(), 0, 1e-3) << "the spring has kept nothing";
 }
 
-TEST(Mindlin, LargeShearMeetsCoulombsLimit) {
+TEST(Mindlin, LargeShearReachesTheCoulombLimit) {
     ShearedGrain grain;
     const auto forces = grain.shear(5 * ShearedGrain::slip(), 100);
     for (int step = 21; step <= 100; ++step)
@@ -71,9 +71,9 @@ TEST(Mindlin, LargeShearMeetsCoulombsLimit) {
     for (double force : forces) EXPECT_LE(std::abs(force), 1.001 * friction * ShearedGrain::weight());
 }
 
-// From slip at one end to slip at the other: a parallelogram of height 2 mu F and of width amplitude less
-// slip, twice: the work lost in a cycle is 4 mu F (amplitude - slip).
-TEST(Mindlin, ShearBackAndForthGoesRoundALoop) {
+// From slip in one direction to slip in the other. The force-displacement loop is a parallelogram of height
+// 2 mu F and width 2 (amplitude - slip): the work lost in a cycle is 4 mu F (amplitude - slip).
+TEST(Mindlin, CyclicShearFollowsTheHysteresisLoop) {
     ShearedGrain grain;
     const double slip = ShearedGrain::slip(), amplitude = 3 * slip, limit = friction * ShearedGrain::weight();
     grain.shear(amplitude, 300);
@@ -83,7 +83,7 @@ TEST(Mindlin, ShearBackAndForthGoesRoundALoop) {
     for (double force : back) work += force * step;  // against the motion: positive on the way back
     for (double force : forth) work -= force * step;
     EXPECT_NEAR(work / (4 * limit * (amplitude - slip)), 1, 0.01);
-    // half way through the turn the force has gone to zero, after a whole slip on each side it is reversed
+    // after the slip length the force is zero; after twice the slip length it is reversed
     EXPECT_NEAR(back[99] / limit, 0, 0.02);
     EXPECT_NEAR(back[199] / limit, 1, 0.02);
     EXPECT_NEAR(forth.back() / limit, -1, 1e-3);

@@ -1,4 +1,4 @@
-// Motion of single grains where it is known in closed form: free fall, drag, sliding, rolling, spinning.
+// Motion of single grains with closed-form solutions: free fall, drag, sliding, rolling, spinning.
 #include <cmath>
 #include <numbers>
 
@@ -16,7 +16,7 @@ Start single_grain(const Replica& replica, double height) {
     return start;
 }
 
-// Velocities stand half a step before positions, so that after n steps z0 - z = g/2 t (t + dt) exactly.
+// Velocities are half a step behind positions, so after n steps z0 - z = g/2 t (t + dt) exactly.
 TEST(Motion, FreeFallIsExact) {
     Replica replica = test_replica();
     replica.grains.drag = 0;
@@ -46,7 +46,7 @@ TEST(Motion, DragLeadsToTerminalVelocity) {
     EXPECT_NEAR(batch.engine().state(0).velocity[0].z(), -terminal, rounding);
 }
 
-/// On the floor, pressed in by its own weight.
+/// A grain on the floor, at the overlap that its weight causes.
 Start on_the_floor(FrictionLaw law) {
     Replica replica = test_replica(ContactModel::independent);
     replica.grains = {1e6, 0.3, 1000, 1000, 0.3, 1, 0};
@@ -59,8 +59,8 @@ Start on_the_floor(FrictionLaw law) {
     return start;
 }
 
-// v = v0 - mu g t and R omega = 5/2 mu g t, until they are equal at v = 5/7 v0. The arm is R less the
-// overlap, half a per mille shorter.
+// v = v0 - mu g t and R omega = 5/2 mu g t, until v = R omega = 5/7 v0. The arm is R minus the overlap,
+// which is shorter by half a per mille.
 TEST(Motion, SlidesThenRolls) {
     constexpr double v0 = 0.3, friction = 0.2;
     for (FrictionLaw law : {FrictionLaw::saturated, FrictionLaw::mindlin}) {
@@ -83,7 +83,7 @@ TEST(Motion, SlidesThenRolls) {
     }
 }
 
-// The other way round: a spinning grain set down is driven forward, v = 2/7 R omega0 in the end.
+// A spinning grain placed on the floor accelerates to v = 2/7 R omega0.
 TEST(Motion, SpinsThenRolls) {
     constexpr double spin = 30;
     const Start start = on_the_floor(FrictionLaw::saturated);
@@ -95,8 +95,8 @@ TEST(Motion, SpinsThenRolls) {
     EXPECT_NEAR(state.angular_velocity[0].y() / spin, 2.0 / 7, 0.002);
 }
 
-// A point on the axis does not slide: spin about the normal goes on for ever.
-TEST(Motion, SpinAboutTheNormalStays) {
+// A contact point on the axis does not slide, so spin about the normal does not decay.
+TEST(Motion, SpinAboutTheNormalPersists) {
     const Start start = on_the_floor(FrictionLaw::saturated);
     Batch batch(build(finest()), start);
     batch.engine().set_velocities(0, {Vec3::Zero()}, {{0, 0, 30}});
@@ -106,7 +106,7 @@ TEST(Motion, SpinAboutTheNormalStays) {
     EXPECT_NEAR(state.velocity[0].head<2>().norm(), 0, 1e-6);
 }
 
-/// A grain that nothing touches, spun for so many steps about one axis after the other.
+/// A free grain that spins about several axes in turn, for `steps` steps each.
 Vec3 turned_by(const std::vector<Vec3>& spins, int steps) {
     Replica replica = test_replica();
     replica.grains.drag = replica.grains.excess_density = 0;
@@ -126,21 +126,22 @@ TEST(Motion, RotationIsSpinTimesTime) {
     const double dt = step_length(), rounding = has_double() ? 1e-12 : 1e-5;
     for (const Vec3& spin : {Vec3(12, 0, 0), Vec3(-5, 10, 2), Vec3(0, 0, 0)}) {
         const Vec3 angle = 100 * dt * spin;
-        const double step = dt * spin.norm();  // its arc tangent is taken for it
+        const double step = dt * spin.norm();  // the small-angle update replaces the angle by its arc tangent
         EXPECT_LT((turned_by({spin}, 100) - angle).norm(), step * step * angle.norm() / 12 + rounding);
     }
 }
 
-// A quarter about x, then one about y, is a third of a turn about (1, 1, -1); the other way round about (1,
-// 1, 1).
+// A quarter turn about x and then one about y is a third of a turn about (1, 1, -1); in the reverse order it
+// is a third of a turn about (1, 1, 1).
 TEST(Motion, RotationsAreAboutTheLaboratorysAxes) {
     const int steps = 1000;
     const double quarter = std::numbers::pi / 2, spin = quarter / steps / step_length();
     const Vec3 x(spin, 0, 0), y(0, spin, 0), third = 2 * std::numbers::pi / 3 * Vec3(1, 1, 1).normalized();
-    const double error = 1e-5;  // of so long steps, and of single precision
+    const double error = 1e-5;  // of large steps and of single precision
     EXPECT_LT((turned_by({x, y}, steps) - third.cwiseProduct(Vec3(1, 1, -1))).norm(), error);
     EXPECT_LT((turned_by({y, x}, steps) - third).norm(), error);
-    const Vec3 around = turned_by({x, x, x}, steps);  // three quarters one way are one the other way
+    const Vec3 around =
+        turned_by({x, x, x}, steps);  // three quarter turns equal one in the opposite direction
     EXPECT_LT((around - Vec3(-quarter, 0, 0)).norm(), error);
 }
 

@@ -1,5 +1,4 @@
-// Numbers side by side: what is read from and written to scattered places, chosen and multiplied, lane by
-// lane.
+// Operations on `lanes`: gather, scatter, selection, products.
 #include "kernels/test_kernel.h"
 
 namespace reference {
@@ -7,8 +6,8 @@ namespace {
 
 constexpr int numbers = 64, grains = 64;
 
-/// What a kernel with a work-item for LANES numbers writes: `text` has the numbers `x` and the integers
-/// `index` of its lanes, and sets `result`.
+/// Runs a kernel with one work-item per LANES numbers. `text` computes `result` from the numbers `x` and the
+/// integers `index` of its lanes.
 std::vector<float> by_lanes(const std::string& text, const std::vector<float>& x,
                             const std::vector<int>& index, const KernelBuild& kernels) {
     const cl::Program program = with_kernel(
@@ -62,7 +61,7 @@ protected:
     std::vector<int> index;
 };
 
-TEST_P(Lanes, GatherReadsEveryComponentOfTheRowsAsked) {
+TEST_P(Lanes, GatherReadsEveryComponentOfTheRequestedRows) {
     const char* const component[] = {"x", "y", "z", "w"};
     for (int c = 0; c < 4; ++c)
         expect_lanes(std::string("result = gather4(field, index).") + component[c] + ";",
@@ -70,16 +69,16 @@ TEST_P(Lanes, GatherReadsEveryComponentOfTheRowsAsked) {
     expect_lanes("result = gather((global const real*)field, index);", [](double, int i) { return i; });
 }
 
-TEST_P(Lanes, WhereChoosesLaneByLane) {
+TEST_P(Lanes, WhereSelectsLaneByLane) {
     expect_lanes("result = WHERE(AS_MASK(index < 20), x, -x);",
                  [](double number, int i) { return i < 20 ? number : -number; });
     expect_lanes("result = where3(AS_MASK(index < 20), (lanes3){x, x, x}, ZERO3).z;",
                  [](double number, int i) { return i < 20 ? number : 0; });
 }
 
-TEST_P(Lanes, ScatterWritesEveryComponentOfTheRowsAsked) {
+TEST_P(Lanes, ScatterWritesEveryComponentOfTheRequestedRows) {
     const char* const component[] = {"x", "y", "z", "w"};
-    for (int c = 0; c < 4; ++c)  // rows in reverse, each read by the lane that has written it
+    for (int c = 0; c < 4; ++c)  // rows in reverse order, each read by the lane that wrote it
         expect_lanes(
             std::string("const slots row = 63 - ((int)first + LANE_NUMBERS);\n"
                         "scatter4((lanes4){x, R(2) * x, R(3) * x, R(4) * x}, field, row);\n"
@@ -88,7 +87,7 @@ TEST_P(Lanes, ScatterWritesEveryComponentOfTheRowsAsked) {
             [c](double number, int) { return (c + 1) * number; }, 1e-7);
 }
 
-TEST_P(Lanes, RowsOfSlotsComeSideBySide) {
+TEST_P(Lanes, LoadRowTransposesSlotsIntoLanes) {
     const auto found = by_lanes(
         "lanes row[SLOTS_HERE];\nload_row((global const real*)field, 16, 16, row);\n"
         "result = row[SLOTS_HERE > 1 ? 6 : 0];",
@@ -97,9 +96,9 @@ TEST_P(Lanes, RowsOfSlotsComeSideBySide) {
     for (std::size_t lane = 0; lane < 16; ++lane) EXPECT_EQ(found[lane], 16 * lane + 6);
 }
 
-// Of all lanes on a CPU, of the one on a GPU.
-TEST_P(Lanes, AnyTellsWhetherSomeLaneIs) {
-    for (int one = 0; one <= 16; ++one) {  // the last: none
+// True for all lanes on a CPU; on a GPU only for the lane itself.
+TEST_P(Lanes, AnyIsTrueIfOneLaneIs) {
+    for (int one = 0; one <= 16; ++one) {  // the last value: no lane
         x.assign(16, 0);
         index.assign(16, 0);
         std::vector<float> expected(16, kernels.lanes > 1 && one < 16 ? 1.0F : 0.0F);
@@ -108,13 +107,13 @@ TEST_P(Lanes, AnyTellsWhetherSomeLaneIs) {
     }
 }
 
-// In float an estimate and a step of Newton's method: 3e-7.
+// In float a Newton step refines an estimate; the relative error is 3e-7.
 TEST_P(Lanes, InverseRootIsPrecise) {
     expect_lanes(
         "result = inverse_root(x);", [](double number, int) { return 1 / std::sqrt(number); }, 3e-7);
 }
 
-TEST_P(Lanes, ProductsOfVectorsAreThoseOfGeometry) {
+TEST_P(Lanes, VectorProductsAgreeWithClosedForms) {
     const std::string vectors = "const lanes3 a = {x, R(2) * x, R(0.5)}, b = {R(3), x, R(1)};\n";
     expect_lanes(
         vectors + "result = dot3(a, b);", [](double n, int) { return 3 * n + 2 * n * n + 0.5; }, 1e-6);
@@ -124,7 +123,7 @@ TEST_P(Lanes, ProductsOfVectorsAreThoseOfGeometry) {
         vectors + "result = add_scaled3(a, x, b).y;", [](double n, int) { return 2 * n + n * n; }, 1e-6);
 }
 
-INSTANTIATE_TEST_SUITE_P(BothWays, Lanes, testing::Bool());
+INSTANTIATE_TEST_SUITE_P(BothLayouts, Lanes, testing::Bool());
 
 }  // namespace
 }  // namespace reference

@@ -1,4 +1,4 @@
-// Sums over the grains of a replica: every portion's, whatever the number of grains.
+// Kernel reduce: sums over the grains of a replica, for various numbers of grains and portions.
 #include "kernels/test_kernel.h"
 
 namespace reference {
@@ -90,7 +90,7 @@ TEST(Reduce, SumsAndMaximaAreThoseOfAllGrains) {
     }
 }
 
-TEST(Reduce, TellsTheFirstGrainThatFailedAndAllStates) {
+TEST(Reduce, ReportsTheFirstFailedGrainAndAllStatusBits) {
     Grains grains(300, 6);
     grains.status[250] = 1;
     grains.status[137] = 4;

@@ -1,5 +1,5 @@
-// Cells, neighbour rows and partner_slots against every pair looked at, and what slots remember when rows are
-// made anew.
+// Cells, neighbour rows and partner slots against a loop over all pairs, and the state of slots when lists
+// are rebuilt.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -11,12 +11,12 @@
 namespace reference {
 namespace {
 
-/// Neighbours of a grain by looking at every pair. `unsure`: within rounding of the reach.
+/// Neighbours of a grain by a loop over all pairs. `unsure`: at the reach within rounding errors.
 struct Near {
     std::vector<int> sure, unsure;
 };
 
-/// To the nearest image in a periodic cell.
+/// Distance to the nearest image in a periodic cell.
 double distance(const mcdem::Box& box, Vec3 apart) {
     if (box.shape == mcdem::ContainerShape::periodic) {
         apart.x() = std::remainder(apart.x(), box.size_x);
@@ -106,7 +106,7 @@ Replica with_probe_gap(double gap) {
     return replica;
 }
 
-TEST(NeighbourList, HoldsEveryPairAtAwkwardSizes) {
+TEST(NeighbourList, HoldsEveryPairForVariousNumbersOfGrains) {
     std::vector<Start> starts;
     for (int count : {1, 63, 64, 65, 1000, 2})
         starts.push_back(jittered_lattice(test_replica(), count, count));
@@ -116,13 +116,13 @@ TEST(NeighbourList, HoldsEveryPairAtAwkwardSizes) {
 }
 
 TEST(NeighbourList, HoldsEveryPairWithLongRowsAndFewCells) {
-    // 0.85 mean radii of gap: 18 neighbours; the whole box is one cell, or two a side
+    // a gap of 0.85 mean radii gives 18 neighbours; the whole box is one cell, or two per side
     expect_lists(build(Precision::single_precision, 32),
                  {jittered_lattice(with_probe_gap(0.85), 8, 1), jittered_lattice(with_probe_gap(0.85), 27, 2),
                   jittered_lattice(with_probe_gap(0.85), 125, 3)});
 }
 
-/// A gas of small grains about large ones, in a flat box: cells as large as the largest pair.
+/// Small grains around large ones in a flat box; cells are as large as the largest pair.
 Start gas(const Replica& replica) {
     Uniform uniform(4);
     Start start{replica, {}};
@@ -140,8 +140,7 @@ TEST(NeighbourList, HoldsEveryPairOfVeryDifferentGrains) {
     expect_lists(build(Precision::single_precision, 64), {gas(test_replica())});
 }
 
-/// Two lattices of 64 grains in a box far too large for a cell of its own everywhere; `apart`: of the two
-/// [m].
+/// Two lattices of 64 grains that are `apart` [m], in a box that has far more cells than the cell list.
 Start two_lattices_in_a_large_box(double size, const Vec3& apart) {
     Start start = jittered_lattice(test_replica(), 64, 8);
     start.replica.box = {size, size};
@@ -154,7 +153,7 @@ Start two_lattices_in_a_large_box(double size, const Vec3& apart) {
     return start;
 }
 
-// The grid in memory repeats along the box, so that far lattices lie in the same cells.
+// The cell list repeats along the box, so distant lattices are in the same cells.
 TEST(NeighbourList, HoldsEveryPairInABoxMuchLargerThanItsGrains) {
     const Start probe = two_lattices_in_a_large_box(6, Vec3::Zero());
     const auto cells = mcdem::device_replica<mcdem::f32::Replica>(probe.replica, probe.packing, {});
@@ -172,7 +171,7 @@ TEST(NeighbourList, HoldsEveryPairInABoxMuchLargerThanItsGrains) {
 Start in_cylinder(Start start) {
     const double radius = 0.1;
     start.replica.box = {2 * radius, 2 * radius, mcdem::ContainerShape::cylinder};
-    for (Vec3& x : start.packing.position) {  // from the flat box of a gas
+    for (Vec3& x : start.packing.position) {  // the box above is flat
         const double out = (radius - 0.005) * std::sqrt(x.x() / 0.3), angle = 40 * x.y();
         x = {radius + out * std::cos(angle), radius + out * std::sin(angle), x.z()};
     }
@@ -184,7 +183,7 @@ Start repeated(Start start) {
     return start;
 }
 
-/// Two lattices across the ends of a cell that is far too large for a cell of the grid everywhere.
+/// Two lattices at opposite boundaries of a periodic cell that has far more cells than the cell list.
 Start lattices_across_ends(double size, const Vec3& apart) {
     Start start = repeated(two_lattices_in_a_large_box(size, apart));
     for (Vec3& x : start.packing.position) x -= Vec3(0.04, 0.03, 0);
@@ -197,7 +196,7 @@ TEST(NeighbourList, HoldsEveryPairInACylinder) {
                  {rings_in_a_cylinder(test_replica(), 3, 1), rings_in_a_cylinder(test_replica(), 1, 2)});
 }
 
-// Cells of the grid along a side: 2, 2, 3, 5, and more than there are in memory.
+// Numbers of cells along a side: 2, 2, 3, 5, and more than the cell list has.
 TEST(NeighbourList, HoldsEveryPairOfAPeriodicCell) {
     for (Precision precision : {Precision::single_precision, finest()})
         expect_lists(build(precision),
@@ -213,14 +212,14 @@ TEST(NeighbourList, HoldsEveryPairOfAPeriodicCell) {
                  {lattices_across_ends(6, {3, 2, 1}), lattices_across_ends(6, {5.9, 0.02, 0.3})});
 }
 
-TEST(NeighbourList, HoldsThePlateWhereItLeans) {
+TEST(NeighbourList, HoldsATiltedPlate) {
     Replica replica = test_replica();
     replica.effects.plate_tilt_x = -0.2;
     replica.effects.plate_tilt_y = 0.1;
     expect_lists(build(Precision::single_precision, 64), {gas(replica)});
 }
 
-/// A loose cluster whose grains move past one another by a radius or so.
+/// A loose cluster whose grains move past each other by about a radius.
 Start mixing(FrictionLaw law, ContactModel model) {
     Replica replica = test_replica(model);
     replica.contact.friction_law = law;
@@ -230,8 +229,8 @@ Start mixing(FrictionLaw law, ContactModel model) {
     return start;
 }
 
-// Rows are made anew many times; values that went to the wrong neighbour would show in the next forces. The
-// motion is chaotic: rounding, 1e-16, grows a hundredfold or two, but not to 1e-9.
+// Lists are rebuilt many times; a value that moved to the wrong neighbour would change the next forces. The
+// motion is chaotic: rounding errors of 1e-16 grow by a factor of a few hundred, but not to 1e-9.
 template <class Expected>
 void expect_memory_moves_with_neighbours(const Start& start, const char* quantity, double size,
                                          Expected expected) {
@@ -272,8 +271,8 @@ void expect_memory_moves_with_neighbours(const Start& start, const char* quantit
     EXPECT_TRUE(differs) << "nothing was remembered";
 }
 
-// Grains cross the list's margin several times within an interval, and the plate comes down on them: an
-// interval ends early rather than miss a contact. The reference looks at every pair in every step.
+// Grains move farther than the list's margin several times within an interval while the plate moves down. An
+// interval must end early rather than miss a contact. The reference examines all pairs in each step.
 TEST(NeighbourList, LongIntervalsMissNoContact) {
     if (!has_double()) GTEST_SKIP() << "the device has no double precision";
     const Start start = mixing(FrictionLaw::saturated, ContactModel::independent);
@@ -303,8 +302,8 @@ TEST(NeighbourList, LongIntervalsMissNoContact) {
     EXPECT_GT(cut_short, 3);
 }
 
-// The most that an interval may let the plate come nearer is a fifth of the margin (grains may use the rest).
-TEST(NeighbourList, IntervalsEndBeforeThePlateOutrunsTheList) {
+// Within an interval the plate may approach by at most a fifth of the margin; grains may use the rest.
+TEST(NeighbourList, IntervalsEndBeforeThePlateLeavesTheMargin) {
     const Start start = jittered_lattice(test_replica(), 64, 16);
     Batch batch(build(Precision::single_precision), start);
     const double margin = 0.2 * start.replica.numerics.skin * 0.01;
@@ -318,7 +317,7 @@ TEST(NeighbourList, IntervalsEndBeforeThePlateOutrunsTheList) {
     EXPECT_EQ(batch.engine().max_interval(0, {}), 60);
 }
 
-TEST(NeighbourList, BulgesMoveWithTheirNeighbours) {
+TEST(NeighbourList, SurfaceDisplacementsMoveWithTheirNeighbours) {
     if (!has_double()) GTEST_SKIP() << "the device has no double precision";
     expect_memory_moves_with_neighbours(mixing(FrictionLaw::saturated, ContactModel::mc_dem), "displacement",
                                         0.01, [](const Memory& memory) { return memory.predicted; });

@@ -1,10 +1,10 @@
-// Where a leaning plate is, against plane geometry in double precision.
+// Position of a tilted plate, against plane geometry in double precision.
 #include "kernels/test_kernel.h"
 
 namespace reference {
 namespace {
 
-TEST(Plate, FootAndDistanceAreThoseOfAPlane) {
+TEST(Plate, FootAndDistanceAgreeWithPlaneGeometry) {
     mcdem::f32::Replica replica{};
     replica.wall_position[1] = 0.2F;
     replica.wall_position[3] = 0.1F;

@@ -1,4 +1,4 @@
-// What an engine remembers slot by slot, taken from its saved state, by the user's grain numbers.
+// State of the slots from an engine's saved state, by the user's grain numbers.
 #pragma once
 #include <cstring>
 #include <map>
@@ -20,7 +20,7 @@ std::vector<T> saved_values(const std::map<std::string, std::vector<std::byte>>&
     return values;
 }
 
-/// Saved reals of either precision.
+/// Saved reals of either precision, as doubles.
 inline std::vector<double> saved_reals(const std::map<std::string, std::vector<std::byte>>& saved,
                                        const std::string& name, Precision precision) {
     if (precision == Precision::double_precision) return saved_values<double>(saved, name);
@@ -37,7 +37,7 @@ public:
         partner_ = saved_values<int>(saved_, "partner");
     }
 
-    /// The row of one of the user's grains, as the kernels number grains and walls.
+    /// The row of one of the user's grains, with the kernels' numbers of grains and walls.
     std::vector<int> row(int replica, int grain) const {
         const auto begin = partner_.begin() + std::ptrdiff_t(first_slot(replica, grain));
         return {begin, begin + build_.slots};
@@ -45,16 +45,16 @@ public:
     std::size_t first_slot(int replica, int grain) const {
         return std::size_t(index(replica, grain)) * build_.slots;
     }
-    /// A grain's place in the device's arrays.
+    /// Index of a grain in the device's arrays.
     int index(int replica, int grain) const {
         return layout_.first_grain[replica] + layout_.places(replica)[grain];
     }
-    /// An entry of a row in the user's numbers.
+    /// An entry of a row, in the user's numbers.
     int user_partner(int replica, int entry) const {
         if (entry < NO_PARTNER) return mcdem::wall_partner(static_cast<mcdem::Wall>(WALL_PARTNER(0) - entry));
         return layout_.order[replica][entry - layout_.first_grain[replica]];
     }
-    /// partner -> value of a remembered quantity, for one grain; of contact memory its first row.
+    /// Map from partner to a stored value, for one grain; of the contact memory its first row.
     std::map<int, double> by_partner(const std::string& name, int replica, int grain) const {
         const auto values = saved_reals(saved_, name, build_.precision);
         std::map<int, double> found;

@@ -1,5 +1,5 @@
-// One grain between rigid plates, held by the walls of the box: what the kernels settle on, against the
-// static solution of each model and, for the elastic sphere, against finite elements.
+// One grain between rigid plates in a box: the forces to which the kernels converge, against the static
+// solution of each model and, for the elastic sphere, against finite elements.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -22,7 +22,7 @@ struct Row {
     double poisson_ratio = 0, overlap = 0, value = 0;
 };
 
-/// Tables of the columns case, poisson_ratio, overlap_over_R and one value.
+/// Tables with the columns case, poisson_ratio, overlap_over_R and one value.
 std::vector<Row> read_rows(const std::string& name) {
     std::ifstream file(MCDEM_SHARED_DATA "/fem/" + name);
     std::vector<Row> rows;
@@ -42,8 +42,7 @@ std::vector<Row> read_rows(const std::string& name) {
 
 bool missing() { return !std::filesystem::exists(MCDEM_SHARED_DATA "/fem"); }
 
-/// A grain in a box of these half widths over its radius, a little out of the middle, so that it has to
-/// settle.
+/// A grain in a box of these half widths over its radius, slightly off the centre, so that it has to settle.
 Start held_grain(ContactModel model, double poisson_ratio, const Vec3& half_width) {
     Replica replica;
     replica.grains = {youngs_modulus, poisson_ratio, 1000, 0, 0, 0.5, 0};
@@ -57,9 +56,9 @@ Start held_grain(ContactModel model, double poisson_ratio, const Vec3& half_widt
 }
 
 constexpr int settling_steps = 600;
-constexpr double settling_drag = 200;  ///< [1/s]; a step is some 0.3 ms
+constexpr double settling_drag = 200;  ///< [1/s]; a step is about 0.3 ms
 
-/// Force on the plate over E R^2, not-a-number where the replica was stopped.
+/// Force on the plate over E R^2; NaN if the replica was stopped.
 std::vector<double> settled_forces(const std::vector<Start>& starts, mcdem::Wall wall) {
     Batch batch(build(finest()), starts);
     std::vector<double> forces;
@@ -86,7 +85,7 @@ std::vector<Plate> plates(const Row& row) {
     return all;
 }
 
-TEST(Plates, ForcesSettleOnTheStaticSolutionOfEveryModel) {
+TEST(Plates, ForcesConvergeToTheStaticSolutionOfEveryModel) {
     std::vector<Row> rows;
     for (const char* arrangement : {"two_plates", "six_plates"})
         for (double nu : {0.0, 0.3, 0.5})
@@ -110,7 +109,7 @@ TEST(Plates, ForcesSettleOnTheStaticSolutionOfEveryModel) {
     }
 }
 
-TEST(Plates, ElasticSphereMeetsFiniteElements) {
+TEST(Plates, ElasticSphereAgreesWithFiniteElements) {
     if (missing()) GTEST_SKIP() << "the finite-element tables are not here";
     const auto rows = read_rows("sphere_between_plates.csv");
     ASSERT_EQ(rows.size(), 36u);
@@ -129,15 +128,16 @@ TEST(Plates, ElasticSphereMeetsFiniteElements) {
         100 * worst);
 }
 
-/// A grain pressed between floor and plate, with side walls at `gap` from its undeformed equator.
+/// A grain compressed between floor and plate, with side walls at `gap` from its undeformed equator.
 Start beside_walls(const Row& row, double overlap) {
     return held_grain(ContactModel::elastic_sphere, row.poisson_ratio,
                       Vec3(1 + row.value, 1 + row.value, 1 - overlap));
 }
 
-// Side walls at the gap that the equator bulges by at an overlap: 5 % below it they feel nothing, 5 % above
-// it they do. In the middle, since the gaps are as small as a ten-thousandth of the radius.
-TEST(Plates, BulgingTouchesTheSideWallsAtTheRightOverlap) {
+// At a given overlap the equator expands by a known displacement. Side walls at a gap 5 % larger than this
+// have no force; at a gap 5 % smaller they have one. The grain is in the middle, since gaps are as small as
+// 1e-4 radii.
+TEST(Plates, EquatorTouchesTheSideWallsAtTheExpectedOverlap) {
     if (missing()) GTEST_SKIP() << "the finite-element tables are not here";
     const auto rows = read_rows("equator_bulge.csv");
     ASSERT_EQ(rows.size(), 18u);

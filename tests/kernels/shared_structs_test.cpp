@@ -1,4 +1,4 @@
-// Host and device must lay out the structs they share in the same way.
+// Structs shared by host and device have the same layout on both.
 #include <cstddef>
 
 #include "reference/test_scene.h"
@@ -91,8 +91,8 @@ TEST(SharedStructs, HaveTheSameLayoutInDouble) {
     EXPECT_EQ(device_offsets(Precision::double_precision, host.size()), host);
 }
 
-// Every member is listed above: their sizes leave no room for another. (The last int may be padded.)
-TEST(SharedStructs, AreListedWhole) {
+// Every member is listed above: the sizes leave no room for another. (The last int may be padded.)
+TEST(SharedStructs, AreListedCompletely) {
     const auto host = host_offsets<mcdem::f32::Replica, mcdem::f32::Material, mcdem::f32::Report>();
     const std::size_t replica_words = (sizeof(mcdem::f32::Replica) - sizeof(mcdem::f32::Material)) / 4 + 1 -
                                       3 * (6 - 1) - (3 - 1),

@@ -1,5 +1,5 @@
-// Whole steps with every number of slots that a grain can have, as the device at hand treats them, against
-// the double-precision reference.
+// Whole steps with every allowed number of slots, in the device's layout, against the double-precision
+// reference.
 #include "kernels/steps_as_reference.h"
 
 namespace reference {
@@ -13,7 +13,7 @@ TEST_P(Slots, FollowTheReference) {
         for (ContactModel model : {ContactModel::mc_dem, ContactModel::elastic_sphere})
             for (int count : {1, 17, 64}) {
                 starts.push_back(start_of(model, FrictionLaw::mindlin, count, 31));
-                // A far probed gap gives a grain 18 neighbours and more.
+                // A large probed gap gives grains 18 or more neighbours.
                 if (GetParam() > 16) starts.back().replica.numerics.probe_gap = 0.85;
             }
         expect_steps_as_reference(build(precision, GetParam()), starts, 17);

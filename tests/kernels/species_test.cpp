@@ -1,5 +1,5 @@
-// Grains of several species: whole steps against the double-precision reference, and the same bits as grains
-// of one material where the species are alike.
+// Grains of several species: whole steps against the double-precision reference; identical species give the
+// same bits as a single material.
 #include "kernels/steps_as_reference.h"
 
 namespace reference {
@@ -7,7 +7,7 @@ namespace {
 
 using mcdem::GrainMaterial;
 
-/// Three species unlike in everything, a pair and a species on walls with laws of their own.
+/// Three species that differ in all properties; a pair and a wall contact with constants of their own.
 void give_species(Start& start) {
     start.replica.species = {{"a", {23.3e3, 0.45, 1000, 300, 0.3, 0.7}},
                              {"b", {9e3, 0.3, 2500, 1500, 0.1, 0.9}},
@@ -23,7 +23,7 @@ Start of_species(ContactModel model, FrictionLaw law, int count, unsigned seed) 
     return start;
 }
 
-TEST(Species, FollowTheReferenceForEveryModelAndBothWays) {
+TEST(Species, FollowTheReferenceForEveryModelAndLayout) {
     for (Precision precision : precisions()) {
         std::vector<Start> starts;
         for (ContactModel model : all_models)
@@ -55,7 +55,7 @@ TEST(Species, FollowTheReferenceWithEffects) {
     }
 }
 
-/// Every contact and motion after some steps of grains of `species`, which may be none.
+/// All contacts and motions after some steps of grains of `species`, which may be empty.
 mcdem::ReplicaState moved(Start start, const std::vector<mcdem::Species>& species, const KernelBuild& way) {
     start.replica.species = species;
     if (!species.empty())
@@ -69,14 +69,14 @@ mcdem::ReplicaState moved(Start start, const std::vector<mcdem::Species>& specie
     return batch.engine().state(0);
 }
 
-TEST(Species, ThatAreAlikeGiveTheBitsOfOneMaterial) {
+TEST(Species, IdenticalSpeciesGiveTheBitsOfOneMaterial) {
     for (Precision precision : precisions())
         for (const KernelBuild& way : {build(precision), other_way(build(precision))})
             for (ContactModel model : all_models) {
                 Start start = start_of(model, FrictionLaw::mindlin, 40, 47);
                 start.replica.effects.rolling_resistance = model == ContactModel::mc_dem ? 0.2 : 0;
                 GrainMaterial material = start.replica.grains;
-                material.drag = 0;  // is of [grains]
+                material.drag = 0;  // belongs to [grains]
                 const mcdem::Species one{"one", material}, other{"other", material};
                 const auto plain = moved(start, {}, way);
                 EXPECT_TRUE(same_bits(moved(start, {one, other, other}, way), plain)) << name(model);

@@ -1,4 +1,4 @@
-// Whole steps of an engine compared with the double-precision reference, quantity by quantity.
+// Compares whole steps of an engine with the double-precision reference.
 #pragma once
 #include <fmt/core.h>
 
@@ -9,10 +9,10 @@
 
 namespace reference {
 
-/// Relative to the largest of each kind. Float: coordinates of up to 0.2 m are rounded to 7e-9 m in every
-/// step, and overlaps are some 0.5 mm: 1.5e-5 of them, and half as much again of their power 3/2. Double: the
-/// same with 1e-16; but the elastic sphere's overlap is found by some steps of Newton's method, where the
-/// reference bisects to the end.
+/// Tolerance relative to the largest value of each quantity. Float: coordinates of up to 0.2 m are rounded
+/// to 7e-9 m in every step. This is 1.5e-5 of an overlap of 0.5 mm, and 1.5 times as much of its power 3/2.
+/// Double: the same with 1e-16, except that the kernels find the elastic sphere's overlap by a few Newton
+/// steps and the reference by bisection.
 inline double tolerance(Precision precision, ContactModel model) {
     if (precision == Precision::single_precision) return 5e-5;
     const bool by_newton =
@@ -30,7 +30,7 @@ struct Differences {
     }
 };
 
-/// Contacts seen from the lower grain, touching ones only.
+/// Touching contacts, each once: with a wall, or from the grain of lower index.
 inline std::vector<Seen> listed_contacts(const StepReference& reference) {
     std::vector<Seen> listed;
     for (const Seen& seen : reference.neighbours())
@@ -49,7 +49,7 @@ inline void compare_contacts(const std::vector<mcdem::Contact>& contacts, const 
     for (const auto& contact : contacts) {
         const auto found = expected.find({contact.grain, contact.partner});
         if (found == expected.end()) {
-            d.same_contacts &= contact.overlap < skim * largest;  // may be a contact within rounding
+            d.same_contacts &= contact.overlap < skim * largest;  // may be a contact within rounding errors
             continue;
         }
         const Seen& seen = found->second;
@@ -91,8 +91,8 @@ inline std::string text(const Differences& d) {
         d.elastic, d.deepest, d.same_contacts);
 }
 
-/// Six steps one by one, with the plate coming down: the sixth uses the whole history of the surfaces.
-/// `slack` times the usual differences are allowed.
+/// Compares six steps one by one while the plate moves down; the sixth uses the whole history of
+/// displacements. `slack` multiplies the tolerance.
 inline void expect_steps_as_reference(const KernelBuild& build, const std::vector<Start>& starts,
                                       unsigned seed, double slack = 1) {
     constexpr double plate_velocity = -0.05;

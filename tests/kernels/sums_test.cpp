@@ -1,4 +1,5 @@
-// Sums over the slots of a grain where each slot is a work-item's (on a CPU they need no kernel code).
+// Sums over the slots of a grain in the GPU layout, with one work-item per slot. (On a CPU they need no
+// kernel code.)
 #include "kernels/test_kernel.h"
 
 namespace reference {
@@ -48,7 +49,7 @@ std::vector<float> summed(const std::vector<float>& values, KernelBuild kernels)
     return found;
 }
 
-TEST(SlotSums, AreThoseOfEachGrain) {
+TEST(SlotSums, EqualTheSumsAndMaximaOfEachGrain) {
     Uniform uniform(3);
     std::vector<float> values;
     for (int i = 0; i < 64 * quantities * slots; ++i)

@@ -1,5 +1,5 @@
-// The surface displacements that the kernels remember: against the reference at every slot, touching or
-// only near, and at the angles whose values are known.
+// Surface displacements stored by the kernels: against the reference at every slot, touching or near, and at
+// angles with known values.
 #include <fmt/core.h>
 
 #include <cmath>
@@ -14,7 +14,7 @@ namespace {
 
 using std::numbers::pi;
 
-/// Of every slot after six steps, which fill its whole history, over the largest.
+/// Difference at all slots after six steps, which fill the history, over the largest displacement.
 double worst_displacement(const KernelBuild& kernels, const Start& start) {
     Batch batch(kernels, start);
     StepReference reference = reference_of(batch.engine(), 0, start);
@@ -34,9 +34,9 @@ double worst_displacement(const KernelBuild& kernels, const Start& start) {
     return worst / largest;
 }
 
-/// Float: a force is known to some 3e-5 (advance_test.cpp), and the extrapolation in time adds up errors with
-/// the weights 10/6, 5/6 and 1/6. At nu = 0 the sphere's polynomials have coefficients up to 40 that cancel
-/// to some 0.1: another 3e-4. The elastic sphere's overlaps are found by Newton's method, good to 1e-6.
+/// Float: forces have an error of about 3e-5 (advance_test.cpp), and the extrapolation adds errors with the
+/// weights 10/6, 5/6 and 1/6. At nu = 0 the sphere's polynomials have coefficients up to 40 that cancel to
+/// about 0.1: another 3e-4. The elastic sphere's overlaps from Newton's method have an error of 1e-6.
 double tolerance(Precision precision, ContactModel model, double poisson_ratio) {
     if (precision == Precision::single_precision) return poisson_ratio == 0 ? 5e-4 : 1e-4;
     const bool by_newton =
@@ -59,7 +59,7 @@ TEST(SurfaceDisplacement, FollowsTheReferenceAtEverySlot) {
     }
 }
 
-/// Puts something that is not a number where no contact is.
+/// Fills slots without contact with NaN.
 void spoil_empty_slots(std::map<std::string, std::vector<std::byte>>& saved) {
     const auto partner = saved_values<int>(saved, "partner");
     for (const char* const name : {"displacement", "displacement_history"}) {
@@ -72,8 +72,8 @@ void spoil_empty_slots(std::map<std::string, std::vector<std::byte>>& saved) {
     }
 }
 
-// Vectors of grains go through the empty slots of those that have fewer neighbours.
-TEST(SurfaceDisplacement, NothingComesOfEmptySlots) {
+// A vector of grains includes the empty slots of grains with fewer neighbours.
+TEST(SurfaceDisplacement, EmptySlotsHaveNoEffect) {
     for (ContactModel model : {ContactModel::mc_dem, ContactModel::elastic_sphere}) {
         const Start start = jittered_lattice(test_replica(model), 65, 3);
         const KernelBuild kernels = build(Precision::single_precision);
@@ -90,8 +90,8 @@ TEST(SurfaceDisplacement, NothingComesOfEmptySlots) {
     }
 }
 
-/// One grain pressed on the floor, small ones floating near it at 60, 90, 120 and 180 degrees from the
-/// loaded point.
+/// One grain pressed on the floor, and small grains near it at 60, 90, 120 and 180 degrees from the loaded
+/// point.
 Start pressed_grain(ContactModel model, double overlap) {
     constexpr double radius = 0.01, small = 0.003, gap = 0.0005;
     Replica replica = test_replica(model);
@@ -119,7 +119,7 @@ std::array<double, 4> displacements(ContactModel model) {
     const KernelBuild kernels = build(finest());
     const Start start = pressed_grain(model, overlap);
     Batch batch(kernels, start);
-    // long enough for the surfaces to have a past, too short for the grain to move
+    // long enough to fill the history of displacements, too short for the grain to move
     const double force = batch.advance(8).front().wall_force[int(mcdem::Wall::floor)].z();
     const double modulus = start.replica.grains.youngs_modulus;
     const double hertz = 4.0 / 3 * modulus / 0.75 * std::sqrt(radius) * std::pow(overlap, 1.5);
@@ -130,14 +130,14 @@ std::array<double, 4> displacements(ContactModel model) {
     return found;
 }
 
-// The exact sphere at nu = 1/2; the kernels' polynomial is within 1e-4 of the series.
-TEST(SurfaceDisplacement, PointForceOnSphereAtKnownAngles) {
+// The exact solution for nu = 1/2; the kernels' polynomial is within 1e-4 of the series.
+TEST(SurfaceDisplacement, PointForceOnSphereIsExactAtKnownAngles) {
     const std::array expected{0.1420, 0.1036, -0.0171, -0.1765};
     const auto found = displacements(ContactModel::point_force_on_sphere);
     for (int k = 0; k < 4; ++k) EXPECT_NEAR(found[k], expected[k], 2e-4) << k;
 }
 
-TEST(SurfaceDisplacement, SphereToSphereAtKnownAngles) {
+TEST(SurfaceDisplacement, SphereToSphereIsExactAtKnownAngles) {
     const auto found = displacements(ContactModel::sphere_to_sphere);
     for (int k = 0; k < 4; ++k) {
         const double s = std::sin(std::array{60, 90, 120, 180}[k] * pi / 360);
@@ -145,9 +145,9 @@ TEST(SurfaceDisplacement, SphereToSphereAtKnownAngles) {
     }
 }
 
-// With the contact points all but on the sphere the half space is the same formula; the small grains'
-// slots are probed at R, the contact is at R less the overlap, 1e-4 R.
-TEST(SurfaceDisplacement, HalfSpaceOnTheSphereIsSphereToSphere) {
+// With contact points very close to the sphere, the half space has the same formula. The slots of the small
+// grains are probed at R; the contact is at R minus the overlap, 1e-4 R.
+TEST(SurfaceDisplacement, HalfSpaceOnTheSphereEqualsSphereToSphere) {
     const auto half_space = displacements(ContactModel::elastic_half_space);
     const auto sphere = displacements(ContactModel::sphere_to_sphere);
     const auto fitted = displacements(ContactModel::mc_dem);

@@ -1,4 +1,4 @@
-// The kernels' program with one more kernel, that a test has written.
+// Builds the kernels' program with one additional kernel of a test.
 #pragma once
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 
 namespace reference {
 
-/// In single precision. `text` may use LANE(type, value, i): one number of a vector, i counted around it.
+/// In single precision. `text` may use LANE(type, value, i): element i modulo LANES of a vector.
 inline cl::Program with_kernel(const std::string& text, const KernelBuild& kernels) {
     const std::string lane = "\n#define LANE(type, value, i) (((const type*)&(value))[(i) % LANES])\n";
     cl::Program program(device().context(), mcdem::program_text() + lane + text);
@@ -20,8 +20,8 @@ inline cl::Program with_kernel(const std::string& text, const KernelBuild& kerne
     return program;
 }
 
-/// What the OpenCL text `body` makes of rows of numbers, a work-item a row: it reads `in`, writes `out`, and
-/// knows `replica`. `in`: a multiple of `read` numbers; returns `written` numbers for each row.
+/// Applies the OpenCL code `body` to rows of numbers, one work-item per row: it reads `in`, writes `out`,
+/// and can use `replica`. `in` has a multiple of `read` numbers; the result has `written` numbers per row.
 inline std::vector<float> mapped_rows(const std::string& body, const mcdem::f32::Replica& replica,
                                       const std::vector<float>& in, int read, int written) {
     const cl::Program program = with_kernel(

@@ -1,4 +1,4 @@
-// A kernel's argument carries its quantity: calls with swapped or missing fields do not compile.
+// Kernel arguments have quantity types: calls with swapped or missing fields do not compile.
 #include <gtest/gtest.h>
 
 #include <type_traits>

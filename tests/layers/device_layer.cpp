@@ -1,8 +1,9 @@
-// An OpenCL layer (cl_layer.h; the loader takes it from OPENCL_LAYERS) for tests that need a run in the
-// middle of its work. After MCDEM_TEST_KERNELS launches its device stops answering: nothing more is launched,
-// read, written or waited for. Where MCDEM_TEST_HOLD names a folder, the process waits there instead, once:
-// it makes a file named by its number in the folder, and goes on when that is removed. Of several processes
-// only one does so where MCDEM_TEST_VICTIM names a file: the one that launches first, and makes it.
+// An OpenCL layer (cl_layer.h, loaded through OPENCL_LAYERS) for tests that need a run in progress. After
+// MCDEM_TEST_KERNELS launches the device stops responding: nothing is launched, read, written or waited for
+// any more. If MCDEM_TEST_HOLD names a folder, the process blocks there instead, once: it creates a file
+// named by its process number in the folder, and continues when the file is removed. If MCDEM_TEST_VICTIM
+// names a file, only the process that creates this file, the first one to launch, is affected. If
+// MCDEM_TEST_AFTER names a file, launches count only once it exists.
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -25,7 +26,7 @@ bool is_victim() {
     return made >= 0;
 }
 
-/// What is held stays held at any speed of the machine: only the test lets it go on.
+/// Only the test ends the wait, so that tests do not depend on the speed of the machine.
 void hold(const char* folder) {
     const std::string file = std::string(folder) + "/" + std::to_string(getpid());
     close(open(file.c_str(), O_CREAT | O_CLOEXEC, 0600));

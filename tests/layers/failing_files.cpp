@@ -1,15 +1,14 @@
-// A layer over the C library's file operations (LD_PRELOAD) that lets one of them fail, or the power go out
-// before it. Operations on files below MCDEM_TEST_FILES are counted from 1:
-//   MCDEM_TEST_FAULT_LOG    file to which each is appended, as "number kind path"
-//   MCDEM_TEST_FAULT_AT     number of the one that fails
-//   MCDEM_TEST_FAULT_KINDS  kinds that count, as "open,write"; all where it is not set
-//   MCDEM_TEST_FAULT_NAME   only paths that contain this count
-//   MCDEM_TEST_FAULT        EIO, ENOSPC, EMFILE, ESTALE, EACCES, EINTR; SHORT (half a write, or half a read);
-//                           KILL; CUT (power cut: data and folder
-//                           entries that were not synced are lost); CUT_DATA (power cut: folder entries are
-//                           there, data that was not synced is lost)
-//   MCDEM_TEST_FAULT_STAYS  set: every later one fails as well
-//   MCDEM_TEST_FAULT_KEPT   folder on the same disk, for what a power cut brings back
+// A layer over the C library's file operations (LD_PRELOAD) that makes one of them fail, or simulates a
+// power cut before it. Operations on files below MCDEM_TEST_FILES are counted from 1:
+//   MCDEM_TEST_FAULT_LOG    file to which each operation is appended, as "number kind path"
+//   MCDEM_TEST_FAULT_AT     number of the operation that fails
+//   MCDEM_TEST_FAULT_KINDS  kinds that are counted, e.g. "open,write"; default: all
+//   MCDEM_TEST_FAULT_NAME   counts only paths that contain this text
+//   MCDEM_TEST_FAULT        EIO, ENOSPC, EMFILE, ESTALE, EACCES, EINTR; SHORT (transfers half of the bytes);
+//                           KILL; CUT (power cut: unsynced data and folder entries are lost);
+//                           CUT_DATA (power cut: only unsynced data is lost)
+//   MCDEM_TEST_FAULT_STAYS  if set, all later operations fail as well
+//   MCDEM_TEST_FAULT_KEPT   folder on the same disk, for files that a power cut restores
 #include <sys/uio.h>
 
 #include <cerrno>
@@ -43,7 +42,7 @@ void log(long number, const std::string& kind, const std::string& path) {
 
 enum class Turn { as_usual, fails, halved };
 
-/// What is to become of this operation; errno is set where it fails.
+/// The fate of this operation; errno is set if it fails.
 Turn turn_of(const char* kind, const std::string& path) {
     static long count = 0;
     const Settings& now = settings();
@@ -79,7 +78,7 @@ int opened(const std::string& path, int flags, Open open) {
     return descriptor;
 }
 
-/// `move(size)` moves that many bytes.
+/// Transfers data by `move(size)`.
 template <class Move>
 ssize_t moved(const char* kind, int descriptor, std::size_t size, Move move) {
     const std::lock_guard lock(mutex);
@@ -185,7 +184,7 @@ int close(int descriptor) {
     REAL(close);
     const int result = changed("close", path_of(descriptor), [] { return 0; });
     const int error = errno;
-    const int closed = real_close(descriptor);  // Linux closes it whatever it says
+    const int closed = real_close(descriptor);  // Linux closes the descriptor even if it reports an error
     if (result == 0) return closed;
     errno = error;
     return result;
@@ -216,7 +215,7 @@ ssize_t pwrite64(int descriptor, const void* from, size_t size, off64_t first) {
 }
 ssize_t writev(int descriptor, const iovec* from, int count) {
     REAL(write);
-    // The first of them alone: fewer bytes than asked for is what callers have to bear.
+    // Only the first one is shortened: callers must handle short transfers.
     while (count > 1 && from->iov_len == 0) ++from, --count;
     return moved("write", descriptor, from->iov_len,
                  [&](size_t n) { return real_write(descriptor, from->iov_base, n); });
@@ -239,7 +238,7 @@ int fsync(int descriptor) {
     const std::string path = path_of(descriptor);
     return changed("fsync", path, [&] {
         if (counts(path)) note_sync(descriptor, path);
-        return counts(path) ? 0 : real_fsync(descriptor);  // no power is cut here, and disks are slow
+        return counts(path) ? 0 : real_fsync(descriptor);  // no power cut, so no need to wait for slow disks
     });
 }
 int ftruncate(int descriptor, off_t size) {

@@ -1,9 +1,9 @@
-// A layer over operator new (LD_PRELOAD) that lets allocations of the program itself fail; those of
-// libraries, which end the program or report errors of their own, go on. Calls from the program are counted
-// from 1, since the beginning of main:
-//   MCDEM_TEST_MEMORY_LOG    file that is told, at the end, how many there were
-//   MCDEM_TEST_MEMORY_AT     number of the first that fails with std::bad_alloc
-//   MCDEM_TEST_MEMORY_COUNT  how many fail one after the other; 1 where it is not set
+// A layer over operator new (LD_PRELOAD) that makes allocations of the program itself fail. Allocations of
+// libraries, which would end the program or are reported by the library, succeed. Calls from the program are
+// counted from 1, starting at main:
+//   MCDEM_TEST_MEMORY_LOG    file to which the number of calls is written at the end
+//   MCDEM_TEST_MEMORY_AT     number of the first call that fails with std::bad_alloc
+//   MCDEM_TEST_MEMORY_COUNT  number of consecutive failures; default: 1
 #include <dlfcn.h>
 #include <link.h>
 
@@ -23,7 +23,7 @@ struct Range {
     }
 };
 
-/// Where the program's own code lies: the first object that the loader lists.
+/// Address range of the program's own code: the first object in the loader's list.
 Range program_code() {
     Range range;
     dl_iterate_phdr(

@@ -1,7 +1,7 @@
-// An OpenCL layer (cl_layer.h; the loader takes it from OPENCL_LAYERS) under which a CPU poses as a GPU: it
-// says that it is one, has 48 KB of local memory and work-groups of at most MCDEM_TEST_GROUP work-items
-// (256), and refuses launches beyond that as drivers do. MCDEM_TEST_KERNEL_GROUP: work-items that any one
-// kernel has registers for.
+// An OpenCL layer (cl_layer.h, loaded through OPENCL_LAYERS) that makes a CPU emulate a GPU: it reports a
+// GPU with 48 KB of local memory and work-groups of at most MCDEM_TEST_GROUP work-items (default 256), and
+// refuses larger launches as drivers do. MCDEM_TEST_KERNEL_GROUP limits the work-items of every kernel, as a
+// lack of registers does.
 
 #include <algorithm>
 #include <cstdlib>
@@ -37,7 +37,7 @@ cl_int kernel_info(cl_kernel kernel, cl_device_id device, cl_kernel_work_group_i
     return status;
 }
 
-/// Of what the kernel declares; no kernel here takes local memory as an argument.
+/// Local memory that the kernel declares; no kernel has local memory as an argument.
 bool fits_local_memory(cl_kernel kernel) {
     cl_ulong needed = 0;
     below.clGetKernelWorkGroupInfo(kernel, nullptr, CL_KERNEL_LOCAL_MEM_SIZE, sizeof needed, &needed,

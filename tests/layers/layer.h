@@ -1,5 +1,6 @@
-// What every OpenCL layer (cl_layer.h; the loader takes them from OPENCL_LAYERS) has: the functions of the
-// device below it, and the two by which the loader takes it up. Each layer is one source that includes this.
+// Common part of the OpenCL layers (cl_layer.h, loaded through OPENCL_LAYERS): the functions of the device
+// below, and the two functions by which the loader initialises a layer. Each layer is one source file that
+// includes this one.
 #pragma once
 #define CL_TARGET_OPENCL_VERSION 300
 #include <CL/cl_layer.h>

@@ -1,4 +1,4 @@
-// What a power cut takes away, for failing_files.cpp: data and folder entries that were not synced.
+// Effects of a power cut, for failing_files.cpp: loss of data and folder entries that were not synced.
 #pragma once
 #include <dirent.h>
 #include <dlfcn.h>
@@ -65,12 +65,12 @@ bool counts(const std::string& path) {
 }
 
 using Inode = std::pair<dev_t, ino_t>;
-std::map<Inode, off_t> unsynced;  ///< files written to, and the size at their last sync
+std::map<Inode, off_t> unsynced;  ///< files with unsynced writes, and their size at the last sync
 
 struct Entry {
     enum Kind { made, renamed, removed, made_folder, removed_folder } kind;
     std::string path, before;            ///< renamed: from `before`
-    std::string kept_path, kept_before;  ///< what was there
+    std::string kept_path, kept_before;  ///< hard links to the previous files
 };
 std::vector<Entry> entries;  ///< since the last sync of their folder
 
@@ -130,7 +130,7 @@ void undo(const Entry& entry) {
     REAL(rename);
     if (fault == "CUT")
         for (auto entry = entries.rbegin(); entry != entries.rend(); ++entry) {
-            // A folder comes back with all that is in it.
+            // A folder is restored with its contents.
             struct stat status {};
             if (entry->kind == Entry::renamed && stat(entry->path.c_str(), &status) == 0 &&
                 S_ISDIR(status.st_mode))

@@ -1,4 +1,4 @@
-"""What lies on the disk is told from what the system does at the moment, and proves itself.
+"""Damaged files are distinguished from temporary system errors; digests verify results.
 
 storage_test.py MCDEM LAYER    (LAYER: the library of failing_files.cpp)
 """
@@ -18,7 +18,7 @@ except ImportError:
     sys.exit(77)
 
 MCDEM, LAYER = (pathlib.Path(word).resolve() for word in sys.argv[1:3])
-TIME_LIMIT = 600  # seconds for one command, which may have to compile the kernels on a busy machine
+TIME_LIMIT = 600  # seconds per command, which may include compiling the kernels on a busy machine
 SCENE = """name = "tiny"
 [box]
 size_x = 0.05
@@ -43,7 +43,7 @@ IN_PARTS = RUN + ["--device", "all", "--part-replicas", "1"]
 
 
 def mcdem(place, *words, **layer):
-    """The command in the folder; `layer` sets MCDEM_TEST_.. variables of the layer."""
+    """Runs the command in the folder; `layer` sets MCDEM_TEST_.. variables of the layer."""
     environment = dict(os.environ)
     if layer:
         environment.update({f"MCDEM_TEST_{name.upper()}": str(value) for name, value in layer.items()},
@@ -63,7 +63,7 @@ def whole_run(place):
 
 
 def stopped_before_merge(place):
-    """All parts are there, and none is merged."""
+    """All parts exist, and they are not merged."""
     for part in "0", "1":
         expect(mcdem(place, *RUN, "--part-replicas", "1", "--part", part), 0)
     parts = sorted((place / "out/parts").glob("*.h5"))
@@ -118,7 +118,7 @@ def a_manifest_that_is_not_whole_costs_no_part(place):
         manifest.write_text(manifest.read_text()[:length])
         expect(mcdem(place, *IN_PARTS, fault_log=place.parent / "log"), 0, "manifest.json: is damaged, and rebuilt")
         assert (place / "out/run.h5").read_bytes() == result
-    assert ".work-" not in (place.parent / "log").read_text()  # where parts are computed
+    assert ".work-" not in (place.parent / "log").read_text()  # folder in which parts are computed
 
 
 def a_manifest_is_on_the_disk_before_it_has_its_name(place):
@@ -263,7 +263,7 @@ def an_experiment_carries_sums(place):
         expect(done, 1, "SHA256SUMS does not name it", "stdout")
         assert done.stdout.count("NOT GOOD") == 1 and "plate.csv" in done.stdout.splitlines()[-1], done.stdout
         (place / "lab/SHA256SUMS").write_text(sums)
-        expect(mcdem(place, *words), 0)  # finishes what was cut short at the very end
+        expect(mcdem(place, *words), 0)  # completes what was interrupted at the very end
         table = next((place / "lab").glob("plate.csv*"))
         table.write_bytes(table.read_bytes()[:-2])
         expect(mcdem(place, *words), 2, "holds another experiment, or one that was changed")

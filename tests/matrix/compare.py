@@ -1,7 +1,8 @@
-"""Runs of scripts/matrix against one another: FOLDER holds COMPILER-PRECISION-THREADS/run.h5.
+"""Compares runs of scripts/matrix: FOLDER holds COMPILER-PRECISION-THREADS/run.h5.
 
-One thread or two: the same file. GCC or Clang, float or double: the same forces but for rounding, which rearranging grains
-make grow. Measured with GCC 12 and Clang 14: nothing between compilers (the kernels are PoCL's), 1.3e-4 between precisions.
+One or two threads: the same file. GCC or Clang, float or double: the same forces except for rounding errors, which
+rearrangements amplify. Measured with GCC 12 and Clang 14: no difference between compilers (the kernels are compiled by
+PoCL), 1.3e-4 between precisions.
 """
 import itertools
 import pathlib
@@ -10,11 +11,11 @@ import sys
 import h5py
 import numpy as np
 
-MOST_APART = {"compilers": 1e-4, "precisions": 5e-3}  # of the largest top force, root mean square over the scans
+MOST_APART = {"compilers": 1e-4, "precisions": 5e-3}  # RMS over the scans, relative to the largest top force
 
 
 def top_forces(file):
-    """[replica][scan] [N]"""
+    """Top force of [replica][scan] in N."""
     forces = []
     with h5py.File(file) as run:
         def visit(_, group):

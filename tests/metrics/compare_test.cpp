@@ -28,7 +28,7 @@ TEST(Compare, with_itself_is_a_perfect_fit) {
     EXPECT_THAT(c.notes, IsEmpty());
 }
 
-TEST(Compare, with_known_answers) {
+TEST(Compare, with_known_results) {
     const auto simulated = synthetic::run({{.top = 6, .hysteresis = 0, .touch = 0}}, 2);
     const auto measured = synthetic::recording({.top = 15, .hysteresis = 0, .touch = 0});
     const auto c = compare(group_by_setting(simulated)[0], {&measured});
@@ -45,7 +45,7 @@ TEST(Compare, standard_error_of_rtop_is_the_scatter_of_replicas) {
     EXPECT_GT(c.errf.standard_error, 0);
 }
 
-TEST(Compare, says_what_was_not_available) {
+TEST(Compare, lists_missing_quantities) {
     auto run = synthetic::run({{.levels = 7}}, 2);
     run.recordings[1].failure = Failure{4711, 42, "overlap past the limit"};
     run.recordings[1].scans.resize(3);
@@ -61,7 +61,7 @@ TEST(Compare, says_what_was_not_available) {
     EXPECT_TRUE(c.Rtop.available());
 }
 
-TEST(Compare, discarding_everything_is_told) {
+TEST(Compare, discarding_all_cycles_is_an_error) {
     const auto run = synthetic::run({{}}, 1);
     CompareOptions options;
     options.levels.discard = 1;
@@ -80,7 +80,7 @@ TEST(ModelTable, ratios_are_over_mc_dem_and_paired_by_seed) {
     EXPECT_NEAR(table.displacement, 30e-3, 1e-12);
     ASSERT_EQ(table.rows.size(), 2u);
     EXPECT_NEAR(table.rows[0].ratio.value, 0.43, 1e-12);
-    EXPECT_NEAR(table.rows[0].ratio.standard_error, 0, 1e-12);  // the same scatter on both sides
+    EXPECT_NEAR(table.rows[0].ratio.standard_error, 0, 1e-12);  // equal scatter on both sides
     EXPECT_GT(table.rows[0].top_force.standard_error, 0.05);
     EXPECT_DOUBLE_EQ(table.rows[1].ratio.value, 1);
 }
@@ -93,7 +93,7 @@ TEST(ModelTable, other_seeds_are_independent) {
     EXPECT_GT(model_table(group_by_setting(run)).rows[0].ratio.standard_error, 0.01);
 }
 
-TEST(ModelTable, replicas_that_stopped_early_do_not_count) {
+TEST(ModelTable, replicas_that_stopped_early_are_excluded) {
     auto run = synthetic::run({{.model = "elastic_half_space", .top = 12}, {.model = "mc_dem"}}, 3);
     run.recordings[0].scans.resize(5);
     run.recordings[0].failure = Failure{1, 2, "ran away"};
@@ -122,7 +122,7 @@ TEST(ModelTable, a_setting_that_stopped_early_shows_its_last_scan) {
     EXPECT_NEAR(stopped.ratio.value, 1, 1e-12);
 }
 
-TEST(ModelTable, reference_may_be_named_or_is_the_first) {
+TEST(ModelTable, reference_is_the_named_one_or_the_first) {
     const auto run =
         synthetic::run({{.model = "sphere_to_sphere", .top = 10}, {.model = "independent", .top = 5}}, 1);
     const auto settings = group_by_setting(run);

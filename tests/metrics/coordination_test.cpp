@@ -35,7 +35,7 @@ TEST(Coordination, grain_contacts_count_twice_wall_contacts_once) {
     EXPECT_DOUBLE_EQ(z_at(three_grains(), 0, WallContacts::left_out), 4.0 / 3);
 }
 
-TEST(Coordination, keeps_forces_of_at_least_the_threshold) {
+TEST(Coordination, includes_forces_equal_to_the_threshold) {
     EXPECT_DOUBLE_EQ(z_at(three_grains(), 1.01), 3.0 / 3);
     EXPECT_DOUBLE_EQ(z_at(three_grains(), 2.01), 2.0 / 3);
     EXPECT_DOUBLE_EQ(z_at(three_grains(), 3.01), 0);
@@ -44,7 +44,7 @@ TEST(Coordination, keeps_forces_of_at_least_the_threshold) {
     EXPECT_DOUBLE_EQ(z_at(exact, 2), 5.0 / 3);
 }
 
-TEST(Coordination, contacts_not_recorded_are_not_zero_contacts) {
+TEST(Coordination, unrecorded_contacts_are_not_zero_contacts) {
     auto recording = three_grains();
     recording.scans[0].contacts.clear();
     recording.scans[0].coordination_number = 6.4;
@@ -60,19 +60,19 @@ CoordinationError error_between(const Replicas& simulated, const Replicas& refer
                               WallContacts::counted);
 }
 
-TEST(ErrZ, finds_the_threshold_that_the_reference_was_measured_with) {
+TEST(ErrZ, finds_the_threshold_of_the_reference) {
     const auto simulated = synthetic::recording({.cycles = 2, .contacts = 2000});
     auto measured = simulated;
     for (auto& scan : measured.scans)
         std::erase_if(scan.contacts, [](const Contact& c) { return c.force.norm() < 4e-3; });
     const auto error = error_between({&simulated}, {&measured});
     EXPECT_NEAR(error.errZ.value, 0, 1e-12);
-    EXPECT_NEAR(error.tau.value, 4e-3, 5e-6);  // to the spacing of forces about 4 mN
+    EXPECT_NEAR(error.tau.value, 4e-3, 5e-6);  // to the spacing of the forces near 4 mN
     EXPECT_EQ(error.levels_used, 20);
 }
 
-TEST(ErrZ, is_the_rms_that_no_threshold_can_reduce) {
-    // Two levels with the same forces cannot both fit Z + 1 and Z - 1 of a reference: the best is 1.
+TEST(ErrZ, is_the_rms_at_the_best_threshold) {
+    // Two levels with equal forces cannot fit both Z + 1 and Z - 1 of a reference: the smallest error is 1.
     auto simulated = synthetic::recording({.levels = 1, .touch = -1e9, .contacts = 5000});
     simulated.scans[1].contacts = simulated.scans[0].contacts;
     auto measured = simulated;
@@ -85,14 +85,14 @@ TEST(ErrZ, is_the_rms_that_no_threshold_can_reduce) {
     EXPECT_NEAR(z, 50, 0.05);
 }
 
-TEST(ErrZ, no_threshold_is_needed_against_itself) {
+TEST(ErrZ, compared_with_itself_needs_no_threshold) {
     const auto recording = synthetic::recording({.contacts = 500});
     const auto error = error_between({&recording}, {&recording});
     EXPECT_EQ(error.errZ.value, 0);
     EXPECT_EQ(error.tau.value, 0);
 }
 
-TEST(ErrZ, without_contacts_compares_recorded_coordination) {
+TEST(ErrZ, without_contacts_uses_the_recorded_coordination) {
     auto simulated = synthetic::recording({}), measured = simulated;
     for (auto& scan : measured.scans) scan.coordination_number -= 0.25;
     const auto error = error_between({&simulated}, {&measured});
@@ -100,7 +100,7 @@ TEST(ErrZ, without_contacts_compares_recorded_coordination) {
     EXPECT_FALSE(error.tau.available());
 }
 
-TEST(ErrZ, standard_errors_tell_the_scatter_of_repeated_experiments) {
+TEST(ErrZ, standard_errors_equal_the_scatter_of_repeated_experiments) {
     auto measured = synthetic::recording({.seed = 999, .levels = 2, .contacts = 2000});
     for (auto& scan : measured.scans)
         std::erase_if(scan.contacts, [](const Contact& c) { return c.force.norm() < 4e-3; });

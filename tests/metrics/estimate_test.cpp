@@ -15,14 +15,14 @@ TEST(Estimate, mean_and_standard_error_of_known_numbers) {
     EXPECT_EQ(mean.count, 4);
 }
 
-TEST(Estimate, one_replica_tells_no_error_and_none_no_value) {
+TEST(Estimate, one_replica_has_no_error_and_none_has_no_value) {
     const std::vector<double> one{3}, none{not_available};
     EXPECT_DOUBLE_EQ(mean_over_replicas(one).value, 3);
     EXPECT_TRUE(std::isnan(mean_over_replicas(one).standard_error));
     EXPECT_FALSE(mean_over_replicas(none).available());
 }
 
-TEST(PairBySeed, needs_the_same_seeds_each_once) {
+TEST(PairBySeed, requires_the_same_seeds_each_once) {
     const auto pairs = pair_by_seed({"1", "2", "3"}, {"3", "1", "2"});
     ASSERT_TRUE(pairs);
     EXPECT_EQ(*pairs, (Pairs{{0, 1}, {1, 2}, {2, 0}}));
@@ -32,14 +32,14 @@ TEST(PairBySeed, needs_the_same_seeds_each_once) {
     EXPECT_FALSE(pair_by_seed({"", ""}, {"", ""}));
 }
 
-TEST(RatioOfMeans, scatter_shared_by_a_pair_drops_out) {
+TEST(RatioOfMeans, common_scatter_of_a_pair_cancels) {
     const Sample above{{"1", "2", "3"}, {0.5, 1.0, 1.5}}, below{{"3", "2", "1"}, {3, 2, 1}};
     const auto ratio = ratio_of_means(above, below);
     EXPECT_DOUBLE_EQ(ratio.value, 0.5);
     EXPECT_NEAR(ratio.standard_error, 0, 1e-15);
 }
 
-TEST(RatioOfMeans, a_pair_with_a_failed_partner_is_left_out) {
+TEST(RatioOfMeans, a_pair_with_a_failed_replica_is_excluded) {
     const Sample above{{"1", "2", "3"}, {1, 1, 100}}, below{{"1", "2", "3"}, {2, 2, not_available}};
     EXPECT_DOUBLE_EQ(ratio_of_means(above, below).value, 0.5);
     EXPECT_EQ(ratio_of_means(above, below).count, 2);
@@ -67,7 +67,7 @@ TEST(Jackknife, of_a_mean_is_its_standard_error) {
     EXPECT_EQ(jackknife.estimate(means).count, 5);
 }
 
-TEST(Jackknife, leaves_pairs_out_together_and_others_one_by_one) {
+TEST(Jackknife, omits_pairs_together_and_others_one_by_one) {
     EXPECT_EQ(Jackknife({"1", "2", "3"}, {"3", "2", "1"}).omissions().size(), 4u);
     EXPECT_EQ(Jackknife({"1", "2", "3"}, {"7", "8", "9"}).omissions().size(), 7u);
     EXPECT_EQ(Jackknife({"1"}, {""}).omissions().size(), 1u);

@@ -22,7 +22,7 @@ double overlap(const std::vector<double>& p, const std::vector<double>& q) {
     return bhattacharyya(histogram(p, edges), histogram(q, edges));
 }
 
-TEST(Bhattacharyya, two_exponentials) {
+TEST(Bhattacharyya, two_exponentials_agree_with_the_closed_form) {
     for (double ratio : {1.2, 1.5, 2.0, 4.0}) {
         const auto p = draw(std::exponential_distribution<>(1), 22500, 1);
         const auto q = draw(std::exponential_distribution<>(1 / ratio), 22500, 2);
@@ -30,7 +30,7 @@ TEST(Bhattacharyya, two_exponentials) {
     }
 }
 
-TEST(Bhattacharyya, two_gaussians) {
+TEST(Bhattacharyya, two_gaussians_agree_with_the_closed_form) {
     for (double shift : {0.5, 1.0, 2.0})
         for (double width : {1.0, 1.5}) {
             const auto p = draw(std::normal_distribution<>(10, 1), 22500, 3);
@@ -41,7 +41,7 @@ TEST(Bhattacharyya, two_gaussians) {
         }
 }
 
-TEST(Bhattacharyya, does_not_change_when_forces_are_stretched) {
+TEST(Bhattacharyya, does_not_depend_on_the_scale_of_the_forces) {
     auto p = draw(std::exponential_distribution<>(1), 3000, 5),
          q = draw(std::exponential_distribution<>(2), 4000, 6);
     const double before = overlap(p, q);
@@ -53,14 +53,14 @@ TEST(Bhattacharyya, does_not_change_when_forces_are_stretched) {
 TEST(Bhattacharyya, is_zero_for_disjoint_samples_and_symmetric) {
     const auto p = draw(std::uniform_real_distribution<>(0, 1), 2000, 7);
     const auto q = draw(std::uniform_real_distribution<>(5, 6), 3000, 8);
-    EXPECT_LT(overlap(p, q), 1.0 / bin_count(2000, 3000) + 0.005);  // one bin at most holds some of both
+    EXPECT_LT(overlap(p, q), 1.0 / bin_count(2000, 3000) + 0.005);  // at most one bin contains both
     const auto r = draw(std::exponential_distribution<>(2), 3000, 9);
     EXPECT_DOUBLE_EQ(overlap(p, r), overlap(r, p));
 }
 
-TEST(Bhattacharyya, counting_noise_is_not_taken_for_difference) {
-    // Mean over many pairs of samples of one law: the bias. Without the correction it is
-    // (K - 1) / 8 * 2 / n = 0.0059 for n = 1500 and K = 37 bins.
+TEST(Bhattacharyya, counting_noise_is_corrected) {
+    // The mean over many pairs of samples of one distribution is the bias. Without the correction it is (K -
+    // 1) / 8 * 2 / n = 0.0059 for n = 1500 and K = 37 bins.
     double sum = 0;
     const int pairs = 100;
     for (int i = 0; i < pairs; ++i)
@@ -69,7 +69,7 @@ TEST(Bhattacharyya, counting_noise_is_not_taken_for_difference) {
     EXPECT_NEAR(sum / pairs, 1, 1e-3);
 }
 
-TEST(Bhattacharyya, equal_forces_are_no_trouble) {
+TEST(Bhattacharyya, equal_forces_are_allowed) {
     EXPECT_NEAR(overlap(std::vector<double>(100, 2.0), std::vector<double>(50, 2.0)), 1, 1e-12);
 }
 
@@ -79,7 +79,7 @@ DistributionDistance distance(const Replicas& simulated, const Replicas& referen
                                  Jackknife(seeds_of(simulated), seeds_of(reference)), WallContacts::left_out);
 }
 
-TEST(Bhat, of_two_samples_of_one_law_is_small) {
+TEST(Bhat, of_two_samples_of_one_distribution_is_small) {
     const auto a = synthetic::recording({.seed = 1, .cycles = 15, .levels = 2, .contacts = 1500});
     const auto b = synthetic::recording({.seed = 2, .cycles = 15, .levels = 2, .contacts = 1500});
     EXPECT_LT(distance({&a}, {&b}).bhat.value, 0.001);
@@ -93,7 +93,7 @@ TEST(Bhat, is_minus_log_of_the_mean_not_the_mean_of_logs) {
     EXPECT_NEAR(distance({&a}, {&b}).bhat.value, -std::log((8.0 / 17 + 1) / 2), 0.01);
 }
 
-TEST(Bhat, leaves_out_walls_and_levels_without_contacts) {
+TEST(Bhat, excludes_walls_and_levels_without_contacts) {
     auto a = synthetic::recording({.seed = 1, .levels = 2, .contacts = 5000});
     auto b = synthetic::recording({.seed = 2, .levels = 2, .contacts = 5000});
     for (auto& c : b.scans[0].contacts)
@@ -103,7 +103,7 @@ TEST(Bhat, leaves_out_walls_and_levels_without_contacts) {
     EXPECT_EQ(distance({&a}, {&b}).levels_used, 3);
 }
 
-TEST(Bhat, standard_error_tells_the_scatter_of_repeated_experiments) {
+TEST(Bhat, standard_error_equals_the_scatter_of_repeated_experiments) {
     const auto measured = synthetic::recording({.seed = 999, .levels = 1, .contacts = 3000});
     std::vector<double> values, claimed;
     for (int repeat = 0; repeat < 16; ++repeat) {
@@ -120,7 +120,7 @@ TEST(Bhat, standard_error_tells_the_scatter_of_repeated_experiments) {
     EXPECT_LT(mean_over_replicas(claimed).value, 2.0 * scatter);
 }
 
-TEST(ForceDensity, integrates_to_one_and_follows_the_law) {
+TEST(ForceDensity, integrates_to_one_and_agrees_with_the_distribution) {
     const auto recording = synthetic::recording({.levels = 1, .touch = -1e9, .contacts = 50000});
     const auto density = force_density(group_levels({&recording})[0], 40, 0.4, WallContacts::left_out);
     double sum = 0;

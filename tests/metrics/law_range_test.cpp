@@ -7,7 +7,7 @@
 namespace mcdem {
 namespace {
 
-/// Two scans of loading, with these overlaps.
+/// Two scans of loading with these largest overlaps.
 Recording pressed(const std::string& model, double first, double second) {
     Recording made = synthetic::recording({.model = model, .levels = 2});
     made.scans.resize(2);
@@ -16,7 +16,7 @@ Recording pressed(const std::string& model, double first, double second) {
     return made;
 }
 
-TEST(LawRange, IsLeftWhereGrainsOverlapMore) {
+TEST(LawRange, IsExceededAtTheFirstScanWithALargerOverlap) {
     const Recording within = pressed("hyperelastic_sphere", 0.1, 0.19);
     const Recording late = pressed("hyperelastic_sphere", 0.1, 0.27),
                     early = pressed("hyperelastic_sphere", 0.21, 0.25);
@@ -36,7 +36,7 @@ TEST(LawRange, IsSmallerAtSmallStrainAndUnknownForOtherModels) {
     EXPECT_FALSE(beyond_law({&hertz}));
 }
 
-TEST(LawRange, IsNotJudgedWhereOverlapsAreNotKnown) {
+TEST(LawRange, IsNotCheckedIfOverlapsAreUnknown) {
     const Recording unknown = synthetic::recording({.model = "elastic_sphere"});
     EXPECT_FALSE(beyond_law({&unknown}));
 }

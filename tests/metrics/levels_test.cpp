@@ -21,7 +21,7 @@ TEST(GroupLevels, one_for_each_phase_and_displacement) {
     for (const auto& level : levels) EXPECT_EQ(level.scans[0].size(), 3u);
 }
 
-TEST(GroupLevels, discards_first_cycles_by_option_or_by_the_recordings_own_key) {
+TEST(GroupLevels, discards_first_cycles_by_option_or_by_the_key_of_the_recording) {
     auto recording = synthetic::recording({.cycles = 4, .levels = 2});
     EXPECT_EQ(group_levels({&recording}, {.discard = 3})[0].scans[0].size(), 1u);
     EXPECT_EQ(group_levels({&recording}, {.discard = 3})[0].scans[0][0]->cycle, 3);
@@ -38,18 +38,18 @@ TEST(GroupLevels, displacements_within_the_tolerance_are_one_level) {
     EXPECT_EQ(group_levels({&recording}, {.tolerance = 0.05e-3}).size(), 12u);
 }
 
-TEST(GroupLevels, scans_recorded_in_passing_keep_their_own_levels) {
+TEST(GroupLevels, scans_recorded_during_motion_keep_their_own_levels) {
     const auto recording = synthetic::recording({.cycles = 2, .levels = 1000});  // 0.03 mm apart
     EXPECT_EQ(group_levels({&recording}).size(), 2000u);
 }
 
-TEST(GroupLevels, a_scan_without_a_plate_position_is_left_out) {
+TEST(GroupLevels, a_scan_without_a_plate_position_is_excluded) {
     auto recording = synthetic::recording({.levels = 2});
     recording.scans[0].plate_z = not_available;
     EXPECT_EQ(group_levels({&recording}).size(), 3u);
 }
 
-TEST(LevelMeans, cycles_are_averaged_first_replicas_give_the_error) {
+TEST(LevelMeans, cycles_are_averaged_first_and_replicas_give_the_error) {
     auto a = synthetic::recording({.cycles = 2, .levels = 1}), b = a;
     const auto set = [](Recording& r, int scan, double force) {
         r.scans[scan].wall_force[static_cast<int>(Wall::plate)].z() = force;
@@ -58,10 +58,10 @@ TEST(LevelMeans, cycles_are_averaged_first_replicas_give_the_error) {
     set(b, 0, 4), set(b, 2, 8);
     const auto means = level_means(group_levels({&a, &b}), top_force);
     EXPECT_DOUBLE_EQ(means[0].mean.value, 4);
-    EXPECT_DOUBLE_EQ(means[0].mean.standard_error, 2);  // 2 and 6
+    EXPECT_DOUBLE_EQ(means[0].mean.standard_error, 2);  // of 2 and 6
 }
 
-TEST(LevelMeans, a_replica_that_stopped_counts_where_it_was) {
+TEST(LevelMeans, a_replica_that_stopped_counts_up_to_its_last_level) {
     auto a = synthetic::recording({.levels = 2}), b = a;
     b.scans.resize(1);
     b.failure = Failure{100, 3, "overlap past the limit"};
@@ -71,7 +71,7 @@ TEST(LevelMeans, a_replica_that_stopped_counts_where_it_was) {
     EXPECT_DOUBLE_EQ(means[1].mean.value, 15);
 }
 
-TEST(MatchLevels, hits_levels_within_the_tolerance) {
+TEST(MatchLevels, finds_levels_within_the_tolerance) {
     const auto recording = synthetic::recording({.levels = 4});
     auto shifted = recording;
     for (auto& scan : shifted.scans) scan.plate_z -= 0.09e-3;

@@ -1,4 +1,4 @@
-// The metrics on curves that another code computed on the authors' packing.
+// The metrics of curves that another code computed for the authors' packing.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -30,7 +30,7 @@ Recording curve(const std::filesystem::path& file) {
     return made;
 }
 
-TEST(OtherCode, ratio_of_its_peaks) {
+TEST(OtherCode, ratio_of_its_peaks_is_known) {
     const std::filesystem::path folder = std::filesystem::path(MCDEM_SHARED_DATA) / "hydrogel";
     if (!std::filesystem::exists(folder / "liggghts_hertz.csv"))
         GTEST_SKIP() << "the other code's curves are not here: " << folder;

@@ -1,4 +1,4 @@
-// Runs of a programme are read scan by scan; strokes' levels are not made of them.
+// Runs with a programme are evaluated scan by scan, without levels of strokes.
 #include "metrics/programmes.h"
 
 #include <gmock/gmock.h>
@@ -70,7 +70,7 @@ TEST(Programmes, OfCellsHaveStressesAndStrains) {
     EXPECT_NEAR(scans[3].packing_fraction.value, 0.62, 1e-15);
 }
 
-TEST(Programmes, KnowWhetherTheyHold) {
+TEST(Programmes, HoldsAreFound) {
     Recording held = synthetic::cell("mc_dem");
     EXPECT_TRUE(has_hold({&held}));
     held.parameters.erase("programme.3.stage");

@@ -9,7 +9,7 @@
 namespace mcdem {
 namespace {
 
-TEST(StressStrain, OfTriaxialCompressionIsThatOfSoilMechanics) {
+TEST(StressStrain, TriaxialCompressionFollowsSoilMechanics) {
     const Mat3 stress = Vec3(1, 1, 4).asDiagonal();
     EXPECT_NEAR(mean_stress(stress), 2, 1e-15);
     EXPECT_NEAR(deviatoric_stress(stress), 3, 1e-15);
@@ -18,7 +18,7 @@ TEST(StressStrain, OfTriaxialCompressionIsThatOfSoilMechanics) {
     EXPECT_NEAR(deviatoric_strain(strain), 0.2, 1e-15);
 }
 
-TEST(StressStrain, OfShearIsRootThreeTimesItsStressAndAShareOfItsStrain) {
+TEST(StressStrain, ShearGivesRootThreeTimesTheStress) {
     Mat3 stress = Mat3::Zero();
     stress(0, 2) = stress(2, 0) = -5;
     EXPECT_NEAR(deviatoric_stress(stress), 5 * std::numbers::sqrt3, 1e-14);
@@ -26,14 +26,14 @@ TEST(StressStrain, OfShearIsRootThreeTimesItsStressAndAShareOfItsStrain) {
     EXPECT_NEAR(volume_strain({0, 0, 0, 0.3, 0.1, -0.2}), 0, 1e-15);
 }
 
-TEST(StressStrain, OfAnIsotropicStateHaveNoDeviator) {
+TEST(StressStrain, AnIsotropicStateHasNoDeviator) {
     Mat3 stress = 3 * Mat3::Identity();
-    stress(0, 1) = 1, stress(1, 0) = -1;  // its antisymmetric part is no stress
+    stress(0, 1) = 1, stress(1, 0) = -1;  // the antisymmetric part is ignored
     EXPECT_NEAR(deviatoric_stress(stress), 0, 1e-15);
     EXPECT_NEAR(deviatoric_strain({0.1, 0.1, 0.1, 0, 0, 0}), 0, 1e-15);
 }
 
-TEST(StrongestScan, IsTheOneOfTheLargestForceOrInACellOfTheLargestMeanStress) {
+TEST(StrongestScan, HasTheLargestForceOrInACellTheLargestMeanStress) {
     auto pressed = synthetic::recording({.levels = 3});
     EXPECT_EQ(strongest_scan(pressed), 2u);
     auto cell = synthetic::cell("mc_dem");

@@ -1,4 +1,4 @@
-// Recordings with known answers: forces, contacts and averages follow simple laws of the displacement.
+// Recordings with known results: forces, contacts and averages are simple functions of the displacement.
 #pragma once
 #include <cmath>
 #include <random>
@@ -13,16 +13,16 @@ struct Law {
     std::string model = "mc_dem";
     int seed = 1;
     int cycles = 1;
-    int levels = 10;          ///< a stroke's scans, the last at full stroke
+    int levels = 10;          ///< scans per stroke, the last at full stroke
     double stroke = 30e-3;    ///< [m]
     double top = 15;          ///< top force at full stroke while loading [N]
-    double hysteresis = 0.1;  ///< share of the force lost while unloading
-    double touch = 5e-3;      ///< displacement at first touch [m]
-    double scatter = 0;       ///< relative sd of the force between seeds
+    double hysteresis = 0.1;  ///< fraction of the force lost while unloading
+    double touch = 5e-3;      ///< displacement at first contact [m]
+    double scatter = 0;       ///< relative standard deviation of the force between seeds
     int grains = 100;
-    int contacts = 0;           ///< between grains, at each scan; 0: none recorded
-    double mean_force = 50e-3;  ///< of contacts at full stroke [N]
-    double shape = 1;           ///< of the gamma law of contact forces
+    int contacts = 0;           ///< between grains, in each scan; 0: not recorded
+    double mean_force = 50e-3;  ///< of the contact forces at full stroke [N]
+    double shape = 1;           ///< of the gamma distribution of contact forces
 };
 
 inline double share_of_stroke(const Law& law, double displacement) {
@@ -80,9 +80,8 @@ inline Recording recording(const Law& law) {
     return made;
 }
 
-/// A cell of 0.1 m that is compressed by 2 % along all axes, then sheared by 10 % in the plane xz and held.
-/// Its stress is p = 1 kPa times volume strain over 0.01, and a shear stress of a tenth of p where it is
-/// sheared.
+/// A cell of 0.1 m that is compressed by 2 % along all axes, then sheared by 10 % in the plane xz, then
+/// held. Its pressure p is 1 kPa times volume strain over 0.01; while sheared it has a shear stress of p/10.
 inline Recording cell(const std::string& model, int seed = 1, double factor = 1) {
     Recording made;
     made.label = model + " #" + std::to_string(seed);
@@ -115,7 +114,7 @@ inline Recording cell(const std::string& model, int seed = 1, double factor = 1)
     return made;
 }
 
-/// One run: `replicas` seeds of each law.
+/// One run with `replicas` seeds of each setting.
 inline Run run(const std::vector<Law>& laws, int replicas) {
     Run made;
     made.name = "synthetic";

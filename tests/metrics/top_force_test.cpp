@@ -24,14 +24,14 @@ LevelError error(const Ready& a, const Ready& b, std::optional<double> touch = s
                            touch);
 }
 
-TEST(Rtop, ratio_at_maximum_compression) {
+TEST(Rtop, is_the_ratio_at_maximum_compression) {
     const Ready a(synthetic::recording({.top = 6.45, .hysteresis = 0.3})),
         b(synthetic::recording({.top = 15}));
     EXPECT_NEAR(ratio(a, b).Rtop.value, 0.43, 1e-12);
     EXPECT_NEAR(ratio(a, b).displacement, 30e-3, 1e-12);
 }
 
-TEST(Rtop, averages_over_cycles) {
+TEST(Rtop, is_averaged_over_cycles) {
     const Ready b(synthetic::recording({.top = 10}));
     auto two = synthetic::recording({.cycles = 2, .top = 10});
     for (auto& scan : two.scans)
@@ -46,7 +46,7 @@ TEST(Rtop, a_turning_point_counts_as_either_phase) {
     EXPECT_NEAR(ratio(Ready(synthetic::recording({.top = 15})), Ready(named_unload)).Rtop.value, 1.5, 1e-12);
 }
 
-TEST(Rtop, a_shorter_simulation_is_compared_where_it_ends) {
+TEST(Rtop, a_shorter_simulation_is_compared_at_its_end) {
     const Ready longer(synthetic::recording({.stroke = 30e-3}));
     auto cut = synthetic::recording({.stroke = 30e-3});
     std::erase_if(cut.scans, [&](const Scan& s) { return cut.displacement(s) > 21.1e-3; });
@@ -57,7 +57,7 @@ TEST(Rtop, a_shorter_simulation_is_compared_where_it_ends) {
     EXPECT_FALSE(ratio(Ready(cut), longer).Rtop.available());
 }
 
-TEST(Errf, constant_difference_is_its_size) {
+TEST(Errf, a_constant_difference_is_found) {
     const Ready b(synthetic::recording({}));
     auto raised = synthetic::recording({});
     for (auto& scan : raised.scans)
@@ -78,7 +78,7 @@ TEST(Errf, linear_curves_are_interpolated_exactly_over_the_common_range) {
     EXPECT_EQ(e.levels_used, 9 + 9);  // loading from 30/7 = 4.3 mm on, unloading up to 30 * 6/7 = 25.7 mm
 }
 
-TEST(Errf, may_leave_out_levels_before_touch) {
+TEST(Errf, can_exclude_levels_before_contact) {
     const Ready a(synthetic::recording({.top = 12})), b(synthetic::recording({.top = 10, .touch = 9.1e-3}));
     EXPECT_EQ(error(a, b).levels_used, 20);
     EXPECT_EQ(error(a, b, 0.0).levels_used, 7 + 6);  // 12 .. 30 mm and 27 .. 12 mm

@@ -1,7 +1,7 @@
-"""Runs and challenges by Dask: on a cluster of this machine whose workers are killed, and on a client of a user's own. The bytes
-of one process.
+"""Runs and challenges with Dask: on a local cluster whose workers are killed, and with a client of the user. The
+results have the bytes of a single process.
 
-dask_test.py MCDEM DEVICE_LAYER; skipped (77) without python3-distributed, and run by the Python that has it.
+dask_test.py MCDEM DEVICE_LAYER; skipped (77) without python3-distributed; uses the Python that has it.
 """
 import os
 import pathlib
@@ -44,7 +44,7 @@ def parent_of(process):
 
 
 def kill_a_worker(hold):
-    """kill -9 of the Dask worker whose part is held; what it had started ends by itself."""
+    """kill -9 of the Dask worker whose part is blocked; the worker's child process then receives SIGTERM."""
     held = hold.wait_for(1)[0]
     os.kill(parent_of(held), signal.SIGKILL)
     shared_runs.wait_until(lambda: shared_runs.is_told_to_end(held), "the part of the killed worker to be told")
@@ -52,7 +52,7 @@ def kill_a_worker(hold):
 
 
 def outlives_a_killed_worker(place):
-    """Its part is computed by another; the address of the dashboard is said."""
+    """The part of the killed worker is computed by another; the address of the dashboard is printed."""
     place.run_alone()
     hold = Hold(place, only_one=True)
     process = distribute(place, [*command_of("sweep.toml", "dask"), *PARTS], hold, TWO_DEVICES)
@@ -64,7 +64,7 @@ def outlives_a_killed_worker(place):
 
 
 def tries_a_failed_part_again(place):
-    """A device stops answering in the middle of one part."""
+    """A device fails in the middle of one part."""
     place.run_alone()
     vanishing = {"OPENCL_LAYERS": str(pathlib.Path(sys.argv[2]).resolve()), "MCDEM_TEST_KERNELS": "3000",
                  "MCDEM_TEST_VICTIM": str(place.path / "victim")}
@@ -74,7 +74,7 @@ def tries_a_failed_part_again(place):
 
 
 def goes_on_after_an_interruption(place):
-    """Ctrl-C: what was done stays, and the same command goes on with what is missing."""
+    """Ctrl-C: finished parts are kept, and the same command computes the missing ones."""
     place.run_alone()
     words = [*command_of("sweep.toml", "dask"), *ALONE]
     hold = Hold(place)
@@ -89,7 +89,7 @@ def goes_on_after_an_interruption(place):
 
 
 def works_from_python(place):
-    """With a client of the user's own, and without the compiled module."""
+    """With a client of the user, and without the compiled module."""
     place.run_alone()
     (place.path / "by_hand.py").write_text(BY_HAND)
     said = place.run([sys.executable, "by_hand.py"], {"PYTHONPATH": str(PACKAGE), "MCDEM_PROGRAM": place.mcdem})
@@ -108,7 +108,7 @@ def a_challenge_is_distributed(place):
 
 
 def says_what_is_wrong(place):
-    """Bad input, and what is to be installed."""
+    """Bad input, and the message if packages are missing."""
     said = finish(distribute(place, [*command_of("sweep.toml", "dask"), "--set", "nothing=1"]), exit_codes=(2,))
     assert "mcdem: " in said and "nothing" in said and "Traceback" not in said, said
     for scheduler in "tcp://127.0.0.1:1", "sweep.toml":

@@ -1,6 +1,7 @@
-"""Several devices of one machine: `--device all` uses them all, and the result is that of one.
+"""Several devices of one machine: `--device all` uses all of them, and the result is that of one device.
 
-devices_test.py MCDEM DEVICE_LAYER; the layer of tests/layers makes devices vanish and holds processes; PoCL stands for a machine with two devices (POCL_DEVICES).
+devices_test.py MCDEM DEVICE_LAYER; the layer of tests/layers makes devices fail and blocks processes. PoCL provides two
+devices (POCL_DEVICES).
 """
 import os
 import pathlib
@@ -19,7 +20,7 @@ def all_devices(place, out, more=(), environment=None):
 
 
 def vanishing():
-    """An environment in which a device stops answering in the middle of a part."""
+    """An environment in which a device fails in the middle of a part."""
     return {"OPENCL_LAYERS": str(pathlib.Path(sys.argv[2]).resolve()), "MCDEM_TEST_KERNELS": str(shared_runs.LAUNCHES // 2)}
 
 
@@ -28,7 +29,7 @@ def device_of(process):
 
 
 def uses_all_of_them(place):
-    """Two devices, a process on each, the bytes of one process."""
+    """Two devices with one process each give the bytes of a single process."""
     place.run_alone()
     hold = Hold(place)
     process = all_devices(place, "both", environment=hold.environment)
@@ -42,7 +43,7 @@ def uses_all_of_them(place):
 
 
 def refuses_another_run(place):
-    """What lies in the folder is another run: told once, not reported as done, and left as it is."""
+    """If the folder holds another run, this is reported once, not as done, and nothing is changed."""
     place.run_alone()
     before = (place.path / "alone/run.h5").read_bytes()
     said = finish(all_devices(place, "alone", ["--set", "protocol.scans_per_stroke=5"]), exit_codes=(2,))
@@ -51,7 +52,7 @@ def refuses_another_run(place):
 
 
 def outlives_a_killed_process(place):
-    """One of two processes is killed: its part is computed again, from its checkpoint."""
+    """One of two processes is killed: its part is continued from its checkpoint."""
     place.run_alone()
     hold = Hold(place, only_one=True)
     process = all_devices(place, "both", environment=hold.environment)
@@ -62,7 +63,8 @@ def outlives_a_killed_process(place):
 
 
 def gives_up_a_part_that_kills_its_processes(place):
-    """Every process of one part is killed: the other parts are done, and the command says so and goes on later."""
+    """Every process of one part is killed: the other parts are computed, and the command reports the failure and
+    continues later."""
     place.run_alone()
     hold = Hold(place)
     process = all_devices(place, "both", environment=hold.environment)
@@ -84,7 +86,7 @@ def gives_up_a_part_that_kills_its_processes(place):
 
 
 def outlives_a_vanished_device(place):
-    """One of two devices stops answering: its process says so, the other gets the part."""
+    """One of two devices fails: its process reports it, and the other device computes the part."""
     place.run_alone()
     said = finish(all_devices(place, "both", environment={**vanishing(), "MCDEM_TEST_VICTIM": str(place.path / "victim")}))
     assert said.count("the device or its driver has failed") == 1 and "is left out from here on" in said, said
@@ -93,7 +95,7 @@ def outlives_a_vanished_device(place):
 
 
 def goes_on_when_all_devices_vanished(place):
-    """Again and again both stop answering: the same command goes on with what was done."""
+    """Both devices fail repeatedly: the same command continues from the finished work."""
     (place.path / "sweep.toml").write_text(SWEEP.replace("checkpoint_minutes = 1e-4", "checkpoint_minutes = 1e-6"))
     place.run_alone()
     for vanished in range(30):
@@ -107,7 +109,7 @@ def goes_on_when_all_devices_vanished(place):
 
 
 def goes_on_as_one(place):
-    """All are interrupted; one process alone goes on."""
+    """All processes are interrupted; a single one continues."""
     place.run_alone()
     hold = Hold(place, only_one=True)
     process = all_devices(place, "both", environment=hold.environment)

@@ -1,6 +1,6 @@
-"""Runs and challenges over MPI: `mpirun -n 3`, a rank killed in the middle, the bytes of one process.
+"""Runs and challenges with MPI: `mpirun -n 3`, a rank killed in the middle; the bytes of a single process.
 
-mpi_test.py MCDEM DEVICE_LAYER; skipped (77) where MPI is missing.
+mpi_test.py MCDEM DEVICE_LAYER; skipped (77) if MPI is missing.
 """
 import re
 import sys
@@ -21,9 +21,9 @@ def run_words(out, parts=PARTS):
 
 
 def the_same_command_goes_on(place):
-    """mpirun ends all ranks when one is killed; the same command computes what is missing, and nothing again."""
+    """mpirun ends all ranks when one is killed; the same command computes only the missing parts."""
     place.run_alone()
-    hold = Hold(place, launches=LAUNCHES * 3 // 2)  # every rank in its second part
+    hold = Hold(place, launches=LAUNCHES * 3 // 2)  # every rank is in its second part
     process = mpirun(place, run_words("ranks", ALONE), environment=hold.environment)
     hold.wait_for(3)
     parts = PartsSeen(place.path / "ranks/parts")
@@ -43,7 +43,7 @@ def the_same_command_goes_on(place):
 
 
 def ranks_take_the_devices_in_turn(place):
-    """Three ranks of a machine with two devices compute on both, and each of them does."""
+    """Three ranks on a machine with two devices use both of them."""
     if not shared_runs.has_two_devices(place):
         print("left out: this OpenCL has no two devices alike")
         return
@@ -58,7 +58,7 @@ def ranks_take_the_devices_in_turn(place):
 
 
 def a_challenge_is_shared(place):
-    """A rank is killed while the cases are diagnosed; the same command ends with the answers of one process."""
+    """A rank is killed during the diagnoses; the same command ends with the answers of a single process."""
     shared_challenge.run_alone(place)
     hold = shared_challenge.hold(place, "ranks")
     process = mpirun(place, shared_challenge.command_of("ranks"), environment=hold.environment)

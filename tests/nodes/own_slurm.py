@@ -1,4 +1,4 @@
-"""A real Slurm of this machine alone, with two nodes that can be lost: munge and its daemons in a folder of their own."""
+"""A local Slurm with two nodes that can be made to fail: munge and Slurm's daemons in a folder of their own."""
 import contextlib
 import os
 import pathlib
@@ -11,7 +11,7 @@ import tempfile
 from shared_runs import program, skip, wait_until
 
 NODES = ("one", "two")
-# Tasks of a lost node are queued again only where the job asks for it, and wait for cred_expire seconds.
+# Tasks of a lost node are requeued only if the job requests it, after cred_expire seconds.
 CONFIGURATION = """ClusterName=test
 SlurmctldHost={host}(127.0.0.1)
 SlurmctldPort={ports[0]}
@@ -63,7 +63,7 @@ def daemon(words, log, environment):
 
 
 def environment_of(process):
-    """Of a process by its number; empty where it has ended."""
+    """Environment of a process; empty if it has ended."""
     try:
         lines = pathlib.Path(f"/proc/{process}/environ").read_bytes().split(b"\0")
     except OSError:
@@ -72,7 +72,7 @@ def environment_of(process):
 
 
 def watcher_of(process):
-    """The slurmstepd above it; the process itself where that has ended."""
+    """The slurmstepd above the process; the process itself if that has ended."""
     above = process
     while above > 1:
         try:
@@ -92,8 +92,8 @@ def kill(process):
 
 class Cluster:
     def __init__(self):
-        self.environment = {}  # what it takes to speak to it
-        self._nodes = {}       # their slurmd
+        self.environment = {}  # environment for Slurm's commands
+        self._nodes = {}       # slurmd processes
 
     @contextlib.contextmanager
     def running(self):
@@ -108,7 +108,7 @@ class Cluster:
 
     def _start(self):
         folder = self._folder
-        folder.chmod(0o755)  # munge wants its socket to be reached
+        folder.chmod(0o755)  # munge requires that its socket is accessible
         (folder / "state").mkdir()
         (folder / "key").write_bytes(os.urandom(1024))
         (folder / "key").chmod(0o600)
@@ -129,12 +129,12 @@ class Cluster:
         return subprocess.run(words, env={**os.environ, **self.environment}, capture_output=True, text=True).stdout.strip()
 
     def node_of(self, process):
-        """The node that a process of a job is on; None for all others."""
+        """The node of a process of a job; None for other processes."""
         found = environment_of(process)
         return found.get("SLURMD_NODENAME") if found.get("SLURM_CONF") == self.environment["SLURM_CONF"] else None
 
     def _tasks_on(self, nodes):
-        """Processes of jobs, by the slurmstepd that watches over them."""
+        """Processes of jobs, by their slurmstepd."""
         tasks = {}
         for entry in pathlib.Path("/proc").iterdir():
             if entry.name.isdigit() and self.node_of(entry.name) in nodes:
@@ -142,8 +142,8 @@ class Cluster:
         return tasks
 
     def lose(self, *nodes):
-        """All that runs there ends at once; Slurm is told what it finds out by itself after SlurmdTimeout."""
-        # A task that is being started has no process yet by which it could be found.
+        """Kills everything on the node; tells Slurm at once what it would detect after SlurmdTimeout."""
+        # A task that is being started does not have a process yet.
         running = lambda: self._ask("squeue", "--noheader", "--array", "--states=RUNNING", f"--nodelist={','.join(nodes)}")
         wait_until(lambda: len(self._tasks_on(nodes)) == len(running().splitlines()), "tasks that are started")
         for node in nodes:
@@ -151,13 +151,13 @@ class Cluster:
             self._nodes[node].wait()
         while tasks := self._tasks_on(nodes):
             for watcher, processes in tasks.items():
-                for process in (watcher, *processes):  # in this order: nobody reports the end of a task
+                for process in (watcher, *processes):  # in this order, so that nobody reports the end of a task
                     kill(process)
         for node in nodes:
             self._ask("scontrol", "update", f"nodename={node}", "state=down", "reason=lost")
 
     def wait_for_jobs(self):
-        """Until none runs or waits: one whose folder or Slurm is gone would stay for good."""
+        """Waits until no job is running or pending: jobs would remain after their folder or Slurm is removed."""
         wait_until(lambda: not self._ask("squeue", "--noheader"), "the last job to end")
 
     def bring_back(self, *nodes):

@@ -1,4 +1,5 @@
-"""What the tests of a challenge that many work at share: a small one, its answers by one process, and a process killed."""
+"""Shared by the tests of distributed challenges: a small challenge, its answers by a single process, and a killed
+process."""
 import json
 import pathlib
 import shutil
@@ -15,7 +16,7 @@ def command_of(out):
 
 
 def run_alone(place):
-    """Makes the challenge, and answers it."""
+    """Makes the challenge and answers it with a single process."""
     shutil.copy(SCENE, place.path / "tiny.toml")
     place.run([place.mcdem, "challenge", "make", "tiny.toml", "--out", "challenge", "--truth", "truth.json", "--seed",
                "3", "--effects", "friction,force_bias", "--none", "3", "--per-effect", "1", "--pairs", "0", "--unknown",
@@ -24,12 +25,12 @@ def run_alone(place):
 
 
 def hold(place, out):
-    """Holds one that diagnoses a case."""
+    """Blocks a process that diagnoses a case."""
     return Hold(place, launches=0, only_one=True, after=place.path / out / "library.json")
 
 
 def answers(folder):
-    """All files of a challenge's answers; of the diagnoses without the time that each took."""
+    """All files of a challenge's answers; diagnoses without their run times."""
     found = {}
     for file in sorted(folder.rglob("*.json")):
         text = file.read_text()

@@ -1,4 +1,5 @@
-"""What the tests of many devices and nodes share: a sweep of seconds, its result by one process, and a process killed."""
+"""Shared by the tests of several devices and nodes: a short sweep, its result by a single process, and a killed
+process."""
 import os
 import pathlib
 import re
@@ -10,9 +11,9 @@ import tempfile
 import time
 
 SKIPPED = 77
-TIME_LIMIT = 1200  # seconds for one command: only what hangs takes so long
+TIME_LIMIT = 1200  # seconds per command; only a hanging command takes that long
 
-# 8 replicas in parts of 2; checkpoints so often that a process that is killed in the middle leaves one.
+# 8 replicas in parts of 2; checkpoints are so frequent that a killed process leaves one.
 SWEEP = """name = "sweep"
 [box]
 size_x = 0.08
@@ -36,8 +37,8 @@ replicas = 2
 """
 PARTS = ["--part-replicas", "2"]
 ALONE = ["--part-replicas", "1"]
-LAUNCHES = 11_000  # of kernels that a part takes, about
-TWO_DEVICES = {"POCL_DEVICES": "pthread pthread", "MCDEM_DEVICE": ""}  # PoCL stands for a machine with two
+LAUNCHES = 11_000  # approximate number of kernel launches per part
+TWO_DEVICES = {"POCL_DEVICES": "pthread pthread", "MCDEM_DEVICE": ""}  # PoCL provides two devices
 
 
 def skip(reason):
@@ -46,7 +47,7 @@ def skip(reason):
 
 
 def program(name, package):
-    """The path of a program; without it the test is skipped."""
+    """The path of a program; if it is missing the test is skipped."""
     for folder in [*os.environ["PATH"].split(":"), "/usr/sbin", "/sbin"]:
         if os.access(pathlib.Path(folder) / name, os.X_OK):
             return str(pathlib.Path(folder) / name)
@@ -58,8 +59,8 @@ def command_of(scene, out):
 
 
 class Place:
-    """A folder with the sweep in it, and mcdem run there."""
-    _alone = {}  # results of one process, by the sweep
+    """A folder with the sweep, in which mcdem is run."""
+    _alone = {}  # results of a single process, by sweep
 
     def __init__(self, mcdem):
         self.mcdem = str(pathlib.Path(mcdem).resolve())
@@ -77,11 +78,11 @@ class Place:
                                 stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
 
     def run(self, words, environment=None):
-        """Runs words to their end; what they said."""
+        """Runs a command to its end; returns its output."""
         return finish(self.start(words, environment))
 
     def run_alone(self):
-        """The result of one process; the same for every test with this sweep."""
+        """The result of a single process, shared by all tests with this sweep."""
         scene = (self.path / "sweep.toml").read_text()
         if scene not in self._alone:
             self.run([self.mcdem, *command_of("sweep.toml", "alone")])
@@ -91,7 +92,7 @@ class Place:
             (self.path / "alone" / name).write_bytes(content)
 
     def expect_like_alone(self, out):
-        """The bytes of the result, and nothing beside it but what the caller knows of."""
+        """Checks the bytes of the results, and that no folder of parts is left."""
         for name in ("run.h5", "plate.csv"):
             expected, got = ((self.path / folder / name).read_bytes() for folder in ("alone", out))
             assert expected == got, f"{out}/{name} differs{different_datasets(self.path, out)}"
@@ -99,7 +100,7 @@ class Place:
 
 
 def different_datasets(path, out):
-    """Which objects of the two files differ: for the message."""
+    """Names of the objects that differ between two files, for the message."""
     try:
         import h5py
     except ImportError:
@@ -125,7 +126,7 @@ def finish(process, exit_codes=(0,)):
 
 
 def wait_until(condition, what):
-    """The first true value of the condition."""
+    """Waits for a condition; returns its first true value."""
     end = time.monotonic() + TIME_LIMIT
     while time.monotonic() < end:
         value = condition()
@@ -136,7 +137,7 @@ def wait_until(condition, what):
 
 
 def remove_until_gone(folder):
-    """Removes a folder into which others may still write."""
+    """Removes a folder to which others may still write."""
     def is_gone():
         shutil.rmtree(folder, ignore_errors=True)
         return not folder.exists()
@@ -145,7 +146,7 @@ def remove_until_gone(folder):
 
 
 def files_in(folder, pattern):
-    """What lies in a folder that others write to, and remove, at the same time."""
+    """Files of a folder in which others create and remove files at the same time."""
     try:
         return list(folder.glob(pattern))
     except FileNotFoundError:
@@ -153,8 +154,9 @@ def files_in(folder, pattern):
 
 
 class Hold:
-    """Holds processes in the middle of their work (tests/layers/device_layer.cpp), so that it cannot be done before a test has
-    done its part, at any speed of the machine: all of them, or the first only, each after so many launches of kernels."""
+    """Blocks processes in the middle of their work (tests/layers/device_layer.cpp), so that they cannot finish before a
+    test has done its part, whatever the speed of the machine: all of them or only the first, each after a number of
+    kernel launches."""
 
     def __init__(self, place, launches=LAUNCHES // 2, only_one=False, after=None):
         self._folder = place.path / "held"
@@ -167,23 +169,23 @@ class Hold:
             self.environment["MCDEM_TEST_AFTER"] = str(after)
 
     def wait_for(self, processes):
-        """Until so many are held; their numbers."""
+        """Waits until this number of processes is blocked; returns their process numbers."""
         files = wait_until(lambda: len(found := files_in(self._folder, "*")) >= processes and found, f"{processes} held")
         return sorted(int(file.name) for file in files)
 
     def kill_one(self):
-        """kill -9 of a process that is held."""
+        """kill -9 of a blocked process."""
         victim = self.wait_for(1)[0]
         os.kill(victim, signal.SIGKILL)
         return victim
 
     def end(self):
-        """They go on, and none is held any more."""
+        """Releases them; no further process is blocked."""
         remove_until_gone(self._folder)
 
 
 def is_told_to_end(process):
-    """Whether it has taken SIGTERM, by a handler that takes it once."""
+    """Whether the process has received SIGTERM, by its handler that works once."""
     caught = re.search(r"SigCgt:\s*([0-9a-f]+)", pathlib.Path(f"/proc/{process}/status").read_text())[1]
     return not int(caught, 16) >> (signal.SIGTERM - 1) & 1
 
@@ -194,7 +196,7 @@ def has_two_devices(place):
 
 
 class PartsSeen:
-    """Every part file that ever lay in the folder, by its inode: a part that is done twice has two."""
+    """Every part file that ever existed in the folder, by inode: a part that is computed twice has two."""
 
     def __init__(self, folder):
         self.folder, self.inodes = folder, {}
@@ -216,7 +218,7 @@ class PartsSeen:
 
 
 def run_tests(tests, settle=lambda: None):
-    """Runs each of them on a place of its own; `settle` returns when nothing of a test runs any more."""
+    """Runs each test in a folder of its own; `settle` returns when nothing of a test is running any more."""
     for test in tests:
         print(f"{test.__name__}: {test.__doc__}", flush=True)
         with Place(sys.argv[1]) as place:

@@ -1,7 +1,7 @@
-"""Runs and challenges as Slurm job arrays, on a real Slurm of two nodes that this test starts: a task killed in the
-middle, nodes lost, names that a shell would stumble over, the bytes of one process.
+"""Runs and challenges as Slurm job arrays, on a real local Slurm with two nodes: a killed task, lost nodes, names with
+special characters; the bytes of a single process.
 
-slurm_test.py MCDEM DEVICE_LAYER; skipped (77) where a program is missing or this is not root.
+slurm_test.py MCDEM DEVICE_LAYER; skipped (77) if a program is missing or this is not root.
 """
 import re
 import subprocess
@@ -23,7 +23,8 @@ def run_words(place, out, more=(), parts=PARTS, hold=None):
 
 
 def outlives_a_killed_task(place):
-    """The job after the array submits its part again; nothing of a name is taken for a command."""
+    """The job after the array resubmits its missing part; special characters in names are not interpreted by a
+    shell."""
     place.run_alone()
     (place.path / "lines").write_text("#SBATCH --comment=mine\nexport MCDEM_TOLD=yes")
     hold = Hold(place, only_one=True)
@@ -40,12 +41,13 @@ def outlives_a_killed_task(place):
 
 
 def goes_on_after_a_cancelled_job(place):
-    """The array is cancelled: nothing is submitted again, the command says so, and given again does what is missing."""
+    """The array is cancelled: nothing is resubmitted and the command says so. The same command computes what is
+    missing."""
     place.run_alone()
     hold = Hold(place)
     process = run_words(place, "jobs", hold=hold)
     held = hold.wait_for(3)
-    (place.path / "held" / str(held[0])).unlink()  # one part is done
+    (place.path / "held" / str(held[0])).unlink()  # one part is finished
     parts = PartsSeen(place.path / "jobs/parts")
     shared_runs.wait_until(lambda: parts.look() or parts.inodes, "a part")
     array, following, _ = (place.path / "jobs/slurm/jobs").read_text().splitlines()
@@ -63,7 +65,7 @@ def goes_on_after_a_cancelled_job(place):
 
 
 def is_not_submitted_twice(place):
-    """--no-wait returns at once; the same command then waits for that job."""
+    """--no-wait returns at once; the same command later waits for that job."""
     place.run_alone()
     said = finish(run_words(place, "jobs", ["--no-wait"]))
     number = re.search(r"job (\d+):", said)[1]
@@ -73,7 +75,7 @@ def is_not_submitted_twice(place):
 
 
 def outlives_a_lost_node(place):
-    """The power fails on the node of a task: it is queued again, on the other node."""
+    """The node of a task loses power: the task is requeued on the other node."""
     place.run_alone()
     hold = Hold(place, only_one=True)
     process = run_words(place, "jobs", hold=hold)
@@ -101,14 +103,14 @@ def outlives_the_loss_of_all_nodes(place):
 
 
 def says_what_slurm_refuses(place):
-    """A partition that is not there: exit code 2, and nothing waits."""
+    """An unknown partition: exit code 2, and nothing is waited for."""
     said = finish(place.start([place.mcdem, *command_of("sweep.toml", "jobs"), "--slurm", "--slurm-partition", "none"],
                               cluster.environment), exit_codes=(2,))
     assert "sbatch has refused the job" in said and "nvalid partition" in said, said
 
 
 def a_challenge_is_shared(place):
-    """A task is killed while the cases are diagnosed; the answers are those of one process."""
+    """A task is killed during the diagnoses; the answers are those of a single process."""
     shared_challenge.run_alone(place)
     hold = shared_challenge.hold(place, "jobs")
     process = place.start([place.mcdem, *shared_challenge.command_of("jobs"), *SUBMIT],

@@ -1,4 +1,4 @@
-"""mcdem.diagnose: the same as `mcdem diagnose`, key by key.
+"""mcdem.diagnose gives the same as `mcdem diagnose`, key by key.
 
 diagnosis_test.py PROGRAM
 """
@@ -43,7 +43,7 @@ class Diagnoses(unittest.TestCase):
         self.assertIn(said["verdict"], ("no_gap", "effect", "group", "unknown_effect", "not_converged",
                                         "calibration_suspect"))
         self.assertEqual({one["effect"] for one in said["ranking"]},
-                         {"adhesion", "friction", "modulus", "strain_offset"})  # both candidates, and what may be wrong
+                         {"adhesion", "friction", "modulus", "strain_offset"})  # both candidates, and the nuisances
         self.assertIn("library", {stage for stage, _ in told})
         (self.folder / "scene.toml").write_text(self.scene.text)
         self.program("diagnose", "scene.toml", "--experiment", "measured", "--out", "out", "--candidates",
@@ -56,7 +56,7 @@ class Diagnoses(unittest.TestCase):
     def test_reports_runs_and_diagnoses(self):
         os.environ["MCDEM_PROGRAM"] = PROGRAM
         page = mcdem.report(self.folder / "run", self.folder / "page.html", against=[self.folder / "measured"])
-        self.assertIn("errf", page.read_text())  # of the table that only a comparison has
+        self.assertIn("errf", page.read_text())  # a column of the table of a comparison
         with self.assertRaisesRegex(ValueError, "nowhere"):
             mcdem.report([self.folder / "nowhere"], self.folder / "none.html")
         self.assertFalse((self.folder / "none.html").exists())

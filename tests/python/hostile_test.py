@@ -1,4 +1,4 @@
-"""What no caller may end the interpreter with: threads, odd arguments, results that hold less than is asked for."""
+"""No caller may crash the interpreter: threads, unusual arguments, results without the requested data."""
 import os
 import pathlib
 import subprocess
@@ -44,7 +44,7 @@ class Hostile(unittest.TestCase):
             self.assertIn(os.fsdecode(name), run[0].parameters["packing.file"])
 
     def in_fresh_python(self, code):
-        """What the code prints in an interpreter that has done nothing yet."""
+        """Output of the code in a new interpreter."""
         start = f"import sys, threading, time; sys.path.insert(0, {str(pathlib.Path(__file__).parent)!r}); import mcdem; from small import SMALL\n"
         done = subprocess.run([sys.executable, "-c", start + textwrap.dedent(code)], capture_output=True, text=True, timeout=300)
         self.assertEqual(done.returncode, 0, done.stderr)

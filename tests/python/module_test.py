@@ -1,4 +1,4 @@
-"""The Python module: scenes, runs, arrays and errors, as its users meet them."""
+"""The Python module: scenes, runs, arrays and errors."""
 import gc
 import os
 import pathlib
@@ -48,7 +48,7 @@ class Scenes(Folder):
         self.assertEqual(len(scene.labels), 3)
 
     def test_numbers_of_other_types_are_those_of_python(self):
-        class Loud(float):  # as NumPy 2 shows its numbers
+        class Loud(float):  # as NumPy 2 prints its numbers
             def __repr__(self):
                 return f"np.float64({float(self)})"
 
@@ -74,7 +74,7 @@ class Scenes(Folder):
                 mcdem.Scene(bad)
         with self.assertRaisesRegex(ValueError, "at most 32 deep"):
             mcdem.Scene.parse("", set={"grains.friction": listed})
-        while deep:  # or Python itself would go too deep in freeing it
+        while deep:  # releases the levels one by one; otherwise Python would recurse too deeply
             deep = deep.popitem()[1]
 
     def test_files_are_read_and_overridden(self):
@@ -106,7 +106,7 @@ class Arrays(unittest.TestCase):
         cls.run_ = mcdem.simulate(mcdem.Scene(SMALL, **MODELS))
 
     def expect_stress(self, recording, scan):
-        """The sum over the grains, from positions and contacts alone."""
+        """The sum over the grains, computed from positions and contacts."""
         position, volume = recording.positions(scan), np.pi / 6 * recording.diameter**3
         sums = np.zeros((30, 3, 3))
         for contact in recording.contacts(scan):
@@ -180,7 +180,7 @@ class Arrays(unittest.TestCase):
         del run
         gc.collect()
         self.assertIsNone(alive())
-        filler = [np.full(position.shape, 7.0) for _ in range(200)]  # where freed memory would be taken again
+        filler = [np.full(position.shape, 7.0) for _ in range(200)]  # would reuse freed memory
         self.assertTrue(np.array_equal(position, before), len(filler))
         self.assertIsNotNone(owner())
         del position
@@ -281,7 +281,7 @@ class Runs(Folder):
         thread = threading.Thread(target=count)
         thread.start()
         usual = sys.getswitchinterval()
-        sys.setswitchinterval(1e6)  # nobody is made to give way: the thread counts only where the simulation lets it
+        sys.setswitchinterval(1e6)  # no forced thread switches: the thread runs only if the simulation releases the lock
         try:
             at_start = counts[0]
             mcdem.simulate(scene)
@@ -331,7 +331,7 @@ class Runs(Folder):
             mcdem.export(self.folder / "shown", self.folder / "view")
 
     def test_where_all_replicas_fail_the_run_fails(self):
-        # far beyond what a half space bears: the corrections run away
+        # far beyond the range of a half space: the corrections run away
         scene = mcdem.Scene(SMALL, plate={"start": 0.088, "end": 0.03}, contact={"model": "mc_dem", "gamma": 1.8})
         with warnings.catch_warnings(record=True) as said:
             warnings.simplefilter("always")

@@ -1,6 +1,6 @@
-"""Every example in Python of the documents works: their ```python blocks are run in their order, in one empty folder.
+"""Every Python example in the documentation works: the ```python blocks are run in order, in one empty folder.
 
-readme_examples.py SOURCE PROGRAM; PROGRAM runs the blocks ```sh of host/python/README.md between them.
+readme_examples.py SOURCE PROGRAM; PROGRAM runs the ```sh blocks of host/python/README.md between them.
 """
 import os
 import pathlib
@@ -23,7 +23,7 @@ def examples(source, document=MODULE):
 
 
 def documents_with_examples(source):
-    """Of the source folder, without what is built and written there."""
+    """Markdown files of the source folder, without build folders and output."""
     folders = [one for one in source.iterdir() if one.is_dir() and not re.match(r"\.|build|out|shared", one.name)]
     found = [*source.glob("*.md"), *(file for folder in folders for file in folder.rglob("*.md"))]
     return {str(file.relative_to(source)) for file in found if re.search("^```py", file.read_text(), re.MULTILINE)}
@@ -40,7 +40,7 @@ def run_document(source, document, names):
 
 
 def check_reader(names):
-    """What h5py read is what the module says."""
+    """Compares values read by h5py with those of the module."""
     names["run"].close()
     recording = names["mcdem"].read("DIR")[0]
     assert (names["top_force"] == recording.top_force).all()
@@ -57,7 +57,7 @@ def main():
         os.chdir(folder)
         os.environ["MPLCONFIGDIR"] = folder
         os.symlink(source / "scenes", "scenes")
-        os.symlink("results", "DIR")  # the run of host/python/README.md, as host/io/README.md calls it
+        os.symlink("results", "DIR")  # the run of host/python/README.md under its name in host/io/README.md
         for document in DOCUMENTS:
             run_document(source, document, names)
         check_reader(names)

@@ -1,4 +1,4 @@
-"""A scene that runs in a moment, as keyword arguments of mcdem.Scene."""
+"""A small, fast scene as keyword arguments of mcdem.Scene."""
 SMALL = {
     "name": "small",
     "box": {"size_x": 0.06, "size_y": 0.06},

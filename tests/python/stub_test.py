@@ -1,7 +1,7 @@
-"""The types that the module states (__init__.pyi) against the module, name by name and argument by argument, and, by mypy,
-against itself and against the examples of the README.
+"""Compares the types in __init__.pyi with the module, name by name and argument by argument, and checks them by mypy,
+on their own and with the examples of the README.
 
-stub_test.py SOURCE; exit code 77: all is well, but mypy is not installed
+stub_test.py SOURCE; exit code 77: no errors, but mypy is not installed
 """
 import ast
 import inspect
@@ -14,20 +14,20 @@ import tempfile
 import mcdem
 import readme_examples
 
-# Types for annotations only: they have no counterpart at run time.
+# Types for annotations only; they do not exist at run time.
 def is_annotation_only(node):
     return any(isinstance(base, ast.Name) and base.id == "TypedDict" for base in node.bases)
 
 
 def arguments(function):
-    """Names of a stub's function, `*` before those by keyword only."""
+    """Argument names of a stub's function, `*` before keyword-only ones."""
     listed = [one.arg for one in function.args.args if one.arg != "self"]
     keywords = [one.arg for one in function.args.kwonlyargs]
     return listed + (["*"] + keywords if keywords else [])
 
 
 def documented_arguments(function):
-    """The same of the module: of a compiled function the first line of its documentation is the signature."""
+    """The same for the module; the signature of a compiled function is the first line of its documentation."""
     if inspect.isfunction(function):
         parameters = inspect.signature(function).parameters.values()
         keywords = [one.name for one in parameters if one.kind == one.KEYWORD_ONLY]

@@ -1,5 +1,5 @@
-// The surface displacement of one grain in double precision, written from the formulas as they are printed,
-// to check the kernels against.
+// Reference for the kernels: surface displacement of one grain in double precision, written directly from
+// the published formulas.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -17,7 +17,7 @@ using mcdem::SurfaceLaw;
 using mcdem::SurfaceShape;
 using mcdem::Vec3;
 
-/// A contact of the grain, or a direction that is only probed (force and contact radius zero).
+/// A contact of the grain, or a direction without contact (force and contact radius zero).
 struct Slot {
     Vec3 direction;             ///< unit vector from the centre outward
     double arm = 0;             ///< distance of the contact or probed point from the centre [m]
@@ -32,7 +32,7 @@ struct Grain {
     std::vector<Slot> slots;
 };
 
-/// Where the fitted polynomials end, and with them the law.
+/// Range of the fitted polynomials; arguments are clamped to it.
 inline constexpr double smallest_sine = 0.15, smallest_relative_radius = 1e-3, largest_relative_radius = 0.64;
 
 /// Eq. 1 of Brodu, Dijksman & Behringer 2015: outward displacement at slot c by the force at slot k [m].
@@ -70,7 +70,7 @@ double power_sum(const Coefficients& coefficient, double x) {
 
 inline double cubed(double x) { return x * x * x; }
 
-/// The sphere's law in units of 1/(E R), at c by k.
+/// Displacement at c by k in the sphere models, in units of 1/(E R).
 inline double sphere_displacement(const SurfaceLaw& law, const Grain& grain, const Slot& k, const Slot& c) {
     const double s = sine_of_half_angle(k, c);
     return power_sum(law.point, s) / s + spread(grain, k, c) * power_sum(law.size, s) / (s * s * s);
@@ -84,14 +84,14 @@ inline double whole_self_displacement(const SurfaceLaw& law, const Grain& grain,
     return S[0] + S[1] * std::log(x) + S[2] * x + S[3] * x * x + S[4] * x * x * x;
 }
 
-/// What a step knows at once; with confinement the rest of large contacts follows with the others'.
+/// Part of the self displacement that is solved within the step; with confinement the rest is delayed.
 inline double self_displacement(const SurfaceLaw& law, const Grain& grain, const Slot& c) {
     const double whole = whole_self_displacement(law, grain, c);
     return is_confined(law) ? whole / (1 + cubed(c.contact_radius / (0.4 * grain.radius))) : whole;
 }
 
-/// Outward works of a grain's contacts over E R^3: Hertz's, what contacts displace at themselves beyond and,
-/// as points, at one another, what their sizes add; and the mean pressure over E.
+/// Work of the surface displacements over E R^3 (confinement.h): Hertz overlaps; self displacements beyond
+/// Hertz and displacements by point forces; contribution of the contact sizes. Mean pressure over E.
 struct Works {
     double hertz = 0, points = 0, sizes = 0, pressure = 0;
 };
@@ -101,7 +101,8 @@ inline double hertz_share(const Grain& grain, const Slot& c) {
     return 0.75 * c.force / c.contact_radius * (1 - std::pow(grain.poisson_ratio, 2)) / grain.youngs_modulus;
 }
 
-/// Forces go with the cube of the radius, so that F^2 x^n has the integral F^2 x^n/(2 + n/3).
+/// The force is proportional to the cube of the contact radius x R, so F^2 x^n has the integral F^2 x^n/(2 +
+/// n/3).
 inline double own_work(const SurfaceLaw& law, const Grain& grain, const Slot& c) {
     const double x = relative_radius(grain, c);
     const auto& S = law.self;
@@ -128,10 +129,10 @@ inline Works works(const SurfaceLaw& law, const Grain& grain) {
     return w;
 }
 
-/// What confinement makes of the works at a mean pressure P.
+/// Confined work at a mean pressure P (confinement.h).
 inline double confined_work(const mcdem::Confinement& c, const Works& w, double P) {
     const double e = std::pow(1 + c.hertz * P, -2.0 / 3), g = 1 / (1 + c.coupling * P);
-    const double p = c.bulk[0] > 0 ? std::min(P, 0.1 / c.bulk[0]) : P;  // straight beyond P/K = 0.3
+    const double p = c.bulk[0] > 0 ? std::min(P, 0.1 / c.bulk[0]) : P;  // linear beyond P/K = 0.3
     const double overlap = c.bulk[0] * p + c.bulk[1] * p * p + c.bulk[2] * std::pow(p, 3);
     const double slope = c.bulk[0] + 2 * c.bulk[1] * p + 3 * c.bulk[2] * p * p;
     const double bulk = c.bulk[0] * p * p / 2 + c.bulk[1] * std::pow(p, 3) / 3 +
@@ -140,8 +141,8 @@ inline double confined_work(const mcdem::Confinement& c, const Works& w, double 
            4 * std::numbers::pi * (c.volume * std::pow(P, 3) * g * g - bulk);
 }
 
-/// Displacement of a slot outward [m]: the derivative of the work by its force; at a given P exactly, by P as
-/// a central difference.
+/// Outward displacement of a slot [m]: the derivative of the work with respect to its force. The derivative
+/// at constant P is analytic; the derivative with respect to P is a finite difference.
 inline double confined_displacement(const SurfaceLaw& law, const Grain& grain, const Works& w,
                                     const Slot& c) {
     constexpr double step = 1e-4;
@@ -162,7 +163,7 @@ inline double confined_displacement(const SurfaceLaw& law, const Grain& grain, c
     return sum;
 }
 
-/// Displacement of every slot outward [m], as the kernels should have it: with the law's polynomials.
+/// Outward displacement of every slot [m], with the same polynomials as in the kernels.
 inline std::vector<double> surface_displacement(const SurfaceLaw& law, const Grain& grain) {
     std::vector<double> result;
     const double per_force = 1 / (grain.youngs_modulus * grain.radius);
@@ -186,7 +187,7 @@ inline std::vector<double> surface_displacement(const SurfaceLaw& law, const Gra
     return result;
 }
 
-/// The same by model and from the series of the sphere, with no polynomial. Slow: some grains, not thousands.
+/// The same for each contact model, from the series of the sphere instead of polynomials. Slow.
 inline std::vector<double> surface_displacement_by_series(ContactModel model, double gamma,
                                                           const Grain& grain) {
     const bool elastic = model == ContactModel::elastic_sphere;

@@ -1,4 +1,4 @@
-// What two bodies in contact share, by the materials of both.
+// Constants of a pair of bodies from the materials of both.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -28,7 +28,7 @@ StepReference::Joint StepReference::joint(const Body& a, const Body& b) const {
     joint.shear_modulus =
         1 / ((2 - nu) / shear_modulus(e, nu) + (2 - nu_there) / shear_modulus(e_there, nu_there));
     joint.radius = wall ? a.radius : 1 / (1 / a.radius + 1 / b.radius);
-    // Both directions of a wall that is curved in one, by their geometric mean.
+    // Geometric mean of the two principal relative curvatures.
     if (b.curvature != 0) joint.radius = 1 / std::sqrt((1 / a.radius + b.curvature) / a.radius);
     joint.mass = wall ? a.mass : 1 / (1 / a.mass + 1 / b.mass);
     const auto [friction, restitution] = friction_and_restitution(a, b);
@@ -44,7 +44,7 @@ double StepReference::poisson_ratio(const Body& body) const {
                                   : scene_.species[body.species].material.poisson_ratio;
 }
 
-/// What a pair says of itself, else the smaller of both, else what the walls say.
+/// The values of [[pair]] if given; otherwise those of the wall, or the smaller of the two grains' values.
 std::array<double, 2> StepReference::friction_and_restitution(const Body& a, const Body& b) const {
     const auto own = [&](const Body& body) -> std::array<double, 2> {
         if (body.species < 0) return {scene_.walls.friction, scene_.walls.restitution};
@@ -65,7 +65,7 @@ std::array<double, 2> StepReference::friction_and_restitution(const Body& a, con
     return law;
 }
 
-/// What a force moves its own point by beyond Hertz [m/N]; nothing on a wall.
+/// Displacement of a contact by its own force beyond Hertz, over force [m/N]; zero for a wall.
 double StepReference::self_compliance(double contact_radius, const Body& body) const {
     if (body.radius == 0) return 0;
     const Grain grain{body.radius, body.youngs_modulus, poisson_ratio(body), {}};

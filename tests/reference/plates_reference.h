@@ -1,6 +1,6 @@
-// One elastic sphere held between rigid frictionless plates: the static forces of a contact model, by the
-// same lagged iteration as a simulation (forces move the surface, the surface changes the forces).
-// Radius and Young's modulus are 1.
+// Static forces of a contact model on one sphere between rigid frictionless plates. They are found by the
+// same delayed iteration as in a simulation: forces displace the surface, which changes the forces. Radius
+// and Young's modulus are 1.
 #pragma once
 #include <optional>
 #include <vector>
@@ -11,15 +11,15 @@ namespace reference {
 
 struct Plate {
     Vec3 direction;
-    double overlap;  ///< radius less the distance of the plate from the centre
+    double overlap;  ///< radius minus the distance of the plate from the centre
 };
 
-/// Force and surface displacement at every plate.
+/// Force and surface displacement at each plate.
 struct PlateSolution {
     std::vector<double> force, displacement;
 };
 
-/// Nothing where the force runs away: no static solution, or an overlap out of all proportion.
+/// Empty if the iteration diverges: there is no static solution, or an overlap exceeds 0.9.
 inline std::optional<PlateSolution> solve_plates(const SurfaceLaw& law, double poisson_ratio,
                                                  const std::vector<Plate>& plates) {
     constexpr double hopeless = 0.9, settled = 1e-11, relaxation = 0.5;
@@ -32,7 +32,7 @@ inline std::optional<PlateSolution> solve_plates(const SurfaceLaw& law, double p
     }
     for (int iteration = 0; iteration < 20000; ++iteration) {
         for (std::size_t c = 0; c < plates.size(); ++c) {
-            const double overlap = std::max(delta[c], 0.0);  // without contact the arm stays at the plate
+            const double overlap = std::max(delta[c], 0.0);  // without contact the arm ends at the plate
             grain.slots[c].force = 4.0 / 3 / (1 - poisson_ratio * poisson_ratio) * std::pow(overlap, 1.5);
             grain.slots[c].contact_radius = std::sqrt(overlap);
         }

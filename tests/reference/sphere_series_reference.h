@@ -1,5 +1,5 @@
-// A second, slower way to the numbers of host/elasticity/elastic_sphere_series.h, for tests: every mode by
-// solving its 2 x 2 system of tractions, every cap average by Simpson's rule. Radius and Young's modulus 1.
+// Independent, slower computation of the values of host/elasticity/elastic_sphere_series.h: each mode from
+// its 2 x 2 system of tractions, averages over caps by Simpson's rule. Radius and Young's modulus are 1.
 #pragma once
 #include <Eigen/Dense>
 #include <algorithm>
@@ -25,7 +25,7 @@ public:
         if (n == 0) return (Eigen::Matrix2d() << k, 0, 0, 0).finished();
         if (n == 1) return uniform_force_mode(k);
         Eigen::Matrix2d traction, displacement;
-        // The second field is scaled by `den`, so that it stays finite at nu = 1/2.
+        // The second solution is scaled by `den`, so that it remains finite at nu = 1/2.
         const double den = (n + 3) * 2 * nu_ + (n + 5) * k, alpha_den = -2 * (n * 2 * nu_ + (3 * n + 1) * k);
         const double lambda_divergence = 2 * nu_ * (2 * n * (n + 5) - 2 * (n + 3) * (3 * n + 1));
         displacement << n, n * den + alpha_den, 1, den;
@@ -34,7 +34,7 @@ public:
         return displacement * (shear * traction).inverse();
     }
 
-    /// Displacement at s = sin(theta/2) for point loads, and per unit of 2/5 a_k^2 + 2/3 a_c^2.
+    /// Displacement at s = sin(theta/2) by a point load; contribution per unit of 2/5 a_k^2 + 2/3 a_c^2.
     double point(double s) const {
         return sum(s, [&](int n) { return modes_[n](0, 0); });
     }
@@ -43,7 +43,8 @@ public:
                    [&](int n) { return modes_[n](0, 1) / 2 - (0.5 + n * (n + 1) / 4.0) * modes_[n](0, 0); });
     }
 
-    /// What a contact of radius a moves itself beyond Hertz, sphere less half space and gap less parabola.
+    /// Displacement of a contact of radius a by its own force beyond Hertz: sphere minus half space, and
+    /// exact gap minus parabola.
     double self(double a) const {
         const double half_space = -(1 - nu_ * nu_) / (2 * a);
         double gap = 0;
@@ -53,7 +54,7 @@ public:
     }
 
     /// Displacement along the plate normal, averaged over a punch of radius a_c, by a unit Hertz pressure of
-    /// radius a_k: nothing expanded. s as above; 0 for the same cap.
+    /// radius a_k, without expansion in the radii. s as above; 0 for the same cap.
     double spread_load(double a_k, double a_c, double s) const {
         auto sources = nodes(a_k), receivers = nodes(a_c);
         const int terms = std::max(400, int(120 / std::min(a_k, a_c)));
@@ -73,17 +74,17 @@ public:
 private:
     static constexpr int far_terms = 1200;
     struct Node {
-        double cosine, punch, hertz;  // weights of the two pressures, each summing to 1
+        double cosine, punch, hertz;  // weights of the two pressures; each set sums to 1
         double legendre = 1, before = 0;
     };
 
-    /// From P_n and P_{n-1} to P_{n+1} and P_n.
+    /// Recursion from P_n and P_{n-1} to P_{n+1} and P_n.
     static void advance(int n, double x, double& legendre, double& before) {
         before = ((2 * n + 1) * x * legendre - n * before) / (n + 1);
         std::swap(legendre, before);
     }
 
-    /// Moment of order n of a pressure; moves the nodes on to n + 1.
+    /// Moment of order n of a pressure; advances the nodes to n + 1.
     static Eigen::Vector2d moment(std::vector<Node>& caps, int n, double Node::*weight) {
         Eigen::Vector2d sum(0, 0);
         for (Node& node : caps) {
@@ -94,7 +95,8 @@ private:
         return sum;
     }
 
-    /// A uniform body force balances the load. Fields r^2 grad z and x z in the incompressible limit too.
+    /// A uniform body force balances the load. The fields r^2 grad z and x z also cover the incompressible
+    /// limit.
     Eigen::Matrix2d uniform_force_mode(double k) const {
         // Tractions times k over the shear modulus (lambda/mu = 2 nu/k):
         //   4 nu + 4 k   8 nu + 4 k

@@ -19,10 +19,10 @@ double shear_modulus(double youngs_modulus, double poisson_ratio) {
     return youngs_modulus / (2 * (1 + poisson_ratio));
 }
 
-/// The part of `v` across the unit vector e.
+/// Component of `v` perpendicular to the unit vector e.
 Vec3 across(const Vec3& v, const Vec3& e) { return v - v.dot(e) * e; }
 
-/// Of all images near by, the one closest to `to`.
+/// The periodic image of `point` that is closest to `to`.
 Vec3 nearest_image(const mcdem::Box& box, const Vec3& point, const Vec3& to) {
     if (box.shape != mcdem::ContainerShape::periodic) return point;
     Vec3 nearest = point;
@@ -62,7 +62,7 @@ StepReference::StepReference(const mcdem::Replica& scene, const mcdem::Packing& 
     for (std::size_t i = 0; i < radius_.size(); ++i) {
         const auto& g = material_[i];
         youngs_modulus_.push_back(g.youngs_modulus / (1 + excess_compliance[i]));
-        const double rayleigh_speed = 0.163 * g.poisson_ratio + 0.8766;  // over sqrt(G / rho)
+        const double rayleigh_speed = 0.163 * g.poisson_ratio + 0.8766;  // divided by sqrt(G / rho)
         rayleigh_time.push_back(pi * radius_[i] *
                                 std::sqrt(g.density / shear_modulus(youngs_modulus_[i], g.poisson_ratio)) /
                                 rayleigh_speed);
@@ -90,7 +90,7 @@ StepReference::Body StepReference::body(int grain) const {
             mass(grain),     youngs_modulus_[grain], species_[grain],         &law_[grain]};
 }
 
-/// A wall is a body of no radius at the foot of the perpendicular.
+/// A wall is a body of radius zero at the foot of the perpendicular.
 StepReference::Body StepReference::partner_of(int grain, int partner) const {
     if (!mcdem::is_wall(partner)) {
         Body there = body(partner);
@@ -136,7 +136,7 @@ void StepReference::list_neighbours() {
         }
 }
 
-/// Bulges count in part where the grains do not overlap by themselves, from there on more and more.
+/// The part of the surface displacements that counts, by the geometric overlap (effect bulge_contacts).
 double StepReference::counted_bulges(double geometric, double bulges) const {
     const double least = scene_.effects.bulge_contacts;
     if (geometric <= 0) return least * bulges;
@@ -144,7 +144,7 @@ double StepReference::counted_bulges(double geometric, double bulges) const {
     return (least + (1 - least) * geometric / std::abs(bulges)) * bulges;
 }
 
-/// The overlap at which Hertz's law has the force of the unloading branch; negative where there is a gap.
+/// Overlap at which Hertz's law gives the force of the unloading branch; negative for a gap (plasticity).
 double StepReference::plastic_overlap(double overlap, double& deepest) const {
     const double p = scene_.effects.plasticity;
     deepest = std::max(deepest, overlap);
@@ -188,7 +188,7 @@ Seen StepReference::see(int i, int partner, double elapsed, Memory& memory) cons
     return seen;
 }
 
-/// Normal force with damping, friction and rolling resistance, at a contact.
+/// Forces and torque of a contact: normal force with damping, friction, rolling resistance.
 void StepReference::push(Seen& seen, const Body& a, const Body& b, const Joint& joint, double elapsed,
                          Memory& memory) const {
     const auto& effects = scene_.effects;
@@ -205,7 +205,7 @@ void StepReference::push(Seen& seen, const Body& a, const Body& b, const Joint& 
     seen.energy *= 1 - effects.plasticity;
 
     const Vec3 r_a = seen.arm * e, r_b = (seen.arm - distance) * e;
-    // the other side's material at the contact point as this side's sees it move
+    // velocity of the other side's material at the contact point relative to this side's
     const Vec3 relative =
         (b.velocity + b.angular_velocity.cross(r_b)) - (a.velocity + a.angular_velocity.cross(r_a));
     const double stiffness = 2 * joint.modulus * std::sqrt(joint.radius * seen.overlap);
@@ -222,7 +222,7 @@ void StepReference::push(Seen& seen, const Body& a, const Body& b, const Joint& 
     seen.force = -normal * e + seen.tangential;
 }
 
-/// Adhesion, 2 pi w R* in contact, linearly less in a gap.
+/// Adhesion: 2 pi w R* in contact, decreasing linearly in a gap.
 void StepReference::attract(Seen& seen, double overlap, const Joint& joint) const {
     const double most = 2 * pi * scene_.effects.adhesion * joint.radius;
     const double resolved = 20 * time_step_ * time_step_ * most / joint.mass;
@@ -233,7 +233,7 @@ void StepReference::attract(Seen& seen, double overlap, const Joint& joint) cons
     seen.energy -= overlap > 0 ? most * (range / 2 + overlap) : most * std::pow(range - gap, 2) / (2 * range);
 }
 
-/// Against the relative angular velocity; fades as saturated friction does.
+/// Rolling resistance: torque against the relative angular velocity, viscous at small velocities.
 Vec3 StepReference::couple(double normal, const Body& a, const Body& b, const Joint& joint) const {
     const auto inertia = [](const Body& body) { return 0.4 * body.mass * body.radius * body.radius; };
     const double reduced = b.radius == 0 ? inertia(a) : 1 / (1 / inertia(a) + 1 / inertia(b));
@@ -243,8 +243,7 @@ Vec3 StepReference::couple(double normal, const Body& a, const Body& b, const Jo
     return std::min(limit / smooth, 0.1 * reduced / time_step_) * relative;
 }
 
-/// Fades to a viscous force below the sliding velocity, and never does more in a step than a tenth of what
-/// would stop the sliding.
+/// Viscous below `sliding_velocity`. A step removes at most a tenth of m* times the sliding velocity.
 Vec3 StepReference::saturated_friction(double limit, const Vec3& sliding, const Joint& joint) const {
     const double smooth_speed = std::hypot(sliding.norm(), scene_.contact.sliding_velocity);
     return std::min(limit / smooth_speed, 0.1 * joint.mass / time_step_) * sliding;
@@ -270,7 +269,7 @@ std::vector<Seen> StepReference::neighbours() const {
     return all;
 }
 
-/// Surfaces as this step's forces move them, extrapolated to the next:
+/// Surface displacements by the forces of this step, extrapolated to the next:
 /// b(t + dt) = (10 b(t) - 5 b(t - 2 dt) + b(t - 4 dt)) / 6.
 void StepReference::displace_surfaces(const std::vector<std::vector<Seen>>& seen) {
     for (std::size_t i = 0; i < seen.size(); ++i) {
@@ -279,7 +278,7 @@ void StepReference::displace_surfaces(const std::vector<std::vector<Seen>>& seen
             grain.slots.push_back({c.direction, c.arm, c.elastic, c.contact_radius});
         auto moved = surface_displacement(law_[i], grain);
         for (std::size_t c = 0; c < moved.size(); ++c) {
-            if (seen[i][c].elastic > 0)  // a contact's own term is part of its overlap
+            if (seen[i][c].elastic > 0)  // a contact's self displacement is part of its overlap
                 moved[c] -= self_displacement(law_[i], grain, grain.slots[c]) * seen[i][c].elastic /
                             (grain.youngs_modulus * grain.radius);
             Memory& m = memory[i].at(seen[i][c].partner);
@@ -311,8 +310,8 @@ void StepReference::step() {
     plate_z_ += plate_velocity_ * dt;
 }
 
-/// What the surfaces of spheres store: the integral of displacements over forces that grow from nothing
-/// together, contact radii with their cube roots. By the midpoint rule.
+/// Energy stored by the surface displacements of sphere models: the integral of the displacements over
+/// forces that increase in proportion from zero, with contact radii as their cube roots. Midpoint rule.
 double StepReference::displacement_energy() const {
     constexpr int parts = 200;
     double energy = 0;
@@ -349,7 +348,8 @@ Totals StepReference::totals() const {
     if (finite) totals.elastic_energy += displacement_energy();
     for (const Seen& c : neighbours()) {
         const bool wall = mcdem::is_wall(c.partner);
-        // what a contact stores, half of it on each side of two grains, less the work of the grain's bulge
+        // energy of the contact (half for a pair of grains), minus the work of the grain's surface
+        // displacement
         totals.elastic_energy += (wall ? 1 : 0.5) * c.energy - (finite ? 1 : 0.5) * c.elastic * c.bulge;
         totals.deepest_overlap = std::max(totals.deepest_overlap,
                                           c.overlap / (radius_[c.grain] + (wall ? 0 : radius_[c.partner])));

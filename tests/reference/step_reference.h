@@ -1,5 +1,5 @@
-// One step of a replica in double precision, written in vector form from the formulas of the paper and of the
-// effects, with every pair of grains looked at: what the kernels are checked against.
+// Reference for the kernels: one time step of a replica in double precision, written in vector form directly
+// from the published formulas. It loops over all pairs of grains.
 #pragma once
 #include <array>
 #include <map>
@@ -13,29 +13,29 @@ namespace reference {
 
 using mcdem::Vec3;
 
-/// What a grain remembers of one neighbour from step to step.
+/// State of a contact that a grain stores between steps.
 struct Memory {
-    double predicted = 0;          ///< surface displacement there, for the coming step [m]
-    std::array<double, 4> past{};  ///< .. as the forces of the last four steps made it, the latest first
-    Vec3 spring = Vec3::Zero();    ///< tangential, Mindlin friction [m]
-    double deepest = 0;            ///< overlap so far, plasticity [m]
-    double relaxed = 0;            ///< force, viscoelasticity [N]
+    double predicted = 0;          ///< surface displacement extrapolated to the next step [m]
+    std::array<double, 4> past{};  ///< .. by the forces of each of the last four steps, latest first
+    Vec3 spring = Vec3::Zero();    ///< tangential spring of Mindlin friction [m]
+    double deepest = 0;            ///< largest overlap so far (plasticity) [m]
+    double relaxed = 0;            ///< internal variable q (viscoelasticity) [N]
 };
 
-/// One neighbour as seen from one grain.
+/// A neighbour of a grain and its contact.
 struct Seen {
     int grain = 0;
     int partner = 0;                 ///< a grain, or mcdem::wall_partner
     Vec3 direction = Vec3::Zero();   ///< e, from the grain outward
-    double overlap = 0;              ///< corrected; zero where there is no contact [m]
+    double overlap = 0;              ///< corrected; zero without contact [m]
     double contact_radius = 0;       ///< a [m]
-    double elastic = 0;              ///< Hertz force, stiffened [N]
+    double elastic = 0;              ///< Hertz force including stiffening [N]
     double energy = 0;               ///< stored in the contact [J]
-    double bulge = 0;                ///< of the grain's own surface [m]
+    double bulge = 0;                ///< displacement of the grain's own surface [m]
     double arm = 0;                  ///< centre to contact point, or to the probed surface point [m]
     Vec3 tangential = Vec3::Zero();  ///< friction on the grain [N]
     Vec3 couple = Vec3::Zero();      ///< rolling resistance on the grain [N m]
-    Vec3 force = Vec3::Zero();       ///< on the grain, all together [N]
+    Vec3 force = Vec3::Zero();       ///< total force on the grain [N]
 };
 
 struct Totals {
@@ -45,23 +45,23 @@ struct Totals {
 
 class StepReference {
 public:
-    /// Starts at rest. Time step and lengths that the scene gives as fractions are worked out here.
+    /// Starts at rest. Computes the time step and the lengths that the scene gives as fractions.
     StepReference(const mcdem::Replica& scene, const mcdem::Packing& packing);
 
-    std::vector<Vec3> position, velocity, angular_velocity;  ///< velocities stand half a step before
+    std::vector<Vec3> position, velocity, angular_velocity;  ///< velocities are half a step behind
     std::vector<std::map<int, Memory>> memory;               ///< grain -> partner -> memory
 
     double time_step() const { return time_step_; }
     void set_time_step(double time_step) { time_step_ = time_step; }
-    double reach() const { return reach_; }  ///< gap up to which a neighbour is listed [m]
+    double reach() const { return reach_; }  ///< largest gap of a neighbour in the list [m]
     double mass(int grain) const;
 
-    /// For the steps that follow: where the plate is now, how fast it moves, drag on top of the scene's.
+    /// Position and velocity of the plate in the following steps; drag in addition to the scene's.
     void begin(double plate_z, double plate_velocity = 0, double settle_drag = 0);
-    /// Every pair within reach; what was remembered stays with a neighbour that is still there.
+    /// Lists all pairs within reach; keeps the memory of pairs that were in the list.
     void list_neighbours();
     void step();
-    /// Every grain's neighbours as they are now, touching or not.
+    /// All neighbours of all grains in the present state, touching or not.
     std::vector<Seen> neighbours() const;
     Totals totals() const;
 
@@ -69,12 +69,12 @@ private:
     struct Body {
         Vec3 position, velocity, angular_velocity;
         double radius, mass;
-        double youngs_modulus;  ///< of this very body [Pa]
+        double youngs_modulus;  ///< of this grain, including its excess compliance [Pa]
         int species = -1;       ///< -1: a wall
         const mcdem::SurfaceLaw* law = nullptr;
-        double curvature = 0;  ///< of a wall around an upright axis, hollow: below zero [1/m]
+        double curvature = 0;  ///< of a cylinder's wall, which is concave: negative [1/m]
     };
-    /// What two bodies in contact share.
+    /// Constants of a pair of bodies.
     struct Joint {
         double modulus, shear_modulus;  ///< E*, G* [Pa]
         double radius, mass;            ///< R* [m], m* [kg]

@@ -1,5 +1,5 @@
-// What the tests of kernels and simulation share: the device, packings made on the spot, an engine with
-// its scene at hand, and the comparison of an engine with the reference.
+// Shared by the tests of kernels and simulation: the device, generated packings, an engine with its scene,
+// and the comparison of an engine with the reference.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -32,7 +32,7 @@ inline constexpr ContactModel all_models[] = {ContactModel::independent,
                                               ContactModel::elastic_sphere,
                                               ContactModel::hyperelastic_sphere};
 
-/// The device that MCDEM_DEVICE names; one for the whole program.
+/// The device selected by MCDEM_DEVICE; one per process.
 inline mcdem::Device& device() {
     static mcdem::Device the_device;
     return the_device;
@@ -42,7 +42,7 @@ inline KernelBuild build(Precision precision, int slots = 16) {
     return mcdem::kernel_build(device(), precision, slots);
 }
 
-/// The other way of treating contacts: the GPU's on a CPU, the CPU's on a GPU.
+/// The kernel build with the other layout: the GPU layout on a CPU, the CPU layout on a GPU.
 inline KernelBuild other_way(KernelBuild build) {
     build.lanes = build.lanes > 1 ? 1 : 16;
     return build;
@@ -50,7 +50,7 @@ inline KernelBuild other_way(KernelBuild build) {
 
 inline bool has_double() { return device().info().double_precision; }
 
-/// Reproducible with every standard library.
+/// Gives the same numbers with every standard library.
 class Uniform {
 public:
     explicit Uniform(unsigned seed) : engine_(seed) {}
@@ -71,7 +71,7 @@ private:
     std::mt19937_64 engine_;
 };
 
-/// One material for grains and walls that shows every effect in few steps.
+/// One material for grains and walls, with which every effect is visible within a few steps.
 inline Replica test_replica(ContactModel model = ContactModel::mc_dem) {
     Replica replica;
     replica.grains = {23.3e3, 0.45, 1000, 300, 0.3, 0.7, 0.5};
@@ -81,14 +81,14 @@ inline Replica test_replica(ContactModel model = ContactModel::mc_dem) {
     return replica;
 }
 
-/// A replica and where its grains start.
+/// A replica and its initial packing.
 struct Start {
     Replica replica;
     Packing packing;
 };
 
-/// Grains of 10 mm radius (5 % either way), out of line on a cubic lattice whose neighbours overlap by
-/// about 5 % of a diameter, in a box whose walls press on the outer ones.
+/// Grains of 10 mm radius (5 % either way) on a cubic lattice with random offsets. Neighbours overlap by
+/// about 5 % of a diameter, and the outer grains touch the walls.
 inline Start jittered_lattice(Replica replica, int count, unsigned seed) {
     constexpr double radius = 0.01, spacing = 0.019, wall_gap = 0.0095;
     Uniform uniform(seed);
@@ -106,8 +106,8 @@ inline Start jittered_lattice(Replica replica, int count, unsigned seed) {
     return {replica, packing};
 }
 
-/// `layers` of a jittered square lattice, all of them overlapping their neighbours across the cell's ends;
-/// some grains have moved on to other images of the cell.
+/// `layers` of a square lattice with random offsets, whose grains also overlap across the periodic sides.
+/// Some grains are in other images of the cell.
 inline Start periodic_lattice(Replica replica, int side, int layers, unsigned seed) {
     constexpr double spacing = 0.019;
     Uniform uniform(seed);
@@ -125,7 +125,7 @@ inline Start periodic_lattice(Replica replica, int side, int layers, unsigned se
     return {replica, packing};
 }
 
-/// A jittered cubic lattice, `side` grains along each edge, that repeats in all directions.
+/// A cubic lattice with random offsets, `side` grains along each edge, periodic in all directions.
 inline Start cell_lattice(Replica replica, int side, unsigned seed) {
     Start start = periodic_lattice(replica, side, side, seed);
     start.replica.grains.excess_density = 0;
@@ -137,7 +137,7 @@ inline Start cell_lattice(Replica replica, int side, unsigned seed) {
     return start;
 }
 
-/// `layers` of two rings of grains in a cylinder of 40 mm radius, the outer ones pressed into its wall.
+/// `layers` of two rings of grains in a cylinder of 40 mm radius; the outer ring touches the wall.
 inline Start rings_in_a_cylinder(Replica replica, int layers, unsigned seed) {
     constexpr double radius = 0.04, spacing = 0.019;
     Uniform uniform(seed);
@@ -157,7 +157,7 @@ inline Start rings_in_a_cylinder(Replica replica, int layers, unsigned seed) {
     return {replica, packing};
 }
 
-/// A box so wide that no grain reaches a wall, its grains moved to the middle.
+/// Grains in the middle of a box that is so large that no grain touches a wall.
 inline Start free_cluster(Replica replica, std::vector<Vec3> position, std::vector<double> diameter) {
     constexpr double box = 1;
     for (auto& x : position) x += Vec3::Constant(box / 2);
@@ -167,7 +167,7 @@ inline Start free_cluster(Replica replica, std::vector<Vec3> position, std::vect
     return {replica, {std::move(position), std::move(diameter)}};
 }
 
-/// A central sphere and its twelve neighbours as in a face-centred cubic crystal, `distance` apart.
+/// A sphere and its twelve neighbours in a face-centred cubic crystal; neighbours are `distance` apart.
 inline std::vector<Vec3> thirteen(double distance) {
     const double h = distance / std::sqrt(2.0);
     std::vector<Vec3> all{Vec3::Zero()};
@@ -176,7 +176,7 @@ inline std::vector<Vec3> thirteen(double distance) {
     return all;
 }
 
-/// Thirteen free grains of about 10 mm radius, overlapping by some 5 %, irregular.
+/// Thirteen free grains of about 10 mm radius that overlap by about 5 %, with random offsets.
 inline Start irregular_cluster(Replica replica, unsigned seed) {
     Uniform uniform(seed);
     auto position = thirteen(0.019);
@@ -190,7 +190,7 @@ inline Start irregular_cluster(Replica replica, unsigned seed) {
     return free_cluster(replica, position, diameter);
 }
 
-/// Thirteen equal grains held tightly by the six walls; `compression` is every overlap over the sum of radii.
+/// Thirteen equal grains confined by six walls; `compression` is every overlap over the sum of radii.
 inline Start caged_cluster(Replica replica, double compression, double jitter, unsigned seed) {
     constexpr double radius = 0.01;
     Uniform uniform(seed);
@@ -209,7 +209,7 @@ inline Start caged_cluster(Replica replica, double compression, double jitter, u
 
 inline Precision finest() { return has_double() ? Precision::double_precision : Precision::single_precision; }
 
-/// An engine of some starts, its plates standing still at plate.start unless told otherwise.
+/// An engine with several replicas; the plates are at rest at plate.start.
 class Batch {
 public:
     Batch(const KernelBuild& build, const std::vector<Start>& starts)
@@ -219,7 +219,7 @@ public:
     Engine& engine() { return engine_; }
     const Start& start(int replica = 0) const { return starts_[replica]; }
 
-    /// `steps` of every replica, in as many intervals as it takes. Returns the last interval's results.
+    /// Advances every replica by `steps`, in as many intervals as necessary. Returns the last results.
     std::vector<mcdem::IntervalResult> advance(int steps, double settle_drag = 0) {
         std::vector<int> left(starts_.size(), steps);
         std::vector<mcdem::IntervalResult> last(starts_.size());
@@ -254,7 +254,7 @@ private:
     std::vector<Start> starts_;
 };
 
-/// The reference of one replica, standing where the engine's rounded numbers stand.
+/// The reference of one replica, with the engine's (rounded) state.
 inline StepReference reference_of(const Engine& engine, int r, const Start& start) {
     StepReference reference(start.replica, start.packing);
     const auto state = engine.state(r);
@@ -265,14 +265,14 @@ inline StepReference reference_of(const Engine& engine, int r, const Start& star
     return reference;
 }
 
-/// Largest distance of two sets of vectors over the largest vector of the second.
+/// Largest distance between vectors of two sets over the largest vector of the second set.
 inline double relative_difference(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
     EXPECT_EQ(a.size(), b.size());
     double size = 0, difference = 0;
     for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
         size = std::max(size, b[i].norm());
         const double d = (a[i] - b[i]).norm();
-        difference = d <= difference ? difference : d;  // a not-a-number stays
+        difference = d <= difference ? difference : d;  // NaN is kept
     }
     return difference == 0 ? 0 : difference / size;
 }
@@ -283,7 +283,7 @@ inline std::vector<Vec3> wall_forces(const std::array<Vec3, 6>& forces) {
     return {forces.begin(), forces.end()};
 }
 
-/// The same bits in every number.
+/// True if all bits are equal.
 inline bool same_bits(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
     return a.size() == b.size() &&
            (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(Vec3)) == 0);

@@ -1,4 +1,4 @@
-// What is said of a convergence: table, words and JSON agree with the numbers, and so does the figure.
+// Table, text, JSON and figure of a convergence study contain the same numbers.
 #include "report/run/convergence_tables.h"
 
 #include <gmock/gmock.h>
@@ -12,7 +12,8 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-/// Two causes; the first makes the top force 2 % too high while loading at 10 mm, all else is well.
+/// Two causes: the first makes the top force 2 % too large while loading at 10 mm; everything else is within
+/// limits.
 Convergence example() {
     const Grid grid{{0.01, 0.02}, 0.002, 0.02};
     Convergence c;
@@ -30,7 +31,7 @@ Convergence example() {
     return c;
 }
 
-TEST(ConvergenceTables, WordsNameCauseSizeDirectionPlaceAndRemedy) {
+TEST(ConvergenceTables, TextNamesCauseSizeSignPositionAndRemedy) {
     const auto words = words_of_convergence(example());
     ASSERT_EQ(words.size(), 3u);
     EXPECT_EQ(words[0], "Not converged.");
@@ -40,21 +41,21 @@ TEST(ConvergenceTables, WordsNameCauseSizeDirectionPlaceAndRemedy) {
     EXPECT_EQ(words[2], "list margin: nothing beyond the limits");
 }
 
-TEST(ConvergenceTables, ConvergedIsSaidWhereNothingIsBeyond) {
+TEST(ConvergenceTables, TextSaysConvergedIfNothingExceedsItsLimit) {
     Convergence c = example();
     c.causes[0].cells[0] = {0.004, 0.0001};
     EXPECT_THAT(words_of_convergence(c)[0], HasSubstr("Converged"));
     EXPECT_THAT(to_text(table_of_convergence(c), TableFormat::terminal), Not(HasSubstr(" % *")));
 }
 
-TEST(ConvergenceTables, TheTableMarksWhatIsBeyond) {
+TEST(ConvergenceTables, TableMarksErrorsBeyondTheirLimit) {
     const std::string text = to_text(table_of_convergence(example()), TableFormat::terminal);
     EXPECT_THAT(text, HasSubstr("+2.00 +- 0.20 % *"));
     EXPECT_THAT(text, HasSubstr("+0.01 +- 0.01 sd"));
     EXPECT_THAT(text, HasSubstr("32 jittered copies of one packing"));
 }
 
-TEST(ConvergenceTables, JsonHoldsEveryError) {
+TEST(ConvergenceTables, JsonContainsEveryError) {
     const auto json = nlohmann::json::parse(convergence_json(example()));
     EXPECT_EQ(json["causes"].size(), 2u);
     EXPECT_EQ(json["causes"][0]["errors"].size(), example().cells.size());
@@ -63,7 +64,7 @@ TEST(ConvergenceTables, JsonHoldsEveryError) {
     EXPECT_EQ(json["causes"][1]["errors"][0]["beyond"], false);
 }
 
-TEST(ConvergenceTables, TheFigureHasARowAnObservableAndASeriesACause) {
+TEST(ConvergenceTables, FigureHasARowPerObservableAndASeriesPerCause) {
     const auto values = convergence_figure_values(example());
     EXPECT_EQ(values["rows"].size(), observables().size());
     EXPECT_EQ(values["causes"][0]["words"], "plate speed");

@@ -1,4 +1,4 @@
-// Title, lines, picture and file of a diagnosis say the same, whatever was found.
+// Title, text, figure and JSON file of a diagnosis agree for all results.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -84,7 +84,7 @@ private:
         findings_.proposals.push_back(p);
     }
 
-    /// As `locate` has it: an entry for every cell that stands out after recalibration, where there is a gap.
+    /// As locate() does: with a gap, one entry for every significant cell after recalibration.
     void add_cells(Diagnosis& d) {
         d.where_threshold = 4;
         const double raw = uniform(0, 6), refitted = coin() ? 0.5 : uniform(0, 6);
@@ -118,7 +118,7 @@ std::string line(const Diagnosis& diagnosis, const std::string& about) {
     return "";
 }
 
-/// All "81 % of the gap" of a text.
+/// All phrases like "81 % of the gap" in a text.
 std::set<std::string> parts_of_the_gap(const std::string& text) {
     static const std::regex part("((< )?-?[0-9]+ %) of the gap");
     std::set<std::string> found;
@@ -129,7 +129,7 @@ std::set<std::string> parts_of_the_gap(const std::string& text) {
 
 bool says(const std::string& text, const char* words) { return text.find(words) != std::string::npos; }
 
-TEST(DiagnosisAgreement, OfTitleFiguresPictureAndFile) {
+TEST(DiagnosisAgreement, TitleFiguresTextAndFileAgree) {
     std::set<Verdict> seen;
     for (unsigned seed = 0; seed < findings_tried; ++seed) {
         const Diagnosis d = RandomDiagnosis(seed).diagnosis();

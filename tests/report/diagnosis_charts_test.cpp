@@ -16,7 +16,7 @@ std::vector<std::string> names_of(const std::vector<Chart>& charts) {
     return names;
 }
 
-TEST(DiagnosisCharts, have_the_values_of_figures_for_print) {
+TEST(DiagnosisCharts, have_the_values_of_the_printed_figures) {
     const auto d = samples::diagnosis(Verdict::effect);
     const auto charts = diagnosis_charts(d);
     ASSERT_THAT(names_of(charts), testing::ElementsAre("where", "which", "how_far", "gap_left"));
@@ -30,7 +30,7 @@ TEST(DiagnosisCharts, have_the_values_of_figures_for_print) {
     EXPECT_THAT(charts[3].caption, testing::HasSubstr(d.gap_reduction->held_out));
 }
 
-TEST(DiagnosisCharts, are_those_that_there_are) {
+TEST(DiagnosisCharts, exist_only_with_data) {
     EXPECT_TRUE(diagnosis_charts({}).empty());
     auto d = samples::diagnosis(Verdict::effect);
     d.gap_reduction->top_force.clear();

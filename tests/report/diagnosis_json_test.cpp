@@ -26,7 +26,7 @@ std::vector<std::string> keys_of(const Json& object) {
 
 Json parsed(const Diagnosis& diagnosis) { return Json::parse(diagnosis_json(diagnosis)); }
 
-/// Calls `check` on every value within.
+/// Calls `check` on every value of a document.
 void each(const Json& json, const std::function<void(const Json&)>& check) {
     check(json);
     if (json.is_structured())
@@ -81,7 +81,7 @@ TEST(DiagnosisJson, has_the_documented_types) {
     EXPECT_EQ(json["shrink"]["interval"].size(), 2u);
 }
 
-TEST(DiagnosisJson, carries_the_values) {
+TEST(DiagnosisJson, contains_the_values) {
     const auto d = samples::diagnosis(Verdict::effect);
     const auto json = parsed(d);
     EXPECT_EQ(json["verdict"], "effect");
@@ -106,7 +106,7 @@ TEST(DiagnosisJson, carries_the_values) {
     EXPECT_EQ(json["provenance"]["seed"], "17");
 }
 
-TEST(DiagnosisJson, what_is_not_there_is_null_or_empty) {
+TEST(DiagnosisJson, missing_values_are_null_or_empty) {
     const auto json = parsed({});
     EXPECT_EQ(json["verdict"], "no_gap");
     EXPECT_TRUE(json["shrink"].is_null());
@@ -123,7 +123,7 @@ TEST(DiagnosisJson, numbers_that_are_not_finite_become_null) {
     d.causes[0].amplitude = std::nan("");
     d.gap_reduction->metrics["Rtop"] = {INFINITY, 1};
     const auto json = parsed(d);
-    EXPECT_TRUE(json["detection_limits"][12]["minimum_amplitude"].is_null());  // infinite: never shows
+    EXPECT_TRUE(json["detection_limits"][12]["minimum_amplitude"].is_null());  // infinite: cannot be detected
     EXPECT_TRUE(json["causes"][0]["amplitude"].is_null());
     EXPECT_TRUE(json["shrink"]["metrics"]["Rtop"][0].is_null());
     each(json, [](const Json& value) {
@@ -133,7 +133,7 @@ TEST(DiagnosisJson, numbers_that_are_not_finite_become_null) {
     });
 }
 
-TEST(DiagnosisJson, any_text_is_carried_and_bytes_that_are_none_are_replaced) {
+TEST(DiagnosisJson, any_text_is_kept_and_invalid_bytes_are_replaced) {
     const std::string hostile = "\"}]\n\\ <x> \x01";
     auto d = samples::with_texts(samples::diagnosis(Verdict::group), hostile);
     EXPECT_EQ(parsed(d)["causes"][0]["effect"], hostile);
@@ -148,7 +148,7 @@ TEST(DiagnosisJson, verdicts_have_unique_names) {
                                             "calibration_suspect"}));
 }
 
-TEST(DiagnosisJson, is_read_again_as_it_was_written) {
+TEST(DiagnosisJson, is_read_back_as_written) {
     for (const auto verdict : samples::all_verdicts) {
         auto d = samples::diagnosis(verdict);
         d.cells.front().z_score = std::nan("");
@@ -160,7 +160,7 @@ TEST(DiagnosisJson, is_read_again_as_it_was_written) {
     EXPECT_EQ(diagnosis_json(diagnosis_of_json(bare, "here")), bare);
 }
 
-TEST(DiagnosisJson, what_is_none_is_refused_with_its_place) {
+TEST(DiagnosisJson, invalid_documents_are_refused_with_the_position) {
     auto json = parsed(samples::diagnosis(Verdict::effect));
     json.erase("ranking");
     auto wrong = parsed(samples::diagnosis(Verdict::effect));

@@ -73,7 +73,7 @@ TEST(DiagnosisPage, has_all_numbers) {
         EXPECT_TRUE(contains(page, words)) << words;
 }
 
-TEST(DiagnosisPage, hostile_texts_are_shown_and_never_run) {
+TEST(DiagnosisPage, hostile_texts_are_shown_and_not_executed) {
     const TestFolder folder;
     const std::string hostile =
         "<script>alert(1)</script>\"'&`touch pwned1`'; system('touch pwned2') %s%n \\ \x01";
@@ -84,7 +84,7 @@ TEST(DiagnosisPage, hostile_texts_are_shown_and_never_run) {
     EXPECT_TRUE(well_formed(page, folder.path));
 }
 
-TEST(DiagnosisPage, every_verdict_has_a_page_of_its_own_even_without_charts) {
+TEST(DiagnosisPage, every_verdict_has_a_page_also_without_charts) {
     const TestFolder folder;
     std::set<std::string> headings;
     for (const auto verdict : samples::all_verdicts) {
@@ -99,14 +99,14 @@ TEST(DiagnosisPage, every_verdict_has_a_page_of_its_own_even_without_charts) {
     EXPECT_EQ(headings.size(), samples::all_verdicts.size());
 }
 
-TEST(DiagnosisPage, is_one_file) {
+TEST(DiagnosisPage, is_a_single_file) {
     const TestFolder folder;
     const auto diagnosis = samples::diagnosis(Verdict::group);
     write_diagnosis_page(diagnosis, folder.path / "diagnosis.html");
     EXPECT_EQ(names_in(folder.path), std::set<std::string>{"diagnosis.html"});
 }
 
-TEST(DiagnosisPage, needs_a_folder) {
+TEST(DiagnosisPage, requires_a_folder) {
     const auto diagnosis = samples::diagnosis(Verdict::no_gap);
     EXPECT_THROW(write_diagnosis_page(diagnosis, "/nonexistent/folder/page.html"), RunError);
 }

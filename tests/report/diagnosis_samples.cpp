@@ -42,7 +42,7 @@ constexpr std::array<Candidate, 18> candidates{{
     {"position_bias", "relative", never, 1},
 }};
 
-/// Where adhesion, say, would show: the part of each observable.
+/// Fraction of an effect in each observable.
 double signature(std::size_t observable, bool unload, double displacement) {
     const double strength = 7 * std::sin(2.3 * double(observable)) * std::exp(-0.25 * double(observable % 6));
     return strength * (unload ? 1.0 : 0.55) * std::sqrt(displacement / 30e-3);

@@ -1,4 +1,4 @@
-// Diagnoses as they may come out, one for each verdict: made up, but with the size and spread of real ones.
+// Artificial diagnoses, one for each verdict, of the size and with the scatter of real ones.
 #pragma once
 #include "diagnose/decide/diagnosis.h"
 
@@ -11,7 +11,7 @@ inline constexpr std::array all_verdicts{Verdict::no_gap,        Verdict::effect
                                          Verdict::group,         Verdict::unknown_effect,
                                          Verdict::not_converged, Verdict::calibration_suspect};
 
-/// Every text of it replaced by `text`.
+/// Replaces every text by `text`.
 Diagnosis with_texts(Diagnosis diagnosis, const std::string& text);
 
 }  // namespace mcdem::samples

@@ -24,7 +24,7 @@ std::string line(const Diagnosis& diagnosis, const std::string& about) {
 class EveryVerdict : public testing::TestWithParam<Verdict> {};
 INSTANTIATE_TEST_SUITE_P(DiagnosisText, EveryVerdict, testing::ValuesIn(samples::all_verdicts));
 
-TEST_P(EveryVerdict, has_six_lines_that_end_in_a_full_stop) {
+TEST_P(EveryVerdict, has_six_sentences) {
     for (const auto& d :
          {samples::diagnosis(GetParam()), samples::with_texts(samples::diagnosis(GetParam()), "a\nb\r")}) {
         const auto text = diagnosis_text(d);
@@ -37,7 +37,7 @@ TEST_P(EveryVerdict, has_six_lines_that_end_in_a_full_stop) {
     }
 }
 
-TEST_P(EveryVerdict, claims_no_proof) {
+TEST_P(EveryVerdict, does_not_claim_proof) {
     const auto d = samples::diagnosis(GetParam());
     const auto text = diagnosis_text(d) + verdict_sentence(d);
     for (const char* claim : {"caused by", "because of", "is due to", "proves", "is proven"})
@@ -49,28 +49,28 @@ TEST_P(EveryVerdict, claims_no_proof) {
     }
 }
 
-TEST_P(EveryVerdict, is_told_without_any_of_the_optional_parts) {
+TEST_P(EveryVerdict, works_without_optional_parts) {
     Diagnosis d;
     d.verdict = GetParam();
     EXPECT_EQ(std::ranges::count(diagnosis_text(d), '\n'), 6);
     EXPECT_FALSE(verdict_sentence(d).empty());
 }
 
-TEST(DiagnosisText, no_gap_tells_what_would_have_been_seen) {
+TEST(DiagnosisText, no_gap_lists_the_detection_limits) {
     const auto d = samples::diagnosis(Verdict::no_gap);
     EXPECT_THAT(line(d, "Gap"), AllOf(StartsWith("none"), HasSubstr("p = 0.44")));
     EXPECT_THAT(line(d, "Limits"), AllOf(HasSubstr("adhesion from 0.08 mJ/m²"), HasSubstr("and 11 more"),
                                          HasSubstr("never show rolling resistance and bias of positions")));
 }
 
-TEST(DiagnosisText, no_gap_puts_the_limits_of_the_nearest_candidates_first) {
+TEST(DiagnosisText, no_gap_starts_with_the_limits_of_the_best_candidates) {
     auto d = samples::diagnosis(Verdict::no_gap);
     std::ranges::reverse(d.ranking);
     EXPECT_THAT(line(d, "Limits"),
                 HasSubstr("would show shifted force threshold from 1 mN, bias of contact forces"));
 }
 
-TEST(DiagnosisText, effect) {
+TEST(DiagnosisText, an_effect_is_named_with_its_amplitude) {
     const auto d = samples::diagnosis(Verdict::effect);
     EXPECT_THAT(line(d, "Gap"), AllOf(StartsWith("yes"), HasSubstr("p = 0.004")));
     EXPECT_THAT(line(d, "Where"),
@@ -87,7 +87,7 @@ TEST(DiagnosisText, effect) {
     EXPECT_THAT(line(d, "Limits"), HasSubstr("not measured: forces on the side walls"));
 }
 
-TEST(DiagnosisText, two_effects_together) {
+TEST(DiagnosisText, two_effects_are_named_together) {
     auto d = samples::diagnosis(Verdict::effect);
     d.causes.push_back(d.ranking[2]);
     EXPECT_THAT(line(d, "Which"),
@@ -96,7 +96,7 @@ TEST(DiagnosisText, two_effects_together) {
     EXPECT_THAT(verdict_sentence(d), HasSubstr("together with friction between grains"));
 }
 
-TEST(DiagnosisText, several_packings_agree_or_one_is_named) {
+TEST(DiagnosisText, several_packings_agree_or_the_differing_one_is_named) {
     auto d = samples::diagnosis(Verdict::group);
     EXPECT_THAT(line(d, "Gap"), Not(HasSubstr("packings")));
     d.packings = {{"out/A", 0.001, 2e-4, 1e-5, 0.3, false}, {"out/B", 0.2, 1e-4, 1e-5, 0.3, false}};
@@ -109,7 +109,7 @@ TEST(DiagnosisText, several_packings_agree_or_one_is_named) {
     EXPECT_THAT(line(d, "Gap"), HasSubstr("which differ from one another by more than noise"));
 }
 
-TEST(DiagnosisText, a_group_names_all_with_their_amplitudes) {
+TEST(DiagnosisText, a_group_lists_all_members_with_their_amplitudes) {
     const auto d = samples::diagnosis(Verdict::group);
     EXPECT_THAT(line(d, "Which"),
                 AllOf(HasSubstr("adhesion (0.264"), HasSubstr("contacts made by bulges (0.332"),
@@ -119,7 +119,7 @@ TEST(DiagnosisText, a_group_names_all_with_their_amplitudes) {
                 HasSubstr("any of adhesion, contacts made by bulges and friction between grains"));
 }
 
-TEST(DiagnosisText, unknown_effect_tells_how_little_the_best_explains) {
+TEST(DiagnosisText, unknown_effect_states_how_little_the_best_explains) {
     const auto d = samples::diagnosis(Verdict::unknown_effect);
     EXPECT_THAT(line(d, "Which"), AllOf(StartsWith("none of the 18 known effects"), HasSubstr("adhesion"),
                                         HasSubstr("takes away 7 % of the gap, and 60 % would be needed")));
@@ -151,7 +151,7 @@ TEST(DiagnosisText, not_converged_names_the_key_and_its_value) {
               "No gap is detectable, with plate.speed = 0.025 m/s instead of 0.1 (p = 0.44).");
 }
 
-TEST(DiagnosisText, ends_with_what_to_do_next) {
+TEST(DiagnosisText, ends_with_the_next_steps) {
     auto d = samples::diagnosis(Verdict::group);
     EXPECT_EQ(line(d, "Next"),
               "measure 3 more packings and diagnose each: tells adhesion from friction (predicted in "
@@ -160,7 +160,7 @@ TEST(DiagnosisText, ends_with_what_to_do_next) {
     EXPECT_THAT(line(d, "Next"), StartsWith("no measurement"));
 }
 
-TEST(DiagnosisText, a_gap_that_the_held_out_data_do_not_show) {
+TEST(DiagnosisText, a_gap_that_held_out_data_do_not_show_is_stated) {
     auto d = samples::diagnosis(Verdict::effect);
     d.gap_reduction->before = -0.3;
     d.explanation->held_out = false;
@@ -170,15 +170,15 @@ TEST(DiagnosisText, a_gap_that_the_held_out_data_do_not_show) {
     EXPECT_THAT(line(d, "How far"), HasSubstr("nothing was tried"));
 }
 
-TEST(DiagnosisText, what_remains_is_noise) {
+TEST(DiagnosisText, a_remainder_within_noise_is_stated) {
     auto d = samples::diagnosis(Verdict::effect);
     d.explanation->leaves_more_than_noise = false;
     EXPECT_THAT(line(d, "How far"),
                 AllOf(HasSubstr("what remains is noise"), Not(HasSubstr("no effect of the library"))));
 }
 
-// Cells that the picture frames are told of, also where no entry stands for them.
-TEST(DiagnosisText, framed_cells_are_told_of) {
+// Cells that are framed in the figure are in the text, even without an entry.
+TEST(DiagnosisText, framed_cells_are_in_the_text) {
     auto d = samples::diagnosis(Verdict::unknown_effect);
     d.where.clear();
     d.cells = {{"top_force", "load", 0.01, 15.2, 1}, {"mean_force", "load", 0.01, 4, -2}};

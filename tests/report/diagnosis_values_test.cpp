@@ -1,4 +1,4 @@
-// What the figures of a diagnosis show.
+// Values of the figures of a diagnosis.
 #include "report/diagnosis/diagnosis_values.h"
 
 #include <gmock/gmock.h>
@@ -19,7 +19,7 @@ std::size_t number_of_framed(const nlohmann::ordered_json& panel) {
     return framed;
 }
 
-TEST(WhereValues, hold_every_cell_twice_and_mark_those_beyond_the_threshold) {
+TEST(WhereValues, contain_every_cell_twice_and_mark_those_beyond_the_threshold) {
     const auto d = samples::diagnosis(Verdict::effect);
     const auto panels = diagnosis_figure_values(d)["where"]["panels"];
     std::size_t before = 0, after = 0;
@@ -34,7 +34,7 @@ TEST(WhereValues, hold_every_cell_twice_and_mark_those_beyond_the_threshold) {
     EXPECT_EQ(number_of_framed(panels[1]), after);
 }
 
-TEST(WhereValues, run_from_left_to_right_in_time) {
+TEST(WhereValues, are_ordered_by_time) {
     Diagnosis d;
     for (const auto& [phase, displacement] : std::vector<std::pair<std::string, double>>{
              {"unload", 0.02}, {"load", 0.01}, {"unload", 0.01}, {"load", 0.02}})
@@ -51,7 +51,7 @@ TEST(WhereValues, run_from_left_to_right_in_time) {
     EXPECT_THAT(order, ElementsAre("loading10", "loading20", "unloading20", "unloading10"));
 }
 
-TEST(WhereValues, without_a_threshold_mark_the_entries_before_recalibration) {
+TEST(WhereValues, without_a_threshold_the_entries_before_recalibration_are_marked) {
     Diagnosis d;
     d.cells = {{"top_force", "load", 0.01, 5, 5},
                {"top_force", "load", 0.02, 5, 5},
@@ -64,7 +64,7 @@ TEST(WhereValues, without_a_threshold_mark_the_entries_before_recalibration) {
     EXPECT_EQ(number_of_framed(panels[1]), 0u);
 }
 
-TEST(WhichValues, are_scores_and_mark_the_named_ones) {
+TEST(WhichValues, are_scores_with_the_named_effects_marked) {
     const auto named = [](Verdict verdict) {
         int count = 0;
         const auto values = diagnosis_figure_values(samples::diagnosis(verdict));
@@ -100,7 +100,7 @@ TEST(WhichValues, amplitudes_are_over_their_limits_with_90_percent_intervals) {
     const auto rows = diagnosis_figure_values(d)["which"]["rows"];
     EXPECT_DOUBLE_EQ(rows[0]["over_limit"].get<double>(), 3);
     EXPECT_NEAR(rows[0]["half_interval"].get<double>(), 0.82243, 1e-4);  // 1.64485 sigma / 2
-    EXPECT_FALSE(rows[1].contains("over_limit"));                        // b never shows
+    EXPECT_FALSE(rows[1].contains("over_limit"));                        // b cannot be detected
 }
 
 std::vector<Cause> ranking_of(const std::vector<std::vector<std::string>>& groups) {
@@ -113,16 +113,16 @@ std::vector<Cause> ranking_of(const std::vector<std::vector<std::string>>& group
     return ranking;
 }
 
-TEST(GroupLetters, are_shared_by_what_cannot_be_told_apart) {
+TEST(GroupLetters, are_shared_by_effects_that_cannot_be_distinguished) {
     EXPECT_THAT(group_letters(ranking_of({{"a", "c"}, {"b"}, {"c", "a"}, {"d", "e"}, {"e", "d"}})),
                 ElementsAre("A", "", "A", "B", "B"));
-    // b is near a and c, which are told apart from one another: no letter joins all three
+    // b is close to a and c, which are distinguishable: no letter is common to all three
     EXPECT_THAT(group_letters(ranking_of({{"a", "b"}, {"b"}, {"c", "b"}})), ElementsAre("A", "AB", "B"));
     EXPECT_THAT(group_letters(ranking_of({{"a", "b", "c"}, {"b", "a"}, {"c"}})), ElementsAre("A", "A", "A"));
     EXPECT_TRUE(group_letters({}).empty());
 }
 
-TEST(HowFarValues, are_forces_and_what_is_left_of_the_gap) {
+TEST(HowFarValues, are_forces_and_the_remaining_gap) {
     const auto values = diagnosis_figure_values(samples::diagnosis(Verdict::effect))["how_far"];
     const auto& forces = values["forces"];
     ASSERT_EQ(forces["x"].size(), 21u);
@@ -137,7 +137,7 @@ TEST(HowFarValues, are_forces_and_what_is_left_of_the_gap) {
     EXPECT_NEAR(values["bars"][1]["interval"][1].get<double>(), 34, 1e-9);
 }
 
-TEST(DiagnosisValues, do_without_what_is_not_known) {
+TEST(DiagnosisValues, work_without_unknown_values) {
     auto d = samples::diagnosis(Verdict::effect);
     d.gap_reduction->top_force = {{0.01, std::nan(""), 1, 1}};
     d.gap_reduction->fitted_displacement = {0, 0};

@@ -13,14 +13,14 @@ TEST(DiagnosisWords, names_are_readable) {
     EXPECT_EQ(words_of("a\nb"), "a b");
 }
 
-TEST(DiagnosisWords, lists) {
+TEST(DiagnosisWords, lists_are_joined) {
     EXPECT_EQ(listed({}), "");
     EXPECT_EQ(listed({"a"}), "a");
     EXPECT_EQ(listed({"a", "b", "c"}), "a, b and c");
     EXPECT_EQ(listed({"a", "b", "c", "d"}, 2), "a, b and 2 more");
 }
 
-TEST(DiagnosisWords, amounts_in_the_units_that_people_use) {
+TEST(DiagnosisWords, amounts_have_common_units) {
     EXPECT_EQ(amount(2.5e-4, "J/m2"), "0.25 mJ/m²");
     EXPECT_EQ(amount(1.234e-4, "m"), "0.123 mm");
     EXPECT_EQ(amount(4e-3, "N"), "4 mN");
@@ -31,7 +31,7 @@ TEST(DiagnosisWords, amounts_in_the_units_that_people_use) {
     EXPECT_EQ(amount(INFINITY, "m"), "–");
 }
 
-TEST(DiagnosisWords, as_many_decimals_as_the_error_warrants) {
+TEST(DiagnosisWords, decimals_follow_from_the_error) {
     EXPECT_EQ(amount(4.213e-4, 0.53e-4, "J/m2"), "0.421 ± 0.053 mJ/m²");
     EXPECT_EQ(amount(123.456, 17, ""), "123 ± 17");
     EXPECT_EQ(amount(2300, 200, "Pa", Sign::always), "+2.30 ± 0.20 kPa");
@@ -40,7 +40,7 @@ TEST(DiagnosisWords, as_many_decimals_as_the_error_warrants) {
     EXPECT_EQ(amount(0.1234, std::nan(""), "", Sign::always), "+0.123");
 }
 
-TEST(DiagnosisWords, percentages_and_probabilities) {
+TEST(DiagnosisWords, percentages_and_probabilities_are_rounded) {
     EXPECT_EQ(percent(0.814), "81 %");
     EXPECT_EQ(percent(0.001), "< 1 %");
     EXPECT_EQ(percent(0), "0 %");
@@ -51,7 +51,7 @@ TEST(DiagnosisWords, percentages_and_probabilities) {
     EXPECT_EQ(p_words(1e-7), "p < 0.0001");
 }
 
-TEST(DiagnosisWords, places) {
+TEST(DiagnosisWords, positions_are_described) {
     WhereEntry entry{"top_force", "load", {18e-3, 24e-3}, {}, {}, 6.13, 0.4, 0.1};
     EXPECT_EQ(where_words(entry),
               "top force while loading, 18 to 24 mm: 11 % higher than simulated (6.1 sigma, 0.4 after "
@@ -63,7 +63,7 @@ TEST(DiagnosisWords, places) {
     EXPECT_EQ(phase_words(""), "both phases");
 }
 
-TEST(DiagnosisWords, metrics_come_in_the_papers_order) {
+TEST(DiagnosisWords, metrics_are_in_the_papers_order) {
     GapReduction gap_reduction;
     gap_reduction.metrics = {
         {"another", {0, 0}}, {"bhat", {0, 0}}, {"Rtop", {0, 0}}, {"errZ", {0, 0}}, {"errf", {0, 0}}};
@@ -72,7 +72,7 @@ TEST(DiagnosisWords, metrics_come_in_the_papers_order) {
     EXPECT_EQ(order, "Rtop errf errZ bhat another ");
 }
 
-TEST(DiagnosisWords, amplitudes_have_directions_where_their_sign_means_one) {
+TEST(DiagnosisWords, signs_are_described_as_directions) {
     EXPECT_EQ(directed_amount("modulus", std::log(0.95), 0.01, "relative"),
               "5.00 ± 0.95 % lower than stated");
     EXPECT_EQ(directed_amount("diameter_error", 2e-4, 1e-5, "m"), "0.200 ± 0.010 mm larger than stated");
@@ -82,7 +82,7 @@ TEST(DiagnosisWords, amplitudes_have_directions_where_their_sign_means_one) {
     EXPECT_EQ(directed_amount("friction", 0.1, INFINITY, ""), "–");
 }
 
-TEST(DiagnosisWords, suspects_are_the_leading_parameter_or_those_at_their_bounds) {
+TEST(DiagnosisWords, suspects_are_the_best_parameter_or_those_at_their_bounds) {
     Diagnosis d;
     d.nuisances = {{"gamma", 0.2, 0.01, 0.05, "", true},
                    {"modulus", 0.3, 0.02, 0.05, "relative", true},

@@ -1,4 +1,4 @@
-// A folder of its own for one test, removed afterwards.
+// A temporary folder for one test.
 #pragma once
 #include <cstdlib>
 #include <filesystem>

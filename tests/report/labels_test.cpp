@@ -5,7 +5,7 @@
 namespace mcdem {
 namespace {
 
-TEST(WordsFor, models_in_words_others_as_they_are) {
+TEST(WordsFor, models_are_described_and_other_values_kept) {
     EXPECT_EQ(words_for("mc_dem"), "MC-DEM");
     EXPECT_EQ(words_for("mc_dem, gamma = 1.2"), "MC-DEM, gamma = 1.2");
     EXPECT_EQ(words_for("elastic_sphere"), "Elastic sphere");
@@ -15,7 +15,7 @@ TEST(WordsFor, models_in_words_others_as_they_are) {
     EXPECT_EQ(words_for(""), "");
 }
 
-TEST(OneLine, control_characters_become_blanks) {
+TEST(OneLine, control_characters_become_spaces) {
     EXPECT_EQ(one_line("a\nb\x1b[2Jc\td\x7f"), "a b [2Jc d ");
     EXPECT_EQ(one_line("⟨Z⟩ ±"), "⟨Z⟩ ±");
 }

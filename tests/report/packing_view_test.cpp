@@ -8,7 +8,7 @@ namespace {
 
 using testing::ElementsAre;
 
-/// Grains on a line along y, each touching the next, the first the floor.
+/// Grains in a row along y; each touches the next one, the first also the floor.
 Recording row_of_grains(int grains, int scans) {
     Recording made;
     made.box = {0.1, 0.2};
@@ -47,7 +47,7 @@ TEST(PackingView, lengths_are_millimetres_and_forces_millinewtons) {
     EXPECT_EQ(view["load_mN"], 20.0);
 }
 
-TEST(PackingView, of_a_periodic_cell_shows_grains_in_the_cell) {
+TEST(PackingView, grains_of_a_periodic_container_are_wrapped_into_it) {
     auto moved = row_of_grains(3, 1);
     EXPECT_EQ((*packing_view({{"box", moved}}))["settings"][0]["container"], "box");
     moved.box.shape = ContainerShape::periodic;
@@ -59,16 +59,16 @@ TEST(PackingView, of_a_periodic_cell_shows_grains_in_the_cell) {
     EXPECT_EQ(setting["scans"][0]["y_mm"], (Json{33.333, 100.0, 166.67}));
 }
 
-TEST(PackingView, opens_at_the_strongest_scan) {
+TEST(PackingView, opens_at_the_scan_with_the_largest_load) {
     auto made = row_of_grains(3, 4);
     EXPECT_EQ((*packing_view({{"unloaded", made}}))["settings"][0]["strongest"], 0);
     made.scans[2].wall_force[static_cast<int>(Wall::plate)] = {0, 0, 3};
     EXPECT_EQ((*packing_view({{"loaded", made}}))["settings"][0]["strongest"], 2);
-    made.scans[0].position.clear();  // a scan that is not shown does not count
+    made.scans[0].position.clear();  // a scan that is not shown is ignored
     EXPECT_EQ((*packing_view({{"loaded", made}}))["settings"][0]["strongest"], 1);
 }
 
-TEST(PackingView, of_a_cell_tells_strains_and_mean_stress) {
+TEST(PackingView, of_a_cell_contains_strains_and_mean_stress) {
     auto made = row_of_grains(3, 1);
     made.box = {0.1, 0.2, ContainerShape::cell, 0.1};
     made.scans[0].strain = {0.1, 0, 0, 0, 0, 0};
@@ -78,7 +78,7 @@ TEST(PackingView, of_a_cell_tells_strains_and_mean_stress) {
               "scan 0: volume strain 10.00 %, deviatoric strain 7.02 %, φ 0.650, p 20 kPa");
 }
 
-TEST(PackingView, needs_positions) {
+TEST(PackingView, requires_positions) {
     auto bare = row_of_grains(3, 2);
     for (auto& scan : bare.scans) scan.position.clear();
     EXPECT_FALSE(packing_view({{"mc_dem", bare}}));
@@ -87,7 +87,7 @@ TEST(PackingView, needs_positions) {
     EXPECT_EQ(view["settings"][0]["label"], "whole");
 }
 
-TEST(PackingView, of_large_packings_shows_the_grains_nearest_to_the_middle_plane) {
+TEST(PackingView, of_large_packings_contains_the_grains_nearest_to_the_middle_plane) {
     PackingLimits limits;
     limits.max_grains = 4;
     const auto view = *packing_view({{"large", row_of_grains(100, 1)}}, limits);
@@ -95,11 +95,11 @@ TEST(PackingView, of_large_packings_shows_the_grains_nearest_to_the_middle_plane
     EXPECT_EQ(setting["number"], (Json{48, 49, 50, 51}));
     const auto& scan = setting["scans"][0];
     EXPECT_EQ(scan["y_mm"], (Json{97.0, 99.0, 101.0, 103.0}));
-    EXPECT_EQ(scan["grain"], (Json{0, 1, 2}));  // contacts among them
+    EXPECT_EQ(scan["grain"], (Json{0, 1, 2}));  // contacts between them
     EXPECT_EQ(scan["partner"], (Json{1, 2, 3}));
 }
 
-/// So many scans down to the one `lowest`, and back.
+/// This number of scans, down to scan `lowest` and back up.
 Recording stroke(std::size_t scans, std::size_t lowest) {
     Recording made;
     for (std::size_t s = 0; s < scans; ++s) {
@@ -111,7 +111,7 @@ Recording stroke(std::size_t scans, std::size_t lowest) {
     return made;
 }
 
-TEST(ScansShown, are_all_or_evenly_spread_with_both_ends) {
+TEST(ScansShown, are_all_or_evenly_spaced_including_both_ends) {
     EXPECT_THAT(scans_shown(stroke(4, 2), 1000), ElementsAre(0, 1, 2, 3));
     PackingLimits limits;
     limits.scans = 3;
@@ -119,11 +119,12 @@ TEST(ScansShown, are_all_or_evenly_spread_with_both_ends) {
     limits.scans = 1;
     EXPECT_THAT(scans_shown(stroke(61, 30), 1000, limits), ElementsAre(30));
     EXPECT_TRUE(scans_shown(stroke(0, 0), 1000).empty());
-    EXPECT_EQ(scans_shown(stroke(61, 30), 60'000).size(), 10u);                    // what finds room
-    EXPECT_THAT(scans_shown(stroke(61, 30), 10'000'000), ElementsAre(0, 30, 60));  // these always do
+    EXPECT_EQ(scans_shown(stroke(61, 30), 60'000).size(), 10u);  // as many as fit
+    EXPECT_THAT(scans_shown(stroke(61, 30), 10'000'000),
+                ElementsAre(0, 30, 60));  // these are always included
 }
 
-TEST(ScansShown, have_the_strongest_one_among_them) {
+TEST(ScansShown, include_the_one_with_the_largest_load) {
     PackingLimits limits;
     limits.scans = 5;
     EXPECT_THAT(scans_shown(stroke(61, 28), 1000, limits), ElementsAre(0, 15, 28, 45, 60));

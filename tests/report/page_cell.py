@@ -1,4 +1,4 @@
-"""The page of a cell: stresses and strains as run.h5 has them, and no word of plates and forces on them."""
+"""The page of a cell: stresses and strains as in run.h5, and no text about plates and their forces."""
 import xml.etree.ElementTree
 
 import numpy as np
@@ -32,7 +32,7 @@ def check_cell(reader, run):
 
 
 def check_svg(reader, chart, words):
-    """The button leaves a file of vectors as on a bright page, whatever the page's own theme."""
+    """The button saves a vector graphic with the bright colours, whatever the page's theme."""
     reader.command("Browser.setDownloadBehavior", {"behavior": "allow", "downloadPath": str(reader.folder)})
     file = reader.folder / f"{chart}.svg"
     reader.click(reader.element(f"button[data-svg={chart}]"))

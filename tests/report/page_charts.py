@@ -1,4 +1,5 @@
-"""Charts of runs and diagnoses as plotly.js holds them, against the truth: values, bands, labels, logarithmic axes."""
+"""Charts of runs and diagnoses as plotly.js stores them, compared with the data: values, bands, labels, logarithmic
+axes."""
 import dataclasses
 import json
 import re
@@ -12,7 +13,7 @@ LOG_AXES = {"top_force": "xy", "scaling": "xy", "how_far": "y"}
 
 @dataclasses.dataclass
 class Drawn:
-    """A curve as it must be drawn. `label`: what the pointer reads, a format of x, y and e."""
+    """An expected curve. `label`: format of the hover text with x, y and e."""
     name: str
     curve: truth.Curve
     label: str
@@ -25,7 +26,7 @@ class Drawn:
         return bool(np.isfinite(self.curve.error).all())
 
     def words(self, point):
-        """Both ways where a number lies between two roundings."""
+        """Both roundings of a number half-way between two."""
         label = self.label if self.has_errors else re.sub(r" ± \{e\S*( N)?", "", self.label)
         exact = np.array([self.curve.x[point], self.curve.y[point], self.curve.error[point]])
         return [label.format(**dict(zip("xye", exact * (1 + shift)))) for shift in (-1e-9, 1e-9)]
@@ -36,7 +37,7 @@ def expect_close(found, expected, what, relative=1e-6):
 
 
 def same_words(found, expected):
-    """Numbers may be written in two ways."""
+    """Accepts both ways of writing numbers."""
     def value(word):
         try:
             return float(word.replace("\u2212", "-"))
@@ -50,7 +51,8 @@ def plain(words):
 
 
 def check_band(band, drawn, what):
-    """There along mean + standard error, back along mean - standard error, at most two thirds down."""
+    """A band: forward along mean + standard error, back along mean - standard error; at most two thirds below the
+    mean."""
     c = drawn.curve
     assert band["fill"] == "toself" and band["hoverinfo"] == "skip", what
     low = np.where(c.y > 0, np.maximum(c.y - c.error, c.y / 3), c.y - c.error)
@@ -75,7 +77,7 @@ def check_curve(trace, drawn, what):
 
 
 def check_labels(reader, chart, number, drawn):
-    """At all points, and that none is left out."""
+    """Checks the labels at all points, and that there is one for each."""
     for point in range(len(drawn.curve.x)):
         name, words = reader.hover(chart, number, point)
         expected = drawn.words(point)
@@ -84,7 +86,7 @@ def check_labels(reader, chart, number, drawn):
 
 
 def check_chart(reader, chart, expected):
-    """All traces of a chart in their order, a band before its line."""
+    """All traces of a chart in order, a band before its line."""
     traces = list(enumerate(reader.traces(chart)))
     for drawn in expected:
         what = f"{chart}, {drawn.name}, {drawn.label}"
@@ -123,7 +125,7 @@ def check_distribution(reader, settings, references, displacement_mm):
 
 
 def check_coordination(reader, settings, references, thresholds):
-    """`thresholds` [N] by setting; of a reference all contacts count."""
+    """`thresholds` [N] by setting; for a reference all contacts count."""
     expected = []
     for name, recordings in settings.items():
         tau = thresholds.get(name, 0)
@@ -137,14 +139,14 @@ def check_coordination(reader, settings, references, thresholds):
 
 
 def scaling_line(name, curves):
-    """Through zero, from a thousandth of the largest product to the whole."""
+    """A line through zero, from a thousandth of the largest product to the largest."""
     slope, end = truth.slope_through_zero(curves), max(c.x.max() for c in curves)
     x = np.array([end / 1000, end])
     return name, x, slope * 1e-3 * x, f"slope {slope:.4g} /m"
 
 
 def check_scaling(reader, settings):
-    """Three traces a setting: loading, unloading, the fitted line."""
+    """Three traces per setting: loading, unloading, fitted line."""
     traces = reader.traces("scaling")
     assert len(traces) == 3 * len(settings), "experiments do not tell the packing fraction"
     for place, (name, recordings) in enumerate(settings.items()):
@@ -175,7 +177,7 @@ def press(reader, chart):
 
 
 def check_log_button(reader, chart, axes):
-    """To logarithmic axes that hold all that can be shown on them, and back to what was before."""
+    """Switches to logarithmic axes, checks that they contain all positive values, and switches back."""
     before, traces = reader.axes(chart), reader.traces(chart)
     press(reader, chart)
     after = reader.axes(chart)
@@ -213,14 +215,14 @@ CANDIDATE = {"words": HOSTILE, "is_named": False, "group": "", "gain": None, "ga
 
 
 def check_made_charts(reader):
-    """Charts of made-up values: texts are no tags, and what is not known is left out."""
+    """Charts of artificial values: texts are escaped, and unknown values are omitted."""
     def made(kind, values):
         text = reader.script(f"JSON.stringify(chartOf({json.dumps({'kind': kind, 'values': values})}))")
         assert "<a" not in text and "&lt;a href='x'&gt;&amp;y &lt;/a&gt;" in text, text
         return json.loads(text)
 
     for kind in ("top_force", "coordination", "force_distribution", "pressure_time"):
-        line, = made(kind, RUN_FIGURE)["data"]  # an error that is not known: no band
+        line, = made(kind, RUN_FIGURE)["data"]  # unknown error: no band
         assert line["y"] == CURVE["y"] and "customdata" not in line, line
     assert line["hovertemplate"] == "%{x:.4g} s<br>%{y:.4g}", line
     assert made("scaling", RUN_FIGURE)["data"][-1]["hovertemplate"] == "slope 1.235e+08 /m"

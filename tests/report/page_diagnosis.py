@@ -1,4 +1,4 @@
-"""A diagnosis' charts against diagnosis.json, and the experiment's forces against its own table."""
+"""Charts of a diagnosis compared with diagnosis.json, and the experiment's forces with its own table."""
 import numpy as np
 
 from report import page_truth as truth
@@ -17,7 +17,7 @@ def check_which_and_where(reader, diagnosis):
 
 
 def experiment_forces(folder):
-    """While loading, at displacements [mm]."""
+    """Forces while loading, at displacements [mm]."""
     experiment = truth.recording_of_experiment(folder)
     loading = experiment.phase == 0
     return experiment.displacement_mm[loading], experiment.top_force[loading]
@@ -41,7 +41,7 @@ def check_forces(reader, shrink, experiment):
 
 
 def gaps_left(shrink):
-    """Values and the ends of their intervals [%], bar by bar."""
+    """Values and ends of the intervals [%] of each bar."""
     after = [1 - shrink["fraction"], 1 - shrink["interval"][1], 1 - shrink["interval"][0]]
     bars = [[1, None, None], after]
     if shrink["confirmed"] is not None:

@@ -1,4 +1,4 @@
-"""The packing in space against run.h5: grains, forces on them, and every line of the force chains."""
+"""The 3D packing compared with run.h5: grains, their forces, and every line of the force chains."""
 import re
 
 import numpy as np
@@ -13,7 +13,7 @@ CHAINS = ("document.getElementById('packing').data.filter(t => t.name === 'force
 
 
 def grains_on_page(reader, grains):
-    """Centres [mm] of the spheres, and the force on each [mN], from the drawn triangles' corners."""
+    """Centres [mm] of the spheres and the force on each [mN], from the corners of the drawn triangles."""
     mesh = reader.script("(() => { const t = document.getElementById('packing').data.find(t => t.name === 'grains');"
                          "return [t.x, t.y, t.z, t.intensity]; })()")
     x, y, z, intensity = (np.array(column).reshape(grains, -1) for column in mesh)
@@ -32,7 +32,7 @@ def check_grains(reader, position, contacts):
 
 
 def ends_of(contact, position, walls):
-    """Both centres, or a centre and its foot on the wall [mm]."""
+    """Both centres, or a centre and the foot of the perpendicular on the wall [mm]."""
     start, partner = position[contact["grain"]], contact["partner"]
     if partner >= 0:
         return start, position[partner]
@@ -46,7 +46,7 @@ def name_of(partner):
 
 
 def strongest(run, replicas):
-    """The force that all but one contact in two hundred stay below [mN], of all that the page shows."""
+    """The force [mN] that all but one in two hundred of the displayed contacts do not exceed."""
     forces = np.sort(np.concatenate([truth.forces_of(run[f"contacts/replica_{replica:05}/contact"][:])
                                      for replica in replicas]))
     return forces[len(forces) - 1 - len(forces) // 200] * 1e3
@@ -57,7 +57,7 @@ def brightness(colour):
 
 
 def check_looks(classes):
-    """The stronger, the thicker and, on white, the darker."""
+    """Stronger contacts are thicker and, on white, darker."""
     widths, colours = [c[2] for c in classes], [brightness(c[3]) for c in classes]
     assert all(b > 1.2 * a for a, b in zip(widths, widths[1:])) and widths[-1] > 5 * widths[0], widths
     assert all(b < a - 20 for a, b in zip(colours, colours[1:])), colours
@@ -72,7 +72,7 @@ def check_line(line, words, contact, ends, force):
 
 
 def check_chains(reader, position, contacts, walls, largest):
-    """Every contact stands once, in the class of its force: equal parts of the range, the last one open."""
+    """Every contact is drawn once, in the class of its force: equal parts of the range, the last one open."""
     classes = reader.script(CHAINS)
     check_looks(classes)
     force = truth.forces_of(contacts) * 1e3
@@ -87,7 +87,7 @@ def check_chains(reader, position, contacts, walls, largest):
 
 
 def check_packing(reader, run, replica, scan, largest):
-    """One scan as it is drawn; the classes of its contacts."""
+    """Checks one drawn scan; returns the classes of its contacts."""
     particles = run[f"particles/replica_{replica:05}"]
     position = particles["position/value"][scan].astype(float) * 1e3
     width, depth, _ = particles["box"].attrs["edges"] * 1e3
@@ -103,8 +103,8 @@ def to_full_stroke(slider, scans):
 
 
 def check_slider(reader, run, first_replicas):
-    """Opens at the strongest scan; from scan to scan and from setting to setting; ends at full stroke, where all classes of
-    chains are there."""
+    """Opens at the scan with the largest load; steps through scans and settings; ends at full stroke, where all classes
+    of chains occur."""
     slider, largest = reader.element(".packing input"), strongest(run, first_replicas)
     scans, classes = len(run["observables/replica_00000"]), set()
     assert slider.get_attribute("max") == str(scans - 1), "all scans of so small a run are shown"

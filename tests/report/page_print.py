@@ -1,4 +1,4 @@
-"""The page on paper: its headings as text, and colours in every figure. Reads PDF with poppler's programs."""
+"""The printed page: its headings as text, and colours in every figure. Reads the PDF with poppler's programs."""
 import base64
 import re
 import shutil
@@ -29,7 +29,7 @@ def lines_of(pdf):
 
 
 def pictures_of(pdf):
-    """Every page as red, green and blue."""
+    """Every page as an RGB array."""
     subprocess.run(["pdftoppm", "-r", str(DOTS), pdf, pdf.with_suffix("")], check=True, timeout=100)
     return [picture(file) for file in sorted(pdf.parent.glob(pdf.stem + "-*.ppm"))]
 
@@ -42,7 +42,7 @@ def picture(file):
 
 
 def coloured(pixels):
-    """How many pixels are no grey, legends and colour bars on the right left out."""
+    """Number of pixels that are not grey, without legends and colour bars on the right."""
     pixels = pixels[:, :pixels.shape[1] * 7 // 10]
     return int((pixels.max(axis=2) - pixels.min(axis=2) > 60).sum())
 
@@ -52,7 +52,7 @@ def squeezed(words):
 
 
 def place_of(title, lines, since):
-    """The first line from `since` on that is this title."""
+    """Index of the first line from `since` on that equals this title."""
     for number in range(since, len(lines)):
         if squeezed(lines[number][2]) == squeezed(title):
             return number
@@ -60,7 +60,7 @@ def place_of(title, lines, since):
 
 
 def check_headings(headings, lines):
-    """All of them in the page's order; lines with the heading's place."""
+    """All headings in the page's order; lines with the position of the heading."""
     text, since = squeezed(" ".join(words for _, _, words in lines)), 0
     for heading in headings:
         since = text.find(squeezed(heading), since)
@@ -69,7 +69,7 @@ def check_headings(headings, lines):
 
 
 def check_colours(figures, lines, pages):
-    """Below each figure's title, down to its caption, on one page."""
+    """The area below each figure's title, down to its caption, on one page."""
     since = 0
     for title, caption in figures:
         since = place_of(title, lines, since)

@@ -1,4 +1,4 @@
-"""A page in headless Chromium without a network: what a reader does with it, and what stands on it."""
+"""Operates a page in headless Chromium without a network, and reads what is displayed."""
 import base64
 import json
 import shutil
@@ -12,7 +12,7 @@ from selenium.webdriver.support.ui import WebDriverWait
 
 TRACE_KEYS = ["name", "x", "y", "z", "customdata", "mode", "text", "fill", "line", "marker", "error_x", "error_y",
               "hoverinfo"]
-# Headings, tables, definitions and folded texts in the order of the page, each under its headings.
+# Headings, tables, definitions and collapsed texts in the order of the page, each under its headings.
 PARTS = """(() => {
   let section = '', heading = '';
   const text = node => node.textContent, parts = [];
@@ -82,13 +82,13 @@ class Reader:
                            f"{TRACE_KEYS}.map(key => [key, trace[key]])))")
 
     def axes(self, chart):
-        """Kind and range of x and y as drawn."""
+        """Type and range of the x and y axes as drawn."""
         return self.script(f"['xaxis', 'yaxis'].map(axis => document.getElementById('{chart}')._fullLayout[axis])"
                            ".map(({type, range}) => [type, [...range]])")
 
     def hover(self, chart, trace, point):
-        """Name and words of the label beside a point."""
-        time.sleep(0.06)  # plotly.js puts off what comes sooner
+        """Name and text of the label beside a point."""
+        time.sleep(0.06)  # plotly.js delays events that come sooner
         self.driver.execute_script(
             f"Plotly.Fx.hover('{chart}', [{{curveNumber: {trace}, pointNumber: {point}}}])")
         return self.script(f"""['name', 'nums'].map(part => {{
@@ -112,7 +112,7 @@ class Reader:
             (self.folder / f"{name}_{part}.png").write_bytes(base64.b64decode(shot["data"]))
 
     def check_alone(self):
-        """Nothing but the page itself and its own pictures was asked for, and nothing went wrong."""
+        """Checks that only the page itself and its own pictures were requested, without errors."""
         events = [json.loads(entry["message"])["message"] for entry in self.driver.get_log("performance")]
         addresses = [event["params"]["request"]["url"] for event in events
                      if event["method"] == "Network.requestWillBeSent"]

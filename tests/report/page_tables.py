@@ -1,4 +1,4 @@
-"""Tables and provenance on a page against files, digests and what `mcdem table` and `mcdem compare` print."""
+"""Tables and provenance on a page compared with files, digests and the output of `mcdem table` and `mcdem compare`."""
 import hashlib
 import re
 import subprocess
@@ -9,7 +9,7 @@ ORIGIN = "Where this comes from"
 
 
 def found(parts, tag, section, heading):
-    """What stands under these headings, once."""
+    """The content under these headings, which must occur once."""
     here = [part["content"] for part in parts if (part["tag"], part["section"], part["heading"]) == (tag, section, heading)]
     assert len(here) == 1, (tag, section, heading, len(here))
     return here[0]
@@ -20,7 +20,7 @@ def cells_of(line):
 
 
 def printed_tables(program, folder, *words):
-    """Tables that a command prints, as rows of cells, without the rules below the headings."""
+    """Tables printed by a command as rows of cells, without the rules below the headings."""
     text = subprocess.run([program, *words, "--markdown"], cwd=folder, check=True, capture_output=True, text=True,
                           timeout=100).stdout
     tables = [[]]
@@ -61,7 +61,7 @@ def seeds_of(run):
 
 
 def check_run_origin(parts, run, folder):
-    """All that is said of the run: versions, device, seeds and digests."""
+    """Checks all statements about the run: versions, device, seeds and digests."""
     stated = {key: truth.text(value) for key, value in run["parameters"].attrs.items()}
     expected = {"results": "run", "program": stated["program"], "device": stated["device"],
                 "precision": stated["precision"], "replicas": stated["replicas"],
@@ -97,7 +97,7 @@ def check_shrink(parts, diagnosis):
 
 
 def check_causes(parts, diagnosis):
-    """Gains, and the gains when simulated in full, of the effects that fit."""
+    """Gains, and gains of the simulated effects, of the effects that fit."""
     rows = next(part["content"] for part in parts if part["section"] == "Which" and part["tag"] == "table")
     score = rows[0].index("gain in log likelihood")
     assert rows[0][score + 1] == "simulated in full"

@@ -17,7 +17,7 @@ using testing::HasSubstr;
 const std::string hostile =
     "</script><script>alert(1)</script><img src=x onerror=\"alert('2')\"> & ' \" \x01\x1b[2J";
 
-/// A page with the text wherever a page takes text.
+/// A page with this text in all positions where a page has text.
 Page page_of(const std::string& text) {
     Page page(text);
     page.lead(text, text, text);
@@ -33,34 +33,34 @@ Page page_of(const std::string& text) {
     return page;
 }
 
-TEST(Page, texts_are_shown_and_never_run_wherever_they_stand) {
+TEST(Page, texts_are_shown_and_not_executed_in_any_position) {
     const TestFolder folder;
     const auto page = page_of(hostile).html("library");
     EXPECT_TRUE(well_formed(page, folder.path));
     EXPECT_FALSE(contains(page, "<script>alert"));
     EXPECT_FALSE(contains(page, "<img src=x"));
     EXPECT_FALSE(contains(markup_of(page), "\x1b"));
-    EXPECT_EQ(all_matches(page, "(<script)").size(), 3u);  // content, library, the page's own
+    EXPECT_EQ(all_matches(page, "(<script)").size(), 3u);  // content, library, the page's own script
     EXPECT_EQ(all_matches(page, "(</script)").size(), 3u);
     const auto content = content_of(page);
-    EXPECT_EQ(content["charts"][0]["values"]["text"], hostile);  // whole, as text
+    EXPECT_EQ(content["charts"][0]["values"]["text"], hostile);  // complete, as text
     EXPECT_EQ(content["packings"][0]["view"]["settings"][0]["label"], hostile);
 }
 
-TEST(Page, the_check_of_tags_finds_one_that_is_not_closed) {
+TEST(Page, the_check_of_tags_finds_an_unclosed_one) {
     const TestFolder folder;
     EXPECT_FALSE(well_formed(page_of("text").html("") + "</p>", folder.path));
     EXPECT_FALSE(well_formed("<p><b></p></b>", folder.path));
 }
 
-TEST(Page, bytes_that_are_no_utf8_do_no_harm) {
+TEST(Page, invalid_utf8_is_replaced) {
     const auto page = page_of("M\xfcller").html("");
     EXPECT_THAT(content_of(page)["charts"][0]["values"]["text"].get<std::string>(),
                 HasSubstr("M\xEF\xBF\xBDller"));
 }
 
-/// What browsers enforce: only the script with this digest runs, and no address is asked for anything.
-TEST(Page, its_policy_names_its_one_script_and_no_address) {
+/// Browsers enforce this policy: only the script with this digest is executed, and no address may be loaded.
+TEST(Page, policy_allows_only_its_script_and_no_address) {
     const auto page = page_of("text").html("library");
     const auto begin = page.rfind("<script>") + 8, end = page.rfind("</script>");
     const auto hex = Sha256().add(page.substr(begin, end - begin)).hex();
@@ -80,7 +80,7 @@ TEST(Page, its_policy_names_its_one_script_and_no_address) {
     EXPECT_EQ(std::system(check.c_str()), 0);
 }
 
-TEST(Page, loads_nothing) {
+TEST(Page, loads_no_other_files) {
     const auto markup = markup_of(page_of("text").html("library"));
     for (const char* loads : {" src=", " href=", "<link", "@import", "url(", "<iframe"})
         EXPECT_FALSE(contains(markup, loads)) << loads;
@@ -95,13 +95,13 @@ TEST(Page, charts_with_the_same_name_have_unique_ids) {
     EXPECT_EQ(content_of(text)["charts"][2]["id"], "where_3");
 }
 
-TEST(Page, a_text_of_many_lines_keeps_them) {
+TEST(Page, line_breaks_in_texts_are_kept) {
     Page page("scene");
     page.folded("The scene", "[box]\nsize_x = 1\t# <wide>\n");
     EXPECT_TRUE(contains(page.html(""), "<pre>[box]\nsize_x = 1 # &lt;wide&gt;\n"));
 }
 
-TEST(Page, carries_the_library_of_the_installation) {
+TEST(Page, contains_the_installed_plotting_library) {
     const TestFolder folder;
     write_page(page_of("text"), folder.path / "page.html");
     EXPECT_GT(std::filesystem::file_size(folder.path / "page.html"),
@@ -110,7 +110,7 @@ TEST(Page, carries_the_library_of_the_installation) {
     EXPECT_THROW(write_page(page_of("text"), folder.path / "no/folder/page.html"), RunError);
 }
 
-TEST(PlottingLibrary, where_it_is_missing_says_where_it_looked_and_what_to_do) {
+TEST(PlottingLibrary, if_missing_the_message_names_the_searched_paths_and_a_remedy) {
     const TestFolder folder;
     ::setenv("MCDEM_SHARE", folder.path.c_str(), 1);
     std::string said;

@@ -1,4 +1,4 @@
-// Pages as tests read them.
+// Functions that read pages for the tests.
 #pragma once
 #include <cstdlib>
 #include <filesystem>
@@ -21,14 +21,14 @@ inline bool contains(const std::string& page, const std::string& part) {
     return page.find(part) != std::string::npos;
 }
 
-/// What a page's charts and packings are made of.
+/// The data of a page's charts and packings.
 inline nlohmann::json content_of(const std::string& page) {
     const std::string begin = "<script type=\"application/json\" id=\"content\">";
     const auto at = page.find(begin) + begin.size();
     return nlohmann::json::parse(page.substr(at, page.find("</script>", at) - at));
 }
 
-/// The page without its scripts, style sheet and plotting library: what stands in its elements.
+/// The page without scripts, style sheet and plotting library.
 inline std::string markup_of(const std::string& page) {
     std::string markup = page;
     for (const std::string tag : {"script", "style"})
@@ -47,7 +47,7 @@ inline std::multiset<std::string> all_matches(const std::string& text, const std
     return found;
 }
 
-/// Every tag is closed in its place, as Python's parser of HTML sees them.
+/// Checks with Python's HTML parser that every tag is closed in the right order.
 inline bool well_formed(const std::string& page, const std::filesystem::path& folder) {
     std::ofstream(folder / "page.html") << page;
     std::ofstream(folder / "check.py") << R"(

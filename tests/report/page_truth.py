@@ -1,4 +1,4 @@
-"""What a page must show, computed from run.h5 and experiments' tables with numpy alone."""
+"""Expected contents of a page, computed from run.h5 and experiments' tables with numpy only."""
 import csv
 import dataclasses
 import pathlib
@@ -31,14 +31,14 @@ stage = "hold"
 time = 0.01
 """
 
-PLATE = 5  # the wall's number in result files
+PLATE = 5  # number of the wall in result files
 WORDS = {"independent": "Independent contacts", "mc_dem": "MC-DEM"}
 PHASES = ("load", "unload")
 
 
 @dataclasses.dataclass
 class Recording:
-    """Arrays over scans; of contacts, the forces of each scan [N]."""
+    """Arrays over scans; for contacts, the forces of each scan [N]."""
     phase: np.ndarray
     displacement_mm: np.ndarray
     top_force: np.ndarray
@@ -50,7 +50,7 @@ class Recording:
 
 @dataclasses.dataclass
 class Curve:
-    """Points with the standard error over replicas, NaN where there is one."""
+    """Points with the standard error over replicas; NaN for a single replica."""
     x: np.ndarray
     y: np.ndarray
     error: np.ndarray
@@ -74,7 +74,7 @@ def forces_of(contacts):
 
 
 def averages_of(contacts, position, grains):
-    """Contacts per grain, mean force [N] and mean distance of touching grains' centres [m]."""
+    """Contacts per grain, mean force [N], and mean distance between the centres of touching grains [m]."""
     pairs = contacts[contacts["partner"] >= 0]
     branches = np.linalg.norm(position[pairs["grain"]] - position[pairs["partner"]], axis=1)
     return (len(contacts) + len(pairs)) / grains, forces_of(contacts).mean(), branches.mean()
@@ -114,7 +114,7 @@ def recording_of_experiment(folder):
 
 
 def settings_of(run):
-    """Recordings by the model's words, in the file's order."""
+    """Recordings by the text for their model, in the file's order."""
     settings = {}
     for replica in range(run["parameters"].attrs["replicas"]):
         words = WORDS[parameters(run, replica)["contact.model"]]
@@ -123,14 +123,14 @@ def settings_of(run):
 
 
 def mean_and_error(values):
-    """Over replicas, the first axis."""
+    """Mean and standard error over replicas, the first axis."""
     values, count = np.asarray(values, float), len(values)
     error = values.std(axis=0, ddof=1) / np.sqrt(count) if count > 1 else np.full(values.shape[1:], np.nan)
     return values.mean(axis=0), error
 
 
 def scans_of(recordings, phase):
-    """Scans of a phase by growing displacement: the same ones in all replicas."""
+    """Scans of a phase in order of displacement, the same in all replicas."""
     first = recordings[0]
     scans = np.flatnonzero(first.phase == phase)
     for other in recordings[1:]:
@@ -139,7 +139,7 @@ def scans_of(recordings, phase):
 
 
 def curve(recordings, quantity, phase):
-    """Quantity against displacement; unloading begins where loading ended."""
+    """Quantity against displacement; unloading starts at the last point of loading."""
     scans = scans_of(recordings, phase)
     if phase == 1:
         scans = np.append(scans, scans_of(recordings, 0)[-1])
@@ -148,7 +148,7 @@ def curve(recordings, quantity, phase):
 
 
 def contacts_per_grain(recording, threshold):
-    """Of forces that reach the threshold [N]; a contact of two grains counts for both."""
+    """Contacts per grain with forces of at least the threshold [N]; a contact of two grains counts for both."""
     ends = [2 * (pairs >= threshold).sum() + (walls >= threshold).sum()
             for pairs, walls in zip(recording.between_grains, recording.on_walls)]
     return np.array(ends) / recording.grains
@@ -161,7 +161,7 @@ def scaling_curve(recordings, phase):
 
 
 def slope_through_zero(curves):
-    """Of force over product [1/m], by least squares."""
+    """Slope of the force over the product [1/m], by least squares."""
     x, y = (np.concatenate([getattr(c, axis) for c in curves]) for axis in "xy")
     return np.linalg.lstsq(x[:, None] * 1e-3, y, rcond=None)[0][0]
 
@@ -172,14 +172,15 @@ def scan_nearest(recordings, displacement_mm):
 
 
 def distribution_bins(pooled):
-    """To the force that one in a thousand exceeds; as many bins as the fewest contacts allow: 2 n^(2/5), 8 to 30."""
+    """Bins up to the force that one in a thousand exceeds; their number follows from the smallest sample: 2 n^(2/5), 8
+    to 30."""
     largest = max(np.sort(forces)[(len(forces) - 1) * 999 // 1000] for forces in pooled)
     count = min(int(np.clip(int(2 * len(forces) ** 0.4), 8, 30)) for forces in pooled)
     return largest, count
 
 
 def distributions(sources, displacement_mm):
-    """Density of the forces between grains while unloading [1/mN] against force [mN], by source."""
+    """Probability density of the forces between grains while unloading [1/mN] against force [mN], by source."""
     forces = {}
     for name, recordings in sources.items():
         scan = scan_nearest(recordings, displacement_mm)
@@ -198,13 +199,13 @@ def distributions(sources, displacement_mm):
 
 
 def rms_of_contacts(recordings, references, threshold):
-    """Over all scans: the scans of simulation and reference are the same."""
+    """RMS difference over all scans; the scans of simulation and reference are the same."""
     simulated = np.mean([contacts_per_grain(r, threshold) for r in recordings], axis=0)
     return np.sqrt(np.mean((simulated - np.mean([contacts_per_grain(r, 0) for r in references], axis=0)) ** 2))
 
 
 def threshold_near(recordings, references, shown):
-    """The threshold [N] that brings contacts per grain nearest to the reference, of those that read `shown` [N]."""
+    """The threshold [N] at which contacts per grain are closest to the reference; the one displayed as `shown` [N]."""
     forces = np.unique(np.concatenate([f for r in recordings for f in (*r.between_grains, *r.on_walls)]))
     low, high = shown - 4.99e-6, shown + 4.99e-6
     steps = np.concatenate([[low], forces[(forces > low) & (forces < high)], [high]])

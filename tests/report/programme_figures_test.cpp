@@ -1,4 +1,4 @@
-// Figures of programmes: a plate's forces and displacements, a cell's stresses and strains.
+// Figures of programmes: forces and displacements of a plate, stresses and strains of a cell.
 #include "report/run/programme_figures.h"
 
 #include <gmock/gmock.h>
@@ -21,12 +21,12 @@ std::vector<std::string> names(const std::vector<RunFigure>& figures) {
 }
 
 std::vector<RunFigure> figures_of(const std::vector<Setting>& settings) {
-    static Cast cast;  // figures are views of it
+    static Cast cast;  // static, because figures refer to it
     cast = cast_of(settings, std::nullopt, {});
     return programme_figures(cast);
 }
 
-TEST(ProgrammeFigures, OfACellAreStressesAndStrains) {
+TEST(ProgrammeFigures, OfACellShowStressesAndStrains) {
     const Recording one = synthetic::cell("mc_dem"), two = synthetic::cell("mc_dem", 2, 3);
     const auto figures = figures_of({{"mc_dem", {&one, &two}}});
     EXPECT_THAT(names(figures),
@@ -48,7 +48,7 @@ TEST(ProgrammeFigures, OfACellAreStressesAndStrains) {
     EXPECT_NEAR(path[2].y / path[2].x, 0.1 * std::sqrt(3), 1e-12);
 }
 
-TEST(ProgrammeFigures, OfACellThatIsNeitherShearedNorHeldAreTwo) {
+TEST(ProgrammeFigures, OfACellWithoutShearAndHoldsAreTwo) {
     Recording plain = synthetic::cell("mc_dem");
     plain.scans.resize(2);
     plain.parameters.erase("programme.3.stage");
@@ -56,7 +56,7 @@ TEST(ProgrammeFigures, OfACellThatIsNeitherShearedNorHeldAreTwo) {
                 ElementsAre("pressure_strain", "cell_coordination"));
 }
 
-TEST(ProgrammeFigures, OfAPlateHaveAStressPathWhereStressesAreKnown) {
+TEST(ProgrammeFigures, OfAPlateHaveAStressPathIfStressesAreKnown) {
     Recording held = synthetic::recording({.levels = 2});
     held.parameters["programme.1.stage"] = "\"hold\"";
     EXPECT_THAT(names(figures_of({{"held", {&held}}})),
@@ -67,7 +67,7 @@ TEST(ProgrammeFigures, OfAPlateHaveAStressPathWhereStressesAreKnown) {
     EXPECT_EQ(figures.back().y_label, "deviatoric stress q [Pa]");
 }
 
-TEST(ProgrammeCharts, SayWhatTheirAxesMean) {
+TEST(ProgrammeCharts, AxesAreLabelled) {
     const Recording one = synthetic::cell("mc_dem");
     const auto made = run_charts({{"mc_dem", {&one}}}, std::nullopt);
     ASSERT_EQ(made.charts.size(), 8u);
@@ -77,7 +77,7 @@ TEST(ProgrammeCharts, SayWhatTheirAxesMean) {
     EXPECT_EQ(made.charts[0].values["y_label"], "mean stress p [Pa]");
 }
 
-TEST(FigureFile, HoldsTheFiguresOfCells) {
+TEST(FigureFile, ContainsTheFiguresOfCells) {
     const Recording one = synthetic::cell("mc_dem");
     const auto cast = cast_of({{"mc_dem", {&one}}}, std::nullopt, {});
     const auto values = figure_values(run_figures(cast, {}), cast);

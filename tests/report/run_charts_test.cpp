@@ -24,7 +24,7 @@ const Chart& chart_named(const RunCharts& made, const std::string& name) {
     throw std::out_of_range(name);
 }
 
-TEST(RunCharts, are_the_papers_four_figures_with_the_values_of_figures_for_print) {
+TEST(RunCharts, are_the_papers_four_figures_with_the_values_of_the_printed_ones) {
     const auto run = two_models(1);
     const auto made = run_charts(group_by_setting(run), std::nullopt);
     ASSERT_EQ(made.charts.size(), 4u);
@@ -35,16 +35,16 @@ TEST(RunCharts, are_the_papers_four_figures_with_the_values_of_figures_for_print
     EXPECT_EQ(chart_named(made, "force_distribution").title, "Contact forces at 18.0 mm, unloading");
 }
 
-TEST(RunCharts, logarithms_are_for_forces_that_grow_over_decades) {
+TEST(RunCharts, logarithmic_axes_are_for_forces_over_several_decades) {
     const auto run = two_models(2);
     const auto made = run_charts(group_by_setting(run), std::nullopt);
     EXPECT_EQ(chart_named(made, "top_force").log_axes, "xy");
     EXPECT_EQ(chart_named(made, "scaling").log_axes, "xy");
     EXPECT_EQ(chart_named(made, "coordination").log_axes, "");
-    EXPECT_EQ(chart_named(made, "force_distribution").log_axes, "");  // is so without a button
+    EXPECT_EQ(chart_named(made, "force_distribution").log_axes, "");  // always logarithmic, without a button
 }
 
-TEST(RunCharts, captions_name_what_is_shown) {
+TEST(RunCharts, captions_describe_the_data) {
     const auto one = two_models(1), four = two_models(4);
     const auto measured = synthetic::recording({.seed = 50, .contacts = 300});
     const auto alone = run_charts(group_by_setting(one), std::nullopt);
@@ -58,7 +58,7 @@ TEST(RunCharts, captions_name_what_is_shown) {
     EXPECT_EQ(chart_named(against, "coordination").title, "Contacts per grain, weak forces left out");
 }
 
-TEST(RunCharts, what_cannot_be_drawn_is_said) {
+TEST(RunCharts, figures_that_cannot_be_drawn_are_explained) {
     auto run = two_models(1, 0);
     for (auto& recording : run.recordings)
         for (auto& scan : recording.scans)

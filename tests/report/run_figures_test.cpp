@@ -1,4 +1,4 @@
-// What the figures of runs show: levels, densities, thresholds and slopes, once for pages and print.
+// Values of the figures of runs, for pages and print: levels, densities, thresholds, slopes.
 #include "report/run/run_figures.h"
 
 #include <gmock/gmock.h>
@@ -37,17 +37,17 @@ TEST(RunFigures, top_forces_are_the_level_means) {
     EXPECT_NEAR(load["x"][9].get<double>(), 30, 1e-9);
     EXPECT_NEAR(load["y"][9].get<double>(), 15, 1e-9);
     EXPECT_TRUE(load["standard_error"][9].is_null());
-    ASSERT_EQ(unload["x"].size(), 11u);  // with the turning point
+    ASSERT_EQ(unload["x"].size(), 11u);  // including the turning point
     EXPECT_EQ(unload["y"][10], load["y"][9]);
 }
 
-TEST(RunFigures, errors_need_replicas) {
+TEST(RunFigures, errors_require_replicas) {
     const auto run = two_models(4);
     const auto curve = values_of(group_by_setting(run))["top_force"]["series"][1]["curves"][0];
     EXPECT_TRUE(curve["standard_error"][9].is_number());
 }
 
-TEST(RunFigures, the_distribution_is_that_of_the_level_nearest_to_what_was_asked) {
+TEST(RunFigures, the_distribution_is_that_of_the_level_nearest_to_the_request) {
     const auto run = two_models(1);
     const auto values = values_of(group_by_setting(run))["force_distribution"];
     EXPECT_NEAR(values["displacement_mm"].get<double>(), 18, 1e-9);
@@ -88,7 +88,7 @@ TEST(RunFigures, the_scaling_law_has_its_slope) {
     EXPECT_NEAR(series["slope"].get<double>(), 0.15, 1e-9);  // N over mN m
 }
 
-TEST(RunFigures, the_ratio_to_the_reference_is_told) {
+TEST(RunFigures, the_ratio_to_the_reference_is_included) {
     const auto run = two_models(1);
     const auto series =
         values_of(group_by_setting(run), Setting{"experiment", {&run.recordings[1]}})["top_force"]["series"];
@@ -96,7 +96,7 @@ TEST(RunFigures, the_ratio_to_the_reference_is_told) {
     EXPECT_EQ(series[2]["colour"], "#000000");
 }
 
-TEST(RunFigures, what_is_not_known_is_told) {
+TEST(RunFigures, missing_data_are_explained) {
     auto run = two_models(1, 0);
     for (auto& recording : run.recordings)
         for (auto& scan : recording.scans)
@@ -109,7 +109,7 @@ TEST(RunFigures, what_is_not_known_is_told) {
     EXPECT_THAT(made.missing[0], HasSubstr("no contacts recorded"));
 }
 
-TEST(FigureFile, says_its_format_and_survives_any_label) {
+TEST(FigureFile, contains_its_format_and_any_label) {
     const auto run = two_models(1);
     auto settings = group_by_setting(run);
     settings[0].label = "\xff\" \\ `x`\n";
@@ -118,7 +118,7 @@ TEST(FigureFile, says_its_format_and_survives_any_label) {
     EXPECT_THAT(values["top_force"]["series"][0]["words"].get<std::string>(), HasSubstr("\" \\ `x` "));
 }
 
-TEST(SeriesStyle, a_model_keeps_its_colour_and_settings_differ) {
+TEST(SeriesStyle, each_model_keeps_its_colour_and_settings_differ) {
     const auto both = two_models(1);
     const auto one = synthetic::run({{.model = "mc_dem"}}, 1);
     const auto settings = group_by_setting(both);

@@ -25,7 +25,7 @@ std::vector<std::string> titles(const TextTable& table) {
     return titles;
 }
 
-TEST(TablesOfScans, OfCellsSpeakOfStrainsAndStressesAndOfNoPlate) {
+TEST(TablesOfScans, OfCellsContainStrainsAndStressesInsteadOfAPlate) {
     const Recording one = synthetic::cell("mc_dem"), two = synthetic::cell("mc_dem", 2, 3);
     const auto tables = tables_of_scans({{"mc_dem", {&one, &two}}});
     ASSERT_EQ(tables.size(), 1u);
@@ -40,7 +40,7 @@ TEST(TablesOfScans, OfCellsSpeakOfStrainsAndStressesAndOfNoPlate) {
     EXPECT_THAT(text, HasSubstr("rate of strain: error of stresses at most 0.4 %"));
 }
 
-TEST(TablesOfScans, TellThreeStrainsWhereTheyDiffer) {
+TEST(TablesOfScans, HaveThreeStrainsIfTheyDiffer) {
     Recording one = synthetic::cell("mc_dem");
     one.scans[1].strain[2] = 0.05;
     EXPECT_THAT(titles(tables_of_scans({{"mc_dem", {&one}}})[0]),
@@ -48,7 +48,7 @@ TEST(TablesOfScans, TellThreeStrainsWhereTheyDiffer) {
                             "strain z [%]", "shear xz [%]", "φ", "p [Pa]", "q [Pa]", "Z"));
 }
 
-TEST(TablesOfScans, AreOneOfPlatesAndOneOfCells) {
+TEST(TablesOfScans, AreSeparateForPlatesAndCells) {
     const Recording plate = held_plate(), cell = synthetic::cell("mc_dem");
     const auto tables = tables_of_scans({{"cell", {&cell}}, {"plate", {&plate}}});
     ASSERT_EQ(tables.size(), 2u);
@@ -58,7 +58,7 @@ TEST(TablesOfScans, AreOneOfPlatesAndOneOfCells) {
     EXPECT_THROW(csv_of_scans({{"cell", {&cell}}, {"plate", {&plate}}}), InputError);
 }
 
-TEST(TablesOfScans, SayWhichStoppedEarlyAndWhereALawWasNotTested) {
+TEST(TablesOfScans, MarkReplicasThatStoppedEarlyAndScansBeyondAModelsRange) {
     const Recording whole = synthetic::cell("elastic_sphere", 1);
     Recording broken = synthetic::cell("elastic_sphere", 2);
     broken.scans.resize(3);
@@ -89,7 +89,7 @@ TEST(CsvOfScans, HasAllStrainsInSiUnitsAndTheKeysThatVary) {
     EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 3);
 }
 
-TEST(StressUnit, LeavesFewDigitsBeforeThePoint) {
+TEST(StressUnit, GivesFewDigitsBeforeThePoint) {
     EXPECT_STREQ(stress_unit(9999).name, "Pa");
     EXPECT_STREQ(stress_unit(10000).name, "kPa");
     EXPECT_EQ(stress_unit(1e7).size, 1e6);

@@ -11,7 +11,7 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-TEST(TextTable, terminal_is_aligned_by_characters) {
+TEST(TextTable, columns_are_aligned_by_characters_on_terminals) {
     const TextTable table{
         {{"name", Align::left}, {"F"}}, {{"φ", "1.5"}, {"long name", "10 ± 2"}}, {"a note"}};
     EXPECT_EQ(to_text(table, TableFormat::terminal),
@@ -23,7 +23,7 @@ TEST(TextTable, terminal_is_aligned_by_characters) {
               "  a note\n");
 }
 
-TEST(TextTable, markdown) {
+TEST(TextTable, markdown_is_written) {
     const TextTable table{{{"name", Align::left}, {"F"}}, {{"a|b", "1"}}, {"a note"}};
     EXPECT_EQ(to_text(table, TableFormat::markdown),
               "| name |   F |\n"
@@ -33,12 +33,12 @@ TEST(TextTable, markdown) {
               "- a note\n");
 }
 
-TEST(TextTable, cells_cannot_steer_the_terminal_or_break_the_row) {
+TEST(TextTable, cells_cannot_control_the_terminal_or_break_the_row) {
     const TextTable table{{{"n", Align::left}}, {{"a\x1b[31m\nb"}}, {}};
     EXPECT_THAT(to_text(table, TableFormat::terminal), HasSubstr("a [31m b\n"));
 }
 
-TEST(WithError, shows_what_is_known) {
+TEST(WithError, shows_only_known_errors) {
     EXPECT_EQ(with_error({0.43, 0.0123, 8}, 2), "0.43 ± 0.01");
     EXPECT_EQ(with_error({0.004, not_available, 1}, 2, 1e-3), "4.00");
     EXPECT_EQ(with_error({}, 2), "–");
@@ -57,7 +57,7 @@ TEST(TableOfModels, names_reference_stroke_and_failures) {
     EXPECT_THAT(text, HasSubstr("stopped early"));
 }
 
-TEST(TableOfModels, marks_what_did_not_reach_full_stroke) {
+TEST(TableOfModels, marks_settings_that_did_not_reach_full_stroke) {
     auto run = synthetic::run({{.model = "independent", .top = 6.45}, {.model = "mc_dem"}}, 1);
     run.recordings[1].failure = Failure{};
     run.recordings[1].scans.resize(6);
@@ -67,7 +67,7 @@ TEST(TableOfModels, marks_what_did_not_reach_full_stroke) {
     EXPECT_THAT(text, HasSubstr("*: no replica reached full stroke"));
 }
 
-TEST(TableOfModels, says_where_a_law_was_not_tested) {
+TEST(TableOfModels, marks_scans_beyond_a_models_range) {
     auto run = synthetic::run({{.model = "elastic_sphere", .levels = 2}}, 1);
     EXPECT_THAT(to_text(table_of_models(model_table(group_by_setting(run))), TableFormat::terminal),
                 Not(HasSubstr("tested")));
@@ -77,7 +77,7 @@ TEST(TableOfModels, says_where_a_law_was_not_tested) {
                           "(0.10 of the sum of their radii), by up to 0.15"));
 }
 
-TEST(CsvOfModels, has_a_column_for_each_key_that_is_not_the_same_in_all) {
+TEST(CsvOfModels, has_a_column_for_each_key_that_differs) {
     auto run = synthetic::run({{.model = "mc_dem", .top = 12}}, 2);
     run.recordings[1].parameters["contact.gamma"] = "1.125";
     run.recordings[0].parameters["contact.gamma"] = "1";
@@ -108,7 +108,7 @@ TEST(TableOfComparisons, has_the_papers_columns_and_units) {
             "MC-DEM       1.000 ± 0.004  0.41 ± 0.02  0.26 ± 0.01  0.98 ± 0.04  4.00 ± 0.10  50 of 60"));
 }
 
-TEST(TableOfComparisons, a_note_that_all_share_comes_once) {
+TEST(TableOfComparisons, a_common_note_appears_once) {
     Comparison a, b;
     a.setting = "independent";
     b.setting = "mc_dem";
@@ -118,7 +118,7 @@ TEST(TableOfComparisons, a_note_that_all_share_comes_once) {
     EXPECT_EQ(table.notes, (std::vector<std::string>{"shared", "Independent contacts: its own"}));
 }
 
-TEST(TableOfScaling, one_row_a_phase) {
+TEST(TableOfScaling, has_one_row_per_phase) {
     const auto run = synthetic::run({{}}, 1);
     const auto table = table_of_scaling(group_by_setting(run));
     ASSERT_EQ(table.rows.size(), 2u);

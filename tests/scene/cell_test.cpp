@@ -1,4 +1,4 @@
-// Cells: their keys, what is wrong with them, their packings, and the path of their programme.
+// Fully periodic cells: keys, errors, packings, and the strain path of their programmes.
 #include "core/container.h"
 #include "core/errors.h"
 #include "largest_overlap.h"
@@ -21,7 +21,7 @@ const std::string one_move = "[[programme]]\nstrain = 0.1\n";
 
 Replica read_one(const std::string& text) { return parse_scene(text, "good.toml", {}).replicas.at(0); }
 
-TEST(Cell, HeightFollowsFromItsGrains) {
+TEST(Cell, HeightFollowsFromTheVolumeOfItsGrains) {
     const Replica replica = read_one(cell + few + one_move);
     EXPECT_EQ(replica.box.shape, ContainerShape::cell);
     EXPECT_EQ(replica.plate.start, replica.box.height);
@@ -39,7 +39,7 @@ TEST(Cell, HeightFollowsFromItsGrains) {
     EXPECT_EQ(replica.parameters.at("walls.friction"), "");
 }
 
-TEST(Cell, OfAPackingFileNeedsItsHeight) {
+TEST(Cell, PackingFilesRequireItsHeight) {
     const TestFolder folder;
     const auto two =
         folder.write("two.csv", "x_m,y_m,z_m,diameter_m\n0.2,-0.3,0.02,0.024\n0.1,0.1,0.9,0.02\n");
@@ -54,7 +54,7 @@ TEST(Cell, OfAPackingFileNeedsItsHeight) {
                                   HasSubstr("packing.packing_fraction"))));
 }
 
-TEST(Cell, TakesNoKeysOfPlateAndWalls) {
+TEST(Cell, RefusesKeysOfPlateAndWalls) {
     for (const char* key : {"plate.start", "plate.speed", "walls.friction", "effects.plate_compliance",
                             "effects.plate_tilt_x", "grains.excess_density"})
         EXPECT_THAT(
@@ -66,7 +66,7 @@ TEST(Cell, TakesNoKeysOfPlateAndWalls) {
                 ElementsAre(HasSubstr("container.height must be left out where container.shape = \"box\"")));
 }
 
-TEST(Cell, RefusesStagesThatAreNotItsOwn) {
+TEST(Cell, RefusesStagesOfAPlate) {
     const auto problems = [](const std::string& stage) {
         return problems_in(cell + few + "[[programme]]\n" + stage);
     };
@@ -86,7 +86,7 @@ TEST(Cell, RefusesStagesThatAreNotItsOwn) {
                 Contains(HasSubstr("strain_x must be left out of a stage that is a move of the plate")));
 }
 
-TEST(Cell, TakesAStrainOrAStressInEachDirection) {
+TEST(Cell, EachDirectionHasAStrainOrAStress) {
     const Replica replica =
         read_one(cell + few + one_move +
                  "[[programme]]\npressure = 100\nshear_xz = 0.1\n[[programme]]\nstress_x = "
@@ -123,7 +123,7 @@ TEST(Cell, TakesAStrainOrAStressInEachDirection) {
                 Contains(HasSubstr("pressure must be left out of a stage that is a move of the plate")));
 }
 
-TEST(Cell, KeepsStressesOnlyWhereTheMoveBeforeSetsThem) {
+TEST(Cell, HoldsStressesOnlyIfTheMoveBeforePrescribesThem) {
     const auto problems = [](const std::string& stages) { return problems_in(cell + few + stages); };
     const std::string hold = "[[programme]]\nstage = \"hold\"\ntime = 1\nkeep = ", stress = "\"stress\"\n";
     const std::string pressure = "[[programme]]\npressure = 100\n",
@@ -144,7 +144,7 @@ TEST(Cell, KeepsStressesOnlyWhereTheMoveBeforeSetsThem) {
                 Contains(HasSubstr("keep must be position or force in a hold of the plate, got stress")));
 }
 
-TEST(Cell, MustKeepItsSizeToTheEndOfItsProgramme) {
+TEST(Cell, MustStayLargeEnoughDuringItsProgramme) {
     const std::string thin = "[container]\nshape = \"cell\"\nsize_x = 0.06\nsize_y = 0.1\n";
     EXPECT_NO_THROW(parse_scene(thin + few + "[[programme]]\nstrain_z = 0.3\n", "good.toml", {}));
     EXPECT_THAT(problems_in(thin + few + "[[programme]]\nstrain_x = 0.1\n"),
@@ -156,7 +156,7 @@ TEST(Cell, MustKeepItsSizeToTheEndOfItsProgramme) {
                  InputError);
 }
 
-TEST(CellMove, GoesStraightFromMoveToMove) {
+TEST(CellMove, IsLinearBetweenMoves) {
     std::vector<Stage> stages(4);
     stages[0].strain = 0.1;
     stages[1].shear_xz = 0.4;
@@ -189,7 +189,7 @@ TEST(CellMove, GoesStraightFromMoveToMove) {
     EXPECT_NEAR(smallest_cell(replica).height, 1.8, 1e-15);
 }
 
-TEST(CellImages, AreTheNearestHoweverTheCellLeans) {
+TEST(CellImages, AreTheNearestAtAnyShear) {
     const Box start{0.1, 0.2, ContainerShape::cell, 0.3};
     const Box now = deformed(start, {0.1, 0, -0.1, 1.3, -0.7, 2.1});
     const Vec3 edges[]{

@@ -1,4 +1,4 @@
-// Cylinders and periodic cells: their keys, what is wrong with them, and packings that fill them.
+// Cylinders and periodic containers: keys, errors, and packings that fill them.
 #include "core/container.h"
 #include "largest_overlap.h"
 #include "scene/generate_packing.h"
@@ -36,7 +36,7 @@ TEST(Containers, AreReadWithTheirSizes) {
     EXPECT_EQ(cylinder.size_y, 0.12);
 }
 
-TEST(Containers, OfSeveralShapesMakeOneRun) {
+TEST(Containers, OfSeveralShapesCanBeInOneRun) {
     const Scene scene =
         parse_scene("[container]\nsize_x = 0.1\nsize_y = 0.11\nradius = 0.06\n" + few +
                         "[batch.vary]\n\"container.shape\" = [\"box\", \"cylinder\", \"periodic\"]\n",
@@ -52,7 +52,7 @@ TEST(Containers, OfSeveralShapesMakeOneRun) {
     EXPECT_EQ(scene.replicas[2].parameters.at("container.size_x"), "0.1");
 }
 
-TEST(Containers, WithSizesOfOthersAreRefused) {
+TEST(Containers, SizesOfOtherShapesAreRefused) {
     EXPECT_THAT(problems_in("[container]\nshape = \"cylinder\"\nsize_x = 0.1\n" + few),
                 ElementsAre(HasSubstr(
                     "bad.toml:3: container.size_x must be left out where container.shape = \"cylinder\"")));
@@ -90,7 +90,7 @@ TEST(Containers, TooSmallForTheirGrainsAreRefused) {
                 ElementsAre(HasSubstr("a tilted plate does not repeat")));
 }
 
-TEST(Containers, ACylinderTakesWhatIsInItAlone) {
+TEST(Containers, ACylinderAcceptsOnlyGrainsInsideIt) {
     const Box cylinder{0.2, 0.2, ContainerShape::cylinder};
     const Packing packing{{{0.1, 0.1, 0.05}, {0.175, 0.175, 0.05}, {0.16, 0.16, 0.05}}, {0.02, 0.02, 0.02}};
     EXPECT_THAT(packing_problems(packing, cylinder, {0.1}, "p"), ElementsAre(HasSubstr("centre of grain 1")))
@@ -106,7 +106,7 @@ GeneratedPacking drawn(int count, double fraction) {
     return wanted;
 }
 
-// Without walls at the sides, spheres fit as far from walls.
+// Without side walls there are no gaps next to walls.
 TEST(GeneratedPacking, FillsContainersOfEveryShape) {
     for (const auto& [box, fraction] : {std::pair(Box{0.13, 0.13, ContainerShape::cylinder}, 0.53),
                                         std::pair(Box{0.12, 0.1, ContainerShape::periodic}, 0.56),
@@ -121,7 +121,7 @@ TEST(GeneratedPacking, FillsContainersOfEveryShape) {
         EXPECT_NEAR(height * box.size_x * box.size_y * floor_share(box) * fraction, 200 * 5.25e-6, 2e-5);
         EXPECT_LT(largest_overlap(packing, box, 1.003 * height), 0.02)
             << name(box.shape) << ' ' << box.size_x;
-        // Few contacts would mean that the space asked for was not filled.
+        // With few contacts the container would not be filled.
         const auto state = packing_state(packing, box, {height});
         EXPECT_LT(state.relative_overlap, 0.02);
         double far = 0, high = 0;
@@ -137,7 +137,7 @@ TEST(GeneratedPacking, FillsContainersOfEveryShape) {
     }
 }
 
-TEST(PackingState, OfAPeriodicCellCountsContactsOverItsEnds) {
+TEST(PackingState, OfAPeriodicContainerIncludesContactsAcrossItsBoundaries) {
     const Packing two{{{0.005, 0.05, 0.05}, {0.094, 0.05, 0.05}}, {0.02, 0.02}};
     const auto over = packing_state(two, {0.1, 0.1, ContainerShape::periodic}, {0.2});
     EXPECT_EQ(over.coordination_number, 1);

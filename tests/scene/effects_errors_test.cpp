@@ -1,5 +1,4 @@
-// Effects that cannot be: amplitudes out of range, plates that would reach the floor, grains that would
-// vanish.
+// Impossible effects: amplitudes out of range, plates that would reach the floor, grains without volume.
 #include "scene/make_packing.h"
 #include "scene/read_scene.h"
 #include "scene_test_tools.h"
@@ -11,7 +10,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::StartsWith;
 
-TEST(EffectsErrors, OutOfRangeAreToldWithTheirUnits) {
+TEST(EffectsErrors, OutOfRangeAreReportedWithTheirUnits) {
     EXPECT_THAT(
         problems_in(R"([effects]
 adhesion = -0.1
@@ -36,7 +35,7 @@ adhesive = 1
             StartsWith("bad.toml:10: effects.adhesive must be a key of a scene, got an unknown one")));
 }
 
-TEST(EffectsErrors, OfWhatKeysDemandOfEachOther) {
+TEST(EffectsErrors, ConditionsBetweenKeysAreChecked) {
     EXPECT_THAT(problems_in("[effects]\nplate_tilt_x = 0.9\nplate_tilt_y = 0.9\n"),
                 ElementsAre(StartsWith(
                     "bad.toml:2: effects.plate_tilt_x and effects.plate_tilt_y must leave the plate's lowest "
@@ -61,13 +60,13 @@ TEST(EffectsErrors, OfAPackingFileNameTheFile) {
         problems("effects.diameter_error=-0.01"),
         ElementsAre(HasSubstr(
             "two.csv: effects.diameter_error must be above minus the smallest diameter 0.01, got -0.01")));
-    // the plate is at 0.1676 m in the middle, and 11 mm lower over the grain at x = 0.03 m
+    // the plate is at 0.1676 m in the middle, and 11 mm lower above the grain at x = 0.03 m
     EXPECT_THAT(problems("effects.plate_tilt_x=0.21"),
                 ElementsAre(HasSubstr("the centre of grain 0 must be in the box")));
 }
 
-// Every effect can vary from replica to replica, and names them.
-TEST(EffectsErrors, NoneWhereEffectsVary) {
+// Every effect can vary between replicas and appears in their labels.
+TEST(EffectsErrors, NoErrorsIfEffectsVary) {
     const Scene scene = parse_scene(
         "[effects]\nplasticity = 0.1\n[batch.vary]\n\"effects.adhesion\" = [0, 0.05]\n", "good.toml", {});
     ASSERT_EQ(scene.replicas.size(), 2u);

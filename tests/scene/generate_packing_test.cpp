@@ -1,4 +1,4 @@
-// Generated packings: sizes, places, overlaps, and the same bits for a seed.
+// Generated packings: sizes, positions, overlaps; the same bits for the same seed.
 #include "scene/generate_packing.h"
 
 #include <algorithm>
@@ -26,7 +26,7 @@ GeneratedPacking wanted(int count, double packing_fraction) {
     return packing;
 }
 
-/// A cubic box for that many grains.
+/// A cubic box for this number of grains.
 Box cube(int count, double packing_fraction) {
     const double edge =
         std::cbrt(count * std::numbers::pi / 6 / packing_fraction) * GeneratedPacking{}.diameter_mean;
@@ -43,7 +43,7 @@ double height(const Packing& packing, const Box& box, double packing_fraction) {
     return volume(packing) / (packing_fraction * box.size_x * box.size_y);
 }
 
-TEST(CellPairs, AreFoundInABoxFlatterThanAnyCell) {
+TEST(CellPairs, AreFoundInAFlatBox) {
     const std::vector<Vec3> position{{500, 500, 5e-13}, {500.0001, 500, 5e-13}, {0, 1000, 0}};
     const CellList cells(position, {1000, 1000}, 1e-12, 1e-3);
     std::set<std::pair<int, int>> pairs;
@@ -52,7 +52,7 @@ TEST(CellPairs, AreFoundInABoxFlatterThanAnyCell) {
     EXPECT_FALSE(pairs.contains({0, 2}));
 }
 
-TEST(TruncatedNormal, QuantilesAreThoseOfTheTables) {
+TEST(TruncatedNormal, QuantilesAgreeWithTables) {
     const TruncatedNormal wide{0, 1, -20, 20};
     EXPECT_NEAR(wide.quantile(0.5), 0, 1e-15);
     EXPECT_NEAR(wide.quantile(0.975), 1.959963984540054, 1e-12);
@@ -65,7 +65,7 @@ TEST(TruncatedNormal, QuantilesAreThoseOfTheTables) {
     EXPECT_EQ((TruncatedNormal{3, 2, 3, 3}.quantile(0.9)), 3);
 }
 
-TEST(Random, HasTheMomentsItShould) {
+TEST(Random, HasTheExpectedMoments) {
     Random random(3, Stream::jitter);
     const int n = 100000;
     double mean = 0, square = 0, fourth = 0, uniform = 0;
@@ -82,14 +82,14 @@ TEST(Random, HasTheMomentsItShould) {
     EXPECT_NEAR(uniform, 0.5, 5 * std::sqrt(1 / 12.0 / n));
 }
 
-TEST(Random, IsTheSameEverywhere) {
+TEST(Random, IsTheSameOnEveryMachine) {
     Random random(1, Stream::diameters);
     EXPECT_EQ(random.uniform(), 0.7166913209529362);  // from an independent program
     EXPECT_NE(Random(1, Stream::positions).uniform(), Random(1, Stream::diameters).uniform());
     EXPECT_NE(Random(1, Stream::diameters).uniform(), Random(2, Stream::diameters).uniform());
 }
 
-TEST(GeneratedPacking, HasTheSizesOfTheExperiment) {
+TEST(GeneratedPacking, HasTheSizeDistributionOfTheExperiment) {
     const Packing packing = generate_packing(wanted(514, 0.59), measured_box, 1);
     ASSERT_EQ(packing.size(), 514u);
     double mean = 0, square = 0;
@@ -107,7 +107,7 @@ TEST(GeneratedPacking, HasTheSizesOfTheExperiment) {
                 0.1e-3);
 }
 
-TEST(GeneratedPacking, DifferentSeedsHoldNearlyTheSameVolume) {
+TEST(GeneratedPacking, VolumeHardlyDependsOnTheSeed) {
     const double first = volume(generate_packing(wanted(514, 0.4), measured_box, 1));
     for (std::uint64_t seed : {2, 3, 4})
         EXPECT_NEAR(volume(generate_packing(wanted(514, 0.4), measured_box, seed)) / first, 1, 5e-4);
@@ -122,7 +122,7 @@ TEST(GeneratedPacking, SameSeedSameBits) {
     EXPECT_NE(a.position, c.position);
 }
 
-TEST(GeneratedPacking, SpheresThatFitDoNotOverlap) {
+TEST(GeneratedPacking, SpheresDoNotOverlapIfThereIsRoom) {
     for (const auto& [count, fraction] : {std::pair{514, 0.55}, {60, 0.45}, {4000, 0.58}}) {
         const Box box = cube(count, fraction);
         const Packing packing = generate_packing(wanted(count, fraction), box, 4);
@@ -131,8 +131,9 @@ TEST(GeneratedPacking, SpheresThatFitDoNotOverlap) {
     }
 }
 
-TEST(GeneratedPacking, CompressedPackingsBalance) {
-    // Above what fits, overlaps share the lack of room: most grains touch several others, none is buried.
+TEST(GeneratedPacking, CompressedPackingsAreBalanced) {
+    // At higher packing fractions overlaps are distributed: most grains touch several others, and none is
+    // inside another.
     const Packing packing = generate_packing(wanted(514, 0.72), measured_box, 5);
     const double top = height(packing, measured_box, 0.72);
     EXPECT_LT(largest_overlap(packing, measured_box, top), 0.5);
@@ -154,7 +155,7 @@ TEST(GeneratedPacking, OneGrainAndAVeryLargeBox) {
     EXPECT_EQ(few.size(), 3u);
 }
 
-TEST(OverlapRelaxation, TwoGrainsPartAlongTheirLine) {
+TEST(OverlapRelaxation, TwoGrainsSeparateAlongTheirLineOfCentres) {
     const Box box{0.1, 0.1};
     const Packing packing{{{0.05, 0.05, 0.046}, {0.05, 0.05, 0.054}}, {0.02, 0.02}};
     EXPECT_NEAR(largest_overlap(packing, box, 0.1), 1.2, 1e-12);
@@ -167,8 +168,8 @@ TEST(OverlapRelaxation, TwoGrainsPartAlongTheirLine) {
         << "the centre of mass stays";
 }
 
-TEST(OverlapRelaxation, StackBetweenFloorAndLidSharesTheOverlap) {
-    // Three grains of 20 mm in a shaft of 54 mm: four contacts share 6 mm, 1.5 mm each.
+TEST(OverlapRelaxation, StackBetweenFloorAndLidSharesTheOverlapEqually) {
+    // Three grains of 20 mm in a height of 54 mm: four contacts share 6 mm, 1.5 mm each.
     const Box box{0.02, 0.02};
     const Packing packing{{{0.01, 0.01, 0.009}, {0.01, 0.01, 0.030}, {0.01, 0.01, 0.044}},
                           {0.02, 0.02, 0.02}};
@@ -179,7 +180,7 @@ TEST(OverlapRelaxation, StackBetweenFloorAndLidSharesTheOverlap) {
     EXPECT_NEAR(relaxation.position()[2].z(), 0.0455, 5e-5);
 }
 
-TEST(LargestOverlap, SeesWallsAndPairsOfUnequalGrains) {
+TEST(LargestOverlap, IncludesWallsAndPairsOfUnequalGrains) {
     const Box box{0.1, 0.1};
     EXPECT_NEAR(largest_overlap({{{0.05, 0.008, 0.05}}, {0.02}}, box, 0.1), 0.2, 1e-12);
     EXPECT_NEAR(largest_overlap({{{0.05, 0.05, 0.095}}, {0.02}}, box, 0.1), 0.5, 1e-12) << "the lid";

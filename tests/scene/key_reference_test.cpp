@@ -1,4 +1,4 @@
-// The table of keys: complete, consistent with itself, and what scenes/README.md says.
+// The table of keys: complete, consistent, and identical to scenes/README.md.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -24,7 +24,7 @@ std::vector<std::string> lines(const std::string& text) {
     return all;
 }
 
-/// Every key with what it takes, its default and its meaning: Markdown, one table for each TOML table.
+/// Every key with its values, default and meaning, as Markdown: one table per TOML table.
 std::string key_reference() {
     Settings defaults;
     defaults.run.name.clear();  // the default is the file's name
@@ -56,7 +56,7 @@ std::string key_reference() {
 }
 
 /// MCDEM_UPDATE_REFERENCE=1 writes the reference instead of comparing it.
-TEST(KeyReference, StandsInTheReadme) {
+TEST(KeyReference, AgreesWithTheReadme) {
     const std::string file = std::string(MCDEM_SOURCE_DIR) + "/scenes/README.md";
     std::ostringstream read;
     read << std::ifstream(file).rdbuf();
@@ -92,11 +92,11 @@ TEST(Keys, HaveUniqueNames) {
     for (const Key& key : keys()) EXPECT_TRUE(names.insert(key.name).second) << key.name;
 }
 
-TEST(Keys, ReachDifferentMembers) {
+TEST(Keys, BelongToDifferentMembers) {
     Settings settings;
     std::set<const void*> members;
     for (const Key& key : keys()) {
-        const bool is_second = key.name.starts_with("box.");  // name of the same
+        const bool is_second = key.name.starts_with("box.");  // another name for the same
         EXPECT_EQ(is_second, same_key(key.name) && same_key(key.name)->name.starts_with("container."));
         std::visit(
             [&](auto get) { EXPECT_EQ(members.insert(&get(settings)).second, !is_second) << key.name; },
@@ -109,10 +109,9 @@ std::size_t count_keys(std::string_view table) {
         std::ranges::count_if(keys(), [&](const Key& key) { return key.name.starts_with(table); }));
 }
 
-/// Does not compile where a member is added to a structure: give it a row in host/scene/keys.cpp, then a
-/// name here.
+/// Does not compile if a member is added to a struct: add a row to host/scene/keys.cpp, then a name here.
 TEST(Keys, CoverEveryMember) {
-    [[maybe_unused]] const auto [b1, b2, b3, b4, t1, t2, t3] = Box{};  // tilts: of a deformed one
+    [[maybe_unused]] const auto [b1, b2, b3, b4, t1, t2, t3] = Box{};  // tilts: of a deformed cell
     [[maybe_unused]] const auto [g1, g2, g3, g4, g5, g6, g7] = GrainMaterial{};
     [[maybe_unused]] const auto [w1, w2, w3, w4] = WallMaterial{};
     [[maybe_unused]] const auto [c1, c2, c3, c4] = ContactLaw{};
@@ -153,7 +152,7 @@ TEST(Keys, AcceptTheirOwnDefaults) {
     }
 }
 
-TEST(Keys, SuggestWhatWasMeant) {
+TEST(Keys, SimilarNamesAreSuggested) {
     EXPECT_EQ(suggestion("grains.fricton"), " (did you mean grains.friction?)");
     EXPECT_EQ(suggestion("contact.poisson_ratio"), " (did you mean grains.poisson_ratio?)");
     EXPECT_EQ(suggestion("grain"), " (did you mean grains?)");

@@ -1,4 +1,4 @@
-// How deep grains reach into one another.
+// Largest overlap in a packing.
 #pragma once
 #include <algorithm>
 
@@ -7,8 +7,7 @@
 
 namespace mcdem {
 
-/// Largest overlap of any two grains, or of a grain with a wall, over the radius of the
-/// smaller grain.
+/// Largest overlap of two grains, or of a grain and a wall, over the radius of the smaller grain.
 inline double largest_overlap(const Packing& packing, const Box& box, double height) {
     double most = 0;
     for (std::size_t i = 0; i < packing.size(); ++i) {

@@ -1,4 +1,4 @@
-// Packings in dumps, in Yade's text and of one frame among several: right, or told by line.
+// Packings from dumps, from Yade's text format, and from one of several frames; errors are reported by line.
 #include <fstream>
 
 #include "scene/packing_state.h"
@@ -24,7 +24,7 @@ std::vector<std::string> dump_problems(const std::string& text) {
     return problems_of([&] { read_dump_packing(text, "t"); });
 }
 
-TEST(PackingOfDump, WrongOnesAreTold) {
+TEST(PackingOfDump, WrongFilesAreRefused) {
     const auto spoiled = [](const std::string& from, const std::string& to) {
         std::string text = two_frames;
         return dump_problems(text.replace(text.find(from), from.size(), to));
@@ -51,7 +51,7 @@ TEST(PackingOfDump, WrongOnesAreTold) {
                 ElementsAre("t:13: each grain must have its own id, got 1 again"));
 }
 
-TEST(PackingOfDump, IsTheLastFrameOrTheStatedOne) {
+TEST(PackingOfDump, IsTheLastFrameOrTheGivenOne) {
     const TestFolder folder;
     const auto file = folder.write("grains.dump", two_frames);
     EXPECT_EQ(read_packing(file).size(), 1u);
@@ -83,7 +83,7 @@ TEST(PackingOfYade, HasRadii) {
         ElementsAre(HasSubstr("must be a dump, grains.csv or run.h5 where packing.frame is given")));
 }
 
-TEST(PackingOfYade, MayHaveOtherColumnsToo) {
+TEST(PackingOfYade, OtherColumnsAreIgnored) {
     const Packing packing =
         read_yade_packing("#format id_x_y_z_r_matId\n7\t1\t2\t3\t0.5\t0\n3\t4\t5\t6\t0.5\t0\n", "t");
     ASSERT_EQ(packing.size(), 2u);
@@ -95,7 +95,7 @@ TEST(PackingOfYade, MayHaveOtherColumnsToo) {
                 ElementsAre("t:3: must have 4 columns, as the first row or the #format line, got 3"));
 }
 
-TEST(PackingOfYade, AFormatLineBetweenRowsSaysNothing) {
+TEST(PackingOfYade, AFormatLineBetweenRowsIsIgnored) {
     const Packing packing = read_yade_packing("#format x_y_z_r\n1 2 3 0.5\n#format 0.0\n4 5 6 0.5\n", "t");
     ASSERT_EQ(packing.size(), 2u);
     EXPECT_EQ(packing.position[1], Vec3(4, 5, 6));
@@ -146,7 +146,8 @@ TEST(PackingFrame, IsAKeyOfScenes) {
 }
 
 TEST(PackingState, CountsContactsAndFindsTheDeepest) {
-    // Two grains that overlap by 1 mm, the lower one 0.5 mm in the floor, the upper one 2 mm in the plate.
+    // Two grains overlap by 1 mm; the lower one overlaps the floor by 0.5 mm, the upper one the plate by 2
+    // mm.
     const Packing packing{{Vec3(0.5, 0.5, 0.0095), Vec3(0.5, 0.5, 0.0335)}, {0.02, 0.03}};
     const Box box{1, 1};
     const PlateFace plate{0.0465, 0, 0, 0.5, 0.5};

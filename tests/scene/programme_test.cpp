@@ -1,4 +1,4 @@
-// Programmes as scenes say them: stages, their legs, overrides, variations, and what is wrong with them.
+// Programmes in scenes: stages and their legs, overrides, variations, errors.
 #include <cmath>
 
 #include "scene/legs.h"
@@ -39,7 +39,7 @@ std::vector<double> targets(const std::vector<Leg>& legs) {
     return all;
 }
 
-TEST(Programme, SaysMovesHoldsCyclesAndRepeats) {
+TEST(Programme, HasMovesHoldsCyclesAndRepeats) {
     const auto legs = legs_in(R"([[programme]]
 position = 0.08
 [[programme]]
@@ -92,7 +92,7 @@ TEST(Programme, OfPlateAndProtocolIsOneCycle) {
 const std::string two_stages =
     "[[programme]]\nforce = 1\nscans = 2\n[[programme]]\nstage = \"hold\"\nkeep = \"force\"\ntime = 0.5\n";
 
-TEST(Programme, IsOverriddenAndVariedStageByStage) {
+TEST(Programme, StagesAreOverriddenAndVariedSeparately) {
     const Scene scene = read(
         "[[programme]]\nscans = 2\n[[programme]]\nstage = \"hold\"\nkeep = \"force\"\n"
         "[batch.vary]\n\"programme.1.force\" = [0.5, 2]\nprogramme.2.time = [1, 3]\n",
@@ -111,7 +111,7 @@ TEST(Programme, IsOverriddenAndVariedStageByStage) {
         EXPECT_EQ(again.replicas[3].parameters.at(key), value) << key << "\n" << scene.text;
 }
 
-TEST(Programme, AnOverrideReplacesWhatItContradicts) {
+TEST(Programme, AnOverrideRemovesConflictingKeys) {
     const Stage stage = read(two_stages, {"programme.1.strain=0.1", "programme.1.scan_at=[0.05, 0.1]"})
                             .replicas[0]
                             .programme[0];
@@ -128,7 +128,7 @@ struct Wrong {
     const char* told;
 };
 
-TEST(Programme, WhatIsWrongIsToldWithARemedy) {
+TEST(Programme, ErrorsAreReportedWithARemedy) {
     const Wrong all[] = {
         {"forse = 1",
          "programme.1.forse must be a key of a scene, got an unknown one (did you mean programme.1.force?)"},
@@ -187,7 +187,7 @@ TEST(Programme, WhatIsWrongIsToldWithARemedy) {
         << "the place of the stage";
 }
 
-TEST(Programme, ProblemsOfAStageAreToldOnce) {
+TEST(Programme, ProblemsOfAStageAreReportedOnce) {
     EXPECT_THAT(problems_in("[[programme]]\nforce = 1\nback = 2\n[batch.vary]\n\"contact.model\" = "
                             "[\"independent\", \"mc_dem\"]\n"),
                 ElementsAre(HasSubstr(

@@ -1,4 +1,4 @@
-// Packings from files: the measured one, both formats, and files that are wrong.
+// Packings from files: the measured packing, both formats, and wrong files.
 #include "scene/read_packing.h"
 
 #include <cmath>
@@ -52,7 +52,7 @@ TEST(MeasuredPacking, HasTheStatisticsOfTheExperiment) {
     EXPECT_THAT(packing_problems(packing, {0.165191, 0.165834}, {0.167643}, file), SizeIs(0));
 }
 
-TEST(LammpsPacking, NumbersGrainsByTheirIds) {
+TEST(LammpsPacking, GrainsAreOrderedByTheirIds) {
     const Packing packing = lammps(title +
                                    "2 atoms\n1 atom types\n0 1 xlo xhi\n\nAtoms # sphere\n\n"
                                    "7 1 0.02 1000 0.3 0.2 0.1  # seventh\r\n"
@@ -98,14 +98,14 @@ TEST(LammpsPacking, EveryBadNumberIsNamed) {
                             HasSubstr("p.data:8: an atom must have 7 columns")));
 }
 
-TEST(LammpsPacking, ProblemsDoNotGrowWithoutEnd) {
+TEST(LammpsPacking, NumberOfProblemsIsLimited) {
     std::string text = title + "1000 atoms\nAtoms\n";
     for (int i = 1; i <= 1000; ++i) text += "x y z\n" + std::to_string(i) + " 1 0 1 0 0 0\n";
     EXPECT_LE(lammps_problems(text).size(), 20u);
     EXPECT_FALSE(lammps_problems(std::string(1 << 20, '\0')).empty());
 }
 
-TEST(CsvPacking, ColumnsComeInAnyOrder) {
+TEST(CsvPacking, ColumnsMayBeInAnyOrder) {
     const Packing packing =
         csv("\xEF\xBB\xBF"
             "grain, diameter_m, z_m, y_m, x_m\r\n# remark\n9, 0.1234567890123456789, 3, 2, 1\n\n8,0.5,6,5,4");
@@ -135,7 +135,7 @@ TEST(CsvPacking, WrongFilesAreRefused) {
     EXPECT_FALSE(csv_problems(std::string(100000, ',')).empty());
 }
 
-TEST(PackingFiles, AreChosenByTheirNamesEnd) {
+TEST(PackingFiles, FormatFollowsFromTheExtension) {
     const TestFolder folder;
     EXPECT_EQ(read_packing(folder.write("a.csv", "x_m,y_m,z_m,diameter_m\n1,2,3,4\n")).size(), 1u);
     EXPECT_EQ(read_packing(folder.write("b.data", title + "1 atoms\nAtoms\n1 1 0.02 1 0.1 0.1 0.1\n")).size(),
@@ -145,7 +145,7 @@ TEST(PackingFiles, AreChosenByTheirNamesEnd) {
     EXPECT_THAT(problems_of([&] { read_packing(folder.path()); }), ElementsAre(HasSubstr("not a file")));
 }
 
-TEST(PackingProblems, GrainsOutOfTheBox) {
+TEST(PackingProblems, GrainsOutsideTheBoxAreReported) {
     const Packing packing{{{0.05, 0.05, 0.05}, {-0.01, 0.05, 0.05}, {0.05, 0.11, 0.05}, {0.05, 0.05, 0.3}},
                           {0.02, 0.02, 0.02, 0.02}};
     EXPECT_THAT(packing_problems(packing, {0.1, 0.1}, {0.2}, "p"),
@@ -159,7 +159,7 @@ TEST(PackingProblems, GrainsOutOfTheBox) {
     EXPECT_THAT(packing_problems(many, {0.1, 0.1}, {0.2}, "p"), SizeIs(11));
 }
 
-TEST(PackingProblems, MillimetresAreNoticed) {
+TEST(PackingProblems, MillimetresAreDetected) {
     const Packing packing{{{50, 50, 50}, {70, 50, 50}}, {20, 21}};
     EXPECT_THAT(packing_problems(packing, {0.1, 0.1}, {0.2}, "p"),
                 ElementsAre(HasSubstr("millimetres? divide by 1000")));

@@ -1,4 +1,4 @@
-// Scenes that are right: values, defaults, overrides, paths, the text that results keep.
+// Valid scenes: values, defaults, overrides, paths, and the text stored in results.
 #include "scene/read_scene.h"
 
 #include "scene/keys.h"
@@ -21,7 +21,7 @@ TEST(ReadScene, EmptySceneIsTheDefaults) {
     EXPECT_EQ(scene.text, "");
 }
 
-TEST(ReadScene, EveryKindOfValueArrives) {
+TEST(ReadScene, EveryTypeOfValueIsRead) {
     const Scene scene = parse_scene(R"(
 name = "trial"
 [grains]
@@ -53,7 +53,7 @@ slots = 48
     EXPECT_FALSE(replica.protocol.stop_at_scans);
 }
 
-TEST(ReadScene, ParametersHoldEveryKeyAsText) {
+TEST(ReadScene, ParametersContainEveryKeyAsText) {
     const Scene scene =
         parse_scene("[contact]\ngamma = 0.1\n[packing]\nseed = 5\n[batch]\nreplicas = 2\n", "a.toml");
     const auto& parameters = scene.replicas.at(1).parameters;
@@ -65,7 +65,7 @@ TEST(ReadScene, ParametersHoldEveryKeyAsText) {
     EXPECT_EQ(parameters.at("packing.file"), "") << "does not apply";
 }
 
-TEST(Overrides, ComeBeforeTheFile) {
+TEST(Overrides, ReplaceValuesOfTheFile) {
     const Scene scene =
         parse_scene("[grains]\nfriction = 0.1\n", "a.toml",
                     {"grains.friction=0.2", "contact.model=sphere_to_sphere", "name = \"second try\"",
@@ -77,7 +77,7 @@ TEST(Overrides, ComeBeforeTheFile) {
     EXPECT_FALSE(replica.protocol.stop_at_scans);
 }
 
-TEST(Overrides, MakeABadValueGood) {
+TEST(Overrides, CanReplaceABadValue) {
     EXPECT_EQ(parse_scene("[grains]\nfriction = -1\n", "a.toml", {"grains.friction=0.2"})
                   .replicas.at(0)
                   .grains.friction,
@@ -90,7 +90,7 @@ TEST(Overrides, CanGiveAWholeTable) {
     EXPECT_EQ(scene.replicas.at(0).grains.density, 1000);
 }
 
-TEST(Overrides, TakeThePlaceOfTheKeysVariation) {
+TEST(Overrides, ReplaceTheVariationOfTheirKey) {
     const std::string text = "[batch.vary]\n\"contact.model\" = [\"independent\", \"mc_dem\"]\n";
     EXPECT_EQ(parse_scene(text, "a.toml").replicas.size(), 2u);
     const Scene one = parse_scene(text, "a.toml", {"contact.model=elastic_sphere"});
@@ -102,7 +102,7 @@ TEST(Overrides, TakeThePlaceOfTheKeysVariation) {
     EXPECT_EQ(three.replicas[0].contact.model, ContactModel::mc_dem);
 }
 
-TEST(Overrides, StandInTheTextThatResultsKeep) {
+TEST(Overrides, AreInTheTextStoredInResults) {
     const std::string text = "# remark\n[batch.vary]\n\"contact.gamma\" = [1, 1.125]\n";
     EXPECT_EQ(parse_scene(text, "a.toml").text, text) << "untouched where nothing changes";
     const Scene changed = parse_scene(text, "a.toml", {"plate.speed=0.05", "batch.replicas=2"});

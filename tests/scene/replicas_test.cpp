@@ -1,4 +1,4 @@
-// Copies and variations.
+// Copies and variations of a replica.
 #include <set>
 
 #include "scene/read_scene.h"
@@ -43,14 +43,14 @@ replicas = 2
     }
 }
 
-TEST(Replicas, KeysWithoutQuotesMeanTheSame) {
+TEST(Replicas, KeysWithoutQuotesAreEquivalent) {
     const Scene quoted = parse_scene("[batch.vary]\n\"contact.gamma\" = [1, 2]\n", "a.toml");
     const Scene dotted = parse_scene("[batch.vary]\ncontact.gamma = [1, 2]\n", "a.toml");
     EXPECT_EQ(labels(quoted), labels(dotted));
     EXPECT_THAT(labels(dotted), ElementsAre("gamma=1", "gamma=2"));
 }
 
-TEST(Replicas, LabelsTellKeysOfOneNameApart) {
+TEST(Replicas, LabelsDistinguishKeysWithTheSameName) {
     const Scene scene =
         parse_scene("[batch.vary]\n\"grains.friction\" = [0.1]\n\"walls.friction\" = [0.2, 0.3]\n", "a.toml");
     EXPECT_THAT(labels(scene), ElementsAre("grains.friction=0.1, walls.friction=0.2",

@@ -1,4 +1,5 @@
-// Scenes that are wrong: every problem at once, each with its place, what must be and what was got.
+// Invalid scenes: all problems are reported at once, each with its position, the expected and the actual
+// value.
 #include "scene/read_scene.h"
 #include "scene_test_tools.h"
 
@@ -28,7 +29,7 @@ TEST(SceneErrors, ABoxTooLargeForSinglePrecisionIsRefused) {
     EXPECT_NO_THROW(parse_scene(drawn, "good.toml", {"packing.diameter_min=0.0013"}));
 }
 
-TEST(SceneErrors, ABoxInMillimetresIsSuspected) {
+TEST(SceneErrors, ABoxInMillimetresIsDetected) {
     using testing::Contains;
     EXPECT_THAT(
         problems_in("[box]\nsize_x = 80\n"),
@@ -45,7 +46,7 @@ TEST(SceneErrors, ABoxInMillimetresIsSuspected) {
                     "two.csv: the box must be in metres and fit the packing, 0.04 m wide, got 80 x 80 m")));
 }
 
-TEST(SceneErrors, OfEveryKindAreReportedTogether) {
+TEST(SceneErrors, OfAllKindsAreReportedTogether) {
     const auto problems = problems_in(R"(speed = 3
 [grains]
 youngs_modulus = -23.3e3
@@ -94,7 +95,7 @@ friction = 0.1
             "--set packing.count: packing.count must be a whole number between 1 and 10000000, got 0"));
 }
 
-TEST(SceneErrors, SayLineAndColumnOfBadSyntax) {
+TEST(SceneErrors, GiveLineAndColumnOfBadSyntax) {
     EXPECT_THAT(problems_in("[grains]\nfriction = = 2\n"),
                 ElementsAre(StartsWith("bad.toml:2:12: must be TOML, got: ")));
     EXPECT_THAT(problems_in("[grains\nfriction = 2\n"),
@@ -105,12 +106,12 @@ TEST(SceneErrors, SayLineAndColumnOfBadSyntax) {
 
 struct Wrong {
     const char* text;
-    const char* problem;  ///< the only one
+    const char* problem;  ///< the only one expected
 };
 
 class CrossErrors : public testing::TestWithParam<Wrong> {};
 
-TEST_P(CrossErrors, NameTheKeyAndTheOther) {
+TEST_P(CrossErrors, NameBothKeys) {
     EXPECT_THAT(problems_in(GetParam().text), ElementsAre(StartsWith(GetParam().problem)));
 }
 
@@ -165,14 +166,14 @@ INSTANTIATE_TEST_SUITE_P(
               "bad.toml:2: plate.speed must be a number > 0 and <= 1000 [m/s], got 2020-01-01"},
         Wrong{"[packing]\nseed = -1\n", "bad.toml:2: packing.seed must be a whole number between 0"}));
 
-TEST(SceneErrors, TooManyGrainsInAll) {
+TEST(SceneErrors, TooManyGrainsInTotalAreRefused) {
     EXPECT_THAT(problems_in("[packing]\ncount = 5000000\npacking_fraction = 0.6\n[box]\nsize_x = 30\nsize_y "
                             "= 30\n[batch]\nreplicas = 3\n[numerics]\nprecision = \"double\"\n"),
                 ElementsAre("bad.toml:8: batch.replicas must leave at most 10000000 grains in all, got 3 "
                             "replicas of up to 5000000"));
 }
 
-TEST(SceneErrors, OneBadKeyDoesNotBlameOthers) {
+TEST(SceneErrors, OneBadKeyCausesNoOtherErrors) {
     EXPECT_THAT(problems_in("[plate]\nstart = \"high\"\nend = 0.2\n"),
                 ElementsAre(StartsWith("bad.toml:2: plate.start")));
 }
@@ -200,7 +201,7 @@ TEST(OverrideErrors, NameTheOption) {
     EXPECT_THAT(problems_in("", {"grains=5"}), ElementsAre("--set grains: grains must be a table, got 5"));
 }
 
-TEST(PackingFileErrors, ComeWithTheScenes) {
+TEST(PackingFileErrors, AreReportedWithThoseOfTheScene) {
     const TestFolder folder;
     folder.write("bad.csv", "x_m,y_m,z_m,diameter_m\n0.05,0.05,low,0.02\n0.05,0.05,0.05,-0.02\n");
     const auto scene = folder.write("scene.toml", "[packing]\nfile = \"bad.csv\"\n[grains]\nfriction = -1\n");
@@ -210,7 +211,7 @@ TEST(PackingFileErrors, ComeWithTheScenes) {
                                       AllOf(HasSubstr("scene.toml:4: "), HasSubstr("got -1"))));
 }
 
-TEST(PackingFileErrors, GeneratedGrainsBesideAFile) {
+TEST(PackingFileErrors, GeneratedGrainsWithAFileAreRefused) {
     const TestFolder folder;
     folder.write("one.csv", "x_m,y_m,z_m,diameter_m\n0.05,0.05,0.05,0.02\n");
     const auto both = folder.write("both.toml", "[packing]\nfile = \"one.csv\"\ncount = 4\n");
@@ -225,7 +226,7 @@ TEST(PackingFileErrors, GeneratedGrainsBesideAFile) {
                 ElementsAre(HasSubstr("--set packing.count: packing.count must be left out")));
 }
 
-TEST(PackingFileErrors, CopiesThatWouldBeAlike) {
+TEST(PackingFileErrors, IdenticalCopiesAreRefused) {
     const TestFolder folder;
     folder.write("one.csv", "x_m,y_m,z_m,diameter_m\n0.05,0.05,0.05,0.02\n");
     const std::string text = "[packing]\nfile = \"one.csv\"\n[batch]\nreplicas = 2\n";
@@ -237,14 +238,14 @@ TEST(PackingFileErrors, CopiesThatWouldBeAlike) {
                 ElementsAre(HasSubstr("at most a tenth of the smallest diameter 0.02")));
 }
 
-TEST(SceneFileErrors, AreToldApart) {
+TEST(SceneFileErrors, AreDistinguished) {
     const TestFolder folder;
     EXPECT_THAT(problems_of([&] { read_scene(folder.path() / "none.toml"); }),
                 ElementsAre(HasSubstr("got no such file")));
     EXPECT_THAT(problems_of([&] { read_scene(folder.path()); }), ElementsAre(HasSubstr("not a file")));
 }
 
-TEST(HostileScenes, AreRefusedInPlainWords) {
+TEST(HostileScenes, AreRefusedWithPlainMessages) {
     EXPECT_THAT(problems_in(std::string(2 << 20, ' ')),
                 ElementsAre(HasSubstr("must be at most 1048576 bytes")));
     EXPECT_THAT(problems_in(std::string(100000, '[')), ElementsAre(HasSubstr("must be TOML")));

@@ -1,4 +1,4 @@
-// What the scene tests share.
+// Shared by the tests of scenes.
 #pragma once
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@
 
 namespace mcdem {
 
-/// The problems that `action` reports; a failed test where it reports none.
+/// The problems that `action` reports; fails the test if there are none.
 template <class Action>
 std::vector<std::string> problems_of(const Action& action) {
     try {
@@ -32,7 +32,7 @@ inline std::vector<std::string> problems_in(const std::string& text,
     return problems_of([&] { parse_scene(text, "bad.toml", overrides); });
 }
 
-/// A folder of one test, removed with it.
+/// A temporary folder for one test.
 class TestFolder {
 public:
     TestFolder() {

@@ -1,4 +1,4 @@
-// Every scene of scenes/ is right, and is what its remarks say.
+// Every scene of scenes/ is valid and agrees with its comments.
 #include "scene/make_packing.h"
 #include "scene/read_scene.h"
 #include "scene_test_tools.h"
@@ -40,7 +40,7 @@ TEST(Scenes, CompressionComparesAllModelsOnOnePacking) {
     }
 }
 
-TEST(Scenes, PaperExperimentIsThePapers) {
+TEST(Scenes, PaperExperimentHasThePapersParameters) {
     const Scene scene = read_scene(folder / "paper_experiment.toml");
     ASSERT_EQ(scene.replicas.size(), 1u);
     const Replica& replica = scene.replicas[0];
@@ -52,7 +52,7 @@ TEST(Scenes, PaperExperimentIsThePapers) {
     EXPECT_NEAR(replica.plate.start - replica.plate.end, 30.126e-3, 1e-9);
 }
 
-TEST(Scenes, PaperExperimentTakesTheMeasuredPacking) {
+TEST(Scenes, PaperExperimentUsesTheMeasuredPacking) {
     const std::string data = std::string(MCDEM_SHARED_DATA) + "/hydrogel/input.data";
     if (!std::filesystem::exists(data)) GTEST_SKIP() << "the measured packing is not here: " << data;
     const Scene scene = read_scene(folder / "paper_experiment.toml", {"packing.file=" + data});

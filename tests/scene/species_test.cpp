@@ -1,4 +1,4 @@
-// [[species]] and [[pair]]: what scenes say of them, what is left out, how packings are divided among them.
+// [[species]] and [[pair]]: keys, defaults, and the assignment of species to grains.
 #include "scene/species.h"
 
 #include <fmt/format.h>
@@ -34,7 +34,7 @@ const std::string two =
 Replica replica_of(const std::string& text, const std::vector<std::string>& overrides = {}) {
     return parse_scene(box_text + text, "s.toml", overrides).replicas.front();
 }
-TEST(SpeciesOfAScene, TakeWhatTheyLeaveOutFromGrains) {
+TEST(SpeciesOfAScene, DefaultsAreThoseOfGrains) {
     const Replica replica = replica_of(two, {"species.1.density=900"});
     ASSERT_EQ(replica.species.size(), 2u);
     const GrainMaterial &soft = replica.species[0].material, &stiff = replica.species[1].material;
@@ -53,7 +53,7 @@ TEST(SpeciesOfAScene, TakeWhatTheyLeaveOutFromGrains) {
     EXPECT_EQ(softest(replica).youngs_modulus, 1e4);
 }
 
-TEST(SpeciesOfAScene, SlideByTheSmallerFrictionUnlessTheirPairSaysIt) {
+TEST(SpeciesOfAScene, FrictionIsTheSmallerOneUnlessThePairGivesIt) {
     const Replica plain = replica_of(two);
     EXPECT_EQ(pair_law(plain, 0, 1).friction, 0.1);
     EXPECT_EQ(pair_law(plain, 1, 0).restitution, 0.9);
@@ -71,7 +71,7 @@ TEST(SpeciesOfAScene, SlideByTheSmallerFrictionUnlessTheirPairSaysIt) {
     EXPECT_EQ(wall_law(told, 0).restitution, told.walls.restitution);
 }
 
-TEST(SpeciesOfAScene, VaryAndComeBackFromTheSceneText) {
+TEST(SpeciesOfAScene, VaryAndAreReadBackFromTheSceneText) {
     const Scene scene =
         parse_scene(box_text + two + "[batch.vary]\n\"species.1.poisson_ratio\" = [0.1, 0.3]\n", "s.toml",
                     {"species.1.fraction=0.25"});
@@ -84,7 +84,7 @@ TEST(SpeciesOfAScene, VaryAndComeBackFromTheSceneText) {
     EXPECT_EQ(other.replicas[0].species.size(), 1u);
 }
 
-/// What a scene says wrongly, and what it is told.
+/// An error in a scene, and its message.
 const std::vector<std::pair<std::string, std::string>> cases{
     {"[[species]]\nfraction = 1\n", "bad.toml:19: species.1.name must be given"},
     {"[[species]]\n", "species.1 must say what its grains are, got nothing"},
@@ -150,7 +150,7 @@ double volume(const std::vector<double>& diameters) {
     return sum;
 }
 
-/// Kolmogorov and Smirnov's largest distance from a distribution function.
+/// Kolmogorov-Smirnov distance from a distribution function.
 template <class Distribution>
 double distance(const std::vector<double>& sorted, const Distribution& below) {
     double most = 0;
@@ -164,9 +164,9 @@ double distance(const std::vector<double>& sorted, const Distribution& below) {
 
 double normal_below(double x) { return 0.5 * std::erfc(-x / std::numbers::sqrt2); }
 
-// Grains are drawn one from each of equally likely ranges: closer to the law than free draws, whose distance
-// goes with the root of the number. 1/n is what one such range allows, at most.
-TEST(GeneratedSpecies, FollowTheirSizeLaws) {
+// One grain is drawn from each of n equally likely ranges, so the distance is at most 1/n; for independent
+// draws it would be of the order of 1/sqrt(n).
+TEST(GeneratedSpecies, HaveTheirSizeDistributions) {
     const TestFolder folder;
     const auto file =
         folder.write("sieve.csv", "# of a sieve\ngrain,diameter_m\n1,0.02\n2,0.022\n3,0.022\n4,0.03\n");
@@ -198,7 +198,7 @@ TEST(GeneratedSpecies, FollowTheirSizeLaws) {
         << "another law is told apart";
 }
 
-TEST(GeneratedSpecies, HaveTheirSharesOfNumberOrVolume) {
+TEST(GeneratedSpecies, HaveTheirFractionsOfNumberOrVolume) {
     const std::string text =
         "[[species]]\nname = \"large\"\nfraction = 0.7\nsizes = \"single\"\n"
         "[[species]]\nname = \"small\"\ndiameter_mean = 0.01\ndiameter_sd = 0.0005\n";
@@ -210,7 +210,8 @@ TEST(GeneratedSpecies, HaveTheirSharesOfNumberOrVolume) {
     EXPECT_EQ(by_volume.size(), 2000u);
 }
 
-/// Of grains in order of height, how many stand next to one of another species: half of two equal shares.
+/// Fraction of grains, in order of height, whose next grain is of another species: one half for two equal
+/// fractions.
 TEST(GeneratedSpecies, AreMixed) {
     const Packing packing = make_packing(replica_of(two));
     std::vector<std::size_t> order(packing.size());
@@ -222,7 +223,7 @@ TEST(GeneratedSpecies, AreMixed) {
     EXPECT_NEAR(changes / 2000.0, 0.5, 4 * 0.5 / std::sqrt(2000.0));
 }
 
-TEST(GeneratedSpecies, OneOfThemIsThePackingWithoutAny) {
+TEST(GeneratedSpecies, OneSpeciesGivesThePackingWithoutSpecies) {
     const Packing plain = make_packing(replica_of("")),
                   one = make_packing(replica_of("[[species]]\nname = \"a\"\n"));
     EXPECT_TRUE(plain.species.empty());
@@ -230,7 +231,7 @@ TEST(GeneratedSpecies, OneOfThemIsThePackingWithoutAny) {
     EXPECT_EQ(one.position, plain.position);
 }
 
-/// Four grains as files of several programs have them.
+/// Four grains in the formats of several programs.
 struct SpeciesFile {
     std::string name, text;
 };
@@ -249,7 +250,7 @@ const std::vector<SpeciesFile> files_with_species{
 };
 const std::string file_box = "[box]\nsize_x = 0.3\nsize_y = 0.3\n[plate]\nstart = 0.3\nend = 0.2\n";
 
-TEST(SpeciesOfAFile, AreNamedOrNumberedThere) {
+TEST(SpeciesOfAFile, AreReadByNameOrNumber) {
     const TestFolder folder;
     for (const auto& [name, text] : files_with_species) {
         const std::string scene =
@@ -271,7 +272,7 @@ TEST(SpeciesOfAFile, AreNamedOrNumberedThere) {
     }
 }
 
-TEST(SpeciesOfAFile, FollowFractionsWithoutNamesInTheFile) {
+TEST(SpeciesOfAFile, FollowTheFractionsIfTheFileHasNoNames) {
     const TestFolder folder;
     std::string rows = "x_m,y_m,z_m,diameter_m\n";
     for (int i = 0; i < 400; ++i)
@@ -293,7 +294,7 @@ TEST(SpeciesOfAFile, FollowFractionsWithoutNamesInTheFile) {
     EXPECT_NEAR(soft / (soft + stiff), 0.3, 0.5 / 225) << "to half a grain of the 225 large ones' volume";
 }
 
-TEST(SpeciesCounts, AddUpAndFollowTheLargestRemainders) {
+TEST(SpeciesCounts, AddUpByTheLargestRemainderMethod) {
     EXPECT_THAT(apportion(10, {0.25, 0.25, 0.5}), ElementsAre(3, 2, 5));
     EXPECT_THAT(apportion(7, {1, 1}), ElementsAre(4, 3));
     EXPECT_THAT(apportion(3, {0.9, 0.05, 0.05}), ElementsAre(3, 0, 0));

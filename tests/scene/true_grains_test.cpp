@@ -1,4 +1,4 @@
-// True diameters: the stated ones with an error that all share and one that each has by itself.
+// True diameters: the stated ones with a common error and an individual error.
 #include "scene/true_grains.h"
 
 #include <numeric>
@@ -17,14 +17,14 @@ TEST(TrueGrains, AreAsStatedWithoutEffects) {
     EXPECT_EQ(excess_compliance(Replica{}, 3), std::vector<double>(3, 0.0));
 }
 
-TEST(TrueGrains, ShareTheDiameterError) {
+TEST(TrueGrains, HaveACommonDiameterError) {
     Replica replica;
     replica.effects.diameter_error = -1e-3;
     for (const double diameter : true_packing(replica, stated(5)).diameter)
         EXPECT_NEAR(diameter, 0.019, 1e-15);
 }
 
-TEST(TrueGrains, ScatterNormallyGrainByGrain) {
+TEST(TrueGrains, HaveNormallyDistributedIndividualErrors) {
     constexpr double sd = 3e-4;
     constexpr int count = 2000;
     Replica replica;

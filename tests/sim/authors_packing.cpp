@@ -12,7 +12,7 @@ namespace reference {
 using namespace mcdem;
 
 Replica authors_replica(ContactModel model, int scans_per_stroke) {
-    Replica replica;  // the defaults are the experiment's
+    Replica replica;  // the defaults are those of the experiment
     replica.contact.model = model;
     replica.contact.friction_law = FrictionLaw::mindlin;
     replica.plate.speed = (replica.plate.start - replica.plate.end) / 0.3;
@@ -27,7 +27,7 @@ namespace {
 struct StrokeBatch {
     Scene scene;
     std::vector<Packing> packings;
-    std::vector<std::string> names;  ///< of the setting, by replica
+    std::vector<std::string> names;  ///< name of the setting of each replica
 };
 
 std::map<Precision, StrokeBatch> batches(const std::map<std::string, Setting>& settings, int replicas) {
@@ -46,7 +46,7 @@ std::map<Precision, StrokeBatch> batches(const std::map<std::string, Setting>& s
     return all;
 }
 
-/// Top force of every replica until all have loaded; shorter where a replica failed.
+/// Top force of each replica until all have finished loading; shorter if a replica failed.
 std::vector<Curve> load(const StrokeBatch& batch) {
     std::vector<Curve> curves(batch.names.size());
     std::size_t under_way = curves.size();
@@ -86,7 +86,7 @@ std::map<std::string, MeanCurve> loading_strokes(const std::map<std::string, Set
                                                  int replicas) {
     std::map<std::string, std::vector<const Curve*>> by_name;
     std::vector<std::vector<Curve>> kept;
-    kept.reserve(2);  // the curves stay where they are
+    kept.reserve(2);  // no reallocation: the curves must not move
     for (const auto& [precision, batch] : batches(settings, replicas)) {
         kept.push_back(load(batch));
         for (std::size_t r = 0; r < batch.names.size(); ++r)

@@ -1,5 +1,5 @@
-// Compression strokes of the authors' packing, in many replicas whose starting positions differ by the
-// measurement error: single runs are chaotic and scatter by several per cent.
+// Compression strokes of the authors' packing, in many replicas whose initial positions differ by the
+// measurement error. Single runs are chaotic and scatter by several per cent.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -19,16 +19,16 @@ inline const std::filesystem::path authors_folder = std::filesystem::path(MCDEM_
     if (!std::filesystem::exists(authors_folder / "input.data")) \
     GTEST_SKIP() << "no authors' packing: " << authors_folder << " is missing"
 
-/// The other code's settings: one continuous stroke of 0.3 s, friction with history, no relaxation before.
+/// Settings of the other code: one continuous stroke of 0.3 s, Mindlin friction, no relaxation before.
 mcdem::Replica authors_replica(mcdem::ContactModel model, int scans_per_stroke);
 
-/// Top force by scan of a loading stroke [N].
+/// Top force [N] in each scan of a loading stroke.
 using Curve = std::vector<double>;
 
-/// Mean over replicas and its standard error, by scan.
+/// Mean over replicas and its standard error, for each scan.
 struct MeanCurve {
     Curve mean, standard_error;
-    int replicas = 0;  ///< that came to the end
+    int replicas = 0;  ///< that finished the stroke
 };
 
 struct Setting {
@@ -36,8 +36,8 @@ struct Setting {
     mcdem::Precision precision = mcdem::Precision::single_precision;
 };
 
-/// Loading stroke of every setting from `replicas` starts; replica 0 of one replica starts from the packing
-/// as it is, otherwise every start is jittered by 0.1 mm, the same jitters for every setting.
+/// Loading stroke of each setting from `replicas` initial states. A single replica starts from the packing
+/// itself; otherwise all positions are jittered by 0.1 mm, equally for all settings.
 std::map<std::string, MeanCurve> loading_strokes(const std::map<std::string, Setting>& settings,
                                                  int replicas);
 

@@ -1,5 +1,5 @@
-// The paper's compression on the authors' packing: against another code, against the paper's ratios, and
-// against itself with half the time step, speed and density.
+// The compression of the authors' packing: compared with another code, with the ratios in the paper, and
+// with runs at half the time step, speed and density.
 #include "sim/authors_packing.h"
 
 #include <fmt/core.h>
@@ -33,8 +33,8 @@ std::vector<std::pair<double, double>> other_code(const char* name) {
     return rows;
 }
 
-/// One run from the very same positions, 300 scans as in the other code's file. Within 10 % from 12 mm and 5
-/// % from 18 mm: two codes that agree in every formula still differ by a rearrangement here and there.
+/// A single run from the same positions, with 300 scans as in the other code's file. The tolerance is 10 %
+/// from 12 mm and 5 % from 18 mm: even codes with identical formulas differ by single rearrangements.
 void expect_agreement(const Curve& ours, const char* name) {
     const auto theirs = other_code(name);
     ASSERT_EQ(theirs.size(), ours.size());
@@ -50,7 +50,7 @@ void expect_agreement(const Curve& ours, const char* name) {
                ours.back(), theirs.back().second, 100 * worst);
 }
 
-TEST(AuthorsPacking, FollowsAnotherCode) {
+TEST(AuthorsPacking, AgreesWithAnotherCode) {
     SKIP_WITHOUT_AUTHORS_PACKING();
     const auto curves =
         loading_strokes({{"hertz", {authors_replica(ContactModel::independent, 300)}},
@@ -60,16 +60,16 @@ TEST(AuthorsPacking, FollowsAnotherCode) {
     expect_agreement(curves.at("half space").mean, "liggghts_half_space_gamma_1.csv");
 }
 
-/// The paper's Rtop, all divided by MC-DEM's, with the span that its authors' other figures leave.
+/// Rtop of the paper, relative to MC-DEM, with the range spanned by other figures of its authors.
 struct Ratio {
     ContactModel model;
     double low, high;
 };
 
-TEST(AuthorsPacking, ModelsStandAsInThePaper) {
+TEST(AuthorsPacking, ModelRatiosAgreeWithThePaper) {
     SKIP_WITHOUT_AUTHORS_PACKING();
-    // Independent: the paper has 0.43 +- 0.02 from one packing's history; single runs here scatter by 0.02,
-    // their mean stands at 0.46, so the upper bound is 0.48.
+    // Independent: the paper has 0.43 +- 0.02 from the history of one packing. Single runs here scatter by
+    // 0.02 about a mean of 0.46, so the upper bound is 0.48.
     const std::vector<Ratio> ratios{
         {ContactModel::independent, 0.41, 0.48},      {ContactModel::point_force_on_sphere, 0.43, 0.54},
         {ContactModel::sphere_to_sphere, 0.70, 0.82}, {ContactModel::elastic_half_space, 0.80, 0.87},
@@ -87,17 +87,17 @@ TEST(AuthorsPacking, ModelsStandAsInThePaper) {
                                                 reference.standard_error.back() / reference.mean.back());
         fmt::print("{:22} {:7.3f} +- {:.3f} N   over MC-DEM {:.3f} +- {:.3f}\n", name(ratio.model),
                    curve.mean.back(), curve.standard_error.back(), value, error);
-        // Three standard errors: on another device the same starts take other turns.
+        // Three standard errors: the runs are chaotic, so they differ between devices.
         EXPECT_GE(value, ratio.low - 3 * error) << name(ratio.model);
         EXPECT_LE(value, ratio.high + 3 * error) << name(ratio.model);
-        if (ratio.model == ContactModel::elastic_sphere) continue;  // not one of the paper's
+        if (ratio.model == ContactModel::elastic_sphere) continue;  // not in the paper
         EXPECT_GT(value, before) << name(ratio.model) << " is out of the paper's order";
         before = value;
     }
 }
 
-/// The mean top force, above a tenth of its maximum, moves by less than 1 % beyond three standard errors of
-/// the difference (25 levels are looked at: two standard errors would be passed by chance).
+/// Above a tenth of its maximum the mean top force changes by less than 1 % plus three standard errors of
+/// the difference. (25 levels are compared: two standard errors would be exceeded by chance.)
 void expect_same(const MeanCurve& base, const MeanCurve& changed, const char* what) {
     double worst = 0, mean = 0;
     int levels = 0;

@@ -1,4 +1,4 @@
-// The averages of a scan, where they can be worked out by hand.
+// Averages of a scan, compared with values computed by hand.
 #include "sim/averages.h"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ Scan scan_of_three() {
     return scan;
 }
 
-TEST(Averages, CountContactsForcesAndBranches) {
+TEST(Averages, ContactsForcesAndBranchesAreCounted) {
     Scan scan = scan_of_three();
     fill_averages(scan, {1, 1}, {0.1, 0.1, 0.1}, 0);
     EXPECT_DOUBLE_EQ(scan.coordination_number, 5.0 / 3) << "two ends of two contacts and one at the wall";
@@ -34,7 +34,7 @@ TEST(Averages, CountContactsForcesAndBranches) {
     EXPECT_DOUBLE_EQ(scan.branch_length, (0.1 + 0.12) / 2);
 }
 
-TEST(Averages, KnowTheDeepestOverlapOfTwoGrains) {
+TEST(Averages, DeepestOverlapOfTwoGrainsIsFound) {
     Scan scan = scan_of_three();
     fill_averages(scan, {1, 1}, {0.15, 0.1, 0.16}, 0);
     EXPECT_NEAR(scan.max_overlap, (0.125 - 0.1) / 0.125, 1e-12) << "0.01 of 0.13 for the other pair";
@@ -47,7 +47,7 @@ TEST(Averages, KnowTheDeepestOverlapOfTwoGrains) {
     EXPECT_NEAR(scan.max_overlap, (0.125 - 0.09) / 0.125, 1e-12);
 }
 
-TEST(Averages, LeaveOutContactsBelowTheThreshold) {
+TEST(Averages, ContactsBelowTheThresholdAreExcluded) {
     Scan scan = scan_of_three();
     fill_averages(scan, {1, 1}, {0.1, 0.1, 0.1}, 1);
     EXPECT_DOUBLE_EQ(scan.coordination_number, 1) << "a force at the threshold counts";
@@ -59,8 +59,8 @@ TEST(Averages, LeaveOutContactsBelowTheThreshold) {
     EXPECT_TRUE(std::isnan(scan.branch_length));
 }
 
-// Diameter 0.2 in a unit box: inside means from 0.2 to 0.8 along each axis.
-TEST(Averages, PackingFractionCountsWhatIsInside) {
+// Diameter 0.2 in a unit box: the averaging region extends from 0.2 to 0.8 along each axis.
+TEST(Averages, PackingFractionCountsOnlyTheInnerRegion) {
     const double inner = 0.6 * 0.6 * 0.6, ball = std::numbers::pi / 6 * 0.008;
     const auto fraction = [&](const Vec3& centre) {
         return packing_fraction({centre}, {0.2}, {1, 1}, 1) * inner / ball;
@@ -71,11 +71,11 @@ TEST(Averages, PackingFractionCountsWhatIsInside) {
     EXPECT_NEAR(fraction({0.2, 0.5, 0.5}), 0.5, 0.01) << "cut in half by a face";
     EXPECT_NEAR(fraction({0.5, 0.8, 0.8}), 0.25, 0.01) << "by an edge";
     EXPECT_NEAR(fraction({0.2, 0.2, 0.8}), 0.125, 0.01) << "by a corner";
-    // a cap of height h = R/2 has 5/32 of the ball
+    // a cap of height h = R/2 has 5/32 of the sphere's volume
     EXPECT_NEAR(fraction({0.15, 0.5, 0.5}), 5.0 / 32, 0.01);
 }
 
-TEST(Averages, PackingFractionOfACylinderIsThatOfItsMiddle) {
+TEST(Averages, PackingFractionOfACylinderUsesItsInnerRegion) {
     const Box cylinder{1, 1, ContainerShape::cylinder};
     const double inner = std::numbers::pi * 0.3 * 0.3 * 0.6, ball = std::numbers::pi / 6 * 0.008;
     const auto fraction = [&](const Vec3& centre) {
@@ -84,13 +84,13 @@ TEST(Averages, PackingFractionOfACylinderIsThatOfItsMiddle) {
     EXPECT_NEAR(fraction({0.5, 0.5, 0.5}), 1, 1e-12);
     EXPECT_NEAR(fraction({0.64, 0.64, 0.5}), 1, 1e-12) << "0.198 from the axis";
     EXPECT_EQ(fraction({0.8, 0.8, 0.5}), 0);
-    const double a_third =
-        0.447;  // of a ball cut by a cylinder three times as wide, its centre on the border
+    const double a_third = 0.447;  // fraction of a sphere inside a cylinder of three times its radius, with
+                                   // the centre on its surface
     EXPECT_NEAR(fraction({0.5, 0.8, 0.5}), a_third, 0.02);
     EXPECT_NEAR(fraction({0.5, 0.5, 0.8}), 0.5, 0.01);
 }
 
-TEST(Averages, OfAPeriodicCellCrossItsBoundaries) {
+TEST(Averages, PeriodicContainerUsesNearestImages) {
     const Box cell{1, 1, ContainerShape::periodic};
     const double ball = std::numbers::pi / 6 * 0.008;
     for (const Vec3& centre : {Vec3(0, 0.99, 0.5), Vec3(0.5, 0.5, 0.5), Vec3(-3.1, 0.2, 0.3)})

@@ -1,4 +1,4 @@
-// What a batch asks of its device: estimated as it is allocated, refused where it is too much.
+// Memory of a batch: the estimate equals the allocation; batches that are too large are refused.
 #include "sim/batch_limits.h"
 
 #include <gmock/gmock.h>
@@ -40,7 +40,7 @@ std::string refusal(const mcdem::DeviceInfo& device, const KernelBuild& build,
     return "";
 }
 
-TEST(BatchLimits, TheEstimateIsWhatTheEngineTakes) {
+TEST(BatchLimits, EstimateEqualsTheEnginesAllocation) {
     const auto all = some_starts();
     for (const std::vector<Start>& starts :
          {std::vector{all[0]}, std::vector{all[1]}, std::vector{all[2]}, all})
@@ -61,14 +61,15 @@ TEST(BatchLimits, TheEstimateIsWhatTheEngineTakes) {
                 EXPECT_GE(mcdem::memory_needed(precision, slots, replicas, sizes).all,
                           batch.engine().memory().all);
                 const auto taken = batch.engine().memory();
-                const std::size_t grid = 4 * 9 * (65 + 1000 + 1 + 64);  // cells may be fewer than allowed
+                const std::size_t grid =
+                    4 * 9 * (65 + 1000 + 1 + 64);  // the cell list may have fewer cells than allowed
                 EXPECT_GE(estimate.all, taken.all);
                 EXPECT_LE(estimate.all, taken.all + grid);
                 EXPECT_GE(estimate.largest_field, taken.largest_field);
             }
 }
 
-TEST(BatchLimits, MoreThanTheDeviceHasIsRefusedWithTheNumberOfReplicasThatFit) {
+TEST(BatchLimits, MoreThanTheDevicesMemoryIsRefusedWithTheNumberOfReplicasThatFit) {
     const std::vector<Replica> replicas(100, test_replica());
     const std::vector<PackingSize> sizes(100, {1000, 0.02});
     const KernelBuild kernels;
@@ -90,7 +91,7 @@ TEST(BatchLimits, MoreThanTheDeviceHasIsRefusedWithTheNumberOfReplicasThatFit) {
                 testing::HasSubstr("fewer grains"));
 }
 
-TEST(BatchLimits, NumbersThatWouldOverflowAreRefused) {
+TEST(BatchLimits, SizesThatOverflowAreRefused) {
     const KernelBuild kernels{.slots = 64};
     const std::vector<Replica> four(4, test_replica());
     EXPECT_EQ(refusal(large_device(), kernels, four, std::vector<PackingSize>(4, {8'000'000, 0.02})), "");
@@ -109,7 +110,7 @@ TEST(BatchLimits, NumbersThatWouldOverflowAreRefused) {
     EXPECT_THAT(refused(48), testing::HasSubstr("numerics.slots must be at most 32 on abacus"));
 }
 
-TEST(BatchLimits, StepsThatCannotBeCountedAreRefused) {
+TEST(BatchLimits, TooManyStepsAreRefused) {
     Replica replica = test_replica();
     EXPECT_NO_THROW(mcdem::expect_countable_steps(replica, 1e-6));
     EXPECT_THROW(mcdem::expect_countable_steps(replica, 0), mcdem::InputError);
@@ -127,7 +128,7 @@ TEST(BatchLimits, StepsThatCannotBeCountedAreRefused) {
     EXPECT_NO_THROW(mcdem::expect_countable_steps(replica, 1e-6));
 }
 
-TEST(BatchLimits, CellsAreFewWhateverTheBox) {
+TEST(BatchLimits, NumberOfCellsIsLimitedForAnyBox) {
     for (const auto& [x, y, z] : std::vector<std::array<double, 3>>{
              {1, 1, 1}, {1000, 1000, 1000}, {1000, 1e-3, 1e-3}, {1000, 1000, 1e-3}, {1e-3, 1e-3, 1000}}) {
         Replica replica = test_replica();

@@ -1,4 +1,4 @@
-// The same bits: a replica alone, in batches and anywhere in them; again in a fresh run; and after a restart.
+// Bit-identical results: of a replica alone and in any batch, of two fresh runs, and after a restart.
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -41,7 +41,7 @@ TEST(Bits, AReplicaIsTheSameAloneAndInAnyBatch) {
     for (Precision precision : {Precision::single_precision, finest()}) {
         WholeRun alone(precision, starts({0})), two(precision, starts({3, 0})),
             seven(precision, starts({1, 2, 3, 0, 4, 5, 6})), twice(precision, starts({0, 2, 0}));
-        // Where one replica has species the kernels are others.
+        // If one replica has several species, different kernels are used.
         WholeRun of_species(precision, starts({7})), beside_species(precision, starts({0, 7, 2}));
         for (WholeRun* run : {&alone, &two, &seven, &twice, &of_species, &beside_species}) run->finish();
         expect_same(alone, 0, beside_species, 0);
@@ -55,7 +55,7 @@ TEST(Bits, AReplicaIsTheSameAloneAndInAnyBatch) {
     }
 }
 
-TEST(Bits, StatesReadTogetherAreThoseReadAlone) {
+TEST(Bits, StatesReadTogetherEqualStatesReadOneByOne) {
     Batch batch(build(Precision::single_precision), starts({0, 1, 2, 3, 4, 5, 6}));
     batch.advance(40);
     for (const std::vector<int>& replicas :
@@ -80,7 +80,7 @@ TEST(Bits, TwoFreshRunsAreTheSame) {
     for (int r = 0; r < 4; ++r) expect_same(one, r, other, r);
 }
 
-// Taken out at several moments, put into a fresh simulation, run to the end.
+// Saves at several moments, restores into a new simulation, runs to the end.
 TEST(Bits, ARestartChangesNothing) {
     const auto kinds = starts({0, with_species, 5});
     WholeRun whole(Precision::single_precision, kinds);
@@ -108,7 +108,7 @@ TEST(Bits, ACheckpointOfAnotherSceneIsRefused) {
     EXPECT_THROW(one.restore(damaged), mcdem::RunError);
 }
 
-TEST(Bits, ACheckpointThatPointsOutsideItsArraysIsRefused) {
+TEST(Bits, ACheckpointWithIndicesOutOfRangeIsRefused) {
     WholeRun run(Precision::single_precision, starts({0, 1}));
     const auto whole = run.save();
     for (const char* field : {"partner", "partner_slot", "steps_made", "protocol"})

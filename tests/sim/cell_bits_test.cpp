@@ -1,10 +1,10 @@
-// Cells with a programme: the same bits alone, in a batch and after a restart at any point.
+// Cells with a programme: bit-identical alone, in a batch, and after a restart at any point.
 #include "sim/whole_run.h"
 
 namespace reference {
 namespace {
 
-/// To a pressure; a triaxial path; then the stresses of it are held.
+/// A move to a pressure, then a triaxial path, then a hold of its stresses.
 void set_stresses(std::vector<mcdem::Stage>& programme) {
     programme[0].strain = mcdem::not_given;
     programme[0].pressure = 250;

@@ -1,4 +1,4 @@
-// Cells that repeat in all directions and are deformed: closed forms, symmetries, and what must be kept.
+// Fully periodic cells that are deformed: closed-form solutions, symmetries, conservation laws.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -17,14 +17,14 @@ using mcdem::Strain;
 
 constexpr double radius = 0.01, pi = std::numbers::pi;
 
-/// Neither friction nor damping.
+/// No friction and no damping.
 Replica conservative(ContactModel model) {
     Replica replica = test_replica(model);
     replica.grains = {23.3e3, 0.45, 1000, 0, 0, 1, 0};
     return replica;
 }
 
-/// Cells that are taken along at constant rates.
+/// Cells deformed at constant rates.
 class Cells {
 public:
     explicit Cells(const std::vector<Start>& starts, Precision precision = finest())
@@ -82,7 +82,7 @@ std::vector<Strain> alike(std::size_t count, const Strain& strain) {
     return std::vector<Strain>(count, strain);
 }
 
-/// Where grains must be listed so that the deformed cell has them at these places.
+/// Stored positions of grains that are at these places in the deformed cell.
 Start placed(Start start, const Strain& strain) {
     for (Vec3& x : start.packing.position)
         x = into_cell(start.replica.box, mcdem::inverse_deformation(strain) * x);
@@ -91,7 +91,7 @@ Start placed(Start start, const Strain& strain) {
 
 double largest(const mcdem::Mat3& m) { return m.cwiseAbs().maxCoeff(); }
 
-/// A simple cubic crystal whose neighbours touch along the edges alone.
+/// A simple cubic crystal in which only nearest neighbours touch.
 constexpr double spacing = 0.0194;
 Start crystal(Replica replica, int side) {
     replica.box = {side * spacing, side * spacing, mcdem::ContainerShape::cell, side * spacing};
@@ -106,14 +106,14 @@ Start crystal(Replica replica, int side) {
     return start;
 }
 
-/// Of a contact with this overlap.
+/// Effective modulus, and Hertz force at an overlap, of the crystal's contacts.
 double crystal_modulus() { return 23.3e3 / (1 - 0.45 * 0.45) / 2; }
 double hertz(double overlap) {
     return 4.0 / 3 * crystal_modulus() * std::sqrt(radius / 2) * std::pow(overlap, 1.5);
 }
 
-// The motion of the cell is felt by the damping of contacts.
-TEST(Cell, ItsOwnMotionIsDamped) {
+// The damping of contacts includes the velocity of the cell's deformation.
+TEST(Cell, DeformationIsDampedByContacts) {
     Replica replica = conservative(ContactModel::independent);
     replica.grains.restitution = 0.7;
     const Strain rate{0.3, -0.2, 0.1, 0.5, -0.4, 0.6};
@@ -130,8 +130,8 @@ TEST(Cell, ItsOwnMotionIsDamped) {
     }
 }
 
-// A simple cubic crystal of which every contact is along an edge of the deformed lattice.
-TEST(Cell, HoldsADeformedCrystalOfKnownStress) {
+// A simple cubic crystal; every contact is along an edge of the deformed lattice.
+TEST(Cell, DeformedCrystalHasTheExpectedStress) {
     const double allowed = has_double() ? 1e-6 : 3e-3;
     const Strain strain{0.01, 0.02, -0.005, 0.06, -0.05, 0.04};
     for (const int side : {3, 4, 9}) {
@@ -163,7 +163,7 @@ TEST(Cell, HoldsADeformedCrystalOfKnownStress) {
     }
 }
 
-TEST(Cell, KeepsMomentumToRounding) {
+TEST(Cell, ConservesMomentumToRounding) {
     Replica replica = test_replica();
     replica.grains.drag = 0;
     const auto starts = all_cells(replica);
@@ -194,7 +194,7 @@ TEST(Cell, KeepsMomentumToRounding) {
     }
 }
 
-// Grains that touch nothing go straight on, whatever the cell does around them.
+// Grains without contacts move in straight lines, whatever the deformation of the cell.
 TEST(Cell, FreeGrainsKeepTheirVelocity) {
     Start start = cell_lattice(conservative(ContactModel::independent), 3, 5);
     start.packing.position.resize(2);
@@ -211,7 +211,7 @@ TEST(Cell, FreeGrainsKeepTheirVelocity) {
     for (std::size_t i = 0; i < 2; ++i) {
         const Vec3 from = mcdem::deformation(before) * start.packing.position[i];
         const Vec3 velocity = own[i] + mcdem::velocity_gradient(before, rate) * from;
-        // To first order in the step: positions are taken half a step after velocities.
+        // First order in the step: positions are computed half a step after velocities.
         EXPECT_LT((state.position[i] - (from + duration * velocity)).norm() / (duration * velocity.norm()),
                   0.01);
         const Vec3 now =
@@ -245,7 +245,7 @@ std::vector<Vec3> forces_of(const mcdem::ReplicaState& state) {
 
 constexpr Strain some_strain{0.02, 0.01, -0.01, 0.05, -0.04, 0.03}, some_rate{0.2, -0.1, 0.1, 0.5, -0.3, 0.4};
 
-TEST(Cell, MovedByLatticeVectorsAPackingDoesTheSame) {
+TEST(Cell, TranslationByLatticeVectorsChangesNothing) {
     const double allowed = has_double() ? 1e-10 : 3e-3;
     const auto starts = all_cells(test_replica());
     auto moved = starts;
@@ -264,8 +264,8 @@ TEST(Cell, MovedByLatticeVectorsAPackingDoesTheSame) {
     }
 }
 
-// x to y, y to z, z to x.
-TEST(Cell, WithItsAxesExchangedItDoesTheSame) {
+// Cyclic permutation: x to y, y to z, z to x.
+TEST(Cell, PermutationOfTheAxesChangesNothing) {
     const double allowed = has_double() ? 1e-10 : 3e-3;
     const auto turned = [](const Vec3& x) -> Vec3 { return {x.z(), x.x(), x.y()}; };
     const auto starts = all_cells(test_replica());
@@ -287,8 +287,8 @@ TEST(Cell, WithItsAxesExchangedItDoesTheSame) {
     }
 }
 
-// A shear by whole edges gives the lattice that it came from.
-TEST(Cell, FindsNeighboursHoweverFarItLeans) {
+// A shear by whole periods maps the lattice onto itself.
+TEST(Cell, FindsNeighboursAtLargeShear) {
     const double allowed = has_double() ? 1e-10 : 3e-3;
     for (const Strain& leaning :
          {Strain{0, 0, 0, 1, 0, 0}, Strain{0, 0, 0, -3, 4, 2}, Strain{0, 0, 0, 5, -5, 5}}) {
@@ -307,7 +307,7 @@ TEST(Cell, FindsNeighboursHoweverFarItLeans) {
     }
 }
 
-/// What moving grains add to the stress, over the volume.
+/// Kinetic part of the stress: sum of m v v over the volume.
 mcdem::Mat3 kinetic_part(const Start& start, const mcdem::ReplicaState& state) {
     mcdem::Mat3 sum = mcdem::Mat3::Zero();
     for (std::size_t i = 0; i < state.velocity.size(); ++i)
@@ -316,8 +316,8 @@ mcdem::Mat3 kinetic_part(const Start& start, const mcdem::ReplicaState& state) {
     return sum;
 }
 
-// Stress times strain rate is the energy that contacts and moving grains gain.
-TEST(Cell, ItsStressDoesTheWork) {
+// Stress times strain rate equals the increase of elastic and kinetic energy.
+TEST(Cell, StressTimesStrainRateIsTheWork) {
     if (!has_double()) GTEST_SKIP() << "the device has no double precision";
     for (const Strain& rate : {Strain{0.05, 0.05, 0.05, 0, 0, 0}, Strain{0, 0, 0.1, 0, 0, 0},
                                Strain{0, 0, 0, 0.1, 0.05, -0.05}, Strain{0.05, -0.02, 0.05, 0.1, -0.05, 0.1}})
@@ -330,7 +330,7 @@ TEST(Cell, ItsStressDoesTheWork) {
                 cells.advance(16000, {Strain{}}, 0.004 / cells.engine().time_step(0)).front();
             EXPECT_LT(before.kinetic_energy / before.elastic_energy, 0.05);
             const double energy = before.elastic_energy + before.kinetic_energy;
-            // Stress times volume, for the middle of each portion of the way.
+            // Stress times volume at the middle of each interval.
             const auto power = [&](const mcdem::Mat3& stress, const mcdem::Mat3& gradient) {
                 const Box now = cells.now(0);
                 const mcdem::Mat3 whole = stress * now.size_x * now.size_y * now.height +

@@ -1,5 +1,5 @@
-// What no law of contact may change: momentum and angular momentum of free grains, and that a contact
-// pushes both sides alike, at one point.
+// Conservation laws: momentum and angular momentum of free grains; opposite forces on the two sides of a
+// contact, at one point.
 #include <fmt/core.h>
 
 #include <cmath>
@@ -21,10 +21,10 @@ double inertia(const Start& start, std::size_t grain) {
 
 struct Momenta {
     Vec3 linear = Vec3::Zero(), angular = Vec3::Zero();
-    double linear_size = 0, angular_size = 0;  ///< of all grains' together, signs left aside
+    double linear_size = 0, angular_size = 0;  ///< sums of the magnitudes over all grains
 };
 
-/// About the middle of the box.
+/// About the centre of the box.
 Momenta momenta(const Start& start, const mcdem::ReplicaState& state) {
     Momenta sum;
     for (std::size_t i = 0; i < state.position.size(); ++i) {
@@ -51,7 +51,7 @@ std::vector<Start> free_clusters() {
     return starts;
 }
 
-/// Every effect of a contact at once.
+/// All contact effects together.
 Start free_cluster_with_effects() {
     Replica replica = test_replica(ContactModel::mc_dem);
     auto& effects = replica.effects;
@@ -65,7 +65,7 @@ Start free_cluster_with_effects() {
     return irregular_cluster(replica, 1);
 }
 
-/// Friction law and effects of a contact drawn at random.
+/// Friction law and contact effects drawn at random.
 Start random_free_cluster(unsigned seed, ContactModel model) {
     Uniform uniform(seed);
     const auto some = [&](double most) { return uniform(0, 1) < 0.5 ? uniform(0, most) : 0; };
@@ -95,8 +95,8 @@ void set_random_velocities(Batch& batch, std::size_t replicas) {
     }
 }
 
-// To rounding: coordinates of half a metre are rounded to 3e-8 m in float, 1.5e-6 of the arms, in each of 200
-// steps; in double to 1e-9 of that.
+// Rounding error: coordinates of half a metre are rounded to 3e-8 m in float, which is 1.5e-6 of the arms,
+// in each of 200 steps; in double the error is 1e-9 of that.
 void expect_momenta_stay(Precision precision, double allowed) {
     auto starts = free_clusters();
     starts.push_back(free_cluster_with_effects());
@@ -119,17 +119,16 @@ void expect_momenta_stay(Precision precision, double allowed) {
     }
 }
 
-TEST(Conservation, MomentumAndAngularMomentumInDouble) {
+TEST(Conservation, MomentumAndAngularMomentumAreConservedInDouble) {
     if (!has_double()) GTEST_SKIP() << "the device has no double precision";
     expect_momenta_stay(Precision::double_precision, 1e-12);
 }
 
-TEST(Conservation, MomentumAndAngularMomentumInFloat) {
+TEST(Conservation, MomentumAndAngularMomentumAreConservedInFloat) {
     expect_momenta_stay(Precision::single_precision, 5e-4);
 }
 
-// Hertz's contacts with any friction, damping and memory only lose energy, but for what the integrator gives
-// and takes.
+// Hertz contacts with friction, damping and memory only dissipate energy, up to the error of the integrator.
 TEST(Conservation, EnergyDoesNotGrow) {
     std::vector<Start> starts;
     for (unsigned seed = 0; seed < 24 * 6; seed += 6)
@@ -151,9 +150,9 @@ TEST(Conservation, EnergyDoesNotGrow) {
     }
 }
 
-// Contacts are told once, as the lower grain sees them. The next step of each grain must come from these
-// forces, turned round for the higher grain, applied at the very same points.
-TEST(Conservation, ActionIsReactionAtOnePoint) {
+// Each contact is reported once, for the grain of lower index. The next step of both grains must follow from
+// these forces, with opposite sign for the second grain, applied at the same points.
+TEST(Conservation, ForcesOnBothSidesAreOppositeAtOnePoint) {
     const auto starts = free_clusters();
     Batch batch(build(finest()), starts);
     set_random_velocities(batch, starts.size());
@@ -163,7 +162,7 @@ TEST(Conservation, ActionIsReactionAtOnePoint) {
     batch.advance(1);
     const double allowed = has_double() ? 1e-11 : 1e-4;
     for (std::size_t r = 0; r < starts.size(); ++r) {
-        // Mindlin's springs stretch in the step itself, so that only the first law can be told beforehand.
+        // A Mindlin spring changes within the step, so only saturated friction can be predicted.
         if (starts[r].replica.contact.friction_law == FrictionLaw::mindlin) continue;
         const auto after = batch.engine().state(r);
         ASSERT_GT(before[r].contacts.size(), 20u);

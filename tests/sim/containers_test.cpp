@@ -1,4 +1,4 @@
-// Cylinders and periodic cells: closed forms, symmetries of their own, and what every container must keep.
+// Cylinders and periodic containers: closed-form solutions, symmetries, conservation laws.
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -17,7 +17,7 @@ using std::numbers::pi;
 
 constexpr double radius = 0.01;
 
-/// Neither weight nor friction nor damping.
+/// No weight, friction or damping.
 Replica conservative(ContactModel model) {
     Replica replica = test_replica(model);
     replica.grains = {23.3e3, 0.45, 1000, 0, 0, 1, 0};
@@ -36,13 +36,13 @@ Vec3 force_on(const mcdem::IntervalResult& result, mcdem::Wall wall) {
     return result.wall_force[static_cast<std::size_t>(wall)];
 }
 
-/// A grain alone in a cylinder, `overlap` deep in its wall at that angle, and the force on the wall.
+/// One grain in a cylinder, `overlap` deep in its wall at this angle; returns the force on the wall.
 Vec3 force_on_cylinder(double cylinder, double overlap, double angle) {
     Replica replica = conservative(ContactModel::independent);
     replica.box = {2 * cylinder, 2 * cylinder, ContainerShape::cylinder};
     replica.plate.start = 0.1;
     replica.plate.end = 0.09;
-    replica.numerics.time_step = 1e-9;  // the grain stays where it is
+    replica.numerics.time_step = 1e-9;  // the grain does not move
     const double out = cylinder - radius + overlap;
     const Start start{
         replica,
@@ -59,10 +59,10 @@ Vec3 force_on_cylinder(double cylinder, double overlap, double angle) {
     return force_on(result, mcdem::curved_wall);
 }
 
-// R*/R of Hertz's elliptical contact of a sphere in a cylinder, from complete elliptic integrals (Johnson
-// 1985, section 4.2), at R/R_c = 0.05, 0.1, 0.25 and 0.5. The forces by the geometric mean lack at most 0.2 %
-// up to 0.25 and 1 % at 0.5.
-TEST(Cylinder, PressesAGrainAsHertzDoes) {
+// R*/R of Hertz's elliptical contact between a sphere and a cylinder, from complete elliptic integrals
+// (Johnson 1985, section 4.2), at R/R_c = 0.05, 0.1, 0.25 and 0.5. With the geometric mean, forces are too
+// small by at most 0.2 % up to 0.25 and 1 % at 0.5.
+TEST(Cylinder, WallForceAgreesWithHertz) {
     const Replica replica = conservative(ContactModel::independent);
     const double overlap = 2e-4, allowed = has_double() ? 1e-6 : 1e-3;
     for (const auto& [ratio, exact, lack] :
@@ -77,7 +77,7 @@ TEST(Cylinder, PressesAGrainAsHertzDoes) {
         }
 }
 
-// Each of the ring's grains alike, and no net force on the wall.
+// All grains of the ring have the same forces; the net force on the wall is zero.
 TEST(Cylinder, HoldsARingOfGrains) {
     const double cylinder = 0.04, ring = cylinder - 0.97 * radius;
     const int count = 9;
@@ -107,7 +107,7 @@ TEST(Cylinder, HoldsARingOfGrains) {
     EXPECT_LT(force_on(result, mcdem::curved_wall).norm() / most, has_double() ? 1e-9 : 2e-3);
 }
 
-TEST(Cylinder, ItsWallsCarryTheWeight) {
+TEST(Cylinder, WallsCarryTheWeight) {
     Replica replica = test_replica(ContactModel::mc_dem);
     replica.grains.excess_density = 1000;
     replica.contact.friction_law = FrictionLaw::mindlin;
@@ -127,9 +127,9 @@ TEST(Cylinder, ItsWallsCarryTheWeight) {
         EXPECT_EQ(force_on(result, wall).norm(), 0);
 }
 
-// A simple cubic crystal between plates: Hertz's force at every contact, and the plate's force in closed
-// form.
-TEST(PeriodicCell, HoldsACrystalOfKnownPressure) {
+// A simple cubic crystal between plates: Hertz force at every contact; closed form for the force on the
+// plate.
+TEST(PeriodicCell, CrystalHasTheExpectedPressure) {
     const double spacing = 0.0194, wall_overlap = 3e-4;
     for (const int side : {3, 4, 9}) {
         Replica replica = conservative(ContactModel::independent);
@@ -169,7 +169,7 @@ TEST(PeriodicCell, HoldsACrystalOfKnownPressure) {
     }
 }
 
-/// All models in one batch, their grains at rest between floor and plate of a periodic cell.
+/// All models in one batch; grains at rest between floor and plate of a periodic container.
 std::vector<Start> periodic_starts(const Replica& like, int layers) {
     std::vector<Start> starts;
     for (ContactModel model : all_models) {
@@ -187,7 +187,7 @@ std::vector<Vec3> forces_of(const mcdem::ReplicaState& state) {
     return forces;
 }
 
-TEST(PeriodicCell, KeepsMomentumToRounding) {
+TEST(PeriodicCell, ConservesMomentumToRounding) {
     Replica replica = test_replica();
     replica.grains.drag = replica.grains.excess_density = 0;
     auto starts = periodic_starts(replica, 2);
@@ -218,7 +218,7 @@ TEST(PeriodicCell, KeepsMomentumToRounding) {
     }
 }
 
-/// What thirty steps make of the packings.
+/// The packings after thirty steps.
 std::vector<mcdem::ReplicaState> after_steps(const std::vector<Start>& starts,
                                              std::vector<mcdem::IntervalResult>* results = nullptr) {
     Batch batch(build(finest()), starts);
@@ -230,9 +230,9 @@ std::vector<mcdem::ReplicaState> after_steps(const std::vector<Start>& starts,
     return states;
 }
 
-// By lattice vectors, the same for all grains or each its own; by any vector; and a quarter turn about the
-// vertical.
-TEST(PeriodicCell, MovedOrTurnedAPackingDoesTheSame) {
+// Translation by lattice vectors (equal for all grains, or different), translation by any vector, and a
+// quarter turn about the vertical.
+TEST(PeriodicCell, TranslationAndRotationChangeNothing) {
     const double allowed = has_double() ? 1e-11 : 2e-3;
     const auto starts = periodic_starts(test_replica(), 3);
     const double cell = starts[0].replica.box.size_x;
@@ -294,8 +294,8 @@ TEST(PeriodicCell, FourTilesGiveFourTimesTheForce) {
     }
 }
 
-// Hertz's contacts alone, shaken: energy goes from one form to the other and stays.
-TEST(Containers, KeepEnergy) {
+// Hertz contacts alone, with initial velocities: kinetic plus elastic energy is constant.
+TEST(Containers, ConserveEnergy) {
     if (!has_double()) GTEST_SKIP() << "the device has no double precision";
     Replica replica = conservative(ContactModel::independent);
     replica.numerics.time_step = 0.02;
@@ -307,7 +307,8 @@ TEST(Containers, KeepEnergy) {
         const auto results = batch.advance(1);
         for (int r = 0; r < 2; ++r) {
             ASSERT_EQ(results[r].status, 0);
-            // Velocities stand half a step before positions: the mean of two is at the elder ones.
+            // Velocities are half a step behind positions: the mean of two is the velocity at the earlier
+            // positions.
             const double energy =
                 before[r].elastic_energy + (results[r].kinetic_energy + before[r].kinetic_energy) / 2;
             most[r] = std::max(most[r], results[r].kinetic_energy);
@@ -326,7 +327,7 @@ Start squeezed(Start start) {
     return start;
 }
 
-// Boxes, cylinders and periodic cells in one batch.
+// Boxes, cylinders and periodic containers in one batch.
 TEST(Containers, AReplicaIsTheSameAloneInABatchAndAfterARestart) {
     Replica replica = test_replica(ContactModel::mc_dem);
     replica.contact.friction_law = FrictionLaw::mindlin;
@@ -348,7 +349,7 @@ TEST(Containers, AReplicaIsTheSameAloneInABatchAndAfterARestart) {
     for (int r = 0; r < 3; ++r) expect_same(batch, r, second, r);
 }
 
-TEST(PeriodicCell, IsRefusedWhereGrainsCouldMeetTwice) {
+TEST(PeriodicCell, IsRefusedIfGrainsCouldTouchTwice) {
     Start start = squeezed(periodic_lattice(test_replica(), 3, 2, 3));
     start.replica.numerics.skin = 0.7;
     try {

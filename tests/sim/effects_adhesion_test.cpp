@@ -1,4 +1,4 @@
-// Adhesion after Derjaguin, Muller & Toporov: pull-off, what fades in a gap, energy and friction.
+// Adhesion (Derjaguin, Muller & Toporov): pull-off force, range in a gap, energy and friction limit.
 #include <numbers>
 
 #include "sim/squeezed_grain.h"
@@ -25,8 +25,8 @@ Start two_grains(double overlap) {
                         {2 * radius, 2 * other_radius});
 }
 
-// Two grains drawn apart by hand: the largest tension is 2 pi w R*, just where the overlap ends.
-TEST(Adhesion, TwoGrainsPullOffAtTwoPiTimesWorkTimesReducedRadius) {
+// Two grains are moved apart: the largest tension is 2 pi w R*, at zero overlap.
+TEST(Adhesion, PullOffForceOfTwoGrainsIsTwoPiTimesWorkTimesReducedRadius) {
     constexpr double overlap = 2e-4;
     constexpr int steps = 400;
     Batch batch(build(finest()), two_grains(overlap));
@@ -51,8 +51,8 @@ TEST(Adhesion, TwoGrainsPullOffAtTwoPiTimesWorkTimesReducedRadius) {
     EXPECT_NEAR(parted_at, 0, 2 * overlap / steps);
 }
 
-// Against a wall R* is R. In the gap the attraction goes down to nothing in a straight line, without a jump.
-TEST(Adhesion, FadesInAGapWithinAHundredthOfTheRadius) {
+// At a wall R* is R. In a gap the attraction decreases linearly to zero, without a jump.
+TEST(Adhesion, DecreasesToZeroInAGapOfAHundredthOfTheRadius) {
     SqueezedGrain grain(adhesive(), 1e-4);
     const double most = pull_off(radius), range = 0.01 * radius, step = 1e-6;
     double before = grain.squeeze(0);
@@ -68,9 +68,9 @@ TEST(Adhesion, FadesInAGapWithinAHundredthOfTheRadius) {
     EXPECT_EQ(before, 0);
 }
 
-// Drawn together, squeezed and drawn apart, all along one curve: the energy that is told is the work done,
-// the one that stands at zero out of reach.
-TEST(Adhesion, StoresTheWorkDone) {
+// Two grains are brought together, compressed and separated along one curve. The reported energy equals the
+// work; it is zero beyond the range.
+TEST(Adhesion, EnergyIsTheWorkDone) {
     SqueezedGrain grain(adhesive(), -1.5 * 0.01 * radius);
     double work = 0, before = 0;
     const double step = 2e-6;
@@ -83,9 +83,8 @@ TEST(Adhesion, StoresTheWorkDone) {
     EXPECT_GT(grain.overlap(), 2e-4);
 }
 
-// Friction holds as if the grains were pressed together by the pull-off force as well: mu (F_n + 2 pi w R*),
-// which is mu times the Hertz force.
-TEST(Adhesion, AddsToTheFrictionLimit) {
+// The friction limit is mu (F_n + 2 pi w R*), which is mu times the Hertz force.
+TEST(Adhesion, IncreasesTheFrictionLimit) {
     constexpr double friction = 0.2, overlap = 1e-4;
     Start start = two_grains(0);
     start.replica.grains.friction = friction;

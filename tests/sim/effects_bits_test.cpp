@@ -1,5 +1,5 @@
-// Effects of one replica touch no other: the same bits alone and beside any effects, also after a restart
-// from whatever the effects remember.
+// Effects of a replica do not change other replicas: bit-identical results alone, beside any effects, and
+// after a restart.
 #include "core/errors.h"
 #include "sim/whole_run.h"
 
@@ -8,7 +8,7 @@ namespace {
 
 using mcdem::Effects;
 
-/// Effects with and without memory, one more than the other.
+/// A different set of effects for each kind, with and without memory.
 Effects effects_of(int kind) {
     Effects effects;
     switch (kind) {
@@ -64,7 +64,7 @@ TEST(EffectBits, AReplicaIsTheSameAloneAndBesideAnyEffects) {
     }
 }
 
-TEST(EffectBits, ARestartRemembersWhatEffectsRemember) {
+TEST(EffectBits, ARestartRestoresTheMemoryOfEffects) {
     const auto kinds = starts({1, 2, 5, 6});
     WholeRun whole(Precision::single_precision, kinds);
     whole.finish();
@@ -80,7 +80,7 @@ TEST(EffectBits, ARestartRemembersWhatEffectsRemember) {
     }
 }
 
-TEST(EffectBits, ACheckpointWithoutTheMemoryIsRefused) {
+TEST(EffectBits, ACheckpointWithoutThisMemoryIsRefused) {
     WholeRun with(Precision::single_precision, starts({1})),
         without(Precision::single_precision, starts({3}));
     EXPECT_THROW(with.restore(without.save()), mcdem::RunError);
@@ -89,10 +89,10 @@ TEST(EffectBits, ACheckpointWithoutTheMemoryIsRefused) {
     EXPECT_THROW(with.restore(damaged), mcdem::RunError);
 }
 
-// Effects written out at their defaults are no effects, and each of those above makes a difference.
-TEST(EffectBits, DefaultsAreNoEffects) {
+// Effects given at their default values change nothing; each of the effects above changes the results.
+TEST(EffectBits, DefaultValuesChangeNothing) {
     auto plain = starts({0}), defaults = plain;
-    defaults[0].replica.effects.relaxation_time = 7;  // of nothing
+    defaults[0].replica.effects.relaxation_time = 7;  // unused
     WholeRun one(Precision::single_precision, plain), other(Precision::single_precision, defaults);
     one.finish();
     other.finish();

@@ -1,4 +1,4 @@
-// Bulges that count in part: a squeezed grain whose equator meets side walls, and a packing's contacts.
+// Effect bulge_contacts: a compressed grain whose equator touches side walls, and the contacts of a packing.
 #include "reference/test_scene.h"
 
 namespace reference {
@@ -6,7 +6,8 @@ namespace {
 
 constexpr double radius = 0.01;
 
-/// A grain squeezed by a tenth of its radius between floor and plate, side walls at `gap` from its equator.
+/// A grain compressed by a tenth of its radius between floor and plate, with side walls at `gap` from its
+/// equator.
 Start beside_walls(double bulge_contacts, double gap) {
     Replica replica = test_replica(ContactModel::elastic_half_space);
     replica.grains = {1e5, 0.5, 1000, 0, 0, 0.5, 0};
@@ -18,7 +19,7 @@ Start beside_walls(double bulge_contacts, double gap) {
     return {replica, {{{radius + gap, radius + gap, 0.9 * radius}}, {2 * radius}}};
 }
 
-/// Force on a side wall over that on the plate, at each gap.
+/// Force on a side wall over the force on the plate, at each gap.
 std::vector<double> side_forces(double bulge_contacts, const std::vector<double>& gaps) {
     std::vector<Start> starts;
     for (double gap : gaps) starts.push_back(beside_walls(bulge_contacts, gap));
@@ -38,9 +39,9 @@ std::vector<double> gaps() {
     return all;
 }
 
-// With none of the bulges counted a contact begins where the grain by itself meets the wall; the more of
-// them, the earlier; and forces grow from zero without a jump.
-TEST(BulgeContacts, BeginEarlierTheMoreTheBulgesCount) {
+// If displacements do not count, contact begins at geometric contact with the wall; the larger the part that
+// counts, the earlier. Forces increase from zero without a jump.
+TEST(BulgeContacts, ContactBeginsEarlierTheMoreDisplacementsCount) {
     std::vector<double> begins;
     for (double part : {0.0, 0.5, 1.0}) {
         const auto forces = side_forces(part, gaps());
@@ -57,13 +58,13 @@ TEST(BulgeContacts, BeginEarlierTheMoreTheBulgesCount) {
     EXPECT_NEAR(begins[1], begins[2] / 2, 1.01e-5) << "half of the bulge reaches half as far";
 }
 
-// Deep in contact all of the bulges count, whatever the part.
-TEST(BulgeContacts, ChangeNothingWhereGrainsOverlapFar) {
+// At large geometric overlap all of the displacement counts, whatever the part.
+TEST(BulgeContacts, LargeGeometricOverlapsAreUnchanged) {
     const std::vector<double> deep{-4e-4};
     EXPECT_NEAR(side_forces(0, deep).front(), side_forces(1, deep).front(), has_double() ? 1e-12 : 1e-4);
 }
 
-TEST(BulgeContacts, NoneCountedLeavesGeometricContactsOnly) {
+TEST(BulgeContacts, WithPartZeroOnlyGeometricContactsRemain) {
     for (double part : {0.0, 1.0}) {
         Replica replica = test_replica(ContactModel::mc_dem);
         replica.effects.bulge_contacts = part;

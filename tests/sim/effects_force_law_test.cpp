@@ -1,4 +1,4 @@
-// Stiffening and plasticity: the force of one contact against its overlap.
+// Stiffening and plasticity: force of a single contact against its overlap.
 #include "sim/squeezed_grain.h"
 
 namespace reference {
@@ -18,7 +18,8 @@ mcdem::Effects plasticity(double part) {
     return effects;
 }
 
-/// The work of the plate is what both contacts store; trapezoids over 200 steps add some 1e-5.
+/// The work of the plate is the energy stored in both contacts; the trapezoidal rule over 200 steps has an
+/// error of about 1e-5.
 void expect_law(double amount, double (*factor)(double), double energy_error) {
     SqueezedGrain grain(stiffening(amount), 0);
     double work = 0, before = 0;
@@ -33,14 +34,14 @@ void expect_law(double amount, double (*factor)(double), double energy_error) {
     EXPECT_NEAR(grain.energy() / work, 1, energy_error) << amount;
 }
 
-TEST(Stiffening, MultipliesHertzByOnePlusOverlapOverRadius) {
+TEST(Stiffening, MultipliesTheHertzForceByOnePlusOverlapOverRadius) {
     for (double amount : {1.0, 5.0})
         expect_law(
             amount, [](double x) { return 1 + x; }, 1e-4);
 }
 
-// Softening divides instead, so that the force grows however deep the overlap is.
-TEST(Stiffening, BelowZeroItDivides) {
+// Softening divides instead, so that the force increases at any overlap.
+TEST(Stiffening, NegativeValuesDivide) {
     for (double amount : {-1.0, -20.0})
         expect_law(
             amount, [](double x) { return 1 / (1 - x); }, 0.03);
@@ -50,7 +51,7 @@ struct Point {
     double overlap, force;
 };
 
-/// There and back in steps of a hundredth of `deepest`.
+/// Loading and unloading in steps of a hundredth of `deepest`.
 std::vector<Point> go(SqueezedGrain& grain, double target) {
     std::vector<Point> curve;
     const int steps = static_cast<int>(std::lround(100 * std::abs(target - grain.overlap()) / deepest));
@@ -85,8 +86,9 @@ TEST(Plasticity, UnloadsAlongASteeperHertzCurve) {
     }
 }
 
-// Loading takes 2/5 F d_max, unloading gives back 1 - p of it. Trapezoids over a hundred steps add 5e-5.
-TEST(Plasticity, ALoopEnclosesItsShareOfTheWork) {
+// Loading takes the work 2/5 F d_max; unloading returns 1 - p of it. The trapezoidal rule has an error of
+// 5e-5.
+TEST(Plasticity, LoopAreaIsThePlasticPartOfTheWork) {
     for (double part : {0.1, 0.5}) {
         SqueezedGrain grain(plasticity(part), 0);
         const double force = SqueezedGrain::hertz(deepest);
@@ -98,7 +100,7 @@ TEST(Plasticity, ALoopEnclosesItsShareOfTheWork) {
     }
 }
 
-TEST(Plasticity, ReloadsWhereItUnloadedAndThenGoesOn) {
+TEST(Plasticity, ReloadsAlongTheUnloadingCurveThenFollowsHertz) {
     SqueezedGrain grain(plasticity(0.3), 0);
     go(grain, deepest);
     const auto down = go(grain, 0.2 * deepest), up = go(grain, deepest);

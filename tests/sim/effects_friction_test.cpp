@@ -1,4 +1,4 @@
-// Friction with a share of the other law, and rolling resistance.
+// Effect friction_history (a weighted mean of both friction laws), and rolling resistance.
 #include <numbers>
 
 #include "reference/test_scene.h"
@@ -13,8 +13,8 @@ Start lattice(FrictionLaw law, double friction_history) {
     return jittered_lattice(replica, 27, 51);
 }
 
-// The whole share of the other law is the other law, to the last bit.
-TEST(FrictionHistory, AWholeShareIsTheOtherLaw) {
+// With weight 1 the other law is used alone, bit for bit.
+TEST(FrictionHistory, WeightOneGivesTheOtherLaw) {
     for (Precision precision : {Precision::single_precision, finest()}) {
         Batch batch(build(precision),
                     std::vector<Start>{lattice(FrictionLaw::saturated, 0), lattice(FrictionLaw::mindlin, 1),
@@ -30,9 +30,10 @@ TEST(FrictionHistory, AWholeShareIsTheOtherLaw) {
     }
 }
 
-// Sheared alike by hand, three grains on the floor: the third's force is 0.7 of the first law's and 0.3 of
-// the other's. In the one step between two pushes by hand friction changes the speed by some 1e-4.
-TEST(FrictionHistory, AShareOfEachForce) {
+// Three grains on the floor with the same prescribed shear: the third has 0.7 of the first law's force and
+// 0.3 of the other's. In the single step between two prescribed velocities friction changes the velocity by
+// about 1e-4.
+TEST(FrictionHistory, ForceIsTheWeightedMean) {
     std::vector<Start> starts;
     for (double share : {0.0, 1.0, 0.3}) {
         Replica replica = test_replica(ContactModel::independent);
@@ -88,9 +89,9 @@ Rolling roll(double rolling_resistance, int steps) {
     return rolling;
 }
 
-// The couple M = mu_r R m g and the friction that keeps it rolling: a = -M / (R (m + I/R^2)) = -5/7 mu_r g.
-// The overlap, a thousandth of R, shortens the arm.
-TEST(RollingResistance, SlowsARollingSphereByFiveSeventhsOfItsShareOfGravity) {
+// The torque M = mu_r R m g and the friction of rolling give a = -M / (R (m + I/R^2)) = -5/7 mu_r g. The
+// overlap shortens the arm by a thousandth of R.
+TEST(RollingResistance, DeceleratesARollingSphereByFiveSeventhsOfMuTimesG) {
     constexpr double resistance = 0.02;
     const Rolling rolling = roll(resistance, 2000);
     const double expected = -5.0 / 7 * resistance * 9.81;
@@ -103,7 +104,7 @@ TEST(RollingResistance, SlowsARollingSphereByFiveSeventhsOfItsShareOfGravity) {
     EXPECT_NEAR(free.speed[last], 0.05, 1e-3);
 }
 
-TEST(RollingResistance, StopsASphereForGood) {
+TEST(RollingResistance, StopsASpherePermanently) {
     const Rolling rolling = roll(0.3, 4000);
     double least = 1;
     for (double speed : rolling.speed) least = std::min(least, speed);
@@ -111,9 +112,9 @@ TEST(RollingResistance, StopsASphereForGood) {
     EXPECT_LT(std::abs(rolling.speed.back()), 1e-4);
 }
 
-// Two grains pressed together and twisting against each other: the couple mu_r R* F acts along the line of
-// centres too, and on both alike.
-TEST(RollingResistance, SlowsTwistingAndKeepsAngularMomentum) {
+// Two grains pressed together with opposite spins about the line of centres: the torque mu_r R* F acts on
+// both, with opposite signs.
+TEST(RollingResistance, DeceleratesTwistingAndConservesAngularMomentum) {
     constexpr double resistance = 0.1, radius = 0.01;
     Replica replica = test_replica(ContactModel::independent);
     replica.grains = {1e5, 0.3, 1000, 0, 0, 1, 0};
@@ -124,7 +125,8 @@ TEST(RollingResistance, SlowsTwistingAndKeepsAngularMomentum) {
     std::vector<Vec3> spin{{3, 0, 0}, {-1, 0, 0}};
     double force = 0;
     for (int step = 0; step < 10; ++step) {
-        batch.engine().set_velocities(0, {2, Vec3::Zero()}, spin);  // held by hand; they spin as they will
+        batch.engine().set_velocities(0, {2, Vec3::Zero()},
+                                      spin);  // velocities are reset each step; spins are free
         batch.advance(1);
         const auto state = batch.engine().state(0);
         const auto& now = state.angular_velocity;

@@ -1,4 +1,4 @@
-// A plate that leans, and one that gives way.
+// Tilted plate, compliant plate.
 #include "sim/compliant_plate.h"
 #include "sim/simulation.h"
 #include "sim/squeezed_grain.h"
@@ -17,7 +17,7 @@ Replica single_grain() {
     return replica;
 }
 
-/// Distance of a point from the leaning face, as of a plane through three of its points.
+/// Distance of a point from the tilted face, from a plane through three of its points.
 double distance_to_face(const Vec3& point, double plate_z) {
     const Vec3 middle(width / 2, width / 2, plate_z), along_x(1, 0, tilt_x), along_y(0, 1, tilt_y);
     return along_x.cross(along_y).normalized().dot(middle - point);
@@ -33,9 +33,9 @@ Start under_leaning_plate(const Vec3& position, double plate_z) {
     return {replica, {{position}, {2 * radius}}};
 }
 
-// The force is the Hertz force of the distance from the plane, along its normal, at the foot of the
-// perpendicular; the plate feels it and its couple about the middle.
-TEST(PlateTilt, PushesAlongTheNormalOfTheFace) {
+// The force is the Hertz force for the distance from the plane, along its normal, at the foot of the
+// perpendicular. The plate receives the opposite force and its moment about the middle.
+TEST(PlateTilt, ForceIsAlongTheNormalOfTheFace) {
     for (const Vec3& position : {Vec3(0.02, 0.02, 0.05), Vec3(0.045, 0.03, 0.05)}) {
         constexpr double overlap = 3e-4;
         const double plate_z = 0.05 + (radius - overlap) * std::sqrt(1 + tilt_x * tilt_x + tilt_y * tilt_y) -
@@ -63,8 +63,8 @@ TEST(PlateTilt, PushesAlongTheNormalOfTheFace) {
     }
 }
 
-// A centre is lost when it is above the face where it is, not above the middle of it.
-TEST(PlateTilt, GrainsAreLostAboveTheFaceOnly) {
+// A grain is lost if its centre is above the face at its own x and y.
+TEST(PlateTilt, GrainsAreLostOnlyAboveTheFace) {
     const double plate_z = 0.05;
     std::vector<Start> starts;
     for (double x : {0.015, 0.045})
@@ -79,7 +79,7 @@ TEST(PlateTilt, GrainsAreLostAboveTheFaceOnly) {
     for (const auto& result : lower.advance(1)) EXPECT_NE(result.status & STATUS_LOST, 0);
 }
 
-/// Scans of one grain between the floor and a plate that comes down by `stroke`.
+/// Scans of one grain between the floor and a plate that moves down by `stroke`.
 std::vector<mcdem::Scan> scans(const Replica& replica, int count = 1) {
     mcdem::Scene scene;
     scene.precision = finest();
@@ -96,9 +96,9 @@ std::vector<mcdem::Scan> scans(const Replica& replica, int count = 1) {
     return all;
 }
 
-// Settled, force and position solve z = commanded z + C F, F = F_H(R - z/2); C dF/dz goes up to 12. A scan
-// waits for the plate, to a thousandth of its give or of what it may move in an interval.
-TEST(PlateCompliance, ForceAndPositionAgree) {
+// At rest, force and position solve z = commanded z + C F, F = F_H(R - z/2); C dF/dz is up to 12. A scan
+// waits for the plate, to a thousandth of its deflection or of its largest move per interval.
+TEST(PlateCompliance, ForceAndPositionAreConsistent) {
     for (double compliance : {1e-3, 1e-2, 5e-2}) {
         Replica replica = single_grain();
         replica.effects.plate_compliance = compliance;
@@ -107,7 +107,7 @@ TEST(PlateCompliance, ForceAndPositionAgree) {
         const auto all = scans(replica, 3);
         ASSERT_EQ(all.size(), 6u);
         for (const auto& scan : all) {
-            if (scan.plate_z == replica.plate.start) continue;  // free again, nothing to settle on
+            if (scan.plate_z == replica.plate.start) continue;  // unloaded: nothing to compare
             double low = scan.plate_z, high = std::max(scan.plate_z, 2 * radius);
             for (int k = 0; k < 100; ++k) {
                 const double z = (low + high) / 2;
@@ -128,13 +128,12 @@ TEST(PlateCompliance, ForceAndPositionAgree) {
     }
 }
 
-/// A spring in the plate's place: what the controller does by itself.
+/// A spring instead of a packing, to test the controller on its own.
 class Spring {
 public:
     Spring(const Replica& replica, double stiffness) : plate_(replica), stiffness_(stiffness) {}
 
-    /// One interval in which the commanded plate moves by `move` from where it is; the spring is free above
-    /// zero.
+    /// One interval in which the commanded position changes by `move`; the spring is unloaded above zero.
     void interval(double move, int steps) {
         mcdem::StepInterval interval{steps, commanded_, move / (steps * time_step), 0};
         plate_.deflect(interval, time_step, farthest);
@@ -150,7 +149,7 @@ public:
     }
     bool arrived() const { return plate_.arrived(farthest); }
     double force() const { return stiffness_ * std::max(0.0, -true_z_); }
-    /// What is missing of the give, C F less true less commanded position.
+    /// Error of the deflection: C F minus (true minus commanded position).
     double lag(double compliance) const { return compliance * force() - (true_z_ - commanded_); }
 
 private:
@@ -176,7 +175,7 @@ TEST(PlateCompliance, FollowsAMovingPlateWithoutLag) {
     }
 }
 
-TEST(PlateCompliance, ArrivesWhenItGivesAsMuchAsItShould) {
+TEST(PlateCompliance, ArrivesAtTheDeflectionOfTheForce) {
     constexpr double compliance = 5e-4;
     Replica replica = single_grain();
     replica.effects.plate_compliance = compliance;
@@ -192,7 +191,7 @@ TEST(PlateCompliance, ArrivesWhenItGivesAsMuchAsItShould) {
     EXPECT_LT(std::abs(spring.lag(compliance)), 1e-3 * compliance * spring.force());
 }
 
-TEST(PlateCompliance, NothingIsSettledBeforeThePlateArrives) {
+TEST(PlateCompliance, NoScanBeforeThePlateArrives) {
     mcdem::ProtocolRunner runner(
         single_grain(), 1e-4, {.diameter = 2 * radius, .count = 1, .density = single_grain().grains.density});
     mcdem::IntervalResult still;
@@ -204,7 +203,7 @@ TEST(PlateCompliance, NothingIsSettledBeforeThePlateArrives) {
     EXPECT_EQ(runner.state().stage, mcdem::ProtocolState::Stage::move);
 }
 
-TEST(PlateCompliance, ARigidPlateIsLeftAlone) {
+TEST(PlateCompliance, RigidPlateIsUnchanged) {
     mcdem::CompliantPlate plate(single_grain());
     mcdem::StepInterval interval{17, 0.1, -0.03, 2};
     mcdem::IntervalResult result;

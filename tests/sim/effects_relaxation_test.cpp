@@ -1,4 +1,4 @@
-// Viscoelasticity: each contact a standard linear solid.
+// Viscoelasticity: each contact is a standard linear solid.
 #include "sim/squeezed_grain.h"
 
 namespace reference {
@@ -39,8 +39,9 @@ double ramp_force(double t, double rate) {
     return SqueezedGrain::hertz(rate * t) - part / time_constant * sum * t / intervals / 3;
 }
 
-// A step takes the force of its beginning for all of it, half a step late: dt/(2 T) of the relaxed part.
-TEST(Relaxation, OfARampIsTheIntegralOverItsHistory) {
+// A step uses the force at its start for the whole step, so it lags by half a step: dt/(2 T) of the relaxed
+// part.
+TEST(Relaxation, ForceOfARampIsTheIntegralOverItsHistory) {
     SqueezedGrain grain(relaxing(part, time_constant), 0);
     const int steps = static_cast<int>(3 * time_constant / grain.time_step());
     const double late = grain.time_step() / time_constant;
@@ -53,7 +54,7 @@ TEST(Relaxation, OfARampIsTheIntegralOverItsHistory) {
     EXPECT_LT(late, 0.06);
 }
 
-// Taken away faster than it recovers, a contact lets go: it does not pull.
+// If the grain is withdrawn faster than the contact recovers, the force is zero, not attractive.
 TEST(Relaxation, DoesNotPull) {
     SqueezedGrain grain(relaxing(0.9, time_constant), overlap);
     for (int step = 0; step < 200; ++step) grain.squeeze(0);
@@ -66,8 +67,8 @@ TEST(Relaxation, DoesNotPull) {
     EXPECT_TRUE(let_go);
 }
 
-// What has got used to the overlap recovers while the grain is free, as long as it took to relax.
-TEST(Relaxation, RecoversWhileThereIsNoContact) {
+// The relaxed part recovers without contact, with the same time constant.
+TEST(Relaxation, RecoversWithoutContact) {
     SqueezedGrain grain(relaxing(part, time_constant), overlap);
     for (int step = 0; step < 2000; ++step) grain.squeeze(0);
     grain.squeeze(-1.01 * overlap);

@@ -1,4 +1,4 @@
-// Grains of unequal stiffness, and grains that are not as large as stated.
+// Grains of unequal stiffness, and grains whose true diameters differ from the stated ones.
 #include <numbers>
 #include <numeric>
 
@@ -9,7 +9,7 @@
 namespace reference {
 namespace {
 
-/// Young's moduli as the scene says they are drawn.
+/// Young's moduli of the grains, drawn as the scene specifies.
 std::vector<double> moduli(const Replica& replica, std::size_t grains) {
     std::vector<double> all;
     for (double excess_compliance : mcdem::excess_compliance(replica, grains))
@@ -38,7 +38,7 @@ TEST(ModulusScatter, IsLogNormalAboutTheMean) {
     EXPECT_EQ(moduli(replica, 3).back(), moduli(replica, 7)[2]) << "a grain's modulus hangs on its number";
 }
 
-// Two grains and a wall, each pair by its own 1/E* = (1 - nu^2)(1/E_i + 1/E_j).
+// Two grains and a wall; each pair has its own 1/E* = (1 - nu^2)(1/E_i + 1/E_j).
 TEST(ModulusScatter, PairsHaveTheirOwnModulus) {
     Replica replica = test_replica(ContactModel::independent);
     replica.grains = {1e5, 0.3, 1000, 0, 0, 1, 0};
@@ -81,8 +81,9 @@ TEST(ModulusScatter, TheStiffestGrainSetsTheTimeStep) {
     EXPECT_NEAR(batch.engine().time_step(1) / batch.engine().time_step(0), shortest / equal, 1e-12);
 }
 
-// The simulated grain is larger than the stated one by the error, and the recording does not know.
-TEST(TrueDiameter, SqueezesMoreThanTheStatedOne) {
+// The simulated grain is larger than stated by the diameter error; the recording contains the stated
+// diameter.
+TEST(TrueDiameter, LargerTrueDiameterIncreasesTheForce) {
     constexpr double radius = SqueezedGrain::radius, overlap = 2e-4, error = 3e-4;
     Replica replica = test_replica(ContactModel::independent);
     replica.grains = {SqueezedGrain::youngs_modulus, SqueezedGrain::poisson_ratio, 1000, 0, 0, 0.5, 0};

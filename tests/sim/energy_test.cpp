@@ -1,6 +1,6 @@
-// Energy of grains that neither rub nor damp. Hertz's law alone keeps it to the order of the integrator.
-// Where surfaces are displaced by the forces of steps before, extrapolated, the small error in phase pumps or
-// drains: measured here over 50 oscillations, for every model and three time steps.
+// Energy of grains without friction and damping. Hertz's law alone conserves it to the order of the
+// integrator. With surface displacements the phase error of the extrapolation adds or removes energy; it is
+// measured over 50 oscillations, for every model and three time steps.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -13,12 +13,12 @@
 namespace reference {
 namespace {
 
-/// Short enough not to be shortened.
+/// Short enough that it is not shortened automatically.
 constexpr double time_steps[] = {0.04, 0.02, 0.01};
 constexpr int oscillations = 50;
 constexpr double rounding = 1e-5;  ///< of the mean energy over some oscillations
 
-/// Kinetic energy peaks twice in an oscillation.
+/// Kinetic energy has two maxima per oscillation.
 constexpr int peaks_wanted = 2 * oscillations + 1;
 
 Start ringing_cluster(ContactModel model, double time_step) {
@@ -30,7 +30,7 @@ Start ringing_cluster(ContactModel model, double time_step) {
     return caged_cluster(replica, 0.03, 1e-4, 3);
 }
 
-/// Energies of one replica, step by step.
+/// Energies of one replica at each step.
 class Record {
 public:
     void add(double kinetic, double elastic) {
@@ -46,16 +46,16 @@ public:
     double steps_per_oscillation() const {
         return 2.0 * (peaks_.back() - peaks_.front()) / (peaks_.size() - 1);
     }
-    /// Mean total energy between two peaks. Velocities stand half a step before: the mean of two is at the
-    /// step.
+    /// Mean total energy between two maxima. Velocities are half a step behind, so the mean of two is the
+    /// velocity at the step.
     double energy(int first_peak, int last_peak) const {
         double sum = 0;
         for (std::size_t i = peaks_[first_peak]; i < peaks_[last_peak]; ++i)
             sum += elastic_[i] + (kinetic_[i] + kinetic_[i + 1]) / 2;
         return sum / (peaks_[last_peak] - peaks_[first_peak]);
     }
-    /// Of the motion's energy (the largest kinetic energy), per oscillation, from the means over the first
-    /// and the last ten oscillations.
+    /// Drift per oscillation, relative to the largest kinetic energy, from the means over the first and the
+    /// last ten oscillations.
     double drift() const {
         const int last = peaks_.size() - 1;
         return (energy(last - 20, last - 1) - energy(0, 19)) / most_ / (oscillations - 10);
@@ -87,9 +87,9 @@ std::vector<Record> ring(const std::vector<Start>& starts) {
     return records;
 }
 
-/// The extrapolated displacement (10 b(t) - 5 b(t - 2 dt) + b(t - 4 dt)) / 6 is out of phase with the true
-/// one by 8/3 sin^5(omega dt). Where a part g of the stiffness comes from displaced surfaces, that changes
-/// the energy by 2 pi g times as much in an oscillation; past |g| = 1 there is no stable state at all.
+/// The phase error of the extrapolation (10 b(t) - 5 b(t - 2 dt) + b(t - 4 dt)) / 6 is 8/3 sin^5(omega dt).
+/// If surface displacements contribute a part g of the stiffness, the energy changes by 2 pi g times this
+/// per oscillation. For |g| > 1 there is no stable state.
 double drift_bound(double steps_per_oscillation) {
     using std::numbers::pi;
     return 2 * pi * 8.0 / 3 * std::pow(std::sin(2 * pi / steps_per_oscillation), 5);
@@ -116,7 +116,7 @@ TEST(Energy, DriftsLessThanTheExtrapolationAllows) {
                 << name(all_models[m]) << ' ' << time_steps[t];
             EXPECT_TRUE(all_models[m] != ContactModel::independent || std::abs(record.drift()) < 2e-5);
         }
-        // fifth order would be 32 and 1024 times; half of that for the mixture of modes
+        // fifth order gives factors of 32 and 1024; half of that is required, since modes are mixed
         if (all_models[m] == ContactModel::independent) continue;
         EXPECT_LT(std::abs(records[3 * m + 1].drift()), std::abs(records[3 * m].drift()) / 16 + rounding)
             << name(all_models[m]);
@@ -124,8 +124,8 @@ TEST(Energy, DriftsLessThanTheExtrapolationAllows) {
     }
 }
 
-// A pair that hangs together by nothing meets and parts again: all the energy comes back.
-TEST(Energy, ElasticCollisionGivesEverythingBack) {
+// A pair without adhesion collides and separates: all the energy is returned.
+TEST(Energy, ElasticCollisionReturnsAllEnergy) {
     Replica replica = test_replica(ContactModel::mc_dem);
     replica.grains = {1e5, 0.3, 1000, 0, 0, 1, 0};
     for (double time_step : time_steps) {

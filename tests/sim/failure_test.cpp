@@ -1,4 +1,5 @@
-// How a replica stops: with its cause and its grain, while the others of the batch go on as if alone.
+// A replica that fails stops with its cause and its grain; the other replicas of the batch continue as if
+// alone.
 #include <fmt/core.h>
 
 #include <cmath>
@@ -10,7 +11,8 @@
 namespace reference {
 namespace {
 
-/// A large grain between floor and plate and small ones that touch nothing; `large` is its number.
+/// A large grain between floor and plate, and small grains without contacts; `large` is the large grain's
+/// index.
 Start squeezed(ContactModel model, double gamma, double overlap, int large) {
     constexpr double radius = 0.01, small = 0.004;
     Replica replica = test_replica(model);
@@ -30,10 +32,10 @@ Start squeezed(ContactModel model, double gamma, double overlap, int large) {
     return {replica, packing};
 }
 
-/// Makes `steps` of every replica that is well. Returns the last results of each.
+/// Advances every replica without a status by `steps`. Returns the last results of each.
 std::vector<mcdem::IntervalResult> run(Batch& batch, int steps) { return batch.advance(steps, 50); }
 
-TEST(Failure, RunAwayStopsItsReplicaAlone) {
+TEST(Failure, RunAwayStopsOnlyItsReplica) {
     const Start healthy = squeezed(ContactModel::mc_dem, 1.125, 0.05, 2);
     const Start runaway = squeezed(ContactModel::mc_dem, 3, 0.15, 5);
     const Start other = squeezed(ContactModel::elastic_sphere, 1, 0.1, 6);
@@ -82,7 +84,7 @@ TEST(Failure, GrainThatLeavesTheBoxIsLost) {
 }
 
 // A large grain among many small ones has more neighbours than slots.
-TEST(Failure, MoreNeighboursThanSlotsAreTold) {
+TEST(Failure, MoreNeighboursThanSlotsAreReported) {
     constexpr double radius = 0.01, small = 0.002;
     Start start = free_cluster(test_replica(), {Vec3::Zero()}, {2 * radius});
     start.replica.grains.excess_density = 0;
@@ -104,9 +106,9 @@ TEST(Failure, MoreNeighboursThanSlotsAreTold) {
     EXPECT_EQ(enough.advance(1).front().status, 0);
 }
 
-// The equator moves out by 2 % of the radius, further than the probed gap, towards walls that are too far to
-// touch but still listed.
-TEST(Failure, SurfaceThatBulgesPastTheProbedGapIsTold) {
+// The equator moves outward by 2 % of the radius, more than the probed gap. The walls are in the list, but
+// too far to touch.
+TEST(Failure, DisplacementBeyondTheProbedGapIsReported) {
     Start start = squeezed(ContactModel::elastic_sphere, 1, 0.12, 0);
     start.packing.position.resize(1);
     start.packing.diameter.resize(1);
@@ -119,7 +121,7 @@ TEST(Failure, SurfaceThatBulgesPastTheProbedGapIsTold) {
     EXPECT_EQ(run(narrow, 300).front().status, STATUS_UNPROBED);
 }
 
-/// A scene of some starts with a short protocol.
+/// A scene with several replicas and a short protocol.
 mcdem::Scene short_scene(const std::vector<Start>& starts) {
     mcdem::Scene scene;
     for (const auto& start : starts) {
@@ -155,11 +157,11 @@ TEST(Failure, SimulationNamesReplicaGrainStepAndCause) {
     EXPECT_DOUBLE_EQ(simulation.progress(), 1);
 }
 
-// Two grains on top of each other, pressed by 3 to 14 % of the sum of their radii.
-TEST(Failure, BeyondItsLawAReplicaGoesOnOrStopsAsTheSceneAsks) {
+// Two grains on top of each other, compressed by 3 to 14 % of the sum of their radii.
+TEST(Failure, BeyondTheModelsRangeAReplicaContinuesOrStopsAsTheSceneSpecifies) {
     Replica going_on = test_replica(ContactModel::elastic_sphere), stopping = going_on, other = going_on;
     stopping.numerics.stop_beyond_law = other.numerics.stop_beyond_law = true;
-    other.contact.model = ContactModel::independent;  // no law that was tested
+    other.contact.model = ContactModel::independent;  // a model without a tested range
     std::vector<Start> starts;
     for (Replica* replica : {&going_on, &stopping, &other}) {
         replica->box = {0.03, 0.03};

@@ -1,5 +1,5 @@
-// A force that is set: reached to the tolerance, not passed, and kept; what cannot be reached ends the
-// replica.
+// Prescribed forces: they are reached within the tolerance, without overshoot, and held. A force that cannot
+// be reached ends the replica.
 #include <fmt/core.h>
 
 #include <cmath>
@@ -27,8 +27,7 @@ const std::string loads =
     "[[programme]]\nforce = 0.2\n[[programme]]\nforce = 1\n[[programme]]\nforce = 0.3\n";
 constexpr double set[] = {0.2, 1, 0.3};
 
-/// `beyond`: how far any interval's force may pass the one set, relative. Grains without friction slide over
-/// one another by themselves, in jerks.
+/// `beyond`: largest relative overshoot in any interval. Packings without friction rearrange suddenly.
 struct Kind {
     const char* name;
     std::vector<std::string> overrides;
@@ -52,7 +51,7 @@ const Kind kinds[] = {
 
 class ForceControl : public testing::TestWithParam<Kind> {};
 
-/// Farthest that an interval's force of a leg passes the one set, relative.
+/// Largest relative overshoot of a leg's force in any interval.
 double beyond(const Traced& traced, int leg) {
     double farthest = -1;
     for (const auto& row : traced.rows)
@@ -61,7 +60,7 @@ double beyond(const Traced& traced, int leg) {
     return farthest;
 }
 
-TEST_P(ForceControl, ReachesTheForceFromItsSide) {
+TEST_P(ForceControl, ReachesTheForceWithoutOvershoot) {
     double farthest = -1;
     for (const char* seed : {"packing.seed=1", "packing.seed=2", "packing.seed=3"}) {
         SCOPED_TRACE(seed);
@@ -86,7 +85,7 @@ INSTANTIATE_TEST_SUITE_P(Kinds, ForceControl, testing::ValuesIn(kinds), [](const
     return name;
 });
 
-// Grains relax, the plate goes after them.
+// Viscoelastic grains relax; the plate follows to keep the force constant.
 TEST(ForceHold, KeepsTheForceWhileThePackingCreeps) {
     const Traced traced = trace(packing_text +
                                     "[[programme]]\nforce = 1\n[[programme]]\nstage = \"hold\"\nkeep = "
@@ -102,7 +101,7 @@ TEST(ForceHold, KeepsTheForceWhileThePackingCreeps) {
     EXPECT_GT(way(1), 2 * way(5)) << "slower and slower";
 }
 
-TEST(ForceHold, OfAPositionRelaxes) {
+TEST(ForceHold, ForceRelaxesAtConstantPosition) {
     const Traced traced =
         trace(packing_text +
                   "[[programme]]\nstrain = 0.1\n[[programme]]\nstage = \"hold\"\ntime = "
@@ -116,7 +115,7 @@ TEST(ForceHold, OfAPositionRelaxes) {
 }
 
 // 4/3 E* sqrt(R) (R - z/2)^(3/2) = F on both sides of a grain.
-TEST(ForceControl, OfOneGrainIsHertz) {
+TEST(ForceControl, PositionOfOneGrainAgreesWithHertz) {
     constexpr double force = 0.05, radius = 0.01, youngs_modulus = 23.3e3, poisson = 0.5, wall = 1e13;
     const double modulus = 1 / ((1 - poisson * poisson) * (1 / youngs_modulus + 1 / wall));
     const double overlap = std::pow(force / (4.0 / 3 * modulus * std::sqrt(radius)), 2.0 / 3);
@@ -133,7 +132,7 @@ TEST(ForceControl, OfOneGrainIsHertz) {
     EXPECT_NEAR(traced.scans[0].tag.plate_z / (2 * (radius - overlap)), 1, 1e-4);
 }
 
-TEST(ForceControl, ThatCannotBeReachedEndsWithItsCause) {
+TEST(ForceControl, UnreachableForceEndsWithItsCause) {
     const Traced at_end =
         trace(packing_text + "[[programme]]\nforce = 50\n", {"plate.end=0.085", "grains.friction=0.3"});
     EXPECT_NE(

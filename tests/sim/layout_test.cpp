@@ -1,4 +1,4 @@
-// Where grains lie in memory.
+// Order of grains in memory.
 #include "sim/layout.h"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ TEST(Layout, PadsEveryReplicaToWholeBlocks) {
     EXPECT_EQ(layout.grains(), 208);
 }
 
-TEST(Layout, OrderHoldsEveryGrainOnce) {
+TEST(Layout, OrderContainsEveryGrainOnce) {
     const auto layout = mcdem::make_layout({jittered_lattice(test_replica(), 1000, 2).packing}, 16);
     auto order = layout.order[0];
     const auto places = layout.places(0);
@@ -34,8 +34,8 @@ TEST(Layout, OrderHoldsEveryGrainOnce) {
     EXPECT_EQ(order, all);
 }
 
-// A block of 16 of 1000 shuffled grains spans two or three diameters, not the whole box.
-TEST(Layout, GrainsOfABlockAreNearOneAnother) {
+// Each block of 16 out of 1000 shuffled grains spans two or three diameters, not the whole box.
+TEST(Layout, GrainsOfABlockAreCloseToEachOther) {
     Packing packing = jittered_lattice(test_replica(), 1000, 3).packing;
     for (std::size_t i = 0; i < 1000; ++i) std::swap(packing.position[i], packing.position[i * 7919 % 1000]);
     const auto layout = mcdem::make_layout({packing}, 16);

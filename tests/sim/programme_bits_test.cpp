@@ -1,4 +1,4 @@
-// A programme of every kind of stage: the same bits alone, in a batch and after a restart at any point.
+// A programme with all kinds of stages: bit-identical alone, in a batch, and after a restart at any point.
 #include "sim/whole_run.h"
 
 namespace reference {

@@ -1,4 +1,4 @@
-// Programmes against closed forms, and force control against position control.
+// Programmes compared with closed-form solutions, and force control with position control.
 #include <fmt/core.h>
 
 #include <cmath>
@@ -10,7 +10,7 @@ namespace {
 
 constexpr double radius = 0.01, part = 0.4, relaxation_time = 0.05, hold = 0.15;
 
-/// One grain between two walls that are as good as rigid, each contact a standard linear solid.
+/// One grain between two almost rigid walls; each contact is a standard linear solid.
 Traced squeezed(const std::string& programme) {
     mcdem::Scene scene = mcdem::parse_scene(
         "[box]\nsize_x = 0.021\nsize_y = 0.021\n[packing]\ncount = 1\ndiameter_mean = 0.02\ndiameter_sd = 0\n"
@@ -25,15 +25,16 @@ Traced squeezed(const std::string& programme) {
     return trace(scene, 0, {{{0.0105, 0.0105, 0.01}}, {2 * radius}});
 }
 
-/// Of the unrelaxed contact at the plate's position [N].
+/// Force of the unrelaxed contact at the plate's position [N].
 double hertz(double plate_z) {
     constexpr double youngs_modulus = 23.3e3, poisson = 0.5;
     return 4.0 / 3 * youngs_modulus / (1 - poisson * poisson) * std::sqrt(radius) *
            std::pow(radius - plate_z / 2, 1.5);
 }
 
-// F = F_H - a q, dq/dt = (F_H - q) / T: at constant overlap F goes to (1 - a) F_H with time constant T.
-TEST(ProgrammeEvidence, RelaxationIsThatOfTheStandardLinearSolid) {
+// F = F_H - a q, dq/dt = (F_H - q) / T: at constant overlap F decays to (1 - a) F_H with the time constant
+// T.
+TEST(ProgrammeEvidence, RelaxationAgreesWithTheStandardLinearSolid) {
     const Traced traced = squeezed(
         "[[programme]]\nposition = 0.0185\n[[programme]]\nstage = \"hold\"\ntime = 0.15\nscans = 10\n");
     ASSERT_EQ(traced.scans.size(), 11u);
@@ -50,8 +51,9 @@ TEST(ProgrammeEvidence, RelaxationIsThatOfTheStandardLinearSolid) {
     fmt::print("relaxation against the closed form: {:.2g} % at most\n", 100 * worst);
 }
 
-// At constant F, q goes to F / (1 - a) with time constant T / (1 - a); F_H = F + a q tells the overlap.
-TEST(ProgrammeEvidence, CreepIsThatOfTheStandardLinearSolid) {
+// At constant F, q tends to F / (1 - a) with the time constant T / (1 - a); the overlap follows from F_H = F
+// + a q.
+TEST(ProgrammeEvidence, CreepAgreesWithTheStandardLinearSolid) {
     const Traced traced = squeezed(
         "[[programme]]\nforce = 0.02\n[[programme]]\nstage = \"hold\"\nkeep = \"force\"\ntime = 0.15\nscans "
         "= 10\n");
@@ -71,7 +73,7 @@ TEST(ProgrammeEvidence, CreepIsThatOfTheStandardLinearSolid) {
                1e3 * all, 100 * worst);
 }
 
-// The positions at which forces were reached, visited by position control.
+// The positions at which forces were reached are prescribed in a second run.
 TEST(ProgrammeEvidence, ForceAndPositionControlAgree) {
     const std::string packing =
         "[box]\nsize_x = 0.08\nsize_y = 0.08\n[grains]\nfriction = 0.3\n[contact]\nfriction_law = "

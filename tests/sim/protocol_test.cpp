@@ -1,5 +1,5 @@
-// The plate's program by itself, fed with results made up here: where it scans, in which order, and when it
-// takes a packing for settled.
+// The protocol on its own, with artificial results: where it scans, in which order, and when it considers a
+// packing at rest.
 #include "sim/protocol.h"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ Replica replica_of(int cycles, int scans, bool stop_at_scans) {
     return replica;
 }
 
-/// What a packing would answer that is at rest, or never is.
+/// Results of a packing with this kinetic energy.
 IntervalResult answer(int steps, double kinetic) {
     IntervalResult result;
     result.steps = steps;
@@ -33,7 +33,7 @@ IntervalResult answer(int steps, double kinetic) {
     return result;
 }
 
-/// A whole protocol and what came of it.
+/// Runs a whole protocol and stores its intervals and scans.
 struct Course {
     std::vector<ProtocolRunner::ScanTag> scans;
     std::vector<StepInterval> intervals;
@@ -58,7 +58,7 @@ private:
     }
 };
 
-TEST(Protocol, ScansAtEveryLevelThereAndBack) {
+TEST(Protocol, ScansAtEveryLevelLoadingAndUnloading) {
     for (bool stops : {true, false}) {
         const Course course(replica_of(2, 4, stops), 0, 10);
         ASSERT_EQ(course.scans.size(), 16u);
@@ -75,7 +75,7 @@ TEST(Protocol, ScansAtEveryLevelThereAndBack) {
     }
 }
 
-TEST(Protocol, TheRelaxedPackingIsScannedFirstWhereAskedFor) {
+TEST(Protocol, RelaxedPackingIsScannedFirstIfRequested) {
     for (double kinetic : {0.0, 1.0}) {
         Replica replica = replica_of(2, 3, true);
         const Course without(replica, kinetic);
@@ -99,8 +99,8 @@ TEST(Protocol, TheRelaxedPackingIsScannedFirstWhereAskedFor) {
     }
 }
 
-// 25 mm at 0.5 m/s are 50 steps; the plate stands where the intervals before have brought it.
-TEST(Protocol, MovesAtTheSpeedAskedForWithoutAJump) {
+// 25 mm at 0.5 m/s are 50 steps; each interval starts at the plate position where the previous one ended.
+TEST(Protocol, MovesAtTheGivenSpeedWithoutJumps) {
     const Course course(replica_of(1, 4, true), 0, 7);
     double plate = 0.2;
     int moving = 0;
@@ -116,7 +116,7 @@ TEST(Protocol, MovesAtTheSpeedAskedForWithoutAJump) {
     EXPECT_NEAR(plate, 0.2, 1e-12);
 }
 
-/// A plate whose force grows as it comes down.
+/// A plate whose force increases as it moves down.
 struct Pressed {
     explicit Pressed(double tolerance) {
         replica.protocol.rate_tolerance = tolerance;
@@ -136,12 +136,12 @@ struct Pressed {
     }
     Replica replica = replica_of(1, 4, false);
     std::vector<StepInterval> intervals;
-    std::vector<double> pressure;  ///< that each interval was planned with
+    std::vector<double> pressure;  ///< pressure before each interval
     std::vector<ProtocolRunner::ScanTag> scans;
 };
 
-// Ten times the inertial number (v / H) d sqrt(rho / P) is the estimate that the tolerance bounds.
-TEST(Protocol, KeepsTheInertialNumberThatTheToleranceAllows) {
+// The estimate that the tolerance limits is ten times the inertial number (v / H) d sqrt(rho / P).
+TEST(Protocol, KeepsTheInertialNumberWithinTheTolerance) {
     const Pressed pressed(0.02);
     double slowest = 1e9, fastest = 0;
     for (std::size_t k = 0; k < pressed.intervals.size(); ++k) {
@@ -161,7 +161,7 @@ TEST(Protocol, KeepsTheInertialNumberThatTheToleranceAllows) {
     for (const auto& scan : pressed.scans) EXPECT_LE(scan.rate_error, 0.02 * (1 + 1e-9));
 }
 
-TEST(Protocol, WithoutAToleranceTheSpeedIsTheScenes) {
+TEST(Protocol, WithoutAToleranceTheSpeedIsThatOfTheScene) {
     Replica replica = replica_of(1, 4, false);
     ProtocolRunner runner(replica, time_step, scale);
     while (runner.state().stage == ProtocolState::Stage::relax) runner.made(answer(10, 0));
@@ -173,8 +173,8 @@ TEST(Protocol, WithoutAToleranceTheSpeedIsTheScenes) {
         << "the estimate is there all the same";
 }
 
-// A speed that does not divide the way is lowered a little, never raised.
-TEST(Protocol, NeverMovesFasterThanAskedFor) {
+// If the distance is not a multiple of speed times step, the speed is reduced slightly, never increased.
+TEST(Protocol, NeverMovesFasterThanGiven) {
     Replica replica = replica_of(1, 7, true);
     replica.plate.speed = 0.37;
     for (const StepInterval& interval : Course(replica, 0).intervals) {
@@ -183,7 +183,7 @@ TEST(Protocol, NeverMovesFasterThanAskedFor) {
     }
 }
 
-TEST(Protocol, WaitsUntilThePackingIsAtRestOrTimeIsUp) {
+TEST(Protocol, WaitsUntilThePackingIsAtRestOrTheTimeLimit) {
     const Course calm(replica_of(1, 2, true), 1e-16, 10), restless(replica_of(1, 2, true), 1e-3);
     for (const auto& scan : calm.scans) EXPECT_TRUE(scan.settled);
     for (const auto& scan : restless.scans) EXPECT_FALSE(scan.settled);
@@ -203,7 +203,7 @@ TEST(Protocol, ProgressGrowsFromZeroToOne) {
     }
 }
 
-TEST(Protocol, GoesOnFromItsStateAlone) {
+TEST(Protocol, ContinuesFromItsSavedState) {
     const Replica replica = replica_of(2, 3, true);
     ProtocolRunner runner(replica, time_step, scale);
     for (int round = 0; !runner.finished(); ++round) {

@@ -1,5 +1,5 @@
-// Programmes drawn at random in a cell that is a spring: they end, and scans have the strains and stresses
-// that were asked for.
+// Random programmes on a cell that is represented by a spring: they end, and scans have the prescribed
+// strains and stresses.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ const PackingScale scale{.diameter = 0.02,
                          .modulus = 31e3,
                          .reach = 0.028};
 
-/// Elastic and without inertia; directions press on one another, and shear on all.
+/// Elastic and without inertia; the normal directions are coupled, and shear changes all normal stresses.
 Mat3 spring_stress(const Strain& strain) {
     Mat3 stress = Mat3::Zero();
     const double all = strain[0] + strain[1] + strain[2],
@@ -70,7 +70,8 @@ private:
     bool under_stress_ = false;
 };
 
-/// The last scan of a leg, at rest: what the stage names is there, and strains that it leaves are as before.
+/// The last scan of a leg, at rest: prescribed values are reached, and strains that the stage does not name
+/// are unchanged.
 void expect_end(const Stage& stage, const Strain& begin, const Strain& after) {
     const SetStress set = set_stress(stage);
     const Strain wanted = strain_after(stage, begin);
@@ -82,7 +83,7 @@ void expect_end(const Stage& stage, const Strain& begin, const Strain& after) {
     }
 }
 
-TEST(RandomCellProgrammes, EndAndScanWhereAsked) {
+TEST(RandomCellProgrammes, EndAndScanAtThePrescribedValues) {
     int by_stress = 0, ends = 0;
     for (unsigned seed = 1; seed <= 60; ++seed) {
         SCOPED_TRACE(seed);
@@ -130,7 +131,7 @@ TEST(RandomCellProgrammes, EndAndScanWhereAsked) {
     EXPECT_GT(ends, by_stress);
 }
 
-/// A cell with one move, to a pressure of 100 Pa.
+/// A cell with one move to a pressure of 100 Pa.
 ProtocolRunner to_pressure() {
     Replica replica;
     replica.box = {size, size, ContainerShape::cell, size};
@@ -141,7 +142,7 @@ ProtocolRunner to_pressure() {
     return ProtocolRunner(replica, time_step, scale);
 }
 
-TEST(StressOfACell, ThatNeverComesEndsTheProgramme) {
+TEST(StressOfACell, UnreachableStressEndsTheProgramme) {
     for (const double stress : {0.0, 150.0}) {
         ProtocolRunner runner = to_pressure();
         for (int rounds = 0; !runner.finished(); ++rounds) {
@@ -160,7 +161,7 @@ TEST(StressOfACell, ThatNeverComesEndsTheProgramme) {
     }
 }
 
-TEST(StressOfACell, OfADamagedCheckpointIsRefused) {
+TEST(StressOfACell, DamagedCheckpointIsRefused) {
     const ProtocolRunner runner = to_pressure();
     ProtocolState state = runner.state();
     EXPECT_TRUE(runner.is_possible(state));

@@ -1,4 +1,4 @@
-// Numbers that programmes are drawn from, alike on every machine.
+// Random numbers for drawing programmes, the same on every machine.
 #pragma once
 #include <random>
 

@@ -1,5 +1,5 @@
-// Programmes drawn at random on a packing that is a spring: they end, time grows, and scans are where and
-// when they were asked for.
+// Random programmes on a packing that is represented by a spring: they end, time increases, and scans are at
+// the prescribed positions, forces and times.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,7 +21,7 @@ const PackingScale scale{.diameter = 0.02,
                          .density = density,
                          .modulus = 23.3e3 / (1 - 0.5 * 0.5)};
 
-/// Hertz between the plate and a floor of grains, elastic and without inertia [N].
+/// Hertz contacts between the plate and a floor of grains, elastic and without inertia [N].
 double spring_force(double plate_z) { return 500 * std::pow(std::max(0.0, touching - plate_z), 1.5); }
 
 class RandomProgramme : RandomDraws {
@@ -66,7 +66,7 @@ private:
     bool forced_ = false;
 };
 
-/// What one leg asks of its scans, as a list of values in its quantity.
+/// Values of the leg's quantity at which scans are required.
 void expect_scans(const Replica& replica, const std::vector<ProtocolRunner::ScanTag>& scans,
                   const std::vector<int>& leg_of) {
     const auto stages = stages_of(replica);
@@ -87,7 +87,7 @@ void expect_scans(const Replica& replica, const std::vector<ProtocolRunner::Scan
         }
 }
 
-TEST(RandomProgrammes, EndAndScanWhereAsked) {
+TEST(RandomProgrammes, EndAndScanAtThePrescribedValues) {
     int by_force = 0;
     for (unsigned seed = 1; seed <= 60; ++seed) {
         SCOPED_TRACE(seed);

@@ -1,4 +1,4 @@
-// Reports of replicas that several work-groups sum up, against sums over the state that is read back.
+// Reports of replicas that are summed by several work-groups, compared with sums over the state.
 #include <cmath>
 
 #include "reference/test_scene.h"
@@ -36,7 +36,7 @@ Sums sums_of(const Start& start, const mcdem::ReplicaState& state) {
     return sums;
 }
 
-TEST(Reports, OfManyPortionsAreTheirSums) {
+TEST(Reports, SumAllPortions) {
     const std::vector<Start> starts{jittered_lattice(test_replica(), 65, 1),
                                     jittered_lattice(test_replica(), grains, 2)};
     Batch batch(build(Precision::single_precision), starts);
@@ -54,9 +54,9 @@ TEST(Reports, OfManyPortionsAreTheirSums) {
     }
 }
 
-TEST(Reports, NameAGrainOfTheLastPortion) {
+TEST(Reports, NameAFailedGrainInTheLastPortion) {
     Start start = jittered_lattice(test_replica(), grains, 2);
-    int highest = 0;  // last along the curve on which grains lie in memory
+    int highest = 0;  // last along the space-filling curve by which grains are stored
     for (int i = 0; i < grains; ++i)
         if (start.packing.position[i].sum() > start.packing.position[highest].sum()) highest = i;
     start.packing.position[highest].z() = 2 * start.replica.plate.start;

@@ -1,4 +1,5 @@
-// Grains of several species against closed forms: a pair, a chain, friction of every pair, energy.
+// Grains of several species compared with closed-form solutions: a pair, a chain, friction of every pair,
+// energy.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -16,7 +17,7 @@ const GrainMaterial soft{2e4, 0.45, 900, 0, 0.5, 1}, stiff{6e5, 0.2, 2500, 0, 0.
 
 Replica of_two(ContactModel model) {
     Replica replica = test_replica(model);
-    replica.grains = {1, 0.1, 1, 0, 0, 1, 0};  // of no species
+    replica.grains = {1, 0.1, 1, 0, 0, 1, 0};  // values that no species uses
     replica.walls = {1e12, 0.3, 0, 1};
     replica.species = {{"soft", soft}, {"stiff", stiff}};
     return replica;
@@ -28,8 +29,8 @@ double reduced_modulus(const GrainMaterial& a, const GrainMaterial& b) {
                 (1 - b.poisson_ratio * b.poisson_ratio) / b.youngs_modulus);
 }
 
-// Hertz (1882), in either order of the grains, for every two of both species.
-TEST(SpeciesContact, IsHertzOfBothMaterials) {
+// Hertz (1882), for every pair of species in both orders.
+TEST(SpeciesContact, ForceIsHertzWithBothMaterials) {
     const double a = 0.012, b = 0.007, distance = 0.018;
     std::vector<Start> starts;
     for (const auto& [first, second] : {std::pair(0, 0), std::pair(0, 1), std::pair(1, 0), std::pair(1, 1)}) {
@@ -47,7 +48,7 @@ TEST(SpeciesContact, IsHertzOfBothMaterials) {
         const double force = 4.0 / 3 * modulus * std::sqrt(a * b / (a + b)) * std::pow(overlap, 1.5);
         ASSERT_EQ(state.contacts.size(), 1u);
         EXPECT_NEAR(state.contacts[0].force.norm() / force, 1, has_double() ? 1e-9 : 1e-3) << r;
-        // Equal and opposite momenta, each of its own mass.
+        // Equal and opposite momenta, with each grain's own mass.
         const auto mass = [&](double radius, int s) {
             return (s ? stiff : soft).density * 4 / 3 * pi * std::pow(radius, 3);
         };
@@ -57,8 +58,8 @@ TEST(SpeciesContact, IsHertzOfBothMaterials) {
     }
 }
 
-/// Soft and stiff grains in turn, one on the other between floor and plate, at rest.
-TEST(SpeciesChain, CarriesTheForceOfSpringsInSeries) {
+/// Soft and stiff grains alternate in a column between floor and plate, at rest.
+TEST(SpeciesChain, ForceIsThatOfSpringsInSeries) {
     constexpr double radius = 0.01, compression = 0.004;
     constexpr int count = 6;
     Start start{of_two(ContactModel::independent), {}};
@@ -74,7 +75,7 @@ TEST(SpeciesChain, CarriesTheForceOfSpringsInSeries) {
     Batch batch(build(finest()), start);
     const auto result = batch.advance(60000, 2e3)[0];
     const double force = result.wall_force[static_cast<int>(Wall::plate)].z();
-    // The compressions of all contacts under one force add up: delta_k = (F / (4/3 E* sqrt(R*)))^(2/3).
+    // The overlaps of all contacts under one force add up: delta_k = (F / (4/3 E* sqrt(R*)))^(2/3).
     const GrainMaterial wall{1e12, 0.3};
     double sum = 0;
     const auto add = [&](const GrainMaterial& a, const GrainMaterial& b, double reduced_radius) {
@@ -87,8 +88,9 @@ TEST(SpeciesChain, CarriesTheForceOfSpringsInSeries) {
     EXPECT_NEAR(force / std::pow(compression / sum, 1.5), 1, has_double() ? 1e-6 : 1e-3);
 }
 
-/// Two grains slide past each other much faster than friction fades: mu is the ratio of the forces.
-TEST(SpeciesFriction, IsThePairs) {
+/// Two grains slide past each other, much faster than the sliding velocity of the scene: mu is the ratio of
+/// the forces.
+TEST(SpeciesFriction, CoefficientIsThatOfThePair) {
     Replica replica = of_two(ContactModel::independent);
     replica.contact.sliding_velocity = 1e-9;
     replica.numerics.time_step = 1e-3;
@@ -114,8 +116,8 @@ TEST(SpeciesFriction, IsThePairs) {
     }
 }
 
-/// Each species on the floor, with the walls' friction or its own.
-TEST(SpeciesFriction, OnWallsIsTheWallsOrTheirPairs) {
+/// Each species on the floor, with the walls' friction or that of its [[pair]] with the walls.
+TEST(SpeciesFriction, OnWallsIsThatOfTheWallsOrOfTheirPair) {
     Replica replica = of_two(ContactModel::independent);
     replica.walls.friction = 0.25;
     replica.contact.sliding_velocity = 1e-9;
@@ -134,8 +136,8 @@ TEST(SpeciesFriction, OnWallsIsTheWallsOrTheirPairs) {
     EXPECT_NEAR(-contacts[1].force.y() / contacts[1].force.z(), 0.25, 2e-3);
 }
 
-// Restitution of an unlike pair: rebound over approach speed, seen from outside.
-TEST(SpeciesRestitution, IsThePairs) {
+// Restitution of an unlike pair: separation speed over approach speed.
+TEST(SpeciesRestitution, CoefficientIsThatOfThePair) {
     Replica replica = of_two(ContactModel::independent);
     replica.pairs = {{"soft", "stiff", mcdem::not_given, 0.6}};
     replica.numerics.time_step = 0.01;
@@ -148,8 +150,8 @@ TEST(SpeciesRestitution, IsThePairs) {
     EXPECT_NEAR((velocity[1] - velocity[0]).x() / 0.2, 0.6, 2e-3);
 }
 
-// Without friction or damping, energy comes back after every contact of a cluster of both, for every model.
-TEST(SpeciesEnergy, StaysForEveryModel) {
+// Without friction and damping, the energy of a cluster of both species is conserved, for every model.
+TEST(SpeciesEnergy, IsConservedForEveryModel) {
     if (!has_double()) GTEST_SKIP() << "the device has no double precision";
     std::vector<Start> starts;
     for (ContactModel model : all_models) {
@@ -171,7 +173,7 @@ TEST(SpeciesEnergy, StaysForEveryModel) {
         }
     }
     for (std::size_t r = 0; r < starts.size(); ++r) {
-        // Velocities stand half a step before: the mean of two is at the step.
+        // Velocities are half a step behind: the mean of two is the velocity at the step.
         const auto mean = [&](int from, int to) {
             double sum = 0;
             for (int k = from; k < to; ++k) sum += elastic[r][k] + (kinetic[r][k] + kinetic[r][k + 1]) / 2;

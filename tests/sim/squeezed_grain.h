@@ -1,5 +1,5 @@
-// One grain between floor and plate, squeezed alike on both sides and moved by hand: force against overlap of
-// a single contact, without any motion of its own.
+// One grain between floor and plate, compressed equally on both sides by prescribed motion: force against
+// overlap of a single contact, without motion of the grain.
 #pragma once
 #include <cmath>
 
@@ -10,15 +10,15 @@ namespace reference {
 class SqueezedGrain {
 public:
     static constexpr double radius = 0.01, youngs_modulus = 1e5, poisson_ratio = 0.3;
-    static constexpr double wall_modulus = 1e13;  ///< as good as rigid
+    static constexpr double wall_modulus = 1e13;  ///< almost rigid
     static constexpr double modulus =
         1 / ((1 - poisson_ratio * poisson_ratio) * (1 / youngs_modulus + 1 / wall_modulus));
 
     SqueezedGrain(const mcdem::Effects& effects, double overlap)
         : batch_(build(finest()), start(effects, overlap)), plate_(2 * (radius - overlap)) {}
 
-    /// One step in which the overlap grows by `change` [m]. Returns the upward force on the plate at its end
-    /// [N].
+    /// One step in which the overlap changes by `change` [m]. Returns the upward force on the plate at its
+    /// end [N].
     double squeeze(double change) {
         const double dt = time_step(), velocity = -2 * change / dt;
         batch_.engine().set_velocities(0, {{0, 0, velocity / 2}}, {Vec3::Zero()});
@@ -30,15 +30,14 @@ public:
     }
     double overlap() const { return radius - plate_ / 2; }
     double time_step() const { return batch_.engine().time_step(0); }
-    /// That both contacts store at the end of the last step [J].
+    /// Energy of both contacts at the end of the last step [J].
     double energy() const { return energy_; }
 
     /// 4/3 E* sqrt(R) delta^(3/2)
     static double hertz(double overlap) {
         return overlap > 0 ? 4.0 / 3 * modulus * std::sqrt(radius) * std::pow(overlap, 1.5) : 0;
     }
-    /// Of single steps' forces, relative: coordinates are rounded to 1e-9 of the overlap or, in float, to
-    /// 1e-5.
+    /// Relative rounding error of forces: coordinates are rounded to 1e-9 of the overlap, in float to 1e-5.
     static double rounding() { return has_double() ? 1e-9 : 1e-3; }
 
 private:

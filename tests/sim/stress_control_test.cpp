@@ -1,4 +1,5 @@
-// Stresses that are set in a cell: reached to the tolerance, not passed, and kept, on every path.
+// Prescribed stresses of a cell: they are reached within the tolerance, without overshoot, and held, on
+// every path.
 #include <fmt/core.h>
 
 #include <cmath>
@@ -21,7 +22,7 @@ packing_fraction = 0.6
 rate_tolerance = 0.05
 )";
 
-/// 0 to 2: to a pressure; 3: triaxial; 4: back to the pressure; 5: simple shear while it is kept.
+/// Stages 0 to 2: to a pressure; 3: triaxial; 4: back to the pressure; 5: simple shear at constant pressure.
 const std::string paths = R"([[programme]]
 pressure = 100
 [[programme]]
@@ -41,8 +42,8 @@ scans = 2
 )";
 constexpr double set[] = {100, 500, 150, 150, 150, 150};
 
-/// How far any interval's stress may pass the one set, and may be from it while strains change, relative.
-/// Grains without friction slide over one another by themselves, in jerks.
+/// Largest overshoot of a stress in any interval, and largest deviation from it while strains change,
+/// relative. Packings without friction rearrange suddenly.
 struct Kind {
     const char* name;
     std::vector<std::string> overrides;
@@ -74,7 +75,7 @@ const Kind kinds[] = {
 
 class StressControl : public testing::TestWithParam<Kind> {};
 
-/// Farthest from the stress set, in a direction whose stress the leg sets: up, down.
+/// Largest deviations above and below the prescribed stress, over the directions with a prescribed stress.
 std::pair<double, double> farthest(const Traced& traced, int leg) {
     double up = -1, down = -1;
     for (const auto& row : traced.rows)
@@ -85,7 +86,7 @@ std::pair<double, double> farthest(const Traced& traced, int leg) {
     return {up, down};
 }
 
-TEST_P(StressControl, ReachesStressesFromTheirSideAndKeepsThem) {
+TEST_P(StressControl, ReachesStressesWithoutOvershootAndHoldsThem) {
     double beyond = -1, off = 0;
     for (const char* seed : {"packing.seed=1", "packing.seed=2"}) {
         SCOPED_TRACE(seed);
@@ -126,7 +127,7 @@ INSTANTIATE_TEST_SUITE_P(Kinds, StressControl, testing::ValuesIn(kinds), [](cons
     return name;
 });
 
-// Stresses of grains that relax are kept while the cell creeps.
+// The stresses of viscoelastic grains are kept constant while the cell creeps.
 TEST(StressHold, KeepsTheStressesWhileTheCellCreeps) {
     const Traced traced = trace(cell_text + R"([[programme]]
 pressure = 200
@@ -156,7 +157,7 @@ scans = 6
         << "creeps where the stress is kept";
 }
 
-TEST(StressControl, OfWhatCannotBeReachedEndsWithItsCause) {
+TEST(StressControl, UnreachableStressEndsWithItsCause) {
     const Traced loose = trace(cell_text + "[[programme]]\nstress_x = 100\nrate = 1\n",
                                {"packing.packing_fraction=0.3", "protocol.rate_tolerance=0"});
     EXPECT_NE(

@@ -1,5 +1,5 @@
-// A face-centred cubic crystal taken along paths of stress: every bond is one of the deformed lattice, so
-// that its stress is known at any strain.
+// A face-centred cubic crystal on various stress paths. Every contact is a bond of the deformed lattice, so
+// the stress is known at any strain.
 #include <cmath>
 
 #include "core/container.h"
@@ -73,14 +73,14 @@ void expect_stress(const Traced::Scanned& scan, const mcdem::SetStress& set) {
         }
 }
 
-TEST(StressOfACrystal, UnderPressureIsHertz) {
+TEST(StressOfACrystal, UnderPressureAgreesWithHertz) {
     const Traced traced =
         taken_along({stresses(50, 50, 50), stresses(400, 400, 400), stresses(100, 100, 100)});
     ASSERT_EQ(traced.scans.size(), 3u);
     const double set[] = {50, 400, 100};
     for (int leg = 0; leg < 3; ++leg) {
         expect_stress(traced.scans[leg], {set[leg], set[leg], set[leg]});
-        double low = -0.1, high = 0.3;  // of the strain that the pressure asks for
+        double low = -0.1, high = 0.3;  // bracket of the strain at the prescribed pressure
         for (int n = 0; n < 60; ++n) {
             const double middle = (low + high) / 2;
             (crystal_stress({middle, middle, middle, 0, 0, 0})(0, 0) < set[leg] ? low : high) = middle;
@@ -89,7 +89,7 @@ TEST(StressOfACrystal, UnderPressureIsHertz) {
     }
 }
 
-TEST(StressOfACrystal, FollowsEveryPath) {
+TEST(StressOfACrystal, IsCorrectOnEveryPath) {
     std::vector<mcdem::Stage> programme{stresses(200, 200, 200), stresses(200, 200, mcdem::not_given),
                                         stresses(150, 250, 200), stresses(200, 200, 200),
                                         stresses(mcdem::not_given, mcdem::not_given, 300)};
@@ -111,7 +111,7 @@ TEST(StressOfACrystal, FollowsEveryPath) {
     for (const int k : {0, 1, 3, 4, 5}) EXPECT_EQ(traced.scans[5].strain[k], traced.scans[3].strain[k]) << k;
 }
 
-TEST(StressOfACrystal, IsRecordedInPassing) {
+TEST(StressOfACrystal, IsRecordedDuringMoves) {
     std::vector<mcdem::Stage> programme{stresses(50, 50, 50), stresses(200, 200, 200),
                                         stresses(200, 200, 200)};
     programme[1].scans = 3;

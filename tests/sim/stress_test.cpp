@@ -1,5 +1,5 @@
-// At rest, without weight and wall friction, the stress from contacts is the wall forces over the walls'
-// areas.
+// At rest, without weight and wall friction, the stress from contacts equals the wall forces over the areas
+// of the walls.
 #include "core/stress.h"
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ Start compressed(ContactModel model) {
     replica.plate.end = 0.87 * replica.plate.start;
     replica.protocol.scans_per_stroke = 1;
     replica.protocol.settle_unbalanced_force = 1e-6;
-    replica.protocol.settle_drag = 20;  // about critical: more of it creeps to rest
+    replica.protocol.settle_drag = 20;  // about critical: with larger drag, relaxation takes longer
     replica.protocol.settle_time = 20;
     return start;
 }
@@ -48,7 +48,7 @@ Scan strongest(const Start& start) {
 
 class StressAtRest : public ::testing::TestWithParam<ContactModel> {};
 
-TEST_P(StressAtRest, IsTheWallForcesOverTheAreas) {
+TEST_P(StressAtRest, EqualsTheWallForcesOverTheAreas) {
     if (!reference::has_double()) GTEST_SKIP() << "the device has no double precision";
     const Start start = compressed(GetParam());
     const Scan scan = strongest(start);
@@ -58,8 +58,7 @@ TEST_P(StressAtRest, IsTheWallForcesOverTheAreas) {
                         on(Wall::y_max).y() / (box.size_x * scan.plate_z),
                         on(Wall::plate).z() / (box.size_x * box.size_y));
     ASSERT_GT(pressure.minCoeff(), 10) << "pressed from all sides";
-    // Grains that slide along the walls creep on: their net forces, 1e-6 of the pressure on a grain, are
-    // left.
+    // Grains still creep along the walls: a net force of 1e-6 of the pressure force on a grain remains.
     const double tolerance = 1e-5 * pressure.maxCoeff();
     for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(scan.stress(axis, axis), pressure[axis], tolerance);
     EXPECT_LT((scan.stress - scan.stress.transpose()).cwiseAbs().maxCoeff(), tolerance);

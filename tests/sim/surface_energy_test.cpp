@@ -1,5 +1,5 @@
-// One grain between six walls, squeezed by one of them and let go: what it stores is the work done on it, and
-// a closed path of loads does none.
+// One grain between six walls, compressed and released by one of them: its energy equals the work done on
+// it, and the work of a closed path is zero.
 #include <cmath>
 
 #include "core/names.h"
@@ -10,7 +10,7 @@ namespace {
 
 constexpr double radius = 0.01;
 
-/// Walls that overlap by a part of the radius along x, y and z. No friction, no damping.
+/// Walls at these overlaps along x, y and z, over the radius. No friction, no damping.
 Start boxed(ContactModel model, double x, double y, double z) {
     Replica replica = test_replica(model);
     replica.grains = {23.3e3, 0.45, 1000, 0, 0, 1, 0};
@@ -26,8 +26,8 @@ struct Squeezed {
     double work = 0, energy = 0, force = 0;
 };
 
-/// The plate goes by `change` of the radius a side, step by step, the grain in the middle with it; then
-/// everything rests until delayed displacements have come to their ends.
+/// Moves the plate by `change` (in radii, per side) in steps; the grain is kept in the middle. Then
+/// everything is at rest until the delayed displacements have converged.
 class Path {
 public:
     explicit Path(const Start& start) : batch_(build(finest()), start), plate_(start.replica.plate.start) {
@@ -61,14 +61,14 @@ private:
     double plate_, force_ = 0, energy_ = 0;
 };
 
-TEST(SurfaceEnergy, IsTheWorkDoneOnTheGrain) {
+TEST(SurfaceEnergy, EqualsTheWorkDoneOnTheGrain) {
     if (!has_double()) GTEST_SKIP() << "the device has no double precision";
     for (ContactModel model : {ContactModel::independent, ContactModel::point_force_on_sphere,
                                ContactModel::elastic_sphere, ContactModel::hyperelastic_sphere}) {
         Path path(boxed(model, 0.06, 0.04, 0.02));
         const double begun = path.move(0, 1).energy;
         const Squeezed there = path.move(0.06, 2000), back = path.move(-0.06, 2000);
-        // delayed displacements: the force is that of some steps before
+        // displacements are delayed: the force is that of some steps before
         EXPECT_NEAR((there.energy - begun) / there.work, 1, 2e-4) << name(model);
         EXPECT_NEAR(back.work / there.work, -1, 2e-4) << name(model);
         EXPECT_NEAR(back.energy / begun, 1, 1e-6) << name(model);
@@ -82,7 +82,7 @@ Start with_finite_strain(ContactModel model, double share) {
     return start;
 }
 
-TEST(FiniteStrain, GoesFromTheElasticToTheHyperelasticSphere) {
+TEST(FiniteStrain, InterpolatesBetweenElasticAndHyperelasticSphere) {
     const auto force = [](ContactModel model, double share) {
         return Path(with_finite_strain(model, share)).move(0.06, 100).force;
     };

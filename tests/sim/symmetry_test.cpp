@@ -1,5 +1,5 @@
-// Symmetries of the physics that the program must have: turned, mirrored, moved or renumbered, a packing does
-// the same; and models that coincide in a limit coincide.
+// Symmetries: rotation, reflection, translation and renumbering of a packing do not change its behaviour;
+// models that coincide in a limit give the same results.
 #include <algorithm>
 #include <functional>
 #include <numeric>
@@ -10,7 +10,7 @@
 namespace reference {
 namespace {
 
-/// A change of coordinates: of points, of directions, and of axes of rotation.
+/// A transformation of coordinates: of points, vectors and axial vectors.
 struct Change {
     const char* what;
     std::function<Vec3(const Vec3&)> point, direction, axis;
@@ -44,9 +44,9 @@ std::vector<Vec3> forces_by_pair(const mcdem::ReplicaState& state) {
     return forces;
 }
 
-// Sums run in another order and coordinates are rounded elsewhere; thirty steps of a soft cluster multiply
-// such differences by ten or so.
-TEST(Symmetry, TurnedMirroredOrMovedAClusterDoesTheSame) {
+// Sums have another order and coordinates are rounded differently; thirty steps of a soft cluster amplify
+// such differences by a factor of about ten.
+TEST(Symmetry, RotationReflectionAndTranslationOfAClusterChangeNothing) {
     const double allowed = has_double() ? 1e-11 : 1e-3;
     std::vector<Start> starts;
     for (ContactModel model : all_models) {
@@ -91,8 +91,8 @@ TEST(Symmetry, TurnedMirroredOrMovedAClusterDoesTheSame) {
     }
 }
 
-// In a cubic cage the six walls are alike: turned, the forces on them change places.
-TEST(Symmetry, WallsAreAlike) {
+// In a cubic box all six walls are equivalent: after a rotation the forces on them are exchanged.
+TEST(Symmetry, WallsAreEquivalent) {
     Replica replica = test_replica(ContactModel::elastic_sphere);
     replica.grains.excess_density = 0;
     const Start start = caged_cluster(replica, 0.03, 2e-4, 8);
@@ -111,7 +111,7 @@ TEST(Symmetry, WallsAreAlike) {
     EXPECT_GT(expected[0].norm(), 0.01);
 }
 
-/// The same grains, numbered by `order`.
+/// The same grains, renumbered by `order`.
 Start renumbered(const Start& start, const std::vector<int>& order) {
     Start other = start;
     for (std::size_t i = 0; i < order.size(); ++i) {
@@ -135,8 +135,8 @@ std::vector<Vec3> renumbered(const std::vector<Vec3>& values, const std::vector<
     return other;
 }
 
-// Grains lie in memory by their place in space, so that their numbers change nothing: not a bit, where no two
-// share a cell of that order. Small grains make the cells small.
+// Grains are stored in the order of a space-filling curve, so their numbers do not change any bit if no two
+// grains are in the same cell of the curve. Small grains make the cells small.
 TEST(Symmetry, RenumberedGrainsGiveTheSameBits) {
     Start start = jittered_lattice(test_replica(ContactModel::mc_dem), 27, 9);
     start.replica.plate.start = start.replica.plate.end = 0.2;
@@ -157,7 +157,7 @@ TEST(Symmetry, RenumberedGrainsGiveTheSameBits) {
     EXPECT_EQ(a.contacts.size(), b.contacts.size());
 }
 
-TEST(Symmetry, GammaZeroIsIndependentToTheBit) {
+TEST(Symmetry, GammaZeroEqualsIndependentBitForBit) {
     Start zero = caged_cluster(test_replica(ContactModel::mc_dem), 0.03, 2e-4, 11);
     zero.replica.contact.gamma = 0;
     Start independent = zero;
@@ -167,7 +167,7 @@ TEST(Symmetry, GammaZeroIsIndependentToTheBit) {
     EXPECT_TRUE(same_bits(batch.engine().state(0), batch.engine().state(1)));
 }
 
-TEST(Symmetry, GammaOneIsTheHalfSpaceToTheBit) {
+TEST(Symmetry, GammaOneEqualsTheHalfSpaceBitForBit) {
     Start one = caged_cluster(test_replica(ContactModel::mc_dem), 0.03, 2e-4, 12);
     one.replica.contact.gamma = 1;
     Start half_space = one;
@@ -180,10 +180,10 @@ TEST(Symmetry, GammaOneIsTheHalfSpaceToTheBit) {
     EXPECT_FALSE(same_bits(batch.engine().state(0), batch.engine().state(2)));
 }
 
-// At nu = 1/2, with contact points (all but) on the sphere. They lie at R (1 - compression), so the half
-// space's displacements are larger by that part, and the forces differ by as much of what the corrections
-// make.
-TEST(Symmetry, HalfSpaceNearTheSphereIsSphereToSphere) {
+// At nu = 1/2, with contact points very close to the sphere. They are at R (1 - compression), so
+// displacements of the half space are larger by this fraction, and the corrections of the forces differ
+// accordingly.
+TEST(Symmetry, HalfSpaceNearTheSphereEqualsSphereToSphere) {
     constexpr double compression = 1e-3;
     std::vector<Start> starts;
     for (ContactModel model :

@@ -1,5 +1,5 @@
-// The time step follows contacts that stiffen: packings are pressed until grains fill the box, with the
-// default step.
+// The time step is shortened when contacts stiffen: packings are compressed until the grains fill the box,
+// with the default step.
 #include <cmath>
 #include <numbers>
 
@@ -15,7 +15,7 @@ using mcdem::Scan;
 using mcdem::Scene;
 using mcdem::Simulation;
 
-/// Eighty grains from a packing fraction of 0.59 to 0.85; the last scan of loading is the tenth.
+/// Eighty grains compressed from a packing fraction of 0.59 to 0.85; the last scan of loading is the tenth.
 Scene filled(const std::string& models) {
     return mcdem::parse_scene(R"(
 [box]
@@ -51,7 +51,7 @@ struct Course {
     explicit Course(const Scene& scene) : simulation(device(), scene, packings_of(scene)) {
         scans.resize(scene.replicas.size());
     }
-    /// Until every replica has `wanted` scans, or has stopped.
+    /// Runs until every replica has `wanted` scans or has stopped.
     void run(std::size_t wanted) {
         const auto take = [&](int r, Scan scan) { scans[r].push_back(std::move(scan)); };
         const auto fail = [&](int r, const mcdem::Failure& failure) {
@@ -65,7 +65,7 @@ struct Course {
     std::vector<std::vector<Scan>> scans;
 };
 
-TEST(TimeStep, PackingsFillTheBoxWithTheDefault) {
+TEST(TimeStep, PackingsFillTheBoxWithTheDefaultStep) {
     Course course(filled(R"("elastic_sphere", "hyperelastic_sphere")"));
     course.run(10);
     for (const auto& scans : course.scans) {
@@ -77,7 +77,7 @@ TEST(TimeStep, PackingsFillTheBoxWithTheDefault) {
     }
 }
 
-// The checkpoint has the step; a replica of a batch has the bits that it has alone.
+// A checkpoint contains the step; a replica in a batch has the same bits as alone.
 TEST(TimeStep, IsTheSameAfterARestartAndInABatch) {
     const Scene scene = filled(R"("elastic_sphere", "hyperelastic_sphere")");
     Course whole(scene), begun(scene), resumed(scene), alone(filled(R"("hyperelastic_sphere")"));
@@ -99,8 +99,8 @@ TEST(TimeStep, IsTheSameAfterARestartAndInABatch) {
     EXPECT_EQ(alone.scans[0].at(8).time, whole.scans[1].at(8).time);
 }
 
-// Where it need not be short, it is the scene's: contacts that displace nothing, and light loads.
-TEST(TimeStep, IsShortenedOnlyWhereItMustBe) {
+// Models without displacements, and small loads, use the scene's step.
+TEST(TimeStep, IsShortenedOnlyIfNecessary) {
     const auto after_a_step = [](ContactModel model, double overlap) {
         Replica replica = test_replica(model);
         replica.grains = {23.3e3, 0.45, 1000, 0, 0, 0.95, 0};

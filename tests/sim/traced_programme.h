@@ -1,5 +1,5 @@
-// A packing taken through a programme, and the plate's position and force, or the strain and stress of a
-// cell, at every interval's end.
+// Runs a programme on a packing and records, at the end of each interval, the plate's position and force, or
+// the strain and stress of a cell.
 #pragma once
 #include "reference/test_scene.h"
 #include "scene/make_packing.h"
@@ -30,7 +30,7 @@ struct Traced {
     int status = 0;
 };
 
-/// Every replica of the scene by itself.
+/// Runs every replica of the scene on its own.
 inline Traced trace(const mcdem::Scene& scene, int r, Packing packing) {
     const Replica& replica = scene.replicas[static_cast<std::size_t>(r)];
     Engine engine(device(), build(scene.precision, scene.slots), {replica}, {packing});

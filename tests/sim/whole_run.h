@@ -1,11 +1,11 @@
-// A simulation from its first packing to its last scan with everything that it tells, bit for bit.
+// Runs a simulation from the packing to the last scan and records all of its output, for bitwise comparison.
 #pragma once
 #include "reference/test_scene.h"
 #include "sim/simulation.h"
 
 namespace reference {
 
-/// Everything that a simulation tells of one replica.
+/// All output of one replica.
 struct Told {
     std::vector<double> numbers;
     int scans = 0;
@@ -69,7 +69,7 @@ private:
     mcdem::Simulation simulation_;
 };
 
-/// Four scans, all alike.
+/// Compares the output bit for bit; each run must have four scans.
 inline void expect_same(WholeRun& one, int r, WholeRun& other, int s) {
     EXPECT_TRUE(one.told[r] == other.told[s]);
     EXPECT_TRUE(same_bits(one.state(r), other.state(s)));

@@ -1,4 +1,4 @@
-"""A million grains, a thousand steps: the whole program stays below 4 GB.
+"""A million grains for a thousand steps: the whole program needs less than 4 GB.
 
 million.py MCDEM [GRAINS]
 """
@@ -18,7 +18,7 @@ TIME_STEP = 126e-6  # [s]
 
 
 def write_packing(file, across):
-    """A simple cubic lattice, its rows a little compressed so that every grain has six contacts; returns its edge [m]."""
+    """Writes a simple cubic lattice, slightly compressed so that every grain has six contacts; returns its edge [m]."""
     edge = 0.99 * DIAMETER
     places = (np.indices((across,) * 3).reshape(3, -1).T + 0.5) * edge
     places += np.random.default_rng(1).normal(0, 1e-3 * DIAMETER, places.shape)
@@ -28,7 +28,8 @@ def write_packing(file, across):
 
 
 def write_scene(file, size):
-    """One step is 126 microseconds (0.1 of the Rayleigh time); the plate goes down and up 6.3 mm at 0.1 m/s: 1000 steps."""
+    """One step is 126 microseconds (0.1 of the Rayleigh time); the plate moves 6.3 mm down and up at 0.1 m/s: 1000
+    steps."""
     file.write_text(f"""name = "a million"
 [box]
 size_x = {size}
@@ -46,7 +47,7 @@ relax_time = 0
 
 
 def steps_of(file):
-    """Steps up to the last scan, which ends the last stroke."""
+    """Number of steps up to the last scan, at the end of the last stroke."""
     with h5py.File(file) as run:
         scans = run["observables/replica_00000"]
         assert len(scans) == 2, f"{len(scans)} scans of 2"

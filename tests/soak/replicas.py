@@ -1,6 +1,6 @@
-"""10,000 short replicas in one process: what it holds in memory stays what it was after the first two thousand.
+"""10,000 short replicas in one process: memory does not grow after the first two thousand.
 
-replicas.py [REPLICAS]; PYTHONPATH names the module.
+replicas.py [REPLICAS]; PYTHONPATH must contain the module.
 """
 import os
 import pathlib
@@ -11,8 +11,8 @@ import tempfile
 import mcdem
 
 AT_ONCE = 100
-WARM_UP = 20          # runs after which caches of the kernels' compiler and the allocator are filled
-MOST_GROWTH = 2**20   # [bytes] from the first third to the last of 8,000 replicas: 200 a replica, less than one scan's row
+WARM_UP = 20          # runs until the caches of the kernels' compiler and the allocator are filled
+MOST_GROWTH = 2**20   # [bytes] from the first to the last third of 8,000 replicas: 200 per replica, less than the row of one scan
 
 SCENE = mcdem.Scene(
     name="soak",

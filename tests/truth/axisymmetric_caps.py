@@ -1,7 +1,7 @@
-"""Sphere between plates with the pressure of every contact axisymmetric about its plate's normal.
+"""Sphere between plates; the pressure of every contact is axisymmetric about the normal of its plate.
 
-Exact for two plates; elsewhere it forbids contact areas that are not round, which matters where neighbours are near
-(see README.md). Plates come in groups of plates that carry the same load by symmetry; groups may differ.
+Exact for two plates. In other arrangements contact areas are forced to be round, which matters if neighbours are close
+(see README.md). Plates in one group have the same load by symmetry; groups may differ.
 """
 import numpy as np
 
@@ -10,7 +10,7 @@ from sphere_modes import compliance, legendre
 
 
 def moments(hats, orders):
-    """Radial and meridional Legendre moments (order, hat) of hats of pressure along the plate normal."""
+    """Radial and meridional Legendre moments (order, hat) of hat functions of pressure along the plate normal."""
     n = np.arange(orders + 1.0)[:, None]
     p = legendre(orders, hats.cosine)
     slope = np.zeros_like(p)                            # sin(theta) dP_n/dtheta
@@ -21,7 +21,7 @@ def moments(hats, orders):
 
 
 def solve(poisson_ratio, groups, overlaps, count=36, rim=None):
-    """Force on one plate of every group, in E R^2; `rim` is the largest contact angle allowed for."""
+    """Force on one plate of every group, in E R^2; `rim` is the largest allowed contact angle."""
     groups = [np.array(g, float) / np.linalg.norm(g, axis=1)[:, None] for g in groups]
     rims = [rim or min(0.75, 1.45 * np.sqrt(max(overlap, 0.03))) for overlap in overlaps]
     orders = int(min(2500, 10 * count / min(rims)))

@@ -1,12 +1,12 @@
-"""What both solvers share: hat functions on a cap, and the contact conditions."""
+"""Shared by both solvers: hat functions on a cap, and the contact conditions."""
 import numpy as np
 
 
 class Hats:
     """Piecewise linear functions of theta on a cap: `count` nodes from the pole, zero at the rim theta = `rim`.
 
-    Each element has `points` Gauss points; `values` holds the hats there (hat, point) and `integral` the same times
-    the area 2 pi sin(theta) dtheta of each point.
+    Each element has `points` Gauss points; `values` are the hat functions there (hat, point), and `integral` is
+    `values` times the area 2 pi sin(theta) dtheta of each point.
     """
 
     def __init__(self, rim, count, points):
@@ -23,12 +23,12 @@ class Hats:
             if i:
                 self.values[i, (i - 1) * points:i * points] = along
         self.integral = self.values * self.area
-        self.force = self.integral.sum(1)               # of a hat of unit pressure along the plate normal
-        self.gap = self.integral @ (1 - self.cosine)    # the sphere's distance from the plate, weighted by the hat
+        self.force = self.integral.sum(1)               # of a hat function of unit pressure along the plate normal
+        self.gap = self.integral @ (1 - self.cosine)    # distance of the sphere from the plate, weighted by the hat function
 
 
 def solve_contact(stiffness, approach):
-    """Pressures p >= 0 with stiffness p >= approach, one of the two an equality everywhere (no tension, no
+    """Pressures with p >= 0 and stiffness p >= approach, one of which is an equality everywhere (no tension, no
     penetration): active set iteration."""
     active = np.ones(len(approach), bool)
     for _ in range(200):

@@ -1,6 +1,6 @@
-"""The contact model elastic_sphere: overlaps from the forces on one sphere; radius and E are 1.
+"""The contact model elastic_sphere: overlaps from the forces on one sphere, with radius and E equal to 1.
 
-Sums as in host/elasticity/elastic_sphere_series.h, which explains them."""
+Sums are explained in host/elasticity/elastic_sphere_series.h."""
 import numpy as np
 
 from sphere_modes import compliance, legendre
@@ -10,7 +10,8 @@ SMALLEST_SINE, LARGEST_RADIUS = .15, .64
 
 
 def pair_displacements(poisson_ratio, sines):
-    """Outward at s = sin(theta/2) from a unit force: by points, and times the spread what finite contacts add."""
+    """Outward displacement at s = sin(theta/2) by a unit point force, and the factor of the spread of finite
+    contacts."""
     modes = compliance(poisson_ratio, TERMS)
     n = np.arange(TERMS + 1.)
     factor = (-(2 * n + 1) / (4 * np.pi) * np.exp(-36 * (n / TERMS)**8))[:, None] * legendre(TERMS, 1 - 2 * sines**2)
@@ -19,7 +20,7 @@ def pair_displacements(poisson_ratio, sines):
 
 
 def self_displacement(poisson_ratio, a):
-    """Outward beyond Hertz, of a contact of radius a by its own unit force."""
+    """Outward displacement beyond Hertz of a contact of radius a by its own unit force."""
     x, weight = np.polynomial.legendre.leggauss(300)
     y, punch = x[x > 0], weight[x > 0]
     r2 = a * a * (1 - y**2)
@@ -38,7 +39,7 @@ def self_displacement(poisson_ratio, a):
 
 
 class SelfTerm:
-    """S0 + S1 ln a + S2 a + S3 a^2 + S4 a^3, as the model has it."""
+    """S0 + S1 ln a + S2 a + S3 a^2 + S4 a^3, as in the model."""
 
     def __init__(self, poisson_ratio):
         a = np.array([.05, .08, .12, .17, .22, .28, .34, .40, .46, .52, .58, .64])
@@ -56,7 +57,7 @@ class Law:
 
     def __init__(self, poisson_ratio, normals, self_term):
         self.poisson_ratio = poisson_ratio
-        self.uniform = (1 - 2 * poisson_ratio) / (4 * np.pi)  # a unit force moves every point inward by that besides the shear
+        self.uniform = (1 - 2 * poisson_ratio) / (4 * np.pi)  # inward displacement of all points by a unit force, besides shear
         self.modulus = 4 / 3 / (1 - poisson_ratio**2)
         self.self_term = self_term
         others = ~np.eye(len(normals), dtype=bool)
@@ -70,19 +71,19 @@ class Law:
         return (force / self.modulus)**(1 / 3)
 
     def own(self, force):
-        """By each contact's own force."""
+        """Displacement by each contact's own force."""
         a = self.radius(force)
         return a**2 - force * self.self_term(a)
 
     def by_others(self, force):
-        """By the others' forces, and the energy that it is the derivative of."""
+        """Displacement by the other forces, and the energy of which it is the derivative."""
         a2 = self.radius(force)**2
         points = -self.point @ force
         sizes = -(2 / 5 * self.size @ (force * a2) + 2 / 3 * a2 * (self.size @ force))
         return points + sizes, force @ points / 2 + 3 / 8 * force @ sizes
 
     def shear_by_others(self, force):
-        """Overlaps without uniform compression, by contacts as points and by their sizes, and the energies of both."""
+        """Overlaps without uniform compression, by point contacts and by their sizes, and the energies of both."""
         a2 = self.radius(force)**2
         points = -self.point @ force - self.uniform * (force.sum() - force)
         sizes = -(2 / 5 * self.size @ (force * a2) + 2 / 3 * a2 * (self.size @ force))

@@ -10,7 +10,7 @@ FOLDER = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(FOLDER.parent.parent / "host/python"))
 from mcdem.figures import PAGE, STYLE, new_axes, save  # noqa: E402
 
-# In the order of the columns, with the colours that models have in all figures.
+# Columns in order, with the colours of the models in all figures.
 MODELS = {"Independent": "#0072B2", "Point force on sphere": "#56B4E9", "Sphere to sphere": "#009E73",
           "Half space, gamma = 1": "#E69F00", "MC-DEM, gamma = 1.125": "#D55E00", "Elastic sphere": "#CC79A7",
           "Hyperelastic sphere": "#666666"}

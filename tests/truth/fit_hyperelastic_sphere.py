@@ -11,14 +11,14 @@ from elastic_sphere_law import LARGEST_RADIUS, Law, SelfTerm
 from neo_hookean_plates import images, mirrors_of
 
 FOLDER = pathlib.Path(__file__).resolve().parent
-FITTED = ('two_plates', 'four_square', 'six_plates', 'twelve_icosahedral')  # the others are for judging
-LEAST_LOAD = .04  # below, the mesh shows
-CUBIC = .7  # third power of uniform compression, of p = K (1 - J) and force = area p
-STEEPEST = 3  # d ln F / d ln overlap from which on, close to filled volume, the overlap is fitted rather than the force
+FITTED = ('two_plates', 'four_square', 'six_plates', 'twelve_icosahedral')  # the others are used to evaluate the fit
+LEAST_LOAD = .04  # smaller loads are not resolved by the mesh
+CUBIC = .7  # third coefficient of uniform compression, for p = K (1 - J) and force = area p
+STEEPEST = 3  # d ln F / d ln overlap above which, close to filled volume, the overlap is fitted instead of the force
 
 
 class Row:
-    """The plates of one load: direction, overlap and force of each, and which stand first for their mirror images."""
+    """The plates of one load: direction, overlap and force of each, and which of them represent their mirror images."""
 
     def __init__(self, name, load):
         self.name, self.load = name, load
@@ -70,7 +70,7 @@ def powers(P, c):
 
 
 def overlaps(row, p):
-    """Of the model, from the forces of the finite elements: the derivative of its energy by each force."""
+    """Overlaps of the model, from the forces of the finite elements: the derivative of its energy by each force."""
     law, force, P = row.law, row.force, row.pressure
     own, (of_hertz, coupling, volume) = p[:3], p[3:]
     squash, squash_slope = powers(P, of_hertz)
@@ -95,7 +95,7 @@ def misses(row, p):
 
 
 def fit(tables):
-    """Couplings of Hertz's part and of the rest; own coefficients and volume of each Poisson ratio."""
+    """Couplings of the Hertz part and of the rest; own coefficients and volume term for each Poisson ratio."""
     rows = {nu: [row for row in table if row.name in FITTED] for nu, table in tables.items()}
 
     def residuals(x):
@@ -111,7 +111,7 @@ def of_poisson_ratio(x, i):
 
 
 def report(poisson_ratio, rows, p):
-    """Worst miss to overlap/R 0.10, 0.15 and 0.20, of loads with P below and above 0.12 E."""
+    """Largest error up to overlap/R 0.10, 0.15 and 0.20, for loads with P below and above 0.12 E."""
     for name in dict.fromkeys(row.name for row in rows):
         worst = np.zeros((2, 3))
         for row in rows:

@@ -1,8 +1,8 @@
-"""Sphere between equal plates, the pressure of every contact free to vary around its centre.
+"""Sphere between equal plates; the pressure of every contact may vary around its centre.
 
-The plates are related by rotations of a group, so one cap's pressure is unknown: hats in theta times trigonometric
-nodes in phi. Within the cap by vector harmonics (spheroidal and toroidal) of order |m| <= (nodes - 1)/2; between caps by
-the Green's tensor of the sphere in real space.
+The plates are related by the rotations of a group, so the pressure of one cap is the unknown: hat functions in theta
+times trigonometric nodes in phi. Within the cap vector harmonics (spheroidal and toroidal) of order |m| <= (nodes -
+1)/2 are used, between caps the Green's tensor of the sphere in real space.
 """
 import numpy as np
 from scipy.interpolate import CubicSpline
@@ -12,7 +12,7 @@ from sphere_modes import associated_legendre, compliance, legendre, toroidal_com
 
 
 def own_cap(poisson_ratio, hats, nodes, orders):
-    """Stiffness (hat, node, hat, node) of a cap on itself."""
+    """Stiffness (hat, node, hat, node) of a cap with itself."""
     c, toroidal = compliance(poisson_ratio, orders), toroidal_compliance(poisson_ratio, orders)
     n = np.arange(orders + 1.0)[:, None]
     count = np.where(n > 0, n * (n + 1), 1)
@@ -34,8 +34,8 @@ def own_cap(poisson_ratio, hats, nodes, orders):
 class GreensTensor:
     """Displacement of one surface point by a force at another: scalar functions of the angle between them.
 
-    With x, y the two points, the tensor acts on radial and tangential parts f_r x + f_t; normal terms follow from
-    P_n(x . y) by the surface gradient on either side."""
+    With the points x and y, the tensor acts on radial and tangential parts f_r x + f_t. Normal terms follow from P_n(x
+    . y) by the surface gradient on either side."""
     smallest = np.radians(7)
 
     def __init__(self, poisson_ratio, orders=600):
@@ -78,7 +78,8 @@ class GreensTensor:
 
 
 def frame(directions):
-    """First direction and two vectors across it, the first towards a near plate: phi = 0 follows the symmetry."""
+    """The first direction and two perpendicular vectors, the first of them towards a near plate, so that phi = 0 has
+    the symmetry."""
     e = directions[0]
     towards = directions[np.argsort(-(directions @ e))[1]]
     if abs(towards @ e) > 0.99:
@@ -89,8 +90,8 @@ def frame(directions):
 
 
 def solve(poisson_ratio, directions, overlap, rotations, reach, count=22, nodes=13):
-    """Force on each plate in E R^2. `rotations`: 3 x 3 matrices among which each plate finds one that carries the first
-    plate to it and leaves the arrangement as it is. The cap reaches to theta = reach sqrt(overlap)."""
+    """Force on each plate in E R^2. `rotations`: 3 x 3 matrices that leave the arrangement unchanged; for each plate
+    one of them maps the first plate to it. The cap extends to theta = reach sqrt(overlap)."""
     directions = np.array(directions, float) / np.linalg.norm(directions, axis=1)[:, None]
     rim = reach * np.sqrt(overlap)
     hats = Hats(rim, count, points=4)
@@ -110,7 +111,7 @@ def solve(poisson_ratio, directions, overlap, rotations, reach, count=22, nodes=
     others = others * np.outer(area, area)
     to_points = np.einsum('iq,jk->ijqk', hats.values, np.eye(nodes)).reshape(count * nodes, -1)
 
-    # The pole is one point: its nodes in phi share one unknown.
+    # The pole is a single point, so its nodes in phi share one unknown.
     share = np.zeros((count * nodes, count * nodes - nodes + 1))
     share[:nodes, 0] = 1
     share[nodes:, 1:] = np.eye(count * nodes - nodes)

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""Neo-Hookean spheres that press one another: writes neo_hookean_chain.csv. Finite elements as in neo_hookean_sphere.py.
+"""Neo-Hookean spheres in contact: writes neo_hookean_chain.csv. Finite elements as in neo_hookean_sphere.py.
 
-Surface points of the first sphere may not pass the second one's surface above them, by a stiff spring. Spheres lie along z."""
+A stiff spring keeps surface points of the first sphere out of the second sphere above it. Spheres are in a row along
+z."""
 import csv
 import sys
 
@@ -16,7 +17,7 @@ BRICKS = 4
 
 
 class Spheres(Mesh):
-    """Two meshed spheres, the second of another radius and above the first. All symmetric about x = 0 and y = 0."""
+    """Two meshed spheres; the second one has another radius and is above the first. Symmetric about x = 0 and y = 0."""
 
     def __init__(self, first, second, radius, height):
         self.mirrors = (0, 1)
@@ -31,7 +32,8 @@ class Spheres(Mesh):
 
 
 class Chain(Sphere):
-    """Two spheres between plates. `held`: a mirror holds the first one's equator, whose mesh is what is above."""
+    """Two spheres between plates. `held`: the equator of the first sphere is a mirror plane, and only its upper half is
+    meshed."""
 
     def __init__(self, mesh, poisson_ratio, height, held):
         super().__init__(mesh, poisson_ratio)
@@ -48,13 +50,13 @@ class Chain(Sphere):
 
     def _gaps(self, u, normal, distance):
         gaps = super()._gaps(u, normal, distance)
-        if abs(normal[2]) < .5:  # at the side: of the first sphere alone
+        if abs(normal[2]) < .5:  # at the side: touches only the first sphere
             gaps[self.mesh.first_faces:] = -1
         return gaps
 
     def _meet(self, u):
-        """Of every point of the first sphere past the second's surface: its face and place there, the other face, depth, slope vector
-        and the other face's shapes."""
+        """For every point of the first sphere inside the second: its face and index there, the other face, depth, slope
+        vector, and the shape functions of the other face."""
         m = self.mesh
         x = m.position + u
         corners = x[m.faces[self.above]]
@@ -101,7 +103,8 @@ class Chain(Sphere):
 
 
 def loads(chain, plates_at, overlaps):
-    """Solves one load after the other; the plates' forces on whole spheres, in units of E and the first radius."""
+    """Solves the loads one after the other; returns the plates' forces on whole spheres, in units of E and the first
+    radius."""
     start = 0.
     for overlap in overlaps:
         step = overlap - start
@@ -117,7 +120,7 @@ def loads(chain, plates_at, overlaps):
 
 
 def unequal(poisson_ratio, radius):
-    """Two spheres of unequal radii between two plates; `overlap` is that by which the plates have come nearer."""
+    """Two spheres of unequal radii between two plates; `overlap` is the approach of the plates."""
     half = Mesh(BRICKS, BRICKS, (0, 1))
     height = 1 + radius
     chain = Chain(Spheres(half, half, radius, height), poisson_ratio, height, False)
@@ -126,11 +129,12 @@ def unequal(poisson_ratio, radius):
 
 
 def three(poisson_ratio, side):
-    """Three equal spheres between two plates, the middle one between four more, which have come nearer by `side` times as much each."""
+    """Three equal spheres between two plates; the middle one is between four more plates, whose approach is `side`
+    times as large."""
     chain = Chain(Spheres(Mesh(BRICKS, BRICKS), Mesh(BRICKS, BRICKS, (0, 1)), 1, 2), poisson_ratio, 2, True)
     for overlap, (forces, gives) in loads(chain, lambda d: [(Z, 3 - d), (X, 1 - side * d), (Y, 1 - side * d)], (.05, .1, .15, .2, .3)):
         apart = overlap - gives[0], side * overlap - gives[1]
-        force = forces[0], 2 * forces[1]  # the middle sphere's mesh is half of a quarter
+        force = forces[0], 2 * forces[1]  # the mesh of the middle sphere is half of a quarter
         yield ['three', poisson_ratio, side, *(f'{x:.6g}' for pair in zip(apart, force) for x in pair)]
 
 

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Writes neo_hookean_plates.csv, rows of one neo-Hookean sphere between plates: neo_hookean_plates.py > neo_hookean_plates.csv."""
+"""Writes neo_hookean_plates.csv for one neo-Hookean sphere between plates: neo_hookean_plates.py >
+neo_hookean_plates.csv."""
 import argparse
 import csv
 import itertools
@@ -13,7 +14,7 @@ from neo_hookean_sphere import Mesh, Sphere
 Z, X, Y = [0, 0, 1], [1, 0, 0], [0, 1, 0]
 FCC = [[1, 1, 0], [1, 0, 1], [0, 1, 1]]
 GOLDEN = (1 + 5**.5) / 2
-# One of each plate's mirror images about the coordinate planes, and its overlap over that of the first.
+# One of each plate's mirror images about the coordinate planes, and its overlap over that of the first plate.
 SYMMETRIC = {
     'two_plates': ([Z], [1]),
     'four_square': ([X, Y], [1, 1]),
@@ -25,7 +26,8 @@ SYMMETRIC = {
     'two_plus_four': ([Z, X, Y], [1, .5, .5]),
     'unequal_pairs': ([Z, X, Y], [1, .75, .4]),
 }
-# Drawn at random, symmetric about x = 0 and y = 0 alone: how many plates stand on the z axis, in either plane, elsewhere.
+# Random arrangements, symmetric about x = 0 and y = 0 only: numbers of plates on the z axis, in either plane,
+# elsewhere.
 RANDOM = {
     'random_five': ((1, 2, 0), 1),
     'random_six': ((0, 3, 0), 2),
@@ -33,7 +35,7 @@ RANDOM = {
     'random_eight': ((0, 2, 1), 4),
     'random_nine': ((1, 0, 2), 5),
 }
-# Drawn at random without any symmetry: how many plates, and the seed.
+# Random arrangements without symmetry: number of plates, and seed.
 ASYMMETRIC = {f'asymmetric_{name}': (count, seed) for seed, (name, count) in
               enumerate((('five', 5), ('six', 6), ('seven', 7), ('eight', 8), ('nine', 9)), 11)}
 OVERLAPS = (.025, .05, .075, .1, .125, .15, .175, .2)
@@ -41,14 +43,14 @@ POISSON_RATIOS = (.3, .4, .49)
 
 
 def random_plates(kinds, seed):
-    """Plates more than 45 degrees apart that hold a sphere from all sides, and their overlaps over the largest."""
+    """Plates more than 45 degrees apart that enclose the sphere, and their overlaps over the largest one."""
     random = np.random.default_rng(seed)
     on_axis, in_planes, elsewhere = kinds
     masks = [[0, 0, 1]] * on_axis + [[1, 0, 1], [0, 1, 1]] * in_planes + [[1, 1, 1]] * elsewhere
     masks = masks[:on_axis + in_planes] + [[1, 1, 1]] * elsewhere
     while True:
         normals = random.normal(size=(len(masks), 3)) * masks
-        normals[:, :2] = np.abs(normals[:, :2])  # where the modelled quarter of the ball is
+        normals[:, :2] = np.abs(normals[:, :2])  # in the modelled quarter of the sphere
         normals /= np.linalg.norm(normals, axis=1, keepdims=True)
         every = np.array([image for n in normals for image in images(n, (0, 1))])
         ways = random.normal(size=(400, 3))
@@ -59,7 +61,8 @@ def random_plates(kinds, seed):
 
 
 def asymmetric_plates(count, seed):
-    """Plates more than 45 degrees apart, none of them another's mirror image, and their overlaps over the largest."""
+    """Plates more than 45 degrees apart, none of them a mirror image of another, and their overlaps over the largest
+    one."""
     random = np.random.default_rng(seed)
     while True:
         normals = random.normal(size=(count, 3))
@@ -73,7 +76,7 @@ def asymmetric_plates(count, seed):
 
 
 def balanced(normals, overlaps):
-    """As seen from where Hertz's forces on the sphere cancel: it need not move far to its place between the plates."""
+    """Relative to the origin at which the Hertz forces cancel, so that the sphere hardly moves between its plates."""
     def energy(move):
         return (np.maximum(overlaps - normals @ move, 0)**2.5).sum()
 
@@ -81,12 +84,12 @@ def balanced(normals, overlaps):
 
 
 def mirrors_of(name):
-    """Axes that the arrangement is symmetric along."""
+    """Axes about which the arrangement is symmetric."""
     return () if name.startswith('asymmetric') else (0, 1) if name.startswith('random') else (0, 1, 2)
 
 
 def images(normal, mirrors):
-    """All plates that the mirrors make of one."""
+    """All mirror images of a plate."""
     signs = itertools.product(*((1, -1) if axis in mirrors else (1,) for axis in range(3)))
     return sorted({tuple(np.array(s) * normal + 0.) for s in signs})
 
@@ -101,7 +104,7 @@ def cases():
 
 
 def load(sphere, normals, shares, start, overlap):
-    """Presses from one overlap to the next, in smaller steps where Newton's method asks for them."""
+    """Loads from one overlap to the next, in smaller steps if Newton's method requires them."""
     step = overlap - start
     while start < overlap - 1e-9:
         before = sphere.u
@@ -130,7 +133,7 @@ def rows_of(mesh, name, normals, shares, nu, linear, overlaps):
             own = 1 - plates[number][1] + centre @ normal - give
             count = len(images(normal, mesh.mirrors))
             yield [name, nu, overlap, number, count, *np.round(normal, 7), f'{own:.6g}', f'{force:.6g}']
-        if name == 'two_plates':  # a plate at the bulging equator that would just touch
+        if name == 'two_plates':  # a plate that just touches the displaced equator
             yield [name, nu, overlap, 'equator', 2, 1, 0, 0, f'{-sphere.reach(np.array(X)):.6g}', 0]
 
 

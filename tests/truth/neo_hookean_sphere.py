@@ -1,7 +1,8 @@
 """One neo-Hookean sphere between rigid frictionless plates by finite elements: total Lagrangian, radius and E are 1.
 
-Energy per undeformed volume mu/2 (J^-2/3 I1 - 3) + K/2 (J - 1)^2. Quadratic bricks of 20 nodes with 2x2x2 integration points,
-which do not lock at nu = 0.49. A plate repels the surface's integration points past it by a stiff spring per undeformed area."""
+Energy per undeformed volume mu/2 (J^-2/3 I1 - 3) + K/2 (J - 1)^2. Quadratic bricks with 20 nodes and 2x2x2 integration
+points, which do not lock at nu = 0.49. Penalty contact: a stiff spring per undeformed area at the integration points of
+the surface."""
 import itertools
 
 import cvxopt
@@ -33,7 +34,7 @@ def brick_shapes(points):
 
 
 def face_shapes(points):
-    """The brick's shapes on its face zeta = 1: of its eight nodes there, [point, node] and [point, node, 2]."""
+    """Shape functions on the brick's face zeta = 1, for its eight nodes: [point, node] and [point, node, 2]."""
     on_face = [n for n, node in enumerate(NODES) if node[2] == 1]
     value, slope = brick_shapes(np.column_stack([points, np.ones(len(points))]))
     return value[:, on_face], slope[:, on_face, :2]
@@ -46,14 +47,14 @@ def gauss(count, dimensions):
 
 
 def block(size, place):
-    """Nodes of size[0] x size[1] x size[2] bricks, each placed by place(u) with u in [0, 1]^3: [brick, 20, 3]."""
+    """Nodes of size[0] x size[1] x size[2] bricks, positioned by place(u) with u in [0, 1]^3: [brick, 20, 3]."""
     origins = np.array(list(itertools.product(*map(range, size))), float)
     u = (origins[:, None] + (NODES[None] + 1) / 2) / np.array(size)
     return place(u.reshape(-1, 3)).reshape(-1, 20, 3)
 
 
 def octant(n, layers):
-    """Bricks of the octant x, y, z > 0 of the ball, a core cube and three shells; those at the surface last."""
+    """Bricks of the octant x, y, z > 0 of the sphere, a core cube and three shells; those at the surface last."""
     def core(u):
         largest = u.max(1, keepdims=True)
         length = np.linalg.norm(u, axis=1, keepdims=True)
@@ -78,13 +79,13 @@ def octant(n, layers):
 
 
 def flipped(bricks):
-    """The same bricks with the first two local axes swapped."""
+    """The same bricks with the first two local axes exchanged."""
     order = [int(np.flatnonzero((NODES == node[[1, 0, 2]]).all(1))[0]) for node in NODES]
     return bricks[:, order]
 
 
 class Mesh:
-    """The ball, or the part of it on the positive side of the planes whose axes are in `mirrors`."""
+    """The sphere, or its part on the positive side of the mirror planes in `mirrors`."""
 
     def __init__(self, n, layers, mirrors=(0, 1, 2)):
         self.mirrors = mirrors
@@ -124,7 +125,7 @@ class Mesh:
 
 
 class Sphere:
-    """Its static displacements between plates; `linear` takes Hooke's law for small strain instead."""
+    """Static displacements between plates; `linear`: Hooke's law for small strain."""
 
     def __init__(self, mesh, poisson_ratio, linear=False):
         self.mesh, self.linear = mesh, linear
@@ -140,7 +141,7 @@ class Sphere:
         self._plan()
 
     def _plan(self):
-        """Where the entries of the bricks' matrices go in the lower triangle of the sparse matrix."""
+        """Indices of the bricks' matrix entries in the lower triangle of the sparse matrix."""
         number = np.full(self.free.size, -1)
         number[self.free] = np.arange(self.free.sum())
         local = number[self.dof]
@@ -206,7 +207,7 @@ class Sphere:
         force = np.zeros_like(u)
         np.add.at(force, m.bricks, np.einsum('eqij,eqnj,eq->eni', P, m.gradient, m.weight))
         matrix = np.zeros((len(m.bricks), 60, 60))
-        for q in range(8):  # one point at a time: memory
+        for q in range(8):  # one point at a time, to save memory
             B = np.zeros((len(m.bricks), 9, 60))
             for i in range(3):
                 B[:, 3 * i:3 * i + 3, i::3] = m.gradient[:, q].swapaxes(1, 2)
@@ -235,10 +236,11 @@ class Sphere:
         matrix += self.hold * sp.identity(self.size, format='csc')
         return force.ravel()[self.free] + self.hold * u.ravel()[self.free], sp.tril(matrix, format='coo')
 
-    hold = 1e-7  # spring of every node to its place: fixes what turns freely
+    hold = 1e-7  # spring from every node to its original position: fixes free rotations
 
     def _newton_step(self, gradient, matrix):
-        """Downhill; where the second derivative is not positive definite, with as much of the unit matrix as makes it so."""
+        """A descent direction; if the second derivative is not positive definite, a multiple of the unit matrix is
+        added."""
         for more in (0, 1e-5, 1e-4, 1e-3, 1e-2):
             data = matrix.data + more * (matrix.row == matrix.col)
             lower = cvxopt.spmatrix(cvxopt.matrix(data), matrix.row.tolist(), matrix.col.tolist(), (self.size, self.size))
@@ -251,7 +253,7 @@ class Sphere:
         return None
 
     def press(self, plates):
-        """As `solve`; a sphere that no mirror holds finds its place between softer plates first."""
+        """Like `solve`; a sphere without a mirror first moves to its equilibrium between softer plates."""
         if len(self.mesh.mirrors) < 2:
             stiff, self.spring = self.spring, .03 * self.spring
             found = self.solve(plates, 60)
@@ -261,7 +263,7 @@ class Sphere:
         return self.solve(plates)
 
     def solve(self, plates, most=40, tolerance=1e-7):
-        """Newton's method from the present displacements; True where it converged."""
+        """Newton's method from the present displacements; True if it converged."""
         value = self.energy(plates, self.u)
         for _ in range(most):
             gradient, matrix = self.system(plates, self.u)
@@ -286,7 +288,8 @@ class Sphere:
         return False
 
     def contacts(self, plates):
-        """Force of every plate on the whole sphere and its area-weighted mean yield, at the present displacements."""
+        """Force of every plate on the whole sphere and its force-weighted mean penetration, at the present
+        displacements."""
         copies = 2**len(self.mesh.mirrors)
         forces, yields = [], []
         for normal, distance in plates:
@@ -298,13 +301,13 @@ class Sphere:
         return np.array(forces), np.array(yields)
 
     def centre(self):
-        """Displacement of the centre of mass; zero by symmetry along an axis with a mirror."""
+        """Displacement of the centre of mass; zero by symmetry along an axis with a mirror plane."""
         m = self.mesh
         at_points = np.einsum('qn,enb->eqb', brick_shapes(gauss(2, 3)[0])[0], self.u[m.bricks])
         mean = np.einsum('eqb,eq->b', at_points, m.weight) / m.weight.sum()
         return np.where([a in m.mirrors for a in range(3)], 0, mean)
 
     def reach(self, normal):
-        """How far the surface now stands out beyond R along a normal."""
+        """Distance of the surface beyond R along a normal."""
         m = self.mesh
         return ((m.position + self.u)[m.faces] @ normal).max() - 1

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""One elastic sphere between rigid frictionless plates, from the elastic problem itself. See README.md."""
+"""One elastic sphere between rigid frictionless plates, solved numerically. See README.md."""
 import argparse
 import csv
 import itertools
@@ -18,7 +18,7 @@ FCC = [v for a in SIGNS for b in SIGNS for v in ([a, b, 0], [a, 0, b], [0, a, b]
 TRIANGLE = [[np.cos(t), np.sin(t), 0] for t in (0, 2 * np.pi / 3, 4 * np.pi / 3)]
 RECTANGLE = [[np.sin(t), 0, np.cos(t)] for t in np.radians([35, -35, 145, 215])]
 
-# name: groups of equally loaded plates, and the overlaps solved for (one per group)
+# name: groups of equally loaded plates, and the overlaps to solve for (one per group)
 ARRANGEMENTS = {
     'two_plates': ([Z], [(.02,), (.05,), (.1,), (.15,)]),
     'three_triangle': ([TRIANGLE], [(.05,), (.1,)]),
@@ -33,7 +33,7 @@ ARRANGEMENTS = {
     'twelve_fcc': ([FCC], [(.01,), (.02,), (.04,), (.06,), (.08,)]),
 }
 POISSON_RATIOS = (0., .2, .3, .45, .49, .5)
-IN_FINITE_ELEMENTS = {'two_plates': (.3, .49), 'six_plates': (.3, .49)}  # solved there, not repeated here
+IN_FINITE_ELEMENTS = {'two_plates': (.3, .49), 'six_plates': (.3, .49)}  # solved by finite elements, not repeated here
 
 
 def rotations_of_cube():
@@ -50,7 +50,7 @@ def turn_about_z(angle):
 
 
 OCTAHEDRAL = list(rotations_of_cube())
-# Arrangements whose contact areas are not round enough: their symmetry, and how far a cap reaches over sqrt(overlap).
+# Arrangements whose contact areas are not round: their symmetry, and the size of a cap over sqrt(overlap).
 FULL = {
     'three_triangle': ([turn_about_z(2 * np.pi * i / 3) for i in range(3)], 1.3),
     'four_square': (OCTAHEDRAL, 1.3),
@@ -84,7 +84,8 @@ def write_table(out, names):
 
 
 def compare(file):
-    """Prints this solver's force over that of a table with case, poisson_ratio, overlap_over_R, force_over_E_R2."""
+    """Prints the force of this solver over that of a table with case, poisson_ratio, overlap_over_R,
+    force_over_E_R2."""
     with open(file, newline='') as rows:
         for row in csv.DictReader(rows):
             nu, overlap = float(row['poisson_ratio']), float(row['overlap_over_R'])

@@ -1,4 +1,4 @@
-"""Surface modes of a free elastic sphere: what every Legendre order of traction does to the surface.
+"""Surface modes of a free elastic sphere: surface displacements by tractions of each Legendre order.
 
 Units: radius 1, Young's modulus 1. Tractions t_r P_n (radial) and t_t dP_n/dtheta (meridional) give displacements
 U P_n and V dP_n/dtheta, (U, V) = C_n (t_r, t_t). A resultant force (n = 1) is balanced by a uniform body force.
@@ -10,7 +10,7 @@ def compliance(poisson_ratio, orders):
     """C_n for n = 0 .. orders, shape (orders + 1, 2, 2).
 
     The modes are u = grad(phi) and u = r^2 grad(phi) + alpha x phi with phi = r^n P_n. Tractions are in units of the
-    shear modulus; lambda/mu = 2 nu / k with k = 1 - 2 nu is multiplied out, so that nothing is singular at nu = 1/2.
+    shear modulus; lambda/mu = 2 nu / k with k = 1 - 2 nu is multiplied by k, so that nothing is singular at nu = 1/2.
     """
     nu, k = poisson_ratio, 1 - 2 * poisson_ratio
     n = np.arange(2.0, orders + 1)
@@ -24,14 +24,14 @@ def compliance(poisson_ratio, orders):
     traction /= 2 * (1 + nu)
     result = np.zeros((orders + 1, 2, 2))
     result[0, 0, 0] = k
-    # Fields r^2 grad(z) and x z, less the rigid translation that would break reciprocity.
+    # Fields r^2 grad(z) and x z, minus the rigid translation that would violate reciprocity.
     result[1] = [[k / 2, 2 * nu - 0.5], [nu - 0.25, 2]]
     result[2:] = displacement.transpose(2, 0, 1) @ np.linalg.inv(traction.transpose(2, 0, 1))
     return result
 
 
 def toroidal_compliance(poisson_ratio, orders):
-    """Displacement over traction of the twisting modes r x grad(Y_n); rigid rotations (n = 1) are left out."""
+    """Displacement over traction of the twisting modes r x grad(Y_n); rigid rotations (n = 1) are excluded."""
     n = np.arange(orders + 1.0)
     result = np.zeros(orders + 1)
     result[2:] = 2 * (1 + poisson_ratio) / (n[2:] - 1)

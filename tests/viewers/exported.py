@@ -1,4 +1,4 @@
-"""What the viewers' tests share: a run, its export, and what the run's file says of it."""
+"""Shared by the viewers' tests: a run, its export, and the values in the run's file."""
 import pathlib
 import subprocess
 import sys
@@ -13,12 +13,12 @@ def skip(why):
 
 
 def missing(python, module):
-    """Whether this Python has not the module."""
+    """Whether this Python lacks the module."""
     return subprocess.run([str(python), "-c", f"import {module}"], capture_output=True).returncode != 0
 
 
 class Exported:
-    """A small run of two replicas, exported in one of the formats, in a folder that goes with the test."""
+    """A small run of two replicas, exported in one of the formats, in a temporary folder."""
 
     def __init__(self, program, source, form):
         self._kept = tempfile.TemporaryDirectory(prefix=f"mcdem-{form}-")
@@ -41,5 +41,5 @@ def scan_of(file, replica, scan):
 
 
 def arguments():
-    """PROGRAM SOURCE and the rest."""
+    """Arguments PROGRAM, SOURCE and the rest."""
     return pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve(), sys.argv[3:]

@@ -1,6 +1,6 @@
-"""OVITO loads grains and contacts of an export, as OVITO.txt beside the files says.
+"""OVITO loads grains and contacts of an export, following the OVITO.txt of the export.
 
-ovito_test.py PROGRAM SOURCE OVITO_PYTHON; exit code 77: OVITO_PYTHON, or the python3 at hand, has no module ovito.
+ovito_test.py PROGRAM SOURCE OVITO_PYTHON; exit code 77: OVITO_PYTHON, or the present python3, has no module ovito.
 """
 import json
 import pathlib

@@ -1,6 +1,6 @@
-"""ParaView opens an export and draws it, as README.txt beside the files says.
+"""ParaView opens and draws an export, following the README.txt of the export.
 
-paraview_test.py PROGRAM SOURCE [PICTURE]; PICTURE: where the drawing is kept to be looked at. Exit code 77: no ParaView.
+paraview_test.py PROGRAM SOURCE [PICTURE]; PICTURE: file for the drawing. Exit code 77: no ParaView.
 """
 import json
 import pathlib
@@ -20,7 +20,7 @@ exported = Exported(program, source, "vtk")
 picture = more[0] if more else str(exported.folder / "paraview.png")
 replica = sorted(exported.view.glob("replica_*"))[-1]
 number = replica.name[:len("replica_00000")]
-# -noreset: without clients the server would start anew, and refuse who comes in between.
+# -noreset: otherwise the server restarts between clients and refuses connections in the meantime.
 done = subprocess.run(["xvfb-run", "-a", "--server-args=-screen 0 1280x1024x24 -noreset", "pvpython",
                        str(pathlib.Path(__file__).parent / "render_paraview.py"), str(replica), picture],
                       capture_output=True, text=True, timeout=300)
@@ -35,7 +35,7 @@ assert said["scans"] == scans and said["grains"] == len(position) and said["cont
 strongest = np.linalg.norm(contacts["force"].astype(float), axis=1).max()
 assert abs(said["strongest"] / strongest - 1) < 1e-6, (said, strongest)
 wide = (position[:, 0] + diameter / 2).max() - (position[:, 0] - diameter / 2).min()
-assert abs(said["spheres_wide"] / wide - 1) < 0.02, (said, wide)  # spheres of flat faces
+assert abs(said["spheres_wide"] / wide - 1) < 0.02, (said, wide)  # the drawn spheres have flat faces
 assert said["tubes"] >= len(contacts), said
 assert said["arrows"] == len(contacts) and said["walls"] == 6, said
 

@@ -1,4 +1,4 @@
-"""Runs the lines given on standard input, which make a `pipeline` in OVITO, and prints what it holds, as JSON."""
+"""Runs the given lines from standard input, which create a `pipeline` in OVITO, and prints its contents as JSON."""
 import json
 import sys
 

@@ -1,6 +1,7 @@
-"""Opens an export in ParaView as its README.txt says and draws it without a screen.
+"""Opens an export in ParaView as described in its README.txt, and draws it without a display.
 
-pvpython --force-offscreen-rendering render_paraview.py FOLDER_OF_REPLICA PICTURE; prints what was read, as JSON.
+pvpython --force-offscreen-rendering render_paraview.py FOLDER_OF_REPLICA PICTURE; prints the data that it read, as
+JSON.
 """
 import glob
 import json

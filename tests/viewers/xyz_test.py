@@ -1,4 +1,4 @@
-"""ASE reads the extended XYZ of an export, and numbers agree with the run's.
+"""ASE reads the extended XYZ files of an export, and their values agree with the run.
 
 xyz_test.py PROGRAM SOURCE; exit code 77: no ASE.
 """

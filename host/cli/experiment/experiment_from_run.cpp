@@ -88,7 +88,7 @@ std::map<std::string, double> read_uncertainty(const std::vector<std::string>& w
     return uncertainty;
 }
 
-/// Errors as large as grains leave nothing that could be read back.
+/// With errors of the order of the grain size the result could not be read back.
 void expect_small_errors(const Measurement& errors, const Recording& truth) {
     const double limit = *std::min_element(truth.diameter.begin(), truth.diameter.end()) / 8;
     std::vector<std::string> problems;
@@ -101,10 +101,10 @@ void expect_small_errors(const Measurement& errors, const Recording& truth) {
     if (!problems.empty()) throw InputError(problems);
 }
 
-/// The stages of an experiment say which scan each of its frames is.
+/// Each frame of an experiment with a programme is a scan of its stages.
 void expect_all_scans(const Recording& truth) {
     const auto scans =
-        scan_places(programme_of(truth.parameters), {truth.plate_start, 0}).size();  // and one at rest
+        scan_places(programme_of(truth.parameters), {truth.plate_start, 0}).size();  // plus one at rest
     if (truth.scans.size() == scans + 1) return;
     throw InputError(fmt::format(
         "the run must have the {} scans of its programme and one before them, at rest, got {}: run it to its "
@@ -130,7 +130,8 @@ void warn_of_start(const Recording& truth) {
             1e3 * truth.displacement(first));
 }
 
-/// A run that was changed by others, or extreme errors of the instrument, can make what no reader accepts.
+/// A run that was changed by others, or an instrument with extreme errors, may give data that no reader
+/// accepts.
 void expect_experiment_of(const FromRunCommand& command, const Experiment& experiment) {
     try {
         expect_readable(command.out, experiment_files(experiment, Packed::plain));
@@ -144,10 +145,10 @@ void expect_experiment_of(const FromRunCommand& command, const Experiment& exper
     }
 }
 
-/// Another time this command was here: it writes the digests first.
+/// Whether an earlier call was interrupted: the digests are written first.
 bool is_begun(const fs::path& out) { return fs::exists(out / sums_file); }
 
-/// Files that an earlier try has written stay; others of their names are not replaced.
+/// Files written by an earlier call are kept; files with other contents are not replaced.
 void expect_these_or_none(const fs::path& out, const std::map<std::string, std::string>& files) {
     for (const auto& [name, bytes] : files)
         if (fs::exists(out / name) && read_file(out / name) != bytes)
@@ -158,8 +159,8 @@ void expect_these_or_none(const fs::path& out, const std::map<std::string, std::
                             out.string()));
 }
 
-/// The digests come first and experiment.toml last, so that the same command finishes what was cut short at
-/// whatever moment.
+/// The digests are written first and experiment.toml last, so that the same command can complete an
+/// interrupted call.
 void write_files(const FromRunCommand& command, const Experiment& experiment) {
     const fs::path out = command.out;
     auto files = experiment_files(experiment, command.gzip ? Packed::gzip : Packed::plain);
@@ -168,7 +169,7 @@ void write_files(const FromRunCommand& command, const Experiment& experiment) {
     expect_these_or_none(out, files);
     std::optional<FolderLock> lock;
     if (!fs::exists(out / experiment_toml)) lock.emplace(open_output_folder(out));
-    replace_file(out / sums_file, sums);  // even where it is there: this forces the folder to the disk
+    replace_file(out / sums_file, sums);  // even if it exists: this syncs the folder
     std::vector<std::string> names;
     for (const auto& [name, bytes] : files) names.push_back(name);
     std::partition(names.begin(), names.end(),

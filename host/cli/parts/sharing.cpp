@@ -38,7 +38,8 @@ int failed(const SharedWork& work, const std::exception& error) {
     return code;
 }
 
-/// Merges when nothing is missing; returns nothing after the merge. A damaged part is missing again.
+/// The missing parts. If none is missing they are merged; the result is empty after the merge. A damaged
+/// part counts as missing.
 Numbers left_to_compute(PartedWork& parts) {
     Numbers left = parts.missing();
     while (left.empty() && !parts.merge()) left = parts.missing();

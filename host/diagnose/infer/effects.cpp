@@ -15,7 +15,7 @@ double reduced_modulus(const Model& m) {
     return m.replica.grains.youngs_modulus / (2 * (1 - nu * nu));
 }
 
-// Scales: amplitudes that mean the same for soft and stiff, small and large grains.
+// Natural scales: amplitudes over these are comparable for soft and stiff, small and large grains.
 double one(const Model&) { return 1; }
 double grain_diameter(const Model& m) { return m.mean_diameter; }
 double adhesive_scale(const Model& m) { return reduced_modulus(m) * m.mean_diameter / 4; }  // E* R*
@@ -32,10 +32,10 @@ double inverse_force(const Model& m) {
 }
 double threshold_scale(const Model& m) { return m.instrument.stated.force_threshold; }
 
-/// A part `a` of what `share` leaves of the whole.
+/// Adds the fraction `a` of the remainder 1 - share.
 void add_share(double& share, double a) { share += a * (1 - share); }
 
-/// Of numerics: the part that is taken off a setting. Runs get no longer than this many times.
+/// Effects of numerics reduce settings by a fraction `part`. Runs take at most this factor longer.
 constexpr double max_slowdown = 8;
 void take_off(const std::vector<NumericalSetting>& settings, double part) {
     for (const NumericalSetting& setting : settings) *setting.value *= std::max(1 - part, 1 / max_slowdown);
@@ -54,10 +54,10 @@ std::vector<NumericalSetting> time_step(Model& m) {
     return {{"numerics.time_step", &m.replica.numerics.time_step}};
 }
 
-/// A tolerance up to which the plate's speed needs no runs of its own.
+/// With a rate tolerance up to this value, the plate's speed is not tested by runs.
 constexpr double slow_tolerance = 0.01;
 
-/// Speed and inertia act through the inertial number alone, which such a plate keeps.
+/// Speed and inertia affect results only through the inertial number, which such a plate limits.
 std::string_view slow_enough(const Model& m) {
     const double tolerance = m.replica.protocol.rate_tolerance;
     return tolerance > 0 && tolerance <= slow_tolerance
@@ -159,7 +159,7 @@ const Effect all_effects[] = {
 };
 // clang-format on
 
-// What is assumed of a parameter where the experiment does not state its uncertainty.
+// Standard deviations of parameters whose uncertainty the experiment does not state.
 constexpr double modulus_sigma = 0.05;
 constexpr double gamma_sigma = 0.05;
 constexpr double strain_zero_sigma = 0.01;  // over the mean diameter

@@ -32,7 +32,7 @@ Eigen::VectorXd column_means(const Eigen::MatrixXd& rows) {
 
 constexpr int max_folds = 8;
 
-/// `packing`: of each replicate, from 0.
+/// `packing`: index of the packing of each replicate, from 0.
 int count_packings(const std::vector<int>& packing) { return 1 + *std::ranges::max_element(packing); }
 
 /// Replicates of one packing are correlated through their mean. They are left out together if there are
@@ -93,8 +93,8 @@ void leave_out_signatures(const Evidence& evidence, const std::vector<Signature>
     });
 }
 
-/// Whether the library is of many other packings. One of few may have been made on the experiment's own, and
-/// its replicates would be counted twice.
+/// Whether the library contains many other packings. A library of few packings may contain the experiment's
+/// own, whose replicates would be counted twice.
 bool has_other_packings(const Evidence& evidence) {
     return !evidence.library_is_own && count_packings(evidence.library.packing) >= max_folds;
 }

@@ -98,8 +98,9 @@ std::array<double, 7> force_distribution_numbers(const Recording& recording, con
             quantile(forces, 0.95) / average};
 }
 
-// A force f on a grain at z from a neighbour at z' passes the sections between the two: f (z - z') over the
-// height in the mean. The floor's and the side walls' passes those below the grain, the plate's those above.
+// Mean vertical force over all horizontal sections, over the plate's force. A force f on a grain at z from a
+// neighbour at z' acts in all sections between them and contributes f (z - z') / height. Forces of the floor
+// and side walls act below the grain, those of the plate above it.
 double section_load(const Scan& scan) {
     const auto height = [&](int grain) { return scan.position[static_cast<std::size_t>(grain)].z(); };
     double moment = 0;
@@ -115,7 +116,7 @@ double section_load(const Scan& scan) {
 
 namespace {
 
-/// Root mean square of the displacements since the first scan less their best affine map, over the mean
+/// Root mean square of the displacements since the first scan minus their best affine map, over the mean
 /// diameter.
 double non_affine_displacement(const Recording& recording, const Scan& scan) {
     const std::vector<Vec3>& before = recording.scans.front().position;
@@ -157,8 +158,7 @@ std::array<double, 4> fabric(const Recording& recording, const Scan& scan,
 
 namespace {
 
-/// Sum over grains of |sum of torques| over the sum of |torque|: the friction forces of a grain at rest that
-/// nothing else turns cancel.
+/// Sum over grains of |sum of torques| over the sum of |torque|: the torques on a grain at rest cancel.
 double torque_imbalance(const Recording& recording, std::span<const ContactResidual> contacts) {
     std::vector<Vec3> torque(recording.diameter.size(), Vec3::Zero());
     std::vector<double> size(recording.diameter.size(), 0.0);
@@ -187,7 +187,7 @@ std::array<double, 6> friction_numbers(const Recording& recording, const Scan&,
     std::vector<double> grains, walls;
     double pushes = 0;
     for (const ContactResidual& c : contacts) pushes += c.push / static_cast<double>(contacts.size());
-    // The direction of weak contacts between hardly overlapping grains is known worst.
+    // Weak contacts between hardly overlapping grains have the least accurate directions.
     for (const ContactResidual& c : contacts)
         if (c.push > 0.3 * pushes) (is_wall(c.partner) ? walls : grains).push_back(c.tangential / c.push);
     const double mu = material.friction;

@@ -15,18 +15,18 @@ namespace {
 using Json = nlohmann::ordered_json;
 using NamedPairs = std::vector<std::pair<std::string, std::array<double, 2>>>;
 
-/// An object, into which members are written or from which they are read, by the same list of them
-/// (`describe`). null stands for what is not finite (the library writes it) or not known.
+/// An object whose members are read or written by the same list (`describe`). null represents NaN, infinity
+/// (written so by the library) and unknown values.
 class Members {
 public:
     Members(Json& json, bool reads) : json_(json), reads_(reads) {}
 
     void operator()(const char* key, auto& value) { exchange(place(key), value); }
-    /// Of a member that files of earlier versions lack.
+    /// A member that files of earlier versions do not have.
     void later(const char* key, auto& value) {
         if (!reads_ || json_.contains(key)) (*this)(key, value);
     }
-    /// What follows from the others.
+    /// A member that follows from others and is only written.
     void derived(const char* key, const auto& value) {
         if (!reads_) json_[key] = value;
     }
@@ -53,7 +53,7 @@ public:
             if (reads_) metres[k] = length * mm;
         }
     }
-    /// As an object, in this order.
+    /// Pairs as an object, in this order.
     void object(const char* key, NamedPairs& pairs) {
         Json& json = place(key);
         if (!reads_) json = Json::object();
@@ -221,7 +221,7 @@ void describe(Members& io, NuisanceFit& fit) {
     io("at_bound", fit.at_bound);
 }
 
-/// The members that stand in an object of their own.
+/// Members that are in an object of their own.
 struct Gap {
     Diagnosis& of;
 };

@@ -12,24 +12,24 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// What the figures have in common. Blue and orange are told apart by the colour-blind.
+/// Colours of all figures. Colour-blind readers can distinguish blue and orange.
 constexpr const char* named_colour = "#D55E00";
 constexpr const char* other_colour = "#6F9BBF";
 constexpr const char* before_colour = "#2B87C8";
 constexpr const char* after_colour = "#D55E00";
 constexpr const char* faint_colour = "#999999";
 
-constexpr double phase_gap = 0.35;      ///< between loading and unloading [columns]
+constexpr double phase_gap = 0.35;      ///< between loading and unloading [column widths]
 constexpr double interval_90 = 1.6449;  ///< sigmas on either side
 
 /// Displacements with a smaller difference are one column [m].
 constexpr double same_displacement = 1e-5;
 
-/// Of the figure "where": a row an observable, a column a displacement.
+/// Column of the figure "where"; its rows are observables.
 struct Column {
     std::string phase;
     double displacement;  ///< [m]
-    double x = 0;         ///< of its middle; columns are 1 wide, phases lie apart
+    double x = 0;         ///< of the centre; columns have width 1, phases are separated by phase_gap
 };
 
 int phase_order(const std::string& phase) { return phase == "load" ? 0 : phase == "unload" ? 1 : 2; }
@@ -38,7 +38,7 @@ bool same(const Column& a, const Column& b) {
     return a.phase == b.phase && std::fabs(a.displacement - b.displacement) < same_displacement;
 }
 
-/// In the order of the measurement: loading, then back.
+/// Order of the measurement: loading, then unloading.
 bool earlier(const Column& a, const Column& b) {
     if (a.phase != b.phase)
         return std::pair(phase_order(a.phase), a.phase) < std::pair(phase_order(b.phase), b.phase);
@@ -79,7 +79,8 @@ struct HeatMap {
     }
 };
 
-/// The colours end at this many sigmas: outliers must not fade all others, nor noise look like a gap.
+/// Limits of the colour scale in sigmas: outliers must not hide all others, and noise must not look like a
+/// gap.
 double colour_range(const std::vector<WhereCell>& cells) {
     double largest = 0;
     for (const auto& cell : cells) largest = std::max(largest, std::fabs(cell.z_score));
@@ -116,7 +117,7 @@ Json where_json(const Diagnosis& diagnosis) {
             {"panels", {panel_json(diagnosis, map, false), panel_json(diagnosis, map, true)}}};
 }
 
-/// Candidates that the verdict names: the leader and its group, none where no effect explains the gap.
+/// Candidates named by the verdict: the best effect and its group; none if no effect explains the gap.
 std::set<std::string> named_effects(const Diagnosis& diagnosis) {
     if (diagnosis.verdict != Verdict::effect && diagnosis.verdict != Verdict::group) return {};
     const auto& leader = diagnosis.ranking.front();
@@ -125,7 +126,8 @@ std::set<std::string> named_effects(const Diagnosis& diagnosis) {
     return named;
 }
 
-/// The smallest detectable amplitude, over which amplitudes of all units are one; 0: not known, or none is.
+/// Detection limit of an effect, which makes amplitudes with different units comparable; 0 if unknown or
+/// infinite.
 double detectable(const Diagnosis& diagnosis, const std::string& effect) {
     const auto limit = std::ranges::find(diagnosis.detection_limits, effect, &DetectionLimit::effect);
     const bool known = limit != diagnosis.detection_limits.end() && std::isfinite(limit->minimum_amplitude);
@@ -159,7 +161,7 @@ Json which_json(const Diagnosis& diagnosis) {
             {"rows", rows}};
 }
 
-/// What the simulated force after the change is called.
+/// Label of the simulated force after the change.
 std::string words_after(const Diagnosis& diagnosis) {
     if (diagnosis.verdict == Verdict::calibration_suspect) return "simulated, recalibrated";
     if (diagnosis.verdict == Verdict::not_converged) return "simulated, refined";
@@ -167,7 +169,7 @@ std::string words_after(const Diagnosis& diagnosis) {
     return shortened("simulated with " + added, 40);
 }
 
-/// Forces that are known in full.
+/// Displacements at which all forces are known.
 Json forces_json(const Diagnosis& diagnosis) {
     Json displacement = Json::array(), experiment = Json::array(), before = Json::array(),
          after = Json::array();

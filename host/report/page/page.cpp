@@ -15,7 +15,7 @@
 namespace mcdem::inline report {
 namespace {
 
-/// Shown as it stands, on one line.
+/// Text for HTML, escaped, on one line.
 std::string html_text(const std::string& text) {
     return replaced(one_line(text),
                     {{'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}, {'\'', "&#39;"}});
@@ -48,7 +48,7 @@ std::string html_list(const std::vector<std::string>& texts) {
 }
 
 std::string base64(std::string_view bytes) {
-    std::string text(4 * ((bytes.size() + 2) / 3) + 1, '\0');  // and the library's closing zero
+    std::string text(4 * ((bytes.size() + 2) / 3) + 1, '\0');  // including the library's terminating zero
     const int length =
         EVP_EncodeBlock(reinterpret_cast<unsigned char*>(text.data()),
                         reinterpret_cast<const unsigned char*>(bytes.data()), static_cast<int>(bytes.size()));

@@ -1,5 +1,5 @@
-// A program of somebody else that embeds the engine: outside SCENE FOLDER runs a scene and prints what comes
-// out.
+// A program of another project that embeds the engine: `outside SCENE FOLDER` runs a scene and prints the
+// results.
 #include <mcdem/ensemble/run_scene.h>
 #include <mcdem/io/results.h>
 #include <mcdem/scene/read_scene.h>
