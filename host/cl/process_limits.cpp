@@ -31,4 +31,14 @@ void expect_room_for_kernels() {
             limit.rlim_cur, largest_file));
 }
 
+void expect_enough_stack() {
+    constexpr rlim_t enough = 512 << 10;
+    rlimit limit{};
+    if (::getrlimit(RLIMIT_STACK, &limit) == 0 && limit.rlim_cur < enough)
+        throw RunError(fmt::format(
+            "the limit of the stack is {} kB, too small for the program and the OpenCL driver: raise it "
+            "(`ulimit -s`) to {} or more",
+            limit.rlim_cur >> 10, enough >> 10));
+}
+
 }  // namespace mcdem::opencl

@@ -49,15 +49,16 @@ std::string temporary_place(const fs::path& temporary) {
     return name.substr(0, name.size() - ending.size() - digits - 1);
 }
 
-/// Removes a temporary file unless a running program has locked it.
+/// Removes a temporary file or folder unless a running program has locked it.
 void remove_if_abandoned(const fs::path& temporary) {
     const int descriptor = ::open(temporary.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
     if (descriptor < 0) return;
-    if (::flock(descriptor, LOCK_EX | LOCK_NB) == 0) ::unlink(temporary.c_str());
+    std::error_code ignored;
+    if (::flock(descriptor, LOCK_EX | LOCK_NB) == 0) fs::remove_all(temporary, ignored);
     ::close(descriptor);
 }
 
-/// Locks a new file. False if another program mistook it for an abandoned one and has removed it.
+/// Locks a new file or folder. False if another program mistook it for an abandoned one and has removed it.
 bool lock_before_removal(int descriptor) {
     int result = 0;
     do result = ::flock(descriptor, LOCK_EX);
@@ -125,6 +126,25 @@ void NewFile::put_in_place() {
     close();
     move_file(temporary_, place_);
     temporary_.clear();
+}
+
+NewFolder::NewFolder(const fs::path& place) {
+    while (lock_ < 0) {
+        path_ = temporary_of(place);
+        if (::mkdir(path_.c_str(), 0700) != 0) {
+            if (errno != EEXIST) fail(place, errno);
+            continue;
+        }
+        lock_ = ::open(path_.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+        if (lock_ < 0 && errno != ENOENT) fail(place, errno);
+        if (lock_ >= 0 && !lock_before_removal(lock_)) ::close(std::exchange(lock_, -1));
+    }
+}
+
+NewFolder::~NewFolder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+    ::close(lock_);
 }
 
 void replace_file(const fs::path& file, const std::function<void(NewFile& out)>& write) {

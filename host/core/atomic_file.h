@@ -32,6 +32,22 @@ private:
     int lock_ = -1;  ///< keeps the file locked until it is in place
 };
 
+/// A temporary folder with an unpredictable name beside `place`, for this user alone. The destructor removes
+/// it with its content; after a killed program, remove_temporaries_of(place) does. Throws RunError.
+class NewFolder {
+public:
+    explicit NewFolder(const std::filesystem::path& place);
+    ~NewFolder();
+    NewFolder(const NewFolder&) = delete;
+    NewFolder& operator=(const NewFolder&) = delete;
+
+    const std::filesystem::path& path() const { return path_; }
+
+private:
+    std::filesystem::path path_;
+    int lock_ = -1;  ///< keeps the folder locked
+};
+
 /// Creates a new file, lets `write` fill it, and replaces `file` with it. A reader sees the old or the new
 /// file, even after a crash or a power failure. If `write` throws, the old file is kept.
 void replace_file(const std::filesystem::path& file, const std::function<void(NewFile& out)>& write);
@@ -46,8 +62,8 @@ bool create_file(const std::filesystem::path& file, std::string_view text);
 /// Renames `from` to `to` (same folder) and flushes the folder to disk.
 void move_file(const std::filesystem::path& from, const std::filesystem::path& to);
 
-/// Removes temporary files that killed programs have left for this path. Files that another program is still
-/// writing are locked (flock) and are kept.
+/// Removes temporary files and folders that killed programs have left for this path. Those that another
+/// program is still writing are locked (flock) and are kept.
 void remove_temporaries_of(const std::filesystem::path& file);
 
 /// The same for all files in the folder, without subfolders; does nothing if the folder does not exist.

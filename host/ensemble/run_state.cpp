@@ -8,6 +8,7 @@
 #include "core/errors.h"
 #include "core/output_file.h"
 #include "core/parameters.h"
+#include "core/sha256.h"
 #include "io/result_file.h"
 #include "io/scan_bytes.h"
 #include "scene/read_scene.h"
@@ -16,6 +17,7 @@ namespace mcdem::inline ensemble {
 namespace {
 
 const std::string program_field = "program";
+const std::string kernels_field = "kernels";
 const std::string packings_field = "packings";
 const std::string scans_field = "scans";
 
@@ -102,7 +104,7 @@ RunIdentity identity_of(const Device& device, const Scene& scene, const std::str
                         const std::vector<Packing>& packings) {
     const auto build = kernel_build(device, scene.precision, scene.slots);
     return {scene.text, fmt::format("{}, {} lanes", device.description(), build.lanes), program,
-            digest_of(packings)};
+            Sha256().add(program_text()).hex(), digest_of(packings)};
 }
 
 void expect_room_for_run(const std::filesystem::path& folder) {
@@ -123,6 +125,7 @@ Checkpoint make_checkpoint(const RunIdentity& identity, int segments,
     checkpoint.segments = segments;
     checkpoint.fields = std::move(fields);
     checkpoint.fields[program_field] = bytes_of(identity.program);
+    checkpoint.fields[kernels_field] = bytes_of(identity.kernels);
     checkpoint.fields[packings_field] = bytes_of(identity.packings);
     return checkpoint;
 }
@@ -159,6 +162,12 @@ std::optional<Checkpoint> find_checkpoint(const ResultFolder& folder, const RunI
             fmt::format("{}: must be resumed on the device it was begun on, {}; got {}: choose it "
                         "with --device, or start again in another folder",
                         where, checkpoint->device, identity.device));
+    const auto program = text_of(*checkpoint, program_field);
+    if (text_of(*checkpoint, kernels_field) != identity.kernels)
+        throw InputError(
+            fmt::format("{}: the checkpoint was written with other kernels, those of program {}; this is {}: "
+                        "resume with the version it was begun with, or start again in another folder",
+                        where, program, identity.program));
     if (text_of(*checkpoint, packings_field) != identity.packings)
         throw InputError(where +
                          ": must be resumed with the packing it was begun with: the packing file "
@@ -168,7 +177,6 @@ std::optional<Checkpoint> find_checkpoint(const ResultFolder& folder, const RunI
             fmt::format("{}: must hold the {} segments that its checkpoint names, has {}: the "
                         "run cannot be resumed; start it again in another folder",
                         where, checkpoint->segments, folder.segments()));
-    const auto program = text_of(*checkpoint, program_field);
     if (program != identity.program)
         checkpoint->warning += fmt::format(
             "{}{}: was begun by {}, goes on with {}: results may differ from "

@@ -14,6 +14,7 @@ struct RunIdentity {
     std::string scene_text;
     std::string device;    ///< including the build of the kernels: both determine the bits
     std::string program;   ///< version and commit
+    std::string kernels;   ///< digest: a program with other kernels would go on with other bits
     std::string packings;  ///< digest: a packing file may change under the same name
 };
 RunIdentity identity_of(const Device& device, const Scene& scene, const std::string& program,

@@ -22,10 +22,12 @@ auto from_part(std::size_t number, Read read) {
 
 fs::path parts_folder(const fs::path& folder) { return folder / "parts"; }
 
-void merge_parts(const std::vector<fs::path>& parts, const fs::path& merged) {
+bool merge_parts(const std::vector<fs::path>& parts, const fs::path& merged,
+                 const std::function<bool()>& stop_wanted) {
     Run all;
     std::vector<std::size_t> first{0};  // replica of each part
     for (std::size_t p = 0; p < parts.size(); ++p) {
+        if (stop_wanted()) return false;
         Run part = from_part(p, [&] { return read_run_header({parts[p]}); });
         if (p == 0)
             all = std::move(part);
@@ -33,7 +35,7 @@ void merge_parts(const std::vector<fs::path>& parts, const fs::path& merged) {
             std::ranges::move(part.recordings, std::back_inserter(all.recordings));
         first.push_back(all.recordings.size());
     }
-    write_result_file(merged, all, [&](ResultWriter& writer) {
+    const auto write = [&](ResultWriter& writer) {
         for (std::size_t p = 0; p < parts.size(); ++p) {
             const ResultFile file = from_part(p, [&] { return ResultFile(parts[p]); });
             for (std::size_t r = first[p]; r < first[p + 1]; ++r) {
@@ -43,7 +45,8 @@ void merge_parts(const std::vector<fs::path>& parts, const fs::path& merged) {
                 writer.end(r, all.recordings[r].failure);
             }
         }
-    });
+    };
+    return write_result_file(merged, all, write, stop_wanted);
 }
 
 }  // namespace mcdem::io

@@ -2,6 +2,7 @@
 // imported as from-run converts it.
 #include <zlib.h>
 
+#include <csignal>
 #include <fstream>
 #include <regex>
 
@@ -169,7 +170,30 @@ TEST_F(ImportCommandTest, ReplacesOnlyItsOwnFiles) {
     EXPECT_EQ(read_experiment(path("second")).name, "second");
     EXPECT_TRUE(fs::exists(path("lab.importing/kept")));
     for (const auto& entry : fs::directory_iterator(path("")))
-        EXPECT_THAT(entry.path().string(), Not(HasSubstr(".importing-")));
+        EXPECT_THAT(entry.path().string(), Not(testing::EndsWith(".tmp")));
+}
+
+TEST_F(ImportCommandTest, WhatAKilledImportHasLeftIsRemovedByTheNextOne) {
+    run();
+    write_lab({});
+    std::ofstream(path("python")) << "#!/bin/sh\ntouch started\nexec sleep 1000\n";
+    fs::permissions(path("python"), fs::perms::owner_all);
+    auto words = lab_words("lab");
+    words.insert(words.begin(), {"experiment", "import"});
+    Child killed(folder_.path, words, {"MCDEM_PYTHON=" + path("python").string()});
+    while (!fs::exists(path("started")) && killed.is_running())
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    killed.send(SIGKILL);
+    ASSERT_EQ(killed.wait().signal, SIGKILL);
+    const auto folders = [&] {
+        std::vector<std::string> names;
+        for (const auto& entry : fs::directory_iterator(path("")))
+            if (entry.is_directory()) names.push_back(entry.path().filename());
+        return names;
+    };
+    EXPECT_THAT(folders(), testing::UnorderedElementsAre("a", "seen", testing::StartsWith("lab.")));
+    expect_done(mcdem(words));
+    EXPECT_THAT(folders(), testing::UnorderedElementsAre("a", "seen", "lab"));
 }
 
 TEST_F(ImportCommandTest, WrongOptionsAreBadInput) {

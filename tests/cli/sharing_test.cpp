@@ -1,13 +1,19 @@
 // Work in parts: messages, and names that must not be executed by a shell.
+#include "cli/parts/sharing.h"
+
+#include <csignal>
 #include <cstdlib>
 #include <memory>
 #include <sstream>
 
 #include "cli/cli_test.h"
 #include "cli/parts/slurm.h"
+#include "cli/shell/commands.h"
+#include "cli/shell/interrupt.h"
 #include "cli/shell/shell_word.h"
 #include "cli/shell/subprocess.h"
 #include "core/errors.h"
+#include "ensemble/observe_trials.h"
 #include "io/result_folder.h"
 
 namespace mcdem {
@@ -33,6 +39,29 @@ TEST(Subprocess, MissingProgramsAndFailingProgramsAreDistinguished) {
     EXPECT_FALSE(output_of({"no-such-program-anywhere"}));
     EXPECT_EQ(output_of({"false"})->exit_code, 1);
     EXPECT_EQ(output_of({"bash", "-c", "kill -9 $$"})->signal, 9);
+}
+
+/// Work whose merge is interrupted.
+class InterruptedMerge : public PartedWork {
+public:
+    std::vector<std::size_t> missing() override { return {}; }
+    bool compute(Device&, std::size_t) override { return true; }
+    bool merge() override {
+        std::raise(SIGTERM);
+        if (Interrupt::wanted()) throw Interrupted();
+        return true;
+    }
+};
+
+TEST(Sharing, AMergeEndsAtASignalAsOtherWorkDoes) {
+    SharedWork work;
+    work.out = "out";
+    work.begin = [](std::size_t) { return std::make_unique<InterruptedMerge>(); };
+    work.report = [] { return exit_done; };
+    SharingOptions merge;
+    merge.merge = true;
+    EXPECT_EQ(share(work, merge, ""), exit_interrupted);
+    EXPECT_EQ(share(work, {}, ""), exit_interrupted);
 }
 
 class SharingTest : public CliTest {

@@ -83,6 +83,14 @@ TEST_F(StreamsTest, TooFewFileDescriptorsAreAnErrorAndASmallLimitIsRaised) {
     EXPECT_EQ(shell("ulimit -S -n 10; " + run_into + "out 2>&1").exit_code, 0);
 }
 
+TEST_F(StreamsTest, ATooSmallStackIsAnErrorAndNoSignal) {
+    const auto end = shell("ulimit -c 0; ulimit -s 64; " + run_into + "out 2>&1");
+    EXPECT_EQ(end.signal, 0);
+    EXPECT_EQ(end.exit_code, 1) << end.out;
+    EXPECT_THAT(end.out, HasSubstr("raise it (`ulimit -s`) to 512"));
+    EXPECT_EQ(shell("ulimit -s 512; " + run_into + "out 2>&1").exit_code, 0);
+}
+
 /// Runs the program on a pseudo-terminal, with SIGHUP ignored.
 class OnATerminal {
 public:

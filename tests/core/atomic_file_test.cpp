@@ -74,6 +74,23 @@ TEST_F(AtomicFileTest, OnlyTemporariesOfThisProgramAreRemoved) {
     EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 3);
 }
 
+TEST_F(AtomicFileTest, AFolderIsRemovedWhenAbandonedAndKeptWhenInUse) {
+    const auto abandoned = folder_ / "lab.0123456789abcdef.tmp";
+    for (const fs::path& made : {abandoned, folder_ / "lab.backup", folder_ / "other.0123456789abcdef.tmp"}) {
+        fs::create_directory(made);
+        std::ofstream(made / "plate.csv") << "text";
+    }
+    {
+        const NewFolder mine(folder_ / "lab");
+        std::ofstream(mine.path() / "plate.csv") << "text";
+        remove_temporaries_of(folder_ / "lab");
+        EXPECT_TRUE(fs::exists(mine.path() / "plate.csv"));
+        EXPECT_FALSE(fs::exists(abandoned));
+        EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 3);
+    }
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 2);
+}
+
 std::string error_of_reading(const fs::path& file) {
     try {
         read_file(file);
@@ -93,6 +110,8 @@ TEST_F(AtomicFileTest, FilesBeingWrittenAreNotRemoved) {
         NewFile file(folder_ / "file");
         file.write("whole");
         EXPECT_NO_THROW(file.put_in_place()) << k;
+        const NewFolder folder(folder_ / "folder");
+        EXPECT_TRUE(fs::exists(folder.path())) << k;
     }
     done = true;
 }

@@ -1,5 +1,4 @@
-// A run in parts: bit-identical to the run of one process, whichever process computes a part and whatever
-// interrupts it.
+// A run in parts: bit-identical to the run of one process, for any division, order or interruption.
 #include "ensemble/parts/run_parts.h"
 
 #include <fmt/format.h>

@@ -3,7 +3,9 @@
 
 #include <gmock/gmock.h>
 
+#include "cl/program.h"
 #include "core/errors.h"
+#include "core/sha256.h"
 #include "ensemble/small_scene.h"
 #include "io/checkpoint.h"
 #include "io/result_folder.h"
@@ -152,6 +154,25 @@ TEST_F(RunSceneTest, RefusesAPackingFileThatHasChanged) {
     run(scene_with("0.0100"), "a", Start::fresh, 2);
     EXPECT_THAT(problem_resuming(scene_with("0.0101"), "a"), testing::HasSubstr("packing file"));
     EXPECT_EQ(problem_resuming(scene_with("0.0100"), "a"), "none");
+}
+
+TEST_F(RunSceneTest, RefusesACheckpointOfOtherKernels) {
+    run(small_scene(), "a", Start::fresh, 10);
+    auto checkpoint = *read_checkpoint(folder("a"));
+    const auto kernels = checkpoint.fields["kernels"];
+    EXPECT_EQ(std::string(reinterpret_cast<const char*>(kernels.data()), kernels.size()),
+              Sha256().add(program_text()).hex());
+    checkpoint.fields["kernels"].back() ^= std::byte{1};
+    write_checkpoint(folder("a"), checkpoint);
+    program_ = "newer";
+    EXPECT_THAT(problem_resuming(small_scene(), "a"),
+                testing::HasSubstr("written with other kernels, those of program test; this is newer"));
+    checkpoint.fields.erase("kernels");  // of a version that did not record them
+    write_checkpoint(folder("a"), checkpoint);
+    EXPECT_THAT(problem_resuming(small_scene(), "a"), testing::HasSubstr("written with other kernels"));
+    checkpoint.fields["kernels"] = kernels;
+    write_checkpoint(folder("a"), checkpoint);
+    EXPECT_EQ(problem_resuming(small_scene(), "a"), "none");
 }
 
 TEST_F(RunSceneTest, WarnsIfAnotherProgramVersionResumes) {

@@ -4,9 +4,12 @@
 #include <atomic>
 
 #include "core/errors.h"
+#include "ensemble/observe_trials.h"
+#include "ensemble/parts/run_parts.h"
 #include "ensemble/run_scene.h"
 #include "ensemble/small_scene.h"
 #include "io/checkpoint.h"
+#include "io/parts.h"
 #include "io/result_folder.h"
 #include "io/results.h"
 
@@ -88,6 +91,29 @@ TEST_F(RunStopTest, StopsPromptlyAndResumesWithTheSameBits) {
         ASSERT_EQ(run(scene, name, Start::resume), RunEnd::done) << name;
         EXPECT_TRUE(result(name) == result("whole")) << name;
     }
+}
+
+TEST_F(RunStopTest, AMergeOfPartsStopsAtTheNextReplicaAndGoesOnWithTheSameBits) {
+    const Scene scene = small_scene({"batch.replicas=5", "protocol.scans_per_stroke=2"});
+    ASSERT_EQ(run(scene, "whole", Start::fresh), RunEnd::done);
+    int stop_at = -1;
+    RunOptions options;
+    options.folder = folder("parts");
+    options.program = "test";
+    options.stop_wanted = [&] { return stop_at >= 0 && ++looks_ > stop_at; };
+    RunParts parts(scene, options, {2, 1});
+    for (const std::size_t part : parts.missing()) ASSERT_TRUE(parts.compute(device_, part));
+    const int replicas = static_cast<int>(scene.replicas.size());
+    for (stop_at = 0; stop_at < 3 * replicas; ++stop_at) {
+        looks_ = 0;
+        EXPECT_THROW(parts.merge(), Interrupted) << stop_at;
+        EXPECT_EQ(looks_, stop_at + 1);
+        for (const auto& entry : fs::directory_iterator(folder("parts")))
+            EXPECT_EQ(entry.path(), parts_folder(folder("parts")));
+    }
+    stop_at = -1;
+    EXPECT_TRUE(parts.merge());
+    EXPECT_TRUE(result("parts") == result("whole"));
 }
 
 }  // namespace

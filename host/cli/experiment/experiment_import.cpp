@@ -1,10 +1,7 @@
 // mcdem experiment import
 #include <fmt/format.h>
-#include <stdlib.h>
 
-#include <cerrno>
 #include <cmath>
-#include <cstring>
 #include <optional>
 #include <sstream>
 
@@ -118,28 +115,6 @@ std::vector<std::string> words_of(const ImportCommand& command, const Experiment
     throw InputError(problems);
 }
 
-/// A new folder next to another one, removed with its content at the end.
-class FolderBeside {
-public:
-    explicit FolderBeside(const fs::path& other) {
-        make_folder(other.parent_path());
-        std::string pattern = other.string() + ".importing-XXXXXX";
-        if (!mkdtemp(pattern.data()))
-            throw RunError(fmt::format("{}: cannot be made: {}", pattern, std::strerror(errno)));
-        path_ = pattern;
-    }
-    FolderBeside(const FolderBeside&) = delete;
-    FolderBeside& operator=(const FolderBeside&) = delete;
-    ~FolderBeside() {
-        std::error_code ignored;
-        fs::remove_all(path_, ignored);
-    }
-    const fs::path& path() const { return path_; }
-
-private:
-    fs::path path_;
-};
-
 /// Reads the result before it is moved to `out`. Messages name files as in `out`.
 Experiment read_back(const fs::path& folder, const std::string& out) {
     try {
@@ -180,7 +155,9 @@ int run_import(const ImportCommand& command) {
     ExperimentProblems settings;
     Experiment known = known_of(command, settings);
     const fs::path out = whole_path(command.out);
-    const FolderBeside beside(out);
+    make_folder(out.parent_path());
+    remove_temporaries_of(out);
+    const NewFolder beside(out);
     const fs::path& work = beside.path();
     const int exit_code = run_python_module("mcdem.importing", words_of(command, known, settings, work));
     if (exit_code != exit_done) return exit_code;

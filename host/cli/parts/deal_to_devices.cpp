@@ -35,7 +35,6 @@ public:
           free_(devices) {}
 
     int all() {
-        const Interrupt interrupt;
         bool passed_on = false;
         while (!running_.empty() || can_start()) {
             while (can_start()) start();

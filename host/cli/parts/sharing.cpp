@@ -13,6 +13,7 @@
 #include "cli/shell/standard_streams.h"
 #include "cli/shell/subprocess.h"
 #include "core/errors.h"
+#include "ensemble/observe_trials.h"
 
 namespace mcdem::inline cli {
 namespace {
@@ -62,13 +63,11 @@ int until_merged(const SharedWork& work, PartedWork& parts,
 }
 
 int compute_one(const SharedWork& work, PartedWork& parts, std::size_t part, const std::string& device) {
-    const Interrupt interrupt;
     Device chosen(device);
     return parts.compute(chosen, part) ? exit_done : interrupted(work);
 }
 
 int compute_here(const SharedWork& work, PartedWork& parts, const std::string& device) try {
-    const Interrupt interrupt;
     Device chosen(device);
     return until_merged(work, parts, [&](const Numbers& left) {
         Progress progress(stderr, progress_style(stderr));
@@ -131,6 +130,8 @@ int compute_as_rank(const SharedWork& work, const std::string& device) {
         parts.reset();
         ranks.wait();
         return ranks.rank() == 0 ? work.report() : exit_done;
+    } catch (const Interrupted&) {
+        ranks.abort(interrupted(work));
     } catch (const std::exception& error) {
         ranks.abort(failed(work, error));
     }
@@ -165,7 +166,6 @@ int compute_by_slurm(const SharedWork& work, PartedWork& parts, const SharingOpt
     job.partition = options.slurm_partition;
     job.time = options.slurm_time;
     job.lines_file = options.slurm_lines;
-    const Interrupt interrupt;
     const bool is_next = is_next_job(job);
     for (Numbers left; !(left = left_to_compute(parts)).empty();) {
         const std::string number = submit(job, left);
@@ -194,6 +194,19 @@ int compute_by_slurm(const SharedWork& work, PartedWork& parts, const SharingOpt
         return exit_failed;
     }
     return is_next ? exit_done : all_is_merged;
+}
+
+/// Computes what is missing and merges, or what the options choose of it. Signals interrupt all of it.
+int compute_and_merge(const SharedWork& work, PartedWork& parts, const SharingOptions& options,
+                      const std::string& device, const std::vector<int>& devices) try {
+    const Interrupt interrupt;
+    if (options.part) return compute_one(work, parts, *options.part, choice_of(device));
+    if (options.merge) return merge_only(work, parts);
+    if (options.slurm) return compute_by_slurm(work, parts, options, device);
+    if (!devices.empty()) return compute_on_all_devices(work, parts, devices);
+    return compute_here(work, parts, device);
+} catch (const Interrupted&) {
+    return interrupted(work);
 }
 
 }  // namespace
@@ -261,15 +274,11 @@ int share(const SharedWork& work, const SharingOptions& options, const std::stri
     const std::vector<int> devices = on_all ? alike_devices("") : std::vector<int>{};
     const std::size_t known = options.slurm ? static_cast<std::size_t>(options.slurm_tasks) : devices.size();
     auto parts = work.begin(options.workers > 0 ? options.workers : known);
-    if (options.part) return compute_one(work, *parts, *options.part, choice_of(device));
     if (options.missing) {
         for (const std::size_t part : parts->missing()) print_out("{}\n", part);
         return exit_done;
     }
-    const int code = options.merge   ? merge_only(work, *parts)
-                     : options.slurm ? compute_by_slurm(work, *parts, options, device)
-                     : on_all        ? compute_on_all_devices(work, *parts, devices)
-                                     : compute_here(work, *parts, device);
+    const int code = compute_and_merge(work, *parts, options, device, devices);
     parts.reset();  // releases its lock
     return code == all_is_merged ? work.report() : code;
 }

@@ -4,6 +4,7 @@
 #include <new>
 
 #include "cl/kernel_cache.h"
+#include "cl/process_limits.h"
 #include "cli/shell/commands.h"
 #include "cli/shell/crash_hint.h"
 #include "cli/shell/messages.h"
@@ -96,6 +97,7 @@ int run_cli(int argc, const char* const* argv) {
         return exit_failed;
     }
     try {
+        expect_enough_stack();
         hint_at_crashes();
         opencl_started = hint_at_crashes;
         read_run_packing = packing_of_run;

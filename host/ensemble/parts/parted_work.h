@@ -23,6 +23,7 @@ public:
     virtual bool compute(Device& device, std::size_t part) = 0;
 
     /// Merges the parts when none is missing. Returns false if one is damaged; it is then missing again.
+    /// Throws Interrupted; the parts are then as before.
     virtual bool merge() = 0;
 
     /// Called while a part is computed, with the completed fraction of the part.

@@ -8,6 +8,7 @@
 #include "core/atomic_file.h"
 #include "core/errors.h"
 #include "core/make_folder.h"
+#include "ensemble/observe_trials.h"
 #include "ensemble/parts/manifest.h"
 #include "ensemble/run_state.h"
 #include "io/checkpoint.h"
@@ -263,10 +264,11 @@ void RunParts::expect_own_merge() const {
 bool RunParts::merge_files() try {
     std::vector<fs::path> files;
     for (std::size_t part = 0; part < count_; ++part) {
+        if (options_.stop_wanted()) throw Interrupted();
         files.push_back(part_file(options_.folder, part));
         expect_own(part);
     }
-    merge_parts(files, run_file(options_.folder));
+    if (!merge_parts(files, run_file(options_.folder), options_.stop_wanted)) throw Interrupted();
     return true;
 } catch (const DamagedPart& damaged) {
     warn_of_damage(damaged.part, damaged.what());
