@@ -49,25 +49,14 @@ def lammps(work=0, modulus=E, friction=FRICTION, wall_friction=FRICTION, floor_f
 
 def yade(work=0, moduli=(E,), friction=FRICTION, wall_friction=FRICTION, floor_friction=None, wall_youngs_modulus=STIFF_WALL,
          shear_damping=0, skin=0.0005):
-    """Variables of yade_stroke.py. Yade adds the damping of sticking contacts outside Coulomb's limit, as LIGGGHTS does, so there is
-    none. `work`: of adhesion; Yade attracts by 4 pi gamma R*."""
-    count, beta = len(moduli), -math.log(RESTITUTION) / math.hypot(math.log(RESTITUTION), math.pi)
+    """Variables of yade_stroke.py. `damping`: 2 damping sqrt(m* S) v is the scene's. Yade adds the damping of sticking contacts to
+    friction without a limit, as LIGGGHTS does: there is none. `work`: of adhesion; Yade attracts by 4 pi gamma R*."""
+    count, wall = len(moduli), (wall_youngs_modulus, NU)
     at_floor = wall_friction if floor_friction is None else floor_friction
-    wall = yade_wall(math.exp(sum(map(math.log, moduli)) / count), wall_youngs_modulus)
-    return {"program": "yade", "input": "yade_stroke.py", "skin": skin, "surface_energy": work / 2,
-            "damping": math.sqrt(5 / 6) * beta, "shear_damping": shear_damping,
-            "materials": count, "kinds": [*((modulus, NU) for modulus in moduli), wall, wall],
+    return {"program": "yade", "input": "yade_stroke.py", "skin": skin, "surface_energy": work / 2, "materials": count,
+            "damping": -math.sqrt(5 / 6) * math.log(RESTITUTION) / math.hypot(math.log(RESTITUTION), math.pi),
+            "shear_damping": shear_damping, "kinds": [*((modulus, NU) for modulus in moduli), wall, wall],
             "frictions": [[*[friction] * count, wall_friction, at_floor]] * count}
-
-
-def yade_wall(modulus, wall_modulus):
-    """Young's modulus and Poisson's ratio of a wall in Yade. A contact's shear stiffness has the mean of both shear moduli there, over
-    2 minus the mean of both ratios, times 4; the right one is 8 G*. These two numbers give that, and the right E* too."""
-    shear, wall_shear = modulus / (2 * (1 + NU)), wall_modulus / (2 * (1 + NU))
-    wanted = 2 / ((2 - NU) / shear + (2 - NU) / wall_shear)
-    stiffness = wall_modulus / (1 - NU**2)
-    ratio = (stiffness + 2 * (shear - wanted * (4 - NU))) / (stiffness - 2 * wanted)
-    return stiffness * (1 - ratio**2), ratio
 
 
 CASES = {

@@ -1,7 +1,7 @@
 """What the realities of a sealed challenge hide: an effect of mcdem's library, or something that no library has, as another code
 simulates it or as an instrument would read it.
 
-An entry changes the arguments of cases.liggghts() or cases.lammps(), the reality itself (realities.DEFAULTS), or the scans that
+An entry changes the arguments of cases.liggghts(), cases.lammps() or cases.yade(), the reality itself (realities.DEFAULTS), or the scans that
 were measured. Amplitudes are those of host/diagnose/infer/effects.cpp.
 """
 import dataclasses
@@ -23,8 +23,8 @@ class Hidden:
     high: float
     meaning: str
     signed: bool = False                             # either sign
-    codes: tuple = ("liggghts", "lammps")
-    arguments: typing.Callable = None                # (code, amplitude, chance) -> arguments of cases.liggghts or cases.lammps
+    codes: tuple = ("liggghts", "lammps", "yade")
+    arguments: typing.Callable = None                # (code, amplitude, chance) -> arguments of the code's function in cases
     reality: typing.Callable = None                  # amplitude -> further keys of the reality
     reading: typing.Callable = None                  # (scans, amplitude, chance): changes them
 
@@ -180,12 +180,13 @@ LIBRARY = {
         "friction": cases.FRICTION + a}),
     "wall_friction": Hidden(0.02, 0.11, "more friction at walls", arguments=lambda code, a, chance: {
         "wall_friction": cases.FRICTION + a}),
-    "adhesion": Hidden(0.15, 1.2, "DMT, work of adhesion [J/m2]", codes=("lammps",), arguments=lambda code, a, chance: {
+    "adhesion": Hidden(0.15, 1.2, "DMT, work of adhesion [J/m2]", codes=("lammps", "yade"), arguments=lambda code, a, chance: {
         "work": a}),
-    "rolling_resistance": Hidden(0.04, 0.22, "constant couple (LIGGGHTS) or spring and slider (LAMMPS)", arguments=rolling),
+    "rolling_resistance": Hidden(0.04, 0.22, "constant couple (LIGGGHTS) or spring and slider (LAMMPS)", codes=("liggghts", "lammps"),
+                                 arguments=rolling),
     "buoyancy": Hidden(14, 43, "grains heavier than stated [kg/m3]", reality=lambda a: {
         "weight": 1 + a / EXCESS_DENSITY}),
-    "modulus_scatter": Hidden(0.1, 0.6, "eight materials dealt at random, sd of ln E", codes=("liggghts",),
+    "modulus_scatter": Hidden(0.1, 0.6, "eight materials dealt at random, sd of ln E", codes=("liggghts", "yade"),
                               arguments=scattered_moduli),
     "plate_tilt": Hidden(0.008, 0.023, "slope along x", signed=True, reality=lambda a: {"tilt": a}),
     "diameter_error": Hidden(7e-5, 1.9e-4, "true less stated [m]", signed=True, reading=diameter_error),
@@ -232,7 +233,7 @@ def simulated(folder, case):
         reality = cases.lammps(modulus=modulus, **arguments)
     else:
         moduli = arguments.pop("moduli", (cases.E,))
-        reality = cases.liggghts(moduli=tuple(m * math.exp(case["modulus"]) for m in moduli), **arguments)
+        reality = getattr(cases, case["code"])(moduli=tuple(m * math.exp(case["modulus"]) for m in moduli), **arguments)
     scans = realities.simulate(folder, case["seed"], {**reality, **further})
     for name, amplitude in case["effects"]:
         if find(name).reading:

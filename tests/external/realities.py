@@ -40,8 +40,8 @@ def execute(program, script, folder, variables):
 
 
 def run_command(command, folder, script):
-    done = subprocess.run(command, cwd=folder, timeout=TIME_LIMIT, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
-                          errors="replace")
+    done = subprocess.run(command, cwd=folder, timeout=TIME_LIMIT, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                          stderr=subprocess.STDOUT, text=True, errors="replace")
     (folder / f"{script}.log").write_text(done.stdout)
     if done.returncode != 0 or "ERROR" in done.stdout:
         raise Failed(f"{command[0]} failed: see {folder / (script + '.log')}\n{done.stdout[-600:]}")
