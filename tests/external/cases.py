@@ -47,15 +47,13 @@ def lammps(work=0, modulus=E, friction=FRICTION, wall_friction=FRICTION, floor_f
             "wall_law": wall(wall_friction), "floor_law": wall(wall_friction if floor_friction is None else floor_friction)}
 
 
-def yade(work=0, moduli=(E,), friction=FRICTION, wall_friction=FRICTION, floor_friction=None, wall_youngs_modulus=STIFF_WALL,
-         shear_damping=0, skin=0.0005):
-    """Variables of yade_stroke.py. `damping`: 2 damping sqrt(m* S) v is the scene's. Yade adds the damping of sticking contacts to
-    friction without a limit, as LIGGGHTS does: there is none. `work`: of adhesion; Yade attracts by 4 pi gamma R*."""
+def yade(moduli=(E,), friction=FRICTION, wall_friction=FRICTION, floor_friction=None, wall_youngs_modulus=STIFF_WALL):
+    """Variables of yade_stroke.py. `damping`: 2 damping sqrt(m* S) times the velocity is the scene's normal force."""
     count, wall = len(moduli), (wall_youngs_modulus, NU)
     at_floor = wall_friction if floor_friction is None else floor_friction
-    return {"program": "yade", "input": "yade_stroke.py", "skin": skin, "surface_energy": work / 2, "materials": count,
+    return {"program": "yade", "input": "yade_stroke.py", "skin": 0.0005, "materials": count,
             "damping": -math.sqrt(5 / 6) * math.log(RESTITUTION) / math.hypot(math.log(RESTITUTION), math.pi),
-            "shear_damping": shear_damping, "kinds": [*((modulus, NU) for modulus in moduli), wall, wall],
+            "kinds": [*((modulus, NU) for modulus in moduli), wall, wall],
             "frictions": [[*[friction] * count, wall_friction, at_floor]] * count}
 
 

@@ -180,7 +180,7 @@ LIBRARY = {
         "friction": cases.FRICTION + a}),
     "wall_friction": Hidden(0.02, 0.11, "more friction at walls", arguments=lambda code, a, chance: {
         "wall_friction": cases.FRICTION + a}),
-    "adhesion": Hidden(0.15, 1.2, "DMT, work of adhesion [J/m2]", codes=("lammps", "yade"), arguments=lambda code, a, chance: {
+    "adhesion": Hidden(0.15, 1.2, "DMT, work of adhesion [J/m2]", codes=("lammps",), arguments=lambda code, a, chance: {
         "work": a}),
     "rolling_resistance": Hidden(0.04, 0.22, "constant couple (LIGGGHTS) or spring and slider (LAMMPS)", codes=("liggghts", "lammps"),
                                  arguments=rolling),

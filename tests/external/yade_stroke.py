@@ -59,9 +59,9 @@ O.engines = [
     InteractionLoop(
         [Ig2_Sphere_Sphere_ScGeom(avoidGranularRatcheting=False), Ig2_Wall_Sphere_ScGeom(hertzian=True, noRatch=False),
          Ig2_Facet_Sphere_ScGeom(hertzian=True)],
-        [Ip2_FrictMat_FrictMat_MindlinPhys(betan=given["damping"], betas=given["shear_damping"], gamma=given["surface_energy"],
-                                           frictAngle=MatchMaker(matches=angles))],
-        [Law2_ScGeom_MindlinPhys_Mindlin(includeAdhesion=given["surface_energy"] > 0)]),
+        # Damping of friction would be added without a limit.
+        [Ip2_FrictMat_FrictMat_MindlinPhys(betan=given["damping"], betas=0.0, frictAngle=MatchMaker(matches=angles))],
+        [Law2_ScGeom_MindlinPhys_Mindlin()]),
     PyRunner(command="pass_by()", iterPeriod=steps),
     NewtonIntegrator(damping=0.2, gravity=given["gravity"], label="motion"),
 ]
