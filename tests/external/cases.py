@@ -1,4 +1,5 @@
 """Simulated experiments by other codes: the effects of each that the diagnosed scene lacks."""
+import math
 
 E, NU, RESTITUTION, FRICTION = 23.3e3, 0.5, 0.95, 0.03  # those of scenes/challenge.toml and the defaults
 STIFF_WALL = 50e6                                       # [Pa]
@@ -44,6 +45,16 @@ def lammps(work=0, modulus=E, friction=FRICTION, wall_friction=FRICTION, floor_f
             "law": f"{normal} {modulus} {RESTITUTION} {NU}{sticking} tangential mindlin NULL 1.0 {friction} {further} "
                    "damping tsuji",
             "wall_law": wall(wall_friction), "floor_law": wall(wall_friction if floor_friction is None else floor_friction)}
+
+
+def yade(moduli=(E,), friction=FRICTION, wall_friction=FRICTION, floor_friction=None, wall_youngs_modulus=STIFF_WALL):
+    """Variables of yade_stroke.py. `damping`: 2 damping sqrt(m* S) times the velocity is the scene's normal force."""
+    count, wall = len(moduli), (wall_youngs_modulus, NU)
+    at_floor = wall_friction if floor_friction is None else floor_friction
+    return {"program": "yade", "input": "yade_stroke.py", "skin": 0.0005, "materials": count,
+            "damping": -math.sqrt(5 / 6) * math.log(RESTITUTION) / math.hypot(math.log(RESTITUTION), math.pi),
+            "kinds": [*((modulus, NU) for modulus in moduli), wall, wall],
+            "frictions": [[*[friction] * count, wall_friction, at_floor]] * count}
 
 
 CASES = {

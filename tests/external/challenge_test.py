@@ -14,6 +14,7 @@ import shutil
 import subprocess
 import sys
 
+import cases
 import hidden
 import realities
 
@@ -71,6 +72,28 @@ def test_moduli():
     assert abs(sum(logs)) < 1e-6 and math.isclose(math.sqrt(sum(x * x for x in logs) / 8), 0.4, rel_tol=1e-6)
 
 
+def test_yade(folder):
+    """Yade's contacts are the scene's: Hertz's force at these overlaps but for damping, and Coulomb's limit."""
+    most = 0
+    for scan in realities.simulate(folder / "yade", 1, cases.yade(friction=0.05))[::6]:
+        ratios = []
+        for i, j, point, force in scan["contacts"]:
+            d, *centre = scan["grains"][i]
+            partner, *there = (math.inf, *point) if isinstance(j, str) else scan["grains"][j]
+            normal = [(a - b) / math.dist(centre, there) for a, b in zip(centre, there)]
+            overlap = (d + partner) / 2 - math.dist(centre, there) if partner < math.inf else d / 2 - math.dist(centre, there)
+            radius = 1 / (2 / d + 2 / partner)
+            pressing = sum(f * n for f, n in zip(force, normal))
+            rubbing = math.hypot(*(f - pressing * n for f, n in zip(force, normal)))
+            modulus = cases.E / (1 - cases.NU**2) / (1 + (cases.E / cases.STIFF_WALL if isinstance(j, str) else 1))
+            ratios.append(pressing / (4 / 3 * modulus * math.sqrt(radius * overlap) * overlap) if overlap > 2e-4 else 1)
+            mu = cases.FRICTION if isinstance(j, str) else 0.05
+            assert rubbing <= 1.001 * mu * pressing + 1e-9, (rubbing, pressing)
+            most = max(most, rubbing / pressing)
+        assert abs(sum(ratios) / len(ratios) - 1) < 2e-3, sum(ratios) / len(ratios)
+    assert most > 0.049, most
+
+
 def answered(kind, effects, verdict, causes=(), limit=0.01):
     listed = [{"effect": e, "group": [e], "amplitude": a, "amplitude_error": 0.01, "confidence": p} for e, a, p in causes]
     return {"kind": kind, "code": "lammps", "effects": [{"name": n, "amplitude": a} for n, a in effects],
@@ -110,30 +133,31 @@ def test_sealed(mcdem, folder):
 
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
-    assert make("--none", "2").returncode == 0
+    assert make("--none", "3").returncode == 0
     seal = hashlib.sha256((folder / "truth.json").read_bytes()).hexdigest()
     opened = json.loads((folder / "made/challenge.json").read_text())
-    assert opened["sealed_sha256"] == seal and len(opened["cases"]) == 2
-    assert {case["code"] for case in json.loads((folder / "truth.json").read_text())["cases"]} == {"liggghts", "lammps"}
+    assert opened["sealed_sha256"] == seal and len(opened["cases"]) == 3
+    assert {case["code"] for case in json.loads((folder / "truth.json").read_text())["cases"]} == {"liggghts", "lammps", "yade"}
     for case in opened["cases"]:
         place = folder / "made" / case["folder"]
         assert subprocess.run([mcdem, "experiment", "check", place], capture_output=True).returncode == 0
-        assert "liggghts" not in (place / "experiment.toml").read_text().lower()
+        assert not any(code in (place / "experiment.toml").read_text().lower() for code in realities.PROGRAMS)
     before = {path: path.stat().st_mtime_ns for path in folder.glob("made/case_*/*.csv")}
-    assert make("--none", "2").returncode == 0
+    assert make("--none", "3").returncode == 0
     assert before == {path: path.stat().st_mtime_ns for path in folder.glob("made/case_*/*.csv")}
-    other = make("--none", "3")
+    other = make("--none", "4")
     assert other.returncode != 0 and "another challenge" in other.stderr, other.stderr
 
 
 def main():
-    if realities.missing_programs():
-        print("skipped: missing", *realities.missing_programs())
+    if missing := realities.missing_programs(realities.PROGRAMS):
+        print("skipped: missing", *missing)
         return 77
     test_readings()
     test_moduli()
     test_score(load_challenge())
     test_sealed(sys.argv[1], pathlib.Path(sys.argv[2]))
+    test_yade(pathlib.Path(sys.argv[2]))
     print("challenge: readings, seal and score as said")
     return 0
 

@@ -1,8 +1,8 @@
 """Effects hidden in the simulated experiments of a sealed challenge: effects of mcdem's library, or others that no
 library has, simulated by another code or applied to the measurements.
 
-An entry changes the arguments of cases.liggghts() or cases.lammps(), the keys of the experiment (realities.DEFAULTS),
-or the measured scans. Amplitudes are defined as in host/diagnose/infer/effects.cpp.
+An entry changes the arguments of cases.liggghts(), cases.lammps() or cases.yade(), the keys of the experiment
+(realities.DEFAULTS), or the measured scans. Amplitudes are defined as in host/diagnose/infer/effects.cpp.
 """
 import dataclasses
 import math
@@ -23,8 +23,8 @@ class Hidden:
     high: float
     meaning: str
     signed: bool = False                             # both signs are possible
-    codes: tuple = ("liggghts", "lammps")
-    arguments: typing.Callable = None                # (code, amplitude, chance) -> arguments of cases.liggghts or cases.lammps
+    codes: tuple = ("liggghts", "lammps", "yade")
+    arguments: typing.Callable = None                # (code, amplitude, chance) -> arguments of the code's function in cases
     reality: typing.Callable = None                  # amplitude -> further keys of the experiment
     reading: typing.Callable = None                  # (scans, amplitude, chance): changes them
 
@@ -183,10 +183,11 @@ LIBRARY = {
         "wall_friction": cases.FRICTION + a}),
     "adhesion": Hidden(0.15, 1.2, "DMT, work of adhesion [J/m2]", codes=("lammps",), arguments=lambda code, a, chance: {
         "work": a}),
-    "rolling_resistance": Hidden(0.04, 0.22, "constant couple (LIGGGHTS) or spring and slider (LAMMPS)", arguments=rolling),
+    "rolling_resistance": Hidden(0.04, 0.22, "constant couple (LIGGGHTS) or spring and slider (LAMMPS)", codes=("liggghts", "lammps"),
+                                 arguments=rolling),
     "buoyancy": Hidden(14, 43, "grains heavier than stated [kg/m3]", reality=lambda a: {
         "weight": 1 + a / EXCESS_DENSITY}),
-    "modulus_scatter": Hidden(0.1, 0.6, "eight materials dealt at random, sd of ln E", codes=("liggghts",),
+    "modulus_scatter": Hidden(0.1, 0.6, "eight materials dealt at random, sd of ln E", codes=("liggghts", "yade"),
                               arguments=scattered_moduli),
     "plate_tilt": Hidden(0.008, 0.023, "slope along x", signed=True, reality=lambda a: {"tilt": a}),
     "diameter_error": Hidden(7e-5, 1.9e-4, "true less stated [m]", signed=True, reading=diameter_error),
@@ -233,7 +234,7 @@ def simulated(folder, case):
         reality = cases.lammps(modulus=modulus, **arguments)
     else:
         moduli = arguments.pop("moduli", (cases.E,))
-        reality = cases.liggghts(moduli=tuple(m * math.exp(case["modulus"]) for m in moduli), **arguments)
+        reality = getattr(cases, case["code"])(moduli=tuple(m * math.exp(case["modulus"]) for m in moduli), **arguments)
     scans = realities.simulate(folder, case["seed"], {**reality, **further})
     for name, amplitude in case["effects"]:
         if find(name).reading:

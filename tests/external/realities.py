@@ -1,4 +1,5 @@
-"""Simulates one stroke with LIGGGHTS or LAMMPS on a packing made by LAMMPS, and reads the dumped scans."""
+"""Simulates one stroke with LIGGGHTS, LAMMPS or Yade on a packing made by LAMMPS, and reads the dumped scans."""
+import json
 import math
 import pathlib
 import random
@@ -19,25 +20,31 @@ DENSITY = 11.5                     # [kg/m3]
 GRAVITY = 9.81                     # [m/s2]
 WALLS = ["x_min", "x_max", "y_min", "y_max", "floor", "plate"]
 TIME_LIMIT = 1800                  # [s] a run
+PROGRAMS = {"liggghts": "liggghts", "lammps": "lmp", "yade": "yade"}
 
 
 class Failed(Exception):
     pass
 
 
-def missing_programs():
-    return [p for p in ("liggghts", "lmp") if not shutil.which(p)]
+def missing_programs(codes=("liggghts", "lammps")):
+    """Of these codes, and LAMMPS, which makes the packings."""
+    return [PROGRAMS[code] for code in dict.fromkeys([*codes, "lammps"]) if not shutil.which(PROGRAMS[code])]
 
 
 def execute(program, script, folder, variables):
     command = [program, "-log", "none", "-in", HERE / script, "-var", "folder", "."]
     for name, value in variables.items():
         command += ["-var", name, str(value)]
-    done = subprocess.run(command, cwd=folder, timeout=TIME_LIMIT, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
-                          errors="replace")
+    return run_command(command, folder, script)
+
+
+def run_command(command, folder, script):
+    done = subprocess.run(command, cwd=folder, timeout=TIME_LIMIT, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                          stderr=subprocess.STDOUT, text=True, errors="replace")
     (folder / f"{script}.log").write_text(done.stdout)
     if done.returncode != 0 or "ERROR" in done.stdout:
-        raise Failed(f"{program} failed: see {folder / (script + '.log')}\n{done.stdout[-600:]}")
+        raise Failed(f"{command[0]} failed: see {folder / (script + '.log')}\n{done.stdout[-600:]}")
     return done.stdout
 
 
@@ -202,6 +209,15 @@ DEFAULTS = {
 }
 
 
+def by_yade(folder, script, packing, materials, variables):
+    """What is dumped elsewhere: by step, the force on the plate, and rows of grains, pairs and walls."""
+    grains = [(material - 1, *row) for material, row in zip(materials, packing)]
+    (folder / "variables.json").write_text(json.dumps({**variables, "size": BOX, "density": DENSITY, "grains": grains}))
+    run_command(["yade", "-n", "-x", "-j1", HERE / script], folder, script)
+    scans = json.loads((folder / "scans.json").read_text())
+    return [{int(step): scan[k] for step, scan in scans.items()} for k in range(4)]
+
+
 def simulate(folder, seed, reality):
     """Scans of the case: plate position, phase and force; grains as (diameter, x, y, z); contacts as (grain, partner,
     point, force on grain)."""
@@ -210,20 +226,22 @@ def simulate(folder, seed, reality):
     packing = make_packing(folder, seed, 23.3e3)
     chance = random.Random(seed)
     materials = [chance.randint(1, reality["materials"]) for _ in packing] if reality["materials"] else None
-    write_data(folder / "packing.data", packing, reality["types"], materials)
-    write_walls(folder, reality["tilt"])
     steps, begin, turn, back, end = schedule(reality)
     pull = gravity_of(reality)
-    variables = {key: value for key, value in reality.items() if key not in ("program", "input", *DEFAULTS)}
-    output = execute(reality["program"], reality["input"], folder, {
-        **variables, "size_x": BOX, "size_y": BOX, "start": START, "time_step": TIME_STEP,
-        "types": reality["types"], "plate_speed": STROKE / (SCANS * steps * TIME_STEP), "steps": steps, "relaxed": RELAXED, "begin": begin, "turn": turn,
-        "back": back, "end": end, "slope": reality["tilt"], "gravity": math.hypot(*pull), "gravity_x": pull[0],
-        "gravity_z": pull[2]})
-    tops = top_forces(reality["program"], output)
-    grains, pairs, walls = (read_dump(folder / f"{name}.dump") for name in ("grains", "pairs", "walls"))
+    variables = {**{key: value for key, value in reality.items() if key not in ("program", "input", *DEFAULTS)},
+                 "start": START, "time_step": TIME_STEP, "plate_speed": STROKE / (SCANS * steps * TIME_STEP), "steps": steps,
+                 "relaxed": RELAXED, "begin": begin, "turn": turn, "back": back, "end": end, "slope": reality["tilt"]}
+    if reality["program"] == "yade":
+        dumped = by_yade(folder, reality["input"], packing, materials, {**variables, "gravity": pull})
+    else:
+        write_data(folder / "packing.data", packing, reality["types"], materials)
+        write_walls(folder, reality["tilt"])
+        output = execute(reality["program"], reality["input"], folder, {
+            **variables, "size_x": BOX, "size_y": BOX, "types": reality["types"], "gravity": math.hypot(*pull), "gravity_x": pull[0],
+            "gravity_z": pull[2]})
+        dumped = top_forces(reality["program"], output), *(read_dump(folder / f"{name}.dump") for name in ("grains", "pairs", "walls"))
     try:
         return [scan_of(reality, n, *(table[(begin if n <= SCANS else back - SCANS * steps) + n * steps]
-                                      for table in (tops, grains, pairs, walls))) for n in range(2 * SCANS + 1)]
+                                      for table in dumped)) for n in range(2 * SCANS + 1)]
     except KeyError as step:
         raise Failed(f"{folder}: nothing was dumped at step {step}") from step
