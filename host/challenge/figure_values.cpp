@@ -154,7 +154,8 @@ std::array<double, 2> wilson_interval(int successes, int trials) {
     const double middle = (part + z2 / (2 * n)) / (1 + z2 / n);
     const double half =
         normal_quantile_975 / (1 + z2 / n) * std::sqrt(part * (1 - part) / n + z2 / (4 * n * n));
-    return {std::max(0.0, middle - half), std::min(1.0, middle + half)};
+    // exactly around the share, also where rounding would leave 0 or 1 of it outside
+    return {std::clamp(middle - half, 0.0, part), std::clamp(middle + half, part, 1.0)};
 }
 
 double ideal_power(double false_alarm, double over_limit) {

@@ -19,6 +19,13 @@ TEST(WilsonInterval, agrees_with_newcombe_1998) {
     expect(1, 29, 0.0061, 0.1718);
     EXPECT_EQ(wilson_interval(0, 0), (std::array{0.0, 1.0}));
     EXPECT_DOUBLE_EQ(wilson_interval(20, 20)[1], 1);
+    for (int trials = 1; trials <= 100; ++trials)
+        for (int successes = 0; successes <= trials; ++successes) {
+            const auto [low, high] = wilson_interval(successes, trials);
+            const double share = static_cast<double>(successes) / trials;
+            EXPECT_TRUE(0 <= low && low <= share && share <= high && high <= 1)
+                << successes << " of " << trials;
+        }
 }
 
 TEST(IdealPower, has_the_stated_values) {

@@ -23,7 +23,7 @@ VALUES = {
     "confusion": {"truths": ["no gap", "adhesion"], "verdicts": ["no gap", "adhesion", "unknown effect"],
                   "cases": [[9, 1, 0], [2, 3, 5]], "right": [[0, 0], [1, 1]]},
     "power": {"x_label": "amplitude", "y_label": "detected",
-              "measured": {"x": [0.5, 2], "part": [0.1, 1], "interval": [[0.02, 0.3], [0.8, 1 - 1e-16]], "cases": [20, 31]},
+              "measured": {"x": [0.5, 2], "part": [0.1, 1], "interval": [[0.02, 0.3], [0.8, 1]], "cases": [20, 31]},
               "predicted": {"x": [0.4, 1, 3], "part": [0.1, 0.8, 1]}, "words_predicted": "as predicted"},
     "confidence": {"x_label": "stated", "y_label": "right",
                    "measured": {"x": [0.9], "part": [0.75], "interval": [[0.5, 0.9]], "cases": [12]},

@@ -63,8 +63,7 @@ def proportions(values, axes):
     measured, predicted = values["measured"], values["predicted"]
     part, interval = np.array(measured["part"]), np.array(measured["interval"]).T
     line, = axes.plot(predicted["x"], predicted["part"], color=GREY)
-    errors = np.maximum([part - interval[0], interval[1] - part], 0)  # rounding can put 1 of 1 above its interval
-    points = axes.errorbar(measured["x"], part, errors, color=MEASURED, marker="o", linestyle="",
+    points = axes.errorbar(measured["x"], part, [part - interval[0], interval[1] - part], color=MEASURED, marker="o", linestyle="",
                            elinewidth=0.8)
     for x, y, cases in zip(measured["x"], part, measured["cases"]):
         axes.annotate(str(cases), (x, y), (3, -6), textcoords="offset points", fontsize=5.5)
