@@ -258,8 +258,8 @@ TEST(Decision, NamesAPairIfOneEffectIsNotSufficient) {
     EXPECT_EQ(d.proposal, 2);
     EXPECT_THAT(d.group, ElementsAre(1, 3));
     EXPECT_THAT(contenders(f, limits), ElementsAre(0, 2));
-    EXPECT_EQ(d.confidence[1], limits.right_above) << "both are probable";
-    EXPECT_EQ(d.confidence[3], limits.right_above);
+    EXPECT_EQ(d.confidence[1], limits.right_pair) << "both are probable";
+    EXPECT_EQ(d.confidence[3], limits.right_pair);
     EXPECT_EQ(d.confidence[0], 0);
 
     Findings single_is_enough = f;
@@ -280,17 +280,18 @@ TEST(Decision, NamesAPairIfOneEffectIsNotSufficient) {
     EXPECT_EQ(decide(large, limits).proposal, 2);
 }
 
-// One effect removes 80 %. A pair that leaves more than noise counts only if it leaves at most half of the
-// 20 %.
-TEST(Decision, APairThatLeavesAGapMustLeaveMuchLess) {
+// One effect removes 80 %, two remove 99 % and leave more than noise: some other cause, or a third one.
+TEST(Decision, APairThatLeavesMoreThanNoiseIsNotNamed) {
     Findings f = clear_case();
     const Limits limits;
     f.proposals[0].misfit_p = 1e-6;
     f.proposals[0].reduction = 0.8;
-    f.proposals.push_back(proposal({1, 3}, 80, 1e-4, 1 - 1.01 * limits.pair_remainder * 0.2));
+    f.proposals.push_back(proposal({1, 3}, 80, 0.99 * limits.pair_misfit, 0.99));
+    EXPECT_EQ(decide(f, limits).verdict, Verdict::unknown_effect);
     EXPECT_EQ(decide(f, limits).proposal, 0);
-    f.proposals[2].reduction = 1 - 0.99 * limits.pair_remainder * 0.2;
+    f.proposals[2].misfit_p = 1.01 * limits.pair_misfit;
     EXPECT_EQ(decide(f, limits).proposal, 2);
+    EXPECT_EQ(decide(f, limits).verdict, Verdict::effect);
 }
 
 TEST(Decision, ConfirmationRunsReplaceSignatures) {

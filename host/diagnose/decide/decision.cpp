@@ -55,12 +55,10 @@ bool leaves_too_much(const Proposal& proposal, const Limits& limits) {
     return proposal.best_misfit() < limits.misfit && 1 - proposal.best_reduction() > limits.remainder;
 }
 
-/// Whether a pair is better than a single effect: one leaves more than noise, and two leave only noise or
-/// much less.
+/// Whether a pair is better than a single effect: one leaves more than noise, and two leave only noise. Two
+/// free amplitudes close most of many gaps with another cause, so a pair that leaves more is not named.
 bool is_better(const Proposal& pair, const Proposal& single, const Limits& limits) {
-    return single.best_misfit() < limits.misfit &&
-           (pair.best_misfit() >= limits.pair_misfit ||
-            1 - pair.best_reduction() <= limits.pair_remainder * (1 - single.best_reduction()));
+    return single.best_misfit() < limits.misfit && pair.best_misfit() >= limits.pair_misfit;
 }
 
 /// Probability that an explanation with this reduction is right.
@@ -69,7 +67,9 @@ double trust(const Proposal& proposal, const Findings& findings, const Limits& l
     const double low = needed_reduction(findings, limits) - limits.reduction_error;
     const double high = std::max(limits.certain, low + 2 * limits.reduction_error);
     const double above = std::clamp((proposal.best_reduction() - low) / (high - low), 0.0, 1.0);
-    return limits.right_below + above * (limits.right_above - limits.right_below);
+    const double right = proposal.candidates.size() == 2 ? std::min(limits.right_above, limits.right_pair)
+                                                         : limits.right_above;
+    return limits.right_below + above * (right - limits.right_below);
 }
 
 /// Share of each candidate in the likelihood; gains are scaled so that the group's margin corresponds to
