@@ -13,7 +13,6 @@
 #include "core/errors.h"
 #include "core/input_file.h"
 #include "core/make_folder.h"
-#include "ensemble/observe_trials.h"
 #include "io/output_folder.h"
 #include "scene/legs.h"
 

@@ -7,7 +7,6 @@
 #include "challenge/outside.h"
 #include "core/errors.h"
 #include "ensemble/make_packings.h"
-#include "ensemble/observe_trials.h"
 #include "ensemble/simulate.h"
 #include "experiment/from_recording.h"
 #include "scene/make_packing.h"

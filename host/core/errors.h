@@ -29,4 +29,9 @@ class RunError : public std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
+/// The work was interrupted by a signal or by the caller (exit code 130). The same command continues it.
+struct Interrupted : std::runtime_error {
+    Interrupted() : std::runtime_error("interrupted; run the same command again to continue") {}
+};
+
 }  // namespace mcdem::core

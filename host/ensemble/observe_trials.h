@@ -55,10 +55,6 @@ bool are_observed(const std::string& device, const Question& question, const std
 std::vector<Recording> kept_recordings(const Device& device, const Question& question,
                                        const std::vector<Trial>& trials, const ObservationStore& store);
 
-struct Interrupted : std::runtime_error {
-    Interrupted() : std::runtime_error("interrupted; run the same command again to continue") {}
-};
-
 /// Material for the evaluation of observations: that of the model.
 ReferenceMaterial reference_material(const Model& model);
 

@@ -150,10 +150,14 @@ private:
     double checkpoint_seconds_ = 0;  ///< duration of the last one
 };
 
-/// Work after run.h5 is complete; it can be repeated safely.
-void close_folder(const std::filesystem::path& folder) {
-    write_csv(read_run(folder, ReadWhat::observables), folder);
+/// Work after run.h5 is complete; it can be repeated safely. Returns `end`, or `interrupted`.
+RunEnd close_folder(const std::filesystem::path& folder, RunEnd end,
+                    const std::function<bool()>& stop_wanted) try {
+    write_csv(folder, stop_wanted);
     remove_checkpoints(folder);
+    return end;
+} catch (const Interrupted&) {
+    return RunEnd::interrupted;
 }
 
 ResultFolder open_folder(const RunOptions& options) {
@@ -170,15 +174,15 @@ RunSummary run_scene(Device& device, const Scene& scene, const RunOptions& optio
     expect_room_for_run(folder.path());
     if (folder.is_finished()) {
         expect_scene_of(folder.path(), scene);
-        close_folder(folder.path());
-        return {RunEnd::was_done};
+        return {close_folder(folder.path(), RunEnd::was_done, options.stop_wanted)};
     }
     const auto packings = make_packings(scene, options.stop_wanted);
     if (options.stop_wanted()) return {RunEnd::interrupted};
     RunSession session(device, scene, packings, options, std::move(folder));
     if (options.start == Start::resume) session.resume();
-    const auto summary = session.run();
-    if (summary.end == RunEnd::done) close_folder(options.folder);
+    auto summary = session.run();
+    if (summary.end == RunEnd::done)
+        summary.end = close_folder(options.folder, RunEnd::done, options.stop_wanted);
     return summary;
 }
 

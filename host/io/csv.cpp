@@ -9,8 +9,10 @@
 #include <utility>
 
 #include "core/container.h"
+#include "core/errors.h"
 #include "core/output_file.h"
 #include "core/parameters.h"
+#include "io/results.h"
 
 namespace mcdem::inline io {
 namespace {
@@ -76,7 +78,7 @@ double along_side(const Box& box, const Scan& scan) {
 
 }  // namespace
 
-std::string csv_text(const Run& run) {
+std::string csv_text(const Run& run, const std::function<bool()>& stop_wanted) {
     fmt::memory_buffer text;
     auto out = std::back_inserter(text);
     const auto keys = varying_keys(run);
@@ -90,6 +92,7 @@ std::string csv_text(const Run& run) {
     for (const auto& key : keys) fmt::format_to(out, ",{}", key);
     fmt::format_to(out, "\n");
     for (std::size_t r = 0; r < run.recordings.size(); ++r) {
+        if (stop_wanted()) throw Interrupted();
         const Recording& recording = run.recordings[r];
         const std::string label = quoted(recording.label);
         std::string parameters;
@@ -115,8 +118,9 @@ std::string csv_text(const Run& run) {
     return fmt::to_string(text);
 }
 
-void write_csv(const Run& run, const std::filesystem::path& folder) {
-    replace_own(folder / "plate.csv", FileKind::run_table, csv_text(run));
+void write_csv(const std::filesystem::path& folder, const std::function<bool()>& stop_wanted) {
+    const Run run = read_run(folder, ReadWhat::observables, stop_wanted);
+    replace_own(folder / "plate.csv", FileKind::run_table, csv_text(run, stop_wanted));
 }
 
 }  // namespace mcdem::io

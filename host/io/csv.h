@@ -1,6 +1,7 @@
 // Summaries as CSV.
 #pragma once
 #include <filesystem>
+#include <functional>
 #include <string>
 
 #include "core/recording.h"
@@ -9,10 +10,13 @@ namespace mcdem::inline io {
 
 /// The text of `plate.csv`: one row per replica and scan, without positions and contacts. The last columns
 /// are the scene keys that differ between replicas. Wall forces are the components that press the wall
-/// outwards; unknown values are `nan`.
-std::string csv_text(const Run& run);
+/// outwards; unknown values are `nan`. Throws Interrupted if `stop_wanted` becomes true meanwhile.
+std::string csv_text(
+    const Run& run, const std::function<bool()>& stop_wanted = [] { return false; });
 
-/// Writes it to `<folder>/plate.csv`.
-void write_csv(const Run& run, const std::filesystem::path& folder);
+/// Reads the run in `folder` and writes its `plate.csv` there. Throws Interrupted, and leaves the file as it
+/// is, if `stop_wanted` becomes true meanwhile.
+void write_csv(
+    const std::filesystem::path& folder, const std::function<bool()>& stop_wanted = [] { return false; });
 
 }  // namespace mcdem::io

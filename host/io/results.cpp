@@ -41,10 +41,12 @@ void add_header(Run& run, const ResultFile& file, const std::filesystem::path& p
         if (next.recordings[r].failure) run.recordings[r].failure = next.recordings[r].failure;
 }
 
-void add_file(Run& run, const ResultFile& file, const std::filesystem::path& path, ReadWhat what,
-              bool is_first) {
+void add_file(
+    Run& run, const ResultFile& file, const std::filesystem::path& path, ReadWhat what, bool is_first,
+    const std::function<bool()>& stop_wanted = [] { return false; }) {
     add_header(run, file, path, is_first);
     for (std::size_t r = 0; r < run.recordings.size(); ++r) {
+        if (stop_wanted()) throw Interrupted();
         auto scans = file.scans(run.recordings[r], r, what);
         auto& all = run.recordings[r].scans;
         all.insert(all.end(), std::make_move_iterator(scans.begin()), std::make_move_iterator(scans.end()));
@@ -82,11 +84,14 @@ Run read_run_header(const std::vector<std::filesystem::path>& files) {
     return run;
 }
 
-Run read_run(const std::filesystem::path& file_or_folder, ReadWhat what) {
+Run read_run(const std::filesystem::path& file_or_folder, ReadWhat what,
+             const std::function<bool()>& stop_wanted) {
     return read_settled(file_or_folder, [&](const std::vector<std::filesystem::path>& files) {
         Run run;
         for (const auto& file : files)
-            guarded(file, [&] { add_file(run, ResultFile(file), file, what, &file == &files.front()); });
+            guarded(file, [&] {
+                add_file(run, ResultFile(file), file, what, &file == &files.front(), stop_wanted);
+            });
         return run;
     });
 }

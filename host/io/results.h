@@ -17,8 +17,11 @@ bool write_run(
     const std::filesystem::path& file, const Run& run,
     const std::function<bool()>& stop_wanted = [] { return false; });
 
-/// Reads a result file, or a result folder: its run.h5, otherwise the segments of an unfinished run.
-Run read_run(const std::filesystem::path& file_or_folder, ReadWhat what = ReadWhat::everything);
+/// Reads a result file, or a result folder: its run.h5, otherwise the segments of an unfinished run. Throws
+/// Interrupted if `stop_wanted` becomes true meanwhile.
+Run read_run(
+    const std::filesystem::path& file_or_folder, ReadWhat what = ReadWhat::everything,
+    const std::function<bool()>& stop_wanted = [] { return false; });
 
 /// Reads a run scan by scan, for runs larger than memory.
 class RunReader {

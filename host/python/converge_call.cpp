@@ -7,7 +7,6 @@
 #include "core/output_file.h"
 #include "core/version.h"
 #include "ensemble/converge_scene.h"
-#include "ensemble/observe_trials.h"
 #include "io/output_folder.h"
 #include "python/bindings.h"
 #include "python/watch.h"

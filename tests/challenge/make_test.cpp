@@ -8,7 +8,7 @@
 
 #include "challenge/realities.h"
 #include "challenge/truth.h"
-#include "ensemble/observe_trials.h"
+#include "core/errors.h"
 #include "ensemble/small_scene.h"
 
 namespace mcdem {

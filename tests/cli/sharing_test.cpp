@@ -13,7 +13,6 @@
 #include "cli/shell/shell_word.h"
 #include "cli/shell/subprocess.h"
 #include "core/errors.h"
-#include "ensemble/observe_trials.h"
 #include "io/result_folder.h"
 
 namespace mcdem {

@@ -4,7 +4,6 @@
 #include <atomic>
 
 #include "core/errors.h"
-#include "ensemble/observe_trials.h"
 #include "ensemble/parts/run_parts.h"
 #include "ensemble/run_scene.h"
 #include "ensemble/small_scene.h"
@@ -48,6 +47,7 @@ protected:
     }
     fs::path folder(const std::string& name) const { return temporary_.path / name; }
     std::string result(const std::string& name) const { return bytes_of_file(run_file(folder(name))); }
+    std::string table(const std::string& name) const { return bytes_of_file(folder(name) / "plate.csv"); }
     std::string problem_reading(const std::string& name) const {
         try {
             read_run(folder(name));
@@ -82,7 +82,9 @@ TEST_F(RunStopTest, StopsPromptlyAndResumesWithTheSameBits) {
     ASSERT_EQ(run(scene, "a", Start::resume), RunEnd::done);
     EXPECT_TRUE(result("a") == result("whole"));
 
-    for (const int stop_at : {all_looks - 10 * last, all_looks - last / 2}) {
+    const int table_looks =
+        2 * last;  // a look per replica while run.h5 is read, and one while the table is made
+    for (const int stop_at : {all_looks - table_looks - 10 * last, all_looks - table_looks - last / 2}) {
         const std::string name = "stopped at " + std::to_string(stop_at);
         ASSERT_EQ(run(scene, name, Start::fresh, stop_at), RunEnd::interrupted) << name;
         EXPECT_LE(looks_, stop_at + 5) << name;
@@ -90,6 +92,21 @@ TEST_F(RunStopTest, StopsPromptlyAndResumesWithTheSameBits) {
         ASSERT_EQ(run(scene, name, Start::resume, 1), RunEnd::interrupted) << name;
         ASSERT_EQ(run(scene, name, Start::resume), RunEnd::done) << name;
         EXPECT_TRUE(result(name) == result("whole")) << name;
+    }
+}
+
+TEST_F(RunStopTest, StopsWhileThePlateTableIsMade) {
+    const Scene scene = small_scene({"batch.replicas=4", "protocol.scans_per_stroke=2"});
+    ASSERT_EQ(run(scene, "whole", Start::fresh), RunEnd::done);
+    const int all_looks = looks_, replicas = static_cast<int>(scene.replicas.size());
+    for (int stop_at = all_looks - 2 * replicas; stop_at < all_looks; ++stop_at) {
+        const std::string name = "stopped at " + std::to_string(stop_at);
+        ASSERT_EQ(run(scene, name, Start::fresh, stop_at), RunEnd::interrupted) << name;
+        EXPECT_TRUE(fs::exists(run_file(folder(name)))) << name;
+        EXPECT_FALSE(fs::exists(folder(name) / "plate.csv")) << name;
+        EXPECT_EQ(run(scene, name, Start::resume, 1), RunEnd::interrupted) << name;
+        EXPECT_EQ(run(scene, name, Start::resume), RunEnd::was_done) << name;
+        EXPECT_EQ(table(name), table("whole")) << name;
     }
 }
 
@@ -111,9 +128,20 @@ TEST_F(RunStopTest, AMergeOfPartsStopsAtTheNextReplicaAndGoesOnWithTheSameBits) 
         for (const auto& entry : fs::directory_iterator(folder("parts")))
             EXPECT_EQ(entry.path(), parts_folder(folder("parts")));
     }
-    stop_at = -1;
-    EXPECT_TRUE(parts.merge());
+    for (; !fs::exists(run_file(folder("parts"))); ++stop_at) {
+        looks_ = 0;
+        EXPECT_THROW(parts.merge(), Interrupted) << stop_at;
+    }
+    for (stop_at = 0; stop_at < 2 * replicas; ++stop_at) {  // while the plate's table is made
+        looks_ = 0;
+        EXPECT_THROW(parts.merge(), Interrupted) << stop_at;
+        EXPECT_TRUE(fs::exists(parts_folder(folder("parts"))));
+        EXPECT_FALSE(fs::exists(folder("parts") / "plate.csv"));
+    }
+    looks_ = 0;
+    EXPECT_TRUE(parts.merge()) << "no look is left";
     EXPECT_TRUE(result("parts") == result("whole"));
+    EXPECT_EQ(table("parts"), table("whole"));
 }
 
 }  // namespace

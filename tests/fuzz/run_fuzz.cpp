@@ -38,7 +38,7 @@ void read_with_everything(const std::filesystem::path& path) {
         expect_read_or_refused([&] { read_run(path, what); });
     expect_read_or_refused([&] {
         const Run run = read_run(path);
-        write_csv(run, scratch_folder());
+        csv_text(run);
         model_table(group_by_setting(run));
     });
     expect_read_or_refused([&] {

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "io/csv.h"
+#include "io/result_folder.h"
 #include "io/results.h"
 #include "io/synthetic_run.h"
 
@@ -26,7 +27,8 @@ TEST(csv, a_row_per_scan_reads_back_exactly) {
     TemporaryFolder folder;
     auto run = synthetic_run();
     run.recordings[0].label = "plain \"quoted\"";
-    write_csv(run, folder.path());
+    write_run(run_file(folder.path()), run);
+    write_csv(folder.path());
     std::ifstream in(folder / "plate.csv");
     std::string header, first, line;
     std::getline(in, header);

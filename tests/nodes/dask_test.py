@@ -107,6 +107,17 @@ def a_challenge_is_distributed(place):
     shared_challenge.expect_like_alone(place, "dask")
 
 
+def an_interrupted_merge_is_called_interrupted(place):
+    """Parts are all there; the process that merges them is interrupted alone."""
+    program = place.path / "interrupted"
+    program.write_text("#!/bin/sh\ncase \"$*\" in *--merge*) exit 130;; *--alike*) echo 0;; esac\n")
+    program.chmod(0o755)
+    environment = {"PYTHONPATH": str(PACKAGE), "MCDEM_PROGRAM": str(program)}
+    said = finish(place.start([sys.executable, "-m", "mcdem.program", "mcdem.distributed", "run", "sweep.toml"],
+                              environment), exit_codes=(130,))
+    assert "could not be merged" not in said and "Traceback" not in said, said
+
+
 def says_what_is_wrong(place):
     """Bad input, and the message if packages are missing."""
     said = finish(distribute(place, [*command_of("sweep.toml", "dask"), "--set", "nothing=1"]), exit_codes=(2,))
@@ -123,7 +134,7 @@ def says_what_is_wrong(place):
 
 
 def main():
-    shared_runs.run_tests([says_what_is_wrong, outlives_a_killed_worker, tries_a_failed_part_again,
+    shared_runs.run_tests([says_what_is_wrong, an_interrupted_merge_is_called_interrupted, outlives_a_killed_worker, tries_a_failed_part_again,
                            goes_on_after_an_interruption, works_from_python, a_challenge_is_distributed])
 
 

@@ -7,7 +7,7 @@
 #include "cli/shell/messages.h"
 #include "cli/shell/progress.h"
 #include "cli/shell/standard_streams.h"
-#include "ensemble/observe_trials.h"
+#include "core/errors.h"
 
 namespace mcdem::inline cli {
 namespace {

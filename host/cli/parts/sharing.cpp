@@ -13,7 +13,6 @@
 #include "cli/shell/standard_streams.h"
 #include "cli/shell/subprocess.h"
 #include "core/errors.h"
-#include "ensemble/observe_trials.h"
 
 namespace mcdem::inline cli {
 namespace {

@@ -8,10 +8,10 @@
 #include "cli/shell/messages.h"
 #include "cli/shell/progress.h"
 #include "cli/shell/standard_streams.h"
+#include "core/errors.h"
 #include "core/output_file.h"
 #include "core/version.h"
 #include "ensemble/converge_scene.h"
-#include "ensemble/observe_trials.h"
 #include "io/output_folder.h"
 #include "report/run/convergence_tables.h"
 

@@ -8,7 +8,6 @@
 #include "core/atomic_file.h"
 #include "core/errors.h"
 #include "core/make_folder.h"
-#include "ensemble/observe_trials.h"
 #include "ensemble/parts/manifest.h"
 #include "ensemble/run_state.h"
 #include "io/checkpoint.h"
@@ -283,7 +282,7 @@ bool RunParts::merge() try {
         expect_own_merge();
     else if (!missing().empty() || !merge_files())
         return is_merged(options_.folder);
-    write_csv(read_run(options_.folder, ReadWhat::observables), options_.folder);
+    write_csv(options_.folder, options_.stop_wanted);
     fs::remove_all(old_parts(options_.folder));
     fs::rename(parts_folder(options_.folder), old_parts(options_.folder));
     fs::remove_all(old_parts(options_.folder));

@@ -19,6 +19,7 @@ from .command import ask, problems_of, program_path
 from .errors import InputError, RunError
 
 TRIES = 3  # per part, not counting lost workers
+INTERRUPTED = 130  # exit code of the program
 
 
 def run(scene: str | os.PathLike[str], out: str | os.PathLike[str], *, settings: dict[str, Any] | None = None,
@@ -74,6 +75,8 @@ class Work:
                 code = subprocess.run([*self.command, "--merge"], cwd=self.folder).returncode
                 if code == 0:
                     return
+                if code == INTERRUPTED:
+                    raise KeyboardInterrupt
                 missing = self.missing(1)  # damaged parts
                 if not missing:
                     raise RunError(f"the parts could not be merged: exit code {code}")
