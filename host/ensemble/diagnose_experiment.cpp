@@ -110,7 +110,10 @@ private:
             evidence.library = build_library(device_, question_, plan_, store_, stage(options_, "library"));
             library_is_own_ = true;
             take_baseline(evidence, evidence.library.baseline);
-            if (options_.library) write_library(*options_.library, evidence.library);
+            if (options_.library && !write_library(*options_.library, evidence.library))
+                options_.on_note(fmt::format(
+                    "{}: another program has written it in the meantime; this diagnosis uses its own library",
+                    options_.library->string()));
         }
         for (const std::string& name : choice_.chosen) {
             const Effect& effect = *find_effect(name);

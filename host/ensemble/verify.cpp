@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <fstream>
 #include <functional>
 #include <set>
 
@@ -149,14 +150,19 @@ void check_library(const fs::path& folder, std::vector<Verified>& all) {
     }
 }
 
+/// A library may have any name.
+bool is_json(const fs::path& file) {
+    return file.extension() == ".json" || (fs::is_regular_file(file) && std::ifstream(file).peek() == '{');
+}
+
 /// Checks a file outside of its folder.
 Verified looked_at_alone(const fs::path& file) {
-    if (file.extension() != ".h5" && file.extension() != ".json")
+    if (file.extension() != ".h5" && !is_json(file))
         throw InputError(file.string() +
                          ": must be a folder, a .h5 file of a run or the .json of a library: other files are "
                          "verified with the folder that they are in");
     return looked_at(file, [&]() -> std::string {
-        if (file.extension() == ".json")
+        if (is_json(file))
             read_library(file);
         else if (file.filename().string().starts_with("checkpoint."))
             expect_whole_checkpoint(file);

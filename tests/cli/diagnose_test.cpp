@@ -163,6 +163,26 @@ TEST_F(DiagnoseTest, RemnantsOfAnInterruptedLibraryAreRemovedByTheNext) {
     EXPECT_TRUE(std::filesystem::exists(path("library.json")));
 }
 
+TEST_F(DiagnoseTest, TwoAtOnceWithANewLibraryBothGiveAVerdict) {
+    experiment({});
+    const auto words = [](const std::string& out) {
+        return Words{"diagnose",        "tiny.toml", "--experiment", "e",       "--out",   out,
+                     "--library",       "l",         "--replicates", "8",       "--pairs", "2",
+                     "--confirmations", "0",         "--candidates", "friction"};
+    };
+    Child first(folder_.path, words("first"), held_after(100));
+    wait_until_held(first);
+    expect_done(mcdem(words("second")));
+    const std::string written = bytes_of_file(path("l"));
+    expect_done(mcdem({"verify", "l"}));
+    let_go_on(first);
+    const Finished finished = first.wait();
+    expect_done(finished);
+    EXPECT_THAT(finished.err, HasSubstr("l: another program has written it in the meantime"));
+    EXPECT_TRUE(fs::exists(path("first/diagnosis.json")));
+    EXPECT_EQ(bytes_of_file(path("l")), written);
+}
+
 TEST_F(DiagnoseTest, WithItsLibraryInPartsIsTheSame) {
     experiment({"grains.friction=0.3"});
     const Words options{"--replicates",    "8", "--pairs",      "2",

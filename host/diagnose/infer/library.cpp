@@ -171,10 +171,8 @@ std::string library_text(const Library& library) {
     return text.dump();
 }
 
-void write_library(const std::filesystem::path& file, const Library& library) {
-    if (!create_file(file, library_text(library)))
-        throw InputError(
-            fmt::format("{}: is there already, and is not replaced: give another file", file.string()));
+bool write_library(const std::filesystem::path& file, const Library& library) {
+    return create_file(file, library_text(library));
 }
 
 Library read_library(const std::filesystem::path& file) {

@@ -34,8 +34,8 @@ Eigen::MatrixXd scatter(const Library& library);
 
 /// JSON text; bit-identical for the same library.
 std::string library_text(const Library& library);
-/// Writes the complete file or nothing. Throws InputError if the file exists.
-void write_library(const std::filesystem::path& file, const Library& library);
+/// Writes the complete file or nothing. Returns false if the file exists; it is not replaced.
+bool write_library(const std::filesystem::path& file, const Library& library);
 /// Throws InputError if the file is not a library.
 Library read_library(const std::filesystem::path& file);
 
