@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <mutex>
 
+#include "cl/held_signals.h"
 #include "cl/kernel_cache.h"
 #include "cl/process_limits.h"
 #include "cl/profile.h"
@@ -57,6 +58,7 @@ std::vector<Found> find_devices() {
     const std::lock_guard lock(one_at_a_time);
     expect_enough_open_files();
     prepare_kernel_cache();
+    const HeldSignals held;  // the driver's threads take no signals
     std::vector<Found> found;
     std::vector<cl::Platform> platforms;
     try {

@@ -8,6 +8,7 @@
 #include <set>
 #include <sstream>
 
+#include "cl/held_signals.h"
 #include "cl/kernel_sources.h"
 #include "cl/process_limits.h"
 #include "core/errors.h"
@@ -81,6 +82,7 @@ cl::Program build_program(const Device& device, const KernelBuild& build) {
         build.list_items(), build.species > 1 ? fmt::format(" -DSPECIES={}", build.species) : "");
     cl::Program program(device.context(), program_text());
     try {
+        const HeldSignals held;
         program.build({device.handle()}, options.c_str());
     } catch (const cl::Error&) {
         throw RunError(fmt::format("the kernels do not compile on {} with {}:\n{}", device.info().name,

@@ -1,6 +1,8 @@
 // The cache folder of compiled kernels: read-only, of another user, or with truncated files.
 #include <sys/stat.h>
 
+#include <csignal>
+
 #include "cli/cli_test.h"
 
 namespace mcdem {
@@ -76,6 +78,18 @@ TEST_F(KernelCache, TruncatedFilesAreBuiltAgain) {
     for (const fs::path& file : files)  // the right size, without the content
         if (is_kept(file)) std::ofstream(file, std::ios::binary) << std::string(fs::file_size(file), '\0');
     expect_done(mcdem(run_words("zeros"), {cache}));
+}
+
+// As under nohup when the terminal closes. Signals arrive without a pause until the kernels are launched.
+TEST_F(KernelCache, IgnoredSignalsDoNotDisturbTheCompiler) {
+    expect_done(mcdem(run_words("whole")));
+    const auto before = std::signal(SIGHUP, SIG_IGN);
+    Child child(folder_.path, run_words("out"), held_after(0));
+    std::signal(SIGHUP, before);
+    while (child.is_running() && !fs::exists(held_file(child))) child.send(SIGHUP);
+    if (child.is_running()) let_go_on(child);
+    expect_done(child.wait());
+    EXPECT_TRUE(bytes_of_file(path("out/run.h5")) == bytes_of_file(path("whole/run.h5")));
 }
 
 TEST_F(KernelCache, ACrashNamesTheRemedy) {

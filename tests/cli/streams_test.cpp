@@ -118,14 +118,17 @@ public:
     }
     /// Waits for the first output and blocks the run there; false if it had already ended.
     bool hold_after_first_words() {
-        char some;
-        if (::read(terminal_, &some, 1) != 1) return false;
+        char words[1000];
+        const auto size = ::read(terminal_, words, sizeof words);
+        if (size < 1) return false;
+        first_words_.assign(words, static_cast<std::size_t>(size));
         ::kill(process_, SIGSTOP);
         int status = 0;
         if (::waitpid(process_, &status, WUNTRACED) == process_ && WIFSTOPPED(status)) return true;
         process_ = -1;
         return false;
     }
+    const std::string& first_words() const { return first_words_; }
     void take_away() { ::close(std::exchange(terminal_, -1)); }
     int go_on() {
         int status = 0;
@@ -137,6 +140,7 @@ public:
 private:
     int terminal_ = -1;
     pid_t process_ = -1;
+    std::string first_words_;
 };
 
 TEST_F(StreamsTest, AClosedTerminalDoesNotEndARun) {
@@ -147,7 +151,7 @@ TEST_F(StreamsTest, AClosedTerminalDoesNotEndARun) {
         if (!run.hold_after_first_words()) continue;  // it was faster than this test: try again
         run.take_away();
         const int status = run.go_on();
-        EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
+        EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status << run.first_words();
         EXPECT_TRUE(result(out) == result("whole"));
         break;
     }
