@@ -111,9 +111,7 @@ private:
             library_is_own_ = true;
             take_baseline(evidence, evidence.library.baseline);
             if (options_.library && !write_library(*options_.library, evidence.library))
-                options_.on_note(fmt::format(
-                    "{}: another program has written it in the meantime; this diagnosis uses its own library",
-                    options_.library->string()));
+                options_.on_note(options_.library->string() + ": another program wrote it first; it is kept");
         }
         for (const std::string& name : choice_.chosen) {
             const Effect& effect = *find_effect(name);

@@ -178,7 +178,7 @@ TEST_F(DiagnoseTest, TwoAtOnceWithANewLibraryBothGiveAVerdict) {
     let_go_on(first);
     const Finished finished = first.wait();
     expect_done(finished);
-    EXPECT_THAT(finished.err, HasSubstr("l: another program has written it in the meantime"));
+    EXPECT_THAT(finished.err, HasSubstr("l: another program wrote it first; it is kept"));
     EXPECT_TRUE(fs::exists(path("first/diagnosis.json")));
     EXPECT_EQ(bytes_of_file(path("l")), written);
 }
