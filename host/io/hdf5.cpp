@@ -295,8 +295,10 @@ std::vector<std::string> File::members(const std::string& group) const {
         return 0;
     };
     const Handle handle = object(group);
-    if (H5Literate(handle, H5_INDEX_NAME, H5_ITER_INC, nullptr, keep_name, &names) < 0)
+    // HDF5 1.10 crashes if a read fails while it sorts the names of a large group itself.
+    if (H5Literate(handle, H5_INDEX_NAME, H5_ITER_NATIVE, nullptr, keep_name, &names) < 0)
         fail(where(group), "cannot be listed");
+    std::ranges::sort(names);
     return names;
 }
 
