@@ -109,6 +109,18 @@ def a_refused_read_is_not_a_missing_object(place):
             expect(done, 1, "Input/output error")
 
 
+def a_refused_read_of_a_checkpoint_is_an_error(place):
+    often = ["--set", "output.checkpoint_minutes=1e-6"]
+    mcdem(place, *RUN, *often, fault="KILL", fault_at=3, fault_kinds="create", fault_name="segment")
+    log = place.parent / "log"
+    expect(mcdem(place, "verify", "out", fault_log=log, fault_kinds="read", fault_name="checkpoint.h5"), 0)
+    reads = len(log.read_text().splitlines())
+    assert reads > 20, reads
+    for read in range(1, reads + 1):
+        done = mcdem(place, "verify", "out", fault="EIO", fault_at=read, fault_kinds="read", fault_name="checkpoint.h5")
+        expect(done, 1, "Input/output error")
+
+
 def a_manifest_that_is_not_whole_costs_no_part(place):
     result = whole_run(place)
     for length in [0, 40]:
