@@ -157,12 +157,13 @@ bool is_json(const fs::path& file) {
 
 /// Checks a file outside of its folder.
 Verified looked_at_alone(const fs::path& file) {
-    if (file.extension() != ".h5" && !is_json(file))
+    const bool is_library = is_json(file);
+    if (file.extension() != ".h5" && !is_library)
         throw InputError(file.string() +
                          ": must be a folder, a .h5 file of a run or the .json of a library: other files are "
                          "verified with the folder that they are in");
     return looked_at(file, [&]() -> std::string {
-        if (is_json(file))
+        if (is_library)
             read_library(file);
         else if (file.filename().string().starts_with("checkpoint."))
             expect_whole_checkpoint(file);

@@ -151,7 +151,7 @@ TEST_F(StreamsTest, AClosedTerminalDoesNotEndARun) {
         if (!run.hold_after_first_words()) continue;  // it was faster than this test: try again
         run.take_away();
         const int status = run.go_on();
-        EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status << run.first_words();
+        EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status << " " << run.first_words();
         EXPECT_TRUE(result(out) == result("whole"));
         break;
     }

@@ -134,8 +134,9 @@ def says_what_is_wrong(place):
 
 
 def main():
-    shared_runs.run_tests([says_what_is_wrong, an_interrupted_merge_is_called_interrupted, outlives_a_killed_worker, tries_a_failed_part_again,
-                           goes_on_after_an_interruption, works_from_python, a_challenge_is_distributed])
+    shared_runs.run_tests([says_what_is_wrong, an_interrupted_merge_is_called_interrupted, outlives_a_killed_worker,
+                           tries_a_failed_part_again, goes_on_after_an_interruption, works_from_python,
+                           a_challenge_is_distributed])
 
 
 main()

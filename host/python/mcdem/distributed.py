@@ -16,10 +16,9 @@ import sys
 from typing import Any, Callable
 
 from .command import ask, problems_of, program_path
-from .errors import InputError, RunError
+from .errors import INTERRUPTED, InputError, RunError
 
 TRIES = 3  # per part, not counting lost workers
-INTERRUPTED = 130  # exit code of the program
 
 
 def run(scene: str | os.PathLike[str], out: str | os.PathLike[str], *, settings: dict[str, Any] | None = None,

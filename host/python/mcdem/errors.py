@@ -1,5 +1,7 @@
 """Errors that are reported to the user (host/core/errors.h)."""
 
+INTERRUPTED = 130  # exit code of the program
+
 
 class InputError(ValueError):
     """Invalid user input (exit code 2). Contains all problems: where, what must be, what was got."""

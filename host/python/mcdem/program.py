@@ -7,7 +7,7 @@ import runpy
 import signal
 import sys
 
-from .errors import InputError, RunError
+from .errors import INTERRUPTED, InputError, RunError
 
 # Module -> Debian package, if its name is not python3-MODULE.
 PACKAGES = {"PIL": "python3-pil", "skimage": "python3-skimage", "mpi4py": "python3-mpi4py"}
@@ -32,7 +32,7 @@ def exit_code_of(error):
             say(problem)
         return 2
     if isinstance(error, KeyboardInterrupt):
-        return 130
+        return INTERRUPTED
     if isinstance(error, ModuleNotFoundError) and error.name and not error.name.startswith("mcdem"):
         name = error.name.split(".")[0]
         say(f"the Python package {name} is not there for {sys.executable}: install {PACKAGES.get(name, f'python3-{name}')}, "
