@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
@@ -80,19 +81,32 @@ bool is_whole_bitcode(const fs::path& path, std::uint64_t size) {
 /// A file that PoCL will rename when it is complete; another process may be writing it.
 bool is_temporary(const fs::path& path) { return path.filename().string().starts_with("tempfile"); }
 
-void remove_what_is_cut_short(const fs::path& folder) {
+/// PoCL leaves an empty temporary file per process. Files with content are not removed: the folder may be one
+/// that other programs use.
+bool is_left_over(const fs::path& temporary) {
+    std::error_code error;
+    const bool empty = fs::is_empty(temporary, error);
+    if (error || !empty) return false;
+    const auto written = fs::last_write_time(temporary, error);
+    return !error && fs::file_time_type::clock::now() - written > std::chrono::days(1);
+}
+
+bool is_damaged(const fs::path& path) {
+    std::error_code gone;  // another process may remove files at the same time
+    const std::uint64_t size = fs::file_size(path, gone);
+    if (gone) return false;
+    if (path.extension() == ".so") return !is_whole_shared_object(path, size);
+    return path.filename() == "program.bc" && !is_whole_bitcode(path, size);
+}
+
+void remove_useless_files(const fs::path& folder) {
     std::error_code error;
     for (auto entry = fs::recursive_directory_iterator(folder, error);
          !error && entry != fs::recursive_directory_iterator(); entry.increment(error)) {
-        std::error_code gone;  // another process may remove files at the same time
-        if (!entry->is_regular_file(gone) || is_temporary(entry->path())) continue;
+        std::error_code gone;
         const fs::path& path = entry->path();
-        const std::uint64_t size = entry->file_size(gone);
-        if (gone) continue;
-        const bool damaged = path.extension() == ".so"         ? !is_whole_shared_object(path, size)
-                             : path.filename() == "program.bc" ? !is_whole_bitcode(path, size)
-                                                               : false;
-        if (damaged) fs::remove(path, gone);
+        if (!entry->is_regular_file(gone)) continue;
+        if (is_temporary(path) ? is_left_over(path) : is_damaged(path)) fs::remove(path, gone);
     }
 }
 
@@ -114,7 +128,7 @@ void prepare_kernel_cache() {
         setenv("PATH", "/usr/bin:/bin", 0);  // without PATH, PoCL finds no linker and aborts
         if (!can_write_in(kernel_cache_folder()))
             if (const auto folder = private_folder()) setenv("POCL_CACHE_DIR", folder->c_str(), 1);
-        remove_what_is_cut_short(kernel_cache_folder());
+        remove_useless_files(kernel_cache_folder());
         return true;
     }();
     (void)once;

@@ -12,7 +12,8 @@ inline void (*opencl_started)() = [] {};
 std::filesystem::path kernel_cache_folder();
 
 /// Must be called before OpenCL is first used. If the folder is not writable, sets POCL_CACHE_DIR to a
-/// private folder in the temporary directory. Removes truncated files; PoCL then compiles them again.
+/// private folder in the temporary directory. Removes truncated files, which PoCL then compiles again, and
+/// the empty temporary files that PoCL left more than a day ago.
 void prepare_kernel_cache();
 
 }  // namespace mcdem::opencl

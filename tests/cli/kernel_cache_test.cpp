@@ -80,6 +80,21 @@ TEST_F(KernelCache, TruncatedFilesAreBuiltAgain) {
     expect_done(mcdem(run_words("zeros"), {cache}));
 }
 
+TEST_F(KernelCache, OldEmptyTemporaryFilesAreRemoved) {
+    fs::create_directory(path("cache"));
+    const auto old = fs::file_time_type::clock::now() - std::chrono::hours(25);
+    for (const char* name : {"tempfile_old", "tempfile_new", "tempfile_full", "notes"}) {
+        std::ofstream file(path("cache") / name);
+        if (std::string_view(name) == "tempfile_full") file << "content";
+        file.close();
+        if (std::string_view(name) != "tempfile_new") fs::last_write_time(path("cache") / name, old);
+    }
+    expect_done(mcdem({"devices"}, {"POCL_CACHE_DIR=" + path("cache").string()}));
+    EXPECT_FALSE(fs::exists(path("cache/tempfile_old")));
+    for (const char* name : {"tempfile_new", "tempfile_full", "notes"})
+        EXPECT_TRUE(fs::exists(path("cache") / name)) << name;
+}
+
 // As under nohup when the terminal closes. Signals arrive without a pause until the kernels are launched.
 TEST_F(KernelCache, IgnoredSignalsDoNotDisturbTheCompiler) {
     expect_done(mcdem(run_words("whole")));
