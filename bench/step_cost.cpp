@@ -10,7 +10,7 @@ constexpr double listed = 11;
 // Flops. A square root, division, minimum or maximum counts as one operation; selections, comparisons and
 // conversions do not count. The sums of each header, in the order of its lines:
 constexpr double inverse_root = 6;  // estimate and a Newton step; elsewhere a root and a division
-constexpr double see_neighbours = 3 + 5 + 1 + inverse_root + 3 + 3;
+constexpr double gather_neighbours = 3 + 5 + 1 + inverse_root + 3 + 3;
 constexpr double hertz = 2 + 2 + 2 + 2 + 2;  // gap, delta, a, S, F
 constexpr double reduced = 12;               // R* and m*
 constexpr double damping = 5 + 5;            // v_n, F_d
@@ -64,7 +64,7 @@ StepCost step_cost(ContactModel model, FrictionLaw friction, Precision precision
     const double friction_flops = springs ? mindlin : saturated;
     const bool sphere = model == ContactModel::elastic_sphere || model == ContactModel::hyperelastic_sphere;
     const double self = sphere ? self_term : 0;
-    const double slot = see_neighbours + hertz + reduced + damping + own_displacement + contact_point +
+    const double slot = gather_neighbours + hertz + reduced + damping + own_displacement + contact_point +
                         sliding + friction_flops + force_and_torque + checks + self +
                         (bulging ? extrapolation : 0);
     const double pairs = listed * (listed - 1) / 2;

@@ -24,20 +24,20 @@ INLINE GrainSums contact_sums(Grain at, const int effects, Batch batch, const sl
     load_memories(at, batch.memory, &kept);
     GrainSums sums = {ZERO3, ZERO3, R(0)};
     for (int v = 0; v < at.count; ++v) {
-        const Neighbours seen = see_neighbours(at, effects, batch.motion, partner[v]);
-        const Displaced b = displaced(at, batch, seen, displacement, partner_slot, v);
+        const Neighbours neighbour = gather_neighbours(at, effects, batch.motion, partner[v]);
+        const Displaced b = displaced(at, batch, neighbour, displacement, partner_slot, v);
         Memory memory = recall(replica, effects, &kept, v);
-        const Contacts c = contact_forces(at, effects, seen, b, replica->time_step, &memory);
+        const Contacts c = contact_forces(at, effects, neighbour, b, replica->time_step, &memory);
         remember(replica, effects, memory, &kept, v);
-        add_contacts(c, seen.normal, &sums.force, &sums.torque);
+        add_contacts(c, neighbour.normal, &sums.force, &sums.torque);
         if (effects & EFFECT_ROLLING_RESISTANCE) sums.torque = add3(sums.torque, c.couple);
         /* The negated comparison is also true for NaN. */
         const mask too_deep =
-            NOT(AS_MASK(c.approach <= replica->overlap_limit * (at.now.radius + seen.radius))) &
-            seen.occupied;
-        const mask unprobed = AS_MASK(b.here > replica->probe_gap) & NOT(c.touching) & seen.occupied;
+            NOT(AS_MASK(c.approach <= replica->overlap_limit * (at.now.radius + neighbour.radius))) &
+            neighbour.occupied;
+        const mask unprobed = AS_MASK(b.here > replica->probe_gap) & NOT(c.touching) & neighbour.occupied;
         sums.trouble += WHERE(too_deep, R(1), R(0)) + WHERE(unprobed, R(DEEP_SLOTS), R(0));
-        tabulate(c, seen.normal, v, table);
+        tabulate(c, neighbour.normal, v, table);
     }
     store_memories(at, &kept, batch.memory);
     return sums;

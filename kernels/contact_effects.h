@@ -4,14 +4,14 @@
 
 /* Effective modulus of grains of unequal stiffness, E_i = E / (1 + excess_compliance_i):
    1/E* = (1 - nu_i^2)/E_i + (1 - nu_j^2)/E_j; the shear modulus likewise. A wall has no excess compliance. */
-INLINE lanes scattered_modulus(Grain at, Neighbours seen, lanes modulus, lanes compliance,
+INLINE lanes scattered_modulus(Grain at, Neighbours neighbour, lanes modulus, lanes compliance,
                                lanes compliance_there) {
     const lanes excess = at.now.excess_compliance;
 #if SPECIES > 1
     return modulus /
-           (R(1) + modulus * add_alike(compliance * excess, compliance_there * seen.excess_compliance));
+           (R(1) + modulus * add_alike(compliance * excess, compliance_there * neighbour.excess_compliance));
 #else
-    return modulus / (R(1) + modulus * compliance * (excess + seen.excess_compliance));
+    return modulus / (R(1) + modulus * compliance * (excess + neighbour.excess_compliance));
 #endif
 }
 
@@ -88,19 +88,19 @@ INLINE lanes attraction_energy(Attraction a, lanes overlap, lanes approach) {
 
 /* Torque of magnitude mu_r R* F_n against the relative angular velocity, rolling and twisting (Zhou et al.
    1999; Ai et al. 2011, model A). At small velocities it is viscous, as saturated friction is. */
-INLINE lanes3 rolling_couple(Grain at, Neighbours seen, lanes normal_force, lanes reduced_radius) {
+INLINE lanes3 rolling_couple(Grain at, Neighbours neighbour, lanes normal_force, lanes reduced_radius) {
     global const Replica* restrict replica = at.replica;
     const lanes r = at.now.radius;
-    const lanes r_there = seen.radius;
+    const lanes r_there = neighbour.radius;
     lanes fifth = r * r * r * r * r;
     lanes fifth_there = r_there * r_there * r_there * r_there * r_there;
 #if SPECIES > 1
     fifth *= OWN(at, relative_density);
-    fifth_there *= of_neighbours(at, seen, PLACE_OF(relative_density));
+    fifth_there *= of_neighbours(at, neighbour, PLACE_OF(relative_density));
 #endif
     const lanes reduced_inertia = at.materials->density * (R(8) / R(15)) * PI *
-                                  WHERE(seen.wall, fifth, R(1) / (R(1) / fifth + R(1) / fifth_there));
-    const lanes3 relative = subtract3(seen.spin, at.now.spin);
+                                  WHERE(neighbour.wall, fifth, R(1) / (R(1) / fifth + R(1) / fifth_there));
+    const lanes3 relative = subtract3(neighbour.spin, at.now.spin);
     const lanes slow = replica->sliding_velocity / reduced_radius;
     const lanes limit = replica->rolling_resistance * reduced_radius * fmax(normal_force, (lanes)(R(0)));
     const lanes viscosity = fmin(limit / sqrt(dot3(relative, relative) + slow * slow),

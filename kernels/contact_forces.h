@@ -33,34 +33,36 @@ typedef struct {
 
 /* Overlap and elastic force. `effects` is the replica's value, or the constant 0, for which the compiler
    removes the effects. */
-INLINE Pressed press(Grain at, const int effects, Neighbours seen, Displaced b, Memory* restrict memory,
+INLINE Pressed press(Grain at, const int effects, Neighbours neighbour, Displaced b, Memory* restrict memory,
                      Contacts* restrict c) {
     global const Replica* restrict replica = at.replica;
     const lanes radius = at.now.radius, excess_compliance = at.now.excess_compliance;
     Pressed p;
-    const lanes gap = seen.distance - (radius + seen.radius);
-    p.pair = reduced(at, seen);
+    const lanes gap = neighbour.distance - (radius + neighbour.radius);
+    p.pair = reduced(at, neighbour);
     if (replica->container == CONTAINER_CYLINDER) { /* only its curved wall is not horizontal */
-        const mask curved = seen.wall & AS_MASK(fabs(seen.normal.z) < R(0.5));
+        const mask curved = neighbour.wall & AS_MASK(fabs(neighbour.normal.z) < R(0.5));
         p.pair.radius = WHERE(curved, curved_radius(replica, radius), p.pair.radius);
     }
-    lanes modulus = OF_PAIRS(at, modulus, seen);
+    lanes modulus = OF_PAIRS(at, modulus, neighbour);
     if (effects & EFFECT_MODULUS_SCATTER)
-        modulus = scattered_modulus(at, seen, modulus, OWN(at, grain_compliance),
-                                    of_neighbours(at, seen, PLACE_OF(grain_compliance)));
+        modulus = scattered_modulus(at, neighbour, modulus, OWN(at, grain_compliance),
+                                    of_neighbours(at, neighbour, PLACE_OF(grain_compliance)));
     lanes outward = b.here + b.there;
     if (effects & EFFECT_BULGE_CONTACTS)
         outward = counted_displacements(gap, outward, replica->bulge_contacts);
     c->approach = outward - gap;
     if (effects & EFFECT_PLASTICITY)
-        c->approach = plastic_approach(c->approach, replica->plasticity, seen.occupied, &memory->deepest);
-    c->touching = AS_MASK(c->approach > R(0)) & seen.occupied;
+        c->approach =
+            plastic_approach(c->approach, replica->plasticity, neighbour.occupied, &memory->deepest);
+    c->touching = AS_MASK(c->approach > R(0)) & neighbour.occupied;
     c->overlap = WHERE(c->touching, c->approach, R(0));
     SelfCompliance self = {R(0), R(0), R(0)};
     if (replica->finite_contacts) {
         const ComplianceRatio ratio = {effects ? R(1) + excess_compliance : (lanes)(R(1)),
-                                       effects ? R(1) + seen.excess_compliance : (lanes)(R(1))};
-        const SelfConsistent solved = self_consistent(at, seen, ratio, c->overlap, p.pair.radius, modulus);
+                                       effects ? R(1) + neighbour.excess_compliance : (lanes)(R(1))};
+        const SelfConsistent solved =
+            self_consistent(at, neighbour, ratio, c->overlap, p.pair.radius, modulus);
         c->overlap = solved.overlap;
         self = solved.compliance;
         c->approach = WHERE(c->touching, c->overlap, c->approach);
@@ -81,52 +83,54 @@ INLINE Pressed press(Grain at, const int effects, Neighbours seen, Displaced b, 
 }
 
 /* Stiffness of a tangential spring, 8 G* a. */
-INLINE lanes shear_stiffness(Grain at, const int effects, Neighbours seen, lanes contact_radius) {
-    lanes modulus = OF_PAIRS(at, shear, seen);
+INLINE lanes shear_stiffness(Grain at, const int effects, Neighbours neighbour, lanes contact_radius) {
+    lanes modulus = OF_PAIRS(at, shear, neighbour);
     if (effects & EFFECT_MODULUS_SCATTER)
-        modulus = scattered_modulus(at, seen, modulus, OWN(at, shear_compliance),
-                                    of_neighbours(at, seen, PLACE_OF(shear_compliance)));
+        modulus = scattered_modulus(at, neighbour, modulus, OWN(at, shear_compliance),
+                                    of_neighbours(at, neighbour, PLACE_OF(shear_compliance)));
     return R(8) * modulus * contact_radius;
 }
 
 /* Tangential velocity of the other surface relative to this one at the contact point. */
-INLINE lanes3 sliding_velocity(Grain at, Neighbours seen, lanes arm, lanes separating) {
-    const lanes3 turn = add_scaled3(scale3(seen.distance - arm, seen.spin), arm, at.now.spin);
-    return subtract3(add_scaled3(seen.velocity, -separating, seen.normal), cross3(turn, seen.normal));
+INLINE lanes3 sliding_velocity(Grain at, Neighbours neighbour, lanes arm, lanes separating) {
+    const lanes3 turn = add_scaled3(scale3(neighbour.distance - arm, neighbour.spin), arm, at.now.spin);
+    return subtract3(add_scaled3(neighbour.velocity, -separating, neighbour.normal),
+                     cross3(turn, neighbour.normal));
 }
 
-INLINE Contacts contact_forces(Grain at, const int effects, Neighbours seen, Displaced b, real elapsed,
+INLINE Contacts contact_forces(Grain at, const int effects, Neighbours neighbour, Displaced b, real elapsed,
                                Memory* restrict memory) {
     global const Replica* restrict replica = at.replica;
     const lanes radius = at.now.radius;
     Contacts c;
-    const Pressed pressed = press(at, effects, seen, b, memory, &c);
+    const Pressed pressed = press(at, effects, neighbour, b, memory, &c);
     const Reduced pair = pressed.pair;
-    const lanes damping = OF_PAIRS(at, damping, seen);
-    const lanes separating = dot3(seen.velocity, seen.normal);
+    const lanes damping = OF_PAIRS(at, damping, neighbour);
+    const lanes separating = dot3(neighbour.velocity, neighbour.normal);
     const lanes normal_force =
         pressed.relaxed_force - damping * sqrt(pressed.stiffness * pair.mass) * separating;
 
     /* The contact point is midway between the two displaced surfaces (Brodu et al. 2015). */
-    const lanes midway =
-        R(0.5) * (seen.distance + (radius + c.displacement) - (seen.radius + pressed.displacement_there));
-    c.arm = WHERE(c.touching, WHERE(seen.wall, seen.distance, midway), radius + c.displacement);
+    const lanes midway = R(0.5) * (neighbour.distance + (radius + c.displacement) -
+                                   (neighbour.radius + pressed.displacement_there));
+    c.arm = WHERE(c.touching, WHERE(neighbour.wall, neighbour.distance, midway), radius + c.displacement);
 
-    const lanes friction_coefficient = OF_PAIRS(at, friction, seen);
+    const lanes friction_coefficient = OF_PAIRS(at, friction, neighbour);
     FrictionTerms terms = {friction_coefficient * fmax(normal_force, (lanes)(R(0))), R(0), damping, pair.mass,
                            c.touching};
-    if (replica->mindlin) terms.stiffness = shear_stiffness(at, effects, seen, c.radius);
-    c.tangential = friction(replica, effects, terms, sliding_velocity(at, seen, c.arm, separating),
-                            seen.normal, elapsed, &memory->spring);
-    if (effects & EFFECT_ROLLING_RESISTANCE) c.couple = rolling_couple(at, seen, normal_force, pair.radius);
+    if (replica->mindlin) terms.stiffness = shear_stiffness(at, effects, neighbour, c.radius);
+    c.tangential = friction(replica, effects, terms, sliding_velocity(at, neighbour, c.arm, separating),
+                            neighbour.normal, elapsed, &memory->spring);
+    if (effects & EFFECT_ROLLING_RESISTANCE)
+        c.couple = rolling_couple(at, neighbour, normal_force, pair.radius);
     lanes pressing = normal_force;
     if (effects) c.energy = effect_energy(replica, c.elastic, pressed.relaxed_force, c.overlap, pair.radius);
     if (effects & EFFECT_ADHESION) {
-        const Attraction pull = attraction(replica, c.approach, pair.radius, pair.mass, seen.occupied);
+        const Attraction pull = attraction(replica, c.approach, pair.radius, pair.mass, neighbour.occupied);
         pressing -= pull.force;
         c.energy += attraction_energy(pull, c.overlap, c.approach);
     }
-    c.force = add_scaled3(c.tangential, -pressing, seen.normal);
+    c.force = add_scaled3(c.tangential, -pressing, neighbour.normal);
     return c;
 }
 

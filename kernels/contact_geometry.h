@@ -37,45 +37,45 @@ INLINE lanes3 wall_feet(Grain at, const int effects, slots partner, lanes3 there
     return foot;
 }
 
-INLINE Neighbours see_neighbours(Grain at, const int effects, global const Motion* restrict motion,
-                                 slots partner) {
+INLINE Neighbours gather_neighbours(Grain at, const int effects, global const Motion* restrict motion,
+                                    slots partner) {
     const mask wall = AS_MASK(partner < NO_PARTNER);
     const slots index = select(at.first + LANE_NUMBERS, partner, partner >= 0);
     const lanes4 position = gather_motion(motion, index, 0), velocity = gather_motion(motion, index, 1),
                  spin = gather_motion(motion, index, 2);
     lanes3 there = {position.x, position.y, position.z}, moving = {velocity.x, velocity.y, velocity.z};
-    Neighbours seen;
-    seen.occupied = AS_MASK(partner != NO_PARTNER);
-    seen.wall = wall;
-    seen.radius = position.w;
-    seen.excess_compliance = velocity.w;
-    seen.spin = (lanes3){spin.x, spin.y, spin.z};
+    Neighbours neighbour;
+    neighbour.occupied = AS_MASK(partner != NO_PARTNER);
+    neighbour.wall = wall;
+    neighbour.radius = position.w;
+    neighbour.excess_compliance = velocity.w;
+    neighbour.spin = (lanes3){spin.x, spin.y, spin.z};
     if (ANY(wall)) { /* walls do not rotate; only the plate moves, along z */
         there = wall_feet(at, effects, partner, there);
         moving = where3(wall, ZERO3, moving);
         moving.z = WHERE(AS_MASK(partner == WALL_PARTNER(5)), at.replica->plate_velocity, moving.z);
-        seen.spin = where3(wall, ZERO3, seen.spin);
-        seen.radius = WHERE(wall, R(0), seen.radius);
-        seen.excess_compliance = WHERE(wall, R(0), seen.excess_compliance);
+        neighbour.spin = where3(wall, ZERO3, neighbour.spin);
+        neighbour.radius = WHERE(wall, R(0), neighbour.radius);
+        neighbour.excess_compliance = WHERE(wall, R(0), neighbour.excess_compliance);
     }
 #if SPECIES > 1
-    seen.species = AS_SLOTS(WHERE(wall, R(WALL_COLUMN), spin.w));
+    neighbour.species = AS_SLOTS(WHERE(wall, R(WALL_COLUMN), spin.w));
 #endif
     lanes3 apart = subtract3(there, at.now.position);
     if (at.replica->container == CONTAINER_PERIODIC) {
         apart.x = nearest_image(apart.x, at.replica->wall_position[1]);
         apart.y = nearest_image(apart.y, at.replica->wall_position[3]);
     }
-    seen.velocity = subtract3(moving, at.now.velocity);
+    neighbour.velocity = subtract3(moving, at.now.velocity);
     if (at.replica->container == CONTAINER_CELL) {
         const Deformation f = deformation(at.replica, at.elapsed);
         const lanes3 listed = nearest_lanes_in_cell(at.replica, f, apart);
         apart = deformed_lanes(f, listed);
-        seen.velocity = add3(seen.velocity, deformed_lanes(deformation_rate(at.replica), listed));
+        neighbour.velocity = add3(neighbour.velocity, deformed_lanes(deformation_rate(at.replica), listed));
     }
     /* Distance 1 in empty slots avoids a division by zero. */
-    const lanes squared = WHERE(seen.occupied, dot3(apart, apart), R(1));
-    seen.distance = sqrt(squared);
-    seen.normal = scale3(inverse_root(squared), apart);
-    return seen;
+    const lanes squared = WHERE(neighbour.occupied, dot3(apart, apart), R(1));
+    neighbour.distance = sqrt(squared);
+    neighbour.normal = scale3(inverse_root(squared), apart);
+    return neighbour;
 }

@@ -113,11 +113,11 @@ INLINE void load_displacements(Grain at, Batch batch, lanes* restrict here, slot
     load_slots(batch.partner_slot + at.row, at.count, there);
 }
 /* The values of empty slots are undefined, so they are replaced by zero; NaN times a zero force is NaN. */
-INLINE Displaced displaced(Grain at, Batch batch, Neighbours seen, const lanes* here, const slots* there,
+INLINE Displaced displaced(Grain at, Batch batch, Neighbours neighbour, const lanes* here, const slots* there,
                            int v) {
     Displaced b = {R(0), R(0)};
     if (at.replica->surface == SURFACE_RIGID) return b;
-    b.here = WHERE(seen.occupied, here[v], R(0));
+    b.here = WHERE(neighbour.occupied, here[v], R(0));
     b.there = gather(batch.displacement, there[v]);
     return b;
 }

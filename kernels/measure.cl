@@ -16,13 +16,14 @@ typedef struct {
    displacement and by effects. The displacement stores F b/2 in models of point forces. In sphere models it
    stores the integral of b over F: the contact's own part is added here, that of other contacts in
    surface_energy. */
-INLINE lanes elastic_energy(Grain at, int effects, Neighbours seen, Contacts c) {
+INLINE lanes elastic_energy(Grain at, int effects, Neighbours neighbour, Contacts c) {
     global const Replica* restrict replica = at.replica;
     lanes displaced = R(0.5) * c.elastic * c.displacement;
     if (replica->finite_contacts)
         displaced = replica->confinement ? (lanes)(R(0)) : own_work(at, c.elastic, c.radius);
-    lanes energy = c.elastic * (WHERE(seen.wall, R(0.4), R(0.2)) * c.overlap - c.displacement) + displaced;
-    if (effects) energy += WHERE(seen.wall, R(1), R(0.5)) * c.energy;
+    lanes energy =
+        c.elastic * (WHERE(neighbour.wall, R(0.4), R(0.2)) * c.overlap - c.displacement) + displaced;
+    if (effects) energy += WHERE(neighbour.wall, R(1), R(0.5)) * c.energy;
     return energy;
 }
 
@@ -35,15 +36,16 @@ INLINE lanes surface_energy(Grain at, EXCHANGE ContactTable* table) {
     return confined_work(at, confined(at, b, table));
 }
 
-INLINE void add_contact_sums(Grain at, Neighbours seen, Displaced b, Contacts c, ContactSums* restrict sums) {
+INLINE void add_contact_sums(Grain at, Neighbours neighbour, Displaced b, Contacts c,
+                             ContactSums* restrict sums) {
     const int effects = at.replica->effects;
-    const lanes share = WHERE(seen.wall, R(1), R(0.5)), force = c.elastic;
+    const lanes share = WHERE(neighbour.wall, R(1), R(0.5)), force = c.elastic;
     const lanes overlap = WHERE(c.touching, c.overlap, R(1));
     /* Overlap without the contact's own displacement, which increases with its force. */
-    const lanes without_own = b.here + b.there - (seen.distance - (at.now.radius + seen.radius));
-    sums->stored += elastic_energy(at, effects, seen, c);
+    const lanes without_own = b.here + b.there - (neighbour.distance - (at.now.radius + neighbour.radius));
+    sums->stored += elastic_energy(at, effects, neighbour, c);
     sums->deepest =
-        fmax(sums->deepest, WHERE(seen.occupied, c.overlap / (at.now.radius + seen.radius), R(0)));
+        fmax(sums->deepest, WHERE(neighbour.occupied, c.overlap / (at.now.radius + neighbour.radius), R(0)));
     sums->stiffness += R(1.5) * force / fmax(R(1.5) * without_own - R(0.5) * overlap, R(0.25) * overlap);
     sums->displaced += force * b.here * b.here / overlap;
     sums->pressed += share * force * overlap;
@@ -64,12 +66,12 @@ INLINE ContactSums measure_contacts(Grain at, Batch batch, MeasuredRows rows, EX
     load_memories(at, batch.memory, &kept);
     ContactSums sums = {R(0), R(0), R(0), R(0), R(0)};
     for (int v = 0; v < at.count; ++v) {
-        const Neighbours seen = see_neighbours(at, replica->effects, batch.motion, partner[v]);
+        const Neighbours neighbour = gather_neighbours(at, replica->effects, batch.motion, partner[v]);
         Memory memory = recall(replica, replica->effects, &kept, v);
-        const Displaced b = displaced(at, batch, seen, displacement, partner_slot, v);
-        const Contacts c = contact_forces(at, replica->effects, seen, b, R(0), &memory);
-        add_contact_sums(at, seen, b, c, &sums);
-        if (replica->finite_contacts) tabulate(c, seen.normal, v, table);
+        const Displaced b = displaced(at, batch, neighbour, displacement, partner_slot, v);
+        const Contacts c = contact_forces(at, replica->effects, neighbour, b, R(0), &memory);
+        add_contact_sums(at, neighbour, b, c, &sums);
+        if (replica->finite_contacts) tabulate(c, neighbour.normal, v, table);
         row[0][v] = c.force.x, row[1][v] = c.force.y, row[2][v] = c.force.z;
         row[3][v] = c.overlap, row[4][v] = c.arm;
     }

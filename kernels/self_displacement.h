@@ -11,11 +11,13 @@ typedef struct {
     lanes s0, s1, s2, s3, s4, scale;
 } SelfTerms;
 
-INLINE SelfTerms self_terms_there(Grain at, Neighbours seen) {
-    const SelfTerms terms = {
-        of_neighbours(at, seen, PLACE_OF(sphere_self[0])), of_neighbours(at, seen, PLACE_OF(sphere_self[1])),
-        of_neighbours(at, seen, PLACE_OF(sphere_self[2])), of_neighbours(at, seen, PLACE_OF(sphere_self[3])),
-        of_neighbours(at, seen, PLACE_OF(sphere_self[4])), of_neighbours(at, seen, PLACE_OF(sphere_scale))};
+INLINE SelfTerms self_terms_there(Grain at, Neighbours neighbour) {
+    const SelfTerms terms = {of_neighbours(at, neighbour, PLACE_OF(sphere_self[0])),
+                             of_neighbours(at, neighbour, PLACE_OF(sphere_self[1])),
+                             of_neighbours(at, neighbour, PLACE_OF(sphere_self[2])),
+                             of_neighbours(at, neighbour, PLACE_OF(sphere_self[3])),
+                             of_neighbours(at, neighbour, PLACE_OF(sphere_self[4])),
+                             of_neighbours(at, neighbour, PLACE_OF(sphere_scale))};
     return terms;
 }
 INLINE SelfTerms self_terms_here(Grain at) {
@@ -85,11 +87,11 @@ typedef struct {
 /* Solves overlap = given + compliance F(overlap), F = 4/3 E* sqrt(R* overlap) overlap, by Newton's method.
    The compliance depends weakly on the contact radius and is updated in each iteration. After three
    iterations the error is about 1e-6 of the overlap (compared with bisection in tests/kernels). */
-INLINE SelfConsistent self_consistent(Grain at, Neighbours seen, ComplianceRatio ratio, lanes given,
+INLINE SelfConsistent self_consistent(Grain at, Neighbours neighbour, ComplianceRatio ratio, lanes given,
                                       lanes reduced_radius, lanes modulus) {
     const lanes inverse_radius = R(1) / at.now.radius;
-    const lanes inverse_there = WHERE(seen.wall, R(0), R(1) / seen.radius);
-    const SelfTerms here = self_terms_here(at), there = self_terms_there(at, seen);
+    const lanes inverse_there = WHERE(neighbour.wall, R(0), R(1) / neighbour.radius);
+    const SelfTerms here = self_terms_here(at), there = self_terms_there(at, neighbour);
     SelfConsistent s;
     s.overlap = given;
     for (int step = 0; step < 3; ++step) {

@@ -38,19 +38,19 @@ typedef real own_constant;
 
 /* A pair constant of each lane's grain and neighbour. */
 #if SPECIES > 1
-#define OF_PAIRS(at, member, seen)                                \
+#define OF_PAIRS(at, member, neighbour)                           \
     gather((global const real*)(at).materials + PLACE_OF(member), \
-           AS_SLOTS((at).now.species) * MATERIAL_REALS + (seen).species)
+           AS_SLOTS((at).now.species) * MATERIAL_REALS + (neighbour).species)
 #else
-#define OF_PAIRS(at, member, seen) \
-    WHERE((seen).wall, (at).materials->member[WALL_COLUMN], (at).materials->member[0])
+#define OF_PAIRS(at, member, neighbour) \
+    WHERE((neighbour).wall, (at).materials->member[WALL_COLUMN], (at).materials->member[0])
 #endif
 
 /* A constant of the neighbours' own materials, given by its PLACE_OF; arbitrary for walls. */
-INLINE lanes of_neighbours(Grain at, Neighbours seen, int place) {
+INLINE lanes of_neighbours(Grain at, Neighbours neighbour, int place) {
     global const real* of_first = (global const real*)at.materials + place;
 #if SPECIES > 1
-    return gather(of_first, (seen.species & (MAX_SPECIES - 1)) * MATERIAL_REALS);
+    return gather(of_first, (neighbour.species & (MAX_SPECIES - 1)) * MATERIAL_REALS);
 #else
     return *of_first;
 #endif
@@ -67,25 +67,26 @@ typedef struct {
 
 /* Factor of m* for unequal densities: rho_i rho_j (c_i + c_j) / (rho_i c_i + rho_j c_j), with densities rho
    relative to the first species and cubes c of the radii. Exactly 1 for two grains of the first species. */
-INLINE lanes relative_mass(Grain at, Neighbours seen, lanes cubes, lanes cube, lanes cube_there) {
+INLINE lanes relative_mass(Grain at, Neighbours neighbour, lanes cubes, lanes cube, lanes cube_there) {
     const lanes here = OWN(at, relative_density);
-    const lanes there = of_neighbours(at, seen, PLACE_OF(relative_density));
+    const lanes there = of_neighbours(at, neighbour, PLACE_OF(relative_density));
     const lanes both = here * there * cubes / add_alike(here * cube, there * cube_there);
-    return WHERE(seen.wall, here, both);
+    return WHERE(neighbour.wall, here, both);
 }
 
-INLINE Reduced reduced(Grain at, Neighbours seen) {
+INLINE Reduced reduced(Grain at, Neighbours neighbour) {
     const lanes radius = at.now.radius, cube = radius * radius * radius;
-    const lanes sum = radius + seen.radius, product = radius * seen.radius;
-    const lanes cube_there = seen.radius * seen.radius * seen.radius;
+    const lanes sum = radius + neighbour.radius, product = radius * neighbour.radius;
+    const lanes cube_there = neighbour.radius * neighbour.radius * neighbour.radius;
     const lanes cubes = add_alike(cube, cube_there);
     const lanes part = product / (sum * cubes);
     const real density = at.materials->density * (R(4) / R(3)) * PI;
     Reduced r;
-    r.radius = WHERE(seen.wall, radius, part * cubes);
-    r.mass = WHERE(seen.wall, density * radius * radius * radius, density * (part * sum) * product * product);
+    r.radius = WHERE(neighbour.wall, radius, part * cubes);
+    r.mass =
+        WHERE(neighbour.wall, density * radius * radius * radius, density * (part * sum) * product * product);
 #if SPECIES > 1
-    r.mass *= relative_mass(at, seen, cubes, cube, cube_there);
+    r.mass *= relative_mass(at, neighbour, cubes, cube, cube_there);
 #endif
     return r;
 }

@@ -16,37 +16,38 @@ kernel void see_pairs(global const Replica* replicas, global const Material* mat
     const int species = SPECIES > 1 ? i & 1 : 0; /* of the first; the second of a pair is of the other */
     Moving now = {ZERO3, (lanes)(here), ZERO3, R(0), ZERO3, (lanes)((real)species)};
     const Grain at = grain_at(replicas, materials, 0, 0, 0, now);
-    Neighbours seen;
-    seen.wall = AS_MASK((slots)(0));
-    seen.radius = (lanes)(there);
-    seen.species = (slots)(1 - species);
-    const Reduced pair = reduced(at, seen);
+    Neighbours neighbour;
+    neighbour.wall = AS_MASK((slots)(0));
+    neighbour.radius = (lanes)(there);
+    neighbour.species = (slots)(1 - species);
+    const Reduced pair = reduced(at, neighbour);
     const ComplianceRatio ratio = {R(1), R(1)};
-    const SelfConsistent solved = self_consistent(at, seen, ratio, (lanes)(R(0.05) * (here + there)), pair.radius,
-                                                  OF_PAIRS(at, modulus, seen));
+    const SelfConsistent solved = self_consistent(at, neighbour, ratio, (lanes)(R(0.05) * (here + there)), pair.radius,
+                                                  OF_PAIRS(at, modulus, neighbour));
     out[3 * i] = LANE(real, pair.radius, i);
     out[3 * i + 1] = LANE(real, pair.mass, i);
     out[3 * i + 2] = LANE(real, solved.overlap, i);
 })";
 
 /// R*, m* and the elastic sphere's overlap for each pair of radii.
-std::vector<float> seen(const std::vector<float>& radii, KernelBuild kernels, const Replica& scene) {
+std::vector<float> pair_quantities(const std::vector<float>& radii, KernelBuild kernels,
+                                   const Replica& scene) {
     const Start start = jittered_lattice(scene, 8, 1);
     kernels.species = mcdem::materials_kept({scene});
     const auto constants =
         mcdem::device_replica<mcdem::f32::Replica>(start.replica, start.packing, {0, 8, 0});
     const auto kept = mcdem::device_materials<mcdem::f32::Material>({start.replica}, kernels.species);
     struct Radii;
-    struct Seen;
+    struct Quantities;
     mcdem::Field<mcdem::Constants> replica(device(), 1, sizeof constants);
     mcdem::Field<mcdem::Materials> material(device(), kept.size(), sizeof kept[0]);
     mcdem::Field<Radii> in(device(), radii.size(), sizeof(float));
-    mcdem::Field<Seen> out(device(), radii.size() / 2 * numbers, sizeof(float));
+    mcdem::Field<Quantities> out(device(), radii.size() / 2 * numbers, sizeof(float));
     replica.write(&constants);
     material.write(kept.data());
     in.write(radii.data());
     mcdem::Kernel<mcdem::Field<mcdem::Constants>, mcdem::Field<mcdem::Materials>, mcdem::Field<Radii>,
-                  mcdem::Field<Seen>>(device(), with_kernel(pair_kernel, kernels), "see_pairs", 1)(
+                  mcdem::Field<Quantities>>(device(), with_kernel(pair_kernel, kernels), "see_pairs", 1)(
         radii.size() / 2, replica, material, in, out);
     std::vector<float> found(radii.size() / 2 * numbers);
     out.read(found.data());
@@ -64,11 +65,11 @@ void expect_same_from_both_sides(const Replica& scene, double overlap) {
     }
     const KernelBuild kernels = build(Precision::single_precision);
     for (const KernelBuild& way : {kernels, other_way(kernels)}) {
-        const auto here = seen(radii, way, scene);
+        const auto here = pair_quantities(radii, way, scene);
         EXPECT_GT(here[2], overlap * (radii[0] + radii[1]));
         EXPECT_NEAR(here[0], double(radii[0]) * radii[1] / (radii[0] + radii[1]), 1e-6 * radii[0]);
         // With two species, each pair also occurs with the species exchanged.
-        const auto there = seen(swapped, way, scene);
+        const auto there = pair_quantities(swapped, way, scene);
         for (std::size_t pair = 0; pair < radii.size() / 2; ++pair)
             for (int k = 0; k < numbers; ++k)
                 EXPECT_EQ(here[pair * numbers + k],

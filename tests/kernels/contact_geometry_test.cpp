@@ -6,7 +6,7 @@ namespace {
 
 constexpr int slots = 16, written = 10;  // direction, distance, radius, wall, velocity, occupied
 
-struct Seen {
+struct NeighbourGeometry {
     Vec3 normal, velocity;
     double distance, radius;
     bool wall, occupied;
@@ -14,18 +14,18 @@ struct Seen {
 
 /// Evaluates grain 0 of `motion` (position, radius, velocity, excess compliance, spin, species), with the
 /// partners in its slots.
-std::vector<Seen> seen(const mcdem::f32::Replica& replica, std::vector<float> motion,
-                       std::vector<int> partner, const KernelBuild& kernels) {
+std::vector<NeighbourGeometry> neighbours_of(const mcdem::f32::Replica& replica, std::vector<float> motion,
+                                             std::vector<int> partner, const KernelBuild& kernels) {
     const cl::Program program = with_kernel(R"(
 kernel void see(global const Replica* replica, global const Motion* motion, global const int* partner,
                 global real* out) {
     const Grain at = grain_at(replica, 0, 0, 0, 0, load_motion(motion, (slots)(0)));
     for (int v = 0; v < SLOTS_HERE; ++v) {
         const int slot = SLOT(v);
-        const Neighbours seen = see_neighbours(at, replica->effects, motion, (slots)(partner[slot]));
-        const lanes wall = WHERE(seen.wall, R(1), R(0)), occupied = WHERE(seen.occupied, R(1), R(0));
-        const lanes all[] = {seen.normal.x, seen.normal.y, seen.normal.z, seen.distance, seen.radius, wall,
-                             seen.velocity.x, seen.velocity.y, seen.velocity.z, occupied};
+        const Neighbours neighbour = gather_neighbours(at, replica->effects, motion, (slots)(partner[slot]));
+        const lanes wall = WHERE(neighbour.wall, R(1), R(0)), occupied = WHERE(neighbour.occupied, R(1), R(0));
+        const lanes all[] = {neighbour.normal.x, neighbour.normal.y, neighbour.normal.z, neighbour.distance, neighbour.radius, wall,
+                             neighbour.velocity.x, neighbour.velocity.y, neighbour.velocity.z, occupied};
         for (int k = 0; k < 10; ++k) out[k * SLOTS + slot] = LANE(real, all[k], slot);
     }
 })",
@@ -47,7 +47,7 @@ kernel void see(global const Replica* replica, global const Motion* motion, glob
         device(), program, "see", kernels.lanes > 1 ? 1 : slots)(1, replicas, grains, partners, out);
     Eigen::Matrix<float, slots, written> numbers;
     out.read(numbers.data());
-    std::vector<Seen> all;
+    std::vector<NeighbourGeometry> all;
     for (int slot = 0; slot < slots; ++slot) {
         const Eigen::Matrix<double, 1, written> n = numbers.row(slot).cast<double>();
         all.push_back({{n[0], n[1], n[2]}, {n[6], n[7], n[8]}, n[3], n[4], n[5] == 1, n[9] == 1});
@@ -76,7 +76,8 @@ protected:
             add_grain(motion, position.back(), 0.01 + 0.001 * i, velocity.back());
         }
     }
-    static void expect(const Seen& found, const Vec3& apart, const Vec3& velocity, double radius, bool wall) {
+    static void expect(const NeighbourGeometry& found, const Vec3& apart, const Vec3& velocity, double radius,
+                       bool wall) {
         EXPECT_TRUE(found.occupied);
         EXPECT_EQ(found.wall, wall);
         EXPECT_NEAR(found.distance, apart.norm(), 1e-7);
@@ -91,7 +92,7 @@ protected:
 };
 
 TEST_P(ContactGeometry, IsCorrectForGrainsAndWallsOfABox) {
-    const auto found = seen(
+    const auto found = neighbours_of(
         replica, motion, {3, WALL_PARTNER(0), WALL_PARTNER(3), 5, WALL_PARTNER(4), WALL_PARTNER(5)}, kernels);
     const Vec3 at = position[0], still = -velocity[0];
     expect(found[0], position[3] - at, velocity[3] - velocity[0], 0.013, false);
@@ -106,7 +107,7 @@ TEST_P(ContactGeometry, IsCorrectForGrainsAndWallsOfABox) {
 
 TEST_P(ContactGeometry, UsesNearestImagesInAPeriodicContainer) {
     replica.container = CONTAINER_PERIODIC;
-    const auto found = seen(replica, motion, {1, 2, 3, 4, 5, 6, 7}, kernels);
+    const auto found = neighbours_of(replica, motion, {1, 2, 3, 4, 5, 6, 7}, kernels);
     for (std::size_t j = 1; j < 8; ++j) {
         Vec3 apart = position[j] - position[0];
         apart.x() -= 0.2 * std::round(apart.x() / 0.2);
@@ -118,7 +119,7 @@ TEST_P(ContactGeometry, UsesNearestImagesInAPeriodicContainer) {
 TEST_P(ContactGeometry, IsCorrectForTheWallOfACylinder) {
     replica.container = CONTAINER_CYLINDER;
     replica.wall_position[3] = 0.2F;
-    const auto found = seen(replica, motion, {WALL_PARTNER(0), WALL_PARTNER(4)}, kernels);
+    const auto found = neighbours_of(replica, motion, {WALL_PARTNER(0), WALL_PARTNER(4)}, kernels);
     const Vec3 axis(0.1, 0.1, position[0].z()), out = position[0] - axis;
     expect(found[0], axis + 0.1 * out.normalized() - position[0], -velocity[0], 0, true);
     expect(found[1], Vec3(0, 0, -position[0].z()), -velocity[0], 0, true);
@@ -134,7 +135,7 @@ TEST_P(ContactGeometry, IncludesTheMotionOfADeformedCell) {
         replica.deformation_rate[k] = rate * static_cast<float>(numbers[k]);
     }
     replica.wall_position[1] = replica.wall_position[3] = replica.wall_position[5] = 4;
-    const auto found = seen(replica, motion, {1, 2, 3}, kernels);
+    const auto found = neighbours_of(replica, motion, {1, 2, 3}, kernels);
     for (std::size_t j = 1; j < 4; ++j) {
         const Vec3 apart = f * (position[j] - position[0]);
         expect(found[j - 1], apart, velocity[j] - velocity[0] + rate * apart,

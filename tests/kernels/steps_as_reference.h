@@ -31,20 +31,22 @@ struct Differences {
 };
 
 /// Touching contacts, each once: with a wall, or from the grain of lower index.
-inline std::vector<Seen> listed_contacts(const StepReference& reference) {
-    std::vector<Seen> listed;
-    for (const Seen& seen : reference.neighbours())
-        if (seen.overlap > 0 && (mcdem::is_wall(seen.partner) || seen.partner > seen.grain))
-            listed.push_back(seen);
+inline std::vector<ReferenceContact> listed_contacts(const StepReference& reference) {
+    std::vector<ReferenceContact> listed;
+    for (const ReferenceContact& contact : reference.neighbours())
+        if (contact.overlap > 0 && (mcdem::is_wall(contact.partner) || contact.partner > contact.grain))
+            listed.push_back(contact);
     return listed;
 }
 
 inline void compare_contacts(const std::vector<mcdem::Contact>& contacts, const StepReference& reference,
                              double skim, Differences& d) {
-    std::map<std::pair<int, int>, Seen> expected;
+    std::map<std::pair<int, int>, ReferenceContact> expected;
     double largest = 0;
-    for (const Seen& seen : listed_contacts(reference)) largest = std::max(largest, seen.overlap);
-    for (const Seen& seen : listed_contacts(reference)) expected[{seen.grain, seen.partner}] = seen;
+    for (const ReferenceContact& contact : listed_contacts(reference))
+        largest = std::max(largest, contact.overlap);
+    for (const ReferenceContact& contact : listed_contacts(reference))
+        expected[{contact.grain, contact.partner}] = contact;
     std::vector<Vec3> force, point, overlap, force_0, point_0, overlap_0;
     for (const auto& contact : contacts) {
         const auto found = expected.find({contact.grain, contact.partner});
@@ -52,16 +54,16 @@ inline void compare_contacts(const std::vector<mcdem::Contact>& contacts, const 
             d.same_contacts &= contact.overlap < skim * largest;  // may be a contact within rounding errors
             continue;
         }
-        const Seen& seen = found->second;
+        const ReferenceContact& same = found->second;
         force.push_back(contact.force);
-        force_0.push_back(seen.force);
+        force_0.push_back(same.force);
         point.push_back(contact.point - reference.position[contact.grain]);
-        point_0.push_back(seen.arm * seen.direction);
+        point_0.push_back(same.arm * same.direction);
         overlap.push_back({contact.overlap, 0, 0});
-        overlap_0.push_back({seen.overlap, 0, 0});
+        overlap_0.push_back({same.overlap, 0, 0});
         expected.erase(found);
     }
-    for (const auto& [key, seen] : expected) d.same_contacts &= seen.overlap < skim * largest;
+    for (const auto& [key, contact] : expected) d.same_contacts &= contact.overlap < skim * largest;
     d.force = relative_difference(force, force_0);
     d.point = relative_difference(point, point_0);
     d.overlap = relative_difference(overlap, overlap_0);

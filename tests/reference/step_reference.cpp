@@ -137,11 +137,11 @@ void StepReference::list_neighbours() {
 }
 
 /// The part of the surface displacements that counts, by the geometric overlap (effect bulge_contacts).
-double StepReference::counted_bulges(double geometric, double bulges) const {
+double StepReference::counted_displacements(double geometric, double displacements) const {
     const double least = scene_.effects.bulge_contacts;
-    if (geometric <= 0) return least * bulges;
-    if (geometric >= std::abs(bulges)) return bulges;
-    return (least + (1 - least) * geometric / std::abs(bulges)) * bulges;
+    if (geometric <= 0) return least * displacements;
+    if (geometric >= std::abs(displacements)) return displacements;
+    return (least + (1 - least) * geometric / std::abs(displacements)) * displacements;
 }
 
 /// Overlap at which Hertz's law gives the force of the unloading branch; negative for a gap (plasticity).
@@ -153,135 +153,140 @@ double StepReference::plastic_overlap(double overlap, double& deepest) const {
     return deepest * (overlap - lasting) / (deepest - lasting);
 }
 
-Seen StepReference::see(int i, int partner, double elapsed, Memory& memory) const {
+ReferenceContact StepReference::contact_of(int i, int partner, double elapsed, Memory& memory) const {
     const bool wall = mcdem::is_wall(partner);
     const Body a = body(i), b = partner_of(i, partner);
-    const Joint joint = this->joint(a, b);
+    const PairConstants pair = pair_constants(a, b);
     const double distance = (b.position - a.position).norm();
-    const double bulge_there = wall ? 0 : this->memory[partner].at(i).predicted;
-    Seen seen;
-    seen.grain = i;
-    seen.partner = partner;
-    seen.direction = (b.position - a.position) / distance;
-    seen.bulge = memory.predicted;
+    const double displacement_there = wall ? 0 : this->memory[partner].at(i).predicted;
+    ReferenceContact contact;
+    contact.grain = i;
+    contact.partner = partner;
+    contact.direction = (b.position - a.position) / distance;
+    contact.displacement = memory.predicted;
     const double geometric = a.radius + b.radius - distance;
-    const double overlap =
-        plastic_overlap(geometric + counted_bulges(geometric, seen.bulge + bulge_there), memory.deepest);
+    const double overlap = plastic_overlap(
+        geometric + counted_displacements(geometric, contact.displacement + displacement_there),
+        memory.deepest);
     if (!(overlap > 0)) {
         memory.spring.setZero();
         memory.relaxed *= std::exp(-elapsed / scene_.effects.relaxation_time);
-        seen.arm = a.radius + seen.bulge;
-        attract(seen, overlap, joint);
-        return seen;
+        contact.arm = a.radius + contact.displacement;
+        attract(contact, overlap, pair);
+        return contact;
     }
     const bool self_term = law_[i].self[0] != 0;
-    seen.overlap = self_term ? self_consistent_overlap(overlap, a, b, joint) : overlap;
-    seen.contact_radius = std::sqrt(joint.radius * seen.overlap);
-    seen.elastic = 4.0 / 3 * joint.modulus * std::sqrt(joint.radius) * std::pow(seen.overlap, 1.5);
-    const double own = self_term ? self_compliance(seen.contact_radius, a) * seen.elastic : 0;
-    const double other = self_term ? self_compliance(seen.contact_radius, b) * seen.elastic : 0;
-    seen.bulge += own;
-    const double outer = a.radius + seen.bulge, outer_there = b.radius + bulge_there + other;
-    seen.arm = wall ? a.radius - geometric : (outer + distance - outer_there) / 2;
-    push(seen, a, b, joint, elapsed, memory);
-    attract(seen, seen.overlap, joint);
-    return seen;
+    contact.overlap = self_term ? self_consistent_overlap(overlap, a, b, pair) : overlap;
+    contact.contact_radius = std::sqrt(pair.radius * contact.overlap);
+    contact.elastic = 4.0 / 3 * pair.modulus * std::sqrt(pair.radius) * std::pow(contact.overlap, 1.5);
+    const double own = self_term ? self_compliance(contact.contact_radius, a) * contact.elastic : 0;
+    const double other = self_term ? self_compliance(contact.contact_radius, b) * contact.elastic : 0;
+    contact.displacement += own;
+    const double outer = a.radius + contact.displacement, outer_there = b.radius + displacement_there + other;
+    contact.arm = wall ? a.radius - geometric : (outer + distance - outer_there) / 2;
+    add_forces(contact, a, b, pair, elapsed, memory);
+    attract(contact, contact.overlap, pair);
+    return contact;
 }
 
 /// Forces and torque of a contact: normal force with damping, friction, rolling resistance.
-void StepReference::push(Seen& seen, const Body& a, const Body& b, const Joint& joint, double elapsed,
-                         Memory& memory) const {
+void StepReference::add_forces(ReferenceContact& contact, const Body& a, const Body& b,
+                               const PairConstants& pair, double elapsed, Memory& memory) const {
     const auto& effects = scene_.effects;
-    const Vec3& e = seen.direction;
+    const Vec3& e = contact.direction;
     const double distance = (b.position - a.position).norm();
-    const double x = effects.stiffening * seen.overlap / joint.radius;
-    seen.elastic *= x > 0 ? 1 + x : 1 / (1 - x);
-    seen.energy = seen.elastic * seen.overlap *
-                  (x > 0 ? (2.0 / 5 + 2.0 / 7 * x) / (1 + x) : (2.0 / 5 - 2.0 / 7 * x) / (1 - 3.0 / 7 * x));
-    const double held = std::max(0.0, seen.elastic - effects.viscoelasticity * memory.relaxed);
+    const double x = effects.stiffening * contact.overlap / pair.radius;
+    contact.elastic *= x > 0 ? 1 + x : 1 / (1 - x);
+    contact.energy =
+        contact.elastic * contact.overlap *
+        (x > 0 ? (2.0 / 5 + 2.0 / 7 * x) / (1 + x) : (2.0 / 5 - 2.0 / 7 * x) / (1 - 3.0 / 7 * x));
+    const double relaxed_force = std::max(0.0, contact.elastic - effects.viscoelasticity * memory.relaxed);
     const double left = std::exp(-elapsed / effects.relaxation_time);
-    memory.relaxed = seen.elastic * (1 - left) + memory.relaxed * left;
-    seen.energy -= 2.0 / 5 * (seen.elastic - held) * seen.overlap;
-    seen.energy *= 1 - effects.plasticity;
+    memory.relaxed = contact.elastic * (1 - left) + memory.relaxed * left;
+    contact.energy -= 2.0 / 5 * (contact.elastic - relaxed_force) * contact.overlap;
+    contact.energy *= 1 - effects.plasticity;
 
-    const Vec3 r_a = seen.arm * e, r_b = (seen.arm - distance) * e;
+    const Vec3 r_a = contact.arm * e, r_b = (contact.arm - distance) * e;
     // velocity of the other side's material at the contact point relative to this side's
     const Vec3 relative =
         (b.velocity + b.angular_velocity.cross(r_b)) - (a.velocity + a.angular_velocity.cross(r_a));
-    const double stiffness = 2 * joint.modulus * std::sqrt(joint.radius * seen.overlap);
+    const double stiffness = 2 * pair.modulus * std::sqrt(pair.radius * contact.overlap);
     const double approaching = -relative.dot(e);
-    const double normal = held + joint.damping * std::sqrt(stiffness * joint.mass) * approaching;
-    const double limit = joint.friction * std::max(normal, 0.0);
+    const double normal = relaxed_force + pair.damping * std::sqrt(stiffness * pair.mass) * approaching;
+    const double limit = pair.friction * std::max(normal, 0.0);
     const bool named_saturated = scene_.contact.friction_law == mcdem::FrictionLaw::saturated;
     const double h = effects.friction_history, mindlin = named_saturated ? h : 1 - h;
     const Vec3 sliding = across(relative, e);
     if (mindlin > 0)
-        seen.tangential = mindlin * mindlin_friction(limit, sliding, seen, joint, elapsed, memory.spring);
-    if (mindlin < 1) seen.tangential += (1 - mindlin) * saturated_friction(limit, sliding, joint);
-    seen.couple = couple(normal, a, b, joint);
-    seen.force = -normal * e + seen.tangential;
+        contact.tangential =
+            mindlin * mindlin_friction(limit, sliding, contact, pair, elapsed, memory.spring);
+    if (mindlin < 1) contact.tangential += (1 - mindlin) * saturated_friction(limit, sliding, pair);
+    contact.couple = couple(normal, a, b, pair);
+    contact.force = -normal * e + contact.tangential;
 }
 
 /// Adhesion: 2 pi w R* in contact, decreasing linearly in a gap.
-void StepReference::attract(Seen& seen, double overlap, const Joint& joint) const {
-    const double most = 2 * pi * scene_.effects.adhesion * joint.radius;
-    const double resolved = 20 * time_step_ * time_step_ * most / joint.mass;
-    const double range = std::min(std::max(0.01 * joint.radius, resolved), probe_gap_);
+void StepReference::attract(ReferenceContact& contact, double overlap, const PairConstants& pair) const {
+    const double pull_off_force = 2 * pi * scene_.effects.adhesion * pair.radius;
+    const double resolved = 20 * time_step_ * time_step_ * pull_off_force / pair.mass;
+    const double range = std::min(std::max(0.01 * pair.radius, resolved), probe_gap_);
     if (overlap <= -range) return;
-    const double gap = std::max(0.0, -overlap), force = most * (1 - gap / range);
-    seen.force += force * seen.direction;
-    seen.energy -= overlap > 0 ? most * (range / 2 + overlap) : most * std::pow(range - gap, 2) / (2 * range);
+    const double gap = std::max(0.0, -overlap), force = pull_off_force * (1 - gap / range);
+    contact.force += force * contact.direction;
+    contact.energy -= overlap > 0 ? pull_off_force * (range / 2 + overlap)
+                                  : pull_off_force * std::pow(range - gap, 2) / (2 * range);
 }
 
 /// Rolling resistance: torque against the relative angular velocity, viscous at small velocities.
-Vec3 StepReference::couple(double normal, const Body& a, const Body& b, const Joint& joint) const {
+Vec3 StepReference::couple(double normal, const Body& a, const Body& b, const PairConstants& pair) const {
     const auto inertia = [](const Body& body) { return 0.4 * body.mass * body.radius * body.radius; };
     const double reduced = b.radius == 0 ? inertia(a) : 1 / (1 / inertia(a) + 1 / inertia(b));
     const Vec3 relative = b.angular_velocity - a.angular_velocity;
-    const double smooth = std::hypot(relative.norm(), scene_.contact.sliding_velocity / joint.radius);
-    const double limit = scene_.effects.rolling_resistance * joint.radius * std::max(normal, 0.0);
+    const double smooth = std::hypot(relative.norm(), scene_.contact.sliding_velocity / pair.radius);
+    const double limit = scene_.effects.rolling_resistance * pair.radius * std::max(normal, 0.0);
     return std::min(limit / smooth, 0.1 * reduced / time_step_) * relative;
 }
 
-/// Viscous below `sliding_velocity`. A step removes at most a tenth of m* times the sliding velocity.
-Vec3 StepReference::saturated_friction(double limit, const Vec3& sliding, const Joint& joint) const {
+/// Viscous below `sliding_velocity`. A step removes at most a tenth of m* times the sliding
+/// velocity.
+Vec3 StepReference::saturated_friction(double limit, const Vec3& sliding, const PairConstants& pair) const {
     const double smooth_speed = std::hypot(sliding.norm(), scene_.contact.sliding_velocity);
-    return std::min(limit / smooth_speed, 0.1 * joint.mass / time_step_) * sliding;
+    return std::min(limit / smooth_speed, 0.1 * pair.mass / time_step_) * sliding;
 }
 
-Vec3 StepReference::mindlin_friction(double limit, const Vec3& sliding, const Seen& seen, const Joint& joint,
-                                     double elapsed, Vec3& spring) const {
-    const double stiffness = 8 * joint.shear_modulus * seen.contact_radius;
-    spring = across(spring + sliding * elapsed, seen.direction);
-    const Vec3 force = stiffness * spring + joint.damping * std::sqrt(stiffness * joint.mass) * sliding;
+Vec3 StepReference::mindlin_friction(double limit, const Vec3& sliding, const ReferenceContact& contact,
+                                     const PairConstants& pair, double elapsed, Vec3& spring) const {
+    const double stiffness = 8 * pair.shear_modulus * contact.contact_radius;
+    spring = across(spring + sliding * elapsed, contact.direction);
+    const Vec3 force = stiffness * spring + pair.damping * std::sqrt(stiffness * pair.mass) * sliding;
     if (force.norm() <= limit) return force;
     spring *= limit / force.norm();
     return force * (limit / force.norm());
 }
 
-std::vector<Seen> StepReference::neighbours() const {
-    std::vector<Seen> all;
+std::vector<ReferenceContact> StepReference::neighbours() const {
+    std::vector<ReferenceContact> all;
     for (std::size_t i = 0; i < memory.size(); ++i)
         for (const auto& [partner, remembered] : memory[i]) {
             Memory copy = remembered;
-            all.push_back(see(static_cast<int>(i), partner, 0, copy));
+            all.push_back(contact_of(static_cast<int>(i), partner, 0, copy));
         }
     return all;
 }
 
 /// Surface displacements by the forces of this step, extrapolated to the next:
 /// b(t + dt) = (10 b(t) - 5 b(t - 2 dt) + b(t - 4 dt)) / 6.
-void StepReference::displace_surfaces(const std::vector<std::vector<Seen>>& seen) {
-    for (std::size_t i = 0; i < seen.size(); ++i) {
+void StepReference::displace_surfaces(const std::vector<std::vector<ReferenceContact>>& contacts) {
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
         Grain grain{radius_[i], youngs_modulus_[i], material_[i].poisson_ratio, {}};
-        for (const Seen& c : seen[i])
+        for (const ReferenceContact& c : contacts[i])
             grain.slots.push_back({c.direction, c.arm, c.elastic, c.contact_radius});
         auto moved = surface_displacement(law_[i], grain);
         for (std::size_t c = 0; c < moved.size(); ++c) {
-            if (seen[i][c].elastic > 0)  // a contact's self displacement is part of its overlap
-                moved[c] -= self_displacement(law_[i], grain, grain.slots[c]) * seen[i][c].elastic /
+            if (contacts[i][c].elastic > 0)  // a contact's self displacement is part of its overlap
+                moved[c] -= self_displacement(law_[i], grain, grain.slots[c]) * contacts[i][c].elastic /
                             (grain.youngs_modulus * grain.radius);
-            Memory& m = memory[i].at(seen[i][c].partner);
+            Memory& m = memory[i].at(contacts[i][c].partner);
             m.predicted = (10 * moved[c] - 5 * m.past[1] + m.past[3]) / 6;
             m.past = {moved[c], m.past[0], m.past[1], m.past[2]};
         }
@@ -290,16 +295,16 @@ void StepReference::displace_surfaces(const std::vector<std::vector<Seen>>& seen
 
 void StepReference::step() {
     const double dt = time_step_;
-    std::vector<std::vector<Seen>> seen(position.size());
+    std::vector<std::vector<ReferenceContact>> contacts(position.size());
     for (std::size_t i = 0; i < position.size(); ++i)
         for (auto& [partner, remembered] : memory[i])
-            seen[i].push_back(see(static_cast<int>(i), partner, dt, remembered));
-    displace_surfaces(seen);
+            contacts[i].push_back(contact_of(static_cast<int>(i), partner, dt, remembered));
+    displace_surfaces(contacts);
     for (std::size_t i = 0; i < position.size(); ++i) {
         const double m = mass(static_cast<int>(i)), inertia = 0.4 * m * radius_[i] * radius_[i];
         Vec3 force = -drag_ * m * velocity[i], torque = Vec3::Zero();
         force.z() -= material_[i].excess_density / material_[i].density * m * 9.81;
-        for (const Seen& c : seen[i]) {
+        for (const ReferenceContact& c : contacts[i]) {
             force += c.force;
             torque += (c.arm * c.direction).cross(c.tangential) + c.couple;
         }
@@ -318,7 +323,7 @@ double StepReference::displacement_energy() const {
     std::vector<Grain> grains;
     for (std::size_t i = 0; i < position.size(); ++i)
         grains.push_back({radius_[i], youngs_modulus_[i], material_[i].poisson_ratio, {}});
-    for (const Seen& c : neighbours())
+    for (const ReferenceContact& c : neighbours())
         grains[c.grain].slots.push_back({c.direction, c.arm, c.elastic, c.contact_radius});
     for (std::size_t i = 0; i < grains.size(); ++i) {
         const Grain& whole = grains[i];
@@ -346,11 +351,12 @@ Totals StepReference::totals() const {
     }
     const bool finite = law_[0].self[0] != 0;
     if (finite) totals.elastic_energy += displacement_energy();
-    for (const Seen& c : neighbours()) {
+    for (const ReferenceContact& c : neighbours()) {
         const bool wall = mcdem::is_wall(c.partner);
         // energy of the contact (half for a pair of grains), minus the work of the grain's surface
         // displacement
-        totals.elastic_energy += (wall ? 1 : 0.5) * c.energy - (finite ? 1 : 0.5) * c.elastic * c.bulge;
+        totals.elastic_energy +=
+            (wall ? 1 : 0.5) * c.energy - (finite ? 1 : 0.5) * c.elastic * c.displacement;
         totals.deepest_overlap = std::max(totals.deepest_overlap,
                                           c.overlap / (radius_[c.grain] + (wall ? 0 : radius_[c.partner])));
         if (wall) totals.wall_force[static_cast<int>(mcdem::wall_of(c.partner))] -= c.force;

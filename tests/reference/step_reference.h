@@ -23,7 +23,7 @@ struct Memory {
 };
 
 /// A neighbour of a grain and its contact.
-struct Seen {
+struct ReferenceContact {
     int grain = 0;
     int partner = 0;                 ///< a grain, or mcdem::wall_partner
     Vec3 direction = Vec3::Zero();   ///< e, from the grain outward
@@ -31,7 +31,7 @@ struct Seen {
     double contact_radius = 0;       ///< a [m]
     double elastic = 0;              ///< Hertz force including stiffening [N]
     double energy = 0;               ///< stored in the contact [J]
-    double bulge = 0;                ///< displacement of the grain's own surface [m]
+    double displacement = 0;         ///< displacement of the grain's own surface [m]
     double arm = 0;                  ///< centre to contact point, or to the probed surface point [m]
     Vec3 tangential = Vec3::Zero();  ///< friction on the grain [N]
     Vec3 couple = Vec3::Zero();      ///< rolling resistance on the grain [N m]
@@ -62,7 +62,7 @@ public:
     void list_neighbours();
     void step();
     /// All neighbours of all grains in the present state, touching or not.
-    std::vector<Seen> neighbours() const;
+    std::vector<ReferenceContact> neighbours() const;
     Totals totals() const;
 
 private:
@@ -75,7 +75,7 @@ private:
         double curvature = 0;  ///< of a cylinder's wall, which is concave: negative [1/m]
     };
     /// Constants of a pair of bodies.
-    struct Joint {
+    struct PairConstants {
         double modulus, shear_modulus;  ///< E*, G* [Pa]
         double radius, mass;            ///< R* [m], m* [kg]
         double damping;                 ///< 2 sqrt(5/6) beta
@@ -83,23 +83,24 @@ private:
     };
     Body body(int grain) const;
     Body partner_of(int grain, int partner) const;
-    Joint joint(const Body& a, const Body& b) const;
+    PairConstants pair_constants(const Body& a, const Body& b) const;
     double poisson_ratio(const Body& body) const;
     std::array<double, 2> friction_and_restitution(const Body& a, const Body& b) const;
     double distance_to(int grain, int partner) const;
-    double self_consistent_overlap(double given, const Body& a, const Body& b, const Joint& joint) const;
+    double self_consistent_overlap(double given, const Body& a, const Body& b,
+                                   const PairConstants& pair) const;
     double self_compliance(double contact_radius, const Body& body) const;
-    double counted_bulges(double geometric, double bulges) const;
+    double counted_displacements(double geometric, double displacements) const;
     double plastic_overlap(double overlap, double& deepest) const;
-    Seen see(int grain, int partner, double elapsed, Memory& memory) const;
-    void push(Seen& seen, const Body& a, const Body& b, const Joint& joint, double elapsed,
-              Memory& memory) const;
-    void attract(Seen& seen, double overlap, const Joint& joint) const;
-    Vec3 couple(double normal, const Body& a, const Body& b, const Joint& joint) const;
-    Vec3 saturated_friction(double limit, const Vec3& sliding, const Joint& joint) const;
-    Vec3 mindlin_friction(double limit, const Vec3& sliding, const Seen& seen, const Joint& joint,
-                          double elapsed, Vec3& spring) const;
-    void displace_surfaces(const std::vector<std::vector<Seen>>& seen);
+    ReferenceContact contact_of(int grain, int partner, double elapsed, Memory& memory) const;
+    void add_forces(ReferenceContact& contact, const Body& a, const Body& b, const PairConstants& pair,
+                    double elapsed, Memory& memory) const;
+    void attract(ReferenceContact& contact, double overlap, const PairConstants& pair) const;
+    Vec3 couple(double normal, const Body& a, const Body& b, const PairConstants& pair) const;
+    Vec3 saturated_friction(double limit, const Vec3& sliding, const PairConstants& pair) const;
+    Vec3 mindlin_friction(double limit, const Vec3& sliding, const ReferenceContact& contact,
+                          const PairConstants& pair, double elapsed, Vec3& spring) const;
+    void displace_surfaces(const std::vector<std::vector<ReferenceContact>>& contact);
     double displacement_energy() const;  ///< [J]
 
     mcdem::Replica scene_;

@@ -19,23 +19,23 @@ double shear_modulus(double youngs_modulus, double poisson_ratio) {
 
 }  // namespace
 
-StepReference::Joint StepReference::joint(const Body& a, const Body& b) const {
+StepReference::PairConstants StepReference::pair_constants(const Body& a, const Body& b) const {
     const bool wall = b.radius == 0;
     const double nu = poisson_ratio(a), nu_there = poisson_ratio(b);
     const double e = a.youngs_modulus, e_there = b.youngs_modulus;
-    Joint joint;
-    joint.modulus = 1 / ((1 - nu * nu) / e + (1 - nu_there * nu_there) / e_there);
-    joint.shear_modulus =
+    PairConstants pair;
+    pair.modulus = 1 / ((1 - nu * nu) / e + (1 - nu_there * nu_there) / e_there);
+    pair.shear_modulus =
         1 / ((2 - nu) / shear_modulus(e, nu) + (2 - nu_there) / shear_modulus(e_there, nu_there));
-    joint.radius = wall ? a.radius : 1 / (1 / a.radius + 1 / b.radius);
+    pair.radius = wall ? a.radius : 1 / (1 / a.radius + 1 / b.radius);
     // Geometric mean of the two principal relative curvatures.
-    if (b.curvature != 0) joint.radius = 1 / std::sqrt((1 / a.radius + b.curvature) / a.radius);
-    joint.mass = wall ? a.mass : 1 / (1 / a.mass + 1 / b.mass);
+    if (b.curvature != 0) pair.radius = 1 / std::sqrt((1 / a.radius + b.curvature) / a.radius);
+    pair.mass = wall ? a.mass : 1 / (1 / a.mass + 1 / b.mass);
     const auto [friction, restitution] = friction_and_restitution(a, b);
     const double log_e = std::log(restitution);
-    joint.damping = 2 * std::sqrt(5.0 / 6) * -log_e / std::sqrt(log_e * log_e + pi * pi);
-    joint.friction = friction;
-    return joint;
+    pair.damping = 2 * std::sqrt(5.0 / 6) * -log_e / std::sqrt(log_e * log_e + pi * pi);
+    pair.friction = friction;
+    return pair;
 }
 
 double StepReference::poisson_ratio(const Body& body) const {
@@ -75,10 +75,10 @@ double StepReference::self_compliance(double contact_radius, const Body& body) c
 
 /// The smallest overlap = given + compliance(overlap) F(overlap), by bisection.
 double StepReference::self_consistent_overlap(double given, const Body& a, const Body& b,
-                                              const Joint& joint) const {
+                                              const PairConstants& pair) const {
     const auto excess = [&](double overlap) {
-        const double contact_radius = std::sqrt(joint.radius * overlap);
-        const double force = 4.0 / 3 * joint.modulus * contact_radius * overlap;
+        const double contact_radius = std::sqrt(pair.radius * overlap);
+        const double force = 4.0 / 3 * pair.modulus * contact_radius * overlap;
         const double compliance = self_compliance(contact_radius, a) + self_compliance(contact_radius, b);
         return given + compliance * force - overlap;
     };
