@@ -95,7 +95,7 @@ class Upwards(ImportCase):
         text = mapping_text(mapping_of(self.guess(files)))
         text = text.replace('\nx = "x [mm]"', '\nx = "-x [mm]"', 1).replace('origin_x = "0"', 'origin_x = "60"')
         self.expect_one(self.problems_of(lambda: self.imported(self.by_mapping(text))),
-                        "x_min must be named in [table.walls] where x is turned round")
+                        "x_min must be named in [table.walls] where x is reversed")
 
     def test_several_columns_have_signs_of_their_own(self):
         text = mapping_text(mapping_of(self.guess(self.write_lab())))

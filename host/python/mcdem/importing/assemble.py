@@ -147,7 +147,7 @@ class _Assembly:
         if len(wrong):
             i = wrong[0]
             frames.rows.problem_once("sides", other.row.iloc[i], f"the forces of a contact's two sides must be opposite, got sizes of "
-                                     f"{sizes[0][i]:.4g} and {sizes[1][i]:.4g} N, {apart[i]:.4g} N apart when one is turned round: leave one "
+                                     f"{sizes[0][i]:.4g} and {sizes[1][i]:.4g} N, {apart[i]:.4g} N apart when one is negated: leave one "
                                      'of the sides out of the table and write `sides = "one"`')
 
     def put_points(self, contacts, frames):

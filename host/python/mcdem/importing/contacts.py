@@ -58,7 +58,7 @@ class _Reader:
         if text in WALLS:
             axis = WALLS.index(text) // 2
             if axis < 2 and self.grains.sign[axis] < 0:
-                return NOBODY, f'{text} must be named in [table.walls] where {"xyz"[axis]} is turned round, {text} = "x_min" or another'
+                return NOBODY, f'{text} must be named in [table.walls] where {"xyz"[axis]} is reversed, {text} = "x_min" or another'
             return wall_partner(text), None
         return (grain, None) if grain >= 0 else (NOBODY, "")
 
@@ -88,20 +88,20 @@ class _Reader:
     def partners(self, wanted):
         """Grain and partner of each row, whether they were exchanged, and which rows are complete."""
         first, second = self.sides("grain", wanted.copy()), self.sides("partner", wanted.copy())
-        turned = first < 0  # Yade lists walls first
-        grain, partner = np.where(turned, second, first), np.where(turned, first, second)
+        swapped = first < 0  # Yade lists walls first
+        grain, partner = np.where(swapped, second, first), np.where(swapped, first, second)
         known = wanted & (first != NOBODY) & (second != NOBODY)
         wrong = known & ((grain < 0) | (grain == partner))
         for i in np.flatnonzero(wrong)[:20]:
             other = self.one_wall or quoted(self.rows.text(i, "partner"))
             self.rows.problem(i, f"a contact must have a grain and another, or a wall, got {quoted(self.rows.text(i, 'grain'))} and {other}")
-        return grain, partner, turned, known & ~wrong
+        return grain, partner, swapped, known & ~wrong
 
-    def forces(self, grain, partner, turned, at, known):
+    def forces(self, grain, partner, swapped, at, known):
         if not self.has_size:
             sign = self.map.force_factor() * (1 if self.map.word("force_on", "grain") == "grain" else -1)
             force = np.column_stack([self.rows.number(key, known) for key in ("fx", "fy", "fz")])
-            return np.where(turned, -sign, sign)[:, None] * force
+            return np.where(swapped, -sign, sign)[:, None] * force
         away = np.full((len(grain), 3), np.nan)  # from the partner
         for wall in range(6):
             away[partner == -1 - wall] = np.eye(3)[wall // 2] * (1 if wall % 2 == 0 else -1)
@@ -130,9 +130,9 @@ class _Reader:
         frame = np.searchsorted(starts, np.arange(len(self.rows)), "right") - 1
         # A frame without contacts counts in the order as well.
         wanted = np.nan_to_num(self.rows.number("where")) != 0 if "where" in self.rows else np.ones(len(self.rows), bool)
-        grain, partner, turned, known = self.partners(wanted)
+        grain, partner, swapped, known = self.partners(wanted)
         at = self.grains.frames_of(self.map.word("frames_by", "plate"), keys)[frame]
-        force = self.forces(grain, partner, turned, at, known)
+        force = self.forces(grain, partner, swapped, at, known)
         point = np.full((len(grain), 3), np.nan)
         if all(key in self.rows for key in "xyz"):
             point = np.column_stack([self.rows.number(key, known) for key in "xyz"]) * self.map.length_factor() - self.grains.origin

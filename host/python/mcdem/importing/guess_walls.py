@@ -11,14 +11,14 @@ NOTHING = {"", "-", "--", "?", "na", "n/a", "#n/a", "nan", "+nan", "-nan", "null
 WORDS = {"floor": "floor bottom boden base zmin zlo", "plate": "plate top lid piston deckel platte stempel zmax zhi",
          "x_min": "xmin left links xlo", "x_max": "xmax right rechts xhi", "y_min": "ymin front vorn ylo",
          "y_max": "ymax back rear hinten yhi"}
-TURNED = {"zmin": "plate", "zlo": "plate", "zmax": "floor", "zhi": "floor"}  # if z points downwards
+UPSIDE_DOWN = {"zmin": "plate", "zlo": "plate", "zmax": "floor", "zhi": "floor"}  # if z points downwards
 
 
 def _wall_word(text, downwards):
     """Walls with known names; others are determined by the direction of their forces."""
     base = column_name(text).base
-    if downwards and base in TURNED:
-        return TURNED[base]
+    if downwards and base in UPSIDE_DOWN:
+        return UPSIDE_DOWN[base]
     return next((wall for wall, words in WORDS.items() if base in words.split()), BY_DIRECTION)
 
 
