@@ -1,9 +1,13 @@
 """Simulated experiments by other codes: the effects of each that the diagnosed scene lacks."""
 import math
 
+import realities
+
 E, NU, RESTITUTION, FRICTION = 23.3e3, 0.5, 0.95, 0.03  # those of scenes/challenge.toml and the defaults
 STIFF_WALL = 50e6                                       # [Pa]
 ABSTAIN = ["unknown_effect"]
+DEEPER = ["plate.end=0.09"]                             # without the effect a force may be reached at a lower plate
+MORE_NEIGHBOURS = ["numerics.slots=32"]                 # a large grain between small ones has more than 16
 
 
 def liggghts(further="", tangential="history", tangential_damping="off", moduli=(E,), wall_youngs_modulus=STIFF_WALL,
@@ -89,6 +93,24 @@ CASES = {
     "lammps_stiff_walls": {
         "effect": "not in the library: walls 1.5 times as stiff as rigid ones", "expected": ABSTAIN,
         "reality": lammps(wall_stiffness=1.5)},
+    "lammps_cylinder": {"effect": "none, in a cylinder", "expected": ["no_gap"], "reality": lammps() | {"container": "cylinder"}},
+    "lammps_cylinder_friction": {
+        "effect": "friction: 0.10 for 0.03 between grains, in a cylinder", "expected": ["friction"],
+        "reality": lammps(friction=0.10) | {"container": "cylinder"}},
+    "lammps_two_sizes": {
+        "effect": "none, two sizes", "expected": ["no_gap"], "reality": lammps() | {"sizes": realities.two_sizes}, "set": MORE_NEIGHBOURS},
+    "lammps_two_sizes_friction": {
+        "effect": "friction: 0.10 for 0.03 between grains, two sizes", "expected": ["friction"],
+        "reality": lammps(friction=0.10) | {"sizes": realities.two_sizes}, "set": MORE_NEIGHBOURS},
+    "lammps_periodic": {"effect": "none, periodic sides", "expected": ["no_gap"], "reality": lammps() | {"container": "periodic"}},
+    "lammps_periodic_friction": {
+        "effect": "friction: 0.10 for 0.03 between grains, periodic sides", "expected": ["friction"],
+        "reality": lammps(friction=0.10) | {"container": "periodic"}},
+    "lammps_forces": {
+        "effect": "none, forces prescribed", "expected": ["no_gap"], "reality": lammps() | {"highest_force": 4, "slower": 5}, "set": DEEPER},
+    "lammps_forces_friction": {
+        "effect": "friction: 0.10 for 0.03 between grains, forces prescribed", "expected": ["friction"],
+        "reality": lammps(friction=0.10) | {"highest_force": 4, "slower": 5}, "set": DEEPER},
 }
 for seed, case in enumerate(CASES.values(), 1):  # of packing and noise
     case["seed"] = seed

@@ -15,10 +15,15 @@ STEPS = 170                        # between scans at that speed: a time step of
 TIME_STEP = STROKE / (SCANS * STEPS * SPEED)
 RELAXED = 12 * STEPS               # steps with a drag,
 BEGIN = 15 * STEPS                 # and without, at least, before the plate moves
+FORCE_SCANS = 10                   # on the way to the highest force, where forces are prescribed
+HOLD_SCANS, HOLD_TIME = 3, 0.3     # of the highest force [s]
+CONTROL_STIFFNESS = 2e4            # of the plate that keeps a force [N/m]
 GRAINS = 216
 DENSITY = 11.5                     # [kg/m3]
 GRAVITY = 9.81                     # [m/s2]
-WALLS = ["x_min", "x_max", "y_min", "y_max", "floor", "plate"]
+WIDTHS = {"box": BOX, "cylinder": 0.141, "periodic": 0.118}  # of the container, along x and y [m]
+SIDES = {"box": ["x_min", "x_max", "y_min", "y_max"], "cylinder": ["side"], "periodic": []}
+WALLS = [*SIDES["box"], "floor", "plate"]
 TIME_LIMIT = 1800                  # [s] a run
 PROGRAMS = {"liggghts": "liggghts", "lammps": "lmp", "yade": "yade"}
 
@@ -48,9 +53,11 @@ def run_command(command, folder, script):
     return done.stdout
 
 
-def write_data(path, rows, types=2, materials=None):
+def write_data(path, rows, types=2, materials=None, container="box"):
     """A data file for both codes, with diameter and centre of every grain. `materials`: atom types, default 1."""
-    lines = ["packing", "", f"{len(rows)} atoms", f"{types} atom types", "", f"-0.01 {BOX + 0.01} xlo xhi", f"-0.01 {BOX + 0.01} ylo yhi",
+    beyond = 0 if container == "periodic" else 0.01
+    low, high = -beyond, WIDTHS[container] + beyond
+    lines = ["packing", "", f"{len(rows)} atoms", f"{types} atom types", "", f"{low} {high} xlo xhi", f"{low} {high} ylo yhi",
              "-0.01 0.9 zlo zhi", "", "Atoms", ""]
     materials = materials or [1] * len(rows)
     lines += [f"{n} {m} {d:.10g} {DENSITY} {x:.10g} {y:.10g} {z:.10g}"
@@ -72,25 +79,45 @@ def read_dump(path):
     return frames
 
 
-def loose_grains(seed):
-    """Grains with truncated normal diameters on a wide lattice with random offsets."""
-    chance = random.Random(seed)
+def one_size(chance):
+    """Diameters of a truncated normal distribution."""
     sizes = []
     while len(sizes) < GRAINS:
         size = chance.gauss(21.490e-3, 1.199e-3)
         if 18.167e-3 <= size <= 24.561e-3:
             sizes.append(size)
-    side = 4
-    step = BOX / side
+    return sizes
+
+
+def two_sizes(chance):
+    """As many small grains as large ones, with about the volume of those of one size."""
+    return chance.sample([24.5e-3, 15e-3] * 118, 236)
+
+
+def loose_grains(seed, container, draw_sizes):
+    """Grains on a wide lattice about the container's axis, with random offsets."""
+    chance = random.Random(seed)
+    sizes = draw_sizes(chance)
+    side, middle = 4, WIDTHS[container] / 2
+    step = min(middle * 2, BOX) / side
     shake = (step - 25e-3) / 2
-    return [(size, *((step * (index + 0.5) + chance.uniform(-shake, shake)) for index in (n % side, n // side % side)),
-             step * (n // side**2 + 0.5)) for n, size in enumerate(sizes)]
+    places = [(x, y) for y in range(side) for x in range(side) if container != "cylinder" or {x, y} & {1, 2}]
+
+    def at(index):
+        return middle + step * (index - (side - 1) / 2) + chance.uniform(-shake, shake)
+
+    rows = []
+    for n, size in enumerate(sizes):
+        x, y = places[n % len(places)]
+        rows.append((size, at(x), at(y), step * (n // len(places) + 0.5)))
+    return rows
 
 
-def make_packing(folder, seed, modulus):
-    write_data(folder / "loose.data", loose_grains(seed))
-    execute("lmp", "packing.in", folder, {"size_x": BOX, "size_y": BOX, "start": START, "time_step": TIME_STEP,
-                                          "youngs_modulus": modulus})
+def make_packing(folder, seed, modulus, container, sizes):
+    width = WIDTHS[container]
+    write_data(folder / "loose.data", loose_grains(seed, container, sizes), container=container)
+    execute("lmp", "packing.in", folder, {"container": container, "size_x": width, "size_y": width, "start": START,
+                                          "time_step": TIME_STEP, "youngs_modulus": modulus})
     return [tuple(row[1:]) for row in max(read_dump(folder / "packing.dump").items())[1]]
 
 
@@ -118,10 +145,10 @@ def write_walls(folder, tilt):
 
 
 def top_forces(program, output):
-    """Upward force on the plate at each step: third column of the thermodynamic output; in LAMMPS the force on the
-    grains."""
+    """Upward force on the plate at each step: third column of the thermodynamic output, or of the lines "scan ..";
+    in LAMMPS the force on the grains."""
     sign = -1 if program == "lmp" else 1
-    rows = [line.split() for line in output.splitlines()]
+    rows = [line.removeprefix("scan ").split() for line in output.splitlines()]
     return {int(row[0]): sign * float(row[2]) for row in rows if len(row) == 3 and row[0].isdigit()}
 
 
@@ -132,21 +159,31 @@ def pairs_of(program, rows):
     return [(int(i) - 1, int(j) - 1, force) for i, j, *force in rows]
 
 
-def wall_contacts_of(program, rows):
+def walls_of(container):
+    return [*SIDES[container], "floor", "plate"]
+
+
+def wall_contacts_of(program, rows, container):
     if program == "lmp":
-        return [(int(row[0]) - 1, wall, row[2 + 4 * w:5 + 4 * w]) for row in rows for w, wall in enumerate(WALLS)
+        return [(int(row[0]) - 1, wall, row[2 + 4 * w:5 + 4 * w]) for row in rows for w, wall in enumerate(walls_of(container))
                 if row[1 + 4 * w] != 0]
     return [(int(i) - 1, WALLS[int(mesh)], force) for mesh, i, *force in rows]
 
 
-def point_of(grains, i, partner, height, tilt):
+def point_of(grains, i, partner, height, tilt, container):
     """Midway between the surfaces of two grains; for a wall, the foot of the perpendicular from the centre."""
     d, *centre = grains[i]
+    if partner == "side":
+        radius = WIDTHS[container] / 2
+        out = [c - radius for c in centre[:2]]
+        return [*(radius * (1 + o / math.hypot(*out)) for o in out), centre[2]]
     if isinstance(partner, str):
         axis = "xyz".index(partner[0]) if partner[1] == "_" else 2
         centre[axis] = {"x_min": 0, "y_min": 0, "floor": 0, "plate": plate_height(height, tilt, centre[0])}.get(partner, BOX)
         return centre
     other, *there = grains[partner]
+    if container == "periodic":
+        there[:2] = (a - WIDTHS[container] * round((a - b) / WIDTHS[container]) for a, b in zip(there, centre[:2]))
     distance = math.dist(centre, there)
     part = (d / 2 + distance - other / 2) / (2 * distance)
     return [a + part * (b - a) for a, b in zip(centre, there)]
@@ -165,20 +202,21 @@ def expect_all_contacts(scan, atoms, contacts, gravity):
     mean = sum(math.hypot(*force) for _, _, force in contacts) / len(contacts)
     worst = max(math.hypot(*force) for force in missing)
     if worst > 0.2 * mean:
-        raise Failed(f"scan {scan}: the contacts of a grain miss {worst} N of its force, with {mean} N a contact on average")
+        raise Failed(f"{scan}: the contacts of a grain miss {worst} N of its force, with {mean} N a contact on average")
 
 
-def scan_of(reality, n, top, atoms, pairs, walls):
-    program, tilt = reality["program"], reality["tilt"]
-    height = START - STROKE / SCANS * min(n, 2 * SCANS - n)
+def scan_of(reality, scan, top, atoms, pairs, walls):
+    """`scan`: height and phase, and what else is known of it."""
+    program, tilt, container = reality["program"], reality["tilt"], reality["container"]
+    height = scan["height"]
     grains = [tuple(row[1:5]) for row in atoms]
-    contacts = pairs_of(program, pairs) + wall_contacts_of(program, walls)
+    contacts = pairs_of(program, pairs) + wall_contacts_of(program, walls, container)
     plate = -sum(force[2] for _, partner, force in contacts if partner == "plate")
     if abs(plate - top) > 0.01 * abs(top) + 1e-4:
-        raise Failed(f"scan {n}: contacts push the plate with {plate} N, its gauge says {top} N")
-    expect_all_contacts(n, atoms, contacts, gravity_of(reality))
-    return {"height": height, "phase": "load" if n <= SCANS else "unload", "top": top, "grains": grains,
-            "contacts": [(i, j, point_of(grains, i, j, height, tilt), force) for i, j, force in contacts]}
+        raise Failed(f"plate at {height} m: contacts push the plate with {plate} N, its gauge says {top} N")
+    expect_all_contacts(f"plate at {height} m", atoms, contacts, gravity_of(reality))
+    return {**scan, "top": top, "grains": grains,
+            "contacts": [(i, j, point_of(grains, i, j, height, tilt, container), force) for i, j, force in contacts]}
 
 
 def gravity_of(reality):
@@ -197,6 +235,45 @@ def schedule(reality):
     return steps, begin, turn, back, back + SCANS * steps
 
 
+def stroke_scans(reality):
+    """By step, height and phase."""
+    steps, begin, _, back, _ = schedule(reality)
+    return {(begin if n <= SCANS else back - SCANS * steps) + n * steps: {
+        "height": START - STROKE / SCANS * min(n, 2 * SCANS - n), "phase": "load" if n <= SCANS else "unload"} for n in range(2 * SCANS + 1)}
+
+
+def force_stages(reality):
+    """Forces of the scans on the way down and on the way up; the highest is kept between."""
+    levels = [reality["highest_force"] * k / FORCE_SCANS for k in range(1, FORCE_SCANS + 1)]
+    return levels, levels[-2::-1]
+
+
+def force_variables(reality):
+    """Variables of forces.in; the first scan is the packing at rest."""
+    down, up = force_stages(reality)
+    forces, ways = [0, *down, *[down[-1]] * HOLD_SCANS, *up], [0, *[1] * len(down), *[0] * HOLD_SCANS, *[-1] * len(up)]
+    return {"forces": " ".join(map(str, forces)), "ways": " ".join(map(str, ways)),
+            "held": round(HOLD_TIME / HOLD_SCANS / TIME_STEP), "stiffness": CONTROL_STIFFNESS}
+
+
+def force_scans(reality, output):
+    """By step, height, phase, time and prescribed force."""
+    lines = [line.split()[1:] for line in output.splitlines() if line.startswith("scan ")]
+    settings = force_variables(reality)
+    return {int(step): {"height": START + float(moved), "phase": "unload" if way == "-1" else "load", "time": int(step) * TIME_STEP,
+                        "set": float(force) or None}
+            for (step, moved, _), force, way in zip(lines, settings["forces"].split(), settings["ways"].split())}
+
+
+def programme_of(reality):
+    """The stages of forces, as in a scene."""
+    if not reality["highest_force"]:
+        return ""
+    down, up = force_stages(reality)
+    return (f"[[programme]]\nforce = {down[-1]}\nscan_at = {down}\n[[programme]]\nstage = \"hold\"\nkeep = \"force\"\ntime = {HOLD_TIME}\n"
+            f"scans = {HOLD_SCANS}\n[[programme]]\nforce = {up[-1]}\nscan_at = {up}\n")
+
+
 # Further keys of an experiment, in addition to those of its input script.
 DEFAULTS = {
     "slower": 1,       # factor by which the plate is slower than SPEED
@@ -205,7 +282,10 @@ DEFAULTS = {
     "weight": 1,       # relative to grains of DENSITY
     "lean": 0,         # inclination of the box along x
     "types": 2,        # number of atom types in the packing's file
-    "materials": None  # number of grain materials, assigned at random; types 1, 2, ..
+    "materials": None,  # number of grain materials, assigned at random; types 1, 2, ..
+    "container": "box",  # or cylinder or periodic, by LAMMPS only
+    "highest_force": None,  # where forces are prescribed [N], by LAMMPS only
+    "sizes": one_size   # function that draws the diameters
 }
 
 
@@ -223,7 +303,8 @@ def simulate(folder, seed, reality):
     point, force on grain)."""
     folder.mkdir(parents=True, exist_ok=True)
     reality = {**DEFAULTS, **reality}
-    packing = make_packing(folder, seed, 23.3e3)
+    container = reality["container"]
+    packing = make_packing(folder, seed, 23.3e3, container, reality["sizes"])
     chance = random.Random(seed)
     materials = [chance.randint(1, reality["materials"]) for _ in packing] if reality["materials"] else None
     steps, begin, turn, back, end = schedule(reality)
@@ -234,14 +315,21 @@ def simulate(folder, seed, reality):
     if reality["program"] == "yade":
         dumped = by_yade(folder, reality["input"], packing, materials, {**variables, "gravity": pull})
     else:
-        write_data(folder / "packing.data", packing, reality["types"], materials)
+        write_data(folder / "packing.data", packing, reality["types"], materials, container)
         write_walls(folder, reality["tilt"])
+        motion = {"motion": "stroke.in"}
+        if reality["highest_force"]:
+            motion = {"motion": "forces.in", **force_variables(reality)}
+            for name in ("grains", "pairs", "walls"):  # they are appended to
+                (folder / f"{name}.dump").unlink(missing_ok=True)
         output = execute(reality["program"], reality["input"], folder, {
-            **variables, "size_x": BOX, "size_y": BOX, "types": reality["types"], "gravity": math.hypot(*pull), "gravity_x": pull[0],
-            "gravity_z": pull[2]})
+            **variables, **motion, "scripts": HERE, "container": container,
+            "size_x": WIDTHS[container], "size_y": WIDTHS[container], "types": reality["types"],
+            "gravity": math.hypot(*pull), "gravity_x": pull[0], "gravity_z": pull[2],
+            "wall_columns": " ".join(f"f_{wall}[{k}]" for wall in walls_of(container) for k in (1, 2, 3, 4))})
         dumped = top_forces(reality["program"], output), *(read_dump(folder / f"{name}.dump") for name in ("grains", "pairs", "walls"))
+    scans = force_scans(reality, output) if reality["highest_force"] else stroke_scans(reality)
     try:
-        return [scan_of(reality, n, *(table[(begin if n <= SCANS else back - SCANS * steps) + n * steps]
-                                      for table in dumped)) for n in range(2 * SCANS + 1)]
+        return [scan_of(reality, scan, *(table[step] for table in dumped)) for step, scan in scans.items()]
     except KeyError as step:
         raise Failed(f"{folder}: nothing was dumped at step {step}") from step
