@@ -71,6 +71,12 @@ std::vector<Trial> library_trials(const LibraryPlan& plan) {
     return trials;
 }
 
+std::string probe_of_trial(const LibraryPlan& plan, std::size_t trial) {
+    const std::size_t baseline = plan.specimens.size() * static_cast<std::size_t>(plan.replicates);
+    if (trial < baseline) return {};
+    return probes_of(plan).at((trial - baseline) / (2 * paired_trials(plan).size())).name;
+}
+
 Library build_library(Device& device, const Question& question, const LibraryPlan& plan,
                       const ObservationStore& store, const TrialOptions& options) {
     Library library;

@@ -30,6 +30,9 @@ std::vector<Trial> baseline_trials(const LibraryPlan& plan);
 /// All trials of a library: those of the baseline, then some of them with every effect and nuisance.
 std::vector<Trial> library_trials(const LibraryPlan& plan);
 
+/// Name of the effect or nuisance of a trial of the library; empty for the baseline.
+std::string probe_of_trial(const LibraryPlan& plan, std::size_t trial);
+
 Library build_library(Device& device, const Question& question, const LibraryPlan& plan,
                       const ObservationStore& store, const TrialOptions& options);
 

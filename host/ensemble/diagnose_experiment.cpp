@@ -107,7 +107,7 @@ private:
             take_baseline(evidence, simulated_baseline("baseline"));
             expect_alike_loads(evidence.library, evidence.baseline, *options_.library);
         } else {
-            evidence.library = build_library(device_, question_, plan_, store_, stage(options_, "library"));
+            evidence.library = build_library(device_, question_, plan_, store_, library_stage("library"));
             library_is_own_ = true;
             take_baseline(evidence, evidence.library.baseline);
             if (options_.library && !write_library(*options_.library, evidence.library))
@@ -128,7 +128,16 @@ private:
     }
 
     Eigen::MatrixXd simulated_baseline(const std::string& name) {
-        return observe_trials(device_, question_, baseline_trials(plan_), store_, stage(options_, name));
+        return observe_trials(device_, question_, baseline_trials(plan_), store_, library_stage(name));
+    }
+
+    /// A stage of trials of the library, whose first ones are the baseline.
+    TrialOptions library_stage(const std::string& name) {
+        TrialOptions trial_options = stage(options_, name);
+        trial_options.on_failure = [this](std::size_t trial, const Failure& failure) {
+            causes_.emplace(probe_of_trial(plan_, trial), failure.cause);
+        };
+        return trial_options;
     }
 
     /// Runs of the unchanged scene, one packing after the other.
@@ -220,7 +229,7 @@ private:
     }
 
     void note_failures(Evidence& evidence) {
-        for (const std::string& note : leave_out_failures(evidence)) {
+        for (const std::string& note : leave_out_failures(evidence, causes_)) {
             options_.on_note(note);
             choice_.hindered.push_back(note);
         }
@@ -323,61 +332,10 @@ private:
     LibraryPlan plan_;
     bool library_is_own_ = false;  ///< computed on the experiment's own packings
     std::vector<Refinement> refinements_;
+    FailureCauses causes_;
 };
 
 }  // namespace
-
-Packing start_packing(const Experiment& experiment) {
-    const Recording& recording = experiment.recording;
-    if (recording.scans.empty() || recording.scans.front().position.empty())
-        throw InputError(
-            fmt::format("{}: grains.csv must have the positions of frame 0, from which simulations start",
-                        experiment.name));
-    return {recording.scans.front().position, recording.diameter};
-}
-
-Model model_of(const Scene& scene, const Experiment& experiment) {
-    const Recording& recording = experiment.recording;
-    if (scene.replicas.front().box.shape != recording.box.shape)
-        throw InputError(fmt::format("{}: container.shape must be {}, as in {}: others cannot be diagnosed",
-                                     scene.name, name(recording.box.shape), experiment.name));
-    Model model;
-    model.replica = scene.replicas.front();
-    model.replica.box = recording.box;
-    model.instrument.stated = experiment.measurement;
-    model.experiment_speed = experiment.plate_speed;
-    model.mean_diameter = std::reduce(recording.diameter.begin(), recording.diameter.end()) /
-                          static_cast<double>(std::max<std::size_t>(1, recording.diameter.size()));
-    double lowest = recording.plate_start;
-    for (const Scan& scan : recording.scans) lowest = std::min(lowest, scan.plate_z);
-    model.replica.programme = programme_of(recording.parameters);
-    if (model.replica.programme.empty() && !scene.replicas.front().programme.empty())
-        throw InputError(fmt::format(
-            "{}: experiment.toml must state the [[programme]] that it was taken through, and plate.csv its "
-            "time_s, for a scene that has one",
-            experiment.name));
-    // A scan before the stroke is not one of its levels, even if the plate's zero is slightly wrong.
-    const double begun = 0.02 * (recording.plate_start - lowest);
-    int loading = 0, cycles = 1;
-    for (const Scan& scan : recording.scans) {
-        loading += scan.cycle == 0 && scan.phase == Phase::load && recording.displacement(scan) > begun;
-        cycles = std::max(cycles, scan.cycle + 1);
-    }
-    if (loading == 0 || !(lowest < recording.plate_start))
-        throw InputError(experiment.name + ": plate.csv must have loading frames below plate.start");
-    model.replica.plate.start = recording.plate_start;
-    model.replica.protocol.scan_at_start = true;
-    if (!model.replica.programme
-             .empty()) {  // under a prescribed force the plate may move as far as the scene allows
-        model.replica.plate.end = std::min(scene.replicas.front().plate.end, lowest);
-        return model;
-    }
-    model.replica.plate.end = lowest;
-    model.replica.protocol.scans_per_stroke = loading;
-    model.replica.protocol.cycles =
-        std::min(cycles, std::max(model.replica.protocol.cycles, model.replica.protocol.discard + 1));
-    return model;
-}
 
 Diagnosis diagnose_experiment(Device& device, const Scene& scene, const std::vector<Experiment>& experiments,
                               const DiagnoseOptions& options) {

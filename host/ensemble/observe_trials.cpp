@@ -190,7 +190,9 @@ private:
             if (has_left_cells(jobs[j], batch.replicas[j], recordings[j])) simulation.end(r);
         };
         const auto note = [&](int r, const Failure& failure) {
-            recordings[static_cast<std::size_t>(r)].failure = failure;
+            const auto j = static_cast<std::size_t>(r);
+            recordings[j].failure = failure;
+            options_.on_failure(jobs[j].trials.front(), failure);
         };
         while (simulation.advance(keep, note)) {
             options_.on_progress(from + (to - from) * simulation.progress());

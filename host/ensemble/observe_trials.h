@@ -35,6 +35,8 @@ struct Question {
 struct TrialOptions {
     std::function<void(double fraction)> on_progress = [](double) {};
     std::function<bool()> stop_wanted = [] { return false; };
+    /// Receives the index of a trial and why its simulation failed. Results in the store have no reason.
+    std::function<void(std::size_t, const Failure&)> on_failure = [](std::size_t, const Failure&) {};
 };
 
 /// Row: trial, column: cell; NaN if a simulation failed. Trials that differ only in the instrument share a

@@ -74,6 +74,21 @@ TEST(Failures, ReplicatesWithoutNumbersAreExcluded) {
                 ThrowsMessage<InputError>(HasSubstr("runs of the scene")));
 }
 
+TEST(Failures, ReasonsAreStatedWhereTheyAreKnown) {
+    World w;
+    w.evidence.library.effects[1].linear.setConstant(not_available);
+    w.evidence.library.baseline.row(3).setConstant(not_available);
+    w.evidence.baseline.row(3).setConstant(not_available);
+    const FailureCauses causes{{"", "too many neighbours"}, {"friction", "the force is not reached"}};
+    EXPECT_THAT(leave_out_failures(w.evidence, causes),
+                ElementsAre("replicates: 1 of 16 runs of the scene as it stands failed and are left out: too "
+                            "many neighbours",
+                            "friction: its runs failed (the force is not reached), so it cannot be tested"));
+    w.evidence.library.baseline.topRows(8).setConstant(not_available);
+    EXPECT_THAT([&] { leave_out_failures(w.evidence, causes); },
+                ThrowsMessage<InputError>(HasSubstr("failed: too many neighbours; try `mcdem run`")));
+}
+
 // Two experiments drawn from the same noise, and an effect that no observable shows.
 TEST(Failures, AnEffectThatNoObservableShowsHasNoAmplitude) {
     World w;

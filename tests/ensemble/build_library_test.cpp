@@ -16,6 +16,7 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::StartsWith;
 using ::testing::ThrowsMessage;
+using ::testing::UnorderedElementsAre;
 
 TEST(BaselineTrials, HaveDifferentSeeds) {
     const SmallTrials small;
@@ -95,6 +96,27 @@ TEST(BuildLibrary, UsesSeveralPackings) {
     EXPECT_EQ(library.effects[0].pairs(), 2);  // one of each packing
     EXPECT_TRUE(library.nuisances.empty());
     EXPECT_FALSE(same(library.baseline.row(0), library.baseline.row(2)));
+}
+
+TEST(BuildLibrary, FailuresHaveAReasonAndBelongToAnEffect) {
+    const SmallTrials small;
+    Device device;
+    LibraryPlan plan;
+    plan.specimens = {{small.model, small.packing}};
+    plan.specimens[0].model.replica.numerics.overlap_limit = 1e-4;
+    plan.replicates = 2;
+    plan.pairs = 1;
+    plan.candidates = {"friction"};
+    plan.nuisances = nuisances(small.model, {});
+    std::vector<std::string> failed;
+    TrialOptions options;
+    options.on_failure = [&](std::size_t trial, const Failure& failure) {
+        failed.push_back(probe_of_trial(plan, trial));
+        EXPECT_THAT(failure.cause, HasSubstr("overlap"));
+    };
+    build_library(device, small.question, plan, small.store, options);
+    // The zero of strain is the instrument's: its trials look at the simulations of the baseline.
+    EXPECT_THAT(failed, UnorderedElementsAre("", "", "friction", "friction", "modulus", "modulus"));
 }
 
 TEST(ChooseCandidates, AllThatTheModelAllows) {

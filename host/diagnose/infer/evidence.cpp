@@ -57,7 +57,12 @@ std::vector<Eigen::Index> rows_with_numbers(const Eigen::MatrixXd& rows) {
     return list;
 }
 
-void leave_out_replicates(Evidence& evidence, std::vector<std::string>& notes) {
+std::string cause_of(const FailureCauses& causes, const std::string& name, const std::string& otherwise) {
+    const auto cause = causes.find(name);
+    return cause == causes.end() ? otherwise : cause->second;
+}
+
+void leave_out_replicates(Evidence& evidence, const FailureCauses& causes, std::vector<std::string>& notes) {
     Library& library = evidence.library;
     const auto kept = rows_with_numbers(library.baseline), own = rows_with_numbers(evidence.baseline);
     const auto failed = std::max(static_cast<std::size_t>(library.baseline.rows()) - kept.size(),
@@ -66,10 +71,14 @@ void leave_out_replicates(Evidence& evidence, std::vector<std::string>& notes) {
     const std::string what = fmt::format("{} of {} runs of the scene as it stands failed", failed,
                                          std::max(library.baseline.rows(), evidence.baseline.rows()));
     if (kept.size() < min_replicates || own.empty())
-        throw InputError(what +
-                         ": the packing runs away, or the scene cannot follow the experiment's plate; try "
-                         "`mcdem run` of the scene with plate.start and plate.end of the experiment");
-    notes.push_back("replicates: " + what + " and are left out");
+        throw InputError(fmt::format(
+            "{}: {}; try `mcdem run` of the scene with plate.start and plate.end of the "
+            "experiment",
+            what,
+            cause_of(causes, "",
+                     "the packing runs away, or the scene cannot follow the experiment's plate")));
+    notes.push_back("replicates: " + what + " and are left out" +
+                    (causes.contains("") ? ": " + causes.at("") : ""));
     library.baseline = Eigen::MatrixXd(library.baseline(kept, Eigen::all));
     std::vector<int> packing;
     for (const auto r : kept) packing.push_back(library.packing[static_cast<std::size_t>(r)]);
@@ -80,7 +89,8 @@ void leave_out_replicates(Evidence& evidence, std::vector<std::string>& notes) {
 /// Removes entries of `wanted` whose signature lacks most of the cells that all others have.
 template <class Wanted>
 void leave_out_signatures(const Evidence& evidence, const std::vector<Signature>& signatures,
-                          std::vector<Wanted>& wanted, std::vector<std::string>& notes) {
+                          const FailureCauses& causes, std::vector<Wanted>& wanted,
+                          std::vector<std::string>& notes) {
     const Eigen::Array<bool, Eigen::Dynamic, 1> known =
         evidence.library.baseline.array().isFinite().colwise().all().transpose() &&
         evidence.observed.array().isFinite();
@@ -88,7 +98,8 @@ void leave_out_signatures(const Evidence& evidence, const std::vector<Signature>
         const Signature& s = find(signatures, w.name);
         const auto has = (known && s.linear.array().isFinite() && s.curvature.array().isFinite()).count();
         if (static_cast<double>(has) >= enough_cells * static_cast<double>(known.count())) return false;
-        notes.push_back(w.name + ": its runs failed (the packing runs away with it), so it cannot be tested");
+        notes.push_back(fmt::format("{}: its runs failed ({}), so it cannot be tested", w.name,
+                                    cause_of(causes, w.name, "the packing runs away with it")));
         return true;
     });
 }
@@ -139,11 +150,11 @@ void take_means(Evidence& evidence) {
     }
 }
 
-std::vector<std::string> leave_out_failures(Evidence& evidence) {
+std::vector<std::string> leave_out_failures(Evidence& evidence, const FailureCauses& causes) {
     std::vector<std::string> notes;
-    leave_out_replicates(evidence, notes);
-    leave_out_signatures(evidence, evidence.library.effects, evidence.candidates, notes);
-    leave_out_signatures(evidence, evidence.library.nuisances, evidence.nuisances, notes);
+    leave_out_replicates(evidence, causes, notes);
+    leave_out_signatures(evidence, evidence.library.effects, causes, evidence.candidates, notes);
+    leave_out_signatures(evidence, evidence.library.nuisances, causes, evidence.nuisances, notes);
     return notes;
 }
 

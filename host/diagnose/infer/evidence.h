@@ -2,6 +2,7 @@
 #pragma once
 #include <algorithm>
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -50,10 +51,13 @@ void take_means(Evidence& evidence);
 /// Mean over packings whose rows are stored one packing after the other.
 Eigen::MatrixXd mean_over_packings(const Eigen::MatrixXd& rows, int packings);
 
+/// Why simulations failed, by candidate or nuisance; empty name: the unchanged scene.
+using FailureCauses = std::map<std::string, std::string>;
+
 /// Leaves out the results of failed simulations: replicates without any value, candidates and nuisances
 /// without a signature in most of the otherwise known cells. Returns what was left out and why. Throws
 /// InputError if too few replicates remain.
-std::vector<std::string> leave_out_failures(Evidence& evidence);
+std::vector<std::string> leave_out_failures(Evidence& evidence, const FailureCauses& causes = {});
 
 /// Group of the replicates of the experiment's own packing if the library is made on other packings.
 constexpr int own_packing = -1;
