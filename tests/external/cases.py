@@ -111,6 +111,14 @@ CASES = {
     "lammps_forces_friction": {
         "effect": "friction: 0.10 for 0.03 between grains, forces prescribed", "expected": ["friction"],
         "reality": lammps(friction=0.10) | {"highest_force": 4, "slower": 5}, "set": DEEPER},
+    "liggghts_two_sizes": {
+        "effect": "none, two sizes", "expected": ["no_gap"], "reality": liggghts() | {"sizes": realities.two_sizes}, "set": MORE_NEIGHBOURS},
+    "liggghts_two_sizes_friction": {
+        "effect": "friction: 0.10 for 0.03 between grains, two sizes", "expected": ["friction"],
+        "reality": liggghts(friction=0.10) | {"sizes": realities.two_sizes}, "set": MORE_NEIGHBOURS},
+    "lammps_cylinder_wall_friction": {
+        "effect": "wall_friction: 0.06 for 0.03, in a cylinder", "expected": ["wall_friction"],
+        "reality": lammps(wall_friction=0.06) | {"container": "cylinder"}},
 }
 for seed, case in enumerate(CASES.values(), 1):  # of packing and noise
     case["seed"] = seed
