@@ -79,9 +79,17 @@ TEST(Decision, ReportsNoGap) {
     EXPECT_EQ(decide(f, limits).verdict, Verdict::no_gap);
     f.p_value = 0.99 * limits.false_alarm;
     EXPECT_EQ(decide(f, limits).verdict, Verdict::effect);
+}
+
+// No effect gains anything, or the runs of all of them failed.
+TEST(Decision, AGapWithoutAProposalIsUnknown) {
+    Findings f = clear_case();
+    const Limits limits;
     f.proposals.clear();
-    EXPECT_EQ(decide(f, limits).verdict, Verdict::no_gap);
+    EXPECT_EQ(decide(f, limits).verdict, Verdict::unknown_effect);
     EXPECT_EQ(decide(f, limits).proposal, -1);
+    f.p_value = limits.false_alarm;
+    EXPECT_EQ(decide(f, limits).verdict, Verdict::no_gap);
 }
 
 TEST(Decision, GroupContainsEffectsWithinTheMarginOfTheGain) {

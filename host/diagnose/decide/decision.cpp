@@ -169,7 +169,13 @@ Decision chosen(const Findings& findings, int single, std::vector<std::size_t> g
 
 Decision decide(const Findings& findings, const Limits& limits) {
     const int single = best_single(findings);
-    if (single < 0) return {Verdict::no_gap, -1, {}, std::vector<double>(findings.gain.size(), 0.0)};
+    if (single < 0) {  // no effect gains anything, or none could be tested
+        const bool gap = findings.p_value < limits.false_alarm;
+        return {gap ? Verdict::unknown_effect : Verdict::no_gap,
+                -1,
+                {},
+                std::vector<double>(findings.gain.size(), 0.0)};
+    }
     const Proposal& leader = findings.proposals[static_cast<std::size_t>(single)];
     const std::vector<double> gains = known_gains(findings, leader);
     const double best = leader.best_gain(), margin = std::max(limits.group, limits.group_share * best);
