@@ -7,6 +7,7 @@
 
 #include "challenge/plan.h"
 #include "cl/device.h"
+#include "core/stop.h"
 
 namespace mcdem::inline challenge {
 
@@ -19,7 +20,7 @@ struct ChallengeOptions {
     std::vector<std::string> effects;  ///< empty: challenged_effects()
     Measurement measurement;           ///< accuracy of all measurements
     std::function<void(double fraction)> on_progress = [](double) {};
-    std::function<bool()> stop_wanted = [] { return false; };
+    StopWanted stop_wanted = never_stop;
 };
 
 /// Tests whether all realities can be simulated, and reduces the amplitudes of those that run away. Then

@@ -5,6 +5,7 @@
 
 #include "challenge/case.h"
 #include "cl/device.h"
+#include "core/stop.h"
 #include "diagnose/infer/effects.h"
 
 namespace mcdem::inline challenge {
@@ -19,7 +20,7 @@ public:
     const std::vector<Nuisance>& nuisances() const { return nuisances_; }
 
     /// Makes the initial packings of the cases, by number. Throws Interrupted.
-    void make_packings(const std::vector<std::uint64_t>& seeds, const std::function<bool()>& stop_wanted);
+    void make_packings(const std::vector<std::uint64_t>& seeds, const StopWanted& stop_wanted);
 
     /// One unmeasured recording per case; shorter if a case fails. `Part`: scans of the first loading, or
     /// all.

@@ -84,25 +84,21 @@ public:
         return parts.empty() ? missing_cases() : parts;
     }
 
-    bool compute(Device& device, std::size_t part) override try {
+    void compute(Device& device, std::size_t part) override {
         expect_device(device);
         if (part < challenge_.cases.size()) {
             const OpenCase& c = challenge_.cases[part];
-            if (is_done(c)) return true;
+            if (is_done(c)) return;
             make_library(device);
-            diagnose(device, c);
-            return true;
+            return diagnose(device, c);
         }
-        if (fs::exists(options_.library.file)) return true;
+        if (fs::exists(options_.library.file)) return;
         part -= challenge_.cases.size();
         if (part >= library_parts().size())
             throw InputError(
                 fmt::format("--part: must be below {}, the number of cases and of parts of the library",
                             challenge_.cases.size() + library_parts().size()));
         observe_trials(device, question(), library_parts()[part], store(), trial_options());
-        return true;
-    } catch (const Interrupted&) {
-        return false;
     }
 
     bool merge() override { return missing_cases().empty(); }
@@ -184,9 +180,7 @@ private:
             all.replicas.back().packing.seed =
                 scattered(scattered(options_.seed + apart) + static_cast<std::uint64_t>(p)) >> 16;
         }
-        auto packings = make_packings(all, options_.stop_wanted);
-        if (packings.size() < all.replicas.size()) throw Interrupted();
-        return packings;
+        return make_packings(all, options_.stop_wanted);
     }
 
     /// The grid of an experiment with the plate positions of the scene, because the zero of strain of a case

@@ -2,6 +2,7 @@
 #pragma once
 #include <memory>
 
+#include "core/stop.h"
 #include "ensemble/diagnose_experiment.h"
 #include "ensemble/parts/parted_work.h"
 
@@ -29,7 +30,7 @@ struct ChallengeRunOptions {
     std::function<void(double fraction)> on_progress = [](double) {};
     /// Called if a case cannot be diagnosed; its file contains the reason, and it counts as a miss.
     std::function<void(const std::string& message)> on_problem = [](const std::string&) {};
-    std::function<bool()> stop_wanted = [] { return false; };
+    StopWanted stop_wanted = never_stop;
 };
 
 /// Throws InputError, also if the folder contains a run, is in use by other processes, or contains answers

@@ -204,7 +204,6 @@ private:
         all.replicas.assign(packings_.size(), scene_.replicas.front());
         for (std::size_t r = 0; r < packings_.size(); ++r) all.replicas[r].packing.seed += r;
         packings_ = make_packings(all, options_.stop_wanted);
-        if (packings_.size() < all.replicas.size()) throw Interrupted();
     }
 
     void expect_enough(const Eigen::MatrixXd& base) const {

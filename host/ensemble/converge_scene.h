@@ -6,6 +6,7 @@
 #include <string>
 
 #include "cl/device.h"
+#include "core/stop.h"
 #include "diagnose/infer/convergence.h"
 #include "scene/scene.h"
 
@@ -21,7 +22,7 @@ struct ConvergeOptions {
     std::string program;  ///< version and commit
     std::function<void(const std::string& cause, double fraction)> on_progress = [](const std::string&,
                                                                                     double) {};
-    std::function<bool()> stop_wanted = [] { return false; };
+    StopWanted stop_wanted = never_stop;
 };
 
 /// For the scene's first replica. Uses jittered copies of its packing or, if those hardly differ, new

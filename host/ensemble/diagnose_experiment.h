@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "core/stop.h"
 #include "diagnose/decide/diagnose.h"
 #include "ensemble/build_library.h"
 
@@ -24,7 +25,7 @@ struct DiagnoseOptions {
     Limits limits;
     std::function<void(const std::string& stage, double fraction)> on_progress = [](const std::string&,
                                                                                     double) {};
-    std::function<bool()> stop_wanted = [] { return false; };
+    StopWanted stop_wanted = never_stop;
     /// Receives messages about what is left out because its simulations failed.
     std::function<void(const std::string&)> on_note = [](const std::string&) {};
     /// Receives the evidence when it is complete, to try limits and ablations without simulations.

@@ -47,7 +47,7 @@ void report(const std::vector<std::exception_ptr>& errors) {
 
 }  // namespace
 
-std::vector<Packing> make_packings(const Scene& scene, const std::function<bool()>& stop_wanted) {
+std::vector<Packing> make_packings(const Scene& scene, const StopWanted& stop_wanted) {
     std::vector<const Replica*> different;
     std::vector<std::size_t> which;  // by replica
     std::map<std::string, std::size_t> seen;
@@ -59,14 +59,14 @@ std::vector<Packing> make_packings(const Scene& scene, const std::function<bool(
     std::vector<Packing> made(different.size());
     std::vector<std::exception_ptr> errors(different.size());
     in_parallel(different.size(), [&](std::size_t i) {
-        if (stop_wanted && stop_wanted()) return;
+        if (stop_wanted()) return;
         try {
             made[i] = make_packing(*different[i]);
         } catch (...) {
             errors[i] = std::current_exception();
         }
     });
-    if (stop_wanted && stop_wanted()) return {};
+    if (stop_wanted()) throw Interrupted();
     report(errors);
     std::vector<Packing> packings;
     for (const std::size_t i : which) packings.push_back(made[i]);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cl/device.h"
+#include "core/stop.h"
 #include "diagnose/infer/effects.h"
 #include "diagnose/observe/observation.h"
 #include "ensemble/observation_store.h"
@@ -34,7 +35,7 @@ struct Question {
 
 struct TrialOptions {
     std::function<void(double fraction)> on_progress = [](double) {};
-    std::function<bool()> stop_wanted = [] { return false; };
+    StopWanted stop_wanted = never_stop;
     /// Receives the index of a trial and why its simulation failed. Results in the store have no reason.
     std::function<void(std::size_t, const Failure&)> on_failure = [](std::size_t, const Failure&) {};
 };

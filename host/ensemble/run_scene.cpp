@@ -81,7 +81,8 @@ private:
             stop = options_.stop_wanted();
             if (checkpoint_due() || !more || stop) write_checkpoint();
         }
-        const bool done = !more && !anything_new_ && folder_.finish(options_.stop_wanted);
+        const bool done = !more && !anything_new_;
+        if (done) folder_.finish(options_.stop_wanted);
         return {done ? RunEnd::done : RunEnd::interrupted, simulation_.grain_steps(), seconds_since(start)};
     }
 
@@ -113,17 +114,16 @@ private:
         return seconds_since(last_checkpoint_) >= interval || bytes_held_ >= max_bytes_held;
     }
 
-    /// Nothing is written if the run is to stop and a segment takes long.
-    void write_segment() {
-        const auto never = [] { return false; };
+    void write_segment() try {
         const bool is_quick = pending_.recordings.size() <= max_replicas_of_quick_segment;
-        if (!folder_.append_segment(pending_, is_quick ? never : options_.stop_wanted)) return;
+        folder_.append_segment(pending_, is_quick ? StopWanted(never_stop) : options_.stop_wanted);
         for (auto& recording : pending_.recordings) {
             recording.scans.clear();
             recording.failure.reset();
         }
         anything_new_ = false;
         bytes_held_ = 0;
+    } catch (const Interrupted&) {  // the run is to stop, and a segment takes long
     }
 
     /// Writes the segment first, then the checkpoint that names it. A crash in between leaves one segment too
@@ -150,14 +150,10 @@ private:
     double checkpoint_seconds_ = 0;  ///< duration of the last one
 };
 
-/// Work after run.h5 is complete; it can be repeated safely. Returns `end`, or `interrupted`.
-RunEnd close_folder(const std::filesystem::path& folder, RunEnd end,
-                    const std::function<bool()>& stop_wanted) try {
-    write_csv(folder, stop_wanted);
-    remove_checkpoints(folder);
-    return end;
-} catch (const Interrupted&) {
-    return RunEnd::interrupted;
+/// Work after run.h5 is complete; it can be repeated safely.
+void close_folder(const RunOptions& options) {
+    write_csv(options.folder, options.stop_wanted);
+    remove_checkpoints(options.folder);
 }
 
 ResultFolder open_folder(const RunOptions& options) {
@@ -167,23 +163,24 @@ ResultFolder open_folder(const RunOptions& options) {
 
 }  // namespace
 
-RunSummary run_scene(Device& device, const Scene& scene, const RunOptions& options) {
+RunSummary run_scene(Device& device, const Scene& scene, const RunOptions& options) try {
     expect_no_experiment(options.folder);
     if (!std::filesystem::exists(run_file(options.folder))) expect_runnable(device, scene);
     ResultFolder folder = open_folder(options);
     expect_room_for_run(folder.path());
     if (folder.is_finished()) {
         expect_scene_of(folder.path(), scene);
-        return {close_folder(folder.path(), RunEnd::was_done, options.stop_wanted)};
+        close_folder(options);
+        return {RunEnd::was_done};
     }
     const auto packings = make_packings(scene, options.stop_wanted);
-    if (options.stop_wanted()) return {RunEnd::interrupted};
     RunSession session(device, scene, packings, options, std::move(folder));
     if (options.start == Start::resume) session.resume();
-    auto summary = session.run();
-    if (summary.end == RunEnd::done)
-        summary.end = close_folder(options.folder, RunEnd::done, options.stop_wanted);
+    const RunSummary summary = session.run();
+    if (summary.end == RunEnd::done) close_folder(options);
     return summary;
+} catch (const Interrupted&) {
+    return {RunEnd::interrupted};
 }
 
 }  // namespace mcdem::ensemble

@@ -7,6 +7,7 @@
 
 #include "cl/device.h"
 #include "core/recording.h"
+#include "core/stop.h"
 #include "scene/scene.h"
 
 namespace mcdem::inline ensemble {
@@ -26,7 +27,7 @@ struct RunOptions {
     std::function<void(const std::string& message)> on_warning = [](const std::string&) {};
     /// Called after every round, and from several threads while packings are made. True ends the run cleanly,
     /// so that it can be resumed.
-    std::function<bool()> stop_wanted = [] { return false; };
+    StopWanted stop_wanted = never_stop;
 };
 
 enum class RunEnd {

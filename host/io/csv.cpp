@@ -78,7 +78,7 @@ double along_side(const Box& box, const Scan& scan) {
 
 }  // namespace
 
-std::string csv_text(const Run& run, const std::function<bool()>& stop_wanted) {
+std::string csv_text(const Run& run, const StopWanted& stop_wanted) {
     fmt::memory_buffer text;
     auto out = std::back_inserter(text);
     const auto keys = varying_keys(run);
@@ -118,7 +118,7 @@ std::string csv_text(const Run& run, const std::function<bool()>& stop_wanted) {
     return fmt::to_string(text);
 }
 
-void write_csv(const std::filesystem::path& folder, const std::function<bool()>& stop_wanted) {
+void write_csv(const std::filesystem::path& folder, const StopWanted& stop_wanted) {
     const Run run = read_run(folder, ReadWhat::observables, stop_wanted);
     replace_own(folder / "plate.csv", FileKind::run_table, csv_text(run, stop_wanted));
 }

@@ -22,12 +22,11 @@ auto from_part(std::size_t number, Read read) {
 
 fs::path parts_folder(const fs::path& folder) { return folder / "parts"; }
 
-bool merge_parts(const std::vector<fs::path>& parts, const fs::path& merged,
-                 const std::function<bool()>& stop_wanted) {
+void merge_parts(const std::vector<fs::path>& parts, const fs::path& merged, const StopWanted& stop_wanted) {
     Run all;
     std::vector<std::size_t> first{0};  // replica of each part
     for (std::size_t p = 0; p < parts.size(); ++p) {
-        if (stop_wanted()) return false;
+        if (stop_wanted()) throw Interrupted();
         Run part = from_part(p, [&] { return read_run_header({parts[p]}); });
         if (p == 0)
             all = std::move(part);
@@ -46,7 +45,7 @@ bool merge_parts(const std::vector<fs::path>& parts, const fs::path& merged,
             }
         }
     };
-    return write_result_file(merged, all, write, stop_wanted);
+    write_result_file(merged, all, write, stop_wanted);
 }
 
 }  // namespace mcdem::io

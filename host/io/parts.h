@@ -1,9 +1,10 @@
 // Merges the results of a distributed run into the file that a single process would have written.
 #pragma once
 #include <filesystem>
-#include <functional>
 #include <stdexcept>
 #include <vector>
+
+#include "core/stop.h"
 
 namespace mcdem::inline io {
 
@@ -17,10 +18,9 @@ struct DamagedPart : std::runtime_error {
 };
 
 /// Writes the replicas of all parts in order into `merged`; the file is bit-identical to that of a single
-/// process. Holds one replica in memory. Returns false, and leaves no file, if `stop_wanted` becomes true
-/// meanwhile. Throws DamagedPart, and RunError if `merged` cannot be written.
-bool merge_parts(
-    const std::vector<std::filesystem::path>& parts, const std::filesystem::path& merged,
-    const std::function<bool()>& stop_wanted = [] { return false; });
+/// process. Holds one replica in memory. Throws Interrupted, and leaves no file, if `stop_wanted` becomes
+/// true meanwhile; DamagedPart, and RunError if `merged` cannot be written.
+void merge_parts(const std::vector<std::filesystem::path>& parts, const std::filesystem::path& merged,
+                 const StopWanted& stop_wanted = never_stop);
 
 }  // namespace mcdem::io

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "core/recording.h"
+#include "core/stop.h"
 #include "io/hdf5.h"
 #include "io/result_rows.h"
 #include "io/results.h"
@@ -60,11 +61,11 @@ private:
     bool is_double_;  ///< positions and contacts are stored as double, otherwise as float
 };
 
-/// Writes a result file with the content from `write`, reads all of it back, and moves it into place. Returns
-/// false, and leaves no file, if `stop_wanted` became true meanwhile.
-bool write_result_file(
-    const std::filesystem::path& file, const Run& run, const std::function<void(ResultWriter&)>& write,
-    const std::function<bool()>& stop_wanted = [] { return false; });
+/// Writes a result file with the content from `write`, reads all of it back, and moves it into place. Throws
+/// Interrupted, and leaves no file, if `stop_wanted` becomes true meanwhile.
+void write_result_file(const std::filesystem::path& file, const Run& run,
+                       const std::function<void(ResultWriter&)>& write,
+                       const StopWanted& stop_wanted = never_stop);
 
 class ResultFile {
 public:

@@ -55,8 +55,7 @@ private:
 };
 
 /// Replica by replica, so that only one replica of one segment is in memory.
-bool merge(const std::vector<fs::path>& files, const fs::path& merged,
-           const std::function<bool()>& stop_wanted) {
+void merge(const std::vector<fs::path>& files, const fs::path& merged, const StopWanted& stop_wanted) {
     const Run run = read_run_header(files);
     Segments segments(files);
     const auto write = [&](ResultWriter& writer) {
@@ -69,7 +68,7 @@ bool merge(const std::vector<fs::path>& files, const fs::path& merged,
             writer.end(r, run.recordings[r].failure);
         }
     };
-    return write_result_file(merged, run, write, stop_wanted);
+    write_result_file(merged, run, write, stop_wanted);
 }
 
 }  // namespace
@@ -152,10 +151,9 @@ ResultFolder ResultFolder::open_for_resume(const fs::path& folder) {
 
 bool ResultFolder::is_finished() const { return fs::exists(run_file(folder_)); }
 
-bool ResultFolder::append_segment(const Run& scans_since_last, const std::function<bool()>& stop_wanted) {
-    if (!write_run(segment_file(folder_, segments_), scans_since_last, stop_wanted)) return false;
+void ResultFolder::append_segment(const Run& scans_since_last, const StopWanted& stop_wanted) {
+    write_run(segment_file(folder_, segments_), scans_since_last, stop_wanted);
     ++segments_;
-    return true;
 }
 
 void ResultFolder::drop_segments_from(int index) {
@@ -163,7 +161,7 @@ void ResultFolder::drop_segments_from(int index) {
     for (; segments_ > index; --segments_) fs::remove(segment_file(folder_, segments_ - 1));
 }
 
-void ResultFolder::expect_whole_segments(const std::function<bool()>& stop_wanted) const {
+void ResultFolder::expect_whole_segments(const StopWanted& stop_wanted) const {
     try {
         const auto files = segment_files(folder_);
         if (files.empty()) return;
@@ -171,7 +169,7 @@ void ResultFolder::expect_whole_segments(const std::function<bool()>& stop_wante
         for (const auto& file : files) {
             const ResultFile segment(file);
             for (std::size_t r = 0; r < run.recordings.size(); ++r) {
-                if (stop_wanted()) return;
+                if (stop_wanted()) throw Interrupted();
                 segment.scans(run.recordings[r], r, ReadWhat::everything);
             }
         }
@@ -188,7 +186,7 @@ void ResultFolder::remove_segments() {
     segments_ = 0;
 }
 
-bool ResultFolder::finish(const std::function<bool()>& stop_wanted) {
+void ResultFolder::finish(const StopWanted& stop_wanted) {
     const auto segments = segment_files(folder_);
     if (segments.empty()) throw RunError(folder_.string() + ": nothing was recorded");
     // Locks exclude others, but not on every network file system.
@@ -199,10 +197,9 @@ bool ResultFolder::finish(const std::function<bool()>& stop_wanted) {
             "of them (segments and checkpoints; parts/, run.h5 and plate.csv) elsewhere");
     if (segments.size() == 1)
         move_file(segments.front(), run_file(folder_));
-    else if (!merge(segments, run_file(folder_), stop_wanted))
-        return false;
+    else
+        merge(segments, run_file(folder_), stop_wanted);
     remove_segments();
-    return true;
 }
 
 }  // namespace mcdem::io

@@ -1,10 +1,10 @@
 // The folder of a run: segments while it runs, one file at the end.
 #pragma once
 #include <filesystem>
-#include <functional>
 #include <vector>
 
 #include "core/recording.h"
+#include "core/stop.h"
 #include "io/folder_lock.h"
 
 namespace mcdem::inline io {
@@ -39,17 +39,17 @@ public:
     int segments() const { return segments_; }
     bool is_finished() const;
 
-    /// Writes the scans since the last segment, with the provenance of the run. Returns false, and leaves the
-    /// folder as it is, if `stop_wanted` becomes true meanwhile.
-    bool append_segment(
-        const Run& scans_since_last, const std::function<bool()>& stop_wanted = [] { return false; });
+    // Those with `stop_wanted` throw Interrupted, and leave the folder as it is, if it becomes true
+    // meanwhile.
+
+    /// Writes the scans since the last segment, with the provenance of the run.
+    void append_segment(const Run& scans_since_last, const StopWanted& stop_wanted = never_stop);
     /// Discards segment `index` and all later ones, which are newer than the checkpoint.
     void drop_segments_from(int index);
-    /// Reads all segments until `stop_wanted`. Throws InputError with the damaged one and a remedy.
-    void expect_whole_segments(const std::function<bool()>& stop_wanted) const;
-    /// Merges all segments into run.h5 and removes them. Needs memory for one segment. Returns false, and
-    /// leaves the folder as it is, if `stop_wanted` becomes true meanwhile.
-    bool finish(const std::function<bool()>& stop_wanted = [] { return false; });
+    /// Reads all segments. Throws InputError with the damaged one and a remedy.
+    void expect_whole_segments(const StopWanted& stop_wanted) const;
+    /// Merges all segments into run.h5 and removes them. Needs memory for one segment.
+    void finish(const StopWanted& stop_wanted = never_stop);
 
 private:
     ResultFolder(std::filesystem::path folder, FolderLock lock)

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <type_traits>
 
 #include "core/errors.h"
 
@@ -28,6 +29,54 @@ h5::Handle phase_type() {
     return type;
 }
 
+/// Calls `visit` for every field of the rows of scans: name, unit, member of a scan and of a row.
+void for_each_field(auto visit) {
+    visit("frame", "", &Scan::frame, &ScanRow::frame);
+    visit("cycle", "", &Scan::cycle, &ScanRow::cycle);
+    visit("phase", "", &Scan::phase, &ScanRow::phase);
+    visit("settled", "", &Scan::settled, &ScanRow::settled);
+    visit("time", "s", &Scan::time, &ScanRow::time);
+    visit("plate_z", "m", &Scan::plate_z, &ScanRow::plate_z);
+    visit("wall_force", "N", &Scan::wall_force, &ScanRow::wall_force);
+    visit("kinetic_energy", "J", &Scan::kinetic_energy, &ScanRow::kinetic_energy);
+    visit("elastic_energy", "J", &Scan::elastic_energy, &ScanRow::elastic_energy);
+    visit("rate_error", "1", &Scan::rate_error, &ScanRow::rate_error);
+    visit("coordination_number", "1", &Scan::coordination_number, &ScanRow::coordination_number);
+    visit("mean_force", "N", &Scan::mean_force, &ScanRow::mean_force);
+    visit("packing_fraction", "1", &Scan::packing_fraction, &ScanRow::packing_fraction);
+    visit("branch_length", "m", &Scan::branch_length, &ScanRow::branch_length);
+    visit("max_overlap", "1", &Scan::max_overlap, &ScanRow::max_overlap);
+    visit("stress", "Pa", &Scan::stress, &ScanRow::stress);
+    visit("fabric", "1", &Scan::fabric, &ScanRow::fabric);
+    visit("strain", "1", &Scan::strain, &ScanRow::strain);
+}
+
+/// Converts a number; vectors and tensors have the same bytes in scans and rows.
+template <class From, class To>
+void convert(const From& from, To& to) {
+    if constexpr (std::is_convertible_v<From, double> || std::is_enum_v<From> || std::is_enum_v<To>) {
+        to = static_cast<To>(from);
+    } else {
+        static_assert(sizeof from == sizeof to);
+        std::memcpy(static_cast<void*>(&to), &from, sizeof to);
+    }
+}
+
+/// HDF5 type of a field.
+template <class OfScan, class OfRow>
+h5::Handle type_of() {
+    if constexpr (std::is_same_v<OfScan, Phase>)
+        return phase_type();
+    else if constexpr (std::is_same_v<OfScan, bool>)
+        return truth_type();
+    else if constexpr (std::rank_v<OfRow> == 2)
+        return array_type(H5T_NATIVE_DOUBLE, {std::extent_v<OfRow, 0>, std::extent_v<OfRow, 1>});
+    else if constexpr (std::rank_v<OfRow> == 1)
+        return array_type(H5T_NATIVE_DOUBLE, {std::extent_v<OfRow>});
+    else
+        return h5::number_type<OfRow>();
+}
+
 template <class Real>
 void copy(const Vec3& from, Real* to) {
     for (int k = 0; k < 3; ++k) to[k] = static_cast<Real>(from[k]);
@@ -41,24 +90,7 @@ Vec3 vec3(const Real* from) {
 
 ScanRow scan_row(const Scan& scan) {
     ScanRow row{};
-    row.frame = scan.frame;
-    row.cycle = scan.cycle;
-    row.phase = static_cast<signed char>(scan.phase);
-    row.settled = scan.settled;
-    row.time = scan.time;
-    row.plate_z = scan.plate_z;
-    for (int wall = 0; wall < wall_count; ++wall) copy(scan.wall_force[wall], row.wall_force[wall]);
-    row.kinetic_energy = scan.kinetic_energy;
-    row.elastic_energy = scan.elastic_energy;
-    row.rate_error = scan.rate_error;
-    row.coordination_number = scan.coordination_number;
-    row.mean_force = scan.mean_force;
-    row.packing_fraction = scan.packing_fraction;
-    row.branch_length = scan.branch_length;
-    row.max_overlap = scan.max_overlap;
-    std::memcpy(row.stress, scan.stress.data(), sizeof row.stress);
-    std::memcpy(row.fabric, scan.fabric.data(), sizeof row.fabric);
-    std::ranges::copy(scan.strain, row.strain);
+    for_each_field([&](auto, auto, auto from, auto to) { convert(scan.*from, row.*to); });
     return row;
 }
 
@@ -66,24 +98,7 @@ Scan scan_of(const ScanRow& row, const std::string& where) {
     if (row.phase < 0 || row.phase >= static_cast<int>(Names<Phase>::list.size()))
         throw InputError(where + ": phase must be load or unload, got number " + std::to_string(row.phase));
     Scan scan;
-    scan.frame = row.frame;
-    scan.cycle = row.cycle;
-    scan.phase = static_cast<Phase>(row.phase);
-    scan.settled = row.settled != 0;
-    scan.time = row.time;
-    scan.plate_z = row.plate_z;
-    for (int wall = 0; wall < wall_count; ++wall) scan.wall_force[wall] = vec3(row.wall_force[wall]);
-    scan.kinetic_energy = row.kinetic_energy;
-    scan.elastic_energy = row.elastic_energy;
-    scan.rate_error = row.rate_error;
-    scan.coordination_number = row.coordination_number;
-    scan.mean_force = row.mean_force;
-    scan.packing_fraction = row.packing_fraction;
-    scan.branch_length = row.branch_length;
-    scan.max_overlap = row.max_overlap;
-    std::memcpy(scan.stress.data(), row.stress, sizeof row.stress);
-    std::memcpy(scan.fabric.data(), row.fabric, sizeof row.fabric);
-    std::ranges::copy(row.strain, scan.strain.begin());
+    for_each_field([&](auto, auto, auto to, auto from) { convert(row.*from, scan.*to); });
     return scan;
 }
 
@@ -118,26 +133,15 @@ template Contact contact_of(const ContactRow<double>&, std::size_t, const std::s
 
 h5::Handle scan_row_type() {
     h5::Handle type(H5Tcreate(H5T_COMPOUND, sizeof(ScanRow)), H5Tclose);
-    H5Tinsert(type, "frame", HOFFSET(ScanRow, frame), H5T_NATIVE_INT);
-    H5Tinsert(type, "cycle", HOFFSET(ScanRow, cycle), H5T_NATIVE_INT);
-    H5Tinsert(type, "phase", HOFFSET(ScanRow, phase), phase_type());
-    H5Tinsert(type, "settled", HOFFSET(ScanRow, settled), truth_type());
-    H5Tinsert(type, "time", HOFFSET(ScanRow, time), H5T_NATIVE_DOUBLE);
-    H5Tinsert(type, "plate_z", HOFFSET(ScanRow, plate_z), H5T_NATIVE_DOUBLE);
-    H5Tinsert(type, "wall_force", HOFFSET(ScanRow, wall_force),
-              array_type(H5T_NATIVE_DOUBLE, {wall_count, 3}));
-    H5Tinsert(type, "kinetic_energy", HOFFSET(ScanRow, kinetic_energy), H5T_NATIVE_DOUBLE);
-    H5Tinsert(type, "elastic_energy", HOFFSET(ScanRow, elastic_energy), H5T_NATIVE_DOUBLE);
-    H5Tinsert(type, "rate_error", HOFFSET(ScanRow, rate_error), H5T_NATIVE_DOUBLE);
-    H5Tinsert(type, "coordination_number", HOFFSET(ScanRow, coordination_number), H5T_NATIVE_DOUBLE);
-    H5Tinsert(type, "mean_force", HOFFSET(ScanRow, mean_force), H5T_NATIVE_DOUBLE);
-    H5Tinsert(type, "packing_fraction", HOFFSET(ScanRow, packing_fraction), H5T_NATIVE_DOUBLE);
-    H5Tinsert(type, "branch_length", HOFFSET(ScanRow, branch_length), H5T_NATIVE_DOUBLE);
-    H5Tinsert(type, "max_overlap", HOFFSET(ScanRow, max_overlap), H5T_NATIVE_DOUBLE);
-    const h5::Handle tensor = array_type(H5T_NATIVE_DOUBLE, {3, 3});
-    H5Tinsert(type, "stress", HOFFSET(ScanRow, stress), tensor);
-    H5Tinsert(type, "fabric", HOFFSET(ScanRow, fabric), tensor);
-    H5Tinsert(type, "strain", HOFFSET(ScanRow, strain), array_type(H5T_NATIVE_DOUBLE, {6}));
+    const Scan scan;
+    const ScanRow row{};
+    for_each_field([&](const char* name, auto, auto of_scan, auto of_row) {
+        const auto offset =
+            reinterpret_cast<const char*>(&(row.*of_row)) - reinterpret_cast<const char*>(&row);
+        const auto field =
+            type_of<std::decay_t<decltype(scan.*of_scan)>, std::remove_cvref_t<decltype(row.*of_row)>>();
+        H5Tinsert(type, name, static_cast<std::size_t>(offset), field);
+    });
     return type;
 }
 
@@ -177,20 +181,11 @@ void expect_fields(const h5::Dataset& table, const h5::Handle& row_type,
 }
 
 std::vector<std::pair<std::string, std::string>> scan_row_units() {
-    return {{"time", "s"},
-            {"plate_z", "m"},
-            {"wall_force", "N"},
-            {"kinetic_energy", "J"},
-            {"elastic_energy", "J"},
-            {"rate_error", "1"},
-            {"coordination_number", "1"},
-            {"mean_force", "N"},
-            {"packing_fraction", "1"},
-            {"branch_length", "m"},
-            {"max_overlap", "1"},
-            {"stress", "Pa"},
-            {"fabric", "1"},
-            {"strain", "1"}};
+    std::vector<std::pair<std::string, std::string>> units;
+    for_each_field([&](const std::string& name, const std::string& unit, auto, auto) {
+        if (!unit.empty()) units.emplace_back(name, unit);
+    });
+    return units;
 }
 
 std::vector<std::pair<std::string, std::string>> contact_row_units() {

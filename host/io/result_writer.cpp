@@ -12,9 +12,6 @@ namespace {
 
 constexpr std::size_t block_grains = 65536;  ///< grains times scans written at once
 
-/// Thrown by write_result_file to itself.
-struct Stopped {};
-
 }  // namespace
 
 std::string observables_path(std::size_t replica) {
@@ -202,11 +199,10 @@ void ResultWriter::close() {
     file_.close();
 }
 
-bool write_result_file(const std::filesystem::path& file, const Run& run,
-                       const std::function<void(ResultWriter&)>& write,
-                       const std::function<bool()>& stop_wanted) try {
+void write_result_file(const std::filesystem::path& file, const Run& run,
+                       const std::function<void(ResultWriter&)>& write, const StopWanted& stop_wanted) {
     const auto look = [&] {
-        if (stop_wanted()) throw Stopped{};
+        if (stop_wanted()) throw Interrupted();
     };
     look();
     replace_file(file, [&](NewFile& out) {
@@ -221,19 +217,16 @@ bool write_result_file(const std::filesystem::path& file, const Run& run,
                                        error.what()));
         }
     });
-    return true;
-} catch (const Stopped&) {
-    return false;
 }
 
-bool write_run(const std::filesystem::path& file, const Run& run, const std::function<bool()>& stop_wanted) {
+void write_run(const std::filesystem::path& file, const Run& run, const StopWanted& stop_wanted) {
     const auto write = [&](ResultWriter& writer) {
         for (std::size_t r = 0; r < run.recordings.size(); ++r) {
             for (const Scan& scan : run.recordings[r].scans) writer.append(r, scan);
             writer.end(r, run.recordings[r].failure);
         }
     };
-    return write_result_file(file, run, write, stop_wanted);
+    write_result_file(file, run, write, stop_wanted);
 }
 
 }  // namespace mcdem::io

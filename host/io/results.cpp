@@ -41,9 +41,8 @@ void add_header(Run& run, const ResultFile& file, const std::filesystem::path& p
         if (next.recordings[r].failure) run.recordings[r].failure = next.recordings[r].failure;
 }
 
-void add_file(
-    Run& run, const ResultFile& file, const std::filesystem::path& path, ReadWhat what, bool is_first,
-    const std::function<bool()>& stop_wanted = [] { return false; }) {
+void add_file(Run& run, const ResultFile& file, const std::filesystem::path& path, ReadWhat what,
+              bool is_first, const StopWanted& stop_wanted = never_stop) {
     add_header(run, file, path, is_first);
     for (std::size_t r = 0; r < run.recordings.size(); ++r) {
         if (stop_wanted()) throw Interrupted();
@@ -84,8 +83,7 @@ Run read_run_header(const std::vector<std::filesystem::path>& files) {
     return run;
 }
 
-Run read_run(const std::filesystem::path& file_or_folder, ReadWhat what,
-             const std::function<bool()>& stop_wanted) {
+Run read_run(const std::filesystem::path& file_or_folder, ReadWhat what, const StopWanted& stop_wanted) {
     return read_settled(file_or_folder, [&](const std::vector<std::filesystem::path>& files) {
         Run run;
         for (const auto& file : files)

@@ -1,27 +1,24 @@
 // Results of a run as HDF5, with a layout similar to H5MD (README.md in this folder describes every table).
 #pragma once
 #include <filesystem>
-#include <functional>
 #include <memory>
 
 #include "core/recording.h"
+#include "core/stop.h"
 
 namespace mcdem::inline io {
 
 /// Data to read: scalars of the scans are always read; positions and contacts are most of the data.
 enum class ReadWhat { observables, positions, contacts, everything };
 
-/// Writes the complete run, or, after an error, nothing. Also writes nothing, and returns false, if
-/// `stop_wanted` becomes true meanwhile.
-bool write_run(
-    const std::filesystem::path& file, const Run& run,
-    const std::function<bool()>& stop_wanted = [] { return false; });
+/// Writes the complete run, or, after an error, nothing. Throws Interrupted if `stop_wanted` becomes true
+/// meanwhile.
+void write_run(const std::filesystem::path& file, const Run& run, const StopWanted& stop_wanted = never_stop);
 
 /// Reads a result file, or a result folder: its run.h5, otherwise the segments of an unfinished run. Throws
 /// Interrupted if `stop_wanted` becomes true meanwhile.
-Run read_run(
-    const std::filesystem::path& file_or_folder, ReadWhat what = ReadWhat::everything,
-    const std::function<bool()>& stop_wanted = [] { return false; });
+Run read_run(const std::filesystem::path& file_or_folder, ReadWhat what = ReadWhat::everything,
+             const StopWanted& stop_wanted = never_stop);
 
 /// Reads a run scan by scan, for runs larger than memory.
 class RunReader {

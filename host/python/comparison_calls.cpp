@@ -71,10 +71,9 @@ py::dict calibrate(const Scene& scene, const py::object& reference, const std::s
     const SharedRun other = reference_of(reference, discard, ReadWhat::observables);
     Watch watch(std::move(progress));
     CalibrateOptions options{model_named(model), {low, high}, {tolerance, batch, rounds, "gamma"}};
-    struct Stopped {};
     options.on_progress = [&](int round, double part) {
         watch.show_progress((round + part) / rounds);
-        if (watch.stop_wanted()) throw Stopped();
+        if (watch.stop_wanted()) throw Interrupted();
     };
     SceneCalibration result;
     try {
@@ -82,7 +81,7 @@ py::dict calibrate(const Scene& scene, const py::object& reference, const std::s
         Device device(choice);
         result = calibrate_scene(device, scene,
                                  chosen_setting(*other, setting, other->name, "setting").replicas, options);
-    } catch (const Stopped&) {
+    } catch (const Interrupted&) {
     }
     watch.raise();
     const std::string key = result.key();

@@ -47,8 +47,6 @@ void expect_one_alive(const Run& run) {
     if (!causes.empty()) throw RunError(fmt::format("no replica came to its end:\n{}", causes));
 }
 
-struct Stopped {};
-
 SharedRun simulate_scene(const Scene& scene, const std::string& choice, py::object progress) {
     Watch watch(std::move(progress));
     auto run = std::make_shared<Run>();
@@ -60,15 +58,14 @@ SharedRun simulate_scene(const Scene& scene, const std::string& choice, py::obje
             scene.name, scene.text, version_text, device.description(), std::string(name(scene.precision)),
             {}};
         const auto packings = make_packings(scene, [&] { return watch.stop_wanted(); });
-        if (watch.stop_wanted()) throw Stopped();
         run->recordings =
             simulate(device, scene, packings, std::numeric_limits<std::size_t>::max(), [&](double part) {
                 watch.show_progress(part);
-                if (watch.stop_wanted()) throw Stopped();
+                if (watch.stop_wanted()) throw Interrupted();
             });
         for (const Recording& recording : run->recordings)
             if (recording.failure) watch.warn(failure_text(recording.label, *recording.failure));
-    } catch (const Stopped&) {
+    } catch (const Interrupted&) {
     }
     watch.raise();
     expect_one_alive(*run);

@@ -44,7 +44,7 @@ TEST(Subprocess, MissingProgramsAndFailingProgramsAreDistinguished) {
 class InterruptedMerge : public PartedWork {
 public:
     std::vector<std::size_t> missing() override { return {}; }
-    bool compute(Device&, std::size_t) override { return true; }
+    void compute(Device&, std::size_t) override {}
     bool merge() override {
         std::raise(SIGTERM);
         if (Interrupt::wanted()) throw Interrupted();

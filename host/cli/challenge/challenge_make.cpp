@@ -4,10 +4,8 @@
 #include "cli/run/scene_options.h"
 #include "cli/shell/commands.h"
 #include "cli/shell/interrupt.h"
-#include "cli/shell/messages.h"
 #include "cli/shell/progress.h"
 #include "cli/shell/standard_streams.h"
-#include "core/errors.h"
 
 namespace mcdem::inline cli {
 namespace {
@@ -18,7 +16,7 @@ struct MakeCommand {
     ChallengeOptions options;
 };
 
-void make(MakeCommand& command, int& exit_code) {
+void make(MakeCommand& command) {
     const Scene scene = command.scene.read();
     ChallengeOptions& options = command.options;
     options.folder = command.out;
@@ -29,16 +27,10 @@ void make(MakeCommand& command, int& exit_code) {
     Progress progress(stderr, progress_style(stderr));
     options.on_progress = [&](double fraction) { progress.show(fraction); };
     options.stop_wanted = Interrupt::wanted;
-    try {
-        const std::string seal = make_challenge(device, scene, options);
-        progress.clear();
-        print_out("{}: the challenge is made\ntruth: {}\nits SHA-256: {}\n", command.out,
-                  options.truth.string(), seal);
-    } catch (const Interrupted& interrupted) {
-        progress.clear();
-        spdlog::warn("{}", interrupted.what());
-        exit_code = exit_interrupted;
-    }
+    const std::string seal = make_challenge(device, scene, options);
+    progress.clear();
+    print_out("{}: the challenge is made\ntruth: {}\nits SHA-256: {}\n", command.out, options.truth.string(),
+              seal);
 }
 
 void add_sizes(CLI::App& sub, ChallengeSize& size) {
@@ -67,7 +59,7 @@ void add_measurement(CLI::App& sub, Measurement& measurement) {
 
 }  // namespace
 
-void add_challenge_make(CLI::App& challenge, int& exit_code) {
+void add_challenge_make(CLI::App& challenge, int&) {
     auto* sub = challenge.add_subcommand(
         "make", "Simulate experiments with hidden effects, and write the answers to a file of their own");
     auto command = std::make_shared<MakeCommand>();
@@ -88,7 +80,7 @@ void add_challenge_make(CLI::App& challenge, int& exit_code) {
         "The same command continues where an interrupted one stopped.\n"
         "Example:\n"
         "  mcdem challenge make scenes/challenge.toml --out out/challenge --truth out/truth.json");
-    sub->callback([command, &exit_code] { make(*command, exit_code); });
+    sub->callback([command] { make(*command); });
 }
 
 }  // namespace mcdem::cli

@@ -73,13 +73,7 @@ int run_alone(RunChallengeCommand& command, const Scene& scene) {
         progress.clear();
         spdlog::warn("{}", message);
     };
-    try {
-        run_challenge(device, scene, command.options);
-    } catch (const Interrupted& interrupted) {
-        progress.clear();
-        spdlog::warn("{}", interrupted.what());
-        return exit_interrupted;
-    }
+    run_challenge(device, scene, command.options);
     progress.clear();
     return report(command);
 }

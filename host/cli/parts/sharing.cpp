@@ -61,9 +61,10 @@ int until_merged(const SharedWork& work, PartedWork& parts,
     return all_is_merged;
 }
 
-int compute_one(const SharedWork& work, PartedWork& parts, std::size_t part, const std::string& device) {
+int compute_one(PartedWork& parts, std::size_t part, const std::string& device) {
     Device chosen(device);
-    return parts.compute(chosen, part) ? exit_done : interrupted(work);
+    parts.compute(chosen, part);
+    return exit_done;
 }
 
 int compute_here(const SharedWork& work, PartedWork& parts, const std::string& device) try {
@@ -74,7 +75,7 @@ int compute_here(const SharedWork& work, PartedWork& parts, const std::string& d
         const auto all = static_cast<double>(left.size());
         parts.on_progress = [&](double fraction) { progress.show((done + fraction) / all); };
         for (const std::size_t part : left) {
-            if (!parts.compute(chosen, part)) return interrupted(work);
+            parts.compute(chosen, part);
             ++done;
         }
         return exit_done;
@@ -122,7 +123,7 @@ int compute_as_rank(const SharedWork& work, const std::string& device) {
             expect_progress(work, before, left);
             for (std::size_t next; (next = ranks.next()) < left.size();) {
                 spdlog::info("part {}: rank {}, device {}", left[next], ranks.rank(), mine.info().index);
-                if (!parts->compute(mine, left[next])) ranks.abort(interrupted(work));
+                parts->compute(mine, left[next]);
             }
             ranks.wait();
         }
@@ -199,7 +200,7 @@ int compute_by_slurm(const SharedWork& work, PartedWork& parts, const SharingOpt
 int compute_and_merge(const SharedWork& work, PartedWork& parts, const SharingOptions& options,
                       const std::string& device, const std::vector<int>& devices) try {
     const Interrupt interrupt;
-    if (options.part) return compute_one(work, parts, *options.part, choice_of(device));
+    if (options.part) return compute_one(parts, *options.part, choice_of(device));
     if (options.merge) return merge_only(work, parts);
     if (options.slurm) return compute_by_slurm(work, parts, options, device);
     if (!devices.empty()) return compute_on_all_devices(work, parts, devices);

@@ -8,7 +8,6 @@
 #include "cli/shell/messages.h"
 #include "cli/shell/progress.h"
 #include "cli/shell/standard_streams.h"
-#include "core/errors.h"
 #include "core/output_file.h"
 #include "core/version.h"
 #include "ensemble/converge_scene.h"
@@ -41,32 +40,26 @@ Convergence converge(ConvergeCommand& command, const Scene& scene) {
     return converge_scene(device, scene, command.options);
 }
 
-int run(ConvergeCommand& command) {
-    try {
-        const Scene scene = command.scene.read();
-        const std::filesystem::path folder = command.out;
-        const FolderLock lock = open_output_folder(folder);
-        expect_replaceable(folder / "convergence.json", FileKind::convergence);
-        expect_replaceable_figures(folder, {"convergence"});
-        const Convergence convergence = converge(command, scene);
-        replace_own(folder / "convergence.json", FileKind::convergence, convergence_json(convergence));
-        print_out("{}\n", to_text(table_of_convergence(convergence), TableFormat::terminal));
-        for (const std::string& line : words_of_convergence(convergence)) print_out("{}\n", line);
-        print_out("wrote\n  {}\n", (folder / "convergence.json").string());
-        for (const auto& file : draw_if_possible([&] {
-                 return draw_figures(folder, {{"convergence", convergence_figure_values(convergence)}});
-             }))
-            print_out("  {}\n", file.string());
-        return exit_done;
-    } catch (const Interrupted& interrupted) {
-        spdlog::warn("{}", interrupted.what());
-        return exit_interrupted;
-    }
+void run(ConvergeCommand& command) {
+    const Scene scene = command.scene.read();
+    const std::filesystem::path folder = command.out;
+    const FolderLock lock = open_output_folder(folder);
+    expect_replaceable(folder / "convergence.json", FileKind::convergence);
+    expect_replaceable_figures(folder, {"convergence"});
+    const Convergence convergence = converge(command, scene);
+    replace_own(folder / "convergence.json", FileKind::convergence, convergence_json(convergence));
+    print_out("{}\n", to_text(table_of_convergence(convergence), TableFormat::terminal));
+    for (const std::string& line : words_of_convergence(convergence)) print_out("{}\n", line);
+    print_out("wrote\n  {}\n", (folder / "convergence.json").string());
+    for (const auto& file : draw_if_possible([&] {
+             return draw_figures(folder, {{"convergence", convergence_figure_values(convergence)}});
+         }))
+        print_out("  {}\n", file.string());
 }
 
 }  // namespace
 
-void add_converge(CLI::App& app, int& exit_code) {
+void add_converge(CLI::App& app, int&) {
     auto* sub = app.add_subcommand(
         "converge", "Measure how plate speed, inertia, time step and settling change a scene's results");
     auto command = std::make_shared<ConvergeCommand>();
@@ -107,7 +100,7 @@ void add_converge(CLI::App& app, int& exit_code) {
         "command continues an interrupted one.\n"
         "Example:\n"
         "  mcdem converge scenes/small.toml --set contact.model=mc_dem --out out/converge --replicas 8");
-    sub->callback([command, &exit_code] { exit_code = run(*command); });
+    sub->callback([command] { run(*command); });
 }
 
 }  // namespace mcdem::cli

@@ -82,26 +82,21 @@ Diagnosis diagnose(const DiagnoseCommand& command, const Scene& scene,
 
 int run_alone(const DiagnoseCommand& command, const Scene& scene,
               const std::vector<Experiment>& experiments) {
-    try {
-        const std::filesystem::path folder = command.out;
-        const FolderLock lock = open_output_folder(folder);
-        if (!command.library.empty()) make_folder_of(command.library);
-        expect_replaceable(folder / "diagnosis.json", FileKind::diagnosis);
-        expect_replaceable(folder / "diagnosis.html", FileKind::page);
-        expect_replaceable_figures(folder, {"where", "which", "how_far"});
-        const Diagnosis diagnosis = diagnose(command, scene, experiments);
-        replace_own(folder / "diagnosis.json", FileKind::diagnosis, diagnosis_json(diagnosis));
-        print_out("{}\nwrote\n  {}\n", diagnosis_text(diagnosis), (folder / "diagnosis.json").string());
-        write_diagnosis_page(diagnosis, folder / "diagnosis.html");
-        print_out("  {}\n", (folder / "diagnosis.html").string());
-        for (const auto& file :
-             draw_if_possible([&] { return draw_figures(folder, diagnosis_figure_values(diagnosis)); }))
-            print_out("  {}\n", file.string());
-        return exit_done;
-    } catch (const Interrupted& interrupted) {
-        spdlog::warn("{}", interrupted.what());
-        return exit_interrupted;
-    }
+    const std::filesystem::path folder = command.out;
+    const FolderLock lock = open_output_folder(folder);
+    if (!command.library.empty()) make_folder_of(command.library);
+    expect_replaceable(folder / "diagnosis.json", FileKind::diagnosis);
+    expect_replaceable(folder / "diagnosis.html", FileKind::page);
+    expect_replaceable_figures(folder, {"where", "which", "how_far"});
+    const Diagnosis diagnosis = diagnose(command, scene, experiments);
+    replace_own(folder / "diagnosis.json", FileKind::diagnosis, diagnosis_json(diagnosis));
+    print_out("{}\nwrote\n  {}\n", diagnosis_text(diagnosis), (folder / "diagnosis.json").string());
+    write_diagnosis_page(diagnosis, folder / "diagnosis.html");
+    print_out("  {}\n", (folder / "diagnosis.html").string());
+    for (const auto& file :
+         draw_if_possible([&] { return draw_figures(folder, diagnosis_figure_values(diagnosis)); }))
+        print_out("  {}\n", file.string());
+    return exit_done;
 }
 
 /// The command line without options that determine where and how it runs.

@@ -62,6 +62,10 @@ int report_error(const std::exception& error) {
         for (const auto& problem : input->problems()) say_lines(problem);
         return exit_bad_input;
     }
+    if (dynamic_cast<const Interrupted*>(&error)) {
+        spdlog::warn("{}", error.what());
+        return exit_interrupted;
+    }
     if (const auto* opencl = dynamic_cast<const cl::Error*>(&error))
         spdlog::error("OpenCL: {} failed with code {}: {}", opencl->what(), opencl->err(),
                       remedy_of(opencl->err()));

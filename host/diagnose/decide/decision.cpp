@@ -33,7 +33,7 @@ int best_single(const Findings& findings) {
 int gaining_pair(const Findings& findings, double single_gain, const Limits& limits) {
     for (std::size_t k = 0; k < findings.proposals.size(); ++k) {
         const Proposal& pair = findings.proposals[k];
-        if (pair.candidates.size() == 2 &&
+        if (pair.is_pair() &&
             pair.best_gain() - single_gain > std::max(limits.second_gain, limits.second_share * single_gain))
             return static_cast<int>(k);
     }
@@ -67,8 +67,8 @@ double trust(const Proposal& proposal, const Findings& findings, const Limits& l
     const double low = needed_reduction(findings, limits) - limits.reduction_error;
     const double high = std::max(limits.certain, low + 2 * limits.reduction_error);
     const double above = std::clamp((proposal.best_reduction() - low) / (high - low), 0.0, 1.0);
-    const double right = proposal.candidates.size() == 2 ? std::min(limits.right_above, limits.right_pair)
-                                                         : limits.right_above;
+    const double right =
+        proposal.is_pair() ? std::min(limits.right_above, limits.right_pair) : limits.right_above;
     return limits.right_below + above * (right - limits.right_below);
 }
 
@@ -126,7 +126,7 @@ bool suspected(Decision& decision, const Findings& findings, Verdict verdict, Is
 }
 
 void name_it(Decision& decision, const Findings& findings, const Limits& limits) {
-    const bool pair = findings.proposals[static_cast<std::size_t>(decision.proposal)].candidates.size() == 2;
+    const bool pair = findings.proposals[static_cast<std::size_t>(decision.proposal)].is_pair();
     if (suspected(decision, findings, Verdict::not_converged,
                   [&](std::size_t c) { return findings.is_numerical(c); }))
         return;
@@ -182,7 +182,7 @@ Decision decide(const Findings& findings, const Limits& limits) {
     Decision decision = chosen(findings, single, group_of(leader.candidates[0], gains, best, margin), limits);
     const Proposal& decided = findings.proposals[static_cast<std::size_t>(decision.proposal)];
     const double right = trust(decided, findings, limits);
-    if (decided.candidates.size() == 2) {  // a pair: gains of single effects are not compared
+    if (decided.is_pair()) {  // a pair: gains of single effects are not compared
         decision.confidence.assign(findings.gain.size(), 0.0);
         for (const std::size_t c : decided.candidates) decision.confidence[c] = right;
         return decision;

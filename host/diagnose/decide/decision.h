@@ -42,6 +42,7 @@ struct Proposal {
     std::optional<double> confirmed_gain, confirmed_misfit_p;  ///< the same from real runs
     double reduction = 0;  ///< fraction of the gap that it closes (Findings::held_out), from signatures
     std::optional<double> confirmed_reduction = {};  ///< the same from real runs
+    bool is_pair() const { return candidates.size() == 2; }
     double best_gain() const { return confirmed_gain.value_or(gain); }
     double best_misfit() const { return confirmed_misfit_p.value_or(misfit_p); }
     /// At most zero without a gain in likelihood: a smaller remainder in some data then costs more in others.

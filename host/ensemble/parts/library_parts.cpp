@@ -33,7 +33,7 @@ public:
         return numbers;
     }
 
-    bool compute(Device& device, std::size_t part) override try {
+    void compute(Device& device, std::size_t part) override {
         keep_manifest(device_file(options_.folder), {{"device", device.description()}});
         if (part >= parts_.size())
             throw InputError(fmt::format(
@@ -42,9 +42,6 @@ public:
         trials.on_progress = on_progress;
         trials.stop_wanted = options_.stop_wanted;
         observe_trials(device, question_, parts_[part], store_, trials);
-        return true;
-    } catch (const Interrupted&) {
-        return false;
     }
 
     bool merge() override { return true; }

@@ -18,9 +18,8 @@ public:
     /// Numbers of the missing parts that can be computed now; empty when all are computed.
     virtual std::vector<std::size_t> missing() = 0;
 
-    /// Computes a part, unless a complete one exists. Returns false if it was interrupted. Throws InputError
-    /// and RunError.
-    virtual bool compute(Device& device, std::size_t part) = 0;
+    /// Computes a part, unless a complete one exists. Throws Interrupted, InputError and RunError.
+    virtual void compute(Device& device, std::size_t part) = 0;
 
     /// Merges the parts when none is missing. Returns false if one is damaged; it is then missing again.
     /// Throws Interrupted; the parts are then as before.

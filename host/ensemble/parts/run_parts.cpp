@@ -230,25 +230,23 @@ RunEnd RunParts::run_part(Device& device, std::size_t part, const fs::path& work
     return run_scene(device, scene, run).end;
 }
 
-bool RunParts::compute(Device& device, std::size_t part) try {
-    if (is_merged(options_.folder)) return true;
+void RunParts::compute(Device& device, std::size_t part) try {
+    if (is_merged(options_.folder)) return;
     if (part >= count_)
         throw InputError(fmt::format("--part: must be below {}, the number of parts of {}, got {}", count_,
                                      options_.folder.string(), part));
     keep_manifest(device_file(parts_folder(options_.folder)), manifest_of(device, scene_));
-    if (is_whole(part)) return true;
+    if (is_whole(part)) return;
     const fs::path work = take_work_folder(part);
-    if (run_part(device, part, work) == RunEnd::interrupted) return false;
+    if (run_part(device, part, work) == RunEnd::interrupted) throw Interrupted();
     move_file(run_file(work), part_file(options_.folder, part));
     fs::remove_all(work);
     // Others may have merged in the meantime.
     if (fs::exists(run_file(options_.folder))) merge();
-    return true;
 } catch (const std::exception&) {
     // Another process may have merged the parts and removed their folder.
     if (!is_merged(options_.folder)) throw;
     expect_scene_of(options_.folder, scene_);
-    return true;
 }
 
 /// Locks exclude others, but not on every network file system.
@@ -267,7 +265,7 @@ bool RunParts::merge_files() try {
         files.push_back(part_file(options_.folder, part));
         expect_own(part);
     }
-    if (!merge_parts(files, run_file(options_.folder), options_.stop_wanted)) throw Interrupted();
+    merge_parts(files, run_file(options_.folder), options_.stop_wanted);
     return true;
 } catch (const DamagedPart& damaged) {
     warn_of_damage(damaged.part, damaged.what());

@@ -23,7 +23,7 @@ public:
 
     std::vector<std::size_t> missing() override;
     /// Also throws InputError if the device is of another kind than those that computed the other parts.
-    bool compute(Device& device, std::size_t part) override;
+    void compute(Device& device, std::size_t part) override;
     bool merge() override;
     std::size_t count() const { return count_; }
 
