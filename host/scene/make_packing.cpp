@@ -8,11 +8,11 @@
 
 #include "core/container.h"
 #include "core/errors.h"
-#include "scene/assign_species.h"
 #include "scene/cell_path.h"
 #include "scene/generate_packing.h"
 #include "scene/random.h"
 #include "scene/read_packing.h"
+#include "scene/resolve_species.h"
 
 namespace mcdem::inline scene {
 namespace {

@@ -1,13 +1,16 @@
 #include "scene/packing_fields.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <numeric>
 
 #include "core/errors.h"
 #include "scene/problems.h"
+#include "scene/read_packing.h"
 
 namespace mcdem::inline scene {
 namespace {
@@ -48,24 +51,6 @@ void FileProblems::report() const {
     if (!empty()) throw InputError(problems_);
 }
 
-void add_grain(Packing& packing, std::string_view x, std::string_view y, std::string_view z,
-               std::string_view diameter, long line, FileProblems& problems) {
-    const std::string_view words[4] = {x, y, z, diameter};
-    constexpr const char* names[4] = {"x", "y", "z", "diameter"};
-    double values[4] = {};
-    for (int k = 0; k < 4; ++k) {
-        const auto value = to_number(words[k]);
-        if (!value)
-            problems.add(line,
-                         fmt::format("{} must be a finite number [m], got {}", names[k], quoted(words[k])));
-        else if (k == 3 && *value <= 0)
-            problems.add(line, fmt::format("diameter must be > 0 [m], got {}", *value));
-        values[k] = value.value_or(0);
-    }
-    packing.position.emplace_back(values[0], values[1], values[2]);
-    packing.diameter.push_back(values[3]);
-}
-
 void add_species(Packing& packing, std::string_view word) {
     constexpr std::size_t max_names = 64;  // more than a scene can have; the last one represents all others
     auto& names = packing.species_names;
@@ -73,6 +58,67 @@ void add_species(Packing& packing, std::string_view word) {
     const auto place = std::min(static_cast<std::size_t>(found - names.begin()), max_names - 1);
     packing.species.push_back(static_cast<int>(place));
     if (place == names.size()) names.emplace_back(word);
+}
+
+GrainColumns GrainColumns::named(const std::vector<std::string>& names, const std::string& file) {
+    const auto first_of = [&](std::initializer_list<std::string_view> words) -> std::optional<std::size_t> {
+        for (const std::string_view word : words)
+            if (const auto found = std::ranges::find(names, word); found != names.end())
+                return static_cast<std::size_t>(found - names.begin());
+        return std::nullopt;
+    };
+    const auto x = first_of({"x", "xu"}), y = first_of({"y", "yu"}), z = first_of({"z", "zu"}),
+               diameter = first_of({"diameter"}), radius = first_of({"radius", "r"});
+    if (!x || !y || !z || (!diameter && !radius))
+        throw InputError(
+            fmt::format("{}: the columns must be x, y, z and diameter or radius, among others, got {}", file,
+                        fmt::join(names, ", ")));
+    return {*x,
+            *y,
+            *z,
+            diameter ? *diameter : *radius,
+            diameter ? 1.0 : 2.0,
+            first_of({"id"}),
+            first_of({"species", "type"})};
+}
+
+void GrainRows::add(const std::vector<std::string_view>& words, long line) {
+    if (static_cast<long>(size()) >= largest_packing)
+        return problems_.add(fmt::format("a packing must have at most {} grains, got more", largest_packing));
+    double values[4] = {};
+    const std::size_t columns[4] = {columns_.x, columns_.y, columns_.z, columns_.size};
+    for (int k = 0; k < 4; ++k) {
+        const auto number = to_number(words[columns[k]]);
+        values[k] = number.value_or(1);
+        if (!number || (k == 3 && !(*number > 0)))
+            problems_.add(line, fmt::format("{} must be a finite number{} [m], got {}", names_[columns[k]],
+                                            k == 3 ? " > 0" : "", quoted(words[columns[k]])));
+    }
+    packing_.position.emplace_back(values[0], values[1], values[2]);
+    packing_.diameter.push_back(columns_.diameters * values[3]);
+    if (columns_.species) add_species(packing_, words[*columns_.species]);
+    ids_.push_back(columns_.id ? to_number(words[*columns_.id]).value_or(-1) : 0);
+    lines_.push_back(line);
+}
+
+Packing GrainRows::packing() const {
+    std::vector<std::size_t> order(size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::ranges::stable_sort(order, {}, [&](std::size_t i) { return ids_[i]; });
+    if (order.empty() && problems_.empty()) problems_.add("a packing must have at least 1 grain, got none");
+    Packing sorted;
+    for (std::size_t k = 0; k < order.size(); ++k) {
+        if (columns_.id && k > 0 && ids_[order[k]] == ids_[order[k - 1]])
+            problems_.add(lines_[order[k]],
+                          fmt::format("each grain must have its own id, got {} again (first in line {})",
+                                      ids_[order[k]], lines_[order[k - 1]]));
+        sorted.position.push_back(packing_.position[order[k]]);
+        sorted.diameter.push_back(packing_.diameter[order[k]]);
+        if (columns_.species) sorted.species.push_back(packing_.species[order[k]]);
+    }
+    problems_.report();
+    sorted.species_names = packing_.species_names;
+    return sorted;
 }
 
 }  // namespace mcdem::scene

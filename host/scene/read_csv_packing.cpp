@@ -22,23 +22,21 @@ using PackingReader = io::CSVReader<7, io::trim_chars<' ', '\t'>, io::no_quote_e
 class RowReader {
 public:
     RowReader(PackingReader& reader, std::optional<long> wanted, FileProblems& problems)
-        : reader_(reader), wanted_(wanted), has_frames_(reader.has_column("frame")), problems_(problems) {}
+        : reader_(reader),
+          wanted_(wanted),
+          has_frames_(reader.has_column("frame")),
+          has_species_(reader.has_column("species") || reader.has_column("type")),
+          problems_(problems) {}
 
     Packing read() {
         if (wanted_ && !has_frames_)
             problems_.add("must have a column frame where packing.frame is given, got none");
-        while (!problems_.full() && next())
-            if (packing_.size() > static_cast<std::size_t>(largest_packing)) {
-                problems_.add(
-                    fmt::format("a packing must have at most {} grains, got more", largest_packing));
-                break;
-            }
-        if (packing_.size() == 0 && problems_.empty() && frames_.empty())
-            problems_.add("a packing must have at least 1 grain, got none");
-        else if (packing_.size() == 0 && problems_.empty())
+        while (!problems_.full() && next()) {
+        }
+        if (grains_.size() == 0 && problems_.empty() && !frames_.empty())
             problems_.add(fmt::format("the frame must be one of its {} frames, {} to {}, got {}",
                                       frames_.size(), *frames_.begin(), *frames_.rbegin(), *wanted_));
-        return std::move(packing_);
+        return grains_.packing();
     }
 
 private:
@@ -49,8 +47,10 @@ private:
             if (!reader_.read_row(x, y, z, diameter, frame, species, type)) return false;
             const long line = reader_.get_file_line();
             if (has_frames_ && !is_wanted(frame, line)) return true;
-            add_grain(packing_, x, y, z, diameter, line, problems_);
-            if (species || type) add_named_species(species ? species : type, line);
+            const std::string_view name = species ? species : type ? type : "";
+            grains_.add({x, y, z, diameter, name}, line);
+            if (has_species_ && name.empty())
+                problems_.add(line, "the species must be a name or a number, got none");
         } catch (const io::error::too_few_columns&) {
             problems_.add(reader_.get_file_line(),
                           "a line must have as many columns as the header, got fewer");
@@ -59,11 +59,6 @@ private:
                           "a line must have as many columns as the header, got more");
         }
         return true;
-    }
-
-    void add_named_species(std::string_view word, long line) {
-        if (word.empty()) problems_.add(line, "the species must be a name or a number, got none");
-        add_species(packing_, word);
     }
 
     bool is_wanted(const char* word, long line) {
@@ -78,10 +73,17 @@ private:
 
     PackingReader& reader_;
     std::optional<long> wanted_;
-    const bool has_frames_;
+    const bool has_frames_, has_species_;
     FileProblems& problems_;
     std::set<long> frames_;
-    Packing packing_;
+    GrainRows grains_{{.x = 0,
+                       .y = 1,
+                       .z = 2,
+                       .size = 3,
+                       .id = {},
+                       .species = has_species_ ? std::optional<std::size_t>(4) : std::nullopt},
+                      {"x", "y", "z", "diameter", "species"},
+                      problems_};
 };
 
 }  // namespace

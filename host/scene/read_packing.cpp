@@ -27,8 +27,10 @@ Packing read_packing(const std::filesystem::path& file, std::optional<long> fram
     }
     if (beginning.starts_with("\x1f\x8b"))
         throw InputError(fmt::format("{}: must not be packed, got a file of gzip: unpack it", source));
-    std::istringstream input(text);
-    if (file.extension() == ".csv") return read_csv_packing(input, source, frame);
+    if (file.extension() == ".csv") {
+        std::istringstream input(text);
+        return read_csv_packing(input, source, frame);
+    }
     if (looks_like_dump(beginning)) return read_dump_packing(text, source, frame);
     if (frame)
         throw InputError(
@@ -36,7 +38,7 @@ Packing read_packing(const std::filesystem::path& file, std::optional<long> fram
                         "with one packing",
                         source));
     if (looks_like_yade(beginning)) return read_yade_packing(text, source);
-    return read_lammps_packing(input, source);
+    return read_lammps_packing(text, source);
 }
 
 }  // namespace mcdem::scene

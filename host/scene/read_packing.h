@@ -26,7 +26,7 @@ inline RunPackingReader read_run_packing = nullptr;
 /// LIGGGHTS/LAMMPS data file, atom style sphere or granular: lines `id type diameter density x y z` in its
 /// `Atoms` section, in metres. Grains are numbered from 0 in the order of the file's ids. Density, bounds and
 /// velocities are ignored; the scene sets them.
-Packing read_lammps_packing(std::istream& input, const std::string& source);
+Packing read_lammps_packing(std::string_view text, const std::string& source);
 
 /// CSV with the columns x_m, y_m, z_m, diameter_m in any order, optionally frame and species or type; other
 /// columns, such as `grain`, are ignored. Grains are numbered from 0 in the order of the lines.

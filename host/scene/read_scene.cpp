@@ -11,7 +11,6 @@
 #include "scene/replicas.h"
 #include "scene/scene_checks.h"
 #include "scene/scene_document.h"
-#include "scene/species_checks.h"
 
 namespace mcdem::inline scene {
 namespace {

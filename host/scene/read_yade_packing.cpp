@@ -3,9 +3,8 @@
 
 #include <algorithm>
 
-#include "scene/grain_rows.h"
+#include "scene/packing_fields.h"
 #include "scene/read_packing.h"
-#include "scene/text_lines.h"
 
 namespace mcdem::inline scene {
 namespace {

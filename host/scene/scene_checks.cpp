@@ -7,7 +7,6 @@
 
 #include "core/container.h"
 #include "core/errors.h"
-#include "scene/assign_species.h"
 #include "scene/cell_path.h"
 #include "scene/generate_packing.h"
 #include "scene/make_packing.h"

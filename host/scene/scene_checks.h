@@ -27,6 +27,11 @@ using CheckedFiles = std::map<std::pair<std::string, int>, CheckedFile>;
 std::vector<CrossProblem> cross_problems(const Settings& settings,
                                          const std::set<std::string, std::less<>>& bad);
 
+/// The setting's species must be resolved. `said`: keys that the scene sets or varies. Conditions on keys in
+/// `bad`, which already have problems, are not checked.
+std::vector<CrossProblem> species_problems(const Settings& settings, const std::set<std::string>& said,
+                                           const std::set<std::string, std::less<>>& bad);
+
 /// Reads the packing file of the setting, if any, and checks that it fits. Problems name lines of the file.
 std::vector<std::string> packing_file_problems(const Settings& settings, CheckedFiles& files);
 

@@ -1,5 +1,4 @@
-#include "scene/species_checks.h"
-
+// Checks of the species and pairs of one setting.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -8,6 +7,7 @@
 
 #include "core/errors.h"
 #include "scene/list_tables.h"
+#include "scene/scene_checks.h"
 #include "scene/sizes.h"
 
 namespace mcdem::inline scene {

@@ -22,16 +22,12 @@ void expect_sound(const mcdem::Packing& packing) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
     const std::string text(reinterpret_cast<const char*>(bytes), size);
-    const auto streamed = [&](auto read) {
-        return [&text, read] {
-            std::istringstream input(text);
-            return read(input, "packing");
-        };
-    };
     const std::function<mcdem::Packing()> readers[] = {
-        streamed(mcdem::read_lammps_packing), streamed([](std::istream& input, const std::string& name) {
-            return mcdem::read_csv_packing(input, name);
-        }),
+        [&] { return mcdem::read_lammps_packing(text, "packing"); },
+        [&] {
+            std::istringstream input(text);
+            return mcdem::read_csv_packing(input, "packing");
+        },
         [&] { return mcdem::read_dump_packing(text, "packing"); },
         [&] { return mcdem::read_yade_packing(text, "packing"); }};
     for (const auto& read : readers) try {

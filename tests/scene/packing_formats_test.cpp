@@ -48,7 +48,7 @@ TEST(PackingOfDump, WrongFilesAreRefused) {
     std::string twice = two_frames;
     twice.replace(twice.find("\n2 0.2"), 2, "\n1");
     EXPECT_THAT(problems_of([&] { read_dump_packing(twice, "t", 100); }),
-                ElementsAre("t:13: each grain must have its own id, got 1 again"));
+                ElementsAre("t:13: each grain must have its own id, got 1 again (first in line 12)"));
 }
 
 TEST(PackingOfDump, IsTheLastFrameOrTheGivenOne) {

@@ -16,10 +16,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::SizeIs;
 
-Packing lammps(const std::string& text) {
-    std::istringstream input(text);
-    return read_lammps_packing(input, "p.data");
-}
+Packing lammps(const std::string& text) { return read_lammps_packing(text, "p.data"); }
 Packing csv(const std::string& text) {
     std::istringstream input(text);
     return read_csv_packing(input, "p.csv");
@@ -81,7 +78,7 @@ TEST(LammpsPacking, WrongFilesAreRefused) {
     EXPECT_THAT(lammps_problems(title + "1 atoms\nAtoms # bond\n1 1 0.02 1 0.1 0.1 0.1\n"),
                 ElementsAre("p.data:4: the atom style must be sphere or granular, got \"bond\""));
     EXPECT_THAT(lammps_problems(title + "2 atoms\nAtoms\n5 1 0.02 1 0.1 0.1 0.1\n5 1 0.02 1 0.2 0.1 0.1\n"),
-                ElementsAre("p.data:6: each atom must have its own id, got 5 again (first in line 5)"));
+                ElementsAre("p.data:6: each grain must have its own id, got 5 again (first in line 5)"));
     EXPECT_THAT(lammps_problems("1 1 0.02 1 0.1 0.1 0.1\n"), SizeIs(2)) << "no header at all";
 }
 
@@ -91,10 +88,10 @@ TEST(LammpsPacking, EveryBadNumberIsNamed) {
                                         "two 1 0.02 1 0.1 0.1 0.1\n"
                                         "3 1 -0.02 1 0.1 1e999 0.1\n"
                                         "4 1 0.02 1 0.1 0.1\n"),
-                ElementsAre("p.data:5: diameter must be a finite number [m], got \"nan\"",
+                ElementsAre("p.data:5: diameter must be a finite number > 0 [m], got \"nan\"",
                             "p.data:6: the atom's id must be a whole number > 0, got \"two\"",
                             "p.data:7: y must be a finite number [m], got \"1e999\"",
-                            "p.data:7: diameter must be > 0 [m], got -0.02",
+                            "p.data:7: diameter must be a finite number > 0 [m], got \"-0.02\"",
                             HasSubstr("p.data:8: an atom must have 7 columns")));
 }
 
@@ -129,7 +126,7 @@ TEST(CsvPacking, WrongFilesAreRefused) {
                 ElementsAre(HasSubstr("p.csv:2: a line must have as many columns"),
                             HasSubstr("p.csv:3: a line must have as many"),
                             "p.csv:4: z must be a finite number [m], got \"inf\"",
-                            "p.csv:5: diameter must be > 0 [m], got 0",
+                            "p.csv:5: diameter must be a finite number > 0 [m], got \"0\"",
                             "p.csv:6: y must be a finite number [m], got \"\""));
     EXPECT_FALSE(csv_problems(std::string(100000, '\0')).empty());
     EXPECT_FALSE(csv_problems(std::string(100000, ',')).empty());

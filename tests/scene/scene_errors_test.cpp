@@ -206,9 +206,10 @@ TEST(PackingFileErrors, AreReportedWithThoseOfTheScene) {
     folder.write("bad.csv", "x_m,y_m,z_m,diameter_m\n0.05,0.05,low,0.02\n0.05,0.05,0.05,-0.02\n");
     const auto scene = folder.write("scene.toml", "[packing]\nfile = \"bad.csv\"\n[grains]\nfriction = -1\n");
     const auto problems = problems_of([&] { read_scene(scene); });
-    EXPECT_THAT(problems, ElementsAre(HasSubstr("bad.csv:2: z must be a finite number [m], got \"low\""),
-                                      HasSubstr("bad.csv:3: diameter must be > 0 [m], got -0.02"),
-                                      AllOf(HasSubstr("scene.toml:4: "), HasSubstr("got -1"))));
+    EXPECT_THAT(problems,
+                ElementsAre(HasSubstr("bad.csv:2: z must be a finite number [m], got \"low\""),
+                            HasSubstr("bad.csv:3: diameter must be a finite number > 0 [m], got \"-0.02\""),
+                            AllOf(HasSubstr("scene.toml:4: "), HasSubstr("got -1"))));
 }
 
 TEST(PackingFileErrors, GeneratedGrainsWithAFileAreRefused) {
