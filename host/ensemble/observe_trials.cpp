@@ -76,10 +76,8 @@ std::string observation_name(const std::string& simulation, const Question& ques
     return digest.hex();
 }
 
-/// One simulation and the trials that look at it.
-struct Job {
-    std::vector<std::size_t> trials;
-};
+/// The trials that look at one simulation.
+using Job = std::vector<std::size_t>;
 
 /// Of these trials, by the names of their simulations.
 std::vector<Job> jobs_of(const std::vector<std::size_t>& trials,
@@ -89,7 +87,7 @@ std::vector<Job> jobs_of(const std::vector<std::size_t>& trials,
     for (const std::size_t t : trials) {
         const auto [place, is_new] = job_of.emplace(simulations[t], jobs.size());
         if (is_new) jobs.emplace_back();
-        jobs[place->second].trials.push_back(t);
+        jobs[place->second].push_back(t);
     }
     return jobs;
 }
@@ -105,7 +103,7 @@ std::vector<std::vector<Job>> batches_of(const std::vector<Job>& jobs, const std
             grains = 0;
         }
         batches.back().push_back(job);
-        grains += trials[job.trials.front()].packing.size();
+        grains += trials[job.front()].packing.size();
     }
     return batches;
 }
@@ -171,7 +169,7 @@ private:
         batch.replicas.clear();
         std::vector<Packing> packings;
         for (const Job& job : jobs) {
-            const Trial& trial = trials_[job.trials.front()];
+            const Trial& trial = trials_[job.front()];
             batch.replicas.push_back(trial.model.replica);
             batch.replicas.back().packing.seed = trial.seed;
             packings.push_back(trial.packing);
@@ -208,7 +206,7 @@ private:
         const Scan& last = recording.scans.back();
         if (last.phase != Phase::unload || last.cycle + 1 < replica.protocol.cycles) return false;
         const double left = std::ranges::min(question_.grid.displacement) - question_.grid.width;
-        return std::ranges::all_of(job.trials, [&](std::size_t t) {
+        return std::ranges::all_of(job, [&](std::size_t t) {
             const double offset = trials_[t].model.instrument.strain_offset;
             return !trials_[t].keep_recording && recording.displacement(last) + std::abs(offset) < left;
         });
@@ -218,10 +216,10 @@ private:
     void look(const std::vector<Job>& jobs, const std::vector<Recording>& recordings) {
         std::vector<std::optional<Recording>> kept(trials_.size());
         in_parallel(jobs.size(), [&](std::size_t j) {
-            for (const std::size_t t : jobs[j].trials) look_at(t, recordings[j], kept[t]);
+            for (const std::size_t t : jobs[j]) look_at(t, recordings[j], kept[t]);
         });
         for (const Job& job : jobs)
-            for (const std::size_t t : job.trials) {
+            for (const std::size_t t : job) {
                 if (kept[t]) store_.keep(names_[t], *kept[t]);
                 store_.keep(names_[t], Eigen::VectorXd(result_.row(static_cast<Eigen::Index>(t))));
             }
@@ -259,7 +257,7 @@ std::vector<std::vector<Trial>> parts_of_trials(const Question& question, const 
          batches_of(jobs_of(numbers_of(trials), simulations), trials, max_grains_of_a_part)) {
         parts.emplace_back();
         for (const Job& job : batch)
-            for (const std::size_t t : job.trials) parts.back().push_back(trials[t]);
+            for (const std::size_t t : job) parts.back().push_back(trials[t]);
     }
     return parts;
 }

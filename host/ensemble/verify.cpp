@@ -6,6 +6,7 @@
 #include <fstream>
 #include <functional>
 #include <set>
+#include <sstream>
 
 #include "core/errors.h"
 #include "core/input_file.h"
@@ -63,12 +64,9 @@ void check_listed(const fs::path& folder, const std::set<std::string>& listed, s
 /// Checks a file in the format of `sha256sum`.
 void check_sums(const fs::path& folder, std::vector<Verified>& all) {
     std::set<std::string> listed;
-    const std::string sums = read_file(folder / sums_file);
+    std::istringstream sums(read_file(folder / sums_file));
     constexpr std::size_t digits = 64;
-    for (std::size_t first = 0; first < sums.size();) {
-        const std::size_t end = std::min(sums.find('\n', first), sums.size());
-        const std::string line = sums.substr(first, end - first);
-        first = end + 1;
+    for (std::string line; std::getline(sums, line);) {
         const fs::path file =
             line.size() > digits + 2 ? folder / line.substr(digits + 2) : folder / sums_file;
         listed.insert(file.filename().string());

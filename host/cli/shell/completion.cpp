@@ -13,15 +13,20 @@
 namespace mcdem::inline cli {
 namespace {
 
-/// Type of an option's value or of a positional.
-enum class Kind { folder, file, scene_key, word, anything };
+/// How a shell completes the value of an option.
+struct Actions {
+    const char *folder, *file, *scene_key;
+    const char* word;  ///< with {} for the allowed words
+    const char* anything;
+};
 
-Kind kind_of(const OptionEntry& option) {
-    if (!option.choices.empty()) return Kind::word;
-    if (option.value == "DIR") return Kind::folder;
-    if (option.value == "FILE") return Kind::file;
-    if (option.value == "KEY=VALUE" && option.names.front() == "--set") return Kind::scene_key;
-    return Kind::anything;
+std::string action_of(const OptionEntry& option, const Actions& actions) {
+    if (!option.choices.empty())
+        return fmt::format(fmt::runtime(actions.word), fmt::join(option.choices, " "));
+    if (option.value == "DIR") return actions.folder;
+    if (option.value == "FILE") return actions.file;
+    if (option.value == "KEY=VALUE" && option.names.front() == "--set") return actions.scene_key;
+    return actions.anything;
 }
 
 /// In single quotes, for all three shells.
@@ -44,15 +49,14 @@ std::string places(const std::vector<CommandEntry>& tree) {
 }
 
 /// One line per command and option with a value: `"PLACE --option") ACTION ;;`.
-template <class Action>
-std::string value_cases(const std::vector<CommandEntry>& tree, Action action) {
+std::string value_cases(const std::vector<CommandEntry>& tree, const Actions& actions) {
     std::string cases;
     for (const CommandEntry& command : tree)
         for (const OptionEntry& option : command.options)
             if (!option.value.empty())
                 for (const std::string& name : option.names)
-                    cases +=
-                        fmt::format("        \"{} {}\") {} ;;\n", place_of(command), name, action(option));
+                    cases += fmt::format("        \"{} {}\") {} ;;\n", place_of(command), name,
+                                         action_of(option, actions));
     return cases;
 }
 
@@ -74,22 +78,12 @@ bool takes_files(const CommandEntry& command) {
     return !command.positionals.empty() && choices_of(command).empty();
 }
 
-std::string bash_action(const OptionEntry& option) {
-    switch (kind_of(option)) {
-        case Kind::folder:
-            return "compopt -o filenames; COMPREPLY=($(compgen -d -- \"$current\")); return";
-        case Kind::file:
-            return "compopt -o filenames; COMPREPLY=($(compgen -f -- \"$current\")); return";
-        case Kind::scene_key:
-            return "compopt -o nospace; COMPREPLY=($(compgen -S = -W \"$keys\" -- \"$current\")); return";
-        case Kind::word:
-            return fmt::format("COMPREPLY=($(compgen -W '{}' -- \"$current\")); return",
-                               fmt::join(option.choices, " "));
-        case Kind::anything:
-            break;
-    }
-    return "return";
-}
+constexpr Actions bash_actions{
+    .folder = "compopt -o filenames; COMPREPLY=($(compgen -d -- \"$current\")); return",
+    .file = "compopt -o filenames; COMPREPLY=($(compgen -f -- \"$current\")); return",
+    .scene_key = "compopt -o nospace; COMPREPLY=($(compgen -S = -W \"$keys\" -- \"$current\")); return",
+    .word = "COMPREPLY=($(compgen -W '{}' -- \"$current\")); return",
+    .anything = "return"};
 
 std::string bash_script(const std::vector<CommandEntry>& tree, const std::string& keys) {
     std::string commands;
@@ -127,24 +121,14 @@ _mcdem() {{
 }}
 complete -F _mcdem mcdem
 )",
-                       keys, places(tree), value_cases(tree, bash_action), commands);
+                       keys, places(tree), value_cases(tree, bash_actions), commands);
 }
 
-std::string zsh_action(const OptionEntry& option) {
-    switch (kind_of(option)) {
-        case Kind::folder:
-            return "_files -/; return";
-        case Kind::file:
-            return "_files; return";
-        case Kind::scene_key:
-            return "compadd -S = -- $keys; return";
-        case Kind::word:
-            return fmt::format("compadd -- {}; return", fmt::join(option.choices, " "));
-        case Kind::anything:
-            break;
-    }
-    return "_message 'value'; return";
-}
+constexpr Actions zsh_actions{.folder = "_files -/; return",
+                              .file = "_files; return",
+                              .scene_key = "compadd -S = -- $keys; return",
+                              .word = "compadd -- {}; return",
+                              .anything = "_message 'value'; return"};
 
 /// 'name:description', for _describe.
 std::string zsh_entry(const std::string& name, const std::string& help) {
@@ -187,24 +171,14 @@ _mcdem() {{
 }}
 if [[ $funcstack[1] == _mcdem ]]; then _mcdem "$@"; else compdef _mcdem mcdem; fi
 )",
-                       keys, places(tree), value_cases(tree, zsh_action), commands);
+                       keys, places(tree), value_cases(tree, zsh_actions), commands);
 }
 
-std::string fish_value(const OptionEntry& option) {
-    switch (kind_of(option)) {
-        case Kind::folder:
-            return "-x -a '(__fish_complete_directories (commandline -ct))'";
-        case Kind::file:
-            return "-r -F";
-        case Kind::scene_key:
-            return "-x -a '(__mcdem_keys)'";
-        case Kind::word:
-            return fmt::format("-x -a '{}'", fmt::join(option.choices, " "));
-        case Kind::anything:
-            break;
-    }
-    return option.value.empty() ? "" : "-x";
-}
+constexpr Actions fish_actions{.folder = "-x -a '(__fish_complete_directories (commandline -ct))'",
+                               .file = "-r -F",
+                               .scene_key = "-x -a '(__mcdem_keys)'",
+                               .word = "-x -a '{}'",
+                               .anything = "-x"};
 
 std::string fish_lines(const std::vector<CommandEntry>& tree, const CommandEntry& command) {
     const std::string start = fmt::format("complete -c mcdem -n '__mcdem_at \"{}\"'", place_of(command));
@@ -213,7 +187,9 @@ std::string fish_lines(const std::vector<CommandEntry>& tree, const CommandEntry
         std::string names;
         for (const std::string& name : option.names)
             names += name.starts_with("--") ? " -l " + name.substr(2) : " -s " + name.substr(1);
-        lines += fmt::format("{}{} {} -d {}\n", start, names, fish_value(option), in_quotes(option.help));
+        lines +=
+            fmt::format("{}{} {} -d {}\n", start, names,
+                        option.value.empty() ? "" : action_of(option, fish_actions), in_quotes(option.help));
     }
     for (const std::string& name : command.commands)
         lines +=
@@ -238,12 +214,7 @@ function __mcdem_keys
     string join \n -- {} | string replace -r '$' '='
 end
 {})",
-                       [&] {
-                           std::string list = places(tree);
-                           std::ranges::replace(list, '|', ' ');
-                           return list;
-                       }(),
-                       keys, commands);
+                       replaced(places(tree), {{'|', " "}}), keys, commands);
 }
 
 }  // namespace
