@@ -1,17 +1,78 @@
 // mcdem.Run, mcdem.Recording and mcdem.Failure
 #include <fmt/format.h>
+#include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
 #include <algorithm>
 
-#include "python/arrays.h"
+#include "core/stress.h"
 #include "python/bindings.h"
-#include "python/parameters.h"
+#include "python/toml_text.h"
 
 namespace mcdem::inline python {
 namespace {
 
 namespace py = pybind11;
+
+/// An array of `count` contiguous objects: rows of named fields.
+template <class Row>
+class Fields {
+public:
+    template <class Member>
+    Fields& add(const char* name, const Member Row::*member, const char* format) {
+        const Row row{};
+        names_.append(name);
+        formats_.append(format);
+        offsets_.append(reinterpret_cast<const char*>(&(row.*member)) - reinterpret_cast<const char*>(&row));
+        return *this;
+    }
+    py::dtype type() const { return py::dtype(names_, formats_, offsets_, sizeof(Row)); }
+
+private:
+    py::list names_, formats_, offsets_;
+};
+
+/// Refers to the memory of a recording: read-only, nothing is copied, and `owner` is kept alive.
+py::array view(const py::dtype& type, std::vector<py::ssize_t> shape, std::vector<py::ssize_t> strides,
+               const void* data, py::handle owner) {
+    py::array array(type, std::move(shape), std::move(strides), data, owner);
+    array.attr("setflags")(py::arg("write") = false);
+    return array;
+}
+
+template <class Row>
+py::array rows(const std::vector<Row>& list, const py::dtype& type, py::handle owner) {
+    return view(type, {static_cast<py::ssize_t>(list.size())}, {sizeof(Row)}, list.data(), owner);
+}
+
+py::dtype scan_type() {
+    return Fields<Scan>()
+        .add("frame", &Scan::frame, "i4")
+        .add("cycle", &Scan::cycle, "i4")
+        .add("phase", &Scan::phase, "i4")
+        .add("settled", &Scan::settled, "?")
+        .add("time", &Scan::time, "f8")
+        .add("plate_z", &Scan::plate_z, "f8")
+        .add("kinetic_energy", &Scan::kinetic_energy, "f8")
+        .add("elastic_energy", &Scan::elastic_energy, "f8")
+        .add("rate_error", &Scan::rate_error, "f8")
+        .add("coordination_number", &Scan::coordination_number, "f8")
+        .add("mean_force", &Scan::mean_force, "f8")
+        .add("packing_fraction", &Scan::packing_fraction, "f8")
+        .add("branch_length", &Scan::branch_length, "f8")
+        .add("max_overlap", &Scan::max_overlap, "f8")
+        .type();
+}
+
+py::dtype contact_type() {
+    return Fields<Contact>()
+        .add("grain", &Contact::grain, "i4")
+        .add("partner", &Contact::partner, "i4")
+        .add("point", &Contact::point, "(3,)f8")
+        .add("force", &Contact::force, "(3,)f8")
+        .add("overlap", &Contact::overlap, "f8")
+        .type();
+}
 
 /// One recording of a run, which it keeps alive. It is the base of its arrays.
 struct OneRecording {
@@ -42,23 +103,54 @@ const Scan& scan_at(const OneRecording& recording, py::ssize_t index) {
     return recording.get().scans[place_in(recording.get().scans.size(), index, "scan")];
 }
 
-/// A property that is an array of the recording's memory.
-auto array_property(py::array (*array)(const Recording&, py::handle)) {
-    return [array](const py::object& self) { return array(self.cast<const OneRecording&>().get(), self); };
-}
+constexpr py::ssize_t number = sizeof(double), triple = 3 * number;
+static_assert(sizeof(Vec3) == triple && sizeof(Mat3) == 3 * triple && sizeof(Scan::wall_force) == 6 * triple,
+              "members of scans are read as rows of numbers");
 
-py::array stress_array(const Recording& recording, py::handle owner) {
-    return tensor_array(recording, &Scan::stress, owner);
-}
-
-py::array fabric_array(const Recording& recording, py::handle owner) {
-    return tensor_array(recording, &Scan::fabric, owner);
-}
-
-auto array_of_scan(py::array (*array)(const Scan&, py::handle)) {
-    return [array](const py::object& self, py::ssize_t scan) {
-        return array(scan_at(self.cast<const OneRecording&>(), scan), self);
+/// A property that is one member of all scans: [S] and its own extents. `first`: number in the member.
+template <class Member>
+auto column(Member Scan::*member, std::vector<py::ssize_t> extents = {}, py::ssize_t first = 0) {
+    return [=](const py::object& self) {
+        const auto& scans = self.cast<const OneRecording&>().get().scans;
+        std::vector<py::ssize_t> shape{static_cast<py::ssize_t>(scans.size())}, strides{sizeof(Scan)};
+        shape.insert(shape.end(), extents.begin(), extents.end());
+        if (extents.size() == 2) strides.push_back(triple);
+        if (!extents.empty()) strides.push_back(number);
+        const double* data =
+            scans.empty() ? nullptr : reinterpret_cast<const double*>(&(scans.front().*member)) + first;
+        return view(py::dtype::of<double>(), shape, strides, data, self);
     };
+}
+
+/// A property that is one list of the recording, of numbers or of rows.
+template <class Row>
+auto list_property(std::vector<Row> Recording::*list, py::dtype (*type)()) {
+    return [=](const py::object& self) {
+        return rows(self.cast<const OneRecording&>().get().*list, type(), self);
+    };
+}
+
+/// Vectors by grain at one scan.
+auto vectors_at(std::vector<Vec3> Scan::*vectors) {
+    return [vectors](const py::object& self, py::ssize_t scan) {
+        const auto& list = scan_at(self.cast<const OneRecording&>(), scan).*vectors;
+        return view(py::dtype::of<double>(), {static_cast<py::ssize_t>(list.size()), 3}, {triple, number},
+                    list.data(), self);
+    };
+}
+
+py::array contacts_at(const py::object& self, py::ssize_t scan) {
+    return rows(scan_at(self.cast<const OneRecording&>(), scan).contacts, contact_type(), self);
+}
+
+/// [N][3][3], a copy.
+py::array grain_stress_at(const OneRecording& self, py::ssize_t scan) {
+    const Recording& recording = self.get();
+    const auto stress = grain_stress(recording.box, recording.diameter, scan_at(self, scan));
+    py::array_t<double> array({static_cast<py::ssize_t>(stress.size()), py::ssize_t{3}, py::ssize_t{3}});
+    for (std::size_t i = 0; i < stress.size(); ++i)
+        std::copy_n(stress[i].data(), 9, array.mutable_data(static_cast<py::ssize_t>(i), 0, 0));
+    return array;
 }
 
 void bind_failure(py::module_& module) {
@@ -76,48 +168,44 @@ void bind_failure(py::module_& module) {
 void bind_scan_arrays(py::class_<OneRecording>& recording) {
     recording
         .def_property_readonly(
-            "scans", array_property(scans_array),
+            "scans", list_property(&Recording::scans, scan_type),
             "[S] rows with the fields of /observables in run.h5: frame, cycle, phase (0 load, 1 "
             "unload), settled, time [s], plate_z [m], kinetic_energy [J], elastic_energy [J], "
             " rate_error, coordination_number, mean_force [N], packing_fraction, "
             "branch_length [m].")
         .def_property_readonly(
-            "wall_force", array_property(wall_force_array),
+            "wall_force", column(&Scan::wall_force, {6, 3}),
             "[S][6][3] force on each wall [N]: x_min, x_max, y_min, y_max, floor, plate. The side "
             "of a cylinder is x_min; walls that are not there have zeros. Of a cell: the forces through "
             "its faces.")
-        .def_property_readonly("top_force", array_property(top_force_array),
+        .def_property_readonly("top_force",
+                               column(&Scan::wall_force, {}, 3 * static_cast<int>(Wall::plate) + 2),
                                "[S] upward force on the plate [N].")
         .def_property_readonly(
-            "strain", array_property(strain_array),
+            "strain", column(&Scan::strain, {6}),
             "[S][6] of a cell, over its lengths at start: compression along x, y and z, shears "
             "xy, xz and yz.")
         .def_property_readonly(
-            "stress", array_property(stress_array),
+            "stress", column(&Scan::stress, {3, 3}),
             "[S][3][3] stress of the packing, from contact forces and branch vectors; compression is "
             "positive [Pa]. Not-a-number in files of earlier versions.")
-        .def_property_readonly("fabric", array_property(fabric_array),
+        .def_property_readonly("fabric", column(&Scan::fabric, {3, 3}),
                                "[S][3][3] mean of n n, n the direction of a contact between grains.");
 }
 
 /// Arrays with one entry per grain or contact at one scan.
 void bind_single_scans(py::class_<OneRecording>& recording) {
     recording
-        .def(
-            "grain_stress",
-            [](const OneRecording& self, py::ssize_t scan) {
-                return grain_stress_array(self.get(), scan_at(self, scan));
-            },
-            py::arg("scan"),
-            "[N][3][3] stress of each grain at a scan, over its own volume; compression is positive [Pa].")
-        .def("positions", array_of_scan(position_array), py::arg("scan"),
+        .def("grain_stress", grain_stress_at, py::arg("scan"),
+             "[N][3][3] stress of each grain at a scan, over its own volume; compression is positive [Pa].")
+        .def("positions", vectors_at(&Scan::position), py::arg("scan"),
              "[N][3] centres [m] at a scan; [0][3] where they were not recorded.")
-        .def("rotations", array_of_scan(rotation_array), py::arg("scan"),
+        .def("rotations", vectors_at(&Scan::rotation), py::arg("scan"),
              "[N][3] rotation of each grain since the start of the run, before the packing relaxes: axis "
              "times "
              "angle, at most pi [rad]; [0][3] where positions were not recorded and in files of earlier "
              "versions.")
-        .def("contacts", array_of_scan(contact_array), py::arg("scan"),
+        .def("contacts", contacts_at, py::arg("scan"),
              "[C] contacts at a scan: grain, partner (a grain, or -1 to -6: x_min, x_max, y_min, y_max, "
              "floor, plate), "
              "point [3] [m], force [3] on grain [N], overlap [m].");
@@ -148,9 +236,10 @@ void bind_recording(py::module_& module) {
             "plate_start", [](const OneRecording& self) { return self.get().plate_start; },
             "Plate position that counts as displacement zero [m].")
         .def_property_readonly("failure", [](const OneRecording& self) { return self.get().failure; })
-        .def_property_readonly("diameter", array_property(diameter_array), "[N] diameters [m].")
+        .def_property_readonly("diameter", list_property(&Recording::diameter, py::dtype::of<double>),
+                               "[N] diameters [m].")
         .def_property_readonly(
-            "species", array_property(species_array),
+            "species", list_property(&Recording::species, py::dtype::of<int>),
             "[N] species of each grain, a place in species_names; empty without [[species]].")
         .def_property_readonly("species_names", [](const OneRecording& r) { return r.get().species_names; })
         .def("__len__", [](const OneRecording& self) { return self.get().scans.size(); })

@@ -3,7 +3,6 @@
 #include <pybind11/stl/filesystem.h>
 
 #include "python/bindings.h"
-#include "python/parameters.h"
 #include "python/toml_text.h"
 #include "scene/read_scene.h"
 

@@ -4,10 +4,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <charconv>
 
 #include "core/errors.h"
 
 namespace mcdem::inline python {
+
 namespace {
 
 namespace py = pybind11;
@@ -111,6 +113,23 @@ void append_table(std::string& text, const std::string& name, const py::dict& ta
         }
 }
 
+namespace py = pybind11;
+
+template <class Number>
+bool is_all(const std::string& text, Number& number) {
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    return error == std::errc{} && end == text.data() + text.size();
+}
+
+py::object typed(const std::string& text) {
+    if (text.empty()) return py::none();
+    if (text == "true" || text == "false") return py::bool_(text == "true");
+    if (std::uint64_t whole = 0; is_all(text, whole)) return py::int_(whole);
+    if (std::int64_t whole = 0; is_all(text, whole)) return py::int_(whole);
+    if (double number = 0; is_all(text, number)) return py::float_(number);
+    return python_text(text);
+}
+
 }  // namespace
 
 std::string toml_text(const py::dict& tables) {
@@ -126,6 +145,18 @@ std::vector<std::string> overrides_of(const py::dict& values) {
         overrides.push_back(name + "=" + value_text(value, name, 0));
     }
     return overrides;
+}
+
+py::str python_text(const std::string& text) {
+    return py::reinterpret_steal<py::str>(
+        PyUnicode_DecodeUTF8(text.data(), static_cast<py::ssize_t>(text.size()), "surrogateescape"));
+}
+
+py::dict typed_parameters(const std::map<std::string, std::string>& parameters) {
+    py::dict all;
+    for (const auto& [key, text] : parameters)
+        all[py::str(key)] = key == "packing.file" && !text.empty() ? python_text(text) : typed(text);
+    return all;
 }
 
 }  // namespace mcdem::python
