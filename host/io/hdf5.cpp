@@ -103,27 +103,6 @@ Handle transfer(const Extent& size, hid_t memory_type) {
 
 }  // namespace
 
-template <>
-Handle number_type<double>() {
-    return {H5Tcopy(H5T_NATIVE_DOUBLE), H5Tclose};
-}
-template <>
-Handle number_type<float>() {
-    return {H5Tcopy(H5T_NATIVE_FLOAT), H5Tclose};
-}
-template <>
-Handle number_type<int>() {
-    return {H5Tcopy(H5T_NATIVE_INT), H5Tclose};
-}
-template <>
-Handle number_type<long>() {
-    return {H5Tcopy(H5T_NATIVE_LONG), H5Tclose};
-}
-template <>
-Handle number_type<unsigned char>() {
-    return {H5Tcopy(H5T_NATIVE_UCHAR), H5Tclose};
-}
-
 Handle text_type(std::size_t length) {
     Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
     H5Tset_size(type, std::max<std::size_t>(length, 1));

@@ -12,6 +12,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -51,17 +52,19 @@ using Extent = std::vector<hsize_t>;
 
 /// The HDF5 type of a number in memory.
 template <class Number>
-Handle number_type();
-template <>
-Handle number_type<double>();
-template <>
-Handle number_type<float>();
-template <>
-Handle number_type<int>();
-template <>
-Handle number_type<long>();
-template <>
-Handle number_type<unsigned char>();
+Handle number_type() {
+    if constexpr (std::is_same_v<Number, double>) return {H5Tcopy(H5T_NATIVE_DOUBLE), H5Tclose};
+    if constexpr (std::is_same_v<Number, float>) return {H5Tcopy(H5T_NATIVE_FLOAT), H5Tclose};
+    if constexpr (std::is_same_v<Number, int>) return {H5Tcopy(H5T_NATIVE_INT), H5Tclose};
+    if constexpr (std::is_same_v<Number, long>) return {H5Tcopy(H5T_NATIVE_LONG), H5Tclose};
+    if constexpr (std::is_same_v<Number, unsigned char>) return {H5Tcopy(H5T_NATIVE_UCHAR), H5Tclose};
+}
+/// Number of values in a table, or in one of its rows.
+inline hsize_t values_in(const Extent& extent) {
+    hsize_t count = 1;
+    for (const hsize_t n : extent) count *= n;
+    return count;
+}
 /// Text of exactly `length` bytes (at least 1), padded with zeros. Variable-length text would be stored in a
 /// part of the file without checksum.
 Handle text_type(std::size_t length);
@@ -189,9 +192,7 @@ private:
 
 template <class Number>
 std::vector<Number> Dataset::read_all() const {
-    hsize_t count = 1;
-    for (hsize_t n : extent()) count *= n;
-    std::vector<Number> values(count);
+    std::vector<Number> values(h5::values_in(extent()));
     read(number_type<Number>(), values.data(), 0, rows());
     return values;
 }
@@ -199,10 +200,8 @@ std::vector<Number> Dataset::read_all() const {
 template <class Number>
 void File::write(const std::string& object, const std::vector<Number>& values, const Extent& row) {
     const Handle type = number_type<Number>();
-    hsize_t width = 1;
-    for (hsize_t n : row) width *= n;
     Dataset table = create_rows(object, type, row);
-    table.append(type, values.data(), values.size() / width);
+    table.append(type, values.data(), values.size() / values_in(row));
     finish(table);
 }
 

@@ -119,11 +119,9 @@ void File::write_texts(const std::string& object, const std::vector<std::string>
     std::string padded;
     padded.reserve(length * texts.size());
     for (const auto& text : texts) padded += text + std::string(length - text.size(), '\0');
-    hsize_t width = 1;
-    for (hsize_t n : row) width *= n;
     const Handle type = text_type(length);
     Dataset table = create_rows(object, type, row);
-    table.append(type, padded.data(), texts.size() / width);
+    table.append(type, padded.data(), texts.size() / values_in(row));
     finish(table);
 }
 
@@ -131,8 +129,7 @@ std::vector<std::string> File::read_texts(const std::string& object) const {
     const Dataset table = dataset(object);
     const Handle type = table.type();
     if (!is_fixed_text(type)) fail(where(object), "must hold texts of fixed length");
-    hsize_t count = 1;
-    for (hsize_t n : table.extent()) count *= n;
+    const hsize_t count = values_in(table.extent());
     const std::size_t length = H5Tget_size(type);
     std::string padded(count * length, '\0');
     table.read(memory_text(type), padded.data(), 0, table.rows());
