@@ -1,8 +1,7 @@
-#include "report/diagnosis/diagnosis_charts.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "report/diagnosis/diagnosis_page.h"
 #include "report/diagnosis/diagnosis_values.h"
 #include "report/diagnosis/diagnosis_words.h"
 #include "report/diagnosis_samples.h"

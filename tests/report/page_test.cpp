@@ -6,7 +6,6 @@
 #include "core/errors.h"
 #include "core/sha256.h"
 #include "report/folder.h"
-#include "report/page/plotting_library.h"
 #include "report/page_text.h"
 
 namespace mcdem {

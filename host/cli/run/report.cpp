@@ -11,7 +11,7 @@
 #include "core/make_folder.h"
 #include "core/output_file.h"
 #include "report/diagnosis/diagnosis_page.h"
-#include "report/page/plotting_library.h"
+#include "report/page/page.h"
 #include "report/run/run_page.h"
 
 namespace mcdem::inline cli {

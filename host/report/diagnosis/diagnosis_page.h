@@ -15,4 +15,9 @@ void add_diagnosis(Page& page, const Diagnosis& diagnosis, const std::string& na
 /// Writes a page with only this diagnosis. Throws RunError if that fails.
 void write_diagnosis_page(const Diagnosis& diagnosis, const std::filesystem::path& file);
 
+/// Those that there are. where: a heat map before and after recalibration, cells that stand out framed.
+/// which: candidates by score, with their amplitudes over what these data can detect. how_far: the top force.
+/// gap_left: the gap before and after; neither where the data held out show none.
+std::vector<Chart> diagnosis_charts(const Diagnosis& diagnosis);
+
 }  // namespace mcdem::report

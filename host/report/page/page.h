@@ -56,4 +56,8 @@ private:
 /// Writes the page with the installed library. Throws RunError if that fails.
 void write_page(const Page& page, const std::filesystem::path& file);
 
+/// plotly.js, compressed with gzip. It is searched in $MCDEM_SHARE, in share/mcdem next to the program or
+/// next to its folder, and in the installation folder. Throws RunError if it is not found.
+std::string packed_plotting_library();
+
 }  // namespace mcdem::report
