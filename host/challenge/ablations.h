@@ -2,7 +2,7 @@
 #pragma once
 #include <span>
 
-#include "challenge/answer.h"
+#include "challenge/merits.h"
 #include "diagnose/infer/evidence.h"
 
 namespace mcdem::inline challenge {

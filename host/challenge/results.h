@@ -1,10 +1,12 @@
-// Reads the scored results of `mcdem challenge run`.
+// The results of `mcdem challenge run`: evidence and findings of the diagnoses, stored so that limits and
+// ablations can be tried without new simulations, and what is scored.
 #pragma once
 #include <filesystem>
 #include <optional>
 
 #include "challenge/files.h"
 #include "diagnose/decide/decision.h"
+#include "diagnose/infer/evidence.h"
 #include "diagnose/infer/library.h"
 
 namespace mcdem::inline challenge {
@@ -33,5 +35,15 @@ ChallengeResults read_challenge_results(const std::filesystem::path& folder, con
 
 /// File with the evidence of a case.
 std::filesystem::path evidence_file(const std::filesystem::path& folder, const OpenCase& open_case);
+
+/// JSON of everything except the library, which all cases of a challenge share.
+std::string evidence_text(const Evidence& evidence);
+/// Throws InputError if the file is not evidence, or does not match the cells of this library.
+Evidence read_evidence(const std::filesystem::path& file, const Library& library);
+
+/// JSON.
+std::string findings_text(const Findings& findings);
+/// Throws InputError if the file does not contain findings.
+Findings read_findings(const std::filesystem::path& file);
 
 }  // namespace mcdem::challenge

@@ -4,13 +4,13 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "challenge/evidence.h"
 #include "challenge/files.h"
+#include "challenge/results.h"
 #include "core/atomic_file.h"
 #include "core/errors.h"
+#include "core/input_file.h"
 #include "core/make_folder.h"
 #include "core/output_file.h"
 #include "core/sha256.h"
@@ -30,11 +30,6 @@ namespace fs = std::filesystem;
 const char* const evidence_folder = answers_folder;
 const char* const findings_folder = "findings";
 fs::path case_file(const fs::path& folder, const OpenCase& c) { return folder / (c.folder + ".json"); }
-
-std::string text_of(const fs::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-}
 
 std::size_t grains_of(const Experiment& experiment) { return experiment.recording.diameter.size(); }
 
@@ -138,7 +133,7 @@ private:
     /// Throws InputError if the answers in the folder were started with other options.
     void expect_own_options() const {
         Manifest wanted = manifest_of(scene_, options_.program);
-        wanted["challenge"] = Sha256().add(text_of(options_.challenge / "challenge.json")).hex();
+        wanted["challenge"] = Sha256().add(read_file(options_.challenge / "challenge.json")).hex();
         const ChallengeLibrary& library = options_.library;
         for (const auto& [name, value] : {std::pair{"--replicates", options_.replicates},
                                           {"--confirmations", options_.confirmations},
@@ -259,7 +254,7 @@ private:
         expect_origin(library,
                       library_origin(question(), model_of(scene_, experiment), grains_of(experiment)), file);
         const std::string text = library_text(library);
-        if (!create_file(library_file(), text) && text_of(library_file()) != text)
+        if (!create_file(library_file(), text) && read_file(library_file()) != text)
             throw InputError(fmt::format(
                 "{}: is another library than {}, and cases there were diagnosed with it: give that "
                 "library, or another folder (--out)",

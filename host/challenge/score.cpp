@@ -5,7 +5,7 @@
 #include <mutex>
 
 #include "challenge/ablations.h"
-#include "challenge/evidence.h"
+#include "challenge/results.h"
 #include "core/errors.h"
 #include "core/in_parallel.h"
 
@@ -57,18 +57,11 @@ public:
                        {simpler_methods().size(), std::vector<Answer>(open_.cases.size())}};
         std::mutex turn;
         std::size_t done = 0;
-        std::exception_ptr failure;
         in_parallel(open_.cases.size(), [&](std::size_t k) {
-            try {
-                if (results_.cases[k].problem.empty()) one(k, arms);
-                const std::lock_guard lock(turn);
-                on_progress(static_cast<double>(++done) / static_cast<double>(open_.cases.size()));
-            } catch (...) {
-                const std::lock_guard lock(turn);
-                failure = std::current_exception();
-            }
+            if (results_.cases[k].problem.empty()) one(k, arms);
+            const std::lock_guard lock(turn);
+            on_progress(static_cast<double>(++done) / static_cast<double>(open_.cases.size()));
         });
-        if (failure) std::rethrow_exception(failure);
         return arms;
     }
 

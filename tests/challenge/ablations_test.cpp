@@ -6,7 +6,7 @@
 
 #include <fstream>
 
-#include "challenge/evidence.h"
+#include "challenge/results.h"
 #include "core/errors.h"
 #include "ensemble/small_scene.h"
 #include "scene/random.h"

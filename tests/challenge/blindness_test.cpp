@@ -44,7 +44,7 @@ TEST(ChallengeBlindness, ScoringCodeIncludesTheTruth) {
 TEST(ChallengeBlindness, RunningCodeDoesNotMentionTheTruth) {
     for (const char* name :
          {"challenge/run.cpp", "challenge/run.h", "cli/challenge/challenge_run.cpp",
-          "ensemble/diagnose_experiment.cpp", "challenge/files.cpp", "challenge/evidence.cpp"})
+          "ensemble/diagnose_experiment.cpp", "challenge/files.cpp", "challenge/results.cpp"})
         EXPECT_EQ(bytes_of_file(host / name).find("truth"), std::string::npos) << name;
 }
 

@@ -2,8 +2,8 @@
 // read or give an InputError. The first byte selects the document, the others the changes.
 #include <map>
 
-#include "challenge/evidence.h"
 #include "challenge/files.h"
+#include "challenge/results.h"
 #include "challenge/truth.h"
 #include "core/errors.h"
 #include "core/sha256.h"

@@ -123,6 +123,9 @@ TextTable table_of_arms(const ChallengeScore& score) {
     return table;
 }
 
+namespace {
+
+/// Detected and named cases by effect.
 TextTable table_of_effects(const ChallengeScore& score) {
     TextTable table;
     table.columns = {{"effect", Align::left}, {"detected"}, {"named first"}};
@@ -132,6 +135,7 @@ TextTable table_of_effects(const ChallengeScore& score) {
     return table;
 }
 
+/// Cases with unknown effects in which an effect was named, by unknown effect.
 TextTable table_of_unknown(const ChallengeScore& score) {
     TextTable table;
     table.columns = {
@@ -145,6 +149,7 @@ TextTable table_of_unknown(const ChallengeScore& score) {
     return table;
 }
 
+/// Limits set with the first half, and the defaults.
 TextTable table_of_limits(const ChallengeScore& score) {
     TextTable table;
     table.columns = {{"limit", Align::left}, {"set"}, {"default"}};
@@ -154,6 +159,8 @@ TextTable table_of_limits(const ChallengeScore& score) {
             {std::string(name), fmt::format("{:g}", value), fmt::format("{:g}", defaults.at(name))});
     return table;
 }
+
+}  // namespace
 
 std::string score_markdown(const ChallengeScore& score) {
     std::string text = fmt::format("# Score of the challenge\n\n{} cases.\n", score.cases);

@@ -9,12 +9,6 @@ namespace mcdem::inline cli {
 TextTable table_of_merits(const ChallengeScore& score);
 /// All methods on the scored half.
 TextTable table_of_arms(const ChallengeScore& score);
-/// Detected and named cases by effect.
-TextTable table_of_effects(const ChallengeScore& score);
-/// Cases with unknown effects in which an effect was named, by unknown effect.
-TextTable table_of_unknown(const ChallengeScore& score);
-/// Limits set with the first half, and the defaults.
-TextTable table_of_limits(const ChallengeScore& score);
 
 /// The complete score as Markdown.
 std::string score_markdown(const ChallengeScore& score);
