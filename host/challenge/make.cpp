@@ -13,7 +13,7 @@
 #include "core/errors.h"
 #include "core/input_file.h"
 #include "core/make_folder.h"
-#include "io/output_folder.h"
+#include "io/result_folder.h"
 #include "scene/legs.h"
 
 namespace mcdem::inline challenge {

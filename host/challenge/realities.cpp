@@ -7,8 +7,7 @@
 #include "challenge/outside.h"
 #include "core/errors.h"
 #include "ensemble/make_packings.h"
-#include "ensemble/simulate.h"
-#include "experiment/from_recording.h"
+#include "experiment/instrument.h"
 #include "scene/make_packing.h"
 
 namespace mcdem::inline challenge {

@@ -8,7 +8,6 @@
 #include "core/errors.h"
 #include "core/parameters.h"
 #include "ensemble/make_packings.h"
-#include "ensemble/simulate.h"
 #include "metrics/top_force.h"
 #include "scene/legs.h"
 

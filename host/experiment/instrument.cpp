@@ -1,11 +1,16 @@
 #include "experiment/instrument.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "core/container.h"
+#include "core/errors.h"
 #include "core/parameters.h"
 #include "experiment/measurements.h"
+#include "scene/packing_fields.h"
 #include "scene/random.h"
 
 namespace mcdem::inline experiment {
@@ -139,6 +144,28 @@ Recording measured(const Recording& truth, const Instrument& instrument, std::ui
         recording.scans.push_back(reading.read(truth.scans[s], s, path[s]));
     average_contacts(recording, instrument.stated.force_threshold);
     return recording;
+}
+
+Experiment experiment_from(const Recording& truth, const Instrument& instrument, std::uint64_t seed) {
+    if (is_cell(truth.box))
+        throw InputError(
+            fmt::format("{}: container.shape must be one with a plate, got {}: an experiment is a "
+                        "compression by a plate",
+                        truth.label, name(truth.box.shape)));
+    Experiment experiment;
+    experiment.name = truth.label;
+    experiment.measurement = instrument.stated;
+    for (const std::string& key : material_keys())
+        if (const auto found = truth.parameters.find(key); found != truth.parameters.end())
+            if (const auto value = to_number(found->second)) experiment.materials[key] = *value;
+    Recording& recording = experiment.recording = measured(truth, instrument, seed);
+    if (!recording.scans.empty() && !recording.scans.front().position.empty()) return experiment;
+    recording.diameter.clear();
+    for (Scan& scan : recording.scans) {
+        scan.position.clear();
+        scan.contacts.clear();
+    }
+    return experiment;
 }
 
 }  // namespace mcdem::experiment

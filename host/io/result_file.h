@@ -98,6 +98,20 @@ private:
     bool is_double_ = false;
 };
 
+/// The files of one run. They stay open if there are not too many, because a run that ends in the meantime
+/// removes them.
+class ResultFiles {
+public:
+    explicit ResultFiles(std::vector<std::filesystem::path> paths)
+        : paths_(std::move(paths)), open_(paths_.size()) {}
+    const std::vector<std::filesystem::path>& paths() const { return paths_; }
+    const ResultFile& open(std::size_t index);
+
+private:
+    std::vector<std::filesystem::path> paths_;
+    std::vector<std::optional<ResultFile>> open_;
+};
+
 /// Provenance and recordings, without scans, of a run in several consecutive files.
 Run read_run_header(const std::vector<std::filesystem::path>& files);
 

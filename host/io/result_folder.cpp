@@ -8,6 +8,7 @@
 #include "core/atomic_file.h"
 #include "core/errors.h"
 #include "core/make_folder.h"
+#include "core/output_file.h"
 #include "io/checkpoint.h"
 #include "io/parts.h"
 #include "io/result_file.h"
@@ -36,35 +37,15 @@ bool belongs_to_a_run(const fs::path& file) {
            file == parts_folder(file.parent_path());
 }
 
-/// The segments of a run, kept open if there are not too many.
-class Segments {
-public:
-    explicit Segments(std::vector<fs::path> files) : files_(std::move(files)), open_(files_.size()) {}
-    std::size_t size() const { return files_.size(); }
-    template <class Use>
-    void with(std::size_t index, Use use) {
-        if (files_.size() > max_open_files) return use(ResultFile(files_[index]));
-        if (!open_[index]) open_[index].emplace(files_[index]);
-        use(*open_[index]);
-    }
-
-private:
-    static constexpr std::size_t max_open_files = 200;
-    std::vector<fs::path> files_;
-    std::vector<std::optional<ResultFile>> open_;
-};
-
 /// Replica by replica, so that only one replica of one segment is in memory.
 void merge(const std::vector<fs::path>& files, const fs::path& merged, const StopWanted& stop_wanted) {
     const Run run = read_run_header(files);
-    Segments segments(files);
+    ResultFiles segments(files);
     const auto write = [&](ResultWriter& writer) {
         for (std::size_t r = 0; r < run.recordings.size(); ++r) {
-            for (std::size_t k = 0; k < segments.size(); ++k)
-                segments.with(k, [&](const ResultFile& file) {
-                    for (Scan& scan : file.scans(run.recordings[r], r, ReadWhat::everything))
-                        writer.append(r, std::move(scan));
-                });
+            for (std::size_t k = 0; k < files.size(); ++k)
+                for (Scan& scan : segments.open(k).scans(run.recordings[r], r, ReadWhat::everything))
+                    writer.append(r, std::move(scan));
             writer.end(r, run.recordings[r].failure);
         }
     };
@@ -200,6 +181,15 @@ void ResultFolder::finish(const StopWanted& stop_wanted) {
     else
         merge(segments, run_file(folder_), stop_wanted);
     remove_segments();
+}
+
+FolderLock open_output_folder(const std::filesystem::path& folder) {
+    expect_no_experiment(folder);
+    make_result_folder(folder);
+    FolderLock lock(folder, FolderLock::Use::alone);
+    expect_no_experiment(folder);  // may have been created by another program in the meantime
+    remove_temporaries(folder / "simulations");
+    return lock;
 }
 
 }  // namespace mcdem::io

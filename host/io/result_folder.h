@@ -1,4 +1,4 @@
-// The folder of a run: segments while it runs, one file at the end.
+// The folder of a run: segments while it runs, one file at the end. Output folders of other commands.
 #pragma once
 #include <filesystem>
 #include <vector>
@@ -59,5 +59,11 @@ private:
     FolderLock lock_;
     int segments_ = 0;  ///< number of the next segment
 };
+
+/// Creates the folder if necessary and locks it against other programs for the lifetime of the lock. Removes
+/// temporary files of killed programs there and in its simulations. Throws InputError for a file, for the
+/// folder of an experiment, and if another program uses the folder; RunError if it cannot be created or
+/// written.
+FolderLock open_output_folder(const std::filesystem::path& folder);
 
 }  // namespace mcdem::io

@@ -94,19 +94,18 @@ Run read_run(const std::filesystem::path& file_or_folder, ReadWhat what, const S
     });
 }
 
-/// Files stay open if there are not too many, because a run that ends in the meantime removes them.
-class RunReader::Files {
+const ResultFile& ResultFiles::open(std::size_t index) {
+    constexpr std::size_t max_open_files = 100;
+    if (open_[index]) return *open_[index];
+    if (paths_.size() > max_open_files)
+        for (auto& file : open_) file.reset();
+    return open_[index].emplace(paths_[index]);
+}
+
+class RunReader::Files : public ResultFiles {
 public:
     explicit Files(std::vector<std::filesystem::path> paths)
-        : paths_(std::move(paths)), open_(paths_.size()), looked_at_(paths_.size()) {}
-    const std::vector<std::filesystem::path>& paths() const { return paths_; }
-
-    const ResultFile& open(std::size_t index) {
-        if (open_[index]) return *open_[index];
-        if (paths_.size() > max_open_files)
-            for (auto& file : open_) file.reset();
-        return open_[index].emplace(paths_[index]);
-    }
+        : ResultFiles(std::move(paths)), looked_at_(this->paths().size()) {}
     /// The file, after checking the digests of this replica's positions and contacts.
     const ResultFile& checked(std::size_t index, std::size_t replica) {
         const ResultFile& file = open(index);
@@ -115,9 +114,6 @@ public:
     }
 
 private:
-    static constexpr std::size_t max_open_files = 100;
-    std::vector<std::filesystem::path> paths_;
-    std::vector<std::optional<ResultFile>> open_;
     std::vector<std::set<std::size_t>> looked_at_;  ///< checked replicas by file
 };
 
@@ -149,6 +145,26 @@ Scan RunReader::read_scan(std::size_t replica, std::size_t scan) {
             .fill(filled, recording.diameter.size(), replica, scan - first_scan_[f][replica]);
     });
     return filled;
+}
+
+Packing packing_of_run(const std::filesystem::path& file, std::optional<long> frame) {
+    RunReader reader(file);
+    const auto& recordings = reader.run().recordings;
+    if (recordings.size() != 1)
+        throw InputError(
+            fmt::format("{}: must hold one replica where it is a packing, got {}: make an experiment of one "
+                        "(mcdem experiment from-run), and read its grains.csv",
+                        file.string(), recordings.size()));
+    const Recording& recording = recordings.front();
+    for (std::size_t s = 0; s < recording.scans.size(); ++s) {
+        if (frame && recording.scans[s].frame != *frame) continue;
+        Scan scan = reader.read_scan(0, s);
+        if (!scan.position.empty())
+            return {std::move(scan.position), recording.diameter, recording.species, recording.species_names};
+        if (frame) break;
+    }
+    throw InputError(fmt::format("{}: must hold positions of {}, got none: run with output.positions = true",
+                                 file.string(), frame ? fmt::format("frame {}", *frame) : "a frame"));
 }
 
 }  // namespace mcdem::io

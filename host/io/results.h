@@ -2,7 +2,9 @@
 #pragma once
 #include <filesystem>
 #include <memory>
+#include <optional>
 
+#include "core/packing.h"
 #include "core/recording.h"
 #include "core/stop.h"
 
@@ -36,5 +38,8 @@ private:
     std::unique_ptr<Files> files_;
     std::vector<std::vector<std::size_t>> first_scan_;  ///< by file and replica
 };
+
+/// From a run of one replica: frame `frame`, or the first one with positions. Throws InputError.
+Packing packing_of_run(const std::filesystem::path& file, std::optional<long> frame);
 
 }  // namespace mcdem::io

@@ -12,8 +12,8 @@
 #include "core/make_folder.h"
 #include "core/output_file.h"
 #include "core/stress.h"
+#include "io/export_run.h"
 #include "io/folder_lock.h"
-#include "io/grain_loads.h"
 #include "io/results.h"
 #include "io/vtk_grid.h"
 #include "io/vtk_walls.h"
@@ -55,6 +55,13 @@ The replicas here, with the scene keys that are not the same in all of the run:
 )";
 
 void add(std::vector<double>& values, const Vec3& v) { values.insert(values.end(), {v.x(), v.y(), v.z()}); }
+
+/// Displacement of every grain [m]; continuous when it crosses the border of a periodic cell. In a `cell`,
+/// displacement beyond the cell's own motion.
+struct Displacements {
+    std::vector<Vec3> since_last_scan, since_start;  ///< of scans with positions
+    std::vector<Vec3> rotation_since_last_scan;      ///< axis times angle [rad]; empty if not recorded
+};
 
 /// Positions of grains at the first scan with positions and at the last one seen.
 class Track {
@@ -99,34 +106,6 @@ private:
     Seen first_, last_;
 };
 
-int export_vtk_replica(RunReader& reader, std::size_t replica, const std::filesystem::path& folder,
-                       const ExportChoice& choice) {
-    const Recording& recording = reader.run().recordings[replica];
-    const auto sub = folder / export_name(replica, recording.label);
-    std::optional<FolderLock> lock;  // protects temporary files of a killed export
-    Track track(recording.box);
-    int files = 0;
-    for (std::size_t s = 0; s < recording.scans.size(); ++s) {
-        const Scan scan = reader.read_scan(replica, s);
-        if (scan.position.empty()) continue;
-        const Displacements moved = track.see(scan);
-        if (!choice.has_scan(scan.frame)) continue;
-        if (!lock) {
-            make_folder(sub);
-            lock.emplace(sub, FolderLock::Use::alone);
-        }
-        const auto file = [&](const char* what) {
-            return sub / fmt::format("{}_{:06}.hdf", what, scan.frame);
-        };
-        write_vtk_grains(file("grains"), recording, scan, moved);
-        write_vtk_contacts(file("contacts"), recording, scan);
-        write_vtk_forces(file("forces"), recording, scan);
-        write_vtk_walls(file("walls"), recording, scan);
-        files += 4;
-    }
-    return files;
-}
-
 /// Data of contacts, one row each.
 struct ContactRows {
     explicit ContactRows(const Recording& recording, const Scan& scan) {
@@ -155,8 +134,10 @@ struct ContactRows {
     std::vector<int> grain, partner;
 };
 
-}  // namespace
-
+/// Grains as points with: grain, diameter; if contacts are known coordination_number, force_magnitude (sum of
+/// |force| [N]), stress (core/stress.h), pressure (a third of its trace); displacement and
+/// displacement_since_last_scan; if known, rotation (since the start, before the packing relaxes) and
+/// rotation_since_last_scan, axis times angle [rad].
 void write_vtk_grains(const std::filesystem::path& file, const Recording& recording, const Scan& scan,
                       const Displacements& moved) {
     const std::size_t grains = scan.position.size();
@@ -200,6 +181,8 @@ void write_vtk_grains(const std::filesystem::path& file, const Recording& record
     });
 }
 
+/// Contacts as lines from the grain's centre to that of its partner, or to the foot on the wall, with: grain,
+/// partner, force (on the grain; also at the ends), force_magnitude, normal_force, tangential_force, overlap.
 void write_vtk_contacts(const std::filesystem::path& file, const Recording& recording, const Scan& scan) {
     VtkCells lines;
     std::vector<double> end_force, end_magnitude;
@@ -226,6 +209,7 @@ void write_vtk_contacts(const std::filesystem::path& file, const Recording& reco
     });
 }
 
+/// The same contacts as points at their positions, with the same data on points.
 void write_vtk_forces(const std::filesystem::path& file, const Recording& recording, const Scan& scan) {
     VtkCells points;
     for (const Contact& contact : scan.contacts) points.add(VtkCell::vertex, {contact.point});
@@ -239,6 +223,7 @@ void write_vtk_forces(const std::filesystem::path& file, const Recording& record
     });
 }
 
+/// vtk_walls.h with: wall (-1: an edge), force (total force on the wall by the grains).
 void write_vtk_walls(const std::filesystem::path& file, const Recording& recording, const Scan& scan) {
     const VtkWalls walls = vtk_walls(recording, scan);
     std::vector<double> force;
@@ -251,6 +236,36 @@ void write_vtk_walls(const std::filesystem::path& file, const Recording& recordi
         grid.close_with(scan, recording.box);
     });
 }
+
+int export_vtk_replica(RunReader& reader, std::size_t replica, const std::filesystem::path& folder,
+                       const ExportChoice& choice) {
+    const Recording& recording = reader.run().recordings[replica];
+    const auto sub = folder / export_name(replica, recording.label);
+    std::optional<FolderLock> lock;  // protects temporary files of a killed export
+    Track track(recording.box);
+    int files = 0;
+    for (std::size_t s = 0; s < recording.scans.size(); ++s) {
+        const Scan scan = reader.read_scan(replica, s);
+        if (scan.position.empty()) continue;
+        const Displacements moved = track.see(scan);
+        if (!choice.has_scan(scan.frame)) continue;
+        if (!lock) {
+            make_folder(sub);
+            lock.emplace(sub, FolderLock::Use::alone);
+        }
+        const auto file = [&](const char* what) {
+            return sub / fmt::format("{}_{:06}.hdf", what, scan.frame);
+        };
+        write_vtk_grains(file("grains"), recording, scan, moved);
+        write_vtk_contacts(file("contacts"), recording, scan);
+        write_vtk_forces(file("forces"), recording, scan);
+        write_vtk_walls(file("walls"), recording, scan);
+        files += 4;
+    }
+    return files;
+}
+
+}  // namespace
 
 int export_vtk(const std::filesystem::path& file_or_folder, const std::filesystem::path& folder,
                const ExportChoice& choice) {

@@ -9,7 +9,7 @@
 #include "core/errors.h"
 #include "core/make_folder.h"
 #include "core/output_file.h"
-#include "io/grain_loads.h"
+#include "io/export_run.h"
 #include "io/results.h"
 
 namespace mcdem::inline io {

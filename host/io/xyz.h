@@ -3,7 +3,7 @@
 #pragma once
 #include <filesystem>
 
-#include "io/export_choice.h"
+#include "io/export_run.h"
 
 namespace mcdem::inline io {
 

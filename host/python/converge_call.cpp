@@ -7,7 +7,7 @@
 #include "core/output_file.h"
 #include "core/version.h"
 #include "ensemble/converge_scene.h"
-#include "io/output_folder.h"
+#include "io/result_folder.h"
 #include "python/bindings.h"
 #include "python/watch.h"
 #include "report/run/convergence_tables.h"

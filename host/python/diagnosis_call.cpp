@@ -10,7 +10,7 @@
 #include "core/output_file.h"
 #include "core/version.h"
 #include "ensemble/diagnose_experiment.h"
-#include "io/output_folder.h"
+#include "io/result_folder.h"
 #include "python/bindings.h"
 #include "python/watch.h"
 #include "report/diagnosis/diagnosis_json.h"

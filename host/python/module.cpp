@@ -5,7 +5,7 @@
 #include "cl/opencl.h"
 #include "core/errors.h"
 #include "core/version.h"
-#include "io/run_packing.h"
+#include "io/results.h"
 #include "python/bindings.h"
 #include "scene/read_packing.h"
 

@@ -9,7 +9,6 @@
 #include "core/version.h"
 #include "ensemble/make_packings.h"
 #include "ensemble/run_scene.h"
-#include "ensemble/simulate.h"
 #include "io/results.h"
 #include "python/bindings.h"
 #include "python/watch.h"

@@ -10,7 +10,6 @@
 #include "cli/parts/slurm.h"
 #include "cli/shell/commands.h"
 #include "cli/shell/interrupt.h"
-#include "cli/shell/shell_word.h"
 #include "cli/shell/subprocess.h"
 #include "core/errors.h"
 #include "io/result_folder.h"

@@ -3,7 +3,7 @@
 
 #include "core/errors.h"
 #include "diagnose/decide/diagnose.h"
-#include "diagnose/observe/not_measured.h"
+#include "diagnose/observe/needed_to_diagnose.h"
 #include "diagnose/synthetic_evidence.h"
 
 namespace mcdem {

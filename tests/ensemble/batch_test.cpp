@@ -3,7 +3,6 @@
 
 #include "ensemble/make_packings.h"
 #include "ensemble/recording_bits.h"
-#include "ensemble/simulate.h"
 #include "ensemble/small_scene.h"
 
 namespace mcdem {

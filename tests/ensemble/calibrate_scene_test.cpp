@@ -6,7 +6,6 @@
 
 #include "core/errors.h"
 #include "ensemble/make_packings.h"
-#include "ensemble/simulate.h"
 #include "ensemble/small_scene.h"
 
 namespace mcdem {

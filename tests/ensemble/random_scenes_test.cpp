@@ -13,7 +13,6 @@
 #include "ensemble/make_packings.h"
 #include "ensemble/random_scene.h"
 #include "ensemble/recording_bits.h"
-#include "ensemble/simulate.h"
 #include "ensemble/small_scene.h"
 
 namespace mcdem {

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <functional>
 
-#include "experiment/from_recording.h"
+#include "experiment/instrument.h"
 
 namespace mcdem::test {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "experiment/check_experiment.h"
 #include "experiment/experiment_folder.h"
-#include "experiment/from_recording.h"
+#include "experiment/instrument.h"
 #include "experiment/measurements.h"
 #include "scene/programme_text.h"
 

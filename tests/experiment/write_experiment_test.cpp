@@ -6,7 +6,7 @@
 
 #include "core/container.h"
 #include "experiment/experiment_folder.h"
-#include "experiment/from_recording.h"
+#include "experiment/instrument.h"
 
 namespace mcdem::test {
 namespace {

@@ -13,8 +13,8 @@
 #include "core/atomic_file.h"
 #include "core/errors.h"
 #include "io/hdf5.h"
-#include "io/output_folder.h"
 #include "io/result_file.h"
+#include "io/result_folder.h"
 #include "io/results.h"
 #include "io/synthetic_run.h"
 

@@ -1,5 +1,4 @@
 // A recorded run used as a packing.
-#include "io/run_packing.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,4 @@
 // mcdem challenge
-#include "cli/challenge/challenge.h"
-
 #include "cli/shell/commands.h"
 
 namespace mcdem::inline cli {

@@ -1,6 +1,5 @@
 // mcdem challenge make
 #include "challenge/make.h"
-#include "cli/challenge/challenge.h"
 #include "cli/run/scene_options.h"
 #include "cli/shell/commands.h"
 #include "cli/shell/interrupt.h"

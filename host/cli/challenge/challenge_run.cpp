@@ -3,7 +3,6 @@
 #include <fmt/ranges.h>
 
 #include "challenge/run.h"
-#include "cli/challenge/challenge.h"
 #include "cli/parts/sharing.h"
 #include "cli/shell/commands.h"
 #include "cli/shell/interrupt.h"

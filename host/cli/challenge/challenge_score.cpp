@@ -1,15 +1,15 @@
 // mcdem challenge score
 #include "challenge/figure_values.h"
 #include "challenge/truth.h"
-#include "cli/challenge/challenge.h"
 #include "cli/challenge/challenge_tables.h"
 #include "cli/run/figures.h"
+#include "cli/shell/commands.h"
 #include "cli/shell/messages.h"
 #include "cli/shell/progress.h"
 #include "cli/shell/standard_streams.h"
 #include "core/errors.h"
 #include "core/output_file.h"
-#include "io/output_folder.h"
+#include "io/result_folder.h"
 
 namespace mcdem::inline cli {
 namespace {

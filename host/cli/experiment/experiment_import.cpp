@@ -16,7 +16,7 @@
 #include "core/make_folder.h"
 #include "core/parameters.h"
 #include "experiment/settings.h"
-#include "io/output_folder.h"
+#include "io/result_folder.h"
 
 namespace mcdem::inline cli {
 namespace {

@@ -10,7 +10,6 @@
 #include <thread>
 
 #include "cli/shell/messages.h"
-#include "cli/shell/shell_word.h"
 #include "cli/shell/subprocess.h"
 #include "core/atomic_file.h"
 #include "core/errors.h"

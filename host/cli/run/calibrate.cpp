@@ -12,7 +12,7 @@
 #include "core/output_file.h"
 #include "core/version.h"
 #include "ensemble/calibrate_scene.h"
-#include "io/output_folder.h"
+#include "io/result_folder.h"
 #include "report/run/tables.h"
 
 namespace mcdem::inline cli {
@@ -25,30 +25,20 @@ struct CalibrateCommand {
     CalibrateOptions options;
 };
 
-/// JSON has no NaN.
-nlohmann::json number(double value) {
-    return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json();
-}
-
-nlohmann::json numbers(const std::vector<double>& values) {
-    auto list = nlohmann::json::array();
-    for (const double value : values) list.push_back(number(value));
-    return list;
-}
-
+/// The library writes null for NaN.
 nlohmann::json json_of(const SceneCalibration& result, ContactModel model, const Scene& scene,
                        const LoadedReference& reference) {
     nlohmann::json json;
     const std::string key = result.key();
     const double unit = result.unit();
     json["contact_model"] = name(model);
-    json[key] = number(unit * result.found.gamma);
-    json[key + "_standard_error"] = number(unit * result.found.standard_error);
+    json[key] = unit * result.found.gamma;
+    json[key + "_standard_error"] = unit * result.found.standard_error;
     json["converged"] = result.found.converged;
-    json["runs_away_at_" + key] = number(unit * result.found.runs_away_at);
-    json["target_top_force_N"] = number(result.target.value);
-    json["target_standard_error_N"] = number(result.target.standard_error);
-    json["displacement_m"] = number(result.displacement);
+    json["runs_away_at_" + key] = unit * result.found.runs_away_at;
+    json["target_top_force_N"] = result.target.value;
+    json["target_standard_error_N"] = result.target.standard_error;
+    json["displacement_m"] = result.displacement;
     json["replicas"] = result.replicas;
     json["reference"] = reference.setting.label;
     json["scene"] = scene.text;
@@ -56,10 +46,10 @@ nlohmann::json json_of(const SceneCalibration& result, ContactModel model, const
     for (const auto& round : result.found.rounds) {
         std::vector<double> tried = round.gamma;
         for (double& value : tried) value *= unit;
-        json["rounds"].push_back({{key, numbers(tried)},
-                                  {"top_force_N", numbers(round.top_force)},
-                                  {"estimate", number(unit * round.root)},
-                                  {"standard_error", number(unit * round.standard_error)}});
+        json["rounds"].push_back({{key, tried},
+                                  {"top_force_N", round.top_force},
+                                  {"estimate", unit * round.root},
+                                  {"standard_error", unit * round.standard_error}});
     }
     return json;
 }

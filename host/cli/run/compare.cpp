@@ -4,7 +4,7 @@
 #include "cli/shell/commands.h"
 #include "cli/shell/standard_streams.h"
 #include "core/errors.h"
-#include "io/output_folder.h"
+#include "io/result_folder.h"
 #include "report/diagnosis/diagnosis_values.h"
 #include "report/run/tables.h"
 

@@ -11,7 +11,7 @@
 #include "core/output_file.h"
 #include "core/version.h"
 #include "ensemble/converge_scene.h"
-#include "io/output_folder.h"
+#include "io/result_folder.h"
 #include "report/run/convergence_tables.h"
 
 namespace mcdem::inline cli {

@@ -16,7 +16,6 @@
 #include "core/output_file.h"
 #include "core/version.h"
 #include "ensemble/parts/library_parts.h"
-#include "io/output_folder.h"
 #include "io/result_folder.h"
 #include "report/diagnosis/diagnosis_json.h"
 #include "report/diagnosis/diagnosis_page.h"

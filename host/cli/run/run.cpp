@@ -1,6 +1,8 @@
 // mcdem run
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "cl/profile.h"
 #include "cli/parts/sharing.h"
 #include "cli/run/figures.h"
@@ -9,8 +11,8 @@
 #include "cli/shell/interrupt.h"
 #include "cli/shell/messages.h"
 #include "cli/shell/progress.h"
-#include "cli/shell/shell_word.h"
 #include "cli/shell/standard_streams.h"
+#include "cli/shell/subprocess.h"
 #include "core/errors.h"
 #include "core/version.h"
 #include "ensemble/parts/run_parts.h"
@@ -73,9 +75,8 @@ RunSummary run_with_progress(Device& device, const Scene& scene, const RunComman
 }
 
 bool models_vary(const ModelTable& table) {
-    for (const auto& row : table.rows)
-        if (row.model != table.rows.front().model) return true;
-    return false;
+    return std::ranges::any_of(table.rows,
+                               [&](const ModelRow& row) { return row.model != table.rows.front().model; });
 }
 
 void print_summary(const Run& run, const RunSummary& summary, std::size_t failed) {

@@ -10,7 +10,7 @@
 #include "cli/shell/messages.h"
 #include "cli/shell/standard_streams.h"
 #include "core/version.h"
-#include "io/run_packing.h"
+#include "io/results.h"
 #include "scene/read_packing.h"
 
 namespace mcdem::inline cli {

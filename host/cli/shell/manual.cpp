@@ -8,7 +8,7 @@
 #include "core/output_file.h"
 #include "core/replaced.h"
 #include "core/version.h"
-#include "io/output_folder.h"
+#include "io/result_folder.h"
 
 namespace mcdem::inline cli {
 namespace {

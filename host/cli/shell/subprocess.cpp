@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "core/errors.h"
+#include "core/replaced.h"
 
 namespace mcdem::inline cli {
 namespace {
@@ -116,5 +117,17 @@ std::optional<ProgramEnd> output_of(std::vector<std::string> words) {
 }
 
 std::filesystem::path this_program() { return std::filesystem::read_symlink("/proc/self/exe"); }
+
+std::string shell_word(const std::string& word) {
+    const auto plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./=:+,-";
+    if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) return word;
+    return "'" + replaced(word, {{'\'', "'\\''"}}) + "'";
+}
+
+std::string shell_words(const std::vector<std::string>& words) {
+    std::string text;
+    for (const auto& word : words) text += (text.empty() ? "" : " ") + shell_word(word);
+    return text;
+}
 
 }  // namespace mcdem::cli

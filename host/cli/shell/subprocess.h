@@ -1,4 +1,4 @@
-// Runs other programs without a shell.
+// Runs other programs without a shell, and quotes words for one.
 #pragma once
 #include <sys/types.h>
 
@@ -40,5 +40,9 @@ std::optional<ProgramEnd> output_of(std::vector<std::string> words);
 
 /// Path of this program.
 std::filesystem::path this_program();
+
+/// The word, in quotes if a shell would interpret it.
+std::string shell_word(const std::string& word);
+std::string shell_words(const std::vector<std::string>& words);
 
 }  // namespace mcdem::cli

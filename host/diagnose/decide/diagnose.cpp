@@ -13,7 +13,6 @@
 #include "diagnose/infer/detection_limits.h"
 #include "diagnose/infer/effects.h"
 #include "diagnose/observe/needed_to_diagnose.h"
-#include "diagnose/observe/not_measured.h"
 
 namespace mcdem::inline diagnose {
 namespace {

@@ -6,7 +6,7 @@
 #include <boost/math/distributions/normal.hpp>
 #include <cmath>
 
-#include "diagnose/observe/not_measured.h"
+#include "diagnose/observe/needed_to_diagnose.h"
 
 namespace mcdem::inline diagnose {
 namespace {

@@ -1,8 +1,9 @@
-// Checks whether an experiment can be diagnosed, before anything is simulated.
+// Checks whether an experiment can be diagnosed, before anything is simulated, and what more data would tell.
 #pragma once
 #include <string>
 #include <vector>
 
+#include "diagnose/observe/observation.h"
 #include "experiment/experiment.h"
 
 namespace mcdem::inline diagnose {
@@ -13,5 +14,8 @@ inline constexpr std::size_t min_cells = 4;
 /// Data that `mcdem diagnose` needs and the experiment lacks, each with a remedy; empty if it can be
 /// diagnosed.
 std::vector<std::string> needed_to_diagnose(const Experiment& experiment);
+
+/// One sentence for each file whose observables are missing in all scans.
+std::vector<std::string> not_measured(const Eigen::VectorXd& observed, const Grid& grid);
 
 }  // namespace mcdem::diagnose
