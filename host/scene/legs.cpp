@@ -54,8 +54,10 @@ void expect_plain_strokes(const Scene& scene, const std::string& what) {
 
 SetStress set_stress(const Stage& stage) {
     if (stage.kind != StageKind::move) return no_stress;
-    if (!std::isnan(stage.pressure)) return {stage.pressure, stage.pressure, stage.pressure};
-    return {stage.stress_x, stage.stress_y, stage.stress_z};
+    SetStress set{stage.stress_x,  stage.stress_y,  stage.stress_z,
+                  stage.stress_xy, stage.stress_xz, stage.stress_yz};
+    if (!std::isnan(stage.pressure)) std::fill_n(set.begin(), 3, stage.pressure);
+    return set;
 }
 
 bool sets_stress(const Stage& stage) {

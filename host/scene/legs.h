@@ -3,6 +3,7 @@
 #include <array>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "scene/scene.h"
@@ -36,9 +37,10 @@ void expect_plate(const Scene& scene, const std::string& what);
 /// The same, and if a replica has a programme: `what` supports only strokes.
 void expect_plain_strokes(const Scene& scene, const std::string& what);
 
-/// Prescribed stress in the directions x, y and z [Pa]; NaN if the stage does not set one.
-using SetStress = std::array<double, 3>;
-inline constexpr SetStress no_stress{not_given, not_given, not_given};
+/// Prescribed stresses of a cell along x, y, z, then xy, xz and yz [Pa]; NaN if the stage does not set one.
+using SetStress = std::array<double, 6>;
+inline constexpr SetStress no_stress{not_given, not_given, not_given, not_given, not_given, not_given};
+inline constexpr std::array<std::string_view, 6> axis_names{"x", "y", "z", "xy", "xz", "yz"};
 SetStress set_stress(const Stage& stage);
 bool sets_stress(const Stage& stage);
 

@@ -41,7 +41,8 @@ struct Stage {
     double strain_x = not_given, strain_y = not_given, strain_z = not_given;  ///< of a cell (core/packing.h)
     double shear_xy = not_given, shear_xz = not_given, shear_yz = not_given;  ///< of a cell
     double pressure = not_given;  ///< of a cell: all three stresses [Pa]
-    double stress_x = not_given, stress_y = not_given, stress_z = not_given;  ///< of a cell [Pa]
+    double stress_x = not_given, stress_y = not_given, stress_z = not_given;     ///< of a cell [Pa]
+    double stress_xy = not_given, stress_xz = not_given, stress_yz = not_given;  ///< of a cell [Pa]
     double rate = 0.1;        ///< of a cell: maximum rate of the fastest of its strains [1/s]
     double back = not_given;  ///< point to which a cycle returns, in the quantity of its turning point
     int cycles = 1;

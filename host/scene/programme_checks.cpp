@@ -23,7 +23,8 @@ bool belongs(StageKind kind, std::string_view key, bool cell) {
     };
     if (cell && kind == StageKind::move)
         return any({"stage", "strain", "strain_x", "strain_y", "strain_z", "shear_xy", "shear_xz", "shear_yz",
-                    "pressure", "stress_x", "stress_y", "stress_z", "rate", "scans"});
+                    "pressure", "stress_x", "stress_y", "stress_z", "stress_xy", "stress_xz", "stress_yz",
+                    "rate", "scans"});
     if (cell && kind == StageKind::hold) return any({"stage", "keep", "time", "scans", "scan_at"});
     switch (kind) {
         case StageKind::move:
@@ -104,10 +105,12 @@ private:
 
     void check_move_of_cell() {
         const std::array<std::string_view, 3> strains{"strain_x", "strain_y", "strain_z"},
-            stresses{"stress_x", "stress_y", "stress_z"};
-        const std::string_view others[]{"strain", "shear_xy", "shear_xz", "shear_yz", "pressure"};
+            stresses{"stress_x", "stress_y", "stress_z"}, shears{"shear_xy", "shear_xz", "shear_yz"},
+            shear_stresses{"stress_xy", "stress_xz", "stress_yz"};
+        const std::string_view others[]{"strain", "pressure"};
         const auto is_said = [&](auto field) { return said(field); };
         if (std::ranges::none_of(strains, is_said) && std::ranges::none_of(stresses, is_said) &&
+            std::ranges::none_of(shears, is_said) && std::ranges::none_of(shear_stresses, is_said) &&
             std::ranges::none_of(others, is_said))
             add("strain",
                 "must be given, or strain_x, shear_xy, pressure, stress_x, ..: a move of a cell "
@@ -117,8 +120,11 @@ private:
                 for (const std::string_view field : {strains[axis], stresses[axis]})
                     if (said(field)) add(field, fmt::format("must be left out where {} is given", all));
         if (said("strain") && said("pressure")) add("pressure", either("strain"));
-        for (std::size_t axis = 0; axis < 3; ++axis)
+        for (std::size_t axis = 0; axis < 3; ++axis) {
             if (said(strains[axis]) && said(stresses[axis])) add(stresses[axis], either(strains[axis]));
+            if (said(shears[axis]) && said(shear_stresses[axis]))
+                add(shear_stresses[axis], either(shears[axis]));
+        }
         if (stage_.strain > 0.99)
             add("strain", fmt::format("must leave a cell some volume, at most 0.99, got {}", stage_.strain));
     }
@@ -222,17 +228,16 @@ void check_stresses(const Settings& settings, std::vector<CrossProblem>& problem
     for (std::size_t n = 0; n < settings.replica.programme.size(); ++n) {
         const Stage& stage = settings.replica.programme[n];
         const SetStress stress = set_stress(stage);
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            if (!(stress[axis] > max_stress)) continue;
-            const std::string field =
-                std::isnan(stage.pressure) ? fmt::format("stress_{}", "xyz"[axis]) : "pressure";
+        for (std::size_t axis = 0; axis < stress.size(); ++axis) {
+            const bool all = axis < 3 && !std::isnan(stage.pressure);
+            if (!(std::abs(stress[axis]) > max_stress) || (all && axis > 0)) continue;
+            const std::string field = all ? "pressure" : fmt::format("stress_{}", axis_names[axis]);
             problems.push_back(
                 {fmt::format("programme.{}.{}", n + 1, field),
                  fmt::format(
                      "must be one that the grains can bear, got {}: beyond some {:.3g} Pa their contacts "
                      "are deeper than numerics.overlap_limit = {}",
                      stress[axis], max_stress, settings.replica.numerics.overlap_limit)});
-            if (!std::isnan(stage.pressure)) break;
         }
     }
 }

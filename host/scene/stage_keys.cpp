@@ -12,7 +12,8 @@ auto& of_stage(Settings& settings, std::size_t n) {
     return element(settings.replica.programme, n).*member;
 }
 
-constexpr Range compression{-10, 0.99, Range::Low::included}, shear{-5, 5, Range::Low::included};
+constexpr Range compression{-10, 0.99, Range::Low::included}, shear{-5, 5, Range::Low::included},
+    shear_stress{-1e13, 1e13, Range::Low::included};
 
 // clang-format off
 const Key stage_rows[] = {
@@ -30,6 +31,9 @@ const Key stage_rows[] = {
     {"stress_x", of_stage<&Stage::stress_x>, "Pa", above_zero_to(1e13), each, "cell: target stress along x, instead of a strain along x; strains of the same move wait until it is reached, and it is kept while they change"},
     {"stress_y", of_stage<&Stage::stress_y>, "Pa", above_zero_to(1e13), each, "along y"},
     {"stress_z", of_stage<&Stage::stress_z>, "Pa", above_zero_to(1e13), each, "along z"},
+    {"stress_xy", of_stage<&Stage::stress_xy>, "Pa", shear_stress, each, "cell: target shear stress, instead of shear_xy, reached within 0.1 %; a positive shear needs a negative shear stress. It waits until the stresses of the same move along x, y and z are reached"},
+    {"stress_xz", of_stage<&Stage::stress_xz>, "Pa", shear_stress, each, "instead of shear_xz"},
+    {"stress_yz", of_stage<&Stage::stress_yz>, "Pa", shear_stress, each, "instead of shear_yz"},
     {"back", of_stage<&Stage::back>, "", {0, 1e9, Range::Low::included}, each, "point to which a cycle returns, in the same quantity (position, strain or force) as its turning point"},
     {"cycles", of_stage<&Stage::cycles>, "", {1, 10000}, each, "cycle: number of cycles"},
     {"growth", of_stage<&Stage::growth>, "", {-1, 1000, Range::Low::excluded}, each, "cycle: increase of the amplitude from one cycle to the next, over the first amplitude"},

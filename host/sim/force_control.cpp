@@ -69,29 +69,30 @@ double ForceControl::layer_stiffness(double force, double layer) {
     return 1.5 * std::cbrt(std::max(0.0, force)) * std::cbrt(layer * layer);
 }
 
-double ForceControl::stiffness(const State& state, double set) const {
-    return stiffness_margin * layer_stiffness(std::max(set, state.force), layer_) / layers_;
+double ForceControl::stiffness(const State& state, const Target& target) const {
+    return stiffness_margin * layer_stiffness(std::max({target.set, state.force, target.load}), layer_) /
+           layers_;
 }
 
 /// Travel time of a wave through the packing.
-double ForceControl::response_time(const State& state, double set) const {
-    return std::sqrt(inertia_ / stiffness(state, set));
+double ForceControl::response_time(const State& state, const Target& target) const {
+    return std::sqrt(inertia_ / stiffness(state, target));
 }
 
-double ForceControl::interval(const State& state, double set) const {
-    return 0.5 * response_time(state, set);
+double ForceControl::interval(const State& state, const Target& target) const {
+    return 0.5 * response_time(state, target);
 }
 
-double ForceControl::drag(const State& state, double set) const {
-    return std::abs(set - state.force) <= quiet_ * set ? 1 / response_time(state, set) : 0;
+double ForceControl::drag(const State& state, const Target& target) const {
+    return std::abs(target.set - state.force) <= quiet_ * target.scale ? 1 / response_time(state, target) : 0;
 }
 
-double ForceControl::approach_time(const State& state, double set) const {
-    return approach * response * response_time(state, set);
+double ForceControl::approach_time(const State& state, const Target& target) const {
+    return approach * response * response_time(state, target);
 }
 
-bool ForceControl::reached(const State& state, double set) {
-    return std::abs(state.force - set) <= 0.5 * tolerance * set;
+bool ForceControl::reached(const State& state, const Target& target) {
+    return std::abs(state.force - target.set) <= 0.5 * tolerance * target.scale;
 }
 
 void ForceControl::observe(State& state, double force, double duration) {
@@ -101,23 +102,25 @@ void ForceControl::observe(State& state, double force, double duration) {
 
 /// Far from the target, waves in the packing change the force more than the plate does, so only the distance
 /// is used. The plate cannot feel more than a layer of the stiffest grains.
-double ForceControl::far_speed(double left, double force, double duration) const {
+double ForceControl::far_speed(const State& state, const Target& target, double duration) const {
+    const double left = target.set - state.force;
     const double stiffest =
-        layer_stiffness(std::max(force, force + left / 2), stiffest_layer_) / rigid_layers_;
+        layer_stiffness(std::max({state.force, state.force + left / 2, target.load}), stiffest_layer_) /
+        rigid_layers_;
     const double blind = duration + std::sqrt(inertia_ / stiffest);
     return 0.5 * std::abs(left) / (stiffest * blind);
 }
 
-void ForceControl::steer(State& state, double set, double duration, double max_speed) const {
-    const double left = set - state.force;
-    if (std::abs(left) > near * set) {
-        const double speed = std::min(max_speed, far_speed(left, state.force, duration));
+void ForceControl::steer(State& state, const Target& target, double duration, double max_speed) const {
+    const double left = target.set - state.force;
+    if (std::abs(left) > near * target.scale) {
+        const double speed = std::min(max_speed, far_speed(state, target, duration));
         state.velocity = left > 0 ? -speed : speed;
         return;
     }
-    const double follow = response * std::max(duration, response_time(state, set));
+    const double follow = response * std::max(duration, response_time(state, target));
     const double lacking = left / (approach * follow) - state.rate;
-    const double change = std::min(0.5, duration / follow) * lacking / stiffness(state, set);
+    const double change = std::min(0.5, duration / follow) * lacking / stiffness(state, target);
     state.velocity = std::clamp(state.velocity - change, -max_speed, max_speed);
 }
 

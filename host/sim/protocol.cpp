@@ -133,7 +133,9 @@ void ProtocolRunner::take_note(const IntervalResult& result) {
     double fastest = std::abs(velocity);
     if (by_stress()) {
         deform(interval);
-        for (std::size_t axis = 0; axis < 3; ++axis) {
+        const SetStress set = stress();
+        for (std::size_t axis = 0; axis < set.size(); ++axis) {
+            if (axis >= 3 && std::isnan(set[axis])) continue;
             state_.cell.direction[axis].strain += interval.strain_rate[axis] * duration;
             fastest = std::max(fastest, std::abs(interval.strain_rate[axis]));
         }
@@ -182,7 +184,7 @@ bool ProtocolRunner::settled(const IntervalResult& result, double drag, bool pla
     const double unbalanced = quasi_static_.unbalanced_force(result.kinetic_energy, drag, state_.pressure);
     const bool still = plate_arrived && unbalanced <= protocol_.settle_unbalanced_force &&
                        (!by_force() || ForceControl::reached(state_.control, set_force())) &&
-                       (!by_stress() || CellControl::reached(state_.cell, stress()));
+                       (!by_stress() || cell_->reached(state_.cell, stress()));
     state_.settled_intervals = still ? state_.settled_intervals + 1 : 0;
     return state_.settled_intervals >= enough_intervals;
 }

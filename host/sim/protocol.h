@@ -38,7 +38,7 @@ struct ProtocolState {
     CellControl::State cell;
 };
 static_assert(std::is_trivially_copyable_v<ProtocolState> &&
-                  sizeof(ProtocolState) == 8 * (2 + 4 + 6 + 3 + 7 + 15),
+                  sizeof(ProtocolState) == 8 * (2 + 4 + 6 + 3 + 7 + 30),
               "no padding: equal states have equal bytes in checkpoints");
 
 class ProtocolRunner {

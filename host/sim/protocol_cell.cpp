@@ -16,7 +16,7 @@ constexpr double min_change = 1e-3;
 
 /// The strains, with the current ones of the directions with a prescribed stress.
 Strain with_controlled(Strain strain, const SetStress& set, const CellControl::State& cell) {
-    for (std::size_t axis = 0; axis < 3; ++axis)
+    for (std::size_t axis = 0; axis < set.size(); ++axis)
         if (!std::isnan(set[axis])) strain[axis] = cell.direction[axis].strain;
     return strain;
 }
@@ -46,7 +46,7 @@ SetStress ProtocolRunner::stress() const {
     SetStress set = end_stress();
     if (stage().kind == StageKind::hold || driven() || !protocol_.stop_at_scans) return set;
     const int next = state_.level + 1, scans = scans_of(stage());
-    for (std::size_t axis = 0; next < scans && axis < 3; ++axis) {
+    for (std::size_t axis = 0; next < scans && axis < set.size(); ++axis) {
         const double begin = state_.cell.direction[axis].begin;
         set[axis] = begin + (set[axis] - begin) * next / scans;
     }
@@ -65,7 +65,7 @@ void ProtocolRunner::deform(StepInterval& interval) const {
     for (double& rate : interval.strain_rate) rate *= interval.plate_velocity;
     if (by_stress()) {
         const Strain rates = cell_->rates(state_.cell, stress(), interval.steps * time_step_);
-        for (std::size_t axis = 0; axis < 3; ++axis) interval.strain_rate[axis] += rates[axis];
+        for (std::size_t axis = 0; axis < rates.size(); ++axis) interval.strain_rate[axis] += rates[axis];
     }
     interval.plate_velocity = 0;
 }
@@ -88,12 +88,13 @@ StepInterval ProtocolRunner::planned_by_stress() const {
 
 void ProtocolRunner::follow_stress(double duration) {
     const SetStress set = stress();
-    const bool reached = CellControl::reached(state_.cell, set);
+    const bool reached = cell_->reached(state_.cell, set);
     state_.reached_intervals = reached ? state_.reached_intervals + 1 : 0;
     cell_->steer(state_.cell, set, duration, quasi_static_.speed(max_speed(), 1, state_.pressure),
                  state_.stage == Stage::move && driven() && state_.plate_z != waypoint());
     if (const auto stuck = cell_->stuck(state_.cell, set))
-        give_up(*stuck, "grains would meet their own images");
+        give_up(*stuck,
+                *stuck < 3 ? "grains would meet their own images" : "a cell cannot be sheared further");
 }
 
 /// When the strains stop, the directions with a prescribed stress stop too, and then continue separately.
@@ -107,11 +108,12 @@ bool ProtocolRunner::stresses_are_back() {
 }
 
 void ProtocolRunner::give_up(std::size_t direction, const std::string& why) {
-    const auto& there = state_.cell.direction[direction];
+    const bool shear = direction >= 3;
     hindrance_ = fmt::format(
-        "stage {} of the programme: the stress {:.6g} Pa along {} cannot be reached: {} at a strain of "
-        "{:.6g}, and the stress {:.6g} Pa (set stresses that the packing can bear, or take more grains)",
-        leg().stage + 1, stress()[direction], "xyz"[direction], why, there.strain, there.control.force);
+        "stage {} of the programme: the {}stress {:.6g} Pa along {} cannot be reached: {} at a {} of {:.6g}, "
+        "and the stress {:.6g} Pa (set stresses that the packing can bear, or take more grains)",
+        leg().stage + 1, shear ? "shear " : "", stress()[direction], axis_names[direction], why,
+        shear ? "shear" : "strain", state_.cell.direction[direction].strain, state_.cell.stress(direction));
     stop();
 }
 
@@ -152,7 +154,7 @@ std::optional<ProtocolRunner::ScanTag> ProtocolRunner::moved_by_stress() {
 
 void ProtocolRunner::give_up_late() {
     if (!by_stress() || state_.stage_step < max_stage_steps()) return;
-    give_up(CellControl::farthest(state_.cell, stress()),
+    give_up(cell_->farthest(state_.cell, stress()),
             fmt::format("after {:.3g} s it is still away from it", state_.stage_step * time_step_));
 }
 

@@ -94,7 +94,8 @@ TEST(Cell, EachDirectionHasAStrainOrAStress) {
                  "\"stress\"\ntime = 1\n");
     const auto& programme = replica.programme;
     EXPECT_FALSE(sets_stress(programme[0]));
-    EXPECT_EQ(set_stress(programme[1]), (SetStress{100, 100, 100}));
+    EXPECT_EQ(set_stress(programme[1])[1], 100);
+    EXPECT_TRUE(std::isnan(set_stress(programme[1])[4]));
     EXPECT_EQ(set_stress(programme[2])[0], 50);
     EXPECT_TRUE(std::isnan(set_stress(programme[2])[1]));
     EXPECT_FALSE(sets_stress(programme[3])) << "a hold keeps what was set before";
@@ -121,6 +122,27 @@ TEST(Cell, EachDirectionHasAStrainOrAStress) {
                 ElementsAre(HasSubstr("stress_x must be one that the grains can bear")));
     EXPECT_THAT(problems_in(few + "[[programme]]\npressure = 100\n"),
                 Contains(HasSubstr("pressure must be left out of a stage that is a move of the plate")));
+}
+
+TEST(Cell, EachShearHasAStrainOrAStress) {
+    const auto& programme = read_one(cell + few +
+                                     "[[programme]]\npressure = 100\nstress_xz = -20\nshear_xy = 0.1\n"
+                                     "[[programme]]\nstress_yz = 0\n")
+                                .programme;
+    EXPECT_EQ(set_stress(programme[0])[4], -20);
+    EXPECT_EQ(set_stress(programme[0])[2], 100);
+    EXPECT_TRUE(std::isnan(set_stress(programme[0])[3]));
+    EXPECT_TRUE(sets_stress(programme[1]));
+    const auto problems = [](const std::string& stage) {
+        return problems_in(cell + few + "[[programme]]\n" + stage);
+    };
+    EXPECT_THAT(problems("shear_xy = 0.1\nstress_xy = 10\n"),
+                ElementsAre(AllOf(HasSubstr("programme.1.stress_xy must be left out where shear_xy is given"),
+                                  HasSubstr("a direction has a strain or a stress"))));
+    EXPECT_THAT(problems("pressure = 100\nstress_yz = -1e7\n"),
+                ElementsAre(HasSubstr("stress_yz must be one that the grains can bear, got -10000000")));
+    EXPECT_THAT(problems_in(few + "[[programme]]\nstress_xy = 100\n"),
+                Contains(HasSubstr("stress_xy must be left out of a stage that is a move of the plate")));
 }
 
 TEST(Cell, HoldsStressesOnlyIfTheMoveBeforePrescribesThem) {

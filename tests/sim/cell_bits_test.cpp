@@ -4,13 +4,14 @@
 namespace reference {
 namespace {
 
-/// A move to a pressure, then a triaxial path, then a hold of its stresses.
+/// A move to a pressure, then a triaxial path with a shear stress, then a hold of its stresses.
 void set_stresses(std::vector<mcdem::Stage>& programme) {
     programme[0].strain = mcdem::not_given;
     programme[0].pressure = 250;
     programme[1] = {};
     programme[1].stress_x = programme[1].stress_y = 200;
     programme[1].strain_z = 0.05;
+    programme[1].stress_xz = -20;
     programme[2].keep = mcdem::Controlled::stress;
 }
 

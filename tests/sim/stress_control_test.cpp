@@ -1,5 +1,5 @@
-// Prescribed stresses of a cell: they are reached within the tolerance, without overshoot, and held, on
-// every path.
+// Prescribed stresses of a cell, along its axes and in shear: they are reached within the tolerance, without
+// overshoot, and held, on every path.
 #include <fmt/core.h>
 
 #include <cmath>
@@ -43,7 +43,7 @@ scans = 2
 constexpr double set[] = {100, 500, 150, 150, 150, 150};
 
 /// Largest overshoot of a stress in any interval, and largest deviation from it while strains change,
-/// relative. Packings without friction rearrange suddenly.
+/// relative (of a shear stress, to the pressure). Packings without friction rearrange suddenly.
 struct Kind {
     const char* name;
     std::vector<std::string> overrides;
@@ -121,6 +121,60 @@ TEST_P(StressControl, ReachesStressesWithoutOvershootAndHoldsThem) {
                GetParam().name, 100 * beyond, 100 * off);
 }
 
+/// Stages 0: to a pressure; 1, 2: shear stress at this pressure, there and back; 3: none.
+const std::string shears = R"([[programme]]
+pressure = 150
+[[programme]]
+pressure = 150
+stress_xz = -15
+scans = 2
+[[programme]]
+pressure = 150
+stress_xz = 10
+[[programme]]
+pressure = 150
+stress_xz = 0
+)";
+
+double shear_stress(const mcdem::Mat3& stress) { return (stress(0, 2) + stress(2, 0)) / 2; }
+
+TEST_P(StressControl, ReachesShearStressesFromTheSideFromWhichTheyCome) {
+    constexpr double pressure = 150, set_shear[] = {0, -15, 10, 0}, sides[] = {0, -1, 1, -1};
+    double beyond = -1;
+    for (const char* seed : {"packing.seed=1", "packing.seed=2"}) {
+        SCOPED_TRACE(seed);
+        auto overrides = GetParam().overrides;
+        overrides.push_back(seed);
+        const Traced traced = trace(cell_text + shears, overrides);
+        EXPECT_EQ(traced.hindrance, "");
+        ASSERT_EQ(traced.scans.size(), 5u);
+        for (int n = 1; n < 5; ++n) {
+            const auto& scan = traced.scans[n];
+            const int leg = std::max(1, n - 1);
+            EXPECT_TRUE(scan.tag.settled) << n;
+            for (int axis = 0; axis < 3; ++axis)
+                EXPECT_NEAR(scan.stress(axis, axis) / pressure, 1, 1e-3) << n;
+            if (n > 1) {
+                EXPECT_NEAR(shear_stress(scan.stress), set_shear[leg], 1e-3 * pressure / 10) << n;
+            }
+            for (const int k : {3, 5}) EXPECT_EQ(scan.strain[k], 0) << "not part of the move";
+        }
+        const double half = (shear_stress(traced.scans[0].stress) + set_shear[1]) / 2;
+        EXPECT_NEAR(shear_stress(traced.scans[1].stress), half, 1e-3 * pressure / 10);
+        EXPECT_GT(traced.scans[2].strain[4], 1e-3) << "a positive shear needs a negative shear stress";
+        EXPECT_LT(traced.scans[3].strain[4], traced.scans[2].strain[4] - 1e-3);
+        EXPECT_EQ(traced.scans[2].tag.phase, mcdem::Phase::load);
+        EXPECT_EQ(traced.scans[4].tag.phase, mcdem::Phase::unload);
+        for (const auto& row : traced.rows)
+            if (row.leg > 0)
+                beyond = std::max(
+                    beyond, sides[row.leg] * (shear_stress(row.stress) - set_shear[row.leg]) / pressure);
+    }
+    EXPECT_LT(beyond, GetParam().beyond / 10);
+    fmt::print("{}: passes a shear stress by at most {:.2g} % of the pressure\n", GetParam().name,
+               100 * beyond);
+}
+
 INSTANTIATE_TEST_SUITE_P(Kinds, StressControl, testing::ValuesIn(kinds), [](const auto& kind) {
     std::string name = kind.param.name;
     std::erase_if(name, [](char c) { return c == ',' || c == ' '; });
@@ -155,6 +209,64 @@ scans = 6
     }
     EXPECT_GT(std::abs(traced.scans[7].strain[0] - begin.strain[0]), 1e-4)
         << "creeps where the stress is kept";
+}
+
+// Simple shear under stress, then creep: the shear grows while all four stresses are kept.
+TEST(StressHold, KeepsAShearStressWhileTheCellCreeps) {
+    const Traced traced = trace(cell_text + R"([[programme]]
+pressure = 200
+[[programme]]
+pressure = 200
+stress_xz = -40
+[[programme]]
+stage = "hold"
+keep = "stress"
+time = 0.3
+scans = 6
+)",
+                                {"effects.viscoelasticity=0.4", "effects.relaxation_time=0.1",
+                                 "grains.friction=0.3", "contact.friction_law=mindlin"});
+    ASSERT_EQ(traced.scans.size(), 8u);
+    for (int n = 2; n < 8; ++n) {
+        const auto& scan = traced.scans[n];
+        for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(scan.stress(axis, axis) / 200, 1, 2e-3) << n;
+        EXPECT_NEAR(shear_stress(scan.stress) / -40, 1, 2e-3) << n;
+        EXPECT_GT(scan.strain[4], traced.scans[n - 1].strain[4]) << "creeps";
+        EXPECT_EQ(scan.strain[3], 0);
+    }
+}
+
+// The same shear is imposed by its strain: without sliding contacts the stress is the same.
+TEST(StressControl, ShearByStressAgreesWithShearByStrain) {
+    const std::vector<std::string> elastic{"grains.friction=10", "contact.friction_law=mindlin",
+                                           "numerics.precision=double"};
+    const std::string pressure = "[[programme]]\npressure = 200\n";
+    const Traced by_stress = trace(cell_text + pressure + pressure + "stress_xz = -10\n", elastic);
+    ASSERT_EQ(by_stress.scans.size(), 2u);
+    const double shear = by_stress.scans[1].strain[4];
+    const Traced by_strain =
+        trace(cell_text + pressure + pressure + fmt::format("shear_xz = {}\n", shear), elastic);
+    ASSERT_EQ(by_strain.scans.size(), 2u);
+    EXPECT_NEAR(shear_stress(by_stress.scans[1].stress) / -10, 1, 1e-3);
+    EXPECT_NEAR(shear_stress(by_strain.scans[1].stress) / -10, 1, 5e-3);
+    fmt::print("shear by strain over shear by stress: {:.5f}\n",
+               shear_stress(by_strain.scans[1].stress) / -10);
+}
+
+TEST(StressControl, AShearStressBeyondTheStrengthEndsWithItsCause) {
+    const Traced yields =
+        trace(cell_text +
+                  "[[programme]]\npressure = 100\nrate = 1\n[[programme]]\npressure = 100\nstress_yz = 300\n"
+                  "rate = 1\n",
+              {"protocol.rate_tolerance=0"});
+    EXPECT_NE(
+        yields.hindrance.find("stage 2 of the programme: the shear stress 300 Pa along yz cannot be reached"),
+        std::string::npos)
+        << yields.hindrance;
+    EXPECT_EQ(yields.scans.size(), 1u);
+    EXPECT_EQ(yields.status, 0);
+    EXPECT_LT(yields.rows.back().strain[5], -0.5) << "against the stress";
+    EXPECT_GE(yields.rows.back().strain[5], -5);
 }
 
 TEST(StressControl, UnreachableStressEndsWithItsCause) {

@@ -71,6 +71,15 @@ void expect_stress(const Traced::Scanned& scan, const mcdem::SetStress& set) {
         if (!std::isnan(set[axis])) {
             EXPECT_NEAR(scan.stress(axis, axis) / set[axis], 1, 1e-3) << axis;
         }
+    const double shears[]{scan.stress(0, 1), scan.stress(0, 2), scan.stress(1, 2)};
+    for (int k = 0; k < 3; ++k)
+        if (!std::isnan(set[3 + k])) {
+            EXPECT_NEAR(shears[k], set[3 + k], 1e-3 * std::max(std::abs(set[3 + k]), pressure / 10)) << k;
+        }
+}
+
+mcdem::SetStress only(double x, double y, double z) {
+    return {x, y, z, mcdem::not_given, mcdem::not_given, mcdem::not_given};
 }
 
 TEST(StressOfACrystal, UnderPressureAgreesWithHertz) {
@@ -79,7 +88,7 @@ TEST(StressOfACrystal, UnderPressureAgreesWithHertz) {
     ASSERT_EQ(traced.scans.size(), 3u);
     const double set[] = {50, 400, 100};
     for (int leg = 0; leg < 3; ++leg) {
-        expect_stress(traced.scans[leg], {set[leg], set[leg], set[leg]});
+        expect_stress(traced.scans[leg], only(set[leg], set[leg], set[leg]));
         double low = -0.1, high = 0.3;  // bracket of the strain at the prescribed pressure
         for (int n = 0; n < 60; ++n) {
             const double middle = (low + high) / 2;
@@ -99,16 +108,37 @@ TEST(StressOfACrystal, IsCorrectOnEveryPath) {
     programme[4].scans = 2;  // oedometer
     const Traced traced = taken_along(programme);
     ASSERT_EQ(traced.scans.size(), 6u);
-    expect_stress(traced.scans[0], {200, 200, 200});
-    expect_stress(traced.scans[1], {200, 200, mcdem::not_given});
+    expect_stress(traced.scans[0], only(200, 200, 200));
+    expect_stress(traced.scans[1], only(200, 200, mcdem::not_given));
     EXPECT_EQ(traced.scans[1].strain[2], 0.03);
-    expect_stress(traced.scans[2], {150, 250, 200});
-    expect_stress(traced.scans[3], {200, 200, 200});
+    expect_stress(traced.scans[2], only(150, 250, 200));
+    expect_stress(traced.scans[3], only(200, 200, 200));
     EXPECT_EQ(traced.scans[3].strain[4], 0.02);
     EXPECT_LT(traced.scans[3].stress(0, 2), -1) << "it resists the shear";
-    expect_stress(traced.scans[4], {mcdem::not_given, mcdem::not_given, 250});
-    expect_stress(traced.scans[5], {mcdem::not_given, mcdem::not_given, 300});
+    expect_stress(traced.scans[4], only(mcdem::not_given, mcdem::not_given, 250));
+    expect_stress(traced.scans[5], only(mcdem::not_given, mcdem::not_given, 300));
     for (const int k : {0, 1, 3, 4, 5}) EXPECT_EQ(traced.scans[5].strain[k], traced.scans[3].strain[k]) << k;
+}
+
+// All six stresses at once: the shears of a stretched lattice follow from the closed form.
+TEST(StressOfACrystal, IsCorrectUnderShearStresses) {
+    std::vector<mcdem::Stage> programme{stresses(200, 200, 200), stresses(200, 200, 200),
+                                        stresses(200, 200, 200), stresses(200, 200, mcdem::not_given)};
+    programme[1].stress_xz = -20;
+    programme[1].scans = 2;
+    programme[2].stress_xy = 15, programme[2].stress_xz = 10, programme[2].stress_yz = -5;
+    programme[3].stress_xy = programme[3].stress_xz = programme[3].stress_yz = 0;
+    programme[3].strain_z = 0.06;
+    const Traced traced = taken_along(programme);
+    ASSERT_EQ(traced.scans.size(), 5u);
+    const double free = mcdem::not_given;
+    expect_stress(traced.scans[1], {200, 200, 200, free, -10, free});
+    expect_stress(traced.scans[2], {200, 200, 200, free, -20, free});
+    EXPECT_GT(traced.scans[2].strain[4], 1e-3);
+    EXPECT_EQ(traced.scans[2].strain[3], 0);
+    expect_stress(traced.scans[3], {200, 200, 200, 15, 10, -5});
+    expect_stress(traced.scans[4], {200, 200, free, 0, 0, 0});
+    for (int k = 3; k < 6; ++k) EXPECT_NEAR(traced.scans[4].strain[k], 0, 1e-3) << k;
 }
 
 TEST(StressOfACrystal, IsRecordedDuringMoves) {
