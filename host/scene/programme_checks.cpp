@@ -8,6 +8,7 @@
 
 #include "core/container.h"
 #include "scene/legs.h"
+#include "scene/scan_quantity.h"
 
 namespace mcdem::inline scene {
 namespace {
@@ -24,7 +25,7 @@ bool belongs(StageKind kind, std::string_view key, bool cell) {
     if (cell && kind == StageKind::move)
         return any({"stage", "strain", "strain_x", "strain_y", "strain_z", "shear_xy", "shear_xz", "shear_yz",
                     "pressure", "stress_x", "stress_y", "stress_z", "stress_xy", "stress_xz", "stress_yz",
-                    "rate", "scans"});
+                    "rate", "scans", "scan_at"});
     if (cell && kind == StageKind::hold) return any({"stage", "keep", "time", "scans", "scan_at"});
     switch (kind) {
         case StageKind::move:
@@ -322,7 +323,11 @@ std::vector<CrossProblem> programme_problems(const Settings& settings, const std
     check_forces(settings, problems);
     check_stresses(settings, problems);
     check_size(programme, problems);
-    if (problems.empty()) check_kept_stresses(programme, settings.replica.plate, problems);
+    if (!problems.empty()) return problems;
+    check_kept_stresses(programme, settings.replica.plate, problems);
+    if (is_cell(settings.replica.box))
+        for (const auto& [stage, problem] : scan_at_problems(programme, settings.replica.plate))
+            problems.push_back({fmt::format("programme.{}.scan_at", stage + 1), problem});
     return problems;
 }
 

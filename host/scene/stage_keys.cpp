@@ -44,7 +44,7 @@ const Key stage_rows[] = {
     {"speed", of_stage<&Stage::speed>, "m/s", above_zero_to(1000), each, "maximum speed of the plate; default: plate.speed. protocol.rate_tolerance may reduce it"},
     {"rate", of_stage<&Stage::rate>, "1/s", above_zero_to(100), each, "cell: maximum rate of the fastest of its strains and shears. protocol.rate_tolerance may reduce it"},
     {"scans", of_stage<&Stage::scans>, "", {0, 10000}, each, "number of scans, equally spaced, the last at the end. Move, and each stroke of a cycle: spaced in position, strain or force (in stress if a move of a cell sets only stresses); hold: spaced in time"},
-    {"scan_at", of_stage<&Stage::scan_at>, "", none, one_run, "instead of scans: a list of positions, strains or forces (the quantity of the move), or of times since the start of a hold"},
+    {"scan_at", of_stage<&Stage::scan_at>, "", none, one_run, "instead of scans: a list of positions, strains or forces (the quantity of the move), or of times since the start of a hold. Move of a cell: of the strain, shear or, if it sets only stresses, stress that changes most (see Programmes)"},
 };
 // clang-format on
 

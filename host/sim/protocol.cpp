@@ -38,6 +38,8 @@ ProtocolRunner::ProtocolRunner(const Replica& replica, double time_step, const P
       longest_time_step_(time_step),
       quasi_static_(replica, scale),
       force_control_(ForceControl::of_plate(replica, scale)) {
+    const auto lists = [](const mcdem::Stage& stage) { return !stage.scan_at.empty(); };
+    if (cell_ && std::ranges::any_of(stages_, lists)) quantities_ = scan_quantities(stages_, legs_);
     state_.plate_z = cell_ ? 0 : plate_.start;
     state_.pressure = quasi_static_.pressure(0, 0);
 }
@@ -59,7 +61,10 @@ double ProtocolRunner::max_speed() const {
 
 /// Levels of the scans of a move.
 double ProtocolRunner::level_value(int level) const {
-    return scan_level(stage(), level, state_.leg_begin, target(), plate_);
+    if (!cell_ || stage().scan_at.empty())
+        return scan_level(stage(), level, state_.leg_begin, target(), plate_);
+    const double part = listed_part(level), end = target();
+    return part == 1 ? end : state_.leg_begin + part * (end - state_.leg_begin);
 }
 
 /// Position of the next scan, or the end of the move.
@@ -70,7 +75,8 @@ double ProtocolRunner::waypoint() const {
 bool ProtocolRunner::waypoint_is_end() const {
     const int scans = scans_of(stage());
     if (state_.level + 1 != scans) return state_.level >= scans;
-    return stage().scan_at.empty() || level_value(scans) == target();
+    if (stage().scan_at.empty()) return true;
+    return cell_ ? listed_part(scans) == 1 : level_value(scans) == target();
 }
 
 /// Time from the start of the hold to its next scan or its end [s].

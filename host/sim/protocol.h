@@ -8,6 +8,7 @@
 
 #include "scene/cell_path.h"
 #include "scene/legs.h"
+#include "scene/scan_quantity.h"
 #include "sim/cell_control.h"
 #include "sim/engine.h"
 #include "sim/force_control.h"
@@ -104,6 +105,12 @@ private:
     double max_speed() const;
     double rate_length() const { return cell_ ? 1 : state_.plate_z; }
     double level_value(int level) const;
+    const ScanQuantity& quantity() const { return quantities_[static_cast<std::size_t>(state_.leg)]; }
+    double quantity_begin() const;
+    double listed_part(int scan) const;
+    double scan_part(int scan, double way) const;
+    double stress_done() const;
+    void expect_listed_scans();
     double waypoint() const;
     bool waypoint_is_end() const;
     double hold_time() const;
@@ -140,10 +147,11 @@ private:
     Protocol protocol_;
     std::vector<mcdem::Stage> stages_;
     std::vector<Leg> legs_;
-    std::optional<CellControl> cell_;  ///< only for a cell
-    double scale_;                     ///< scale of positions: the plate's start [m], 1 for a cell
-    double time_step_;                 ///< current one [s]
-    double longest_time_step_;         ///< without shortening [s]
+    std::vector<ScanQuantity> quantities_;  ///< of each leg, if a move of a cell lists its scans
+    std::optional<CellControl> cell_;       ///< only for a cell
+    double scale_;                          ///< scale of positions: the plate's start [m], 1 for a cell
+    double time_step_;                      ///< current one [s]
+    double longest_time_step_;              ///< without shortening [s]
     QuasiStatic quasi_static_;
     ForceControl force_control_;
     ProtocolState state_;

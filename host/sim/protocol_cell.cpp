@@ -44,13 +44,46 @@ SetStress ProtocolRunner::end_stress() const { return set_stress(last_move()); }
 /// With stops, the stresses of the next scan if only stresses change; otherwise the target.
 SetStress ProtocolRunner::stress() const {
     SetStress set = end_stress();
-    if (stage().kind == StageKind::hold || driven() || !protocol_.stop_at_scans) return set;
-    const int next = state_.level + 1, scans = scans_of(stage());
-    for (std::size_t axis = 0; next < scans && axis < set.size(); ++axis) {
+    if (stage().kind == StageKind::hold || driven() || !protocol_.stop_at_scans || waypoint_is_end())
+        return set;
+    for (std::size_t axis = 0; axis < set.size(); ++axis) {
         const double begin = state_.cell.direction[axis].begin;
-        set[axis] = begin + (set[axis] - begin) * next / scans;
+        set[axis] = begin + scan_part(state_.level + 1, set[axis] - begin);
     }
     return set;
+}
+
+/// The quantity of the scans at the start of the move.
+double ProtocolRunner::quantity_begin() const {
+    if (!quantity().of_stress) return quantity().mean(state_.cell.begin);
+    SetStress begin;
+    for (std::size_t axis = 0; axis < begin.size(); ++axis) begin[axis] = state_.cell.direction[axis].begin;
+    return quantity().mean(begin);
+}
+
+/// Part of a move at which a scan of its list is taken, 0 to 1.
+double ProtocolRunner::listed_part(int scan) const {
+    const double at = stage().scan_at[static_cast<std::size_t>(scan - 1)], begin = quantity_begin();
+    if (at == quantity().target) return 1;
+    return std::clamp((at - begin) / (quantity().target - begin), 0.0, 1.0);
+}
+
+double ProtocolRunner::scan_part(int scan, double way) const {
+    return stage().scan_at.empty() ? way * scan / scans_of(stage()) : way * listed_part(scan);
+}
+
+/// Where a move starts may be known only now.
+void ProtocolRunner::expect_listed_scans() {
+    const double begin = quantity_begin(), end = quantity().target;
+    for (const double at : stage().scan_at) {
+        const double rounding = quantity().of_stress ? min_change * std::abs(at) : 0;
+        if (at >= std::min(begin, end) - rounding && at <= std::max(begin, end) + rounding) continue;
+        hindrance_ = fmt::format(
+            "stage {} of the programme: there is no scan at {} = {:.6g}: the move goes from {:.6g} to {:.6g} "
+            "(leave it out of scan_at)",
+            leg().stage + 1, quantity_name(stage(), quantity()), at, begin, end);
+        return stop();
+    }
 }
 
 Strain ProtocolRunner::strain() const {
@@ -136,6 +169,7 @@ void ProtocolRunner::begin_leg_of_cell() {
     if (state_.leg == 0) CellControl::begin_leg(state_.cell, {});
     if (!by_stress() || stage().kind != StageKind::hold) CellControl::rest(state_.cell);
     if (stage().kind == StageKind::hold) return;
+    if (!stage().scan_at.empty()) expect_listed_scans();
     const double change = by_stress() ? CellControl::change(state_.cell, end_stress()) : 0;
     if (std::abs(change) > min_change)
         set_phase(change > 0);
@@ -143,10 +177,18 @@ void ProtocolRunner::begin_leg_of_cell() {
         set_phase(move().loads());
 }
 
+/// Part of the change of stress in this move.
+double ProtocolRunner::stress_done() const {
+    if (stage().scan_at.empty()) return CellControl::done(state_.cell, end_stress());
+    SetStress now;
+    for (std::size_t axis = 0; axis < now.size(); ++axis) now[axis] = state_.cell.stress(axis);
+    const double begin = quantity_begin();
+    return (quantity().mean(now) - begin) / (quantity().target - begin);
+}
+
 std::optional<ProtocolRunner::ScanTag> ProtocolRunner::moved_by_stress() {
-    const double next = (state_.level + 1.0) / std::max(1, scans_of(stage()));
-    const bool passed = !protocol_.stop_at_scans && !waypoint_is_end() &&
-                        CellControl::done(state_.cell, end_stress()) >= next;
+    const bool passed =
+        !protocol_.stop_at_scans && !waypoint_is_end() && stress_done() >= scan_part(state_.level + 1, 1);
     if (passed || state_.reached_intervals >= enough_intervals) return waypoint_reached();
     give_up_late();
     return std::nullopt;

@@ -78,8 +78,6 @@ TEST(Cell, RefusesStagesOfAPlate) {
     EXPECT_THAT(problems("rate = 1\n"), ElementsAre(HasSubstr("strain must be given, or strain_x")));
     EXPECT_THAT(problems("strain = 0.1\nstrain_y = 0.1\n"),
                 ElementsAre(HasSubstr("strain_y must be left out where strain is given")));
-    EXPECT_THAT(problems("scan_at = [0.1]\nstrain = 0.1\n"),
-                ElementsAre(HasSubstr("scan_at must be left out")));
     EXPECT_THAT(problems("shear_xy = 6\n"),
                 ElementsAre(HasSubstr("shear_xy must be a number between -5 and 5")));
     EXPECT_THAT(problems_in(few + "[[programme]]\nstrain_x = 0.1\n"),
@@ -143,6 +141,60 @@ TEST(Cell, EachShearHasAStrainOrAStress) {
                 ElementsAre(HasSubstr("stress_yz must be one that the grains can bear, got -10000000")));
     EXPECT_THAT(problems_in(few + "[[programme]]\nstress_xy = 100\n"),
                 Contains(HasSubstr("stress_xy must be left out of a stage that is a move of the plate")));
+}
+
+TEST(Cell, ListsScansOnTheWayOfAMove) {
+    const auto problems = [](const std::string& stages) { return problems_in(cell + few + stages); };
+    const std::string move = "[[programme]]\n", pressure = move + "pressure = 100\n",
+                      hold = move + "stage = \"hold\"\ntime = 1\n";
+    const std::string good[] = {
+        "strain = 0.1\nscan_at = [0.05, 0.1]\n",
+        "strain_z = 0.1\nshear_xy = -0.3\nscan_at = [-0.1, -0.2]\n",
+        "pressure = 200\nscan_at = [150]\n",
+        "stress_x = 50\nstress_z = 50\nscan_at = [20, 50]\n",
+        "strain = 0.05\n" + move + "strain_x = 0.1\nstrain_y = 0.02\nscan_at = [0.07]\n",
+        "pressure = 100\n" + move + "pressure = 100\nstress_xz = 10\nscan_at = [5]\n",
+        "pressure = 100\n" + move + "stress_x = 90\nstress_y = 100\nstress_z = 200\nscan_at = [150]\n",
+        "pressure = 100\n" + move + "strain = 0.1\nscan_at = [0.07]\n",
+    };
+    for (const std::string& stages : good)
+        EXPECT_NO_THROW(parse_scene(cell + few + move + stages, "good.toml", {})) << stages;
+    const std::pair<std::string, std::string> wrong[] = {
+        {move + "strain = 0.1\nscan_at = [0.05, 0.2]\n",
+         "programme.1.scan_at must be values of strain on the way from 0 to 0.1, one after the other, got "
+         "0.2 "
+         "after 0.05"},
+        {move + "strain_z = 0.1\nshear_xy = -0.3\nscan_at = [0.05]\n",
+         "programme.1.scan_at must be values of shear_xy on the way from 0 to -0.3, one after the other, got "
+         "0.05 "
+         "after 0"},
+        {move + "strain_x = 0.1\nscan_at = [0.08, 0.05]\n",
+         "values of strain_x on the way from 0 to 0.1, one after the other, got 0.05 after 0.08"},
+        {one_move + move + "strain_x = 0.2\nscan_at = [0.1]\n",
+         "programme.2.scan_at must be values of strain_x on the way from 0.1 to 0.2, one after the other, "
+         "got 0.1"},
+        {pressure + pressure + "shear_yz = 0.1\nscan_at = [100]\n",
+         "values of shear_yz on the way from 0 to 0.1"},
+        {pressure + move + "pressure = 300\nscan_at = [200, 400]\n",
+         "programme.2.scan_at must be values of pressure on the way from 100 to 300, one after the other, "
+         "got 400 "
+         "after 200"},
+        {move + "stress_x = 50\nstress_z = 50\nscan_at = [60, 55, 40]\n",
+         "values of the mean of stress_x, stress_z on the way to 50, one after the other, got 40 after 55"},
+        {pressure + move + "strain_x = 0.2\nstrain_y = 0.1\nscan_at = [0.1]\n",
+         "programme.2.scan_at must be left out: the move changes several strains or stresses, and only the "
+         "run "
+         "shows which one changes most"},
+        {pressure + hold + pressure + "stress_xz = 10\nscan_at = [5]\n",
+         "programme.3.scan_at must be left out"},
+        {pressure + pressure + "scan_at = [100]\n", "or it changes none (take scans instead)"},
+        {move + "strain_x = 0.1\nscans = 2\nscan_at = [0.1]\n",
+         "programme.1.scan_at must be left out where scans is given"},
+        {move + "strain = 0.1\nscan_at = [0.05]\n" + move + "stage = \"repeat\"\n",
+         "programme.1.scan_at must be left out"},
+    };
+    for (const auto& [stages, told] : wrong)
+        EXPECT_THAT(problems(stages), ElementsAre(HasSubstr(told))) << stages;
 }
 
 TEST(Cell, HoldsStressesOnlyIfTheMoveBeforePrescribesThem) {

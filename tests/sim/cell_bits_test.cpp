@@ -12,6 +12,7 @@ void set_stresses(std::vector<mcdem::Stage>& programme) {
     programme[1].stress_x = programme[1].stress_y = 200;
     programme[1].strain_z = 0.05;
     programme[1].stress_xz = -20;
+    programme[1].scan_at = {0.04};
     programme[2].keep = mcdem::Controlled::stress;
 }
 

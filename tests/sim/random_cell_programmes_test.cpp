@@ -159,6 +159,81 @@ ProtocolRunner to_pressure() {
     return runner_of({stage});
 }
 
+/// The strains at the scans of a programme.
+std::vector<Strain> scans_of_spring(ProtocolRunner& runner) {
+    std::vector<Strain> scans;
+    while (!runner.finished()) {
+        const StepInterval interval = runner.next([](const StepInterval&) { return 60; });
+        IntervalResult result;
+        result.steps = interval.steps;
+        Strain strain = interval.strain;
+        for (std::size_t k = 0; k < 6; ++k) strain[k] += interval.strain_rate[k] * interval.steps * time_step;
+        result.stress = spring_stress(strain);
+        if (runner.made(result)) scans.push_back(strain);
+    }
+    return scans;
+}
+
+TEST(ListedScans, AreTakenAtTheirStrainsAndStresses) {
+    for (const bool stops : {true, false}) {
+        SCOPED_TRACE(stops);
+        std::vector<Stage> programme(6);
+        programme[0].strain = 0.06;
+        programme[0].scan_at = {0.01, 0.05};  // and not at the end
+        programme[1].strain_z = 0.05;         // less than the shear
+        programme[1].shear_xz = -0.2;
+        programme[1].scan_at = {-0.05, -0.2};
+        programme[2].pressure = 300;
+        programme[2].scan_at = {150, 250, 300};
+        programme[3].pressure = 300;
+        programme[3].stress_yz = -40;
+        programme[3].scan_at = {-10, -20};
+        programme[4].pressure = 300;
+        programme[4].shear_xz = 0;
+        programme[4].scan_at = {-0.15, -0.02};
+        programme[5].strain_y = 0;
+        programme[5].scan_at = {0.01};
+        ProtocolRunner runner = runner_of(programme, stops);
+        const auto scans = scans_of_spring(runner);
+        EXPECT_EQ(runner.hindrance(), "");
+        ASSERT_EQ(scans.size(), 12u);
+        EXPECT_NEAR(scans[0][1], 0.01, 1e-12);
+        EXPECT_NEAR(scans[1][1], 0.05, 1e-12);
+        EXPECT_NEAR(scans[2][4], -0.05, 1e-12);
+        EXPECT_NEAR(scans[2][2], 0.06 - 0.01 / 4, 1e-12);
+        EXPECT_NEAR(scans[3][4], -0.2, 1e-12);
+        const double pressures[]{150, 250, 300};
+        for (int n = 0; n < 3; ++n) {
+            const double pressure = spring_stress(scans[4 + n]).trace() / 3 / pressures[n];
+            EXPECT_GT(pressure, 1 - 1e-3) << n;
+            EXPECT_LT(pressure, stops ? 1 + 1e-3 : 1.2) << n;
+        }
+        for (const int n : {7, 8}) {
+            const double shear = spring_stress(scans[n])(1, 2) / (n == 7 ? -10 : -20);
+            EXPECT_GT(shear, 1 - 2e-3) << n;
+            EXPECT_LT(shear, stops ? 1 + 2e-3 : 1.5) << n;
+        }
+        EXPECT_NEAR(scans[9][4], -0.15, 1e-12);
+        EXPECT_NEAR(scans[10][4], -0.02, 1e-12);
+        EXPECT_NEAR(scans[11][1], 0.01, 1e-12);
+    }
+}
+
+// The strains after a move to a stress are known only in the run.
+TEST(ListedScans, OutsideTheMoveEndTheProgramme) {
+    std::vector<Stage> programme(2);
+    programme[0].pressure = 200;
+    programme[1].strain_z = 0.3;
+    programme[1].scan_at = {0.01, 0.2};
+    ProtocolRunner runner = runner_of(programme);
+    EXPECT_EQ(scans_of_spring(runner).size(), 1u);
+    EXPECT_NE(runner.hindrance().find(
+                  "stage 2 of the programme: there is no scan at strain_z = 0.01: the move goes "
+                  "from 0.1"),
+              std::string::npos)
+        << runner.hindrance();
+}
+
 TEST(StressOfACell, UnreachableStressEndsTheProgramme) {
     for (const double stress : {0.0, 150.0}) {
         ProtocolRunner runner = to_pressure();
