@@ -190,7 +190,9 @@ pressure = 200
 rate = 1
 [[programme]]
 stress_x = 200
+stress_yz = -5
 shear_xz = 0.01
+scan_at = [0.004]
 rate = 1
 [[programme]]
 stage = "hold"

@@ -236,6 +236,18 @@ scans = 6
     }
 }
 
+// A loose packing would be sheared without limit.
+TEST(StressControl, ShearWaitsForThePressure) {
+    const Traced traced = trace(cell_text + "[[programme]]\npressure = 150\nstress_xz = -20\n",
+                                {"grains.friction=0.3", "contact.friction_law=mindlin"});
+    ASSERT_EQ(traced.scans.size(), 1u);
+    EXPECT_NEAR(shear_stress(traced.scans[0].stress) / -20, 1, 1e-3);
+    for (const auto& row : traced.rows)
+        if (row.stress.trace() / 3 < 0.95 * 150) {
+            EXPECT_EQ(row.strain[4], 0);
+        }
+}
+
 // The same shear is imposed by its strain: without sliding contacts the stress is the same.
 TEST(StressControl, ShearByStressAgreesWithShearByStrain) {
     const std::vector<std::string> elastic{"grains.friction=10", "contact.friction_law=mindlin",
