@@ -190,7 +190,7 @@ private:
         const auto note = [&](int r, const Failure& failure) {
             const auto j = static_cast<std::size_t>(r);
             recordings[j].failure = failure;
-            options_.on_failure(jobs[j].trials.front(), failure);
+            options_.on_failure(jobs[j].front(), failure);
         };
         while (simulation.advance(keep, note)) {
             options_.on_progress(from + (to - from) * simulation.progress());

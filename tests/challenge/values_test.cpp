@@ -36,7 +36,7 @@ TEST(IdealPower, has_the_stated_values) {
     EXPECT_GT(ideal_power(0.05, 2), 0.999);
 }
 
-const ChallengeCase no_effect{}, adhesion{.kind = CaseKind::effect, .effects = {{"adhesion", 1e-3}}};
+const ChallengeCase no_effect{}, adhesion{{}, CaseKind::effect, {{"adhesion", 1e-3}}, {}, {}};
 const Answer nothing{}, right{Verdict::effect, {"adhesion"}, 0.9}, unknown{Verdict::unknown_effect, {}, 0};
 
 /// The figures for these numbers of cases of each kind.
