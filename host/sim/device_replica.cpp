@@ -123,7 +123,7 @@ void set_space(DeviceReplica& d, const Replica& replica, const Packing& packing)
     const double radius = mean_radius(packing);
     const double skin = replica.numerics.skin * radius;
     d.skin = skin;
-    d.max_move = (is_cell(replica.box) ? 0.25 : 0.5) * static_cast<double>(d.skin);
+    d.max_move = 0.5 * (is_cell(replica.box) ? 1 - cell_share : 1) * static_cast<double>(d.skin);
     d.probe_gap = replica.numerics.probe_gap * radius;
     d.overlap_limit = replica.numerics.overlap_limit;
     d.container = static_cast<int>(replica.box.shape);

@@ -8,6 +8,10 @@
 
 namespace mcdem::inline sim {
 
+/// Part of the margin of the neighbour list for the motion of a cell. It is small because strains are slow:
+/// grains that collide move much farther within the lifetime of a list.
+inline constexpr double cell_share = 0.1;
+
 /// Time step: a fraction of the shortest Rayleigh time of a grain, pi R / rayleigh_speed [s].
 double time_step(const Replica& replica, const Packing& packing);
 

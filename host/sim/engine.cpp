@@ -19,10 +19,11 @@ namespace {
 /// A list is rebuilt when a grain or the plate has moved by this fraction of the margin. Half the margin is
 /// the limit that the kernels check in every step.
 constexpr double rebuild_at = 0.3;
-/// Maximum displacement of the plate in an interval over the margin: rebuild_at + plate_share <= 1/2. In a
-/// cell the same holds for the relative displacement, by the cell's motion, of two grains at the reach of the
-/// list.
+/// Maximum displacement of the plate in an interval over the margin: rebuild_at + plate_share <= 1/2.
 constexpr double plate_share = 0.2;
+/// In a cell, by which two grains at the reach of the list are displaced relative to each other: the same
+/// fractions of `cell_share` of the margin, twice. The grains' own motion may use the rest.
+constexpr double margin_of_walls(const Replica& replica) { return is_cell(replica.box) ? 2 * cell_share : 1; }
 constexpr int max_interval_steps = 60;
 
 template <class DeviceReplica>
@@ -135,7 +136,9 @@ int Engine::max_interval(int replica, const StepInterval& interval) const {
     return std::clamp(static_cast<int>(std::min(steps, 1e6)), 1, max_interval_steps);
 }
 
-double Engine::max_plate_move(int replica) const { return plate_share * skin_[replica]; }
+double Engine::max_plate_move(int replica) const {
+    return plate_share * margin_of_walls(replicas_[static_cast<std::size_t>(replica)]) * skin_[replica];
+}
 
 Engine::Part Engine::part(const std::vector<char>& wanted) const {
     Part part;
@@ -347,8 +350,9 @@ std::vector<IntervalResult> Engine::read_reports(const std::vector<StepInterval>
                 steps_made_[r] += made[r];
                 plate_z_[r] = intervals[r].plate_z + plate_move;
                 const double limit = rebuild_at * skin_[r];
-                const double own_limit = is_cell(replicas_[r].box) ? limit / 2 : limit;
-                rebuild_[r] = made[r] < intervals[r].steps || plate_moved_[r] > limit ||
+                const double own_limit = is_cell(replicas_[r].box) ? (1 - cell_share) * limit : limit;
+                rebuild_[r] = made[r] < intervals[r].steps ||
+                              plate_moved_[r] > margin_of_walls(replicas_[r]) * limit ||
                               !(reports[r].moved_squared <= own_limit * own_limit);
                 shortening_[r] = shortening(replicas_[r], time_step_[r], result.frequency, shortening_[r]);
             }
