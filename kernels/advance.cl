@@ -23,9 +23,17 @@ INLINE GrainSums contact_sums(Grain at, const int effects, Batch batch, const sl
     load_displacements(at, batch, displacement, partner_slot);
     load_memories(at, batch.memory, &kept);
     GrainSums sums = {ZERO3, ZERO3, R(0)};
+    /* Two loops: a CPU computes several slots of the second one at the same time, as long as its reorder
+       buffer holds more than one. */
+    Neighbours neighbours[SLOTS_HERE];
+    Displaced displacements[SLOTS_HERE];
     for (int v = 0; v < at.count; ++v) {
-        const Neighbours neighbour = gather_neighbours(at, effects, batch.motion, partner[v]);
-        const Displaced b = displaced(at, batch, neighbour, displacement, partner_slot, v);
+        neighbours[v] = gather_neighbours(at, effects, batch.motion, partner[v]);
+        displacements[v] = displaced(at, batch, neighbours[v], displacement, partner_slot, v);
+    }
+    for (int v = 0; v < at.count; ++v) {
+        const Neighbours neighbour = neighbours[v];
+        const Displaced b = displacements[v];
         Memory memory = recall(replica, effects, &kept, v);
         const Contacts c = contact_forces(at, effects, neighbour, b, replica->time_step, &memory);
         remember(replica, effects, memory, &kept, v);

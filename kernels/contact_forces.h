@@ -72,8 +72,13 @@ INLINE Pressed press(Grain at, const int effects, Neighbours neighbour, Displace
     c->radius = sqrt(p.pair.radius * c->overlap);
     p.stiffness = R(2) * modulus * c->radius;
     c->elastic = (R(2) / R(3)) * p.stiffness * c->overlap;
-    c->displacement = b.here + self.here * c->elastic;
-    p.displacement_there = b.there + self.there * c->elastic;
+    c->displacement = b.here;
+    p.displacement_there = b.there;
+    /* Otherwise friction does not wait for the elastic force. */
+    if (replica->finite_contacts) {
+        c->displacement += self.here * c->elastic;
+        p.displacement_there += self.there * c->elastic;
+    }
     if (effects & EFFECT_STIFFENING) c->elastic = stiffened(replica, c->elastic, c->overlap, p.pair.radius);
     p.relaxed_force = c->elastic;
     if (effects & EFFECT_VISCOELASTICITY)

@@ -41,15 +41,14 @@ INLINE Neighbours gather_neighbours(Grain at, const int effects, global const Mo
                                     slots partner) {
     const mask wall = AS_MASK(partner < NO_PARTNER);
     const slots index = select(at.first + LANE_NUMBERS, partner, partner >= 0);
-    const lanes4 position = gather_motion(motion, index, 0), velocity = gather_motion(motion, index, 1),
-                 spin = gather_motion(motion, index, 2);
-    lanes3 there = {position.x, position.y, position.z}, moving = {velocity.x, velocity.y, velocity.z};
+    const Moving other = load_motion(motion, index);
+    lanes3 there = other.position, moving = other.velocity;
     Neighbours neighbour;
     neighbour.occupied = AS_MASK(partner != NO_PARTNER);
     neighbour.wall = wall;
-    neighbour.radius = position.w;
-    neighbour.excess_compliance = velocity.w;
-    neighbour.spin = (lanes3){spin.x, spin.y, spin.z};
+    neighbour.radius = other.radius;
+    neighbour.excess_compliance = other.excess_compliance;
+    neighbour.spin = other.spin;
     if (ANY(wall)) { /* walls do not rotate; only the plate moves, along z */
         there = wall_feet(at, effects, partner, there);
         moving = where3(wall, ZERO3, moving);
@@ -59,7 +58,7 @@ INLINE Neighbours gather_neighbours(Grain at, const int effects, global const Mo
         neighbour.excess_compliance = WHERE(wall, R(0), neighbour.excess_compliance);
     }
 #if SPECIES > 1
-    neighbour.species = AS_SLOTS(WHERE(wall, R(WALL_COLUMN), spin.w));
+    neighbour.species = AS_SLOTS(WHERE(wall, R(WALL_COLUMN), other.species));
 #endif
     lanes3 apart = subtract3(there, at.now.position);
     if (at.replica->container == CONTAINER_PERIODIC) {

@@ -100,15 +100,9 @@ INLINE int load_partners(global const int* restrict rows, slots* restrict partne
 }
 
 /* Loads this grain's surface displacements, extrapolated to this step, and the slots of those of the
-   neighbours. The latter are scattered over memory: a CPU prefetches them, a GPU hides the latency with other
-   work-items. */
+   neighbours. */
 INLINE void load_displacements(Grain at, Batch batch, lanes* restrict here, slots* restrict there) {
     if (at.replica->surface == SURFACE_RIGID) return;
-#if LANES == 16
-    for (int lane = 0; lane < LANES; ++lane)
-        for (int v = 0; v < at.count; ++v)
-            PREFETCH(batch.displacement + batch.partner_slot[at.row + lane * SLOTS + v]);
-#endif
     load_row(batch.displacement + at.row, SLOTS, at.count, here);
     load_slots(batch.partner_slot + at.row, at.count, there);
 }

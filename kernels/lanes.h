@@ -27,12 +27,6 @@ typedef int16 slots;
 #define SYNCHRONISE()
 #define LOAD_LANES(field) vload16(0, field)
 #define STORE_LANES(value, field) vstore16(value, 0, field)
-/* OpenCL's prefetch() does nothing in PoCL. */
-#if defined(__x86_64__) || defined(__aarch64__)
-#define PREFETCH(place) __builtin_prefetch((const void*)(size_t)(place))
-#else
-#define PREFETCH(place)
-#endif
 #else
 typedef real lanes;
 typedef int mask;
@@ -99,68 +93,92 @@ INLINE bool any_lane(mask m) {
 
 /* Optimisation barrier without instructions. Without it LLVM splits the vectors of a transposition into loads
    of single numbers, which doubles the number of instructions. */
-#if defined(__AVX__) && !MCDEM_DOUBLE
-#define KEEP_WHOLE(vector) __asm__("" : "+x"(vector))
+#if defined(__AVX512F__) && !MCDEM_DOUBLE
+#define KEEP_WHOLE(type, vector) __asm__("" : "+v"(vector))
+#elif defined(__AVX__) && !MCDEM_DOUBLE
+#define KEEP_WHOLE(type, vector)                       \
+    do {                                               \
+        type##8 low = (vector).lo, high = (vector).hi; \
+        __asm__("" : "+x"(low), "+x"(high));           \
+        (vector) = (type##16)(low, high);              \
+    } while (false)
 #else
-#define KEEP_WHOLE(vector)
+#define KEEP_WHOLE(type, vector)
 #endif
 
-/* Transposition between eight rows of four numbers and four vectors of eight. Each intermediate vector
-   contains rows i and i + 4, so two rounds of interleaving within 128-bit halves give the lanes in order. */
-#define INTERLEAVE_LOW(type, a, b) (type)(a.s0, b.s0, a.s1, b.s1, a.s4, b.s4, a.s5, b.s5)
-#define INTERLEAVE_HIGH(type, a, b) (type)(a.s2, b.s2, a.s3, b.s3, a.s6, b.s6, a.s7, b.s7)
-#define LOW_PAIRS(type, a, b) (type)(a.s01, b.s01, a.s45, b.s45)
-#define HIGH_PAIRS(type, a, b) (type)(a.s23, b.s23, a.s67, b.s67)
-#define GATHER_FOUR(name, four, eight, eight_rows)                                                    \
-    INLINE eight_rows name(global const four* restrict field, int8 i) {                               \
-        eight a = (eight)(field[i.s0], field[i.s4]), b = (eight)(field[i.s1], field[i.s5]);           \
-        eight c = (eight)(field[i.s2], field[i.s6]), d = (eight)(field[i.s3], field[i.s7]);           \
-        KEEP_WHOLE(a);                                                                                \
-        KEEP_WHOLE(b);                                                                                \
-        KEEP_WHOLE(c);                                                                                \
-        KEEP_WHOLE(d);                                                                                \
-        const eight ab_low = INTERLEAVE_LOW(eight, a, b), ab_high = INTERLEAVE_HIGH(eight, a, b);     \
-        const eight cd_low = INTERLEAVE_LOW(eight, c, d), cd_high = INTERLEAVE_HIGH(eight, c, d);     \
-        return (eight_rows){LOW_PAIRS(eight, ab_low, cd_low), HIGH_PAIRS(eight, ab_low, cd_low),      \
-                            LOW_PAIRS(eight, ab_high, cd_high), HIGH_PAIRS(eight, ab_high, cd_high)}; \
-    }
+/* Transposition between 16 rows of four numbers and four vectors of 16. Each intermediate vector contains
+   rows i, i + 4, i + 8 and i + 12, so two rounds of interleaving within 128-bit parts give the lanes in
+   order. */
+#define INTERLEAVE_LOW(a, b) \
+    __builtin_shufflevector(a, b, 0, 16, 1, 17, 4, 20, 5, 21, 8, 24, 9, 25, 12, 28, 13, 29)
+#define INTERLEAVE_HIGH(a, b) \
+    __builtin_shufflevector(a, b, 2, 18, 3, 19, 6, 22, 7, 23, 10, 26, 11, 27, 14, 30, 15, 31)
+#define LOW_PAIRS(a, b) \
+    __builtin_shufflevector(a, b, 0, 1, 16, 17, 4, 5, 20, 21, 8, 9, 24, 25, 12, 13, 28, 29)
+#define HIGH_PAIRS(a, b) \
+    __builtin_shufflevector(a, b, 2, 3, 18, 19, 6, 7, 22, 23, 10, 11, 26, 27, 14, 15, 30, 31)
+#define FOUR_ROWS(type, field, place, i) \
+    (type##16)((field)[place(i)], (field)[place(i + 4)], (field)[place(i + 8)], (field)[place(i + 12)])
+/* Vector q of `out` contains number q of the rows at place(0) to place(15). */
+#define TRANSPOSE_ROWS(type, field, place, out)                                              \
+    do {                                                                                     \
+        type##16 a = FOUR_ROWS(type, field, place, 0), b = FOUR_ROWS(type, field, place, 1); \
+        type##16 c = FOUR_ROWS(type, field, place, 2), d = FOUR_ROWS(type, field, place, 3); \
+        KEEP_WHOLE(type, a);                                                                 \
+        KEEP_WHOLE(type, b);                                                                 \
+        KEEP_WHOLE(type, c);                                                                 \
+        KEEP_WHOLE(type, d);                                                                 \
+        const type##16 ab_low = INTERLEAVE_LOW(a, b), ab_high = INTERLEAVE_HIGH(a, b);       \
+        const type##16 cd_low = INTERLEAVE_LOW(c, d), cd_high = INTERLEAVE_HIGH(c, d);       \
+        (out)[0] = LOW_PAIRS(ab_low, cd_low), (out)[1] = HIGH_PAIRS(ab_low, cd_low);         \
+        (out)[2] = LOW_PAIRS(ab_high, cd_high), (out)[3] = HIGH_PAIRS(ab_high, cd_high);     \
+    } while (false)
+
+/* Indices of the lanes in memory, where scalar code reads them faster than out of a vector. */
 typedef struct {
-    real8 x, y, z, w;
-} eight4;
-typedef struct {
-    int8 x, y, z, w;
-} eight_slots4;
-typedef struct {
-    slots x, y, z, w;
-} slots4;
-GATHER_FOUR(gather_eight, real4, real8, eight4)
-GATHER_FOUR(gather_eight_slots, int4, int8, eight_slots4)
+    int lane[LANES];
+} __attribute__((aligned(64))) Places;
+INLINE void store_places(slots index, Places* restrict places) {
+    vstore16(index, 0, places->lane);
+#if defined(__AVX__)
+    __asm__("" : "+m"(*places)); /* otherwise LLVM reads them from the vector */
+#endif
+}
+
+#define STORED_PLACE(i) (places->lane[i])
+
+INLINE lanes4 gather4_at(global const real4* restrict field, const Places* restrict places) {
+    lanes out[4];
+    TRANSPOSE_ROWS(real, field, STORED_PLACE, out);
+    return (lanes4){out[0], out[1], out[2], out[3]};
+}
 INLINE lanes4 gather4(global const real4* restrict field, slots index) {
-    const eight4 low = gather_eight(field, index.lo), high = gather_eight(field, index.hi);
-    return (lanes4){(lanes)(low.x, high.x), (lanes)(low.y, high.y), (lanes)(low.z, high.z),
-                    (lanes)(low.w, high.w)};
-}
-INLINE slots4 gather_slots4(global const int4* restrict field, slots index) {
-    const eight_slots4 low = gather_eight_slots(field, index.lo), high = gather_eight_slots(field, index.hi);
-    return (slots4){(slots)(low.x, high.x), (slots)(low.y, high.y), (slots)(low.z, high.z),
-                    (slots)(low.w, high.w)};
+    Places places;
+    store_places(index, &places);
+    return gather4_at(field, &places);
 }
 
-/* field[index] = value, lane by lane */
-INLINE void scatter_eight(eight4 value, global real4* restrict field, int8 i) {
-    const real8 xy_low = INTERLEAVE_LOW(real8, value.x, value.y),
-                xy_high = INTERLEAVE_HIGH(real8, value.x, value.y);
-    const real8 zw_low = INTERLEAVE_LOW(real8, value.z, value.w),
-                zw_high = INTERLEAVE_HIGH(real8, value.z, value.w);
-    const real8 a = LOW_PAIRS(real8, xy_low, zw_low), b = HIGH_PAIRS(real8, xy_low, zw_low);
-    const real8 c = LOW_PAIRS(real8, xy_high, zw_high), d = HIGH_PAIRS(real8, xy_high, zw_high);
-    field[i.s0] = a.lo, field[i.s1] = b.lo, field[i.s2] = c.lo, field[i.s3] = d.lo;
-    field[i.s4] = a.hi, field[i.s5] = b.hi, field[i.s6] = c.hi, field[i.s7] = d.hi;
-}
-
+/* field[place(i)] = number i of the four vectors */
+#define SCATTER_ROWS(v, field, place)                                                       \
+    do {                                                                                    \
+        const lanes xy_low = INTERLEAVE_LOW(v.x, v.y), xy_high = INTERLEAVE_HIGH(v.x, v.y); \
+        const lanes zw_low = INTERLEAVE_LOW(v.z, v.w), zw_high = INTERLEAVE_HIGH(v.z, v.w); \
+        SCATTER_FOUR(LOW_PAIRS(xy_low, zw_low), field, place, 0);                           \
+        SCATTER_FOUR(HIGH_PAIRS(xy_low, zw_low), field, place, 1);                          \
+        SCATTER_FOUR(LOW_PAIRS(xy_high, zw_high), field, place, 2);                         \
+        SCATTER_FOUR(HIGH_PAIRS(xy_high, zw_high), field, place, 3);                        \
+    } while (false)
+#define SCATTER_FOUR(rows, field, place, i)                                \
+    do {                                                                   \
+        const lanes r = rows;                                              \
+        (field)[place(i)] = r.s0123, (field)[place(i + 4)] = r.s4567;      \
+        (field)[place(i + 8)] = r.s89ab, (field)[place(i + 12)] = r.scdef; \
+    } while (false)
 INLINE void scatter4(lanes4 v, global real4* restrict field, slots index) {
-    scatter_eight((eight4){v.x.lo, v.y.lo, v.z.lo, v.w.lo}, field, index.lo);
-    scatter_eight((eight4){v.x.hi, v.y.hi, v.z.hi, v.w.hi}, field, index.hi);
+    Places stored;
+    const Places* places = &stored;
+    store_places(index, &stored);
+    SCATTER_ROWS(v, field, STORED_PLACE);
 }
 
 /* field[index], lane by lane */
@@ -172,29 +190,30 @@ INLINE lanes gather(global const real* restrict field, slots index) {
 }
 
 /* Loads the first `count` slots of LANES rows that are `stride` reals apart, in groups of four slots. */
+#define ROW_PLACE(i) ((i) * (stride / 4))
 INLINE void load_row(global const real* restrict rows, int stride, int count, lanes* restrict slot) {
-    for (int v = 0; v < count; v += 4) {
-        const lanes4 four = gather4((global const real4*)(rows + v), LANE_NUMBERS * (stride / 4));
-        slot[v] = four.x, slot[v + 1] = four.y, slot[v + 2] = four.z, slot[v + 3] = four.w;
-    }
-}
-INLINE void load_slots(global const int* restrict rows, int count, slots* restrict slot) {
-    for (int v = 0; v < count; v += 4) {
-        const slots4 four = gather_slots4((global const int4*)(rows + v), LANE_NUMBERS * (SLOTS / 4));
-        slot[v] = four.x, slot[v + 1] = four.y, slot[v + 2] = four.z, slot[v + 3] = four.w;
-    }
+    for (int v = 0; v < count; v += 4)
+        TRANSPOSE_ROWS(real, (global const real4*)(rows + v), ROW_PLACE, slot + v);
 }
 INLINE void store_row(const lanes* restrict slot, int count, global real* restrict rows, int stride) {
     for (int v = 0; v < count; v += 4) {
         const lanes4 four = {slot[v], slot[v + 1], slot[v + 2], slot[v + 3]};
-        scatter4(four, (global real4*)(rows + v), LANE_NUMBERS * (stride / 4));
+        SCATTER_ROWS(four, (global real4*)(rows + v), ROW_PLACE);
     }
 }
+INLINE void load_slots(global const int* restrict rows, int count, slots* restrict slot) {
+    const int stride = SLOTS;
+    for (int v = 0; v < count; v += 4)
+        TRANSPOSE_ROWS(int, (global const int4*)(rows + v), ROW_PLACE, slot + v);
+}
 #else
-INLINE lanes4 gather4(global const real4* restrict field, slots index) {
-    const real4 f = field[index];
+typedef int Places;
+INLINE void store_places(slots index, Places* restrict places) { *places = index; }
+INLINE lanes4 gather4_at(global const real4* restrict field, const Places* restrict places) {
+    const real4 f = field[*places];
     return (lanes4){f.x, f.y, f.z, f.w};
 }
+INLINE lanes4 gather4(global const real4* restrict field, slots index) { return gather4_at(field, &index); }
 INLINE void scatter4(lanes4 value, global real4* restrict field, slots index) {
     field[index] = (real4)(value.x, value.y, value.z, value.w);
 }
@@ -214,13 +233,19 @@ INLINE void store_row(const lanes* restrict slot, int count, global real* restri
 #endif
 
 /* 1 / sqrt(x). In float on x86 the processor's estimate is refined by one Newton step, with a relative error
-   below 3e-7. Root and division would occupy the divider for most of the loop over pairs of contacts. */
+   below 3e-7, with AVX-512 below 1.5e-7. Root and division would occupy the divider for most of the loop over
+   pairs of contacts. */
 INLINE lanes inverse_root(lanes x) {
 #if LANES == 16 && defined(__AVX__) && !MCDEM_DOUBLE
+#if defined(__AVX512F__)
+    lanes estimate;
+    __asm__("vrsqrt14ps %1, %0" : "=v"(estimate) : "v"(x));
+#else
     real8 low, high;
     __asm__("vrsqrtps %1, %0" : "=x"(low) : "x"(x.lo));
     __asm__("vrsqrtps %1, %0" : "=x"(high) : "x"(x.hi));
     const lanes estimate = (lanes)(low, high);
+#endif
     return estimate * (R(1.5) - R(0.5) * x * (estimate * estimate));
 #else
     return R(1) / sqrt(x);

@@ -16,11 +16,6 @@ typedef struct {
 } Track;
 #define TRACK_VECTORS 2
 
-/* One real4 of the Motion of each lane's grain: 0 position, 1 velocity, 2 angular velocity. */
-INLINE lanes4 gather_motion(global const Motion* restrict motion, slots grain, int vector) {
-    return gather4((global const real4*)motion + vector, grain * MOTION_VECTORS);
-}
-
 /* The Motion of each lane's grain. */
 typedef struct {
     lanes3 position;
@@ -32,8 +27,11 @@ typedef struct {
 } Moving;
 
 INLINE Moving load_motion(global const Motion* restrict motion, slots grain) {
-    const lanes4 position = gather_motion(motion, grain, 0), velocity = gather_motion(motion, grain, 1),
-                 spin = gather_motion(motion, grain, 2);
+    global const real4* vectors = (global const real4*)motion;
+    Places places;
+    store_places(grain * MOTION_VECTORS, &places);
+    const lanes4 position = gather4_at(vectors, &places), velocity = gather4_at(vectors + 1, &places),
+                 spin = gather4_at(vectors + 2, &places);
     return (Moving){{position.x, position.y, position.z},
                     position.w,
                     {velocity.x, velocity.y, velocity.z},
