@@ -74,7 +74,7 @@ INLINE Pressed press(Grain at, const int effects, Neighbours neighbour, Displace
     c->elastic = (R(2) / R(3)) * p.stiffness * c->overlap;
     c->displacement = b.here;
     p.displacement_there = b.there;
-    /* Otherwise friction does not wait for the elastic force. */
+    /* A branch, so that without self displacement friction does not wait for the elastic force. */
     if (replica->finite_contacts) {
         c->displacement += self.here * c->elastic;
         p.displacement_there += self.there * c->elastic;

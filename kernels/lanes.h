@@ -134,10 +134,11 @@ INLINE bool any_lane(mask m) {
         (out)[2] = LOW_PAIRS(ab_high, cd_high), (out)[3] = HIGH_PAIRS(ab_high, cd_high);     \
     } while (false)
 
-/* Indices of the lanes in memory, where scalar code reads them faster than out of a vector. */
+/* Indices of the lanes in memory, where scalar code reads them faster than out of a vector. vstore16() stores
+   them in parts; scalar loads wait longer for a single store of the whole vector. */
 typedef struct {
     int lane[LANES];
-} __attribute__((aligned(64))) Places;
+} Places;
 INLINE void store_places(slots index, Places* restrict places) {
     vstore16(index, 0, places->lane);
 #if defined(__AVX__)
