@@ -40,22 +40,27 @@ INLINE lanes relaxing_force(lanes elastic, real part, real share, lanes* restric
     return force;
 }
 
-/* Attraction of touching grains, 2 pi w R*, independent of the overlap (Derjaguin, Muller & Toporov 1975). In
-   a gap it decreases linearly to zero over 0.01 R*, or over a longer range if its slope would otherwise
-   exceed m* / (20 dt^2). The range never exceeds the probed gap. */
+/* Attraction of two grains [N].
+   Adhesion: 2 pi w R*, independent of the overlap (Derjaguin, Muller & Toporov 1975). In a gap it decreases
+   linearly to zero over 0.01 R*, or over a longer range if its slope would otherwise exceed m* / (20 dt^2).
+   The range never exceeds the probed gap. Cohesion: k times the area 2 pi R* delta of the circle in which
+   spheres that overlap by delta intersect
+   ("SJKR" in LIGGGHTS). */
 typedef struct {
-    lanes force, range;
+    lanes adhesion, range, cohesion, force;
 } Attraction;
 
-INLINE Attraction attraction(global const Replica* restrict replica, lanes approach, lanes reduced_radius,
-                             lanes reduced_mass, mask occupied) {
+INLINE Attraction attraction(global const Replica* restrict replica, lanes approach, lanes overlap,
+                             Reduced pair, mask occupied) {
     const real dt = replica->time_step;
-    const lanes pull_off_force = replica->adhesion * reduced_radius;
-    const lanes resolved = fmax(R(0.01) * reduced_radius, R(20) * dt * dt * pull_off_force / reduced_mass);
+    const lanes pull_off_force = replica->adhesion * pair.radius;
+    const lanes resolved = fmax(R(0.01) * pair.radius, R(20) * dt * dt * pull_off_force / pair.mass);
     Attraction a;
     a.range = fmax(fmin(resolved, (lanes)(replica->probe_gap)), (lanes)(R(1e-30)));
-    a.force = WHERE(occupied, pull_off_force * clamp(R(1) + approach / a.range, (lanes)(R(0)), (lanes)(R(1))),
-                    R(0));
+    a.adhesion = WHERE(occupied,
+                       pull_off_force * clamp(R(1) + approach / a.range, (lanes)(R(0)), (lanes)(R(1))), R(0));
+    a.cohesion = replica->cohesion * pair.radius * overlap;
+    a.force = a.adhesion + a.cohesion;
     return a;
 }
 
@@ -83,7 +88,7 @@ INLINE lanes effect_energy(global const Replica* restrict replica, lanes elastic
 /* Energy of the attraction, zero beyond its range [J]. */
 INLINE lanes attraction_energy(Attraction a, lanes overlap, lanes approach) {
     const lanes inside = clamp(a.range + approach, (lanes)(R(0)), a.range);
-    return -a.force * (R(0.5) * inside + overlap);
+    return -a.adhesion * (R(0.5) * inside + overlap) - R(0.5) * a.cohesion * overlap;
 }
 
 /* Torque of magnitude mu_r R* F_n against the relative angular velocity, rolling and twisting (Zhou et al.

@@ -120,21 +120,22 @@ INLINE Contacts contact_forces(Grain at, const int effects, Neighbours neighbour
                                    (neighbour.radius + pressed.displacement_there));
     c.arm = WHERE(c.touching, WHERE(neighbour.wall, neighbour.distance, midway), radius + c.displacement);
 
-    const lanes friction_coefficient = OF_PAIRS(at, friction, neighbour);
-    FrictionTerms terms = {friction_coefficient * fmax(normal_force, (lanes)(R(0))), R(0), damping, pair.mass,
+    lanes pressing = normal_force, limiting = fmax(normal_force, (lanes)(R(0)));
+    if (effects) c.energy = effect_energy(replica, c.elastic, pressed.relaxed_force, c.overlap, pair.radius);
+    if (effects & EFFECT_ATTRACTION) {
+        const Attraction pull = attraction(replica, c.approach, c.overlap, pair, neighbour.occupied);
+        pressing -= pull.force;
+        limiting = WHERE(c.touching, fabs(limiting - replica->net_force_friction * pull.force), R(0));
+        c.energy += attraction_energy(pull, c.overlap, c.approach);
+    }
+
+    FrictionTerms terms = {OF_PAIRS(at, friction, neighbour) * limiting, R(0), damping, pair.mass,
                            c.touching};
     if (replica->mindlin) terms.stiffness = shear_stiffness(at, effects, neighbour, c.radius);
     c.tangential = friction(replica, effects, terms, sliding_velocity(at, neighbour, c.arm, separating),
                             neighbour.normal, elapsed, &memory->spring);
     if (effects & EFFECT_ROLLING_RESISTANCE)
         c.couple = rolling_couple(at, neighbour, normal_force, pair.radius);
-    lanes pressing = normal_force;
-    if (effects) c.energy = effect_energy(replica, c.elastic, pressed.relaxed_force, c.overlap, pair.radius);
-    if (effects & EFFECT_ADHESION) {
-        const Attraction pull = attraction(replica, c.approach, pair.radius, pair.mass, neighbour.occupied);
-        pressing -= pull.force;
-        c.energy += attraction_energy(pull, c.overlap, c.approach);
-    }
     c.force = add_scaled3(c.tangential, -pressing, neighbour.normal);
     return c;
 }

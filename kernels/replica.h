@@ -19,6 +19,8 @@ typedef struct {
     real plate_tilt_x;        /* slope of the plate's face along x, about the middle of the box */
     real plate_tilt_y;        /* .. along y */
     real adhesion;            /* 2 pi w, pull-off force over R* [N/m] */
+    real cohesion;            /* 2 pi k, attraction over R* and overlap [N/m2] */
+    real net_force_friction;  /* fraction of the attraction that reduces the Coulomb limit */
     real viscoelasticity;     /* fraction a of the force that relaxes */
     real relaxing_share;      /* 1 - exp(-dt / T) */
     real stiffening;          /* c, relative change of the force per overlap over R*; negative: softening */
@@ -64,7 +66,7 @@ typedef struct {
 #define EFFECT_PLASTICITY 4
 #define EFFECT_STIFFENING 8
 #define EFFECT_VISCOELASTICITY 16
-#define EFFECT_ADHESION 32
+#define EFFECT_ATTRACTION 32
 #define EFFECT_FRICTION_HISTORY 64
 #define EFFECT_ROLLING_RESISTANCE 128
 #define EFFECT_PLATE_TILT 256

@@ -93,6 +93,8 @@ const Key table[] = {
     {"numerics.slots", run<&Scene::slots>, "", Range{16, 64, Range::Low::included, 16}, one_run, "maximum number of neighbours of a grain"},
 
     {"effects.adhesion", effect<&Effects::adhesion>, "J/m2", between(0, 1000), each, "work of adhesion w, between grains and on walls: contacts attract with 2 pi w R* (DMT)"},
+    {"effects.cohesion", effect<&Effects::cohesion>, "J/m3", between(0, 1e9), each, "k: grains and walls that overlap by delta attract with k times the area 2 pi R* delta of their intersection (SJKR)"},
+    {"effects.net_force_friction", effect<&Effects::net_force_friction>, "", between(0, 1), each, "fraction s of the attraction A that reduces the Coulomb limit mu abs(F - s A), with F the repulsion; 0: the limit of grains without attraction; 1: that of the net force"},
     {"effects.viscoelasticity", effect<&Effects::viscoelasticity>, "", between(0, 1), each, "fraction of a contact's force that relaxes at constant overlap"},
     {"effects.relaxation_time", effect<&Effects::relaxation_time>, "s", duration, each, "relaxation time of that fraction"},
     {"effects.stiffening", effect<&Effects::stiffening>, "", between(-100, 100), each, "c: the Hertz force is multiplied by 1 + c overlap / R*; for c < 0 (softening) it is divided by 1 - c overlap / R*"},

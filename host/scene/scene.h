@@ -85,9 +85,11 @@ struct Numerics {
 
 /// Effects beyond the plain model. At its default each is off and costs nothing.
 struct Effects {
-    double adhesion = 0;           ///< work of adhesion w between grains [J/m2]
-    double viscoelasticity = 0;    ///< fraction of the Hertz force that relaxes at constant overlap
-    double relaxation_time = 0.1;  ///< relaxation time of that fraction [s]
+    double adhesion = 0;            ///< work of adhesion w between grains [J/m2]
+    double cohesion = 0;            ///< attraction over the area 2 pi R* overlap of a contact [J/m3]
+    double net_force_friction = 0;  ///< fraction of both attractions that reduces the Coulomb limit
+    double viscoelasticity = 0;     ///< fraction of the Hertz force that relaxes at constant overlap
+    double relaxation_time = 0.1;   ///< relaxation time of that fraction [s]
     double stiffening =
         0;  ///< c: Hertz force times 1 + c overlap / R*; for c < 0 divided by 1 - c overlap / R*
     double finite_strain =

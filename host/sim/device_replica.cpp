@@ -36,8 +36,10 @@ void set_effects(DeviceReplica& d, const Replica& replica) {
     d.stiffening = e.stiffening;
     on(e.viscoelasticity > 0, EFFECT_VISCOELASTICITY);
     d.viscoelasticity = e.viscoelasticity;
-    on(e.adhesion > 0, EFFECT_ADHESION);
+    on(e.adhesion > 0 || e.cohesion > 0, EFFECT_ATTRACTION);
     d.adhesion = 2 * pi * e.adhesion;
+    d.cohesion = 2 * pi * e.cohesion;
+    d.net_force_friction = e.net_force_friction;
     const double mindlin = mindlin_share(replica);
     on(mindlin > 0 && mindlin < 1, EFFECT_FRICTION_HISTORY);
     d.mindlin_share = mindlin;

@@ -38,6 +38,8 @@ std::map<std::string, double> numbers_of(const Model& m) {
             {"plate.speed", r.plate.speed},
             {"numerics.time_step", r.numerics.time_step},
             {"adhesion", e.adhesion},
+            {"cohesion", e.cohesion},
+            {"net_force_friction", e.net_force_friction},
             {"viscoelasticity", e.viscoelasticity},
             {"relaxation_time", e.relaxation_time},
             {"stiffening", e.stiffening},
@@ -80,6 +82,8 @@ const std::map<std::string, std::set<std::string>> moves{
     {"wall_friction", {"walls.friction"}},
     {"friction_history", {"friction_history"}},
     {"adhesion", {"adhesion"}},
+    {"adhesion_net_friction", {"adhesion", "net_force_friction"}},
+    {"cohesion", {"cohesion"}},
     {"viscoelasticity", {"viscoelasticity"}},
     {"stiffening", {"stiffening"}},
     {"finite_strain", {"finite_strain"}},
@@ -117,6 +121,8 @@ Model full_model() {
     Model model = plain_model();
     model.replica.contact.model = ContactModel::mc_dem;
     model.replica.effects = {.adhesion = 0.01,
+                             .cohesion = 50,
+                             .net_force_friction = 0.4,
                              .viscoelasticity = 0.2,
                              .relaxation_time = 0.1,
                              .stiffening = 0.5,
@@ -274,7 +280,8 @@ TEST(Effects, ReasonsForExclusionAreGiven) {
     };
     EXPECT_THAT(hindered(independent), ElementsAre("bulge_contacts", "finite_strain"));
     EXPECT_THAT(hindered(interacting), ElementsAre("cross_contact"));
-    EXPECT_THAT(hindered(smooth), ElementsAre("bulge_contacts", "friction_history", "finite_strain"));
+    EXPECT_THAT(hindered(smooth),
+                ElementsAre("bulge_contacts", "friction_history", "adhesion_net_friction", "finite_strain"));
     EXPECT_THAT(hindered(unlimited), ElementsAre("bulge_contacts", "finite_strain", "force_threshold"));
     Model stated = independent;
     stated.experiment_speed = 0.9 * stated.replica.plate.speed;
@@ -284,6 +291,9 @@ TEST(Effects, ReasonsForExclusionAreGiven) {
     Model slow = independent;
     slow.replica.protocol.rate_tolerance = 0.01;
     EXPECT_THAT(hindered(slow), ElementsAre("bulge_contacts", "finite_strain", "plate_speed", "inertia"));
+    Model adhesive = independent;
+    adhesive.replica.effects.adhesion = 0.01;
+    EXPECT_THAT(hindered(adhesive), ElementsAre("bulge_contacts", "adhesion_net_friction", "finite_strain"));
     slow.replica.protocol.rate_tolerance = 0.02;
     EXPECT_THAT(hindered(slow), ElementsAre("bulge_contacts", "finite_strain"));
 }

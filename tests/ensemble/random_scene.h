@@ -181,6 +181,8 @@ private:
             if (chance(0.25)) text_ += fmt::format("{} = {}\n", key, amplitude);
         };
         maybe("adhesion", between(0, 0.02));
+        maybe("cohesion", between(0, 500));
+        maybe("net_force_friction", between(0, 1));
         maybe("viscoelasticity", between(0, 0.6));
         maybe("stiffening", between(-1, 1));
         maybe("finite_strain", between(0, 1));

@@ -12,6 +12,8 @@ using mcdem::Effects;
 Effects all_effects() {
     Effects effects;
     effects.adhesion = 0.02;
+    effects.cohesion = 2e3;
+    effects.net_force_friction = 0.6;
     effects.viscoelasticity = 0.3;
     effects.relaxation_time = 2e-3;  // a few steps
     effects.stiffening = 0.8;
@@ -28,7 +30,7 @@ Effects all_effects() {
 /// One replica per effect, and one without effects.
 std::vector<Effects> one_by_one() {
     const Effects all = all_effects();
-    std::vector<Effects> each(11);
+    std::vector<Effects> each(13);
     each[0].adhesion = all.adhesion;
     each[1].viscoelasticity = all.viscoelasticity;
     each[1].relaxation_time = all.relaxation_time;
@@ -41,6 +43,9 @@ std::vector<Effects> one_by_one() {
     each[8].plate_tilt_x = all.plate_tilt_x;
     each[8].plate_tilt_y = all.plate_tilt_y;
     each[9].stiffening = -all.stiffening;
+    each[10].cohesion = all.cohesion;
+    each[11].adhesion = all.adhesion;
+    each[11].net_force_friction = all.net_force_friction;
     return each;
 }
 

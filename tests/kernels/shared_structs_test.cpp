@@ -38,7 +38,7 @@ kernel void write_offsets(global int* offsets) {
     MEMBER(grain_compliance) MEMBER(shear_compliance)
 #define MEMBERS_OF_EFFECTS(MEMBER) \
     MEMBER(plate_tilt_x) MEMBER(plate_tilt_y) \
-    MEMBER(adhesion) MEMBER(viscoelasticity) MEMBER(relaxing_share) MEMBER(stiffening) \
+    MEMBER(adhesion) MEMBER(cohesion) MEMBER(net_force_friction) MEMBER(viscoelasticity) MEMBER(relaxing_share) MEMBER(stiffening) \
     MEMBER(plasticity) MEMBER(bulge_contacts) MEMBER(mindlin_share) MEMBER(rolling_resistance) \
     MEMBER(effects) MEMBER(container)
 #define MEMBERS_OF_REPORT(MEMBER) \

@@ -172,7 +172,9 @@ ReferenceContact StepReference::contact_of(int i, int partner, double elapsed, M
         memory.spring.setZero();
         memory.relaxed *= std::exp(-elapsed / scene_.effects.relaxation_time);
         contact.arm = a.radius + contact.displacement;
-        attract(contact, overlap, pair);
+        const Attraction pull = attraction(overlap, pair);
+        contact.force = pull.force * contact.direction;
+        contact.energy = pull.energy;
         return contact;
     }
     const bool self_term = law_[i].self[0] != 0;
@@ -185,7 +187,6 @@ ReferenceContact StepReference::contact_of(int i, int partner, double elapsed, M
     const double outer = a.radius + contact.displacement, outer_there = b.radius + displacement_there + other;
     contact.arm = wall ? a.radius - geometric : (outer + distance - outer_there) / 2;
     add_forces(contact, a, b, pair, elapsed, memory);
-    attract(contact, contact.overlap, pair);
     return contact;
 }
 
@@ -213,7 +214,10 @@ void StepReference::add_forces(ReferenceContact& contact, const Body& a, const B
     const double stiffness = 2 * pair.modulus * std::sqrt(pair.radius * contact.overlap);
     const double approaching = -relative.dot(e);
     const double normal = relaxed_force + pair.damping * std::sqrt(stiffness * pair.mass) * approaching;
-    const double limit = pair.friction * std::max(normal, 0.0);
+    const Attraction pull = attraction(contact.overlap, pair);
+    contact.energy += pull.energy;
+    const double limit =
+        pair.friction * std::abs(std::max(normal, 0.0) - effects.net_force_friction * pull.force);
     const bool named_saturated = scene_.contact.friction_law == mcdem::FrictionLaw::saturated;
     const double h = effects.friction_history, mindlin = named_saturated ? h : 1 - h;
     const Vec3 sliding = across(relative, e);
@@ -222,19 +226,20 @@ void StepReference::add_forces(ReferenceContact& contact, const Body& a, const B
             mindlin * mindlin_friction(limit, sliding, contact, pair, elapsed, memory.spring);
     if (mindlin < 1) contact.tangential += (1 - mindlin) * saturated_friction(limit, sliding, pair);
     contact.couple = couple(normal, a, b, pair);
-    contact.force = -normal * e + contact.tangential;
+    contact.force = (pull.force - normal) * e + contact.tangential;
 }
 
-/// Adhesion: 2 pi w R* in contact, decreasing linearly in a gap.
-void StepReference::attract(ReferenceContact& contact, double overlap, const PairConstants& pair) const {
+/// Adhesion: 2 pi w R* in contact, decreasing linearly in a gap. Cohesion: k 2 pi R* overlap.
+StepReference::Attraction StepReference::attraction(double overlap, const PairConstants& pair) const {
     const double pull_off_force = 2 * pi * scene_.effects.adhesion * pair.radius;
     const double resolved = 20 * time_step_ * time_step_ * pull_off_force / pair.mass;
     const double range = std::min(std::max(0.01 * pair.radius, resolved), probe_gap_);
-    if (overlap <= -range) return;
-    const double gap = std::max(0.0, -overlap), force = pull_off_force * (1 - gap / range);
-    contact.force += force * contact.direction;
-    contact.energy -= overlap > 0 ? pull_off_force * (range / 2 + overlap)
-                                  : pull_off_force * std::pow(range - gap, 2) / (2 * range);
+    if (overlap <= -range) return {};
+    if (overlap <= 0)
+        return {pull_off_force * (1 + overlap / range),
+                -pull_off_force * std::pow(range + overlap, 2) / (2 * range)};
+    const double cohesion = 2 * pi * scene_.effects.cohesion * pair.radius * overlap;
+    return {pull_off_force + cohesion, -pull_off_force * (range / 2 + overlap) - cohesion * overlap / 2};
 }
 
 /// Rolling resistance: torque against the relative angular velocity, viscous at small velocities.

@@ -95,7 +95,10 @@ private:
     ReferenceContact contact_of(int grain, int partner, double elapsed, Memory& memory) const;
     void add_forces(ReferenceContact& contact, const Body& a, const Body& b, const PairConstants& pair,
                     double elapsed, Memory& memory) const;
-    void attract(ReferenceContact& contact, double overlap, const PairConstants& pair) const;
+    struct Attraction {
+        double force = 0, energy = 0;  ///< [N], [J]
+    };
+    Attraction attraction(double overlap, const PairConstants& pair) const;
     Vec3 couple(double normal, const Body& a, const Body& b, const PairConstants& pair) const;
     Vec3 saturated_friction(double limit, const Vec3& sliding, const PairConstants& pair) const;
     Vec3 mindlin_friction(double limit, const Vec3& sliding, const ReferenceContact& contact,

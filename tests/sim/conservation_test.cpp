@@ -56,6 +56,8 @@ Start free_cluster_with_effects() {
     Replica replica = test_replica(ContactModel::mc_dem);
     auto& effects = replica.effects;
     effects.adhesion = 0.02;
+    effects.cohesion = 100;
+    effects.net_force_friction = 0.5;
     effects.viscoelasticity = 0.3;
     effects.relaxation_time = 0.01;
     effects.stiffening = 0.5;
@@ -75,6 +77,8 @@ Start random_free_cluster(unsigned seed, ContactModel model) {
     replica.grains.restitution = uniform(0.3, 1);
     auto& effects = replica.effects;
     effects.adhesion = some(0.05);
+    effects.cohesion = some(200);
+    effects.net_force_friction = some(1);
     effects.viscoelasticity = some(0.8);
     effects.relaxation_time = 0.01;
     effects.stiffening = some(2) - some(1);

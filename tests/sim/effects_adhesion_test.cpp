@@ -1,4 +1,5 @@
 // Adhesion (Derjaguin, Muller & Toporov): pull-off force, range in a gap, energy and friction limit.
+// Cohesion.
 #include <numbers>
 
 #include "sim/squeezed_grain.h"
@@ -83,10 +84,16 @@ TEST(Adhesion, EnergyIsTheWorkDone) {
     EXPECT_GT(grain.overlap(), 2e-4);
 }
 
-// The friction limit is mu (F_n + 2 pi w R*), which is mu times the Hertz force.
-TEST(Adhesion, IncreasesTheFrictionLimit) {
-    constexpr double friction = 0.2, overlap = 1e-4;
+/// Force of the floor on a grain that slides fast, and the grain's overlap.
+struct Sliding {
+    Vec3 force;
+    double overlap;
+};
+constexpr double friction = 0.2;
+
+Sliding slide(const mcdem::Effects& effects, double overlap) {
     Start start = two_grains(0);
+    start.replica.effects = effects;
     start.replica.grains.friction = friction;
     start.replica.walls = {SqueezedGrain::wall_modulus, SqueezedGrain::poisson_ratio, friction, 1};
     start.packing.position = {{0.5, 0.5, radius - overlap}, {0.1, 0.1, 0.5}};
@@ -94,9 +101,46 @@ TEST(Adhesion, IncreasesTheFrictionLimit) {
     batch.engine().set_velocities(0, {{1, 0, 0}, Vec3::Zero()},
                                   {2, Vec3::Zero()});  // 1000 times the sliding velocity
     const auto force = batch.advance(1).front().wall_force[static_cast<int>(mcdem::Wall::floor)];
-    const double d = radius - batch.engine().state(0).position[0].z();
-    EXPECT_NEAR(force.x() / (friction * SqueezedGrain::hertz(d)), 1, 1e-3);
-    EXPECT_NEAR(-force.z() / (SqueezedGrain::hertz(d) - pull_off(radius)), 1, 1e-3);
+    return {force, radius - batch.engine().state(0).position[0].z()};
+}
+
+// The friction limit is mu (F_n + 2 pi w R*), which is mu times the Hertz force.
+TEST(Adhesion, IncreasesTheFrictionLimit) {
+    const Sliding floor = slide(adhesive(), 1e-4);
+    const double hertz = SqueezedGrain::hertz(floor.overlap);
+    EXPECT_NEAR(floor.force.x() / (friction * hertz), 1, 1e-3);
+    EXPECT_NEAR(-floor.force.z() / (hertz - pull_off(radius)), 1, 1e-3);
+}
+
+// With net_force_friction = 1 the friction limit is mu times the net force, repulsive or attractive.
+TEST(Adhesion, NetForceLimitsFrictionIfTheSceneSaysSo) {
+    mcdem::Effects effects = adhesive();
+    effects.net_force_friction = 1;
+    for (const double overlap : {2e-5, 4e-4}) {
+        const Sliding floor = slide(effects, overlap);
+        const double net = SqueezedGrain::hertz(floor.overlap) - pull_off(radius);
+        EXPECT_EQ(net > 0, overlap > 1e-4);
+        EXPECT_NEAR(-floor.force.z() / net, 1, 2e-3) << overlap;
+        EXPECT_NEAR(floor.force.x() / (friction * std::abs(net)), 1, 2e-3) << overlap;
+    }
+}
+
+// Cohesion: k times the area 2 pi R* overlap; the energy is the work. Trapezoids of Hertz's law over such
+// steps have an error of 1e-10 J, a part in 10^5 of the final energy of cohesion.
+TEST(Cohesion, AttractsInProportionToTheAreaOfIntersection) {
+    constexpr double per_overlap = 5000 * 2 * std::numbers::pi * radius, step = 2e-6, most = 200 * step;
+    mcdem::Effects effects;
+    effects.cohesion = 5000;
+    SqueezedGrain grain(effects, 0);
+    double work = 0, before = 0;
+    for (int k = 0; k < 200; ++k) {
+        const double force = grain.squeeze(step), overlap = grain.overlap();
+        EXPECT_NEAR(force, SqueezedGrain::hertz(overlap) - per_overlap * overlap, 1e-4 * per_overlap * most)
+            << overlap;
+        work += (force + before) / 2 * 2 * step;
+        before = force;
+        EXPECT_NEAR(grain.energy(), work, 1e-3 * per_overlap * most * most) << overlap;
+    }
 }
 
 }  // namespace

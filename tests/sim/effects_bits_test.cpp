@@ -29,7 +29,8 @@ Effects effects_of(int kind) {
             break;
         case 6:
             effects.plate_compliance = 0.01, effects.plasticity = 0.2, effects.viscoelasticity = 0.3;
-            effects.adhesion = 0.01, effects.modulus_scatter = 0.2, effects.diameter_error = 5e-5;
+            effects.adhesion = 0.01, effects.cohesion = 300, effects.net_force_friction = 0.5;
+            effects.modulus_scatter = 0.2, effects.diameter_error = 5e-5;
             break;
         default:
             break;

@@ -19,6 +19,7 @@ double reduced_modulus(const Model& m) {
 double one(const Model&) { return 1; }
 double grain_diameter(const Model& m) { return m.mean_diameter; }
 double adhesive_scale(const Model& m) { return reduced_modulus(m) * m.mean_diameter / 4; }  // E* R*
+double cohesive_scale(const Model& m) { return reduced_modulus(m); }
 double compliance_scale(const Model& m) {
     return 1 / (m.replica.grains.youngs_modulus * std::max(m.replica.box.size_x, m.replica.box.size_y));
 }
@@ -89,6 +90,11 @@ std::string_view not_elastic_sphere(const Model& m) {
 std::string_view no_friction(const Model& m) {
     return m.replica.grains.friction > 0 ? "" : "the scene has no friction";
 }
+std::string_view no_other_limit(const Model& m) {
+    if (m.replica.effects.adhesion > 0)
+        return "the scene has adhesion; effects.net_force_friction sets its Coulomb limit";
+    return no_friction(m);
+}
 std::string_view no_sides(const Model& m) {
     return is_periodic(m.replica.box)
                ? "a periodic container repeats: its plate is level, and lengths are told by its edges"
@@ -112,6 +118,10 @@ const Effect all_effects[] = {
      0, 1, 0.5, 1.0, one, [](Model& m, double a) { add_share(m.replica.effects.friction_history, a); }, no_friction},
     {"adhesion", "J/m2", "work of adhesion w: touching grains attract by 2 pi w R*", "Derjaguin, Muller & Toporov 1975",
      0, 0.03, 0.003, 0.01, adhesive_scale, [](Model& m, double a) { m.replica.effects.adhesion += a; }, nothing},
+    {"adhesion_net_friction", "J/m2", "adhesion where Coulomb's law holds for the net force", "Derjaguin, Muller & Toporov 1975",
+     0, 0.03, 0.003, 0.01, adhesive_scale, [](Model& m, double a) { m.replica.effects.adhesion += a; if (a > 0) m.replica.effects.net_force_friction = 1; }, no_other_limit},
+    {"cohesion", "J/m3", "k: attraction over the area 2 pi R* overlap of a contact", "\"SJKR\" of LIGGGHTS",
+     0, 0.1, 0.005, 0.02, cohesive_scale, [](Model& m, double a) { m.replica.effects.cohesion += a; }, nothing},
     {"viscoelasticity", "", "part of the Hertz force that relaxes while a contact is held", "standard linear solid",
      0, 0.8, 0.1, 0.3, one, [](Model& m, double a) { add_share(m.replica.effects.viscoelasticity, a); }, nothing},
     {"stiffening", "", "c in F = F_Hertz (1 + c overlap/R*)", "first correction to Hertz at large strain",

@@ -17,6 +17,8 @@ const std::map<std::string, std::string>& special_words() {
         {"friction", "friction between grains"},
         {"wall_friction", "friction at the walls"},
         {"friction_history", "friction with memory"},
+        {"adhesion_net_friction", "adhesion with friction of the net force"},
+        {"cohesion", "cohesion per contact area"},
         {"stiffening", "stiffening at large strain"},
         {"finite_strain", "finite strain of the grains"},
         {"buoyancy", "weight under buoyancy"},
@@ -51,9 +53,9 @@ struct ShownUnit {
 
 ShownUnit shown_unit(const std::string& unit) {
     static const std::vector<ShownUnit> units{
-        {"m", 1e3, "mm"},       {"N", 1e3, "mN"}, {"J/m2", 1e3, "mJ/m²"},
-        {"Pa", 1e-3, "kPa"},    {"s", 1e3, "ms"}, {"m/N", 1e3, "mm/N"},
-        {"relative", 100, "%"}, {"1", 1, ""},     {"kg/m3", 1, "kg/m³"},
+        {"m", 1e3, "mm"},      {"N", 1e3, "mN"},     {"J/m2", 1e3, "mJ/m²"}, {"Pa", 1e-3, "kPa"},
+        {"s", 1e3, "ms"},      {"m/N", 1e3, "mm/N"}, {"relative", 100, "%"}, {"1", 1, ""},
+        {"kg/m3", 1, "kg/m³"}, {"J/m3", 1, "J/m³"},
     };
     for (const auto& known : units)
         if (known.unit == unit) return known;
