@@ -192,7 +192,9 @@ private:
 
     /// The first case, whose experiment determines the library.
     const Experiment& first_experiment() {
-        if (!first_) first_ = read_experiment(options_.challenge / challenge_.cases.front().folder);
+        if (!first_)
+            first_ = compared_cycles(scene_,
+                                     read_experiment(options_.challenge / challenge_.cases.front().folder));
         return *first_;
     }
 

@@ -53,10 +53,9 @@ constexpr double max_refinement = 64;
 /// The steps of one diagnosis, in order.
 class DiagnosisRunner {
 public:
-    DiagnosisRunner(Device& device, DiagnosisPlan plan, const std::vector<Experiment>& experiments,
-                    const DiagnoseOptions& options)
+    DiagnosisRunner(Device& device, DiagnosisPlan plan, const DiagnoseOptions& options)
         : device_(device),
-          experiments_(experiments),
+          experiments_(std::move(plan.experiments)),
           options_(options),
           store_(options.folder / "simulations"),
           choice_(std::move(plan.choice)),
@@ -324,7 +323,7 @@ private:
     int packings() const { return static_cast<int>(experiments_.size()); }
 
     Device& device_;
-    const std::vector<Experiment>& experiments_;
+    std::vector<Experiment> experiments_;
     const DiagnoseOptions& options_;
     ObservationStore store_;
     CandidateChoice choice_;
@@ -341,8 +340,7 @@ Diagnosis diagnose_experiment(Device& device, const Scene& scene, const std::vec
                               const DiagnoseOptions& options) {
     expect_plate(scene, "a diagnosis");
     const auto begin = std::chrono::steady_clock::now();
-    Diagnosis diagnosis =
-        DiagnosisRunner(device, plan_of(scene, experiments, options), experiments, options).run();
+    Diagnosis diagnosis = DiagnosisRunner(device, plan_of(scene, experiments, options), options).run();
     diagnosis.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     std::vector<std::string> names;
     for (const Experiment& experiment : experiments) names.push_back(experiment.name);

@@ -34,6 +34,10 @@ struct DiagnoseOptions {
     std::function<void(const Findings&)> on_findings = [](const Findings&) {};
 };
 
+/// The experiment without cycles that the scene does not have (protocol.cycles, at least one that is not
+/// discarded): grains move within a cycle, so that later ones differ. A programme is compared as a whole.
+Experiment compared_cycles(const Scene& scene, Experiment experiment);
+
 /// The scene's first replica with the experiment's box, plate and scans. Throws InputError if the experiment
 /// does not contain enough data to simulate it.
 Model model_of(const Scene& scene, const Experiment& experiment);

@@ -19,6 +19,22 @@ Packing start_packing(const Experiment& experiment) {
     return {recording.scans.front().position, recording.diameter};
 }
 
+namespace {
+
+int simulated_cycles(const Scene& scene) {
+    const Protocol& protocol = scene.replicas.front().protocol;
+    return std::max(protocol.cycles, protocol.discard + 1);
+}
+
+}  // namespace
+
+Experiment compared_cycles(const Scene& scene, Experiment experiment) {
+    if (programme_of(experiment.recording.parameters).empty())
+        std::erase_if(experiment.recording.scans,
+                      [&](const Scan& scan) { return scan.cycle >= simulated_cycles(scene); });
+    return experiment;
+}
+
 Model model_of(const Scene& scene, const Experiment& experiment) {
     const Recording& recording = experiment.recording;
     if (scene.replicas.front().box.shape != recording.box.shape)
@@ -57,8 +73,7 @@ Model model_of(const Scene& scene, const Experiment& experiment) {
     }
     model.replica.plate.end = lowest;
     model.replica.protocol.scans_per_stroke = loading;
-    model.replica.protocol.cycles =
-        std::min(cycles, std::max(model.replica.protocol.cycles, model.replica.protocol.discard + 1));
+    model.replica.protocol.cycles = std::min(cycles, simulated_cycles(scene));
     return model;
 }
 

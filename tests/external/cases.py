@@ -28,7 +28,7 @@ def liggghts(further="", tangential="history", tangential_damping="off", moduli=
             "moduli": " ".join(map(str, [*moduli, wall_youngs_modulus, wall_youngs_modulus])),
             "poisson_ratios": " ".join([str(NU)] * types), "restitutions": table(*[RESTITUTION] * 3),
             "frictions": table(friction, wall_friction, wall_friction if floor_friction is None else floor_friction),
-            "cohesions": table(cohesion_energy, 0, 0), "rollings": table(*[rolling] * 3)}
+            "cohesions": table(*[cohesion_energy] * 3), "rollings": table(*[rolling] * 3)}
 
 
 def lammps(work=0, modulus=E, friction=FRICTION, wall_friction=FRICTION, floor_friction=None,
@@ -67,7 +67,8 @@ CASES = {
     "liggghts_multicontact": {
         "effect": "cross_contact: multi-contact model, gamma = 1", "expected": ["cross_contact"],
         "reality": liggghts("surface multicontact", skin=0.004, gamma=1.0)},
-    "lammps_adhesion": {"effect": "adhesion: DMT, w = 0.1 J/m2", "expected": ["adhesion"], "reality": lammps(work=0.1)},
+    "lammps_adhesion": {
+        "effect": "adhesion_net_friction: DMT, w = 0.1 J/m2", "expected": ["adhesion_net_friction"], "reality": lammps(work=0.1)},
     "liggghts_friction": {
         "effect": "friction: 0.10 for 0.03 between grains", "expected": ["friction"], "reality": liggghts(friction=0.10)},
     "liggghts_wall_friction": {
@@ -85,7 +86,7 @@ CASES = {
         "effect": "not in the library: damping beyond Coulomb's limit, LIGGGHTS's own", "expected": ABSTAIN,
         "reality": liggghts(tangential_damping="on")},
     "liggghts_sjkr": {
-        "effect": "not in the library: cohesion by contact area (SJKR), 100 J/m3", "expected": ABSTAIN,
+        "effect": "cohesion: SJKR, 100 J/m3", "expected": ["cohesion"],
         "reality": liggghts("cohesion sjkr", cohesion_energy=100)},
     "liggghts_soft_walls": {
         "effect": "not in the library: walls as soft as the grains", "expected": ABSTAIN,

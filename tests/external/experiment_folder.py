@@ -55,7 +55,7 @@ def write(folder, name, container, scans, seed, programme=""):
     plate, grains, contacts = [], [], []
     for frame, scan in enumerate(scans):
         errors = [[chance.gauss(0, POSITION_ERROR) for _ in "xyz"] for _ in diameters]
-        plate.append((frame, 0, scan["phase"], scan["height"], scan["top"],
+        plate.append((frame, scan.get("cycle", 0), scan["phase"], scan["height"], scan["top"],
                       *((scan["time"], "" if scan["set"] is None else scan["set"]) if programme else ())))
         for i, (_, *centre) in enumerate(scan["grains"]):
             grains.append((frame, i, *(a + e for a, e in zip(centre, errors[i])), diameters[i]))

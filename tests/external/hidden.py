@@ -146,9 +146,15 @@ def backlash(scans, amplitude, chance):
             scan["height"] += amplitude
 
 
+def share_of_first_cycle(scans):
+    """By scan: number of scans before it, over that in the first cycle."""
+    first = sum(scan.get("cycle", 0) == 0 for scan in scans) - 1
+    return [n / first for n in range(len(scans))]
+
+
 def gauge_drift(scans, amplitude, chance):
-    for n, scan in enumerate(scans):
-        scan["top"] *= 1 + amplitude * n / (len(scans) - 1)
+    for scan, share in zip(scans, share_of_first_cycle(scans)):
+        scan["top"] *= 1 + amplitude * share
 
 
 def late_force(scans, amplitude, chance):
@@ -168,10 +174,16 @@ def gauge_hysteresis(scans, amplitude, chance):
 
 
 def zero_drift(scans, amplitude, chance):
-    """The gauge's zero drifts; in the end by this fraction of the largest force."""
+    """The gauge's zero drifts; after the first cycle by this fraction of the largest force."""
     highest = max(scan["top"] for scan in scans)
-    for n, scan in enumerate(scans):
-        scan["top"] += amplitude * highest * n / (len(scans) - 1)
+    for scan, share in zip(scans, share_of_first_cycle(scans)):
+        scan["top"] += amplitude * highest * share
+
+
+def scale_drift(scans, amplitude, chance):
+    """The scale of images drifts: after the first cycle lengths are read too large by this fraction."""
+    for scan, share in zip(scans, share_of_first_cycle(scans)):
+        change_points([scan], lambda point: [m + (1 + amplitude * share) * (p - m) for p, m in zip(point, MIDDLE)])
 
 
 LIBRARY = {
@@ -181,8 +193,10 @@ LIBRARY = {
         "friction": cases.FRICTION + a}),
     "wall_friction": Hidden(0.02, 0.11, "more friction at walls", arguments=lambda code, a, chance: {
         "wall_friction": cases.FRICTION + a}),
-    "adhesion": Hidden(0.15, 1.2, "DMT, work of adhesion [J/m2]", codes=("lammps",), arguments=lambda code, a, chance: {
+    "adhesion_net_friction": Hidden(0.15, 1.2, "DMT, work of adhesion [J/m2]", codes=("lammps",), arguments=lambda code, a, chance: {
         "work": a}),
+    "cohesion": Hidden(50, 400, "SJKR [J/m3]", codes=("liggghts",), arguments=lambda code, a, chance: {
+        "further": "cohesion sjkr", "cohesion_energy": a}),
     "rolling_resistance": Hidden(0.04, 0.22, "constant couple (LIGGGHTS) or spring and slider (LAMMPS)", codes=("liggghts", "lammps"),
                                  arguments=rolling),
     "buoyancy": Hidden(14, 43, "grains heavier than stated [kg/m3]", reality=lambda a: {
@@ -194,7 +208,7 @@ LIBRARY = {
     "polydispersity": Hidden(9e-5, 6.4e-4, "sd of true less stated [m]", reading=polydispersity),
     "plate_compliance": Hidden(2e-5, 1.5e-4, "[m/N]", reading=plate_compliance),
     "force_bias": Hidden(0.05, 0.15, "contact forces read too large", signed=True, reading=force_bias),
-    "gauge_drift": Hidden(0.05, 0.15, "gain of the gauge, in the end", signed=True, reading=gauge_drift),
+    "gauge_drift": Hidden(0.05, 0.15, "gain of the gauge, after the first cycle", signed=True, reading=gauge_drift),
     "force_saturation": Hidden(0.3, 2, "1/f0 of f/(1 + f/f0) [1/N]", reading=force_saturation),
     "zero_drift": Hidden(0.01, 0.05, "of the gauge, over the highest force", signed=True, reading=zero_drift),
     "gauge_hysteresis": Hidden(0.025, 0.1, "of the gauge, over the highest force", reading=gauge_hysteresis),
@@ -205,9 +219,8 @@ OUTSIDE = {
     "leaning_box": Hidden(0.03, 0.15, "tangent of the angle by which the cell stands crooked", reality=lambda a: {"lean": a}),
     "soft_walls": Hidden(0.5, 3, "modulus of the walls over that of the grains", arguments=soft_walls),
     "rough_floor": Hidden(0.15, 0.6, "friction at the floor", arguments=lambda code, a, chance: {"floor_friction": a}),
-    "area_cohesion": Hidden(50, 400, "SJKR [J/m3]", codes=("liggghts",), arguments=lambda code, a, chance: {
-        "further": "cohesion sjkr", "cohesion_energy": a}),
     "vertical_stretch": Hidden(0.005, 0.015, "heights of grains read too large", signed=True, reading=vertical_stretch),
+    "scale_drift": Hidden(0.004, 0.012, "lengths read too large, after the first cycle", signed=True, reading=scale_drift),
     "barrel": Hidden(0.005, 0.02, "lateral distortion at the sides", signed=True, reading=barrel),
     "missing_grains": Hidden(0.03, 0.1, "part of the grains not found", reading=missing_grains),
     "missing_contacts": Hidden(0.08, 0.25, "part of the contacts overlooked", reading=missing_contacts),
@@ -224,7 +237,7 @@ def find(name):
 def simulated(folder, case):
     """The scans of a case of the challenge, as measured by its instrument, without noise."""
     chance = random.Random(case["seed"])
-    arguments, further = {}, {"slower": case["slower"], "held": case["held"]}
+    arguments, further = {}, {"slower": case["slower"], "protocol": case["protocol"]}
     modulus = cases.E * math.exp(case["modulus"])
     for name, amplitude in case["effects"]:
         entry = find(name)

@@ -225,21 +225,47 @@ def gravity_of(reality):
     return [down * reality["lean"], 0.0, -down]
 
 
+def moves(reality):
+    """Direction of the plate in each interval: 1 down, 0 at rest, -1 up."""
+    down, up = [1] * SCANS, [-1] * SCANS
+    return {"stroke": [*down, *up],
+            "held": [*down, 0, 0, *up],
+            "paused": [move for way in (*down, *up) for move in (way, 0)],  # as for a tomograph
+            "two_cycles": [*down, *up] * 2}[reality["protocol"]]
+
+
 def schedule(reality):
-    """Steps between scans, and the steps at which the plate starts, reaches the lowest position, leaves it, and is
-    back."""
+    """Steps in an interval, and the steps at which the plate starts and stops."""
     steps = round(STEPS * reality["slower"])
     begin = steps * math.ceil(BEGIN / steps)
-    turn = begin + SCANS * steps
-    back = turn + reality["held"] * steps
-    return steps, begin, turn, back, back + SCANS * steps
+    return steps, begin, begin + len(moves(reality)) * steps
+
+
+def stroke_variables(reality):
+    """Variables of stroke.in and liggghts.in: downward velocity of the plate over its speed, and the steps for which it has
+    moved, as formulas of `step`."""
+    steps, begin, _ = schedule(reality)
+    ways = [0, *moves(reality), 0]
+    changes = [(begin + n * steps, after - before) for n, (before, after) in enumerate(zip(ways, ways[1:])) if after != before]
+    return {"moving": "+".join(f"({change})*(step>{step})" for step, change in changes),
+            "depth": "+".join(f"({change})*(step-{step})*(step>{step})" for step, change in changes)}
 
 
 def stroke_scans(reality):
-    """By step, height and phase."""
-    steps, begin, _, back, _ = schedule(reality)
-    return {(begin if n <= SCANS else back - SCANS * steps) + n * steps: {
-        "height": START - STROKE / SCANS * min(n, 2 * SCANS - n), "phase": "load" if n <= SCANS else "unload"} for n in range(2 * SCANS + 1)}
+    """By step: height, phase and cycle. The first scan is before the plate moves, the others at the end of a move, or of the
+    rest behind it."""
+    steps, begin, _ = schedule(reality)
+    ways = moves(reality)
+    scans, depth, cycle = {begin: {"height": START, "phase": "load", "cycle": 0}}, 0, 0
+    for n, way in enumerate(ways, 1):
+        depth += way
+        cycle += way == 1 and scans[max(scans)]["phase"] == "unload"
+        if way:
+            phase = "load" if way == 1 else "unload"
+        else:
+            del scans[max(scans)]
+        scans[begin + n * steps] = {"height": START - STROKE / SCANS * depth, "phase": phase, "cycle": cycle}
+    return scans
 
 
 def force_stages(reality):
@@ -277,7 +303,7 @@ def programme_of(reality):
 # Further keys of an experiment, in addition to those of its input script.
 DEFAULTS = {
     "slower": 1,       # factor by which the plate is slower than SPEED
-    "held": 0,         # number of intervals for which the plate rests at its lowest position
+    "protocol": "stroke",  # of the plate: one of those of moves()
     "tilt": 0,         # slope of the plate along x
     "weight": 1,       # relative to grains of DENSITY
     "lean": 0,         # inclination of the box along x
@@ -307,17 +333,17 @@ def simulate(folder, seed, reality):
     packing = make_packing(folder, seed, 23.3e3, container, reality["sizes"])
     chance = random.Random(seed)
     materials = [chance.randint(1, reality["materials"]) for _ in packing] if reality["materials"] else None
-    steps, begin, turn, back, end = schedule(reality)
+    steps, begin, end = schedule(reality)
     pull = gravity_of(reality)
     variables = {**{key: value for key, value in reality.items() if key not in ("program", "input", *DEFAULTS)},
                  "start": START, "time_step": TIME_STEP, "plate_speed": STROKE / (SCANS * steps * TIME_STEP), "steps": steps,
-                 "relaxed": RELAXED, "begin": begin, "turn": turn, "back": back, "end": end, "slope": reality["tilt"]}
+                 "relaxed": RELAXED, "begin": begin, "end": end, "slope": reality["tilt"]}
     if reality["program"] == "yade":
-        dumped = by_yade(folder, reality["input"], packing, materials, {**variables, "gravity": pull})
+        dumped = by_yade(folder, reality["input"], packing, materials, {**variables, "gravity": pull, "moves": moves(reality)})
     else:
         write_data(folder / "packing.data", packing, reality["types"], materials, container)
         write_walls(folder, reality["tilt"])
-        motion = {"motion": "stroke.in"}
+        motion = {"motion": "stroke.in", **stroke_variables(reality)}
         if reality["highest_force"]:
             motion = {"motion": "forces.in", **force_variables(reality)}
             for name in ("grains", "pairs", "walls"):  # they are appended to

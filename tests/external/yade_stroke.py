@@ -48,7 +48,8 @@ def pass_by():
     """Between the forces and the motion of a step, where both are of the same positions."""
     now = O.iter
     if now >= given["begin"]:
-        plate.state.vel = (0, 0, given["plate_speed"] * ((now >= given["back"]) - (now < given["turn"])))
+        done = (now - given["begin"]) // steps
+        plate.state.vel = (0, 0, -given["plate_speed"] * (given["moves"][done] if done < len(given["moves"]) else 0))
         note()
 
 

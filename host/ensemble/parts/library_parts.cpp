@@ -93,15 +93,29 @@ void expect_alike(const std::vector<Experiment>& experiments, const Grid& grid) 
     if (!problems.empty()) throw InputError(problems);
 }
 
+void note_cycles(const Experiment& measured, const Experiment& compared, const DiagnoseOptions& options) {
+    const int all = measured.recording.scans.back().cycle + 1,
+              some = compared.recording.scans.back().cycle + 1;
+    if (all == some) return;
+    options.on_note(
+        fmt::format("{}: only the first {} compared, of {}; protocol.cycles in the scene is the number of "
+                    "cycles to simulate",
+                    measured.name, some == 1 ? "cycle is" : fmt::format("{} cycles are", some), all));
+}
+
 }  // namespace
 
-DiagnosisPlan plan_of(const Scene& scene, const std::vector<Experiment>& experiments,
+DiagnosisPlan plan_of(const Scene& scene, const std::vector<Experiment>& measured,
                       const DiagnoseOptions& options) {
     std::vector<std::string> problems;
-    for (const Experiment& experiment : experiments)
+    for (const Experiment& experiment : measured)
         for (const std::string& needed : needed_to_diagnose(experiment)) problems.push_back(needed);
     if (!problems.empty()) throw InputError(problems);
     DiagnosisPlan plan;
+    for (const Experiment& experiment : measured)
+        plan.experiments.push_back(compared_cycles(scene, experiment));
+    const std::vector<Experiment>& experiments = plan.experiments;
+    note_cycles(measured.front(), experiments.front(), options);
     const Grid grid = common_grid(experiments);
     expect_alike(experiments, grid);
     for (const Experiment& experiment : experiments)

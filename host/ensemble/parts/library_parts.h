@@ -14,11 +14,12 @@ void keep_recordings(std::vector<Trial>& trials);
 /// The simulations of a diagnosis and their observation. Throws InputError if an experiment has too few data,
 /// or the packings of one experiment are not measured in the same way.
 struct DiagnosisPlan {
+    std::vector<Experiment> experiments;  ///< with the cycles that are compared
     LibraryPlan library;
     Question question;
     CandidateChoice choice;
 };
-DiagnosisPlan plan_of(const Scene& scene, const std::vector<Experiment>& experiments,
+DiagnosisPlan plan_of(const Scene& scene, const std::vector<Experiment>& measured,
                       const DiagnoseOptions& options);
 
 /// Nothing is missing if the library's file exists. When all parts exist, diagnose_experiment builds the
