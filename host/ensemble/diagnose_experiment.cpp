@@ -12,6 +12,7 @@
 #include "core/atomic_file.h"
 #include "core/errors.h"
 #include "ensemble/library_origin.h"
+#include "ensemble/other_protocols.h"
 #include "ensemble/paper_metrics.h"
 #include "ensemble/parts/library_parts.h"
 #include "scene/keys.h"
@@ -78,6 +79,7 @@ public:
         Diagnosis diagnosis = builder->diagnosis();
         diagnosis.not_testable = choice_.hindered;
         diagnosis.refinements = refinements_;
+        if (diagnosis.verdict == Verdict::group) add_other_protocols(*builder, diagnosis.next);
         if (auto first = change_of_the_scene(diagnosis))
             diagnosis.next.insert(diagnosis.next.begin(), *first);
         if (diagnosis.gap_reduction && paper_metrics() && options_.confirmations > 0)
@@ -263,6 +265,31 @@ private:
             builder.confirm(
                 proposals[k],
                 mean_over_packings(runs.middleRows(static_cast<Eigen::Index>(k) * each, each), packings()));
+    }
+
+    /// Adds the power of other protocols to tell the leading effect from its rival, predicted by runs of
+    /// both.
+    void add_other_protocols(const DiagnosisBuilder& builder, std::vector<NextStep>& next) {
+        const Findings& findings = builder.findings();
+        const auto rival = proposal_of_rival(findings, builder.decision());
+        if (!rival || options_.confirmations < 2) return;
+        const auto name_of = [&](std::size_t proposal) {
+            return builder.data().name(findings.proposals[proposal].candidates.front());
+        };
+        for (const OtherProtocol& protocol : other_protocols(question_, model().replica)) {
+            const auto runs_of = [&](std::size_t proposal) {
+                std::vector<Trial> trials =
+                    trials_of(builder, findings.proposals[proposal], builder.whole_fit(proposal));
+                for (Trial& trial : trials) protocol.change(trial.model.replica);
+                return mean_over_packings(observe_trials(device_, protocol.question, trials, store_,
+                                                         stage(options_, "other protocols")),
+                                          packings());
+            };
+            next.push_back({fmt::format("{}: tells {} from {}", protocol.what, name_of(builder.decided()),
+                                        name_of(*rival)),
+                            builder.power_of({runs_of(builder.decided()), runs_of(*rival)})});
+        }
+        std::ranges::stable_sort(next, std::greater(), [](const NextStep& s) { return s.power.value_or(0); });
     }
 
     /// Of the first packing.

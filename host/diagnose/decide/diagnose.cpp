@@ -8,7 +8,6 @@
 
 #include "core/errors.h"
 #include "diagnose/decide/location.h"
-#include "diagnose/decide/next_steps.h"
 #include "diagnose/decide/packings.h"
 #include "diagnose/infer/detection_limits.h"
 #include "diagnose/infer/effects.h"

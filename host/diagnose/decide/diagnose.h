@@ -3,6 +3,7 @@
 #pragma once
 
 #include "diagnose/decide/decision.h"
+#include "diagnose/decide/next_steps.h"
 #include "diagnose/infer/gap_reduction.h"
 
 namespace mcdem::inline diagnose {
@@ -44,6 +45,11 @@ public:
     /// Factor by which a numerical setting must be refined, a power of two or at most `most`, so that the
     /// remaining change up to the fitted amplitude, from its signature, is not detectable.
     double refining_factor(std::size_t candidate, double most) const;
+
+    /// Power of another protocol to distinguish the leading effect from its rival.
+    double power_of(const ProtocolRuns& runs) const {
+        return power_of_protocol(runs, evidence_, data_, findings_, decision_, limits_);
+    }
 
     Diagnosis diagnosis() const;
 

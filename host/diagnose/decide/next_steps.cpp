@@ -133,37 +133,92 @@ std::vector<NextStep> sharpening(const std::vector<Measurement>& measurements, c
     return steps;
 }
 
-/// Other protocols that distinguish effects better than one slow stroke down and up.
-void add_other_protocols(const Evidence& evidence, const GapData& data, const Decision& decision,
-                         std::vector<NextStep>& steps) {
-    const auto named = [&](const char* name) {
-        return std::ranges::any_of(decision.group, [&](std::size_t c) { return data.name(c) == name; });
-    };
-    if (named("viscoelasticity") || named("plate_speed") || named("inertia"))
-        steps.push_back({std::string(evidence.library.grid.holds.empty()
-                                         ? "hold the plate at full stroke for some time, or press"
-                                         : "press") +
-                             " at another speed: what relaxes or depends on speed is no matter of geometry "
-                             "or friction",
-                         {}});
-    if (named("plasticity"))
-        steps.push_back({"press a second cycle: what stays after the first is plastic", {}});
+/// The cells of the diagnosis that the runs have too, and those that no run of the baseline has.
+CellChoice cells_of_protocol(const ProtocolRuns& runs, const Eigen::MatrixXd& baseline,
+                             const CellChoice& known) {
+    CellChoice cells;
+    for (Eigen::Index cell = 0; cell < baseline.cols(); ++cell) {
+        const bool is_new = !baseline.col(cell).array().isFinite().any();
+        if (!is_new && !std::ranges::binary_search(known, cell)) continue;
+        if (runs.leader.col(cell).allFinite() && runs.rival.col(cell).allFinite()) cells.push_back(cell);
+    }
+    return cells;
+}
+
+/// Replaces NaN in columns of `cells` by the scatter of the runs.
+Eigen::MatrixXd with_noise_of_new_cells(Eigen::MatrixXd noise, const Eigen::MatrixXd& runs,
+                                        const CellChoice& cells) {
+    const auto count = static_cast<double>(runs.rows());
+    for (const Eigen::Index cell : cells) {
+        if (noise.col(cell).allFinite()) continue;
+        const Eigen::VectorXd scatter =
+            (runs.col(cell).array() - runs.col(cell).mean()) * std::sqrt(count / (count - 1));
+        for (Eigen::Index row = 0; row < noise.rows(); ++row)
+            noise(row, cell) = scatter[row % scatter.size()];
+    }
+    return noise;
+}
+
+/// NaN, where a cell does not know a parameter, becomes zero.
+Eigen::VectorXd or_zero(const Eigen::VectorXd& values) {
+    return values.unaryExpr([](double value) { return std::isfinite(value) ? value : 0; });
 }
 
 }  // namespace
+
+bool has_rivals(const Findings& findings, const Decision& decision) {
+    return decision.verdict != Verdict::no_gap && decision.proposal >= 0 && decision.group.size() > 1 &&
+           !findings.proposals[static_cast<std::size_t>(decision.proposal)].is_pair();
+}
+
+std::optional<std::size_t> proposal_of_rival(const Findings& findings, const Decision& decision) {
+    if (!has_rivals(findings, decision)) return std::nullopt;
+    const std::size_t leader =
+        findings.proposals[static_cast<std::size_t>(decision.proposal)].candidates.front();
+    for (const std::size_t candidate : decision.group)
+        for (std::size_t k = 0; k < findings.proposals.size(); ++k)
+            if (candidate != leader && findings.proposals[k].candidates == std::vector{candidate}) return k;
+    return std::nullopt;
+}
+
+double power_of_protocol(const ProtocolRuns& runs, const Evidence& evidence, const GapData& data,
+                         const Findings& findings, const Decision& decision, const Limits& limits) {
+    const CellChoice cells = cells_of_protocol(runs, evidence.baseline, data.cells);
+    if (cells.empty()) return 0;
+    const Proposal& rival = findings.proposals[*proposal_of_rival(findings, decision)];
+    std::vector<FreeParameter> free = data.free;
+    // The rival's amplitude is fitted to the new data as well.
+    free.push_back({data.candidates[rival.candidates.front()].signature->slope(rival.amplitudes.front()),
+                    std::abs(rival.amplitudes.front())});
+    for (FreeParameter& parameter : free) parameter.direction = or_zero(parameter.direction);
+    const GapSpace space(with_noise_of_new_cells(data.noise, runs.leader, cells),
+                         static_cast<int>(evidence.baseline.rows()), cells, free);
+    // The product of the means of both halves of the runs has no bias by their noise.
+    const Eigen::MatrixXd apart = runs.leader - runs.rival;
+    const Eigen::Index half = apart.rows() / 2;
+    const double squared =
+        space.whiten(apart.topRows(half).colwise().mean().transpose())
+            .dot(space.whiten(apart.bottomRows(apart.rows() - half).colwise().mean().transpose()));
+    const double gain = findings.proposals[static_cast<std::size_t>(decision.proposal)].best_gain();
+    return power_to_tell(squared, std::max(limits.group, limits.group_share * gain));
+}
 
 std::vector<NextStep> next_measurements(const Evidence& evidence, const GapData& data,
                                         const Findings& findings, const Decision& decision,
                                         const Limits& limits) {
     const std::vector<Measurement> measurements = measurements_of(evidence, data);
-    const bool rivals =
-        decision.verdict != Verdict::no_gap && decision.proposal >= 0 && decision.group.size() > 1 &&
-        findings.proposals[static_cast<std::size_t>(decision.proposal)].candidates.size() == 1;
-    std::vector<NextStep> steps = rivals ? telling_apart(measurements, data, findings, decision, limits)
-                                         : sharpening(measurements, evidence, data, findings, decision);
+    std::vector<NextStep> steps = has_rivals(findings, decision)
+                                      ? telling_apart(measurements, data, findings, decision, limits)
+                                      : sharpening(measurements, evidence, data, findings, decision);
     std::ranges::stable_sort(steps, std::greater(), [](const NextStep& s) { return s.power.value_or(0); });
     if (steps.size() > max_steps) steps.resize(max_steps);
-    if (decision.verdict != Verdict::no_gap) add_other_protocols(evidence, data, decision, steps);
+    const auto depends_on_speed = [&](std::size_t c) {
+        return data.name(c) == "viscoelasticity" || data.name(c) == "plate_speed" ||
+               data.name(c) == "inertia";
+    };
+    if (decision.verdict != Verdict::no_gap && std::ranges::any_of(decision.group, depends_on_speed))
+        steps.push_back(
+            {"press at another speed: what depends on speed is no matter of geometry or friction", {}});
     return steps;
 }
 

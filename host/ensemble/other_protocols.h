@@ -1,0 +1,16 @@
+// Would another protocol of the plate tell two explanations of a gap apart? Predicted by runs of both.
+#pragma once
+#include "ensemble/observe_trials.h"
+
+namespace mcdem::inline ensemble {
+
+struct OtherProtocol {
+    std::string what;  ///< "hold the plate at full stroke for 0.3 s"
+    Question question;
+    void (*change)(Replica&);  ///< to its protocol
+};
+
+/// A hold at full stroke and one more cycle; none if the replica has a programme.
+std::vector<OtherProtocol> other_protocols(const Question& question, const Replica& replica);
+
+}  // namespace mcdem::ensemble

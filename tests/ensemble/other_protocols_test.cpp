@@ -1,0 +1,117 @@
+// Other protocols of the plate, by which a diagnosis could tell effects apart.
+#include "ensemble/other_protocols.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "ensemble/diagnose_experiment.h"
+#include "ensemble/small_trials.h"
+#include "experiment/instrument.h"
+
+namespace mcdem {
+namespace {
+
+using ::testing::HasSubstr;
+
+Trial relaxing(const SmallTrials& small, double viscoelasticity) {
+    Trial trial = small.trial();
+    trial.model.replica.effects.viscoelasticity = viscoelasticity;
+    trial.model.replica.effects.relaxation_time = 0.2;
+    trial.model.replica.plate.speed = 0.01;  // 1 s down; a fast plate shakes the packing
+    return trial;
+}
+
+Eigen::VectorXd observed(const SmallTrials& small, Trial trial, const OtherProtocol* protocol) {
+    Device device;
+    if (protocol) protocol->change(trial.model.replica);
+    return observe_trials(device, protocol ? protocol->question : small.question, {trial}, small.store, {})
+        .row(0)
+        .transpose();
+}
+
+// The top force relaxes by at most the relaxing fraction, and only for viscoelastic grains.
+TEST(OtherProtocols, AHoldAtFullStrokeShowsRelaxation) {
+    const SmallTrials small;
+    const Trial soft = relaxing(small, 0.4), elastic = relaxing(small, 0);
+    const auto protocols = other_protocols(small.question, soft.model.replica);
+    ASSERT_EQ(protocols.size(), 2u);
+    EXPECT_EQ(protocols[0].what, "hold the plate at full stroke for 0.6 s");
+    const auto cells = cells_of(small.question.grid);
+    const Eigen::VectorXd stroke = observed(small, soft, nullptr),
+                          held = observed(small, soft, &protocols[0]),
+                          rigid = observed(small, elastic, &protocols[0]);
+    int found = 0;
+    for (std::size_t c = 0; c < cells.size(); ++c) {
+        const auto cell = static_cast<Eigen::Index>(c);
+        if (cells[c].observable != index_of(OfProgramme::relaxation)) {
+            EXPECT_EQ(std::isfinite(stroke[cell]), std::isfinite(held[cell])) << c;
+            continue;
+        }
+        EXPECT_TRUE(std::isnan(stroke[cell]));
+        if (std::isnan(held[cell])) continue;
+        ++found;
+        EXPECT_EQ(cells[c].displacement, small.question.grid.displacement.back());
+        EXPECT_GT(held[cell], rigid[cell] + 0.1);
+    }
+    EXPECT_EQ(found, 1);
+}
+
+TEST(OtherProtocols, OneMoreCycleHasTheCellsOfOne) {
+    const SmallTrials small;
+    Trial trial = small.trial();
+    trial.model.replica.effects.plasticity = 0.3;
+    const auto protocols = other_protocols(small.question, trial.model.replica);
+    const Eigen::VectorXd one = observed(small, trial, nullptr), two = observed(small, trial, &protocols[1]);
+    EXPECT_FALSE(same(one, two));
+    for (Eigen::Index cell = 0; cell < one.size(); ++cell)
+        EXPECT_TRUE(std::isfinite(two[cell]) || !std::isfinite(one[cell])) << cell;
+}
+
+TEST(OtherProtocols, AreNotMadeOfAProgramme) {
+    const SmallTrials small;
+    Replica replica = small.model.replica;
+    replica.programme.resize(1);
+    EXPECT_TRUE(other_protocols(small.question, replica).empty());
+}
+
+// Two laws of adhesion, which differ only in their friction, in a scene with little of it.
+TEST(OtherProtocols, GetAPowerInADiagnosis) {
+    const TestFolder folder;
+    Device device;
+    Scene scene =
+        small_scene({"plate.end=0.074", "plate.speed=0.03", "protocol.scans_per_stroke=6",
+                     "protocol.stop_at_scans=false", "protocol.scan_at_start=true", "grains.friction=0.001"});
+    scene.replicas.resize(1);
+    Trial truth{{scene.replicas.front(), {{1e-5, 1e-5, 0.01, 1e-4}}}, make_packings(scene).front()};
+    truth.model.replica.effects.adhesion = 0.1;
+    truth.keep_recording = true;
+    const Question question{scene, Grid{{0.01}, 0.005, 0.014}, reference_material(truth.model), 0, "test"};
+    const ObservationStore store(folder.path / "simulations");
+    observe_trials(device, question, {truth}, store, {});
+    Experiment experiment;
+    experiment.name = "measured";
+    experiment.recording = kept_recordings(device, question, {truth}, store).front();
+    experiment.measurement = truth.model.instrument.stated;
+    DiagnoseOptions options;
+    options.folder = folder.path / "diagnosis";
+    options.candidates = {"adhesion", "adhesion_net_friction"};
+    options.replicates = 8;
+    options.pairs = 2;
+    options.confirmations = 4;
+    options.limits.group_share = 0.3;  // both are in one group, but not the modulus, which gains half of that
+    const Diagnosis diagnosis = diagnose_experiment(device, scene, {experiment}, options);
+    ASSERT_EQ(diagnosis.verdict, Verdict::group);
+    int powers = 0;
+    for (const NextStep& step : diagnosis.next)
+        for (const char* what : {"hold the plate at full stroke for 0.3 s: tells adhesion",
+                                 "press one more cycle: tells adhesion"})
+            if (step.what.starts_with(what)) {
+                ASSERT_TRUE(step.power);
+                EXPECT_TRUE(*step.power >= 0 && *step.power <= 1) << *step.power;
+                ++powers;
+            }
+    EXPECT_EQ(powers, 2);
+}
+
+}  // namespace
+}  // namespace mcdem
