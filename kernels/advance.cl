@@ -17,11 +17,7 @@ INLINE slots trouble_status(lanes counts) {
 INLINE GrainSums contact_sums(Grain at, const int effects, Batch batch, const slots* partner,
                               EXCHANGE ContactTable* table) {
     global const Replica* restrict replica = at.replica;
-    lanes displacement[SLOTS_HERE];
-    slots partner_slot[SLOTS_HERE];
-    Memories kept;
-    load_displacements(at, batch, displacement, partner_slot);
-    load_memories(at, batch.memory, &kept);
+    const Memories kept = memories_of(at, batch.memory);
     GrainSums sums = {ZERO3, ZERO3, R(0)};
     /* Two loops: a CPU computes several slots of the second one at the same time, as long as its reorder
        buffer holds more than one. */
@@ -29,14 +25,14 @@ INLINE GrainSums contact_sums(Grain at, const int effects, Batch batch, const sl
     Displaced displacements[SLOTS_HERE];
     for (int v = 0; v < at.count; ++v) {
         neighbours[v] = gather_neighbours(at, effects, batch.motion, partner[v]);
-        displacements[v] = displaced(at, batch, neighbours[v], displacement, partner_slot, v);
+        displacements[v] = displaced(at, batch, neighbours[v], v);
     }
     for (int v = 0; v < at.count; ++v) {
         const Neighbours neighbour = neighbours[v];
         const Displaced b = displacements[v];
-        Memory memory = recall(replica, effects, &kept, v);
+        Memory memory = recall(replica, effects, kept, v);
         const Contacts c = contact_forces(at, effects, neighbour, b, replica->time_step, &memory);
-        remember(replica, effects, memory, &kept, v);
+        remember(replica, effects, memory, kept, v);
         add_contacts(c, neighbour.normal, &sums.force, &sums.torque);
         if (effects & EFFECT_ROLLING_RESISTANCE) sums.torque = add3(sums.torque, c.couple);
         /* The negated comparison is also true for NaN. */
@@ -47,7 +43,6 @@ INLINE GrainSums contact_sums(Grain at, const int effects, Batch batch, const sl
         sums.trouble += WHERE(too_deep, R(1), R(0)) + WHERE(unprobed, R(DEEP_SLOTS), R(0));
         tabulate(c, neighbour.normal, v, table);
     }
-    store_memories(at, &kept, batch.memory);
     return sums;
 }
 
@@ -68,18 +63,16 @@ INLINE void surface_displacements(Grain at, EXCHANGE ContactTable* table, lanes*
    the last four steps with `slot_count` values per step; `step` is the replica's step number. */
 INLINE void displace_surfaces(Grain at, EXCHANGE ContactTable* table, int step, size_t slot_count,
                               global real* restrict displacement_next, global real* restrict history) {
-    global real* two_before = history + ((step + 2) & 3) * slot_count + at.row;
-    global real* four_before = history + (step & 3) * slot_count + at.row;
-    lanes now[SLOTS_HERE], two[SLOTS_HERE], four[SLOTS_HERE];
+    global const real* two_before = history + ((step + 2) & 3) * slot_count;
+    global real* four_before = history + (step & 3) * slot_count;
+    lanes now[SLOTS_HERE];
     surface_displacements(at, table, now);
-    load_row(two_before, SLOTS, at.count, two);
-    load_row(four_before, SLOTS, at.count, four);
-    for (int v = 0; v < at.count; ++v)
-        two[v] = (R(10) / R(6)) * now[v] - (R(5) / R(6)) * two[v] + (R(1) / R(6)) * four[v];
-    /* store_row writes whole groups of four slots. */
-    for (int v = at.count; v % 4 != 0 && SLOTS_HERE > 1; ++v) now[v] = two[v] = R(0);
-    store_row(two, at.count, displacement_next + at.row, SLOTS);
-    store_row(now, at.count, four_before, SLOTS);
+    for (int v = 0; v < at.count; ++v) {
+        const lanes two = load_slot(two_before, at.row, v), four = load_slot(four_before, at.row, v);
+        store_slot((R(10) / R(6)) * now[v] - (R(5) / R(6)) * two + (R(1) / R(6)) * four, displacement_next,
+                   at.row, v);
+        store_slot(now[v], four_before, at.row, v);
+    }
 }
 
 /* Copies the state of a stopped replica to the other buffer of each double-buffered field, so that both
@@ -88,9 +81,8 @@ INLINE void keep_state(Grain at, slots grain, Batch batch, global Motion* restri
                        global real* restrict displacement_next) {
     if (IS_LEADER) store_motion(at.now, motion_next, grain);
     if (at.replica->surface == SURFACE_RIGID) return;
-    lanes displacement[SLOTS_HERE];
-    load_row(batch.displacement + at.row, SLOTS, at.count, displacement);
-    store_row(displacement, at.count, displacement_next + at.row, SLOTS);
+    for (int v = 0; v < at.count; ++v)
+        store_slot(load_slot(batch.displacement, at.row, v), displacement_next, at.row, v);
 }
 
 /* Sets status bits grain by grain; this is rare, so it need not be fast. */
@@ -150,7 +142,7 @@ kernel void advance(const int step, const int slot_count, global const Replica* 
     }
 
     slots partners[SLOTS_HERE];
-    at.count = load_partners(partner + at.row, partners);
+    at.count = load_partners(partner, at.row, partners);
     /* Inlined twice; the copy with the constant 0 contains no code for effects. */
     const GrainSums sums = RARELY(replica->effects)
                                ? contact_sums(at, replica->effects, batch, partners, table)

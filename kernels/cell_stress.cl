@@ -22,7 +22,7 @@ kernel void cell_stress(global const Replica* restrict replicas, global const Po
     for (int k = portion.first + lane; k < end; k += REDUCERS) {
         const int grain = replica->first_grain + k;
         for (int c = 0; c < SLOTS; ++c) {
-            const size_t slot = (size_t)grain * SLOTS + c;
+            const size_t slot = SLOT_PLACE(FIRST_SLOT(grain), c);
             const int other = partner[slot];
             const real3 force = (real3)(force_x[slot], force_y[slot], force_z[slot]);
             if (other < 0 || (force.x == R(0) && force.y == R(0) && force.z == R(0))) continue;

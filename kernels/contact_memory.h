@@ -1,7 +1,6 @@
 /* State of a contact that persists between steps; each side stores its own copy in its slot. The state of a
-   grain is one block of rows of SLOTS reals, one row per quantity. Only rows that the replica needs are
-   stored (Replica: memory_rows, deepest_row, relaxed_row). */
-#define MAX_MEMORY_ROWS 5
+   work-item's grains is one block of rows, one row per quantity, with one real per slot. Only rows that the
+   replica needs are stored (Replica: memory_rows, deepest_row, relaxed_row). */
 
 typedef struct {
     lanes3 spring; /* elongation of the tangential spring (Mindlin friction), from this grain's side [m] */
@@ -9,55 +8,38 @@ typedef struct {
     lanes relaxed; /* internal variable q (viscoelasticity) [N] */
 } Memory;
 
-/* Memory of all slots of a work-item: a private copy on a CPU, a pointer to global memory on a GPU. */
-#if LANES == 16
-typedef struct {
-    lanes row[MAX_MEMORY_ROWS][SLOTS];
-} Memories;
-#define ROW_ENTRY(kept, kind, v) ((kept)->row[kind][v])
-#else
+/* Memory of all slots of a work-item. */
 typedef struct {
     global real* rows;
 } Memories;
-#define ROW_ENTRY(kept, kind, v) ((kept)->rows[(kind)*SLOTS + SLOT(v)])
-#endif
 
-INLINE void load_memories(Grain at, global real* restrict memory, Memories* restrict kept) {
-    const int rows = at.replica->memory_rows;
-#if LANES == 16
-    for (int kind = 0; kind < rows; ++kind)
-        load_row(memory + at.row * rows + kind * SLOTS, rows * SLOTS, at.count, kept->row[kind]);
-#else
-    kept->rows = memory + at.row * rows;
-#endif
+INLINE Memories memories_of(Grain at, global real* restrict memory) {
+    return (Memories){memory + (size_t)(at.first / LANES) * (LANES * SLOTS) * at.replica->memory_rows};
 }
 
-INLINE void store_memories(Grain at, const Memories* restrict kept, global real* restrict memory) {
-#if LANES == 16
-    const int rows = at.replica->memory_rows;
-    for (int kind = 0; kind < rows; ++kind)
-        store_row(kept->row[kind], at.count, memory + at.row * rows + kind * SLOTS, rows * SLOTS);
-#else
-    (void)at, (void)kept, (void)memory;
-#endif
+INLINE lanes memory_row(Memories kept, int kind, int v) {
+    return load_slot(kept.rows, kind * SLOTS * LANES, v);
+}
+INLINE void set_memory_row(lanes value, Memories kept, int kind, int v) {
+    store_slot(value, kept.rows, kind * SLOTS * LANES, v);
 }
 
-INLINE Memory recall(global const Replica* restrict replica, const int effects, const Memories* kept, int v) {
+INLINE Memory recall(global const Replica* restrict replica, const int effects, Memories kept, int v) {
     Memory memory = {ZERO3, R(0), R(0)};
     if (replica->mindlin)
-        memory.spring = (lanes3){ROW_ENTRY(kept, 0, v), ROW_ENTRY(kept, 1, v), ROW_ENTRY(kept, 2, v)};
-    if (effects & EFFECT_PLASTICITY) memory.deepest = ROW_ENTRY(kept, replica->deepest_row, v);
-    if (effects & EFFECT_VISCOELASTICITY) memory.relaxed = ROW_ENTRY(kept, replica->relaxed_row, v);
+        memory.spring = (lanes3){memory_row(kept, 0, v), memory_row(kept, 1, v), memory_row(kept, 2, v)};
+    if (effects & EFFECT_PLASTICITY) memory.deepest = memory_row(kept, replica->deepest_row, v);
+    if (effects & EFFECT_VISCOELASTICITY) memory.relaxed = memory_row(kept, replica->relaxed_row, v);
     return memory;
 }
 
-INLINE void remember(global const Replica* restrict replica, const int effects, Memory memory,
-                     Memories* restrict kept, int v) {
+INLINE void remember(global const Replica* restrict replica, const int effects, Memory memory, Memories kept,
+                     int v) {
     if (replica->mindlin) {
-        ROW_ENTRY(kept, 0, v) = memory.spring.x;
-        ROW_ENTRY(kept, 1, v) = memory.spring.y;
-        ROW_ENTRY(kept, 2, v) = memory.spring.z;
+        set_memory_row(memory.spring.x, kept, 0, v);
+        set_memory_row(memory.spring.y, kept, 1, v);
+        set_memory_row(memory.spring.z, kept, 2, v);
     }
-    if (effects & EFFECT_PLASTICITY) ROW_ENTRY(kept, replica->deepest_row, v) = memory.deepest;
-    if (effects & EFFECT_VISCOELASTICITY) ROW_ENTRY(kept, replica->relaxed_row, v) = memory.relaxed;
+    if (effects & EFFECT_PLASTICITY) set_memory_row(memory.deepest, kept, replica->deepest_row, v);
+    if (effects & EFFECT_VISCOELASTICITY) set_memory_row(memory.relaxed, kept, replica->relaxed_row, v);
 }

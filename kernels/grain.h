@@ -81,38 +81,23 @@ INLINE GrainSums add_up(GrainSums slot, EXCHANGE real* scratch) {
 #endif
 }
 
-/* Loads the partners of a work-item and returns the number of slots to process. Rows are filled from the
-   start. */
-INLINE int load_partners(global const int* restrict rows, slots* restrict partner) {
-#if LANES == 16
-    int count = 0;
-    for (int v = 0; v < SLOTS; v += 4) {
-        load_slots(rows + v, 4, partner + v);
-        if (!ANY(AS_MASK(partner[v] != NO_PARTNER))) break;
-        count = v + 4;
+/* Loads the partners of a work-item and returns the number of slots to process. The slots of a grain are
+   filled from the start. */
+INLINE int load_partners(global const int* restrict field, size_t row, slots* restrict partner) {
+    for (int v = 0; v < SLOTS_HERE; ++v) {
+        partner[v] = load_number(field, row, v);
+        if (LANES > 1 && !ANY(AS_MASK(partner[v] != NO_PARTNER))) return v;
     }
-    while (count > 0 && !ANY(AS_MASK(partner[count - 1] != NO_PARTNER))) --count;
-    return count;
-#else
-    load_slots(rows, 1, partner);
-    return 1;
-#endif
+    return SLOTS_HERE;
 }
 
-/* Loads this grain's surface displacements, extrapolated to this step, and the slots of those of the
-   neighbours. */
-INLINE void load_displacements(Grain at, Batch batch, lanes* restrict here, slots* restrict there) {
-    if (at.replica->surface == SURFACE_RIGID) return;
-    load_row(batch.displacement + at.row, SLOTS, at.count, here);
-    load_slots(batch.partner_slot + at.row, at.count, there);
-}
-/* The values of empty slots are undefined, so they are replaced by zero; NaN times a zero force is NaN. */
-INLINE Displaced displaced(Grain at, Batch batch, Neighbours neighbour, const lanes* here, const slots* there,
-                           int v) {
+/* The surface displacements of both sides at a slot, extrapolated to this step. The values of empty slots are
+   undefined, so they are replaced by zero; NaN times a zero force is NaN. */
+INLINE Displaced displaced(Grain at, Batch batch, Neighbours neighbour, int v) {
     Displaced b = {R(0), R(0)};
     if (at.replica->surface == SURFACE_RIGID) return b;
-    b.here = WHERE(neighbour.occupied, here[v], R(0));
-    b.there = gather(batch.displacement, there[v]);
+    b.here = WHERE(neighbour.occupied, load_slot(batch.displacement, at.row, v), R(0));
+    b.there = gather(batch.displacement, load_number(batch.partner_slot, at.row, v));
     return b;
 }
 

@@ -1,6 +1,6 @@
 /* Vector types and operations that hide the difference between the CPU and the GPU layout.
    `lanes` has one number for each grain of a work-item: LANES = 16 grains on a CPU (a vector), one on a GPU.
-   WHERE(condition, yes, no) selects lane by lane. A grain has SLOTS slots, stored as a row of reals. A CPU's
+   WHERE(condition, yes, no) selects lane by lane. A grain has SLOTS slots. A CPU's
    work-item processes all of them, a GPU's only one: arrays over slots have SLOTS_HERE entries, and entry v
    belongs to slot SLOT(v). The slots of a grain exchange data in EXCHANGE arrays: private memory on a CPU,
    local memory on a GPU. */
@@ -190,23 +190,6 @@ INLINE lanes gather(global const real* restrict field, slots index) {
                    field[index.sf]);
 }
 
-/* Loads the first `count` slots of LANES rows that are `stride` reals apart, in groups of four slots. */
-#define ROW_PLACE(i) ((i) * (stride / 4))
-INLINE void load_row(global const real* restrict rows, int stride, int count, lanes* restrict slot) {
-    for (int v = 0; v < count; v += 4)
-        TRANSPOSE_ROWS(real, (global const real4*)(rows + v), ROW_PLACE, slot + v);
-}
-INLINE void store_row(const lanes* restrict slot, int count, global real* restrict rows, int stride) {
-    for (int v = 0; v < count; v += 4) {
-        const lanes4 four = {slot[v], slot[v + 1], slot[v + 2], slot[v + 3]};
-        SCATTER_ROWS(four, (global real4*)(rows + v), ROW_PLACE);
-    }
-}
-INLINE void load_slots(global const int* restrict rows, int count, slots* restrict slot) {
-    const int stride = SLOTS;
-    for (int v = 0; v < count; v += 4)
-        TRANSPOSE_ROWS(int, (global const int4*)(rows + v), ROW_PLACE, slot + v);
-}
 #else
 typedef int Places;
 INLINE void store_places(slots index, Places* restrict places) { *places = index; }
@@ -219,19 +202,21 @@ INLINE void scatter4(lanes4 value, global real4* restrict field, slots index) {
     field[index] = (real4)(value.x, value.y, value.z, value.w);
 }
 INLINE lanes gather(global const real* restrict field, slots index) { return field[index]; }
-INLINE void load_row(global const real* restrict row, int stride, int count, lanes* restrict slot) {
-    (void)stride, (void)count;
-    *slot = row[SLOT(0)];
-}
-INLINE void load_slots(global const int* restrict row, int count, slots* restrict slot) {
-    (void)count;
-    *slot = row[SLOT(0)];
-}
-INLINE void store_row(const lanes* restrict slot, int count, global real* restrict row, int stride) {
-    (void)stride, (void)count;
-    row[SLOT(0)] = *slot;
-}
 #endif
+
+/* Fields with one number per slot: the LANES grains of a work-item are side by side, slot by slot. A slot
+   begins at SLOT_PLACE(row, v), where `row` is that of the work-item's first grain, FIRST_SLOT(first). */
+#define FIRST_SLOT(grain) ((size_t)((grain) / LANES) * (LANES * SLOTS) + (size_t)((grain) % LANES))
+#define SLOT_PLACE(row, c) ((row) + (size_t)(c)*LANES)
+INLINE lanes load_slot(global const real* restrict field, size_t row, int v) {
+    return LOAD_LANES(field + SLOT_PLACE(row, SLOT(v)));
+}
+INLINE slots load_number(global const int* restrict field, size_t row, int v) {
+    return LOAD_LANES(field + SLOT_PLACE(row, SLOT(v)));
+}
+INLINE void store_slot(lanes value, global real* restrict field, size_t row, int v) {
+    STORE_LANES(value, field + SLOT_PLACE(row, SLOT(v)));
+}
 
 /* 1 / sqrt(x). In float on x86 the processor's estimate is refined by one Newton step, with a relative error
    below 3e-7, with AVX-512 below 1.5e-7. Root and division would occupy the divider for most of the loop over

@@ -58,28 +58,22 @@ typedef struct {
 
 INLINE ContactSums measure_contacts(Grain at, Batch batch, MeasuredRows rows, EXCHANGE ContactTable* table) {
     global const Replica* restrict replica = at.replica;
-    slots partner[SLOTS_HERE], partner_slot[SLOTS_HERE];
-    lanes displacement[SLOTS_HERE], row[5][SLOTS_HERE];
-    Memories kept;
-    load_slots(batch.partner + at.row, at.count, partner);
-    load_displacements(at, batch, displacement, partner_slot);
-    load_memories(at, batch.memory, &kept);
+    const Memories kept = memories_of(at, batch.memory);
     ContactSums sums = {R(0), R(0), R(0), R(0), R(0)};
     for (int v = 0; v < at.count; ++v) {
-        const Neighbours neighbour = gather_neighbours(at, replica->effects, batch.motion, partner[v]);
-        Memory memory = recall(replica, replica->effects, &kept, v);
-        const Displaced b = displaced(at, batch, neighbour, displacement, partner_slot, v);
+        const slots partner = load_number(batch.partner, at.row, v);
+        const Neighbours neighbour = gather_neighbours(at, replica->effects, batch.motion, partner);
+        Memory memory = recall(replica, replica->effects, kept, v);
+        const Displaced b = displaced(at, batch, neighbour, v);
         const Contacts c = contact_forces(at, replica->effects, neighbour, b, R(0), &memory);
         add_contact_sums(at, neighbour, b, c, &sums);
         if (replica->finite_contacts) tabulate(c, neighbour.normal, v, table);
-        row[0][v] = c.force.x, row[1][v] = c.force.y, row[2][v] = c.force.z;
-        row[3][v] = c.overlap, row[4][v] = c.arm;
+        store_slot(c.force.x, rows.force_x, at.row, v);
+        store_slot(c.force.y, rows.force_y, at.row, v);
+        store_slot(c.force.z, rows.force_z, at.row, v);
+        store_slot(c.overlap, rows.overlap, at.row, v);
+        store_slot(c.arm, rows.arm, at.row, v);
     }
-    store_row(row[0], at.count, rows.force_x + at.row, SLOTS);
-    store_row(row[1], at.count, rows.force_y + at.row, SLOTS);
-    store_row(row[2], at.count, rows.force_z + at.row, SLOTS);
-    store_row(row[3], at.count, rows.overlap + at.row, SLOTS);
-    store_row(row[4], at.count, rows.arm + at.row, SLOTS);
     return sums;
 }
 
@@ -147,15 +141,16 @@ kernel void measure(global const Replica* restrict replicas, global const Materi
 #define REDUCERS 64
 #define SUMS 20 /* kinetic energy, elastic energy, 18 wall force components */
 
-INLINE void add_wall_forces(global const int* partner, global const real* x, global const real* y,
+INLINE void add_wall_forces(size_t row, global const int* partner, global const real* x, global const real* y,
                             global const real* z, real* sums) {
-    for (int c = 0; c < SLOTS; ++c)
-        if (partner[c] < NO_PARTNER) {
-            const int wall = WALL_PARTNER(0) - partner[c];
-            sums[2 + 3 * wall] -= x[c];
-            sums[3 + 3 * wall] -= y[c];
-            sums[4 + 3 * wall] -= z[c];
-        }
+    for (int c = 0; c < SLOTS; ++c) {
+        const size_t slot = SLOT_PLACE(row, c);
+        if (partner[slot] >= NO_PARTNER) continue;
+        const int wall = WALL_PARTNER(0) - partner[slot];
+        sums[2 + 3 * wall] -= x[slot];
+        sums[3 + 3 * wall] -= y[slot];
+        sums[4 + 3 * wall] -= z[slot];
+    }
 }
 
 WORK_GROUP(REDUCERS)
@@ -177,7 +172,6 @@ kernel void reduce(global const Replica* restrict replicas, global const Portion
     int bits = 0, failed = INT_MAX;
     for (int k = portion.first + lane; k < end; k += REDUCERS) {
         const int grain = replica->first_grain + k;
-        const size_t row = (size_t)grain * SLOTS;
         sums[0] += energy[grain].x;
         sums[1] += energy[grain].y;
         moved = fmax(moved, energy[grain].z);
@@ -185,7 +179,7 @@ kernel void reduce(global const Replica* restrict replicas, global const Portion
         fastest = fmax(fastest, frequency[grain]);
         bits |= status[grain];
         if (status[grain]) failed = min(failed, grain);
-        add_wall_forces(partner + row, force_x + row, force_y + row, force_z + row, sums);
+        add_wall_forces(FIRST_SLOT(grain), partner, force_x, force_y, force_z, sums);
     }
     for (int q = 0; q < SUMS; ++q) shared_sums[lane][q] = sums[q];
     shared_most[lane][0] = moved;

@@ -64,16 +64,16 @@ INLINE int near_walls(global const Replica* restrict replica, real4 own, int* ro
     return count;
 }
 
-/* Reorders one row of stored values: each value follows its neighbour to the new slot; new neighbours start
-   from zero. */
-INLINE void carry(const int* before, const int* after, global real* restrict values) {
+/* Reorders the stored values of a grain, which begin at `row`: each value follows its neighbour to the new
+   slot; new neighbours start from zero. */
+INLINE void carry(const int* before, const int* after, global real* restrict values, size_t row) {
     real kept[SLOTS];
-    for (int c = 0; c < SLOTS; ++c) kept[c] = values[c];
+    for (int c = 0; c < SLOTS; ++c) kept[c] = values[SLOT_PLACE(row, c)];
     for (int c = 0; c < SLOTS; ++c) {
         real value = R(0);
         for (int k = 0; k < SLOTS; ++k)
             if (after[c] != NO_PARTNER && before[k] == after[c]) value = kept[k];
-        values[c] = value;
+        values[SLOT_PLACE(row, c)] = value;
     }
 }
 
@@ -88,14 +88,14 @@ kernel void list_neighbours(const int block_count, const int slot_count,
     const int grain = listed_grain(blocks, block_count);
     if (grain < 0) return;
     global const Replica* restrict replica = replicas + replica_of_block[grain / BLOCK];
-    const size_t row = (size_t)grain * SLOTS;
+    const size_t row = FIRST_SLOT(grain);
     const real4 own = motion[grain].position;
     track[grain].listed_position = own;
     if (!(own.w > R(0))) return;
 
     int before[SLOTS], after[SLOTS];
     for (int c = 0; c < SLOTS; ++c) {
-        before[c] = partner[row + c];
+        before[c] = partner[SLOT_PLACE(row, c)];
         after[c] = NO_PARTNER;
     }
     int count = near_grains(replica, grain, motion, cell_head, cell_next, after);
@@ -105,13 +105,14 @@ kernel void list_neighbours(const int block_count, const int slot_count,
     bool same = true;
     for (int c = 0; c < SLOTS; ++c) same = same && before[c] == after[c];
     if (same) return;
-    for (int c = 0; c < SLOTS; ++c) partner[row + c] = after[c];
+    for (int c = 0; c < SLOTS; ++c) partner[SLOT_PLACE(row, c)] = after[c];
     if (replica->surface != SURFACE_RIGID) {
-        carry(before, after, displacement + row);
-        for (int turn = 0; turn < 4; ++turn) carry(before, after, history + (size_t)turn * slot_count + row);
+        carry(before, after, displacement, row);
+        for (int turn = 0; turn < 4; ++turn) carry(before, after, history + (size_t)turn * slot_count, row);
     }
+    const size_t block = row - grain % LANES;
     for (int kind = 0; kind < replica->memory_rows; ++kind)
-        carry(before, after, memory + row * replica->memory_rows + kind * SLOTS);
+        carry(before, after, memory + block * replica->memory_rows, SLOT_PLACE(grain % LANES, kind * SLOTS));
 }
 
 /* partner_slot: the slot of the same contact in the neighbour's row. For walls and empty slots it is
@@ -121,13 +122,14 @@ kernel void link_partner_slots(const int block_count, const int slot_count, glob
                                global const int* restrict partner, global int* restrict partner_slot) {
     const int grain = listed_grain(blocks, block_count);
     if (grain < 0) return;
-    const size_t row = (size_t)grain * SLOTS;
+    const size_t row = FIRST_SLOT(grain);
     for (int c = 0; c < SLOTS; ++c) {
-        const int other = partner[row + c];
+        const int other = partner[SLOT_PLACE(row, c)];
         int found = slot_count;
         if (other >= 0)
             for (int k = 0; k < SLOTS; ++k)
-                if (partner[(size_t)other * SLOTS + k] == grain) found = other * SLOTS + k;
-        partner_slot[row + c] = found;
+                if (partner[SLOT_PLACE(FIRST_SLOT(other), k)] == grain)
+                    found = SLOT_PLACE(FIRST_SLOT(other), k);
+        partner_slot[SLOT_PLACE(row, c)] = found;
     }
 }

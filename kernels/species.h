@@ -8,7 +8,7 @@ INLINE Grain grain_at(global const Replica* replica, global const Material* mate
     const Grain at = {replica,
                       SPECIES > 1 ? materials + r * SPECIES : &replica->material,
                       first,
-                      (size_t)first * SLOTS,
+                      FIRST_SLOT(first),
                       SLOTS_HERE,
                       plate_position(replica, step),
                       replica->time_step * step,

@@ -167,9 +167,11 @@ std::vector<Contact> Engine::contacts(int replica, const std::vector<Vec3>& posi
                                       const Readings& read) const {
     const auto& order = layout_.order[replica];
     const auto slots = static_cast<std::size_t>(build_.slots);
+    const auto padded =
+        static_cast<std::size_t>(layout_.first_grain[replica + 1] - layout_.first_grain[replica]);
     const std::size_t first =
         (static_cast<std::size_t>(layout_.first_grain[replica]) - read.first_grain) * slots;
-    const std::size_t count = order.size() * slots;
+    const std::size_t count = padded * slots;
     const auto x = reals(read.force_x, first, count), y = reals(read.force_y, first, count),
                z = reals(read.force_z, first, count), overlap = reals(read.overlap, first, count),
                arm = reals(read.arm, first, count);
@@ -180,7 +182,7 @@ std::vector<Contact> Engine::contacts(int replica, const std::vector<Vec3>& posi
     for (std::size_t slot = 0; slot < count; ++slot) {
         if (!(overlap[slot] > 0)) continue;
         Contact contact;
-        contact.grain = order[slot / slots];
+        contact.grain = order[build_.grain_of_slot(slot)];
         Vec3 direction;
         if (partner[slot] < NO_PARTNER) {
             const int wall = WALL_PARTNER(0) - partner[slot];

@@ -21,7 +21,8 @@ Eigen::Matrix3d moments(const mcdem::f32::Replica& replica, const std::vector<Ve
     struct Partner;
     struct Force;
     struct Moments;
-    const std::size_t rows = position.size() * slots;
+    const KernelBuild kernels = build(Precision::single_precision);
+    const std::size_t rows = (position.size() + 15) / 16 * 16 * slots;
     std::vector<float> motion(position.size() * 12, 0);
     for (std::size_t i = 0; i < position.size(); ++i)
         for (int axis = 0; axis < 3; ++axis)
@@ -31,7 +32,7 @@ Eigen::Matrix3d moments(const mcdem::f32::Replica& replica, const std::vector<Ve
     for (auto& component : force) component.assign(rows, 0);
     for (const Contact& c : contacts) {
         const auto grain = static_cast<std::size_t>(c.grain);
-        const std::size_t slot = grain * slots + static_cast<std::size_t>(used[grain]++);
+        const std::size_t slot = kernels.slot_place(grain, static_cast<std::size_t>(used[grain]++));
         partner[slot] = c.partner;
         for (int axis = 0; axis < 3; ++axis)
             force[static_cast<std::size_t>(axis)][slot] = static_cast<float>(c.force[axis]);
@@ -54,7 +55,7 @@ Eigen::Matrix3d moments(const mcdem::f32::Replica& replica, const std::vector<Ve
     x.write(force[0].data());
     y.write(force[1].data());
     z.write(force[2].data());
-    const cl::Program program = with_kernel("", build(Precision::single_precision));
+    const cl::Program program = with_kernel("", kernels);
     mcdem::Kernel<mcdem::Field<Replicas>, mcdem::Field<Portions>, mcdem::Field<Steps>, mcdem::Field<Grains>,
                   mcdem::Field<Partner>, mcdem::Field<Force>, mcdem::Field<Force>, mcdem::Field<Force>,
                   mcdem::Field<Moments>>(device(), program, "cell_stress", 64)(

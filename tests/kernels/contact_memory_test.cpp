@@ -19,16 +19,13 @@ kernel void store_and_load(global const Replica* replica, global real* memory, g
     const Grain at = grain_at(replica, 0, 0, 16, 0, now);
     const int effects = replica->effects;
     const lanes grain = convert_float16(LANE_NUMBERS) * 1000;
-    Memories all;
+    const Memories all = memories_of(at, memory);
     for (int v = 0; v < SLOTS; ++v) {
         const lanes number = grain + R(v);
         const Memory stored = {{number + 100, number + 200, number + 300}, number + 400, number + 500};
-        remember(replica, effects, stored, &all, v);
+        remember(replica, effects, stored, all, v);
     }
-    store_memories(at, &all, memory);
-    Memories again;
-    load_memories(at, memory, &again);
-    const Memory loaded = recall(replica, effects, &again, 3);
+    const Memory loaded = recall(replica, effects, all, 3);
     out[0] = loaded.spring.x.s5, out[1] = loaded.spring.y.s5, out[2] = loaded.spring.z.s5;
     out[3] = loaded.deepest.s5, out[4] = loaded.relaxed.s5;
 })",
@@ -49,7 +46,7 @@ kernel void store_and_load(global const Replica* replica, global real* memory, g
     memory.read(in_memory.data());
     for (int row = 0; row < replica.memory_rows; ++row)
         found.push_back(
-            in_memory[static_cast<std::size_t>(((first + 3) * replica.memory_rows + row) * slots + 1)]);
+            in_memory[static_cast<std::size_t>((first * replica.memory_rows + row * 16 + 1) * slots + 3)]);
     const auto written = std::ranges::count_if(in_memory, [](float value) { return value != -1; });
     EXPECT_EQ(written, number * replica.memory_rows * slots) << "another grain's memory was written";
     return found;

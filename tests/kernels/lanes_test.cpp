@@ -87,13 +87,27 @@ TEST_P(Lanes, ScatterWritesEveryComponentOfTheRequestedRows) {
             [c](double number, int) { return (c + 1) * number; }, 1e-7);
 }
 
-TEST_P(Lanes, LoadRowTransposesSlotsIntoLanes) {
-    const auto found = by_lanes(
-        "lanes row[SLOTS_HERE];\nload_row((global const real*)field, 16, 16, row);\n"
-        "result = row[SLOTS_HERE > 1 ? 6 : 0];",
-        x, index, kernels);
-    if (kernels.lanes == 1) return expect_lanes("result = x;", [](double number, int) { return number; });
-    for (std::size_t lane = 0; lane < 16; ++lane) EXPECT_EQ(found[lane], 16 * lane + 6);
+// The 16 grains of a work-item are side by side; on a GPU the slots of a grain.
+TEST_P(Lanes, SlotsAreStoredAsVectorsOfGrains) {
+    const auto found = by_lanes("result = load_slot((global const real*)field, FIRST_SLOT(first % 16), 6);",
+                                x, index, kernels);
+    for (std::size_t grain = 0; grain < 16; ++grain)
+        EXPECT_EQ(found[grain], kernels.slot_place(grain, kernels.lanes > 1 ? 6 : 0));
+}
+
+TEST(KernelBuild, PlacesOfSlotsBelongToTheirGrains) {
+    for (const int lanes : {1, 16}) {
+        const KernelBuild kernels{.slots = 32, .lanes = lanes};
+        std::vector<bool> used(64 * 32, false);
+        for (std::size_t grain = 0; grain < 64; ++grain)
+            for (std::size_t slot = 0; slot < 32; ++slot) {
+                const std::size_t place = kernels.slot_place(grain, slot);
+                ASSERT_LT(place, used.size());
+                EXPECT_FALSE(used[place]);
+                used[place] = true;
+                EXPECT_EQ(kernels.grain_of_slot(place), grain);
+            }
+    }
 }
 
 // True for all lanes on a CPU; on a GPU only for the lane itself.

@@ -9,12 +9,17 @@ constexpr int slots = 16;
 struct Grains {
     explicit Grains(int count, unsigned seed) : status(static_cast<std::size_t>(count), 0) {
         Uniform uniform(seed);
+        const KernelBuild kernels = build(Precision::single_precision);
+        const std::size_t rows = static_cast<std::size_t>((count + 15) / 16 * 16 * slots);
+        partner.assign(rows, NO_PARTNER);
+        for (auto& component : force) component.assign(rows, 0);
         for (int i = 0; i < count; ++i) {
             for (int k = 0; k < 4; ++k) energy.push_back(static_cast<float>(uniform(0, 1)));
             frequency.push_back(static_cast<float>(uniform(0, 1)));
             for (int slot = 0; slot < slots; ++slot) {
-                partner.push_back(slot < 6 ? WALL_PARTNER(slot) : slot < 9 ? i / 2 : NO_PARTNER);
-                for (auto& component : force) component.push_back(static_cast<float>(uniform(-1, 1)));
+                const std::size_t place = kernels.slot_place(i, slot);
+                partner[place] = slot < 6 ? WALL_PARTNER(slot) : slot < 9 ? i / 2 : NO_PARTNER;
+                for (auto& component : force) component[place] = static_cast<float>(uniform(-1, 1));
             }
         }
     }
@@ -67,6 +72,7 @@ TEST(Reduce, SumsAndMaximaAreThoseOfAllGrains) {
         SCOPED_TRACE(count);
         const Grains grains(count, 5);
         const auto report = reduced(grains, {0, 0});
+        const KernelBuild kernels = build(Precision::single_precision);
         double kinetic = 0, elastic = 0, moved = 0, deepest = 0, fastest = 0;
         std::array<double, 18> walls{};
         for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
@@ -77,7 +83,7 @@ TEST(Reduce, SumsAndMaximaAreThoseOfAllGrains) {
             fastest = std::max<double>(fastest, grains.frequency[i]);
             for (std::size_t wall = 0; wall < 6; ++wall)
                 for (std::size_t axis = 0; axis < 3; ++axis)
-                    walls[3 * wall + axis] -= grains.force[axis][slots * i + wall];
+                    walls[3 * wall + axis] -= grains.force[axis][kernels.slot_place(i, wall)];
         }
         EXPECT_NEAR(report.kinetic_energy, kinetic, 1e-5 * kinetic);
         EXPECT_NEAR(report.elastic_energy, elastic, 1e-5 * elastic);

@@ -70,7 +70,7 @@ void expect_row(const SavedRows& rows, const StepReference& reference, const Sta
     EXPECT_LE(found.size(), near.sure.size() + near.unsure.size()) << where << ": one too many";
 }
 
-void expect_mirrors(const SavedRows& rows, int slots) {
+void expect_mirrors(const SavedRows& rows, const KernelBuild& build) {
     const auto& partners = rows.partners();
     const auto partner_slots = rows.partner_slots();
     ASSERT_EQ(partner_slots.size(), partners.size());
@@ -80,8 +80,8 @@ void expect_mirrors(const SavedRows& rows, int slots) {
                 << "slot " << slot;
             continue;
         }
-        ASSERT_EQ(partner_slots[slot] / slots, partners[slot]) << "slot " << slot;
-        ASSERT_EQ(partners[partner_slots[slot]], int(slot) / slots) << "slot " << slot;
+        ASSERT_EQ(build.grain_of_slot(partner_slots[slot]), partners[slot]) << "slot " << slot;
+        ASSERT_EQ(partners[partner_slots[slot]], build.grain_of_slot(slot)) << "slot " << slot;
     }
 }
 
@@ -97,7 +97,7 @@ void expect_lists(const KernelBuild& build, const std::vector<Start>& starts) {
         for (std::size_t i = 0; i < starts[r].packing.size(); ++i)
             expect_row(rows, references[r], starts[r], r, i);
     }
-    expect_mirrors(rows, build.slots);
+    expect_mirrors(rows, build);
 }
 
 Replica with_probe_gap(double gap) {

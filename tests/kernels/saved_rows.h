@@ -39,11 +39,10 @@ public:
 
     /// The row of one of the user's grains, with the kernels' numbers of grains and walls.
     std::vector<int> row(int replica, int grain) const {
-        const auto begin = partner_.begin() + std::ptrdiff_t(first_slot(replica, grain));
-        return {begin, begin + build_.slots};
-    }
-    std::size_t first_slot(int replica, int grain) const {
-        return std::size_t(index(replica, grain)) * build_.slots;
+        std::vector<int> entries;
+        for (int c = 0; c < build_.slots; ++c)
+            entries.push_back(partner_[build_.slot_place(index(replica, grain), c)]);
+        return entries;
     }
     /// Index of a grain in the device's arrays.
     int index(int replica, int grain) const {
@@ -60,9 +59,11 @@ public:
         std::map<int, double> found;
         const auto entries = row(replica, grain);
         const std::size_t rows = values.size() / partner_.size();
+        const std::size_t lane = index(replica, grain) % build_.lanes;
+        const std::size_t block = build_.slot_place(index(replica, grain) - lane, 0);
         for (int c = 0; c < build_.slots; ++c)
             if (entries[c] != NO_PARTNER)
-                found[user_partner(replica, entries[c])] = values[rows * first_slot(replica, grain) + c];
+                found[user_partner(replica, entries[c])] = values[rows * block + build_.slot_place(lane, c)];
         return found;
     }
     std::vector<int> partner_slots() const { return saved_values<int>(saved_, "partner_slot"); }

@@ -13,7 +13,7 @@ WORK_GROUP(STEP_ITEMS) kernel void sum_rows(global const int* blocks, global con
     (void)table;
     global const real* row = values + first * 7 * SLOTS;
     lanes v[7];
-    for (int q = 0; q < 7; ++q) load_row(row + q * SLOTS, SLOTS, 1, v + q);
+    for (int q = 0; q < 7; ++q) v[q] = load_slot(row, q * SLOTS, 0);
     const GrainSums slot = {{v[0], v[1], v[2]}, {v[3], v[4], v[5]}, v[6]};
     share_sums(slot, scratch);
     SYNCHRONISE();
