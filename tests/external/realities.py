@@ -230,7 +230,7 @@ def moves(reality):
     down, up = [1] * SCANS, [-1] * SCANS
     return {"stroke": [*down, *up],
             "held": [*down, 0, 0, *up],
-            "paused": [move for way in (*down, *up) for move in (way, 0)],  # as for a tomograph
+            "paused": [move for way in (*down, *up) for move in (way, 0)],  # as for a tomograph, with smooth moves
             "two_cycles": [*down, *up] * 2}[reality["protocol"]]
 
 
@@ -242,13 +242,19 @@ def schedule(reality):
 
 
 def stroke_variables(reality):
-    """Variables of stroke.in and liggghts.in: downward velocity of the plate over its speed, and the steps for which it has
-    moved, as formulas of `step`."""
+    """Variables of stroke.in and liggghts.in: downward velocity of the plate over its mean speed, and the steps for which it has
+    moved, as formulas of `step`. Abrupt stops shake these light grains at 5 to 20 mm/s, which unloads the walls' friction; in an
+    experiment plates are slower. Where the plate pauses, its velocity therefore is 1 - cos over each move."""
     steps, begin, _ = schedule(reality)
     ways = [0, *moves(reality), 0]
     changes = [(begin + n * steps, after - before) for n, (before, after) in enumerate(zip(ways, ways[1:])) if after != before]
-    return {"moving": "+".join(f"({change})*(step>{step})" for step, change in changes),
-            "depth": "+".join(f"({change})*(step-{step})*(step>{step})" for step, change in changes)}
+    moving = "+".join(f"({change})*(step>{step})" for step, change in changes)
+    depth = "+".join(f"({change})*(step-{step})*(step>{step})" for step, change in changes)
+    if reality["protocol"] == "paused":
+        turn = 2 * math.pi / steps
+        depth += f"-({moving})*{1 / turn}*sin({turn}*(step-{begin}))"
+        moving = f"({moving})*(1-cos({turn}*(step-{begin})))"
+    return {"moving": moving, "depth": depth}
 
 
 def stroke_scans(reality):
@@ -339,7 +345,7 @@ def simulate(folder, seed, reality):
                  "start": START, "time_step": TIME_STEP, "plate_speed": STROKE / (SCANS * steps * TIME_STEP), "steps": steps,
                  "relaxed": RELAXED, "begin": begin, "end": end, "slope": reality["tilt"]}
     if reality["program"] == "yade":
-        dumped = by_yade(folder, reality["input"], packing, materials, {**variables, "gravity": pull, "moves": moves(reality)})
+        dumped = by_yade(folder, reality["input"], packing, materials, {**variables, "gravity": pull, "moves": moves(reality), "smooth": reality["protocol"] == "paused"})
     else:
         write_data(folder / "packing.data", packing, reality["types"], materials, container)
         write_walls(folder, reality["tilt"])

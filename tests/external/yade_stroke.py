@@ -46,10 +46,14 @@ def note():
 
 def pass_by():
     """Between the forces and the motion of a step, where both are of the same positions."""
-    now = O.iter
-    if now >= given["begin"]:
-        done = (now - given["begin"]) // steps
-        plate.state.vel = (0, 0, -given["plate_speed"] * (given["moves"][done] if done < len(given["moves"]) else 0))
+    done, step = divmod(O.iter - given["begin"], steps)
+    if done < 0:
+        return
+    velocity = given["plate_speed"] * (given["moves"][done] if done < len(given["moves"]) else 0)
+    if given["smooth"]:
+        velocity *= 1 - math.cos(2 * math.pi * (step + 0.5) / steps)
+    plate.state.vel = (0, 0, -velocity)
+    if step == 0:
         note()
 
 
@@ -63,7 +67,7 @@ O.engines = [
         # Damping of friction would be added without a limit.
         [Ip2_FrictMat_FrictMat_MindlinPhys(betan=given["damping"], betas=0.0, frictAngle=MatchMaker(matches=angles))],
         [Law2_ScGeom_MindlinPhys_Mindlin()]),
-    PyRunner(command="pass_by()", iterPeriod=steps),
+    PyRunner(command="pass_by()", iterPeriod=1 if given["smooth"] else steps),
     NewtonIntegrator(damping=0.2, gravity=given["gravity"], label="motion"),
 ]
 O.run(given["relaxed"], True)
