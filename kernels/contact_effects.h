@@ -43,9 +43,9 @@ INLINE lanes relaxing_force(lanes elastic, real part, real share, lanes* restric
 /* Attraction of two grains [N].
    Adhesion: 2 pi w R*, independent of the overlap (Derjaguin, Muller & Toporov 1975). In a gap it decreases
    linearly to zero over 0.01 R*, or over a longer range if its slope would otherwise exceed m* / (20 dt^2).
-   The range never exceeds the probed gap. Cohesion: k times the area 2 pi R* delta of the circle in which
-   spheres that overlap by delta intersect
-   ("SJKR" in LIGGGHTS). */
+   The range never exceeds the probed gap.
+   Cohesion: k times the area 2 pi R* delta of the circle in which spheres that overlap by delta intersect
+   ("SJKR" of LIGGGHTS). */
 typedef struct {
     lanes adhesion, range, cohesion, force;
 } Attraction;

@@ -96,7 +96,7 @@ struct Refinement {
 /// A recommended next step.
 struct NextStep {
     std::string what;
-    std::optional<double> power;  ///< probability that it decides, predicted from the signatures
+    std::optional<double> power;  ///< probability that it decides, predicted from signatures or runs
 };
 
 /// One of several packings that were diagnosed together.
