@@ -17,7 +17,7 @@ INLINE slots trouble_status(lanes counts) {
 INLINE GrainSums contact_sums(Grain at, const int effects, Batch batch, const slots* partner,
                               EXCHANGE ContactTable* table) {
     global const Replica* restrict replica = at.replica;
-    const Memories kept = memories_of(at, batch.memory);
+    global real* kept = memory_of(at, batch.memory);
     GrainSums sums = {ZERO3, ZERO3, R(0)};
     /* Two loops: a CPU computes several slots of the second one at the same time, as long as its reorder
        buffer holds more than one. */

@@ -8,23 +8,20 @@ typedef struct {
     lanes relaxed; /* internal variable q (viscoelasticity) [N] */
 } Memory;
 
-/* Memory of all slots of a work-item. */
-typedef struct {
-    global real* rows;
-} Memories;
-
-INLINE Memories memories_of(Grain at, global real* restrict memory) {
-    return (Memories){memory + (size_t)(at.first / LANES) * (LANES * SLOTS) * at.replica->memory_rows};
+/* The rows of a work-item's grains. */
+INLINE global real* memory_of(Grain at, global real* restrict memory) {
+    return memory + (size_t)(at.first / LANES) * (LANES * SLOTS) * at.replica->memory_rows;
 }
 
-INLINE lanes memory_row(Memories kept, int kind, int v) {
-    return load_slot(kept.rows, kind * SLOTS * LANES, v);
+INLINE lanes memory_row(global const real* kept, int kind, int v) {
+    return load_slot(kept, kind * SLOTS * LANES, v);
 }
-INLINE void set_memory_row(lanes value, Memories kept, int kind, int v) {
-    store_slot(value, kept.rows, kind * SLOTS * LANES, v);
+INLINE void set_memory_row(lanes value, global real* kept, int kind, int v) {
+    store_slot(value, kept, kind * SLOTS * LANES, v);
 }
 
-INLINE Memory recall(global const Replica* restrict replica, const int effects, Memories kept, int v) {
+INLINE Memory recall(global const Replica* restrict replica, const int effects, global const real* kept,
+                     int v) {
     Memory memory = {ZERO3, R(0), R(0)};
     if (replica->mindlin)
         memory.spring = (lanes3){memory_row(kept, 0, v), memory_row(kept, 1, v), memory_row(kept, 2, v)};
@@ -33,8 +30,8 @@ INLINE Memory recall(global const Replica* restrict replica, const int effects, 
     return memory;
 }
 
-INLINE void remember(global const Replica* restrict replica, const int effects, Memory memory, Memories kept,
-                     int v) {
+INLINE void remember(global const Replica* restrict replica, const int effects, Memory memory,
+                     global real* kept, int v) {
     if (replica->mindlin) {
         set_memory_row(memory.spring.x, kept, 0, v);
         set_memory_row(memory.spring.y, kept, 1, v);

@@ -58,7 +58,7 @@ typedef struct {
 
 INLINE ContactSums measure_contacts(Grain at, Batch batch, MeasuredRows rows, EXCHANGE ContactTable* table) {
     global const Replica* restrict replica = at.replica;
-    const Memories kept = memories_of(at, batch.memory);
+    global real* kept = memory_of(at, batch.memory);
     ContactSums sums = {R(0), R(0), R(0), R(0), R(0)};
     for (int v = 0; v < at.count; ++v) {
         const slots partner = load_number(batch.partner, at.row, v);

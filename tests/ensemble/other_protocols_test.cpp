@@ -1,17 +1,13 @@
 // Other protocols of the plate, by which a diagnosis could tell effects apart.
 #include "ensemble/other_protocols.h"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "ensemble/diagnose_experiment.h"
 #include "ensemble/small_trials.h"
-#include "experiment/instrument.h"
 
 namespace mcdem {
 namespace {
-
-using ::testing::HasSubstr;
 
 Trial relaxing(const SmallTrials& small, double viscoelasticity) {
     Trial trial = small.trial();

@@ -81,6 +81,7 @@ MIDDLE = (realities.BOX / 2, realities.BOX / 2, 0)
 
 
 def position_bias(scans, amplitude, chance):
+    """Lengths are read too large by this fraction."""
     change_points(scans, lambda point: [m + (1 + amplitude) * (p - m) for p, m in zip(point, MIDDLE)])
 
 
@@ -183,7 +184,7 @@ def zero_drift(scans, amplitude, chance):
 def scale_drift(scans, amplitude, chance):
     """The scale of images drifts: after the first cycle lengths are read too large by this fraction."""
     for scan, share in zip(scans, share_of_first_cycle(scans)):
-        change_points([scan], lambda point: [m + (1 + amplitude * share) * (p - m) for p, m in zip(point, MIDDLE)])
+        position_bias([scan], amplitude * share, chance)
 
 
 LIBRARY = {

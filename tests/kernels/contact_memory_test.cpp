@@ -19,7 +19,7 @@ kernel void store_and_load(global const Replica* replica, global real* memory, g
     const Grain at = grain_at(replica, 0, 0, 16, 0, now);
     const int effects = replica->effects;
     const lanes grain = convert_float16(LANE_NUMBERS) * 1000;
-    const Memories all = memories_of(at, memory);
+    global real* all = memory_of(at, memory);
     for (int v = 0; v < SLOTS; ++v) {
         const lanes number = grain + R(v);
         const Memory stored = {{number + 100, number + 200, number + 300}, number + 400, number + 500};

@@ -118,7 +118,7 @@ bool suspected(Decision& decision, const Findings& findings, Verdict verdict, Is
     if (std::ranges::none_of(decision.group, is_suspect)) return false;
     std::stable_partition(decision.group.begin(), decision.group.end(), is_suspect);
     decision.verdict = verdict;
-    const auto& decided = findings.proposals[static_cast<std::size_t>(decision.proposal)];
+    const auto& decided = chosen_proposal(findings, decision);
     if (const int proposal = proposal_of(decision.group[0], findings);
         proposal >= 0 && decided.candidates.size() == 1)
         decision.proposal = proposal;
@@ -126,14 +126,14 @@ bool suspected(Decision& decision, const Findings& findings, Verdict verdict, Is
 }
 
 void name_it(Decision& decision, const Findings& findings, const Limits& limits) {
-    const bool pair = findings.proposals[static_cast<std::size_t>(decision.proposal)].is_pair();
+    const bool pair = chosen_proposal(findings, decision).is_pair();
     if (suspected(decision, findings, Verdict::not_converged,
                   [&](std::size_t c) { return findings.is_numerical(c); }))
         return;
     if (!pair && suspected(decision, findings, Verdict::calibration_suspect,
                            [&](std::size_t c) { return findings.is_nuisance(c); }))
         return;
-    if (leaves_too_much(findings.proposals[static_cast<std::size_t>(decision.proposal)], limits))
+    if (leaves_too_much(chosen_proposal(findings, decision), limits))
         decision.verdict = Verdict::unknown_effect;
     else
         decision.verdict = !pair && decision.group.size() > 1 ? Verdict::group : Verdict::effect;
@@ -178,9 +178,9 @@ Decision decide(const Findings& findings, const Limits& limits) {
     }
     const Proposal& leader = findings.proposals[static_cast<std::size_t>(single)];
     const std::vector<double> gains = known_gains(findings, leader);
-    const double best = leader.best_gain(), margin = std::max(limits.group, limits.group_share * best);
+    const double best = leader.best_gain(), margin = limits.group_margin(best);
     Decision decision = chosen(findings, single, group_of(leader.candidates[0], gains, best, margin), limits);
-    const Proposal& decided = findings.proposals[static_cast<std::size_t>(decision.proposal)];
+    const Proposal& decided = chosen_proposal(findings, decision);
     const double right = trust(decided, findings, limits);
     if (decided.is_pair()) {  // a pair: gains of single effects are not compared
         decision.confidence.assign(findings.gain.size(), 0.0);
@@ -205,7 +205,7 @@ std::vector<std::size_t> contenders(const Findings& findings, const Limits& limi
 std::optional<Explanation> explanation_of(const Findings& findings, const Decision& decision,
                                           const Limits& limits) {
     if (decision.verdict == Verdict::no_gap || decision.proposal < 0) return std::nullopt;
-    const Proposal& decided = findings.proposals[static_cast<std::size_t>(decision.proposal)];
+    const Proposal& decided = chosen_proposal(findings, decision);
     const bool more_than_noise = decided.best_misfit() < limits.misfit;
     const bool suspect =
         decision.verdict == Verdict::not_converged || decision.verdict == Verdict::calibration_suspect;

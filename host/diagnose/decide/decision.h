@@ -31,6 +31,8 @@ struct Limits {
     double certain = 0.8;           ///< at least this much; linear in between
     double right_pair = 0.8;        ///< the same for a pair, at most
     double reduction_margin = 0.1;  ///< error of the reduction by signatures, on either side of its interval
+    /// Largest difference in log likelihood within the group of an effect with this gain.
+    double group_margin(double gain) const { return std::max(group, group_share * gain); }
 };
 
 /// One effect or a pair, and how well it explains the gap.
@@ -73,6 +75,10 @@ struct Decision {
     std::vector<double> confidence;  ///< by candidate: probability that it is the cause, or one of a pair;
                                      ///< the rest to one is the probability of an unknown effect
 };
+/// The proposal of a decision that has one.
+inline const Proposal& chosen_proposal(const Findings& findings, const Decision& decision) {
+    return findings.proposals[static_cast<std::size_t>(decision.proposal)];
+}
 Decision decide(const Findings& findings, const Limits& limits);
 
 /// Proposals whose reductions the decision depends on: the best single one, and a pair with a sufficient

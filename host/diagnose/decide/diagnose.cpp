@@ -75,8 +75,7 @@ public:
             }
         // A named effect has a single amplitude: that of the explanation.
         if (decision_.verdict != Verdict::no_gap && decision_.proposal >= 0)
-            take_amplitude(cause, candidate,
-                           findings_.proposals[static_cast<std::size_t>(decision_.proposal)]);
+            take_amplitude(cause, candidate, chosen_proposal(findings_, decision_));
         return cause;
     }
 
@@ -92,7 +91,7 @@ public:
 
     /// The leading effect and its group, or both effects of a pair.
     std::vector<Cause> leading() const {
-        const Proposal& decided = findings_.proposals[static_cast<std::size_t>(decision_.proposal)];
+        const Proposal& decided = chosen_proposal(findings_, decision_);
         std::vector<Cause> list;
         for (const std::size_t candidate : decision_.group) list.push_back(of(candidate));
         if (decided.candidates.size() == 1)

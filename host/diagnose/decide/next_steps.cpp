@@ -70,7 +70,7 @@ double power_to_tell(double squared_distance, double margin) {
 
 /// The amplitude of a candidate in the decision.
 double amplitude_of(const Findings& findings, const Decision& decision, std::size_t candidate) {
-    const Proposal& decided = findings.proposals[static_cast<std::size_t>(decision.proposal)];
+    const Proposal& decided = chosen_proposal(findings, decision);
     const auto place = std::ranges::find(decided.candidates, candidate) - decided.candidates.begin();
     return place < std::ssize(decided.candidates) ? decided.amplitudes[static_cast<std::size_t>(place)] : 0;
 }
@@ -79,7 +79,7 @@ double amplitude_of(const Findings& findings, const Decision& decision, std::siz
 std::vector<NextStep> telling_apart(const std::vector<Measurement>& measurements, const GapData& data,
                                     const Findings& findings, const Decision& decision,
                                     const Limits& limits) {
-    const Proposal& decided = findings.proposals[static_cast<std::size_t>(decision.proposal)];
+    const Proposal& decided = chosen_proposal(findings, decision);
     const std::size_t leader = decided.candidates.front();
     const double amplitude = amplitude_of(findings, decision, leader);
     const auto rival = std::ranges::find_if(decision.group, [&](std::size_t c) { return c != leader; });
@@ -88,9 +88,8 @@ std::vector<NextStep> telling_apart(const std::vector<Measurement>& measurements
         const double squared = distance(m.space, data.candidates[leader], amplitude, data.candidates[*rival]);
         const double gain =
             0.5 * m.space.whiten(data.candidates[leader].signature->at(amplitude)).squaredNorm();
-        const double margin = std::max(limits.group, limits.group_share * gain);
         steps.push_back({fmt::format("{}: tells {} from {}", m.what, data.name(leader), data.name(*rival)),
-                         power_to_tell(squared, margin)});
+                         power_to_tell(squared, limits.group_margin(gain))});
     }
     return steps;
 }
@@ -164,17 +163,17 @@ Eigen::VectorXd or_zero(const Eigen::VectorXd& values) {
     return values.unaryExpr([](double value) { return std::isfinite(value) ? value : 0; });
 }
 
-}  // namespace
-
+/// Whether several single effects explain the gap, which a measurement might distinguish.
 bool has_rivals(const Findings& findings, const Decision& decision) {
     return decision.verdict != Verdict::no_gap && decision.proposal >= 0 && decision.group.size() > 1 &&
-           !findings.proposals[static_cast<std::size_t>(decision.proposal)].is_pair();
+           !chosen_proposal(findings, decision).is_pair();
 }
+
+}  // namespace
 
 std::optional<std::size_t> proposal_of_rival(const Findings& findings, const Decision& decision) {
     if (!has_rivals(findings, decision)) return std::nullopt;
-    const std::size_t leader =
-        findings.proposals[static_cast<std::size_t>(decision.proposal)].candidates.front();
+    const std::size_t leader = chosen_proposal(findings, decision).candidates.front();
     for (const std::size_t candidate : decision.group)
         for (std::size_t k = 0; k < findings.proposals.size(); ++k)
             if (candidate != leader && findings.proposals[k].candidates == std::vector{candidate}) return k;
@@ -199,8 +198,7 @@ double power_of_protocol(const ProtocolRuns& runs, const Evidence& evidence, con
     const double squared =
         space.whiten(apart.topRows(half).colwise().mean().transpose())
             .dot(space.whiten(apart.bottomRows(apart.rows() - half).colwise().mean().transpose()));
-    const double gain = findings.proposals[static_cast<std::size_t>(decision.proposal)].best_gain();
-    return power_to_tell(squared, std::max(limits.group, limits.group_share * gain));
+    return power_to_tell(squared, limits.group_margin(chosen_proposal(findings, decision).best_gain()));
 }
 
 std::vector<NextStep> next_measurements(const Evidence& evidence, const GapData& data,

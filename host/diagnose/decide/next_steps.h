@@ -12,9 +12,6 @@ std::vector<NextStep> next_measurements(const Evidence& evidence, const GapData&
                                         const Findings& findings, const Decision& decision,
                                         const Limits& limits);
 
-/// Whether several single effects explain the gap, which a measurement might distinguish.
-bool has_rivals(const Findings& findings, const Decision& decision);
-
 /// The proposal of the nearest rival of the leading effect, if it was confirmed by runs too.
 std::optional<std::size_t> proposal_of_rival(const Findings& findings, const Decision& decision);
 

@@ -47,7 +47,7 @@ std::vector<DetectionLimit> detection_limits(const GapSpace& space, const GapDat
             limit.absorbed_by_calibration = 1 - 2 * expected_gain(space, *candidate.signature, probe) / alone;
         const double twice = std::min(2 * probe, candidate.high);
         const GapStatistics as_if = gap_statistics(space, data, candidate.signature->at(twice));
-        const double margin = std::max(limits.group, limits.group_share * as_if.fits[c].score);
+        const double margin = limits.group_margin(as_if.fits[c].score);
         for (std::size_t other = 0; other < data.candidates.size(); ++other)
             if (other != c && as_if.fits[c].score - as_if.fits[other].score <= margin)
                 limit.group.push_back(data.name(other));
