@@ -91,24 +91,24 @@ INLINE lanes attraction_energy(Attraction a, lanes overlap, lanes approach) {
     return -a.adhesion * (R(0.5) * inside + overlap) - R(0.5) * a.cohesion * overlap;
 }
 
-/* Torque of magnitude mu_r R* F_n against the relative angular velocity, rolling and twisting (Zhou et al.
-   1999; Ai et al. 2011, model A). At small velocities it is viscous, as saturated friction is. */
-INLINE lanes3 rolling_couple(Grain at, Neighbours neighbour, lanes normal_force, lanes reduced_radius) {
-    global const Replica* restrict replica = at.replica;
-    const lanes r = at.now.radius;
-    const lanes r_there = neighbour.radius;
+/* Rolling resistance: a spring between the rotations of two grains across the normal, with stiffness
+   k_r = 8 G* a R*^2 (Iwashita & Oda 1998: the tangential stiffness times R*^2), damped as the tangential spring
+   is, and cut at the torque mu_r R* F_n (Ai et al. 2011, model C). Twisting is not resisted. `spring` is that of
+   the tangential force with the limit F_n. Returns the torque on this grain [N m]; updates `rotation`. */
+INLINE lanes3 rolling_couple(Grain at, Neighbours neighbour, lanes reduced_radius, SpringTerms spring,
+                             real elapsed, lanes3* restrict rotation) {
+    const lanes r = at.now.radius, r_there = neighbour.radius;
     lanes fifth = r * r * r * r * r;
     lanes fifth_there = r_there * r_there * r_there * r_there * r_there;
 #if SPECIES > 1
     fifth *= OWN(at, relative_density);
     fifth_there *= of_neighbours(at, neighbour, PLACE_OF(relative_density));
 #endif
-    const lanes reduced_inertia = at.materials->density * (R(8) / R(15)) * PI *
-                                  WHERE(neighbour.wall, fifth, R(1) / (R(1) / fifth + R(1) / fifth_there));
-    const lanes3 relative = subtract3(neighbour.spin, at.now.spin);
-    const lanes slow = replica->sliding_velocity / reduced_radius;
-    const lanes limit = replica->rolling_resistance * reduced_radius * fmax(normal_force, (lanes)(R(0)));
-    const lanes viscosity = fmin(limit / sqrt(dot3(relative, relative) + slow * slow),
-                                 reduced_inertia * (R(0.1) / replica->time_step));
-    return scale3(viscosity, relative);
+    spring.limit *= at.replica->rolling_resistance * reduced_radius;
+    spring.stiffness *= reduced_radius * reduced_radius;
+    spring.reduced_mass = at.materials->density * (R(8) / R(15)) * PI *
+                          WHERE(neighbour.wall, fifth, R(1) / (R(1) / fifth + R(1) / fifth_there));
+    const lanes3 turning = subtract3(neighbour.spin, at.now.spin);
+    const lanes3 rolling = add_scaled3(turning, -dot3(turning, neighbour.normal), neighbour.normal);
+    return cut_spring(spring, rolling, neighbour.normal, elapsed, rotation);
 }

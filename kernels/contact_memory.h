@@ -1,11 +1,12 @@
 /* State of a contact that persists between steps; each side stores its own copy in its slot. The state of a
    work-item's grains is one block of rows, one row per quantity, with one real per slot. Only rows that the
-   replica needs are stored (Replica: memory_rows, deepest_row, relaxed_row). */
+   replica needs are stored (Replica: memory_rows, deepest_row, relaxed_row, rolling_row). */
 
 typedef struct {
-    lanes3 spring; /* elongation of the tangential spring (Mindlin friction), from this grain's side [m] */
-    lanes deepest; /* largest overlap so far (plasticity) [m] */
-    lanes relaxed; /* internal variable q (viscoelasticity) [N] */
+    lanes3 spring;  /* elongation of the tangential spring (Mindlin friction), from this grain's side [m] */
+    lanes deepest;  /* largest overlap so far (plasticity) [m] */
+    lanes relaxed;  /* internal variable q (viscoelasticity) [N] */
+    lanes3 rolling; /* elongation of the rolling spring, from this grain's side [rad] */
 } Memory;
 
 /* The rows of a work-item's grains. */
@@ -20,23 +21,31 @@ INLINE void set_memory_row(lanes value, global real* kept, int kind, int v) {
     store_slot(value, kept, kind * SLOTS * LANES, v);
 }
 
+INLINE lanes3 memory_rows_of_vector(global const real* kept, int kind, int v) {
+    return (lanes3){memory_row(kept, kind, v), memory_row(kept, kind + 1, v), memory_row(kept, kind + 2, v)};
+}
+INLINE void set_memory_rows_of_vector(lanes3 value, global real* kept, int kind, int v) {
+    set_memory_row(value.x, kept, kind, v);
+    set_memory_row(value.y, kept, kind + 1, v);
+    set_memory_row(value.z, kept, kind + 2, v);
+}
+
 INLINE Memory recall(global const Replica* restrict replica, const int effects, global const real* kept,
                      int v) {
-    Memory memory = {ZERO3, R(0), R(0)};
-    if (replica->mindlin)
-        memory.spring = (lanes3){memory_row(kept, 0, v), memory_row(kept, 1, v), memory_row(kept, 2, v)};
+    Memory memory = {ZERO3, R(0), R(0), ZERO3};
+    if (replica->mindlin) memory.spring = memory_rows_of_vector(kept, 0, v);
     if (effects & EFFECT_PLASTICITY) memory.deepest = memory_row(kept, replica->deepest_row, v);
     if (effects & EFFECT_VISCOELASTICITY) memory.relaxed = memory_row(kept, replica->relaxed_row, v);
+    if (effects & EFFECT_ROLLING_RESISTANCE)
+        memory.rolling = memory_rows_of_vector(kept, replica->rolling_row, v);
     return memory;
 }
 
 INLINE void remember(global const Replica* restrict replica, const int effects, Memory memory,
                      global real* kept, int v) {
-    if (replica->mindlin) {
-        set_memory_row(memory.spring.x, kept, 0, v);
-        set_memory_row(memory.spring.y, kept, 1, v);
-        set_memory_row(memory.spring.z, kept, 2, v);
-    }
+    if (replica->mindlin) set_memory_rows_of_vector(memory.spring, kept, 0, v);
     if (effects & EFFECT_PLASTICITY) set_memory_row(memory.deepest, kept, replica->deepest_row, v);
     if (effects & EFFECT_VISCOELASTICITY) set_memory_row(memory.relaxed, kept, replica->relaxed_row, v);
+    if (effects & EFFECT_ROLLING_RESISTANCE)
+        set_memory_rows_of_vector(memory.rolling, kept, replica->rolling_row, v);
 }

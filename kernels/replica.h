@@ -45,6 +45,7 @@ typedef struct {
     int memory_rows;     /* rows of contact memory (contact_memory.h); Mindlin springs take the first three */
     int deepest_row;     /* row of plasticity */
     int relaxed_row;     /* row of viscoelasticity */
+    int rolling_row;     /* first of the three rows of rolling resistance */
     int effects;         /* EFFECT_* bits: effects beyond the plain model */
     int container;       /* CONTAINER_* below */
 } Replica;

@@ -102,7 +102,7 @@ const Key table[] = {
     {"effects.plasticity", effect<&Effects::plasticity>, "", between(0, 0.99), each, "fraction of the deepest overlap that remains after unloading"},
     {"effects.bulge_contacts", effect<&Effects::bulge_contacts>, "", between(0, 1), each, "fraction of the surface displacement that counts where the undeformed grains do not overlap; 1: all of it; 0: surface displacements create no contacts"},
     {"effects.friction_history", effect<&Effects::friction_history>, "", between(0, 1), each, "weight of the friction law that contact.friction_law does not name"},
-    {"effects.rolling_resistance", effect<&Effects::rolling_resistance>, "", between(0, 10), each, "mu_r: torque mu_r R* F_n against rolling and twisting"},
+    {"effects.rolling_resistance", effect<&Effects::rolling_resistance>, "", between(0, 10), each, "mu_r: a rolling spring that yields at the torque mu_r R* F_n"},
     {"effects.modulus_scatter", effect<&Effects::modulus_scatter>, "", between(0, 2), each, "standard deviation of ln E between grains; the mean of E does not change"},
     {"effects.diameter_error", effect<&Effects::diameter_error>, "m", between(-10, 10), each, "true minus stated diameter, the same for all grains; results contain the stated diameter"},
     {"effects.polydispersity", effect<&Effects::polydispersity>, "m", between(0, 10), each, "standard deviation of true minus stated diameter, drawn for each grain"},

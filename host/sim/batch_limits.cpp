@@ -60,6 +60,7 @@ FieldNeeds field_needs(const std::vector<Replica>& replicas) {
         needs.deepest |= replica.effects.plasticity > 0;
         needs.cells |= is_cell(replica.box);
         needs.relaxed |= replica.effects.viscoelasticity > 0;
+        needs.rolling |= replica.effects.rolling_resistance > 0;
     }
     return needs;
 }

@@ -38,6 +38,7 @@ std::vector<DeviceReplica> device_replicas(const std::vector<Replica>& replicas,
         all.back().memory_rows = rows.count;
         all.back().deepest_row = rows.deepest;
         all.back().relaxed_row = rows.relaxed;
+        all.back().rolling_row = rows.rolling;
         cells += cell_count(all.back());
     }
     return all;

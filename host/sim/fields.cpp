@@ -11,6 +11,10 @@ MemoryRows memory_rows(const FieldNeeds& needs) {
     if (needs.springs) rows.count += 3;
     if (needs.deepest) rows.deepest = rows.count++;
     if (needs.relaxed) rows.relaxed = rows.count++;
+    if (needs.rolling) {
+        rows.rolling = rows.count;
+        rows.count += 3;
+    }
     return rows;
 }
 

@@ -60,13 +60,14 @@ struct FieldNeeds {
     bool springs = false;        ///< some replica has friction with history
     bool deepest = false;        ///< some replica has plasticity
     bool relaxed = false;        ///< some replica has viscoelasticity
+    bool rolling = false;        ///< some replica has rolling resistance
     bool cells = false;          ///< some replica is a cell
 };
 
 /// Number of rows of a grain's contact memory (kernels/contact_memory.h). Springs, if present, use the first
 /// three.
 struct MemoryRows {
-    int count = 0, deepest = 0, relaxed = 0;
+    int count = 0, deepest = 0, relaxed = 0, rolling = 0;
 };
 MemoryRows memory_rows(const FieldNeeds& needs);
 

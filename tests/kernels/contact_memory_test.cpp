@@ -4,10 +4,11 @@
 namespace reference {
 namespace {
 
-constexpr int rows = 5, slots = 16, grains = 48, first = 16, number = 16;
+constexpr int rows = 8, slots = 16, grains = 48, first = 16, number = 16;
 
-/// Stores 1000 grain + 100 row + slot for grains 16 to 31 and loads it again. Returns spring, deepest and
-/// relaxed of slot 3 of the sixth grain, then the second number of each row of the fourth grain in memory.
+/// Stores 1000 grain + 100 row + slot for grains 16 to 31 and loads it again. Returns spring, deepest,
+/// relaxed and rolling of slot 3 of the sixth grain, then the second number of each row of the fourth grain
+/// in memory.
 std::vector<float> remembered(const mcdem::f32::Replica& replica) {
     const KernelBuild cpu_like = [] {
         const KernelBuild kernels = build(Precision::single_precision);
@@ -22,12 +23,14 @@ kernel void store_and_load(global const Replica* replica, global real* memory, g
     global real* all = memory_of(at, memory);
     for (int v = 0; v < SLOTS; ++v) {
         const lanes number = grain + R(v);
-        const Memory stored = {{number + 100, number + 200, number + 300}, number + 400, number + 500};
+        const Memory stored = {{number + 100, number + 200, number + 300}, number + 400, number + 500,
+                               {number + 600, number + 700, number + 800}};
         remember(replica, effects, stored, all, v);
     }
     const Memory loaded = recall(replica, effects, all, 3);
     out[0] = loaded.spring.x.s5, out[1] = loaded.spring.y.s5, out[2] = loaded.spring.z.s5;
     out[3] = loaded.deepest.s5, out[4] = loaded.relaxed.s5;
+    out[5] = loaded.rolling.x.s5, out[6] = loaded.rolling.y.s5, out[7] = loaded.rolling.z.s5;
 })",
                                             cpu_like);
     struct Replicas;
@@ -35,13 +38,13 @@ kernel void store_and_load(global const Replica* replica, global real* memory, g
     struct Out;
     mcdem::Field<Replicas> of(device(), 1, sizeof replica);
     mcdem::Field<Rows> memory(device(), grains * rows * slots, sizeof(float));
-    mcdem::Field<Out> out(device(), 5, sizeof(float));
+    mcdem::Field<Out> out(device(), 8, sizeof(float));
     of.write(&replica);
     std::vector<float> in_memory(grains * rows * slots, -1);
     memory.write(in_memory.data());
     mcdem::Kernel<mcdem::Field<Replicas>, mcdem::Field<Rows>, mcdem::Field<Out>>(
         device(), program, "store_and_load", 1)(1, of, memory, out);
-    std::vector<float> found(5);
+    std::vector<float> found(8);
     out.read(found.data());
     memory.read(in_memory.data());
     for (int row = 0; row < replica.memory_rows; ++row)
@@ -55,12 +58,13 @@ kernel void store_and_load(global const Replica* replica, global real* memory, g
 TEST(ContactMemory, KeepsAllRowsIfAllEffectsAreOn) {
     mcdem::f32::Replica replica{};
     replica.mindlin = 1;
-    replica.memory_rows = 5;
+    replica.memory_rows = 8;
     replica.deepest_row = 3;
     replica.relaxed_row = 4;
-    replica.effects = EFFECT_PLASTICITY | EFFECT_VISCOELASTICITY;
-    EXPECT_EQ(remembered(replica),
-              (std::vector<float>{5103, 5203, 5303, 5403, 5503, 3101, 3201, 3301, 3401, 3501}));
+    replica.rolling_row = 5;
+    replica.effects = EFFECT_PLASTICITY | EFFECT_VISCOELASTICITY | EFFECT_ROLLING_RESISTANCE;
+    EXPECT_EQ(remembered(replica), (std::vector<float>{5103, 5203, 5303, 5403, 5503, 5603, 5703, 5803, 3101,
+                                                       3201, 3301, 3401, 3501, 3601, 3701, 3801}));
 }
 
 TEST(ContactMemory, KeepsOnlyTheRowsThatTheReplicaNeeds) {
@@ -68,7 +72,7 @@ TEST(ContactMemory, KeepsOnlyTheRowsThatTheReplicaNeeds) {
     replica.memory_rows = 1;
     replica.relaxed_row = 0;
     replica.effects = EFFECT_VISCOELASTICITY;
-    EXPECT_EQ(remembered(replica), (std::vector<float>{0, 0, 0, 0, 5503, 3501}));
+    EXPECT_EQ(remembered(replica), (std::vector<float>{0, 0, 0, 0, 5503, 0, 0, 0, 3501}));
 }
 
 }  // namespace

@@ -347,5 +347,13 @@ TEST(NeighbourList, RelaxedForcesMoveWithTheirNeighbours) {
                                         [](const Memory& memory) { return memory.relaxed; });
 }
 
+TEST(NeighbourList, RollingSpringsMoveWithTheirNeighbours) {
+    if (!has_double()) GTEST_SKIP() << "the device has no double precision";
+    Start start = mixing(FrictionLaw::saturated, ContactModel::independent);
+    start.replica.effects.rolling_resistance = 0.3;
+    expect_memory_moves_with_neighbours(start, "contact_memory", 0.1,
+                                        [](const Memory& memory) { return memory.rolling.x(); });
+}
+
 }  // namespace
 }  // namespace reference

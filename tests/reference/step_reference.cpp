@@ -170,6 +170,7 @@ ReferenceContact StepReference::contact_of(int i, int partner, double elapsed, M
         memory.deepest);
     if (!(overlap > 0)) {
         memory.spring.setZero();
+        memory.rolling.setZero();
         memory.relaxed *= std::exp(-elapsed / scene_.effects.relaxation_time);
         contact.arm = a.radius + contact.displacement;
         const Attraction pull = attraction(overlap, pair);
@@ -225,7 +226,7 @@ void StepReference::add_forces(ReferenceContact& contact, const Body& a, const B
         contact.tangential =
             mindlin * mindlin_friction(limit, sliding, contact, pair, elapsed, memory.spring);
     if (mindlin < 1) contact.tangential += (1 - mindlin) * saturated_friction(limit, sliding, pair);
-    contact.couple = couple(normal, a, b, pair);
+    contact.couple = rolling_couple(normal, a, b, contact, pair, elapsed, memory.rolling);
     contact.force = (pull.force - normal) * e + contact.tangential;
 }
 
@@ -242,14 +243,20 @@ StepReference::Attraction StepReference::attraction(double overlap, const PairCo
     return {pull_off_force + cohesion, -pull_off_force * (range / 2 + overlap) - cohesion * overlap / 2};
 }
 
-/// Rolling resistance: torque against the relative angular velocity, viscous at small velocities.
-Vec3 StepReference::couple(double normal, const Body& a, const Body& b, const PairConstants& pair) const {
+/// Rolling resistance: a damped spring between the rotations across the normal, cut at mu_r R* F_n.
+Vec3 StepReference::rolling_couple(double normal, const Body& a, const Body& b,
+                                   const ReferenceContact& contact, const PairConstants& pair, double elapsed,
+                                   Vec3& rotation) const {
     const auto inertia = [](const Body& body) { return 0.4 * body.mass * body.radius * body.radius; };
     const double reduced = b.radius == 0 ? inertia(a) : 1 / (1 / inertia(a) + 1 / inertia(b));
-    const Vec3 relative = b.angular_velocity - a.angular_velocity;
-    const double smooth = std::hypot(relative.norm(), scene_.contact.sliding_velocity / pair.radius);
+    const Vec3 rolling = across(b.angular_velocity - a.angular_velocity, contact.direction);
+    rotation = across(rotation + rolling * elapsed, contact.direction);
     const double limit = scene_.effects.rolling_resistance * pair.radius * std::max(normal, 0.0);
-    return std::min(limit / smooth, 0.1 * reduced / time_step_) * relative;
+    const double stiffness = 8 * pair.shear_modulus * contact.contact_radius * std::pow(pair.radius, 2);
+    const Vec3 torque = stiffness * rotation + pair.damping * std::sqrt(stiffness * reduced) * rolling;
+    if (torque.norm() <= limit) return torque;
+    rotation *= limit / torque.norm();
+    return torque * (limit / torque.norm());
 }
 
 /// Viscous below `sliding_velocity`. A step removes at most a tenth of m* times the sliding

@@ -20,6 +20,7 @@ struct Memory {
     Vec3 spring = Vec3::Zero();    ///< tangential spring of Mindlin friction [m]
     double deepest = 0;            ///< largest overlap so far (plasticity) [m]
     double relaxed = 0;            ///< internal variable q (viscoelasticity) [N]
+    Vec3 rolling = Vec3::Zero();   ///< relative rotation stored in the rolling spring [rad]
 };
 
 /// A neighbour of a grain and its contact.
@@ -99,7 +100,8 @@ private:
         double force = 0, energy = 0;  ///< [N], [J]
     };
     Attraction attraction(double overlap, const PairConstants& pair) const;
-    Vec3 couple(double normal, const Body& a, const Body& b, const PairConstants& pair) const;
+    Vec3 rolling_couple(double normal, const Body& a, const Body& b, const ReferenceContact& contact,
+                        const PairConstants& pair, double elapsed, Vec3& rotation) const;
     Vec3 saturated_friction(double limit, const Vec3& sliding, const PairConstants& pair) const;
     Vec3 mindlin_friction(double limit, const Vec3& sliding, const ReferenceContact& contact,
                           const PairConstants& pair, double elapsed, Vec3& spring) const;
