@@ -26,6 +26,7 @@ TEST(DiagnosisBuilder, FindsAndMeasuresAPlantedEffect) {
     EXPECT_EQ(d.causes[0].effect, "adhesion");
     EXPECT_EQ(d.causes[0].unit, "J/m2");
     EXPECT_NEAR(d.causes[0].amplitude, 4, 4 * d.causes[0].amplitude_error);
+    EXPECT_FALSE(d.causes[0].at_limit);
     EXPECT_GT(d.causes[0].explained, 0.5);
     EXPECT_LT(d.p_value, 1e-3);
     EXPECT_FALSE(d.where.empty());
@@ -35,6 +36,18 @@ TEST(DiagnosisBuilder, FindsAndMeasuresAPlantedEffect) {
     ASSERT_TRUE(d.gap_reduction);
     EXPECT_GT(d.gap_reduction->fraction, 0.9);
     EXPECT_THAT(d.not_measured, ElementsAre(HasSubstr("grains.csv")));
+}
+
+// The hidden amplitude is 4, larger than the range tried.
+TEST(DiagnosisBuilder, SaysThatAnAmplitudeIsAtTheLimitOfItsRange) {
+    SyntheticWorld world(6, 3);
+    Evidence evidence = world.evidence(1, 32);
+    world.add_effect(evidence, "adhesion", world.pattern(1));
+    evidence.candidates[0].high = 3;
+    evidence.observed += 4 * evidence.library.effects[0].linear;
+    const Cause cause = DiagnosisBuilder(evidence, {}).diagnosis().ranking.at(0);
+    EXPECT_NEAR(cause.amplitude, 3, 1e-6);
+    EXPECT_TRUE(cause.at_limit);
 }
 
 TEST(DiagnosisBuilder, AParameterFarFromItsStatedValueIsASymptom) {

@@ -43,7 +43,7 @@ def lammps(work=0, modulus=E, friction=FRICTION, wall_friction=FRICTION, floor_f
 
     def wall(limit):
         return (f"{normal} {wall_modulus} {RESTITUTION} {NU}{sticking} "
-                f"tangential mindlin {shear} 1.0 {limit} damping tsuji")
+                f"tangential mindlin {shear} 1.0 {limit} {further} damping tsuji")
 
     return {"program": "lmp", "input": "lammps.in", "skin": 0.001,
             "law": f"{normal} {modulus} {RESTITUTION} {NU}{sticking} tangential mindlin NULL 1.0 {friction} {further} "
@@ -74,8 +74,11 @@ CASES = {
     "liggghts_wall_friction": {
         "effect": "wall_friction: 0.06 for 0.03", "expected": ["wall_friction"], "reality": liggghts(wall_friction=0.06)},
     "liggghts_rolling": {
-        "effect": "rolling_resistance: constant couple, mu_r = 0.1", "expected": ["rolling_resistance"],
-        "reality": liggghts("rolling_friction cdt", rolling=0.1)},
+        "effect": "rolling_resistance: constant couple (cdt), mu_r = 0.1", "expected": ["rolling_resistance"],
+        "reality": liggghts("rolling_friction cdt", rolling=0.1) | {"finer": 10}},
+    "liggghts_rolling_spring": {
+        "effect": "rolling_resistance: spring and slider (epsd2), mu_r = 0.02", "expected": ["rolling_resistance"],
+        "reality": liggghts("rolling_friction epsd2", rolling=0.02)},
     "lammps_rolling": {
         "effect": "rolling_resistance: spring, dashpot, slider, mu_r = 0.1", "expected": ["rolling_resistance"],
         "reality": lammps(further="rolling sds 20.0 0.0 0.1")},

@@ -95,7 +95,7 @@ def test_yade(folder):
 
 
 def answered(kind, effects, verdict, causes=(), limit=0.01):
-    listed = [{"effect": e, "group": [e], "amplitude": a, "amplitude_error": 0.01, "confidence": p} for e, a, p in causes]
+    listed = [{"effect": e, "group": [e], "amplitude": a, "amplitude_error": 0.01, "at_limit": False, "confidence": p} for e, a, p in causes]
     return {"kind": kind, "code": "lammps", "effects": [{"name": n, "amplitude": a} for n, a in effects],
             "answer": {"verdict": verdict, "causes": listed, "shrink": {"fraction": 0.9, "confirmed": 0.95},
                        "detection_limits": [{"effect": n, "minimum_amplitude": limit} for n, _ in effects]}}

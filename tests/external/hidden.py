@@ -36,7 +36,7 @@ class Hidden:
 def rolling(code, amplitude, chance):
     if code == "lammps":
         return {"further": f"rolling sds 20.0 0.0 {amplitude}"}
-    return {"further": "rolling_friction cdt", "rolling": amplitude}
+    return {"further": "rolling_friction epsd2", "rolling": amplitude}
 
 
 def scattered_moduli(code, amplitude, chance):
@@ -198,7 +198,7 @@ LIBRARY = {
         "work": a}),
     "cohesion": Hidden(50, 400, "SJKR [J/m3]", codes=("liggghts",), arguments=lambda code, a, chance: {
         "further": "cohesion sjkr", "cohesion_energy": a}),
-    "rolling_resistance": Hidden(0.04, 0.22, "constant couple (LIGGGHTS) or spring and slider (LAMMPS)", codes=("liggghts", "lammps"),
+    "rolling_resistance": Hidden(0.004, 0.06, "spring and slider", codes=("liggghts", "lammps"),
                                  arguments=rolling),
     "buoyancy": Hidden(14, 43, "grains heavier than stated [kg/m3]", reality=lambda a: {
         "weight": 1 + a / EXCESS_DENSITY}),

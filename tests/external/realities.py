@@ -236,8 +236,8 @@ def moves(reality):
 
 def schedule(reality):
     """Steps in an interval, and the steps at which the plate starts and stops."""
-    steps = round(STEPS * reality["slower"])
-    begin = steps * math.ceil(BEGIN / steps)
+    steps = round(STEPS * reality["slower"] * reality["finer"])
+    begin = steps * math.ceil(BEGIN * reality["finer"] / steps)
     return steps, begin, begin + len(moves(reality)) * steps
 
 
@@ -309,6 +309,7 @@ def programme_of(reality):
 # Further keys of an experiment, in addition to those of its input script.
 DEFAULTS = {
     "slower": 1,       # factor by which the plate is slower than SPEED
+    "finer": 1,        # factor by which the time step is shorter than TIME_STEP; not where forces are prescribed
     "protocol": "stroke",  # of the plate: one of those of moves()
     "tilt": 0,         # slope of the plate along x
     "weight": 1,       # relative to grains of DENSITY
@@ -341,9 +342,10 @@ def simulate(folder, seed, reality):
     materials = [chance.randint(1, reality["materials"]) for _ in packing] if reality["materials"] else None
     steps, begin, end = schedule(reality)
     pull = gravity_of(reality)
+    time_step = TIME_STEP / reality["finer"]
     variables = {**{key: value for key, value in reality.items() if key not in ("program", "input", *DEFAULTS)},
-                 "start": START, "time_step": TIME_STEP, "plate_speed": STROKE / (SCANS * steps * TIME_STEP), "steps": steps,
-                 "relaxed": RELAXED, "begin": begin, "end": end, "slope": reality["tilt"]}
+                 "start": START, "time_step": time_step, "plate_speed": STROKE / (SCANS * steps * time_step), "steps": steps,
+                 "relaxed": RELAXED * reality["finer"], "begin": begin, "end": end, "slope": reality["tilt"]}
     if reality["program"] == "yade":
         dumped = by_yade(folder, reality["input"], packing, materials, {**variables, "gravity": pull, "moves": moves(reality), "smooth": reality["protocol"] == "paused"})
     else:

@@ -44,7 +44,7 @@ TEST(DiagnosisJson, has_the_documented_keys_in_their_order) {
                 ElementsAre("observable", "phase", "displacement_mm", "region", "z_score", "z_score_refitted",
                             "force_class", "difference"));
     const auto cause = ElementsAre("effect", "amplitude", "unit", "confidence", "group", "amplitude_error",
-                                   "explained", "score", "confirmed_score");
+                                   "at_limit", "explained", "score", "confirmed_score");
     EXPECT_THAT(keys_of(json["causes"][0]), cause);
     EXPECT_THAT(keys_of(json["ranking"][17]), cause);
     EXPECT_THAT(keys_of(json["next"][0]), ElementsAre("what", "power"));

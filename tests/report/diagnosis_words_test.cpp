@@ -102,6 +102,12 @@ TEST(DiagnosisWords, suspects_are_the_best_parameter_or_those_at_their_bounds) {
     ASSERT_EQ(suspects.size(), 1u);
     EXPECT_EQ(suspect_words(suspects[0]),
               "friction between grains: 0.080 ± 0.010 higher than in the scene (8.0 times its stated error)");
+    EXPECT_EQ(cause_words(d.causes[0]), "friction between grains (0.080 ± 0.010 higher than in the scene)");
+    d.causes[0].at_limit = true;
+    EXPECT_EQ(
+        cause_words(d.causes[0]),
+        "friction between grains (0.080 ± 0.010 higher than in the scene, or more: it is at the limit of "
+        "the range tried)");
 }
 
 }  // namespace

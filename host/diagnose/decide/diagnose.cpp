@@ -37,6 +37,14 @@ std::string unit_of(const Evidence& evidence, const std::string& name) {
     return "";
 }
 
+bool at_limit(const Evidence& evidence, const Cause& cause) {
+    for (const CandidateRange& c : evidence.candidates)
+        if (c.name == cause.effect)
+            return (c.high > 0 && cause.amplitude + cause.amplitude_error >= c.high) ||
+                   (c.low < 0 && cause.amplitude - cause.amplitude_error <= c.low);
+    return false;
+}
+
 std::vector<NuisanceFit> nuisance_fits(const Evidence& evidence, const GapSpace& space,
                                        const Eigen::VectorXd& gap) {
     constexpr double far_out = 2.5;  // prior sigmas
@@ -76,6 +84,7 @@ public:
         // A named effect has a single amplitude: that of the explanation.
         if (decision_.verdict != Verdict::no_gap && decision_.proposal >= 0)
             take_amplitude(cause, candidate, chosen_proposal(findings_, decision_));
+        cause.at_limit = at_limit(evidence_, cause);
         return cause;
     }
 

@@ -44,6 +44,7 @@ struct Cause {
     std::string effect;
     double amplitude = 0;
     double amplitude_error = 0;  ///< one sigma
+    bool at_limit = false;       ///< within one sigma of the end of its range: it may also be larger
     std::string unit;
     double confidence = 0;           ///< probability among all effects
     double explained = 0;            ///< fraction of the chi-square of all differences, including noise

@@ -139,7 +139,7 @@ const Effect all_effects[] = {
     {"modulus_scatter", "", "standard deviation of ln E from grain to grain", "log-normal scatter",
      0, 0.8, 0.15, 0.4, one, [](Model& m, double a) { m.replica.effects.modulus_scatter += a; }, nothing},
     {"rolling_resistance", "", "mu_r: a spring resists rolling and yields at the torque mu_r R* F_n", "Ai, Chen, Rotter & Ooi 2011",
-     0, 0.5, 0.05, 0.15, one, [](Model& m, double a) { m.replica.effects.rolling_resistance += a; }, nothing},
+     0, 1.5, 0.5, 1.5, friction_scale, [](Model& m, double a) { m.replica.effects.rolling_resistance += a; }, nothing},
     {"plate_tilt", "", "slope of the plate along x", "geometry",
      -0.08, 0.08, -0.015, 0.015, one, [](Model& m, double a) { m.replica.effects.plate_tilt_x += a; }, no_sides},
     {"plate_tilt_y", "", "slope of the plate along y", "geometry",

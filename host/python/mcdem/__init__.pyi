@@ -51,6 +51,7 @@ class Cause(TypedDict):
     confidence: float | None
     group: list[str]
     amplitude_error: float | None
+    at_limit: bool
     explained: float | None
     score: float | None
     confirmed_score: float | None

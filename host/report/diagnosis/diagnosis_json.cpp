@@ -134,6 +134,7 @@ void describe(Members& io, Cause& cause) {
     io("confidence", cause.confidence);
     io("group", cause.group);
     io.number_or("amplitude_error", cause.amplitude_error, infinite);
+    io("at_limit", cause.at_limit);
     io("explained", cause.explained);
     io("score", cause.score);
     io("confirmed_score", cause.confirmed_score);

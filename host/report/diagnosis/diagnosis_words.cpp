@@ -196,7 +196,8 @@ std::string directed_amount(const std::string& name, double value, double error,
 
 std::string cause_words(const Cause& cause) {
     return words_of(cause.effect) + " (" +
-           directed_amount(cause.effect, cause.amplitude, cause.amplitude_error, cause.unit) + ")";
+           directed_amount(cause.effect, cause.amplitude, cause.amplitude_error, cause.unit) +
+           (cause.at_limit ? ", or more: it is at the limit of the range tried)" : ")");
 }
 
 std::vector<std::pair<std::string, std::array<double, 2>>> metrics_in_order(
