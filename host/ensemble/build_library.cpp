@@ -47,6 +47,12 @@ std::vector<Trial> baseline_trials(const LibraryPlan& plan) {
     return trials;
 }
 
+std::vector<Trial> finer_baseline_trials(LibraryPlan plan) {
+    plan.jitter /= 2;
+    for (Specimen& specimen : plan.specimens) specimen.model.instrument.stated.position_error /= 2;
+    return baseline_trials(plan);
+}
+
 namespace {
 
 /// Baseline trials that are repeated with every probe.

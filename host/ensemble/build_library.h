@@ -27,6 +27,9 @@ struct LibraryPlan {
 /// every library and diagnosis.
 std::vector<Trial> baseline_trials(const LibraryPlan& plan);
 
+/// The same with half the error of positions, in the measurement and in the initial positions.
+std::vector<Trial> finer_baseline_trials(LibraryPlan plan);
+
 /// All trials of a library: those of the baseline, then some of them with every effect and nuisance.
 std::vector<Trial> library_trials(const LibraryPlan& plan);
 

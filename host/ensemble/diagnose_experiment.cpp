@@ -74,6 +74,10 @@ public:
         }
         if (builder->decision().verdict == Verdict::not_converged)
             refinements_.push_back(refinement_of(*builder, max_refinement));
+        evidence.finer_baseline =
+            mean_over_packings(observe_trials(device_, question_, finer_baseline_trials(plan_), store_,
+                                              stage(options_, "half the noise")),
+                               packings());
         options_.on_evidence(evidence);
         options_.on_findings(builder->findings());
         Diagnosis diagnosis = builder->diagnosis();
@@ -276,7 +280,9 @@ private:
         const auto name_of = [&](std::size_t proposal) {
             return builder.data().name(findings.proposals[proposal].candidates.front());
         };
-        for (const OtherProtocol& protocol : other_protocols(question_, model().replica)) {
+        const bool rates =
+            name_of(builder.decided()) == "viscoelasticity" || name_of(*rival) == "viscoelasticity";
+        for (const OtherProtocol& protocol : other_protocols(question_, model().replica, rates)) {
             const auto runs_of = [&](std::size_t proposal) {
                 std::vector<Trial> trials =
                     trials_of(builder, findings.proposals[proposal], builder.whole_fit(proposal));

@@ -8,6 +8,9 @@ namespace {
 /// Relaxation times for which the plate is held.
 constexpr double times_held = 3;
 
+/// Factor by which the plate is slower. Simulations take as much longer.
+constexpr double times_slower = 4;
+
 double held_for(const Replica& replica) { return times_held * replica.effects.relaxation_time; }
 
 /// One stroke down and up as a programme, with a hold and a scan at its end between them.
@@ -22,6 +25,11 @@ void hold(Replica& replica) {
     replica.protocol.scan_at_start = true;
 }
 
+void slow_down(Replica& replica) {
+    replica.plate.speed /= times_slower;
+    replica.protocol.rate_tolerance /= times_slower;
+}
+
 Grid with_hold(Grid grid, const Replica& replica) {
     const int begin = replica.protocol.scans_per_stroke;  // scan 0 is before the stroke
     grid.holds = {{begin, begin + 1, begin + 1, Controlled::position, Phase::load, grid.stroke}};
@@ -30,13 +38,16 @@ Grid with_hold(Grid grid, const Replica& replica) {
 
 }  // namespace
 
-std::vector<OtherProtocol> other_protocols(const Question& question, const Replica& replica) {
+std::vector<OtherProtocol> other_protocols(const Question& question, const Replica& replica, bool slower) {
     if (!replica.programme.empty()) return {};
     Question held = question;
     held.grid = with_hold(question.grid, replica);
     held.discard = 0;
-    return {{fmt::format("hold the plate at full stroke for {:g} s", held_for(replica)), held, hold},
-            {"press one more cycle", question, [](Replica& changed) { ++changed.protocol.cycles; }}};
+    std::vector<OtherProtocol> all{
+        {fmt::format("hold the plate at full stroke for {:g} s", held_for(replica)), held, hold},
+        {"press one more cycle", question, [](Replica& changed) { ++changed.protocol.cycles; }}};
+    if (slower) all.push_back({fmt::format("press {:g} times slower", times_slower), question, slow_down});
+    return all;
 }
 
 }  // namespace mcdem::ensemble

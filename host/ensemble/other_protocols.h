@@ -10,7 +10,8 @@ struct OtherProtocol {
     void (*change)(Replica&);  ///< to its protocol
 };
 
-/// A hold at full stroke and one more cycle; none if the replica has a programme.
-std::vector<OtherProtocol> other_protocols(const Question& question, const Replica& replica);
+/// A hold at full stroke and one more cycle, and for effects that depend on the rate a slower plate; none if
+/// the replica has a programme.
+std::vector<OtherProtocol> other_protocols(const Question& question, const Replica& replica, bool slower);
 
 }  // namespace mcdem::ensemble

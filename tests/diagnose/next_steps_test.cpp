@@ -38,7 +38,6 @@ TEST(NextSteps, DistinguishTheMembersOfAGroup) {
     EXPECT_THAT(steps,
                 Contains(Field(&NextStep::what, AllOf(HasSubstr("3 more packings"),
                                                       HasSubstr("tells viscoelasticity from plasticity")))));
-    EXPECT_THAT(steps, Contains(Field(&NextStep::what, HasSubstr("press at another speed"))));
     for (std::size_t k = 1; k < steps.size(); ++k)
         EXPECT_LE(steps[k].power.value_or(0), steps[k - 1].power.value_or(0)) << "the most useful first";
     // At twice the difference, more of such experiments would distinguish them.
@@ -112,6 +111,31 @@ TEST(NextSteps, PowerOfAProtocolFollowsFromRunsOfBothEffects) {
         }
         EXPECT_NEAR(power, expected, 0.1) << apart;
     }
+}
+
+TEST(NextSteps, AnotherSpeedChecksAnEffectThatDependsOnIt) {
+    SyntheticWorld world(6, 3);
+    Evidence evidence = world.evidence(1, 32);
+    world.add_effect(evidence, "viscoelasticity", world.pattern(1));
+    evidence.observed += 4 * evidence.library.effects[0].linear;
+    const DiagnosisBuilder draft(evidence, {});
+    ASSERT_EQ(draft.decision().verdict, Verdict::effect);
+    EXPECT_THAT(draft.diagnosis().next,
+                Contains(Field(&NextStep::what, HasSubstr("press at another speed"))));
+}
+
+// Without parameters the limit is proportional to the noise.
+TEST(NextSteps, HalfTheErrorOfPositionsLowersTheLimitsAsItLowersTheScatter) {
+    SyntheticWorld world(6, 5);
+    Evidence evidence = world.evidence(1, 32);
+    world.add_effect(evidence, "diameter_error", world.pattern(2));
+    const Eigen::RowVectorXd mean = evidence.baseline.colwise().mean();
+    evidence.finer_baseline = (0.6 * (evidence.baseline.rowwise() - mean)).rowwise() + mean;
+    const DiagnosisBuilder draft(evidence, {});
+    ASSERT_EQ(draft.decision().verdict, Verdict::no_gap);
+    EXPECT_THAT(draft.diagnosis().next,
+                Contains(Field(&NextStep::what, AllOf(HasSubstr("measure positions twice as accurately"),
+                                                      HasSubstr("to 60 % of now")))));
 }
 
 TEST(NextSteps, WithoutAGapTheyLowerTheDetectionLimits) {

@@ -27,6 +27,11 @@ TEST(BaselineTrials, HaveDifferentSeeds) {
     plan.diameter_jitter = 2e-5;
     plan.seed = 7;
     const auto trials = baseline_trials(plan);
+    const Trial finer = finer_baseline_trials(plan).front();
+    EXPECT_EQ(finer.jitter, trials[0].jitter / 2);
+    EXPECT_EQ(finer.model.instrument.stated.position_error,
+              trials[0].model.instrument.stated.position_error / 2);
+    EXPECT_EQ(finer.seed, trials[0].seed);
     ASSERT_EQ(trials.size(), 6u);
     for (std::size_t t = 0; t < 6; ++t) {
         EXPECT_EQ(trials[t].seed, 7 + 1000 * (t / 3) + t % 3);

@@ -29,7 +29,7 @@ Eigen::VectorXd observed(const SmallTrials& small, Trial trial, const OtherProto
 TEST(OtherProtocols, AHoldAtFullStrokeShowsRelaxation) {
     const SmallTrials small;
     const Trial soft = relaxing(small, 0.4), elastic = relaxing(small, 0);
-    const auto protocols = other_protocols(small.question, soft.model.replica);
+    const auto protocols = other_protocols(small.question, soft.model.replica, false);
     ASSERT_EQ(protocols.size(), 2u);
     EXPECT_EQ(protocols[0].what, "hold the plate at full stroke for 0.6 s");
     const auto cells = cells_of(small.question.grid);
@@ -56,18 +56,41 @@ TEST(OtherProtocols, OneMoreCycleHasTheCellsOfOne) {
     const SmallTrials small;
     Trial trial = small.trial();
     trial.model.replica.effects.plasticity = 0.3;
-    const auto protocols = other_protocols(small.question, trial.model.replica);
+    const auto protocols = other_protocols(small.question, trial.model.replica, false);
     const Eigen::VectorXd one = observed(small, trial, nullptr), two = observed(small, trial, &protocols[1]);
     EXPECT_FALSE(same(one, two));
     for (Eigen::Index cell = 0; cell < one.size(); ++cell)
         EXPECT_TRUE(std::isfinite(two[cell]) || !std::isfinite(one[cell])) << cell;
 }
 
+// A slower plate leaves more time to relax: of the elastic force at full stroke less is left.
+TEST(OtherProtocols, ASlowerPlateShowsTheRate) {
+    const SmallTrials small;
+    const Trial soft = relaxing(small, 0.4), elastic = relaxing(small, 0);
+    const auto protocols = other_protocols(small.question, soft.model.replica, true);
+    ASSERT_EQ(protocols.size(), 3u);
+    EXPECT_EQ(protocols[2].what, "press 4 times slower");
+    const auto cells = cells_of(small.question.grid);
+    const auto force = [&](const Trial& trial, const OtherProtocol* protocol) {
+        const Eigen::VectorXd seen = observed(small, trial, protocol);
+        for (std::size_t c = 0; c < cells.size(); ++c)
+            if (observables()[static_cast<std::size_t>(cells[c].observable)].name == "top_force" &&
+                cells[c].displacement == small.question.grid.displacement.back() &&
+                cells[c].phase == Phase::load)
+                return seen[static_cast<Eigen::Index>(c)];
+        return std::nan("");
+    };
+    const double left = force(soft, nullptr) / force(elastic, nullptr),
+                 left_if_slower = force(soft, &protocols[2]) / force(elastic, &protocols[2]);
+    EXPECT_LT(left_if_slower, left - 0.02);
+    EXPECT_GT(left_if_slower, 0.6 - 0.02);  // all of 0.4 has relaxed
+}
+
 TEST(OtherProtocols, AreNotMadeOfAProgramme) {
     const SmallTrials small;
     Replica replica = small.model.replica;
     replica.programme.resize(1);
-    EXPECT_TRUE(other_protocols(small.question, replica).empty());
+    EXPECT_TRUE(other_protocols(small.question, replica, true).empty());
 }
 
 // Two laws of adhesion, which differ only in their friction, in a scene with little of it.

@@ -29,6 +29,20 @@ std::string key_of(const std::string& nuisance) {
     return nuisance == "wall_friction" ? "walls.friction" : "grains.friction";
 }
 
+/// Noise if positions were measured twice as accurately: that of the diagnosis, scaled cell by cell as the
+/// scatter of the replicates.
+Eigen::MatrixXd finer_noise(const Evidence& evidence, Eigen::MatrixXd noise) {
+    const auto scatter = [](const Eigen::MatrixXd& runs, Eigen::Index cell) {
+        return std::sqrt((runs.col(cell).array() - runs.col(cell).mean()).square().sum() /
+                         static_cast<double>(runs.rows() - 1));
+    };
+    for (Eigen::Index cell = 0; cell < noise.cols(); ++cell) {
+        const double ratio = scatter(evidence.finer_baseline, cell) / scatter(evidence.baseline, cell);
+        if (std::isfinite(ratio)) noise.col(cell) *= ratio;
+    }
+    return noise;
+}
+
 std::vector<Measurement> measurements_of(const Evidence& evidence, const GapData& data) {
     const int mean_of = static_cast<int>(evidence.baseline.rows());
     std::vector<Measurement> list;
@@ -43,6 +57,9 @@ std::vector<Measurement> measurements_of(const Evidence& evidence, const GapData
     list.push_back({fmt::format("measure {} more packings and diagnose them together (--experiment for each)",
                                 more_packings),
                     GapSpace(data.noise / std::sqrt(times_more), mean_of, data.cells, data.free)});
+    if (evidence.finer_baseline.rows() > 1)
+        list.push_back({"measure positions twice as accurately",
+                        GapSpace(finer_noise(evidence, data.noise), mean_of, data.cells, data.free)});
     if (!not_measured(evidence.observed, evidence.library.grid).empty()) {
         std::vector<const Signature*> used;
         for (const Candidate& candidate : data.candidates) used.push_back(candidate.signature);
@@ -214,7 +231,8 @@ std::vector<NextStep> next_measurements(const Evidence& evidence, const GapData&
         return data.name(c) == "viscoelasticity" || data.name(c) == "plate_speed" ||
                data.name(c) == "inertia";
     };
-    if (decision.verdict != Verdict::no_gap && std::ranges::any_of(decision.group, depends_on_speed))
+    if (decision.verdict != Verdict::no_gap && !has_rivals(findings, decision) &&
+        std::ranges::any_of(decision.group, depends_on_speed))
         steps.push_back(
             {"press at another speed: what depends on speed is no matter of geometry or friction", {}});
     return steps;

@@ -32,8 +32,9 @@ struct PackingEvidence {
 };
 
 struct Evidence {
-    Eigen::VectorXd observed;  ///< the experiment, one entry per cell
-    Eigen::MatrixXd baseline;  ///< row: replicate of the scene on the experiment's packing
+    Eigen::VectorXd observed;             ///< the experiment, one entry per cell
+    Eigen::MatrixXd baseline;             ///< row: replicate of the scene on the experiment's packing
+    Eigen::MatrixXd finer_baseline = {};  ///< the same with half the error of positions; may be empty
     Library library;
     std::vector<CandidateRange> candidates;  ///< all of library.effects
     std::vector<NuisancePrior> nuisances;    ///< all of library.nuisances
