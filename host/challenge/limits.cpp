@@ -19,7 +19,6 @@ const std::vector<Choice> choices{
     {"misfit",       &Limits::misfit,       {1e-4, 1e-3, 3e-3, 0.01, 0.03, 0.1}},
     {"remainder",    &Limits::remainder,    {0.05, 0.1, 0.15, 0.2, 1}},
     {"pair_misfit",  &Limits::pair_misfit,  {0.01, 0.03, 0.05, 0.1, 0.2}},
-    {"pair_remainder", &Limits::pair_remainder, {0, 0.02, 0.05, 0.1}},
     {"group",        &Limits::group,        {1, 2, 3, 5}},
     {"group_share",  &Limits::group_share,  {0.01, 0.02, 0.04, 0.06, 0.1}},
     {"second_gain",  &Limits::second_gain,  {4, 8, 12, 20}},

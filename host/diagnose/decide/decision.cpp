@@ -55,15 +55,13 @@ bool leaves_too_much(const Proposal& proposal, const Limits& limits) {
     return proposal.best_misfit() < limits.misfit && 1 - proposal.best_reduction() > limits.remainder;
 }
 
-/// Whether a pair is better than a single effect: one leaves more than noise, or much less likely data, and
-/// two leave only noise, or little. Two free amplitudes close most of many gaps with another cause, so a pair
+/// Whether a pair is better than a single effect: one leaves more than noise, or is much less likely, and
+/// two leave only noise. Two free amplitudes close most of many gaps with another cause, so a pair
 /// that leaves more is not named.
 bool is_better(const Proposal& pair, const Proposal& single, const Limits& limits) {
     const bool needs_second =
         single.best_misfit() < limits.misfit || pair.best_gain() - single.best_gain() > limits.second_certain;
-    const bool two_suffice =
-        pair.best_misfit() >= limits.pair_misfit || 1 - pair.best_reduction() <= limits.pair_remainder;
-    return needs_second && two_suffice;
+    return needs_second && pair.best_misfit() >= limits.pair_misfit;
 }
 
 /// Probability that an explanation with this reduction is right.

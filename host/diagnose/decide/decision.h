@@ -14,18 +14,17 @@ namespace mcdem::inline diagnose {
 /// (tests/challenge/README.md), except `reduction`: in 108 gaps from an independent solver, 63 of 63 leading
 /// effects that closed 0.6 or more were right, and 41 of 45 that closed less were wrong.
 struct Limits {
-    double false_alarm = 0.01;     ///< there is a gap if p is smaller
-    double reduction = 0.6;        ///< fraction of the gap that an effect must close to be named,
-    double over_placebo = 0.1;     ///< and by how much this must exceed the placebo's
-    double misfit = 0.001;         ///< the remainder of one effect exceeds noise if its p is smaller;
-    double remainder = 0.1;        ///< largest fraction of the gap that a named effect may leave beyond noise
-    double pair_misfit = 0.05;     ///< a pair is named only if its remainder is noise (p at least this),
-    double pair_remainder = 0.05;  ///< or if it leaves at most this fraction of the gap
-    double group = 2.0;            ///< largest difference in log likelihood within a group,
-    double group_share = 0.01;     ///< or this fraction of the leading effect's gain
-    double second_gain = 8.0;      ///< gain in log likelihood required of a second effect,
-    double second_share = 0.02;    ///< and this fraction of the leading effect's gain
-    double second_certain = 50;    ///< at this gain it counts even if one effect alone leaves only noise
+    double false_alarm = 0.01;   ///< there is a gap if p is smaller
+    double reduction = 0.6;      ///< fraction of the gap that an effect must close to be named,
+    double over_placebo = 0.1;   ///< and by how much this must exceed the placebo's
+    double misfit = 0.001;       ///< the remainder of one effect exceeds noise if its p is smaller;
+    double remainder = 0.1;      ///< largest fraction of the gap that a named effect may leave beyond noise
+    double pair_misfit = 0.05;   ///< a pair is named only if its remainder is noise: p at least this
+    double group = 2.0;          ///< largest difference in log likelihood within a group,
+    double group_share = 0.01;   ///< or this fraction of the leading effect's gain
+    double second_gain = 8.0;    ///< gain in log likelihood required of a second effect,
+    double second_share = 0.02;  ///< and this fraction of the leading effect's gain
+    double second_certain = 50;  ///< at this gain it counts even if one effect alone leaves only noise
     double right_below =
         0.1;  ///< probability that a leading effect is right if it closes less than `reduction`
     double reduction_error = 0.1;   ///< by this much;
