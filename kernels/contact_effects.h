@@ -92,9 +92,10 @@ INLINE lanes attraction_energy(Attraction a, lanes overlap, lanes approach) {
 }
 
 /* Rolling resistance: a spring between the rotations of two grains across the normal, with stiffness
-   k_r = 8 G* a R*^2 (Iwashita & Oda 1998: the tangential stiffness times R*^2), damped as the tangential spring
-   is, and cut at the torque mu_r R* F_n (Ai et al. 2011, model C). Twisting is not resisted. `spring` is that of
-   the tangential force with the limit F_n. Returns the torque on this grain [N m]; updates `rotation`. */
+   k_r = 8 G* a R*^2 (Iwashita & Oda 1998: the tangential stiffness times R*^2), damped as the tangential
+   spring is, and cut at the torque mu_r R* F_n (Ai et al. 2011, model C). Twisting is not resisted. `spring`
+   is that of the tangential force with the limit F_n. Returns the torque on this grain [N m]; updates
+   `rotation`. */
 INLINE lanes3 rolling_couple(Grain at, Neighbours neighbour, lanes reduced_radius, SpringTerms spring,
                              real elapsed, lanes3* restrict rotation) {
     const lanes r = at.now.radius, r_there = neighbour.radius;

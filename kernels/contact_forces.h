@@ -129,8 +129,7 @@ INLINE Contacts contact_forces(Grain at, const int effects, Neighbours neighbour
         c.energy += attraction_energy(pull, c.overlap, c.approach);
     }
 
-    SpringTerms terms = {OF_PAIRS(at, friction, neighbour) * limiting, R(0), damping, pair.mass,
-                           c.touching};
+    SpringTerms terms = {OF_PAIRS(at, friction, neighbour) * limiting, R(0), damping, pair.mass, c.touching};
     if (replica->mindlin) terms.stiffness = shear_stiffness(at, effects, neighbour, c.radius);
     c.tangential = friction(replica, effects, terms, sliding_velocity(at, neighbour, c.arm, separating),
                             neighbour.normal, elapsed, &memory->spring);

@@ -23,19 +23,15 @@ INLINE lanes3 saturated_friction(global const Replica* restrict replica, SpringT
 /* Spring with damping, cut at the limit; for friction it is the Mindlin spring. A slipping spring keeps the
    elongation at which its force equals the limit. Updates `spring`. */
 INLINE lanes3 cut_spring(SpringTerms contact, lanes3 sliding, lanes3 normal, real elapsed,
-                               lanes3* restrict spring) {
+                         lanes3* restrict spring) {
     const lanes damping = contact.damping * sqrt(contact.stiffness * contact.reduced_mass);
     lanes3 s = add_scaled3(*spring, elapsed, sliding);
     s = add_scaled3(s, -dot3(s, normal), normal);
     const lanes3 full = add_scaled3(scale3(damping, sliding), contact.stiffness, s);
-    const lanes size = sqrt(dot3(full, full));
-    const mask slipping = AS_MASK(size > contact.limit);
-    const lanes cut = WHERE(slipping, contact.limit / size, R(1));
-    const lanes3 force = scale3(cut, full);
-    const lanes compliance = WHERE(contact.touching, R(1) / contact.stiffness, R(0));
-    const lanes3 slipped = scale3(compliance, add_scaled3(force, -damping * cut, sliding));
-    *spring = where3(contact.touching, where3(slipping, slipped, s), ZERO3);
-    return force;
+    const lanes inverse_size = inverse_root(fmax(dot3(full, full), (lanes)(R(1e-37))));
+    const lanes cut = fmin(contact.limit * inverse_size, (lanes)(R(1)));
+    *spring = scale3(WHERE(contact.touching, cut, R(0)), s);
+    return scale3(cut, full);
 }
 
 /* Saturated friction, Mindlin friction, or with EFFECT_FRICTION_HISTORY their mean weighted by

@@ -137,6 +137,17 @@ TEST(GapReduction, RunsCorrectTheAmplitude) {
                 1e-9);
 }
 
+// A gap far beyond the prior: runs are made with a parameter that simulations can have.
+TEST(GapReduction, NuisancesOfRunsStayInRange) {
+    Case c(4);
+    const double farthest = 12 * c.data.free[0].sigma;
+    c.data.gap += 1e6 * c.evidence.library.nuisances[0].linear;
+    const PartialFit first = fit_part(c.data, c.split.fitted, c.data.gap, {0}, replicates);
+    EXPECT_EQ(first.nuisances[0], farthest);
+    EXPECT_EQ(refit_part(c.data, c.split.fitted, -c.data.gap, {0}, first, replicates).nuisances[0],
+              -farthest);
+}
+
 TEST(GapReduction, AnotherEffectDoesNotCloseTheGap) { EXPECT_LT(Case(4).gap_reduction({1}).fraction, 0.3); }
 
 TEST(GapReduction, TwoEffectsAreFittedTogether) {

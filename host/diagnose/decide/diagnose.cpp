@@ -149,7 +149,8 @@ DiagnosisBuilder::DiagnosisBuilder(const Evidence& evidence, const Limits& limit
     }
     findings_.proposals = propose(space_, data_, null_, statistics_, mean_of_);
     for (const Proposal& p : findings_.proposals)
-        whole_.push_back({p.amplitudes, space_.fit_nuisances(data_.gap - explained_by(p, data_))});
+        whole_.push_back(
+            {p.amplitudes, data_.in_range(space_.fit_nuisances(data_.gap - explained_by(p, data_)))});
     step_.resize(whole_.size());
     runs_.resize(whole_.size());
     held_out_done_.resize(whole_.size());
@@ -215,7 +216,7 @@ bool DiagnosisBuilder::refit(std::size_t proposal) {
     PartialFit& fit = whole_[proposal];
     const auto nuisances = fit.nuisances.size();
     const auto before = fit.amplitudes;
-    fit.nuisances += step_[proposal]->head(nuisances);
+    fit.nuisances = data_.in_range(fit.nuisances + step_[proposal]->head(nuisances));
     for (std::size_t k = 0; k < p.candidates.size(); ++k) {
         const Candidate& candidate = data_.candidates[p.candidates[k]];
         fit.amplitudes[k] =

@@ -138,7 +138,7 @@ const Effect all_effects[] = {
      0, 0.05, 0.008, 0.02, grain_diameter, [](Model& m, double a) { m.replica.effects.polydispersity += a; }, nothing},
     {"modulus_scatter", "", "standard deviation of ln E from grain to grain", "log-normal scatter",
      0, 0.8, 0.15, 0.4, one, [](Model& m, double a) { m.replica.effects.modulus_scatter += a; }, nothing},
-    {"rolling_resistance", "", "mu_r: a spring resists rolling and yields at the torque mu_r R* F_n", "Ai, Chen, Rotter & Ooi 2011",
+    {"rolling_resistance", "", "mu_r: a spring resists rolling and yields at the torque mu_r R* F_n", "Iwashita & Oda 1998; Ai et al. 2011, model C",
      0, 1.5, 0.5, 1.5, friction_scale, [](Model& m, double a) { m.replica.effects.rolling_resistance += a; }, nothing},
     {"plate_tilt", "", "slope of the plate along x", "geometry",
      -0.08, 0.08, -0.015, 0.015, one, [](Model& m, double a) { m.replica.effects.plate_tilt_x += a; }, no_sides},

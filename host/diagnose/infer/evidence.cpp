@@ -158,6 +158,14 @@ std::vector<std::string> leave_out_failures(Evidence& evidence, const FailureCau
     return notes;
 }
 
+Eigen::VectorXd GapData::in_range(Eigen::VectorXd nuisances) const {
+    for (std::size_t k = 0; k < free.size(); ++k) {
+        double& nuisance = nuisances[static_cast<Eigen::Index>(k)];
+        nuisance = std::clamp(nuisance, -farthest * free[k].sigma, farthest * free[k].sigma);
+    }
+    return nuisances;
+}
+
 GapData gap_data(const Evidence& evidence) {
     GapData s;
     s.mean = column_means(evidence.baseline);

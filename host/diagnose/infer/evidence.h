@@ -76,6 +76,9 @@ struct GapData {
     int effects = 0;                    ///< number of effects among them
     int packings = 1;                   ///< number of packings in the gap
     const std::string& name(std::size_t candidate) const { return candidates[candidate].signature->name; }
+    /// The nuisances, each limited to the range in which simulations are made. A fit far from the data may
+    /// leave it, and a modulus is an exponential of its nuisance.
+    Eigen::VectorXd in_range(Eigen::VectorXd nuisances) const;
 };
 
 /// Holds references to `evidence`, which must outlive it.

@@ -122,7 +122,9 @@ double gap_size(const GapData& data, const CellChoice& cells, const Eigen::Vecto
 
 PartialFit fit_part(const GapData& data, const CellChoice& cells, const Eigen::VectorXd& gap,
                     const std::vector<std::size_t>& chosen, int mean_of) {
-    return Arms(data, {cells, {}}, mean_of).fit(gap, chosen_candidates(data, chosen));
+    PartialFit fit = Arms(data, {cells, {}}, mean_of).fit(gap, chosen_candidates(data, chosen));
+    fit.nuisances = data.in_range(fit.nuisances);
+    return fit;
 }
 
 PartialFit refit_part(const GapData& data, const CellChoice& cells, const Eigen::VectorXd& left,
@@ -136,7 +138,7 @@ PartialFit refit_part(const GapData& data, const CellChoice& cells, const Eigen:
         free.push_back({candidate.signature->slope(at.amplitudes[k]), candidate.high - candidate.low});
     }
     const Eigen::VectorXd step = GapSpace(data.noise, mean_of, cells, free).fit_nuisances(without_nuisances);
-    PartialFit fit{at.amplitudes, step.head(at.nuisances.size())};
+    PartialFit fit{at.amplitudes, data.in_range(step.head(at.nuisances.size()))};
     for (std::size_t k = 0; k < candidates.size(); ++k) {
         const Candidate& candidate = data.candidates[candidates[k]];
         fit.amplitudes[k] =
