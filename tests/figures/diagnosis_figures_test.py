@@ -21,7 +21,7 @@ PROGRAM = ""
 
 
 def cause(effect, score, group, amplitude, confirmed):
-    return {"effect": effect, "amplitude": amplitude, "unit": "N", "confidence": 0.81, "group": group, "amplitude_error": 2e-4,
+    return {"effect": effect, "amplitude": amplitude, "unit": "N", "confidence": 0.81, "group": group, "amplitude_error": 2e-4, "at_limit": False,
             "explained": 0.5, "score": score, "confirmed_score": confirmed}
 
 
