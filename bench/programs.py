@@ -14,6 +14,11 @@ class Failed(Exception):
     """A program failed; the message is for the user."""
 
 
+def add_build_arguments(parser):
+    parser.add_argument("--build", type=lambda text: pathlib.Path(text).resolve(), default=ROOT / "build_bench", help="build folder")
+    parser.add_argument("--no-build", action="store_true", help="the build folder is up to date")
+
+
 def build(folder):
     """Configures and builds in `folder`; `mcdem` too if it is a target."""
     configure = ["cmake", "-S", ROOT, "-B", folder, "-DMCDEM_BENCH=ON", "-DMCDEM_TESTS=OFF", "-DCMAKE_BUILD_TYPE=Release"]

@@ -130,12 +130,12 @@ INLINE Contacts contact_forces(Grain at, const int effects, Neighbours neighbour
     }
 
     SpringTerms terms = {OF_PAIRS(at, friction, neighbour) * limiting, R(0), damping, pair.mass, c.touching};
-    if (replica->mindlin) terms.stiffness = shear_stiffness(at, effects, neighbour, c.radius);
+    if (replica->mindlin || effects & EFFECT_ROLLING_RESISTANCE)
+        terms.stiffness = shear_stiffness(at, effects, neighbour, c.radius);
     c.tangential = friction(replica, effects, terms, sliding_velocity(at, neighbour, c.arm, separating),
                             neighbour.normal, elapsed, &memory->spring);
     if (effects & EFFECT_ROLLING_RESISTANCE) {
         terms.limit = fmax(normal_force, (lanes)(R(0)));
-        terms.stiffness = shear_stiffness(at, effects, neighbour, c.radius);
         c.couple = rolling_couple(at, neighbour, pair.radius, terms, elapsed, &memory->rolling);
     }
     c.force = add_scaled3(c.tangential, -pressing, neighbour.normal);

@@ -280,9 +280,8 @@ private:
         const auto name_of = [&](std::size_t proposal) {
             return builder.data().name(findings.proposals[proposal].candidates.front());
         };
-        const bool rates =
-            name_of(builder.decided()) == "viscoelasticity" || name_of(*rival) == "viscoelasticity";
-        for (const OtherProtocol& protocol : other_protocols(question_, model().replica, rates)) {
+        const bool slower = depends_on_speed(name_of(builder.decided())) || depends_on_speed(name_of(*rival));
+        for (const OtherProtocol& protocol : other_protocols(question_, model().replica, slower)) {
             const auto runs_of = [&](std::size_t proposal) {
                 std::vector<Trial> trials =
                     trials_of(builder, findings.proposals[proposal], builder.whole_fit(proposal));

@@ -34,6 +34,16 @@ Vec3 nearest_image(const mcdem::Box& box, const Vec3& point, const Vec3& to) {
     return nearest;
 }
 
+/// Force of a damped spring that follows `rate` across the unit vector e and yields at `limit`.
+Vec3 cut_spring(double limit, double stiffness, double damping, const Vec3& rate, const Vec3& e,
+                double elapsed, Vec3& spring) {
+    spring = across(spring + rate * elapsed, e);
+    const Vec3 force = stiffness * spring + damping * rate;
+    if (force.norm() <= limit) return force;
+    spring *= limit / force.norm();
+    return force * (limit / force.norm());
+}
+
 bool is_there(const mcdem::Box& box, int partner) {
     if (!mcdem::is_wall(partner)) return true;
     const auto wall = mcdem::wall_of(partner);
@@ -250,13 +260,10 @@ Vec3 StepReference::rolling_couple(double normal, const Body& a, const Body& b,
     const auto inertia = [](const Body& body) { return 0.4 * body.mass * body.radius * body.radius; };
     const double reduced = b.radius == 0 ? inertia(a) : 1 / (1 / inertia(a) + 1 / inertia(b));
     const Vec3 rolling = across(b.angular_velocity - a.angular_velocity, contact.direction);
-    rotation = across(rotation + rolling * elapsed, contact.direction);
     const double limit = scene_.effects.rolling_resistance * pair.radius * std::max(normal, 0.0);
     const double stiffness = 8 * pair.shear_modulus * contact.contact_radius * std::pow(pair.radius, 2);
-    const Vec3 torque = stiffness * rotation + pair.damping * std::sqrt(stiffness * reduced) * rolling;
-    if (torque.norm() <= limit) return torque;
-    rotation *= limit / torque.norm();
-    return torque * (limit / torque.norm());
+    return cut_spring(limit, stiffness, pair.damping * std::sqrt(stiffness * reduced), rolling,
+                      contact.direction, elapsed, rotation);
 }
 
 /// Viscous below `sliding_velocity`. A step removes at most a tenth of m* times the sliding
@@ -269,11 +276,8 @@ Vec3 StepReference::saturated_friction(double limit, const Vec3& sliding, const 
 Vec3 StepReference::mindlin_friction(double limit, const Vec3& sliding, const ReferenceContact& contact,
                                      const PairConstants& pair, double elapsed, Vec3& spring) const {
     const double stiffness = 8 * pair.shear_modulus * contact.contact_radius;
-    spring = across(spring + sliding * elapsed, contact.direction);
-    const Vec3 force = stiffness * spring + pair.damping * std::sqrt(stiffness * pair.mass) * sliding;
-    if (force.norm() <= limit) return force;
-    spring *= limit / force.norm();
-    return force * (limit / force.norm());
+    return cut_spring(limit, stiffness, pair.damping * std::sqrt(stiffness * pair.mass), sliding,
+                      contact.direction, elapsed, spring);
 }
 
 std::vector<ReferenceContact> StepReference::neighbours() const {

@@ -29,20 +29,23 @@ GapData checked_data(const Evidence& evidence) {
     return data;
 }
 
+/// The range of a candidate; null for a parameter.
+const CandidateRange* range_of(const Evidence& evidence, const std::string& name) {
+    const auto found = std::ranges::find(evidence.candidates, name, &CandidateRange::name);
+    return found == evidence.candidates.end() ? nullptr : &*found;
+}
+
 std::string unit_of(const Evidence& evidence, const std::string& name) {
-    for (const CandidateRange& c : evidence.candidates)
-        if (c.name == name) return c.unit;
+    if (const CandidateRange* range = range_of(evidence, name)) return range->unit;
     for (const NuisancePrior& n : evidence.nuisances)
         if (n.name == name) return n.unit;
     return "";
 }
 
 bool at_limit(const Evidence& evidence, const Cause& cause) {
-    for (const CandidateRange& c : evidence.candidates)
-        if (c.name == cause.effect)
-            return (c.high > 0 && cause.amplitude + cause.amplitude_error >= c.high) ||
-                   (c.low < 0 && cause.amplitude - cause.amplitude_error <= c.low);
-    return false;
+    const CandidateRange* range = range_of(evidence, cause.effect);
+    return range && ((range->high > 0 && cause.amplitude + cause.amplitude_error >= range->high) ||
+                     (range->low < 0 && cause.amplitude - cause.amplitude_error <= range->low));
 }
 
 std::vector<NuisanceFit> nuisance_fits(const Evidence& evidence, const GapSpace& space,
@@ -214,15 +217,8 @@ bool DiagnosisBuilder::refit(std::size_t proposal) {
     const Proposal& p = findings_.proposals[proposal];
     if (!step_[proposal] || (p.best_misfit() >= worth_another_run && !may_gain(proposal))) return false;
     PartialFit& fit = whole_[proposal];
-    const auto nuisances = fit.nuisances.size();
     const auto before = fit.amplitudes;
-    fit.nuisances = data_.in_range(fit.nuisances + step_[proposal]->head(nuisances));
-    for (std::size_t k = 0; k < p.candidates.size(); ++k) {
-        const Candidate& candidate = data_.candidates[p.candidates[k]];
-        fit.amplitudes[k] =
-            std::clamp(fit.amplitudes[k] + (*step_[proposal])[nuisances + static_cast<Eigen::Index>(k)],
-                       candidate.low, candidate.high);
-    }
+    fit = stepped(data_, p.candidates, std::move(fit), *step_[proposal]);
     return fit.amplitudes != before;
 }
 

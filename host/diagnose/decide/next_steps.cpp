@@ -6,6 +6,8 @@
 #include <boost/math/distributions/normal.hpp>
 #include <cmath>
 
+#include "diagnose/infer/effects.h"
+#include "diagnose/infer/library.h"
 #include "diagnose/observe/needed_to_diagnose.h"
 
 namespace mcdem::inline diagnose {
@@ -29,17 +31,20 @@ std::string key_of(const std::string& nuisance) {
     return nuisance == "wall_friction" ? "walls.friction" : "grains.friction";
 }
 
+/// Runs of one scene minus their mean, scaled to the variance of one run.
+Eigen::MatrixXd scatter_of(const Eigen::MatrixXd& runs) {
+    return apart_from_mean(runs, std::vector<int>(static_cast<std::size_t>(runs.rows()), 0));
+}
+
 /// Noise if positions were measured twice as accurately: that of the diagnosis, scaled cell by cell as the
 /// scatter of the replicates.
 Eigen::MatrixXd finer_noise(const Evidence& evidence, Eigen::MatrixXd noise) {
-    const auto scatter = [](const Eigen::MatrixXd& runs, Eigen::Index cell) {
-        return std::sqrt((runs.col(cell).array() - runs.col(cell).mean()).square().sum() /
-                         static_cast<double>(runs.rows() - 1));
+    const auto sigma = [](const Eigen::MatrixXd& runs) -> Eigen::ArrayXd {
+        return scatter_of(runs).colwise().norm().transpose() / std::sqrt(static_cast<double>(runs.rows()));
     };
-    for (Eigen::Index cell = 0; cell < noise.cols(); ++cell) {
-        const double ratio = scatter(evidence.finer_baseline, cell) / scatter(evidence.baseline, cell);
-        if (std::isfinite(ratio)) noise.col(cell) *= ratio;
-    }
+    const Eigen::ArrayXd ratio = sigma(evidence.finer_baseline) / sigma(evidence.baseline);
+    for (Eigen::Index cell = 0; cell < noise.cols(); ++cell)
+        if (std::isfinite(ratio[cell])) noise.col(cell) *= ratio[cell];
     return noise;
 }
 
@@ -164,13 +169,11 @@ CellChoice cells_of_protocol(const ProtocolRuns& runs, const Eigen::MatrixXd& ba
 /// Replaces NaN in columns of `cells` by the scatter of the runs.
 Eigen::MatrixXd with_noise_of_new_cells(Eigen::MatrixXd noise, const Eigen::MatrixXd& runs,
                                         const CellChoice& cells) {
-    const auto count = static_cast<double>(runs.rows());
+    const Eigen::MatrixXd scatter = scatter_of(runs);
     for (const Eigen::Index cell : cells) {
         if (noise.col(cell).allFinite()) continue;
-        const Eigen::VectorXd scatter =
-            (runs.col(cell).array() - runs.col(cell).mean()) * std::sqrt(count / (count - 1));
         for (Eigen::Index row = 0; row < noise.rows(); ++row)
-            noise(row, cell) = scatter[row % scatter.size()];
+            noise(row, cell) = scatter(row % scatter.rows(), cell);
     }
     return noise;
 }
@@ -227,12 +230,8 @@ std::vector<NextStep> next_measurements(const Evidence& evidence, const GapData&
                                       : sharpening(measurements, evidence, data, findings, decision);
     std::ranges::stable_sort(steps, std::greater(), [](const NextStep& s) { return s.power.value_or(0); });
     if (steps.size() > max_steps) steps.resize(max_steps);
-    const auto depends_on_speed = [&](std::size_t c) {
-        return data.name(c) == "viscoelasticity" || data.name(c) == "plate_speed" ||
-               data.name(c) == "inertia";
-    };
     if (decision.verdict != Verdict::no_gap && !has_rivals(findings, decision) &&
-        std::ranges::any_of(decision.group, depends_on_speed))
+        std::ranges::any_of(decision.group, [&](std::size_t c) { return depends_on_speed(data.name(c)); }))
         steps.push_back(
             {"press at another speed: what depends on speed is no matter of geometry or friction", {}});
     return steps;

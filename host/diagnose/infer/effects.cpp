@@ -188,6 +188,10 @@ bool is_numerical(std::string_view name) {
     return effect && effect->settings;
 }
 
+bool depends_on_speed(std::string_view name) {
+    return name == "viscoelasticity" || name == "plate_speed" || name == "inertia";
+}
+
 std::vector<Nuisance> nuisances(const Model& model, const Experiment& experiment) {
     const auto stated = [&](const char* key) {
         const auto found = experiment.uncertainty.find(key);

@@ -48,6 +48,8 @@ std::span<const Effect> effects();
 const Effect* find_effect(std::string_view name);
 /// Whether it is an effect of the simulation's own numerics.
 bool is_numerical(std::string_view name);
+/// Whether it depends on the speed of the plate.
+bool depends_on_speed(std::string_view name);
 
 /// An uncertain parameter of the model, refitted in every comparison.
 struct Nuisance {

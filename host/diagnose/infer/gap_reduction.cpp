@@ -120,6 +120,18 @@ double gap_size(const GapData& data, const CellChoice& cells, const Eigen::Vecto
     return size;
 }
 
+PartialFit stepped(const GapData& data, const std::vector<std::size_t>& candidates, PartialFit fit,
+                   const Eigen::VectorXd& step) {
+    const Eigen::Index nuisances = fit.nuisances.size();
+    fit.nuisances = data.in_range(fit.nuisances + step.head(nuisances));
+    for (std::size_t k = 0; k < candidates.size(); ++k) {
+        const Candidate& candidate = data.candidates[candidates[k]];
+        fit.amplitudes[k] = std::clamp(fit.amplitudes[k] + step[nuisances + static_cast<Eigen::Index>(k)],
+                                       candidate.low, candidate.high);
+    }
+    return fit;
+}
+
 PartialFit fit_part(const GapData& data, const CellChoice& cells, const Eigen::VectorXd& gap,
                     const std::vector<std::size_t>& chosen, int mean_of) {
     PartialFit fit = Arms(data, {cells, {}}, mean_of).fit(gap, chosen_candidates(data, chosen));
@@ -138,14 +150,7 @@ PartialFit refit_part(const GapData& data, const CellChoice& cells, const Eigen:
         free.push_back({candidate.signature->slope(at.amplitudes[k]), candidate.high - candidate.low});
     }
     const Eigen::VectorXd step = GapSpace(data.noise, mean_of, cells, free).fit_nuisances(without_nuisances);
-    PartialFit fit{at.amplitudes, data.in_range(step.head(at.nuisances.size()))};
-    for (std::size_t k = 0; k < candidates.size(); ++k) {
-        const Candidate& candidate = data.candidates[candidates[k]];
-        fit.amplitudes[k] =
-            std::clamp(fit.amplitudes[k] + step[at.nuisances.size() + static_cast<Eigen::Index>(k)],
-                       candidate.low, candidate.high);
-    }
-    return fit;
+    return stepped(data, candidates, {at.amplitudes, Eigen::VectorXd::Zero(at.nuisances.size())}, step);
 }
 
 HeldOutGap held_out_gap(const GapData& data, const Split& split, int mean_of) {

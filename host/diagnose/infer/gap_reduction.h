@@ -51,6 +51,9 @@ struct PartialFit {
     std::vector<double> amplitudes;
     Eigen::VectorXd nuisances;
 };
+/// After a step of nuisances and amplitudes, as far as simulations can follow it.
+PartialFit stepped(const GapData& data, const std::vector<std::size_t>& candidates, PartialFit fit,
+                   const Eigen::VectorXd& step);
 PartialFit fit_part(const GapData& data, const CellChoice& cells, const Eigen::VectorXd& gap,
                     const std::vector<std::size_t>& candidates, int mean_of);
 
