@@ -61,10 +61,21 @@ INLINE lanes3 add_scaled3(lanes3 a, lanes factor, lanes3 b) {
     return (lanes3){a.x + factor * b.x, a.y + factor * b.y, a.z + factor * b.z};
 }
 /* a + b without fused multiply-add. If a and b are products that belong to the two sides of a contact, fusing
-   would round only one of them, and the two sides would get different bits. */
+   would round only one of them, and the two sides would get different bits. NVIDIA's compiler fuses in spite
+   of the pragma, but not an addition that states its rounding. */
 INLINE lanes add_alike(lanes a, lanes b) {
 #pragma OPENCL FP_CONTRACT OFF
+#if LANES == 1 && defined(__NV_CL_C_VERSION)
+    lanes sum;
+#if MCDEM_DOUBLE
+    __asm__("add.rn.f64 %0, %1, %2;" : "=d"(sum) : "d"(a), "d"(b));
+#else
+    __asm__("add.rn.f32 %0, %1, %2;" : "=f"(sum) : "f"(a), "f"(b));
+#endif
+    return sum;
+#else
     return a + b;
+#endif
 }
 INLINE lanes dot3(lanes3 a, lanes3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 INLINE lanes3 cross3(lanes3 a, lanes3 b) {

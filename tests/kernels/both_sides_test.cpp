@@ -64,7 +64,7 @@ void expect_same_from_both_sides(const Replica& scene, double overlap) {
         swapped.insert(swapped.end(), {b, a, a, b});
     }
     const KernelBuild kernels = build(Precision::single_precision);
-    for (const KernelBuild& way : {kernels, other_way(kernels)}) {
+    for (const KernelBuild& way : all_ways(kernels)) {
         const auto here = pair_quantities(radii, way, scene);
         EXPECT_GT(here[2], overlap * (radii[0] + radii[1]));
         EXPECT_NEAR(here[0], double(radii[0]) * radii[1] / (radii[0] + radii[1]), 1e-6 * radii[0]);

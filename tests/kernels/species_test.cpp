@@ -30,8 +30,8 @@ TEST(Species, FollowTheReferenceForEveryModelAndLayout) {
             for (FrictionLaw law : {FrictionLaw::saturated, FrictionLaw::mindlin})
                 starts.push_back(of_species(model, law, 33, 41));
         starts.push_back(start_of(ContactModel::mc_dem, FrictionLaw::mindlin, 17, 42));
-        expect_steps_as_reference(build(precision), starts, 43, 2);
-        expect_steps_as_reference(other_way(build(precision)), starts, 43, 2);
+        for (const KernelBuild& way : all_ways(build(precision)))
+            expect_steps_as_reference(way, starts, 43, 2);
     }
 }
 
@@ -70,8 +70,9 @@ mcdem::ReplicaState moved(Start start, const std::vector<mcdem::Species>& specie
 }
 
 TEST(Species, IdenticalSpeciesGiveTheBitsOfOneMaterial) {
+    if (!fuses_alike()) GTEST_SKIP() << "the compiler fuses products and sums differently in the two builds";
     for (Precision precision : precisions())
-        for (const KernelBuild& way : {build(precision), other_way(build(precision))})
+        for (const KernelBuild& way : all_ways(build(precision)))
             for (ContactModel model : all_models) {
                 Start start = start_of(model, FrictionLaw::mindlin, 40, 47);
                 start.replica.effects.rolling_resistance = model == ContactModel::mc_dem ? 0.2 : 0;

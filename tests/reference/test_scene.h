@@ -42,11 +42,27 @@ inline KernelBuild build(Precision precision, int slots = 16) {
     return mcdem::kernel_build(device(), precision, slots);
 }
 
-/// The kernel build with the other layout: the GPU layout on a CPU, the CPU layout on a GPU.
+/// CPUs run both layouts. GPUs run only their own: their compilers need minutes for vectors of 16 numbers.
+inline bool has_other_way() { return !device().info().gpu; }
+
+/// The kernel build with the GPU layout, on a CPU. Check has_other_way() first.
 inline KernelBuild other_way(KernelBuild build) {
     build.lanes = build.lanes > 1 ? 1 : 16;
     return build;
 }
+
+/// The kernel builds with all layouts that the device runs.
+inline std::vector<KernelBuild> all_ways(const KernelBuild& build) {
+    if (!has_other_way()) return {build};
+    return {build, other_way(build)};
+}
+
+#define SKIP_WITHOUT_OTHER_WAY() \
+    if (!has_other_way()) GTEST_SKIP() << "GPUs do not use the layout of CPUs"
+
+/// NVIDIA's compiler fuses products and sums differently in the kernels for one and for several materials, so
+/// the last bits of a replica depend on whether any other in its batch has several.
+inline bool fuses_alike() { return device().info().platform.find("NVIDIA") == std::string::npos; }
 
 inline bool has_double() { return device().info().double_precision; }
 
