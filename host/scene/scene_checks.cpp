@@ -68,6 +68,11 @@ const std::vector<Check> checks{
         const auto& plate = s.replica.plate;
         return unless(plate.end < plate.start, fmt::format("must be below plate.start = {}, got {}", plate.start, plate.end));
     }},
+    {{"protocol.pause", "protocol.stop_at_scans"}, Check::Packing::any, [](const Settings& s) {
+        const auto& protocol = s.replica.protocol;
+        return unless(protocol.pause == 0 || protocol.stop_at_scans,
+                      "needs protocol.stop_at_scans = true, because a plate that does not stop does not pause");
+    }},
     {{"protocol.discard", "protocol.cycles"}, Check::Packing::any, [](const Settings& s) {
         const auto& protocol = s.replica.protocol;
         return unless(protocol.discard < protocol.cycles,

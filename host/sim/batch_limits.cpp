@@ -149,7 +149,7 @@ void expect_countable_steps(const Replica& replica, double time_step) {
     const double seconds =
         protocol.relax_time +
         sum_over_legs(stages, [&](const Stage& stage) { return seconds_of_stage(stage, replica); }) +
-        (protocol.stop_at_scans ? scans * protocol.settle_time : 0);
+        (protocol.stop_at_scans ? scans * std::max(protocol.settle_time, protocol.pause) : 0);
     if (!(time_step >= min_time_step))
         throw InputError(
             fmt::format("numerics.time_step must leave steps of at least {} s, got {} s: take larger, "

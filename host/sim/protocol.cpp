@@ -18,6 +18,9 @@ constexpr double pressure_share = 0.2;
 /// The integrator removes drag * time step of a velocity per step. When the plate stops, motion ends at once;
 /// before the first stroke, grains still have to settle under gravity.
 constexpr double max_drag = 0.5, max_relax_drag = 0.02;
+/// Before a pause the plate brakes at a constant rate, over this part of the way between two scans. Each
+/// interval covers this part of the way left, and the last one what is below `last_way` of the braking.
+constexpr double braking_part = 0.25, interval_part = 0.25, last_way = 1e-3;
 /// Within this distance of a level, relative to the plate's start or a strain of one, the plate has arrived.
 constexpr double position_rounding = 1e-12;
 
@@ -87,7 +90,8 @@ double ProtocolRunner::hold_time() const {
 
 long ProtocolRunner::max_stage_steps() const {
     if (state_.stage == Stage::relax) return std::lround(protocol_.relax_time / time_step_);
-    if (state_.stage == Stage::settle) return std::lround(protocol_.settle_time / time_step_);
+    if (state_.stage == Stage::settle)
+        return std::lround((protocol_.pause > 0 ? protocol_.pause : protocol_.settle_time) / time_step_);
     if (state_.stage == Stage::hold)
         return state_.stage_step + std::lround((state_.hold_begin + hold_time() - state_.time) / time_step_);
     if (cell_) return max_steps_by_stress();
@@ -107,9 +111,16 @@ StepInterval ProtocolRunner::planned() const {
         const long left = std::max(1L, max_stage_steps() - state_.stage_step);
         return {static_cast<int>(std::min<double>(left, max_steps)), state_.plate_z, 0, drag()};
     }
-    const double left = waypoint() - state_.plate_z;
-    const double step = quasi_static_.speed(max_speed(), rate_length(), state_.pressure) * time_step_;
-    const double steps = std::max(1.0, std::ceil(std::abs(left) / step - 1e-9));
+    const double left = waypoint() - state_.plate_z, way = std::abs(left), braking = braking_way();
+    double step = quasi_static_.speed(max_speed(), rate_length(), state_.pressure) * time_step_;
+    if (way < braking) step *= std::sqrt(way / braking);
+    if (way > last_way * braking && braking > 0) {
+        const double part = way > braking ? way - (1 - position_rounding) * braking : interval_part * way;
+        const double steps = std::max(1.0, std::ceil(part / step - 1e-9));
+        return {static_cast<int>(std::min(steps, max_steps)), state_.plate_z,
+                std::copysign(std::min(step, way / steps) / time_step_, left), 0};
+    }
+    const double steps = std::max(1.0, std::ceil(way / step - 1e-9));
     return {static_cast<int>(std::min(steps, max_steps)), state_.plate_z, left / (steps * time_step_), 0};
 }
 
@@ -125,7 +136,17 @@ StepInterval ProtocolRunner::planned_by_force() const {
     return {static_cast<int>(steps), state_.plate_z, velocity, drag()};
 }
 
+/// Whether the plate stands still as in an experiment, without any settling.
+bool ProtocolRunner::pauses() const { return state_.stage == Stage::settle && protocol_.pause > 0; }
+
+/// Zero if the plate does not brake before it stops.
+double ProtocolRunner::braking_way() const {
+    if (protocol_.pause == 0 || state_.level >= scans_of(stage())) return 0;
+    return braking_part * std::abs(target() - state_.leg_begin) / scans_of(stage());
+}
+
 double ProtocolRunner::drag() const {
+    if (pauses()) return 0;
     const double wanted = by_force()    ? force_control_.drag(state_.control, set_force())
                           : by_stress() ? cell_->drag(state_.cell, stress())
                                         : HUGE_VAL;
@@ -244,7 +265,7 @@ std::optional<ProtocolRunner::ScanTag> ProtocolRunner::made(const IntervalResult
         return by_force() ? moved_by_force() : by_stress() && !driven() ? moved_by_stress() : moved();
     const bool still = settled(result, drag_before, plate_arrived);
     if (state_.stage == Stage::hold) return held(still);
-    if (!still && state_.stage_step < max_stage_steps()) return std::nullopt;
+    if ((!still || pauses()) && state_.stage_step < max_stage_steps()) return std::nullopt;
     if (state_.stage == Stage::settle) return arrive(still);
     begin_leg();
     if (!protocol_.scan_at_start) return std::nullopt;

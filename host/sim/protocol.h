@@ -117,6 +117,8 @@ private:
     long max_stage_steps() const;
     long max_steps_by_stress() const;
     StepInterval planned() const;
+    bool pauses() const;
+    double braking_way() const;
     StepInterval planned_by_force() const;
     StepInterval planned_by_stress() const;
     void deform(StepInterval& interval) const;

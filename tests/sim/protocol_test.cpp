@@ -116,6 +116,38 @@ TEST(Protocol, MovesAtTheGivenSpeedWithoutJumps) {
     EXPECT_NEAR(plate, 0.2, 1e-12);
 }
 
+// 25 mm between scans: at 0.5 m/s to the last quarter, then slower in every interval. The plate stands for
+// the whole pause, without drag, also when the packing is at rest.
+TEST(Protocol, BrakesBeforeAPauseAndLeavesThePackingAlone) {
+    Replica replica = replica_of(1, 4, true);
+    replica.protocol.pause = 0.12;
+    const Course course(replica, 0, 7);
+    ASSERT_EQ(course.scans.size(), 8u);
+    double plate = 0.2, standing = 0, slowest = 0.5;
+    for (const StepInterval& interval : course.intervals) {
+        EXPECT_NEAR(interval.plate_z, plate, 1e-12);
+        const double speed = std::abs(interval.plate_velocity), way = speed * interval.steps * time_step;
+        plate += interval.plate_velocity * interval.steps * time_step;
+        if (speed == 0 && slowest == 0.5 && plate == 0.2) continue;  // relaxes at first
+        if (speed == 0) {
+            standing += interval.steps * time_step;
+            EXPECT_EQ(interval.settle_drag, 0);
+            continue;
+        }
+        const double levels = interval.plate_z / 0.025;
+        const double next =
+            interval.plate_velocity < 0 ? std::ceil(levels - 1e-9) - 1 : std::floor(levels + 1e-9) + 1;
+        const double left = 0.025 * std::abs(next - levels);
+        EXPECT_LE(way, left + 1e-12);
+        EXPECT_LE(speed, 0.5 * std::min(1.0, std::sqrt(left / 6.25e-3)) + 1e-6) << left;
+        slowest = std::min(slowest, speed);
+    }
+    EXPECT_LT(slowest, 0.05 * 0.5);
+    EXPECT_NEAR(standing, 8 * 0.12, 1e-9);
+    for (int k = 0; k < 8; ++k)
+        EXPECT_NEAR(course.scans[k].plate_z, k < 4 ? 0.175 - 0.025 * k : 0.125 + 0.025 * (k - 4), 1e-12);
+}
+
 /// A plate whose force increases as it moves down.
 struct Pressed {
     explicit Pressed(double tolerance) {
