@@ -121,6 +121,8 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"[plate]\nend = 0.2\n", "bad.toml:2: plate.end must be below plate.start = 0.167643, got 0.2"},
         Wrong{"[protocol]\ncycles = 3\ndiscard = 3\n",
               "bad.toml:3: protocol.discard must be less than protocol.cycles = 3, got 3"},
+        Wrong{"[protocol]\nstop_at_scans = false\npause = 0.1\n",
+              "bad.toml:3: protocol.pause needs protocol.stop_at_scans = true"},
         Wrong{"[protocol]\ncycles = 10000\nscans_per_stroke = 1000",
               "bad.toml:3: protocol.scans_per_stroke must leave at most 1000000 scans"},
         Wrong{"[packing]\ndiameter_min = 0.0215\n",
