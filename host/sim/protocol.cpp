@@ -141,7 +141,7 @@ bool ProtocolRunner::pauses() const { return state_.stage == Stage::settle && pr
 
 /// Zero if the plate does not brake before it stops.
 double ProtocolRunner::braking_way() const {
-    if (protocol_.pause == 0 || state_.level >= scans_of(stage())) return 0;
+    if (!protocol_.stop_at_scans || protocol_.pause == 0 || state_.level >= scans_of(stage())) return 0;
     return braking_part * std::abs(target() - state_.leg_begin) / scans_of(stage());
 }
 

@@ -143,6 +143,9 @@ TEST(Protocol, BrakesBeforeAPauseAndLeavesThePackingAlone) {
         slowest = std::min(slowest, speed);
     }
     EXPECT_LT(slowest, 0.05 * 0.5);
+    replica.protocol.stop_at_scans = false;
+    for (const StepInterval& interval : Course(replica, 0, 7).intervals)
+        EXPECT_TRUE(interval.plate_velocity == 0 || std::abs(interval.plate_velocity) > 0.499) << "no stop";
     EXPECT_NEAR(standing, 8 * 0.12, 1e-9);
     for (int k = 0; k < 8; ++k)
         EXPECT_NEAR(course.scans[k].plate_z, k < 4 ? 0.175 - 0.025 * k : 0.125 + 0.025 * (k - 4), 1e-12);
