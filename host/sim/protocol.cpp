@@ -91,7 +91,7 @@ double ProtocolRunner::hold_time() const {
 long ProtocolRunner::max_stage_steps() const {
     if (state_.stage == Stage::relax) return std::lround(protocol_.relax_time / time_step_);
     if (state_.stage == Stage::settle)
-        return std::lround((protocol_.pause > 0 ? protocol_.pause : protocol_.settle_time) / time_step_);
+        return std::lround((pauses() ? protocol_.pause : protocol_.settle_time) / time_step_);
     if (state_.stage == Stage::hold)
         return state_.stage_step + std::lround((state_.hold_begin + hold_time() - state_.time) / time_step_);
     if (cell_) return max_steps_by_stress();
