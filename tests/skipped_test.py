@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""scripts/skipped lists tests that did not run; such a test is an error unless it requires a GPU or double
-precision."""
+"""scripts/skipped lists tests that did not run; such a test is an error unless it depends on the
+kind of device or on double precision."""
 import pathlib
 import subprocess
 import sys
@@ -32,6 +32,7 @@ def main():
              "[  SKIPPED ] 1 test, listed below:\n[  SKIPPED ] Cell.Two</system-out></testcase>")
     assert run(PASSED, suite) == (1, "did not run: Cell.Two: the tables are not here\n")
     assert run(skipped("fast", "needs a GPU"))[0] == 0
+    assert run(skipped("layout", "GPUs do not use the layout of CPUs"))[0] == 0
     code, said = run(gtest, skipped("slurm", "starting\nslurmctld is not installed"))
     assert code == 1 and said.splitlines()[1] == "did not run: slurm: slurmctld is not installed", said
     assert run(skipped("silent", ""))[0] == 1
