@@ -1,11 +1,34 @@
 // Device memory with its quantity in the type, so that swapped kernel arguments do not compile.
 #pragma once
 #include <cstring>
+#include <utility>
 #include <vector>
 
 #include "cl/device.h"
 
 namespace mcdem::inline opencl {
+
+/// Copies from the device that may still be under way. The destructor waits for their end, because the device
+/// writes into the host's memory until then.
+class PendingCopies {
+public:
+    PendingCopies() = default;
+    PendingCopies(PendingCopies&& other) noexcept : last_(std::exchange(other.last_, {})) {}
+    ~PendingCopies() {
+        try {
+            wait();
+        } catch (const cl::Error&) {  // the device has failed and copies no more
+        }
+    }
+    /// The queue keeps its order, so the end of this copy is that of all before it.
+    void add(cl::Event end) { last_ = std::move(end); }
+    void wait() const {
+        if (last_()) last_.wait();
+    }
+
+private:
+    cl::Event last_;
+};
 
 /// Device memory for `Quantity`, which is only a tag type. Elements may be reals of either precision; the
 /// size of an element is set in the constructor.
@@ -31,9 +54,17 @@ public:
     void read(void* data, std::size_t offset, std::size_t size) const {
         if (size > 0) queue_.enqueueReadBuffer(buffer_, CL_TRUE, offset, size, data);
     }
+    /// Starts to copy `size` bytes, at least one, from `offset`; `data` must exist until `copies` has ended.
+    void begin_read(void* data, std::size_t offset, std::size_t size, PendingCopies& copies) const {
+        cl::Event end;
+        queue_.enqueueReadBuffer(buffer_, CL_FALSE, offset, size, data, nullptr, &end);
+        copies.add(std::move(end));
+    }
     void write(const void* data, std::size_t offset, std::size_t size) {
         if (size > 0) queue_.enqueueWriteBuffer(buffer_, CL_TRUE, offset, size, data);
     }
+    /// Lets the device start with everything that is enqueued.
+    void flush() const { queue_.flush(); }
 
 private:
     mutable cl::CommandQueue queue_;

@@ -75,8 +75,7 @@ private:
         last_checkpoint_ = start;
         bool more = true, stop = false;
         while (more && !stop) {
-            more = simulation_.advance([this](int r, Scan scan) { keep(r, std::move(scan)); },
-                                       [this](int r, const Failure& failure) { note(r, failure); });
+            more = simulation_.advance(keep_, note_);
             options_.on_progress(simulation_.progress());
             stop = options_.stop_wanted();
             if (checkpoint_due() || !more || stop) write_checkpoint();
@@ -89,10 +88,16 @@ private:
     /// Called when the device or the disk has failed: writes the data recorded since the last checkpoint, if
     /// there is space, so that they can be read. Resuming discards and computes them again.
     void keep_what_is_recorded() noexcept {
-        try {
+        const auto attempt = [](auto work) {
+            try {
+                work();
+            } catch (const std::exception&) {  // only the first error is reported
+            }
+        };
+        attempt([&] { simulation_.pass_on(keep_, note_); });
+        attempt([&] {
             if (anything_new_) folder_.append_segment(pending_);
-        } catch (const std::exception&) {  // only the first error is reported
-        }
+        });
     }
 
     void keep(int replica, Scan scan) {
@@ -130,6 +135,7 @@ private:
     /// many, which resume() discards.
     void write_checkpoint() {
         const auto start = Clock::now();
+        simulation_.pass_on(keep_, note_);
         if (anything_new_ || folder_.segments() == 0) write_segment();
         auto checkpoint = make_checkpoint(identity_, folder_.segments(), simulation_.save());
         if (anything_new_) keep_scans(pending_, checkpoint);
@@ -143,6 +149,8 @@ private:
     RunIdentity identity_;
     ResultFolder folder_;
     Simulation simulation_;
+    const Simulation::ScanSink keep_ = [this](int r, Scan scan) { keep(r, std::move(scan)); };
+    const Simulation::FailureSink note_ = [this](int r, const Failure& failure) { note(r, failure); };
     Run pending_;                ///< provenance, and the scans since the last segment
     bool anything_new_ = false;  ///< in pending_
     std::size_t bytes_held_ = 0;

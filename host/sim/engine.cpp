@@ -163,20 +163,21 @@ void Engine::choose(const std::vector<char>& active) {
     fields_.portions.write(working_.portions.data(), 0, working_.portions.size() * sizeof(Portion));
 }
 
-std::vector<IntervalResult> Engine::advance(const std::vector<StepInterval>& intervals) {
+void Engine::begin_interval(const std::vector<StepInterval>& intervals) {
+    intervals_ = intervals;
     std::vector<char> active(layout_.replicas());
     int most = 0;
     for (int r = 0; r < layout_.replicas(); ++r) {
         active[r] = intervals[r].steps > 0;
         most = std::max(most, intervals[r].steps);
     }
-    if (most == 0) return std::vector<IntervalResult>(intervals.size());
+    if (most == 0) return;
     choose(active);
     upload_intervals(intervals);
     find_neighbours(active);
     make_steps(most);
     measure();
-    return read_reports(intervals);
+    fields_.reports.flush();
 }
 
 void Engine::upload_intervals(const std::vector<StepInterval>& intervals) {
@@ -318,10 +319,13 @@ std::vector<Report> by_replica(const std::vector<Portion>& portions, const std::
 
 }  // namespace
 
-std::vector<IntervalResult> Engine::read_reports(const std::vector<StepInterval>& intervals) {
+std::vector<IntervalResult> Engine::finish_interval() {
+    const std::vector<StepInterval>& intervals = intervals_;
+    std::vector<IntervalResult> results(layout_.replicas());
+    if (std::ranges::all_of(intervals, [](const auto& interval) { return interval.steps == 0; }))
+        return results;
     std::vector<int> made(layout_.replicas());
     fields_.stop_at.read(made.data());
-    std::vector<IntervalResult> results(layout_.replicas());
     std::visit(
         [&]<class DeviceReplica>(const std::vector<DeviceReplica>&) {
             using Report =

@@ -47,6 +47,15 @@ struct ReplicaState {
     std::vector<Contact> contacts;
 };
 
+/// Raw data of adjacent replicas from which states are computed: rows of grains and of slots in the device's
+/// order. The device copies them while the host goes on.
+struct Readings {
+    int first_replica = 0, last_replica = 0;
+    std::size_t first_grain = 0;
+    std::vector<std::byte> motion, tracks, force_x, force_y, force_z, overlap, arm, partner;
+    PendingCopies copies;  ///< into the vectors above; declared last, so it is waited for before they end
+};
+
 class Engine {
 public:
     /// `replicas[r]` starts from `packings[r]` at rest.
@@ -64,15 +73,24 @@ public:
     /// Device memory in use [bytes].
     FieldMemory memory() const { return fields_.memory(); }
 
-    /// Runs one interval of every replica; returns when done.
-    std::vector<IntervalResult> advance(const std::vector<StepInterval>& intervals);
+    /// Starts one interval of every replica on the device. Call finish_interval() next.
+    void begin_interval(const std::vector<StepInterval>& intervals);
+    /// Returns when the interval is done.
+    std::vector<IntervalResult> finish_interval();
+    std::vector<IntervalResult> advance(const std::vector<StepInterval>& intervals) {
+        begin_interval(intervals);
+        return finish_interval();
+    }
 
+    /// Starts to copy the states after the last interval from the device. `replicas` must be ascending;
+    /// adjacent replicas are read together.
+    std::vector<Readings> begin_reading(const std::vector<int>& replicas) const;
+    /// Calls use(i, state of replica i of those read) for every i, on all cores and in any order. Another
+    /// interval may have begun, but not finished, since the reading began.
+    void for_each_state(const std::vector<Readings>& read,
+                        const std::function<void(std::size_t, ReplicaState)>& use) const;
     /// Positions and contacts after the last interval of `replica`.
     ReplicaState state(int replica) const;
-    /// Calls use(i, state of replicas[i]) for every i, on all cores and in any order. `replicas` must be
-    /// ascending; adjacent replicas are read together.
-    void for_each_state(const std::vector<int>& replicas,
-                        const std::function<void(std::size_t, ReplicaState)>& use) const;
     /// For tests: sets velocities by the user's grain numbers.
     void set_velocities(int replica, const std::vector<Vec3>& velocity,
                         const std::vector<Vec3>& angular_velocity);
@@ -88,13 +106,6 @@ private:
         std::vector<int> replicas, blocks;
         std::vector<Portion> portions;
     };
-    /// Raw data of adjacent replicas from which states are computed: rows of grains and of slots in the
-    /// device's order.
-    struct Readings {
-        std::size_t first_grain;
-        std::vector<std::byte> motion, tracks, force_x, force_y, force_z, overlap, arm;
-        std::vector<int> partner;
-    };
     Part part(const std::vector<char>& wanted) const;
     void upload_materials();
     void upload_packings(const std::vector<Packing>& packings);
@@ -105,18 +116,16 @@ private:
     void make_steps(int steps);
     void measure();
     std::vector<Mat3> read_stresses(const std::vector<Strain>& strain) const;
-    std::vector<IntervalResult> read_reports(const std::vector<StepInterval>& intervals);
-    IntervalResult result_of(int replica, const double* reals, int status, int failed_place) const;
-    template <class Quantity>
-    std::vector<std::byte> read_bytes(const Field<Quantity>& field, std::size_t first,
-                                      std::size_t count) const;
     template <class Quantity>
     std::vector<double> read_reals(const Field<Quantity>& field, std::size_t first, std::size_t count) const;
     template <class Quantity>
     void write_reals(Field<Quantity>& field, std::size_t first, const std::vector<double>& values);
+    std::size_t size_of_real() const {
+        return build_.precision == Precision::double_precision ? sizeof(double) : sizeof(float);
+    }
     std::vector<double> reals(const std::vector<std::byte>& bytes, std::size_t first,
                               std::size_t count) const;
-    Readings readings(int first_replica, int last_replica) const;
+    Readings begin_reading(int first_replica, int last_replica) const;
     ReplicaState state(int replica, const Readings& readings) const;
     std::vector<Contact> contacts(int replica, const std::vector<Vec3>& position,
                                   const Readings& readings) const;
@@ -134,8 +143,9 @@ private:
     std::vector<double> plate_z_;      ///< at the end of the last interval [m]
     std::vector<Strain> strain_;       ///< of a cell, at the end of the last interval
     std::vector<long> steps_made_;
-    std::vector<char> active_;  ///< whether a replica is in working_
-    Part working_;              ///< the active replicas, as uploaded to the device
+    std::vector<char> active_;             ///< whether a replica is in working_
+    Part working_;                         ///< the active replicas, as uploaded to the device
+    std::vector<StepInterval> intervals_;  ///< the last ones that were begun
     std::variant<std::vector<f32::Replica>, std::vector<f64::Replica>> device_replicas_;
     Fields fields_;
     Kernels kernels_;

@@ -74,7 +74,7 @@ void refuse_checkpoint(const std::string& what) {
 std::vector<double> Engine::reals(const std::vector<std::byte>& bytes, std::size_t first,
                                   std::size_t count) const {
     std::vector<double> values(count);
-    if (build_.precision == Precision::double_precision) {
+    if (size_of_real() == sizeof(double)) {
         std::memcpy(values.data(), bytes.data() + first * sizeof(double), count * sizeof(double));
     } else {
         std::vector<float> floats(count);
@@ -84,20 +84,13 @@ std::vector<double> Engine::reals(const std::vector<std::byte>& bytes, std::size
     return values;
 }
 
-/// `count` reals of a field starting at `first`, as bytes.
-template <class Quantity>
-std::vector<std::byte> Engine::read_bytes(const Field<Quantity>& field, std::size_t first,
-                                          std::size_t count) const {
-    const std::size_t size = build_.precision == Precision::double_precision ? sizeof(double) : sizeof(float);
-    std::vector<std::byte> bytes(count * size);
-    field.read(bytes.data(), first * size, bytes.size());
-    return bytes;
-}
-
 template <class Quantity>
 std::vector<double> Engine::read_reals(const Field<Quantity>& field, std::size_t first,
                                        std::size_t count) const {
-    return reals(read_bytes(field, first, count), 0, count);
+    const std::size_t size = size_of_real();
+    std::vector<std::byte> bytes(count * size);
+    field.read(bytes.data(), first * size, bytes.size());
+    return reals(bytes, 0, count);
 }
 
 template <class Quantity>
@@ -114,37 +107,53 @@ template std::vector<double> Engine::read_reals(const Field<CellMoments>&, std::
 template void Engine::write_reals(Field<Motion>&, std::size_t, const std::vector<double>&);
 template void Engine::write_reals(Field<Tracks>&, std::size_t, const std::vector<double>&);
 
-Engine::Readings Engine::readings(int first_replica, int last_replica) const {
+Readings Engine::begin_reading(int first_replica, int last_replica) const {
     const auto first = static_cast<std::size_t>(layout_.first_grain[first_replica]);
     const auto grains = static_cast<std::size_t>(layout_.first_grain[last_replica + 1]) - first;
-    const auto slots = static_cast<std::size_t>(build_.slots);
-    const auto of_slots = [&](const auto& field) { return read_bytes(field, first * slots, grains * slots); };
-    Readings read{first,
-                  read_bytes(fields_.motion.copies[0], reals_of_motion * first, reals_of_motion * grains),
-                  read_bytes(fields_.tracks, reals_of_track * first, reals_of_track * grains),
-                  of_slots(fields_.force_x),
-                  of_slots(fields_.force_y),
-                  of_slots(fields_.force_z),
-                  of_slots(fields_.overlap),
-                  of_slots(fields_.arm),
-                  std::vector<int>(grains * slots)};
-    fields_.partner.read(read.partner.data(), first * slots * sizeof(int), grains * slots * sizeof(int));
+    const auto slots = static_cast<std::size_t>(build_.slots), real = size_of_real();
+    Readings read;
+    read.first_replica = first_replica;
+    read.last_replica = last_replica;
+    read.first_grain = first;
+    const auto begin = [&](const auto& field, std::vector<std::byte>& to, std::size_t bytes_of_grain) {
+        to.resize(grains * bytes_of_grain);
+        field.begin_read(to.data(), first * bytes_of_grain, to.size(), read.copies);
+    };
+    begin(fields_.motion.copies[0], read.motion, reals_of_motion * real);
+    begin(fields_.tracks, read.tracks, reals_of_track * real);
+    begin(fields_.force_x, read.force_x, slots * real);
+    begin(fields_.force_y, read.force_y, slots * real);
+    begin(fields_.force_z, read.force_z, slots * real);
+    begin(fields_.overlap, read.overlap, slots * real);
+    begin(fields_.arm, read.arm, slots * real);
+    begin(fields_.partner, read.partner, slots * sizeof(int));
     return read;
 }
 
-ReplicaState Engine::state(int replica) const { return state(replica, readings(replica, replica)); }
-
-void Engine::for_each_state(const std::vector<int>& replicas,
-                            const std::function<void(std::size_t, ReplicaState)>& use) const {
-    constexpr int max_grains = 1 << 18;  // that are read together: about 100 MB
+std::vector<Readings> Engine::begin_reading(const std::vector<int>& replicas) const {
+    std::vector<Readings> read;
     for (std::size_t begin = 0, end; begin < replicas.size(); begin = end) {
         end = begin + 1;
-        while (end < replicas.size() && replicas[end] == replicas[end - 1] + 1 &&
-               layout_.first_grain[replicas[end] + 1] - layout_.first_grain[replicas[begin]] <= max_grains)
-            ++end;
-        const Readings read = readings(replicas[begin], replicas[end - 1]);
-        in_parallel(end - begin, [&](std::size_t i) { use(begin + i, state(replicas[begin + i], read)); });
+        while (end < replicas.size() && replicas[end] == replicas[end - 1] + 1) ++end;
+        read.push_back(begin_reading(replicas[begin], replicas[end - 1]));
     }
+    return read;
+}
+
+void Engine::for_each_state(const std::vector<Readings>& read,
+                            const std::function<void(std::size_t, ReplicaState)>& use) const {
+    std::vector<std::pair<int, const Readings*>> states;
+    for (const Readings& some : read) {
+        some.copies.wait();
+        for (int r = some.first_replica; r <= some.last_replica; ++r) states.emplace_back(r, &some);
+    }
+    in_parallel(states.size(), [&](std::size_t i) { use(i, state(states[i].first, *states[i].second)); });
+}
+
+ReplicaState Engine::state(int replica) const {
+    const Readings read = begin_reading(replica, replica);
+    read.copies.wait();
+    return state(replica, read);
 }
 
 ReplicaState Engine::state(int replica, const Readings& read) const {
@@ -175,7 +184,7 @@ std::vector<Contact> Engine::contacts(int replica, const std::vector<Vec3>& posi
     const auto x = reals(read.force_x, first, count), y = reals(read.force_y, first, count),
                z = reals(read.force_z, first, count), overlap = reals(read.overlap, first, count),
                arm = reals(read.arm, first, count);
-    const int* const partner = read.partner.data() + first;
+    const int* const partner = reinterpret_cast<const int*>(read.partner.data()) + first;
     const PlateFace plate = plate_face(replicas_[replica], plate_z_[replica]);
     const Box box = deformed(replicas_[replica].box, strain_[replica]);
     std::vector<Contact> found;

@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstring>
+#include <stdexcept>
+#include <utility>
 
 #include "core/container.h"
 #include "core/errors.h"
@@ -14,6 +17,9 @@
 
 namespace mcdem::inline sim {
 namespace {
+
+/// Grains whose states are read together: about 500 MB.
+constexpr std::size_t max_grains_held = std::size_t{1} << 20;
 
 std::string compress_less(const Replica& replica) {
     return is_cell(replica.box) ? "compress less" : "compress less: raise plate.end";
@@ -112,75 +118,98 @@ Simulation::Simulation(Device& device, const Scene& scene, std::vector<Packing> 
     }
 }
 
-bool Simulation::advance(const ScanSink& on_scan, const FailureSink& on_failure) {
+std::vector<StepInterval> Simulation::next_intervals() {
     std::vector<StepInterval> intervals;
-    bool any = false;
     for (int r = 0; r < engine_.replicas(); ++r) {
         runners_[r].set_time_step(engine_.time_step(r));
         intervals.push_back(
             runners_[r].next([&](const StepInterval& next) { return engine_.max_interval(r, next); }));
         plates_[r].deflect(intervals[r], engine_.time_step(r), engine_.max_plate_move(r));
-        any |= intervals.back().steps > 0;
     }
+    return intervals;
+}
+
+bool Simulation::advance(const ScanSink& on_scan, const FailureSink& on_failure) {
+    const auto intervals = next_intervals();
+    const bool any = std::ranges::any_of(intervals, [](const auto& next) { return next.steps > 0; });
+    if (any) engine_.begin_interval(intervals);
+    pass_on(on_scan, on_failure);
     if (!any) return false;
-    const auto results = engine_.advance(intervals);
-    std::map<int, ProtocolRunner::ScanTag> due;
+    const auto results = engine_.finish_interval();
+    std::size_t grains_due = 0;
+    std::vector<int> due;
+    const auto read = [&] { readings_ = engine_.begin_reading(std::exchange(due, {})); };
     for (int r = 0; r < engine_.replicas(); ++r) {
-        if (intervals[r].steps == 0) continue;
         grain_steps_ += static_cast<long>(results[r].steps) * static_cast<long>(diameter_[r].size());
-        plates_[r].made(results[r]);
-        const auto tag = runners_[r].made(results[r], plates_[r].arrived(engine_.max_plate_move(r)));
-        if (tag && !results[r].status) due[r] = *tag;
+        if (intervals[r].steps == 0 || runners_[r].finished()) continue;  // pass_on() may have ended it
+        if (!take_note(r, results[r])) continue;
+        due.push_back(r);
+        grains_due += diameter_[r].size();
+        if (grains_due < max_grains_held) continue;
+        read();
+        pass_on(on_scan, on_failure);
+        grains_due = 0;
     }
-    std::map<int, Scan> recorded = scans(due, results);
-    for (int r = 0; r < engine_.replicas(); ++r) {
-        if (intervals[r].steps == 0) continue;
-        if (results[r].status) {
-            on_failure(r, failure(r, results[r]));
-            runners_[r].stop();
-            continue;
-        }
-        if (const auto found = recorded.find(r); found != recorded.end()) {
-            const std::string beyond = beyond_law(scene_.replicas[r], found->second);
-            on_scan(r, std::move(found->second));
-            if (!beyond.empty()) {
-                on_failure(r, {runners_[r].state().step, -1, beyond});
-                runners_[r].stop();
-                continue;
-            }
-        }
-        if (!runners_[r].hindrance().empty())
-            on_failure(r, {runners_[r].state().step, -1, runners_[r].hindrance()});
-    }
+    read();
     return true;
 }
 
-std::map<int, Scan> Simulation::scans(const std::map<int, ProtocolRunner::ScanTag>& due,
-                                      const std::vector<IntervalResult>& results) const {
-    std::vector<int> replicas;
-    for (const auto& [replica, _] : due) replicas.push_back(replica);
-    std::vector<Scan> found(replicas.size());
-    engine_.for_each_state(replicas, [&](std::size_t i, ReplicaState state) {
-        const int r = replicas[i];
-        found[i] = scan(r, due.at(r), results[r], std::move(state));
-    });
-    std::map<int, Scan> all;
-    for (std::size_t i = 0; i < replicas.size(); ++i) all[replicas[i]] = std::move(found[i]);
-    return all;
+bool Simulation::take_note(int replica, const IntervalResult& result) {
+    auto& runner = runners_[replica];
+    plates_[replica].made(result);
+    Outcome outcome{replica, result, {}, {}};
+    outcome.scan = runner.made(result, plates_[replica].arrived(engine_.max_plate_move(replica)));
+    if (result.status) {
+        outcome.scan.reset();
+        outcome.failure = failure(replica, result);
+        runner.stop();
+    } else if (!runner.hindrance().empty()) {
+        outcome.failure = Failure{runner.state().step, -1, runner.hindrance()};
+    }
+    if (outcome.scan || outcome.failure) outcomes_.push_back(outcome);
+    return outcome.scan.has_value();
 }
 
-Scan Simulation::scan(int replica, const ProtocolRunner::ScanTag& tag, const IntervalResult& result,
-                      ReplicaState state) const {
+void Simulation::pass_on(const ScanSink& on_scan, const FailureSink& on_failure) {
+    std::vector<Scan> scans = this->scans();
+    readings_.clear();
+    auto next = scans.begin();
+    for (Outcome& outcome : std::exchange(outcomes_, {})) {
+        const int r = outcome.replica;
+        if (outcome.scan) {
+            const std::string beyond = beyond_law(scene_.replicas[r], *next);
+            if (!beyond.empty()) outcome.failure = Failure{runners_[r].state().step, -1, beyond};
+            on_scan(r, std::move(*next++));
+        }
+        if (!outcome.failure) continue;
+        on_failure(r, *outcome.failure);
+        runners_[r].stop();
+    }
+}
+
+std::vector<Scan> Simulation::scans() const {
+    std::vector<const Outcome*> with_scan;
+    for (const Outcome& outcome : outcomes_)
+        if (outcome.scan) with_scan.push_back(&outcome);
+    std::vector<Scan> scans(with_scan.size());
+    engine_.for_each_state(readings_, [&](std::size_t i, ReplicaState state) {
+        scans[i] = scan(*with_scan[i], std::move(state));
+    });
+    return scans;
+}
+
+Scan Simulation::scan(const Outcome& outcome, ReplicaState state) const {
+    const auto& [replica, result, tag, _] = outcome;
     Scan scan;
-    scan.frame = tag.frame;
-    scan.cycle = tag.cycle;
-    scan.phase = tag.phase;
-    scan.time = tag.time;
+    scan.frame = tag->frame;
+    scan.cycle = tag->cycle;
+    scan.phase = tag->phase;
+    scan.time = tag->time;
     const auto& spec = scene_.replicas[replica];
     scan.strain = runners_[replica].strain();
-    scan.plate_z = is_cell(spec.box) ? deformed(spec.box, scan.strain).height : tag.plate_z;
-    scan.settled = tag.settled;
-    scan.rate_error = tag.rate_error;
+    scan.plate_z = is_cell(spec.box) ? deformed(spec.box, scan.strain).height : tag->plate_z;
+    scan.settled = tag->settled;
+    scan.rate_error = tag->rate_error;
     scan.wall_force = result.wall_force;
     scan.kinetic_energy = result.kinetic_energy;
     scan.elastic_energy = result.elastic_energy;
@@ -206,6 +235,8 @@ double Simulation::progress() const {
 }
 
 std::map<std::string, std::vector<std::byte>> Simulation::save() {
+    if (!outcomes_.empty())
+        throw std::logic_error("scans or failures of the last interval are not passed on");
     auto saved = engine_.save();
     const auto keep = [&](const char* name, const auto& parts) {
         auto& bytes = saved[name];
@@ -220,6 +251,8 @@ std::map<std::string, std::vector<std::byte>> Simulation::save() {
 }
 
 void Simulation::restore(const std::map<std::string, std::vector<std::byte>>& saved) {
+    outcomes_.clear();
+    readings_.clear();
     engine_.restore(saved);
     const auto bring_back = [&](const char* name, auto& parts) {
         auto state = parts.front().state();

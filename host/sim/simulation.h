@@ -3,6 +3,7 @@
 #pragma once
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,25 +21,38 @@ public:
     using ScanSink = std::function<void(int replica, Scan scan)>;
     using FailureSink = std::function<void(int replica, const Failure& failure)>;
 
-    /// Runs one interval of every unfinished replica. Returns false if none is left.
+    /// Runs one interval of every unfinished replica. While the device works on it, the scans and failures of
+    /// the interval before are passed on. Returns false if no replica was left.
     bool advance(const ScanSink& on_scan, const FailureSink& on_failure);
 
-    /// Ends a replica. `on_scan` may call it.
+    /// Passes on the scans and failures of the last interval. Call it before save().
+    void pass_on(const ScanSink& on_scan, const FailureSink& on_failure);
+
+    /// Ends a replica. `on_scan` may call it; a further interval that the replica has begun does not count.
     void end(int replica) { runners_[static_cast<std::size_t>(replica)].stop(); }
 
     double progress() const;                           ///< mean over the replicas, 0 to 1
     long grain_steps() const { return grain_steps_; }  ///< made by this object
     const Engine& engine() const { return engine_; }
 
+    /// Throws std::logic_error if scans or failures have not been passed on.
     std::map<std::string, std::vector<std::byte>> save();
     void restore(const std::map<std::string, std::vector<std::byte>>& saved);
 
 private:
-    /// Takes the scans that are due, by replica.
-    std::map<int, Scan> scans(const std::map<int, ProtocolRunner::ScanTag>& due,
-                              const std::vector<IntervalResult>& results) const;
-    Scan scan(int replica, const ProtocolRunner::ScanTag& tag, const IntervalResult& result,
-              ReplicaState state) const;
+    /// What an interval of a replica yielded. A replica with a failure is stopped.
+    struct Outcome {
+        int replica;
+        IntervalResult result;
+        std::optional<ProtocolRunner::ScanTag> scan;
+        std::optional<Failure> failure;
+    };
+    std::vector<StepInterval> next_intervals();
+    /// Adds to `outcomes_` if there is something to pass on. Returns whether a scan is due.
+    bool take_note(int replica, const IntervalResult& result);
+    /// The scans among `outcomes_`, in their order.
+    std::vector<Scan> scans() const;
+    Scan scan(const Outcome& outcome, ReplicaState state) const;
     Failure failure(int replica, const IntervalResult& result) const;
 
     Scene scene_;
@@ -47,6 +61,8 @@ private:
     Engine engine_;
     std::vector<ProtocolRunner> runners_;
     std::vector<CompliantPlate> plates_;
+    std::vector<Outcome> outcomes_;   ///< not passed on yet
+    std::vector<Readings> readings_;  ///< the states for the scans among them
     long grain_steps_ = 0;
 };
 

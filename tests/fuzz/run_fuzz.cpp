@@ -67,6 +67,7 @@ public:
                               "plate.start=0.05", "plate.end=0.045"})),
           simulation_(device_, scene_, make_packings(scene_)) {
         for (int round = 0; round < 3; ++round) advance();
+        simulation_.pass_on(ignore_scan_, ignore_failure_);
         saved_.scene_text = scene_.text;
         saved_.device = device_.description();
         saved_.segments = 1;
@@ -79,9 +80,9 @@ public:
     }
 
 private:
-    void advance() {
-        simulation_.advance([](int, const Scan&) {}, [](int, const Failure&) {});
-    }
+    void advance() { simulation_.advance(ignore_scan_, ignore_failure_); }
+    const Simulation::ScanSink ignore_scan_ = [](int, const Scan&) {};
+    const Simulation::FailureSink ignore_failure_ = [](int, const Failure&) {};
     Device device_;
     Scene scene_;
     Simulation simulation_;

@@ -55,19 +55,27 @@ TEST(Bits, AReplicaIsTheSameAloneAndInAnyBatch) {
     }
 }
 
+// Also while the device is already at work on the next interval.
 TEST(Bits, StatesReadTogetherEqualStatesReadOneByOne) {
     Batch batch(build(Precision::single_precision), starts({0, 1, 2, 3, 4, 5, 6}));
     batch.advance(40);
+    mcdem::Engine& engine = batch.engine();
     for (const std::vector<int>& replicas :
          {std::vector{0, 1, 2, 3, 4, 5, 6}, std::vector{1, 2, 5}, std::vector{6}, std::vector<int>{}}) {
-        std::vector<mcdem::ReplicaState> found(replicas.size());
-        batch.engine().for_each_state(
-            replicas, [&](std::size_t i, mcdem::ReplicaState state) { found[i] = std::move(state); });
+        std::vector<mcdem::ReplicaState> alone, found(replicas.size());
+        for (const int r : replicas) alone.push_back(engine.state(r));
+        const auto read = engine.begin_reading(replicas);
+        std::vector<mcdem::StepInterval> next;
+        for (int r = 0; r < engine.replicas(); ++r) next.push_back({10, batch.start(r).replica.plate.start});
+        engine.begin_interval(next);
+        engine.for_each_state(read,
+                              [&](std::size_t i, mcdem::ReplicaState state) { found[i] = std::move(state); });
+        engine.finish_interval();
         for (std::size_t i = 0; i < replicas.size(); ++i) {
-            const auto alone = batch.engine().state(replicas[i]);
-            EXPECT_TRUE(same_bits(found[i], alone)) << replicas[i];
-            EXPECT_EQ(found[i].contacts.size(), alone.contacts.size());
-            EXPECT_FALSE(alone.contacts.empty());
+            EXPECT_TRUE(same_bits(found[i], alone[i])) << replicas[i];
+            EXPECT_EQ(found[i].contacts.size(), alone[i].contacts.size());
+            EXPECT_FALSE(alone[i].contacts.empty());
+            EXPECT_FALSE(same_bits(engine.state(replicas[i]), alone[i])) << "nothing moved";
         }
     }
 }

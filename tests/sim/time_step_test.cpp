@@ -51,7 +51,7 @@ struct Course {
     explicit Course(const Scene& scene) : simulation(device(), scene, packings_of(scene)) {
         scans.resize(scene.replicas.size());
     }
-    /// Runs until every replica has `wanted` scans or has stopped.
+    /// Runs until every replica has at least `wanted` scans or has stopped.
     void run(std::size_t wanted) {
         const auto take = [&](int r, Scan scan) { scans[r].push_back(std::move(scan)); };
         const auto fail = [&](int r, const mcdem::Failure& failure) {
@@ -60,6 +60,7 @@ struct Course {
         const auto is_short = [&](const auto& list) { return list.size() < wanted; };
         while (std::ranges::any_of(scans, is_short) && simulation.advance(take, fail)) {
         }
+        simulation.pass_on(take, fail);
     }
     Simulation simulation;
     std::vector<std::vector<Scan>> scans;

@@ -34,12 +34,7 @@ public:
     WholeRun(Precision precision, const std::vector<Start>& starts)
         : told(starts.size()), simulation_(device(), scene(precision, starts), packings(starts)) {}
 
-    bool advance() {
-        return simulation_.advance([this](int r, const mcdem::Scan& scan) { told[r].add(scan); },
-                                   [](int r, const mcdem::Failure& failure) {
-                                       ADD_FAILURE() << "replica " << r << ": " << failure.cause;
-                                   });
-    }
+    bool advance() { return simulation_.advance(tell_, fail_); }
     void advance(int rounds) {
         for (int round = 0; round < rounds && advance(); ++round) {
         }
@@ -49,12 +44,19 @@ public:
         }
     }
     mcdem::ReplicaState state(int r) { return simulation_.engine().state(r); }
-    auto save() { return simulation_.save(); }
+    auto save() {
+        simulation_.pass_on(tell_, fail_);
+        return simulation_.save();
+    }
     void restore(const std::map<std::string, std::vector<std::byte>>& saved) { simulation_.restore(saved); }
 
     std::vector<Told> told;
 
 private:
+    const mcdem::Simulation::ScanSink tell_ = [this](int r, const mcdem::Scan& scan) { told[r].add(scan); };
+    const mcdem::Simulation::FailureSink fail_ = [](int r, const mcdem::Failure& failure) {
+        ADD_FAILURE() << "replica " << r << ": " << failure.cause;
+    };
     static mcdem::Scene scene(Precision precision, const std::vector<Start>& starts) {
         mcdem::Scene scene;
         scene.precision = precision;
