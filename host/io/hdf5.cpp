@@ -5,12 +5,12 @@
 
 #include "core/errors.h"
 #include "core/input_file.h"
+#include "io/chunk_filters.h"
 
 namespace mcdem::inline io::h5 {
 namespace {
 
 constexpr hsize_t chunk_bytes = 32 * 1024;
-constexpr unsigned deflate_level = 1;  // higher levels take five times as long for a few per cent
 // Deflate compresses at most 1032:1. A table that claims more than its file can contain is damaged, and no
 // memory is allocated for it.
 constexpr double max_bytes_per_byte = 1100;
@@ -153,19 +153,8 @@ std::size_t Dataset::values_in(hsize_t rows) const {
     return static_cast<std::size_t>(rows);
 }
 
-void Dataset::append(hid_t memory_type, const void* data, hsize_t rows) {
-    if (rows == 0) return;
-    if (!digest_) return write_rows(memory_type, data, rows);
-    const Handle stored = type();
-    const auto* begin = static_cast<const std::byte*>(data);
-    const std::size_t count = values_in(rows);
-    std::vector<std::byte> values(begin, begin + count * H5Tget_size(memory_type));
-    if (!convert(values, count, memory_type, stored)) fail("has values of a type that cannot be converted");
-    digest_->add(values, rows);
-    write_rows(stored, values.data(), rows);
-}
-
 void Dataset::write_rows(hid_t memory_type, const void* data, hsize_t rows) {
+    if (rows == 0) return;
     Extent size = extent();
     const hsize_t first = size.front();
     size.front() += rows;
@@ -307,6 +296,7 @@ Dataset File::create_rows(const std::string& object, hid_t file_type, const Exte
                           H5Dclose, *below_, where(object), "cannot be created"),
                   *below_, where(object));
     if (keeps_digests_) table.keep_digest();
+    if (storage == Storage::compressed) table.filter_chunks(chunk.front());
     return table;
 }
 

@@ -93,6 +93,9 @@ public:
     void expect_row(const Extent& row) const;
     /// For a table that is written: computes the digest of its rows. Call before the first row.
     void keep_digest() { digest_ = std::make_unique<TableDigest>(); }
+    /// For a compressed table that is written and has a digest: whole chunks of so many rows are filtered on
+    /// all cores. Deflating takes more than half of the time of writing, and the library uses one core.
+    void filter_chunks(hsize_t rows) { chunk_rows_ = rows; }
     /// Digest of the appended rows. Do not append afterwards.
     std::string digest() const;
     /// Expected digest of the rows; checked if they are read in order from first to last.
@@ -109,12 +112,14 @@ private:
     /// Number of values in `rows` rows.
     std::size_t values_in(hsize_t rows) const;
     void write_rows(hid_t memory_type, const void* data, hsize_t rows);
+    void write_chunks(hid_t stored, const std::byte* data, hsize_t chunks);
     void read_rows(hid_t memory_type, void* data, hsize_t first, hsize_t rows) const;
     void read_checked(hid_t memory_type, std::byte* data, hsize_t rows) const;
     void check_digest() const;
     Handle id_;
     const FileBelow* file_;
     std::string where_;
+    hsize_t chunk_rows_ = 0;                       ///< 0: the library filters all chunks
     mutable std::unique_ptr<TableDigest> digest_;  ///< of the rows appended or read so far
 };
 

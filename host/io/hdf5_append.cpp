@@ -1,0 +1,49 @@
+// Appending rows to a table. Whole chunks are filtered here, on all cores; the library filters the others.
+#include <algorithm>
+#include <span>
+
+#include "core/in_parallel.h"
+#include "io/chunk_filters.h"
+#include "io/hdf5.h"
+
+namespace mcdem::inline io::h5 {
+
+void Dataset::append(hid_t memory_type, const void* data, hsize_t rows) {
+    if (rows == 0) return;
+    if (!digest_) return write_rows(memory_type, data, rows);
+    const Handle stored = type();
+    const auto* begin = static_cast<const std::byte*>(data);
+    const std::size_t count = values_in(rows), row_bytes = count / rows * H5Tget_size(stored);
+    std::vector<std::byte> values(begin, begin + count * H5Tget_size(memory_type));
+    if (!convert(values, count, memory_type, stored)) fail("has values of a type that cannot be converted");
+    digest_->add(values, rows);
+    if (chunk_rows_ == 0) return write_rows(stored, values.data(), rows);
+    const hsize_t missing = (chunk_rows_ - this->rows() % chunk_rows_) % chunk_rows_;  // of the last chunk
+    const hsize_t first = std::min(missing, rows), chunks = (rows - first) / chunk_rows_;
+    const hsize_t last = first + chunks * chunk_rows_;
+    write_rows(stored, values.data(), first);
+    write_chunks(stored, values.data() + first * row_bytes, chunks);
+    write_rows(stored, values.data() + last * row_bytes, rows - last);
+}
+
+/// Writes whole chunks after the last row, which must be the end of a chunk.
+void Dataset::write_chunks(hid_t stored, const std::byte* data, hsize_t chunks) {
+    if (chunks == 0) return;
+    const std::size_t value_bytes = H5Tget_size(stored), chunk_bytes = values_in(chunk_rows_) * value_bytes;
+    std::vector<std::vector<std::byte>> bytes(chunks);
+    in_parallel(chunks, [&](std::size_t k) {
+        bytes[k] = filtered(std::span(data + k * chunk_bytes, chunk_bytes), value_bytes);
+    });
+    Extent size = extent(), begin(size.size(), 0);
+    begin.front() = size.front();
+    size.front() += chunks * chunk_rows_;
+    if (H5Dset_extent(id_, size.data()) < 0) fail("cannot grow");
+    for (const auto& chunk : bytes) {
+        if (H5Dwrite_chunk(id_, H5P_DEFAULT, 0, begin.data(), chunk.size(), chunk.data()) < 0 ||
+            file_->error() != 0)
+            fail("cannot be written");
+        begin.front() += chunk_rows_;
+    }
+}
+
+}  // namespace mcdem::io::h5
