@@ -55,12 +55,13 @@ private:
                 set(batch.replicas.back(), value);
                 packings.push_back(packings_[r]);
             }
-        // The last unloading is not evaluated.
+        // The last unloading is not evaluated; the simulation may be one interval into it when it stops.
         const auto& protocol = scene_.replicas.front().protocol;
         const int strokes = 2 * protocol.cycles - 1;
-        return simulate(device_, batch, packings,
-                        std::size_t(strokes) * protocol.scans_per_stroke + protocol.scan_at_start,
-                        [&](double fraction) { on_progress(fraction * (strokes + 1) / strokes); });
+        return simulate(
+            device_, batch, packings,
+            std::size_t(strokes) * protocol.scans_per_stroke + protocol.scan_at_start,
+            [&](double fraction) { on_progress(std::min(1.0, fraction * (strokes + 1) / strokes)); });
     }
 
     static void set(Replica& replica, double value) {
