@@ -12,7 +12,10 @@ if(pybind11_FOUND AND Python3_Development.Module_FOUND AND NOT MCDEM_SANITIZE AN
 else()
   set(can_build OFF)
 endif()
-option(MCDEM_PYTHON "Build the Python module" ${can_build})
+# Without -DMCDEM_PYTHON=.. not stored in the cache: the module is also built if its packages are installed later.
+if(NOT DEFINED MCDEM_PYTHON)
+  set(MCDEM_PYTHON ${can_build})
+endif()
 if(NOT MCDEM_PYTHON)
   return()
 endif()
