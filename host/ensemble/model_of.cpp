@@ -45,6 +45,7 @@ Model model_of(const Scene& scene, const Experiment& experiment) {
     model.replica.box = recording.box;
     model.instrument.stated = experiment.measurement;
     model.experiment_speed = experiment.plate_speed;
+    model.experiment_pause = experiment.plate_pause;
     model.mean_diameter = std::reduce(recording.diameter.begin(), recording.diameter.end()) /
                           static_cast<double>(std::max<std::size_t>(1, recording.diameter.size()));
     double lowest = recording.plate_start;
@@ -75,6 +76,23 @@ Model model_of(const Scene& scene, const Experiment& experiment) {
     model.replica.protocol.scans_per_stroke = loading;
     model.replica.protocol.cycles = std::min(cycles, simulated_cycles(scene));
     return model;
+}
+
+std::optional<NextStep> simulate_pauses(const Model& model) {
+    const Protocol& protocol = model.replica.protocol;
+    if (!(model.experiment_pause > 0) || protocol.pause > 0 || !model.replica.programme.empty())
+        return std::nullopt;
+    // Grains that have come to rest do not change during a longer pause.
+    const double pause = protocol.relax_time > 0 ? std::min(model.experiment_pause, protocol.relax_time)
+                                                 : model.experiment_pause;
+    std::string settings =
+        fmt::format("--set protocol.stop_at_scans=true --set protocol.pause={:.3g}", pause);
+    if (model.experiment_speed && *model.experiment_speed < model.replica.plate.speed)
+        settings += fmt::format(" --set plate.speed={:.3g}", *model.experiment_speed);
+    return NextStep{fmt::format("simulate the pauses of the experiment's plate, during which friction "
+                                "unloads: {} (with a new library)",
+                                settings),
+                    {}};
 }
 
 }  // namespace mcdem::ensemble

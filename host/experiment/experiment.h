@@ -29,6 +29,7 @@ struct Experiment {
     std::map<std::string, double> uncertainty;  ///< one sigma of some of them, by key
     Measurement measurement;
     std::optional<double> plate_speed = {};  ///< [m/s]; empty: slow
+    double plate_pause = 0;  ///< the plate stands for this time at each scan [s]; 0: it does not stop
 };
 
 /// The scene keys that `materials` and `uncertainty` may contain.

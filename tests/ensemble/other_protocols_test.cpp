@@ -111,6 +111,7 @@ TEST(OtherProtocols, GetAPowerInADiagnosis) {
     experiment.name = "measured";
     experiment.recording = kept_recordings(device, question, {truth}, store).front();
     experiment.measurement = truth.model.instrument.stated;
+    experiment.plate_pause = 0.2;
     DiagnoseOptions options;
     options.folder = folder.path / "diagnosis";
     options.candidates = {"adhesion", "adhesion_net_friction"};
@@ -130,6 +131,12 @@ TEST(OtherProtocols, GetAPowerInADiagnosis) {
                 ++powers;
             }
     EXPECT_EQ(powers, 2);
+    EXPECT_EQ(std::ranges::count_if(diagnosis.next,
+                                    [](const NextStep& step) {
+                                        return step.what.starts_with(
+                                            "simulate the pauses of the experiment's plate");
+                                    }),
+              1);
 }
 
 }  // namespace
