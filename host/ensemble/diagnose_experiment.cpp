@@ -84,7 +84,8 @@ public:
         diagnosis.not_testable = choice_.hindered;
         diagnosis.refinements = refinements_;
         if (diagnosis.verdict == Verdict::group) add_other_protocols(*builder, diagnosis.next);
-        if (auto pauses = simulate_pauses(model()); pauses && diagnosis.verdict != Verdict::no_gap)
+        if (auto pauses = simulate_pauses(model().replica, experiments_.front());
+            pauses && diagnosis.verdict != Verdict::no_gap)
             diagnosis.next.insert(diagnosis.next.begin(), *pauses);
         if (auto first = change_of_the_scene(diagnosis))
             diagnosis.next.insert(diagnosis.next.begin(), *first);

@@ -43,7 +43,7 @@ Experiment compared_cycles(const Scene& scene, Experiment experiment);
 Model model_of(const Scene& scene, const Experiment& experiment);
 
 /// How to simulate the pauses of the experiment's plate; nothing if it has none, or if the scene has some.
-std::optional<NextStep> simulate_pauses(const Model& model);
+std::optional<NextStep> simulate_pauses(const Replica& replica, const Experiment& experiment);
 
 /// Positions of the experiment's grains at its first frame.
 Packing start_packing(const Experiment& experiment);

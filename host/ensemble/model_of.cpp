@@ -45,7 +45,6 @@ Model model_of(const Scene& scene, const Experiment& experiment) {
     model.replica.box = recording.box;
     model.instrument.stated = experiment.measurement;
     model.experiment_speed = experiment.plate_speed;
-    model.experiment_pause = experiment.plate_pause;
     model.mean_diameter = std::reduce(recording.diameter.begin(), recording.diameter.end()) /
                           static_cast<double>(std::max<std::size_t>(1, recording.diameter.size()));
     double lowest = recording.plate_start;
@@ -78,17 +77,17 @@ Model model_of(const Scene& scene, const Experiment& experiment) {
     return model;
 }
 
-std::optional<NextStep> simulate_pauses(const Model& model) {
-    const Protocol& protocol = model.replica.protocol;
-    if (!(model.experiment_pause > 0) || protocol.pause > 0 || !model.replica.programme.empty())
+std::optional<NextStep> simulate_pauses(const Replica& replica, const Experiment& experiment) {
+    const Protocol& protocol = replica.protocol;
+    if (!(experiment.plate_pause > 0) || protocol.pause > 0 || !replica.programme.empty())
         return std::nullopt;
     // Grains that have come to rest do not change during a longer pause.
-    const double pause = protocol.relax_time > 0 ? std::min(model.experiment_pause, protocol.relax_time)
-                                                 : model.experiment_pause;
+    const double pause = protocol.relax_time > 0 ? std::min(experiment.plate_pause, protocol.relax_time)
+                                                 : experiment.plate_pause;
     std::string settings =
         fmt::format("--set protocol.stop_at_scans=true --set protocol.pause={:.3g}", pause);
-    if (model.experiment_speed && *model.experiment_speed < model.replica.plate.speed)
-        settings += fmt::format(" --set plate.speed={:.3g}", *model.experiment_speed);
+    if (experiment.plate_speed && *experiment.plate_speed < replica.plate.speed)
+        settings += fmt::format(" --set plate.speed={:.3g}", *experiment.plate_speed);
     return NextStep{fmt::format("simulate the pauses of the experiment's plate, during which friction "
                                 "unloads: {} (with a new library)",
                                 settings),

@@ -10,18 +10,26 @@ namespace {
 
 using testing::ElementsAre;
 
-/// Of an experiment whose plate stands for `pause` at each scan, and a scene with these settings.
-Model model_with(double pause, std::optional<double> speed, const std::vector<std::string>& settings = {}) {
-    Model model;
-    model.replica = small_scene(settings).replicas.front();
-    model.experiment_speed = speed;
-    model.experiment_pause = pause;
-    return model;
+/// An experiment whose plate stands for `pause` at each scan, and a scene with these settings.
+struct Compared {
+    Replica replica;
+    Experiment experiment;
+};
+
+Compared compared(double pause, std::optional<double> speed, const std::vector<std::string>& settings = {}) {
+    Compared both{small_scene(settings).replicas.front(), {}};
+    both.experiment.plate_speed = speed;
+    both.experiment.plate_pause = pause;
+    return both;
+}
+
+std::optional<NextStep> step_for(const Compared& both) {
+    return simulate_pauses(both.replica, both.experiment);
 }
 
 /// The values of --set in the advice; nothing without advice.
-std::vector<std::string> advised(const Model& model) {
-    const auto step = simulate_pauses(model);
+std::vector<std::string> advised(const Compared& both) {
+    const auto step = step_for(both);
     if (!step) return {};
     std::vector<std::string> settings;
     std::istringstream words(step->what);
@@ -31,36 +39,35 @@ std::vector<std::string> advised(const Model& model) {
 }
 
 TEST(SimulatePauses, AtTheSpeedOfTheExperiment) {
-    EXPECT_THAT(advised(model_with(0.15, 0.01, {"protocol.relax_time=0.2"})),
+    EXPECT_THAT(advised(compared(0.15, 0.01, {"protocol.relax_time=0.2"})),
                 ElementsAre("protocol.stop_at_scans=true", "protocol.pause=0.15", "plate.speed=0.01"));
 }
 
 TEST(SimulatePauses, KeepsTheSpeedOfASlowerScene) {
-    EXPECT_THAT(advised(model_with(0.01, 0.2, {"plate.speed=0.1"})),
+    EXPECT_THAT(advised(compared(0.01, 0.2, {"plate.speed=0.1"})),
                 ElementsAre("protocol.stop_at_scans=true", "protocol.pause=0.01"));
-    EXPECT_THAT(advised(model_with(0.01, std::nullopt)),
+    EXPECT_THAT(advised(compared(0.01, std::nullopt)),
                 ElementsAre("protocol.stop_at_scans=true", "protocol.pause=0.01"));
 }
 
 TEST(SimulatePauses, NoLongerThanGrainsNeedToRest) {
-    EXPECT_THAT(advised(model_with(60, std::nullopt, {"protocol.relax_time=0.2"})),
+    EXPECT_THAT(advised(compared(60, std::nullopt, {"protocol.relax_time=0.2"})),
                 ElementsAre("protocol.stop_at_scans=true", "protocol.pause=0.2"));
-    EXPECT_THAT(advised(model_with(60, std::nullopt, {"protocol.relax_time=0"})),
+    EXPECT_THAT(advised(compared(60, std::nullopt, {"protocol.relax_time=0"})),
                 ElementsAre("protocol.stop_at_scans=true", "protocol.pause=60"));
 }
 
 TEST(SimulatePauses, NotIfTheExperimentOrTheSceneSaysOtherwise) {
-    EXPECT_FALSE(simulate_pauses(model_with(0, 0.01)));
-    EXPECT_FALSE(
-        simulate_pauses(model_with(0.15, 0.01, {"protocol.stop_at_scans=true", "protocol.pause=0.1"})));
-    Model with_programme = model_with(0.15, 0.01);
+    EXPECT_FALSE(step_for(compared(0, 0.01)));
+    EXPECT_FALSE(step_for(compared(0.15, 0.01, {"protocol.stop_at_scans=true", "protocol.pause=0.1"})));
+    Compared with_programme = compared(0.15, 0.01);
     with_programme.replica.programme.resize(1);
-    EXPECT_FALSE(simulate_pauses(with_programme));
+    EXPECT_FALSE(step_for(with_programme));
 }
 
 TEST(SimulatePauses, TheAdviceIsAValidScene) {
-    const Model model = model_with(0.01, 0.02, {"protocol.stop_at_scans=false"});
-    const Protocol followed = small_scene(advised(model)).replicas.front().protocol;
+    const Compared both = compared(0.01, 0.02, {"protocol.stop_at_scans=false"});
+    const Protocol followed = small_scene(advised(both)).replicas.front().protocol;
     EXPECT_TRUE(followed.stop_at_scans);
     EXPECT_EQ(followed.pause, 0.01);
 }

@@ -18,7 +18,6 @@ struct Model {
     Instrument instrument;
     double mean_diameter = 0;                     ///< of the experiment's grains [m]
     std::optional<double> experiment_speed = {};  ///< of the experiment's plate [m/s]; empty: slow
-    double experiment_pause = 0;                  ///< of the experiment's plate at each scan [s]
 };
 
 /// A key of the scene and its value in a model.
