@@ -1,7 +1,8 @@
 /* Finite strain of a grain (contact model `hyperelastic_sphere`). A grain that fills its cell becomes stiffer
    with its mean pressure P = sum F/(4 pi E R^2). The work of its surface displacements, in units of E R^3, is
-     (1 - e) H + g W + g^(5/3) Z + 4 pi (q P^3 g^2 - integral of u(P)),
+     (1 - e) H + g W + g^(5/3) Z + 4 pi (P (q P^2 + t D) g^2 - integral of u(P)),
      e = (1 + c_h P)^(-2/3), g = 1/(1 + c P),
+     D   squared deviator of the mean stress: tr(T^2) - P^2/3, T = sum F n n/(4 pi E R^2), tr T = P
      H   3/5 sum F h, with h this grain's share of the Hertz overlap
      W   work at small strain of point forces, and of each contact's own displacement beyond Hertz
      Z   contribution of the finite contact sizes to this work
@@ -11,7 +12,8 @@
 
 /* Pressure in E, energies in E R^3. */
 typedef struct {
-    lanes pressure;               /* sum F / (4 pi R^2 E) */
+    lanes pressure;               /* P = sum F / (4 pi R^2 E) */
+    lanes deviator;               /* D */
     lanes hertz, work, size_work; /* H, W, Z */
 } Confined;
 
@@ -29,27 +31,56 @@ INLINE lanes own_work(Grain at, lanes force, lanes contact_radius) {
     return force * force * self_work(at, contact_radius / radius) * (own_compliance(at) / radius);
 }
 
-/* Stores the work of slot v: that of point forces in x, the contribution of contact sizes in y. This
-   overwrites the directions, which are no longer needed. The point part scales with the square of the forces
-   (factor 1/2), the size part with the power 8/3 (factor 3/8). */
-INLINE void tabulate_work(Grain at, SurfaceDisplacement b, int v, EXCHANGE ContactTable* table) {
+/* sum F n n over the contacts of a grain [N]: diagonal, and the components yz, xz, xy. */
+typedef struct {
+    lanes3 diagonal, mixed;
+} StressSum;
+
+INLINE StressSum stress_sum(Grain at, EXCHANGE const ContactTable* table) {
+    StressSum sum = {ZERO3, ZERO3};
+#pragma unroll 1 /* unrolling would need too many registers on GPUs */
+    for (int k = 0; k < CONTACT_SLOTS(at); ++k) {
+        const lanes x = table->x[k], y = table->y[k], z = table->z[k];
+        const lanes3 load = scale3(table->elastic[k], (lanes3){x, y, z});
+        sum.diagonal = add3(sum.diagonal, (lanes3){load.x * x, load.y * y, load.z * z});
+        sum.mixed = add3(sum.mixed, (lanes3){load.y * z, load.x * z, load.x * y});
+    }
+    return sum;
+}
+
+/* n T n - P/3 in the direction n of slot `slot`, over E. */
+INLINE lanes deviator_along(Grain at, StressSum sum, EXCHANGE const ContactTable* table, int slot) {
+    const lanes x = table->x[slot], y = table->y[slot], z = table->z[slot];
+    const lanes3 d = sum.diagonal, m = sum.mixed;
+    const lanes along = x * x * d.x + y * y * d.y + z * z * d.z +
+                        R(2) * (y * z * m.x + x * z * m.y + x * y * m.z) - (d.x + d.y + d.z) / R(3);
+    return along * own_compliance(at) / (R(4) * PI * at.now.radius * at.now.radius);
+}
+
+/* Overwrites the direction of slot v, which is no longer needed: x becomes the work of point forces, y the
+   contribution of contact sizes, z the deviator along the direction. The point part scales with the square of
+   the forces (factor 1/2), the size part with the power 8/3 (factor 3/8). */
+INLINE void tabulate_work(Grain at, StressSum stress, SurfaceDisplacement b, int v,
+                          EXCHANGE ContactTable* table) {
     const int slot = SLOT(v);
     const lanes force = table->elastic[slot], contact_radius = table->radius[slot];
     lanes work = R(0.5) * force * b.point;
     if (at.replica->confinement) work += own_work(at, force, contact_radius);
+    table->z[slot] = deviator_along(at, stress, table, slot);
     table->x[slot] = work;
     table->y[slot] = R(0.375) * force * b.size;
 }
 
 /* Pressure and energies of a grain. `b`: surface displacements at its slots, at small strain. */
 INLINE Confined confined(Grain at, const SurfaceDisplacement* b, EXCHANGE ContactTable* table) {
+    const StressSum stress = stress_sum(at, table);
     SYNCHRONISE();
-    for (int v = 0; v < at.count; ++v) tabulate_work(at, b[v], v, table);
+    for (int v = 0; v < at.count; ++v) tabulate_work(at, stress, b[v], v, table);
     SYNCHRONISE();
     const lanes radius = at.now.radius, compliance = own_compliance(at);
     lanes force = R(0);
-    Confined c = {R(0), R(0), R(0), R(0)};
-#pragma unroll 1 /* unrolling would need too many registers on GPUs */
+    Confined c = {R(0), R(0), R(0), R(0), R(0)};
+#pragma unroll 1
     for (int k = 0; k < CONTACT_SLOTS(at); ++k) {
         const lanes own = table->elastic[k];
         const mask pressed = AS_MASK(own > R(0));
@@ -57,9 +88,12 @@ INLINE Confined confined(Grain at, const SurfaceDisplacement* b, EXCHANGE Contac
         c.hertz += own * own / WHERE(pressed, table->radius[k], R(1));
         c.work += table->x[k];
         c.size_work += table->y[k];
+        c.deviator += own * table->z[k];
     }
     const lanes per_energy = compliance / (radius * radius * radius);
-    c.pressure = force * compliance / (R(4) * PI * radius * radius);
+    const lanes per_force = compliance / (R(4) * PI * radius * radius);
+    c.pressure = force * per_force;
+    c.deviator *= per_force;
     c.hertz *= R(0.6) * hertz_share(at) * per_energy;
     c.work *= per_energy;
     c.size_work *= per_energy;
@@ -109,9 +143,8 @@ INLINE lanes uniform_work(Bulk u, lanes P) {
 INLINE lanes confined_work(Grain at, Confined grain) {
     const lanes radius = at.now.radius, P = grain.pressure;
     const Yielding y = yielding(at, P);
-    const lanes volume =
-        R(4) * PI *
-        (OWN(at, confinement_volume) * P * P * P * y.work * y.work - uniform_work(bulk_of(at), P));
+    const lanes cubic = OWN(at, confinement_volume) * P * P + OWN(at, confinement_shear) * grain.deviator;
+    const lanes volume = R(4) * PI * (P * cubic * y.work * y.work - uniform_work(bulk_of(at), P));
     const lanes sum =
         (R(1) - y.hertz) * grain.hertz + y.work * grain.work + y.size * grain.size_work + volume;
     return sum * radius * radius * radius / own_compliance(at);
@@ -120,7 +153,8 @@ INLINE lanes confined_work(Grain at, Confined grain) {
 /* Values shared by all slots of a grain. */
 typedef struct {
     Yielding yielding;
-    lanes alike; /* displacement that is equal at all slots [m] */
+    lanes alike;   /* displacement that is equal at all slots [m] */
+    lanes sheared; /* displacement by the deviator along a slot's direction [m] */
 } Confinement;
 
 INLINE Confinement confinement_of(Grain at, Confined grain) {
@@ -128,10 +162,13 @@ INLINE Confinement confinement_of(Grain at, Confined grain) {
     const Yielding y = yielding(at, P);
     const lanes by_pressure = R(2) / R(3) * c_hertz * y.hertz / (R(1) + c_hertz * P) * grain.hertz -
                               c * y.work * (y.work * grain.work + R(5) / R(3) * y.size * grain.size_work);
-    const lanes volume =
-        OWN(at, confinement_volume) * P * P * y.work * y.work * (R(3) - R(2) * c * P * y.work);
+    const lanes volume = OWN(at, confinement_volume) * P * P, shear = OWN(at, confinement_shear);
+    const lanes cubic =
+        y.work * y.work *
+        (R(3) * volume + shear * grain.deviator - R(2) * c * P * y.work * (volume + shear * grain.deviator));
     const Confinement all = {
-        y, at.now.radius * (by_pressure / (R(4) * PI) + volume - uniform_overlap(bulk_of(at), P))};
+        y, at.now.radius * (by_pressure / (R(4) * PI) + cubic - uniform_overlap(bulk_of(at), P)),
+        at.now.radius * R(2) * shear * P * y.work * y.work};
     return all;
 }
 
@@ -147,5 +184,5 @@ INLINE lanes confined_displacement(Grain at, Confinement all, SurfaceDisplacemen
     const lanes own = whole_self_displacement(at, self_terms_here(at), relative);
     const lanes at_once = own * known_share(at, relative);
     return (R(1) - y.hertz) * hertz + scaled * (y.work * own - at_once) + y.work * small_strain.point +
-           y.size * small_strain.size + all.alike;
+           y.size * small_strain.size + all.sheared * table->z[SLOT(v)] + all.alike;
 }

@@ -25,6 +25,7 @@ typedef struct {
     real confinement_hertz;         /* c_h, finite strain (confinement.h) */
     real confinement_coupling;      /* c */
     real confinement_volume;        /* q */
+    real confinement_shear;         /* t */
     real confinement_bulk[3];       /* u0, u1, u2 */
     real grain_compliance;          /* (1 - nu^2) / E [1/Pa] */
     real shear_compliance;          /* (2 - nu) / G [1/Pa] */

@@ -6,7 +6,7 @@
 
 /* Contacts of a grain, readable by all its slots. */
 typedef struct {
-    lanes x[SLOTS], y[SLOTS], z[SLOTS]; /* direction e; confinement.h reuses x and y */
+    lanes x[SLOTS], y[SLOTS], z[SLOTS]; /* direction e; confinement.h reuses the memory */
     lanes arm[SLOTS];                   /* distance of the contact or probed point from the centre [m] */
     lanes elastic[SLOTS];               /* elastic force, zero without contact [N] */
     lanes radius[SLOTS];                /* contact radius [m] */

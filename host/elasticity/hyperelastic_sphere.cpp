@@ -13,15 +13,16 @@ namespace {
 struct Coefficients {
     double poisson_ratio;
     std::array<double, 3> own;
-    double volume;
+    double volume;  // q, t of kernels/confinement.h
+    double shear;
 };
 
 // Printed by tests/truth/fit_hyperelastic_sphere.py.
-constexpr double coupling = 1.2697, hertz = 0.8501;
+constexpr double coupling = 1.3148, hertz = 0.8988;
 constexpr std::array<Coefficients, 3> fitted{{
-    {0.30, {-0.0123, 0.3868, -0.6846}, 0.3074},
-    {0.40, {0.0029, 0.1592, -0.3801}, 0.2208},
-    {0.49, {0.0092, 0.0246, -0.1721}, 0.1576},
+    {0.30, {-0.0128, 0.3940, -0.6893}, 0.3061, -0.0091},
+    {0.40, {-0.0085, 0.2214, -0.4386}, 0.2282, 0.4952},
+    {0.49, {-0.0067, 0.1080, -0.2533}, 0.1588, 0.8371},
 }};
 
 /// Linear interpolation between the two neighbouring fitted Poisson ratios.
@@ -57,6 +58,7 @@ void add_finite_strain(SurfaceLaw& law, double poisson_ratio, double share) {
     law.point[1] += uniform;
     law.confinement = {share * hertz, share * coupling,
                        share * between(poisson_ratio, [](const Coefficients& c) { return c.volume; }),
+                       share * between(poisson_ratio, [](const Coefficients& c) { return c.shear; }),
                        uniform_compression(poisson_ratio, share)};
 }
 

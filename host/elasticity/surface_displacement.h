@@ -21,6 +21,7 @@ struct Confinement {
     double coupling =
         0;  ///< stiffens the displacement of contacts by themselves beyond Hertz, and by one another
     double volume = 0;  ///< q
+    double shear = 0;   ///< t
     std::array<double, 3>
         bulk{};  ///< uniform compression in powers of P; `point` and `self` do not include it
 };

@@ -62,6 +62,7 @@ void set_surface(Material& m, const Replica& replica, const GrainMaterial& g) {
     m.confinement_hertz = surface.confinement.hertz;
     m.confinement_coupling = surface.confinement.coupling;
     m.confinement_volume = surface.confinement.volume;
+    m.confinement_shear = surface.confinement.shear;
     std::copy(surface.confinement.bulk.begin(), surface.confinement.bulk.end(), m.confinement_bulk);
 }
 

@@ -115,8 +115,9 @@ WorstErrors worst_errors(ContactModel model, double least_pressure, double most_
     WorstErrors worst;
     for (const Load& load : finite_elements()) {
         if (mean_pressure(load) <= least_pressure || mean_pressure(load) > most_pressure) continue;
-        const auto solution = mirrors_of(load.name) ? forces(model, load.poisson_ratio, load.plates)
-                                                    : forces_at_rest(model, load.poisson_ratio, load.plates);
+        const auto solution = mirrors_of(load.name) == 3
+                                  ? forces(model, load.poisson_ratio, load.plates)
+                                  : forces_at_rest(model, load.poisson_ratio, load.plates);
         for (std::size_t c = 0; c < load.plates.size(); ++c) {
             const double overlap = load.plates[c].overlap;
             if (overlap < 0.03 || overlap > 0.2005)
@@ -140,9 +141,9 @@ TEST(HyperelasticSphere, AgreesWithFiniteElementsInEveryArrangement) {
     print("P to 0.12", worst);
     ASSERT_EQ(worst.size(), 19u);
     for (const auto& [name, error] : worst) {
-        EXPECT_LT(error[0], name == "fourteen" ? 0.045 : 0.035) << name;
-        EXPECT_LT(error[1], 0.04) << name;
-        EXPECT_LT(error[2], 0.07) << name;
+        EXPECT_LT(error[0], name == "fourteen" ? 0.045 : 0.03) << name;
+        EXPECT_LT(error[1], 0.03) << name;
+        EXPECT_LT(error[2], 0.03) << name;
     }
 }
 
@@ -151,10 +152,10 @@ TEST(HyperelasticSphere, AgreesWithFiniteElementsInNearlyFilledCells) {
     const auto nearly = worst_errors(ContactModel::hyperelastic_sphere, 0.12, 0.3);
     print("P 0.12 to 0.3", nearly);
     for (const auto& [name, error] : nearly)
-        EXPECT_LT(std::ranges::max(error), name == "fourteen" ? 0.11 : 0.075) << name;
+        EXPECT_LT(std::ranges::max(error), name == "fourteen" ? 0.08 : 0.05) << name;
     const auto filled = worst_errors(ContactModel::hyperelastic_sphere, 0.3, 1);
     print("P 0.3 to 1", filled);
-    for (const auto& [name, error] : filled) EXPECT_LT(std::ranges::max(error), 0.2) << name;
+    for (const auto& [name, error] : filled) EXPECT_LT(std::ranges::max(error), 0.15) << name;
 }
 
 TEST(HyperelasticSphere, EqualsTheElasticSphereAtSmallOverlaps) {

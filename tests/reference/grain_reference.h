@@ -94,6 +94,7 @@ inline double self_displacement(const SurfaceLaw& law, const Grain& grain, const
 /// Hertz and displacements by point forces; contribution of the contact sizes. Mean pressure over E.
 struct Works {
     double hertz = 0, points = 0, sizes = 0, pressure = 0;
+    double deviator = 0;  ///< tr T^2 - P^2/3, T = sum F n n/(4 pi E R^2)
 };
 
 inline double hertz_share(const Grain& grain, const Slot& c) {
@@ -110,12 +111,22 @@ inline double own_work(const SurfaceLaw& law, const Grain& grain, const Slot& c)
            S[4] / 3 * x * x * x;
 }
 
+/// n T n - P/3 at slot c.
+inline double deviator_along(const Grain& grain, const Slot& c) {
+    const double area = 4 * std::numbers::pi * grain.youngs_modulus * grain.radius * grain.radius;
+    double sum = 0;
+    for (const Slot& k : grain.slots)
+        sum += k.force / area * (std::pow(k.direction.dot(c.direction), 2) - 1.0 / 3);
+    return sum;
+}
+
 inline Works works(const SurfaceLaw& law, const Grain& grain) {
     const double area = grain.youngs_modulus * grain.radius * grain.radius;
     Works w;
     for (const Slot& c : grain.slots) {
         const double force = c.force / area;
         w.pressure += force / (4 * std::numbers::pi);
+        w.deviator += force / (4 * std::numbers::pi) * deviator_along(grain, c);
         w.hertz += 0.6 * force * hertz_share(grain, c) / grain.radius;
         if (force != 0) w.points += force * force * own_work(law, grain, c);
         for (const Slot& k : grain.slots) {
@@ -138,7 +149,7 @@ inline double confined_work(const mcdem::Confinement& c, const Works& w, double 
     const double bulk = c.bulk[0] * p * p / 2 + c.bulk[1] * std::pow(p, 3) / 3 +
                         c.bulk[2] * std::pow(p, 4) / 4 + overlap * (P - p) + slope * (P - p) * (P - p) / 2;
     return (1 - e) * w.hertz + g * w.points + std::pow(g, 5.0 / 3) * w.sizes +
-           4 * std::numbers::pi * (c.volume * std::pow(P, 3) * g * g - bulk);
+           4 * std::numbers::pi * (P * (c.volume * P * P + c.shear * w.deviator) * g * g - bulk);
 }
 
 /// Outward displacement of a slot [m]: the derivative of the work with respect to its force. The derivative
@@ -152,6 +163,7 @@ inline double confined_displacement(const SurfaceLaw& law, const Grain& grain, c
     const double g = 1 / (1 + law.confinement.coupling * w.pressure);
     const double per_force = 1 / (grain.youngs_modulus * grain.radius);
     double sum = (1 - e) * hertz_share(grain, c) + grain.radius * by_pressure / (4 * std::numbers::pi);
+    sum += 2 * grain.radius * law.confinement.shear * w.pressure * g * g * deviator_along(grain, c);
     if (c.force != 0) sum += g * per_force * c.force * whole_self_displacement(law, grain, c);
     for (const Slot& k : grain.slots) {
         if (&k == &c) continue;

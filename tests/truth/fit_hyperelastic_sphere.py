@@ -35,6 +35,9 @@ class Row:
         self.normals, self.overlap, self.force = map(np.array, (self.normals, self.overlap, self.force))
         self.law = Law(poisson_ratio, self.normals, self_term)
         self.pressure = self.force.sum() / (4 * np.pi)
+        stress = (self.normals.T * self.force) @ self.normals / (4 * np.pi)
+        self.along = np.einsum('ci,ij,cj->c', self.normals, stress, self.normals) - self.pressure / 3
+        self.deviator = (stress**2).sum() - self.pressure**2 / 3
         shares = (np.arange(40) + .5) / 40
         self.self_energy = -sum((s * self.force**2 / 40) @ (self.law.self_term(self.law.radius(s * self.force)) + self.law.uniform)
                                 for s in shares)
@@ -72,7 +75,7 @@ def powers(P, c):
 def overlaps(row, p):
     """Overlaps of the model, from the forces of the finite elements: the derivative of its energy by each force."""
     law, force, P = row.law, row.force, row.pressure
-    own, (of_hertz, coupling, volume) = p[:3], p[3:]
+    own, (of_hertz, coupling, volume, shear) = p[:3], p[3:]
     squash, squash_slope = powers(P, of_hertz)
     g, g_slope = powers(P, coupling)
     a = law.radius(force)
@@ -83,10 +86,12 @@ def overlaps(row, p):
     second_energy = pairs_energy + row.own_energy(own)
     by_pressure = 2 / 3 * squash**(-1 / 3) * squash_slope * hertz + g_slope * second_energy
     by_pressure += 5 / 3 * g**(2 / 3) * g_slope * size_energy
-    by_pressure -= 4 * np.pi * volume * P**2 * g**2 * (3 - 2 * coupling * P * g)
+    cubic = volume * P**2 + shear * row.deviator
+    by_pressure -= 4 * np.pi * g**2 * (2 * volume * P**2 + cubic * (1 - 2 * coupling * P * g))
     x = 3 * (1 - 2 * law.poisson_ratio) * P
     uniform = x / 3 + x**2 / 3 + CUBIC * x**3
-    return squash**(2 / 3) * a**2 + g * (moved + pairs) + g**(5 / 3) * size + by_pressure / (4 * np.pi) + uniform
+    sheared = -2 * shear * P * g**2 * row.along
+    return squash**(2 / 3) * a**2 + g * (moved + pairs) + g**(5 / 3) * size + by_pressure / (4 * np.pi) + sheared + uniform
 
 
 def misses(row, p):
@@ -95,19 +100,19 @@ def misses(row, p):
 
 
 def fit(tables):
-    """Couplings of the Hertz part and of the rest; own coefficients and volume term for each Poisson ratio."""
+    """Couplings of the Hertz part and of the rest; own coefficients, volume and shear term for each Poisson ratio."""
     rows = {nu: [row for row in table if row.name in FITTED] for nu, table in tables.items()}
 
     def residuals(x):
         return np.concatenate([misses(row, of_poisson_ratio(x, i)) / np.maximum(1, row.slope * row.overlap / STEEPEST)[row.first] /
                                np.sqrt(len(row.first)) for i, nu in enumerate(rows) for row in rows[nu]])
 
-    return least_squares(residuals, [.8, 1.4] + [.03, 0, -.1, .3] * len(rows), loss='soft_l1', f_scale=.02).x
+    return least_squares(residuals, [.8, 1.4] + [.03, 0, -.1, .3, 0] * len(rows), loss='soft_l1', f_scale=.02).x
 
 
 def of_poisson_ratio(x, i):
-    own = x[2 + 4 * i:5 + 4 * i]
-    return [*own, x[0], x[1], x[5 + 4 * i]]
+    own = x[2 + 5 * i:5 + 5 * i]
+    return [*own, x[0], x[1], *x[5 + 5 * i:7 + 5 * i]]
 
 
 def report(poisson_ratio, rows, p):
@@ -133,7 +138,7 @@ def main():
         if arguments.report:
             report(nu, rows, p)
         else:
-            print('    {%.2f, {%.4f, %.4f, %.4f}, %.4f},' % (nu, *p[:3], p[5]))
+            print('    {%.2f, {%.4f, %.4f, %.4f}, %.4f, %.4f},' % (nu, *p[:3], *p[5:]))
     if not arguments.report:
         print('coupling = %.4f, of Hertz = %.4f' % (x[1], x[0]))
 
