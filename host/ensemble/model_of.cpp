@@ -86,7 +86,7 @@ std::optional<NextStep> simulate_pauses(const Replica& replica, const Experiment
                                                  : experiment.plate_pause;
     std::string settings =
         fmt::format("--set protocol.stop_at_scans=true --set protocol.pause={:.3g}", pause);
-    if (experiment.plate_speed && *experiment.plate_speed < replica.plate.speed)
+    if (experiment.plate_speed && *experiment.plate_speed != replica.plate.speed)
         settings += fmt::format(" --set plate.speed={:.3g}", *experiment.plate_speed);
     return NextStep{fmt::format("simulate the pauses of the experiment's plate, during which friction "
                                 "unloads: {} (with a new library)",

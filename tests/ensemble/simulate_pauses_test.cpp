@@ -43,8 +43,14 @@ TEST(SimulatePauses, AtTheSpeedOfTheExperiment) {
                 ElementsAre("protocol.stop_at_scans=true", "protocol.pause=0.15", "plate.speed=0.01"));
 }
 
-TEST(SimulatePauses, KeepsTheSpeedOfASlowerScene) {
+// In the blind test with pauses, gaps were claimed where the plate was faster than that of the scene.
+TEST(SimulatePauses, AlsoAtTheSpeedOfAFasterExperiment) {
     EXPECT_THAT(advised(compared(0.01, 0.2, {"plate.speed=0.1"})),
+                ElementsAre("protocol.stop_at_scans=true", "protocol.pause=0.01", "plate.speed=0.2"));
+}
+
+TEST(SimulatePauses, KeepsTheSpeedOfTheSceneIfThatOfTheExperimentIsTheSameOrUnknown) {
+    EXPECT_THAT(advised(compared(0.01, 0.1, {"plate.speed=0.1"})),
                 ElementsAre("protocol.stop_at_scans=true", "protocol.pause=0.01"));
     EXPECT_THAT(advised(compared(0.01, std::nullopt)),
                 ElementsAre("protocol.stop_at_scans=true", "protocol.pause=0.01"));
