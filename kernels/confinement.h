@@ -31,13 +31,18 @@ INLINE lanes own_work(Grain at, lanes force, lanes contact_radius) {
     return force * force * self_work(at, contact_radius / radius) * (own_compliance(at) / radius);
 }
 
-/* sum F n n over the contacts of a grain [N]: diagonal, and the components yz, xz, xy. */
+/* T, the mean stress of a grain over E: diagonal, and the components yz, xz, xy. */
 typedef struct {
     lanes3 diagonal, mixed;
-} StressSum;
+} MeanStress;
 
-INLINE StressSum stress_sum(Grain at, EXCHANGE const ContactTable* table) {
-    StressSum sum = {ZERO3, ZERO3};
+/* Factor of a force in T and P [1/N]. */
+INLINE lanes stress_per_force(Grain at) {
+    return own_compliance(at) / (R(4) * PI * at.now.radius * at.now.radius);
+}
+
+INLINE MeanStress mean_stress(Grain at, EXCHANGE const ContactTable* table) {
+    MeanStress sum = {ZERO3, ZERO3};
 #pragma unroll 1 /* unrolling would need too many registers on GPUs */
     for (int k = 0; k < CONTACT_SLOTS(at); ++k) {
         const lanes x = table->x[k], y = table->y[k], z = table->z[k];
@@ -45,35 +50,35 @@ INLINE StressSum stress_sum(Grain at, EXCHANGE const ContactTable* table) {
         sum.diagonal = add3(sum.diagonal, (lanes3){load.x * x, load.y * y, load.z * z});
         sum.mixed = add3(sum.mixed, (lanes3){load.y * z, load.x * z, load.x * y});
     }
-    return sum;
+    const lanes scale = stress_per_force(at);
+    return (MeanStress){scale3(scale, sum.diagonal), scale3(scale, sum.mixed)};
 }
 
-/* n T n - P/3 in the direction n of slot `slot`, over E. */
-INLINE lanes deviator_along(Grain at, StressSum sum, EXCHANGE const ContactTable* table, int slot) {
+/* n T n - P/3 in the direction n of slot `slot`. */
+INLINE lanes deviator_along(MeanStress stress, EXCHANGE const ContactTable* table, int slot) {
     const lanes x = table->x[slot], y = table->y[slot], z = table->z[slot];
-    const lanes3 d = sum.diagonal, m = sum.mixed;
-    const lanes along = x * x * d.x + y * y * d.y + z * z * d.z +
-                        R(2) * (y * z * m.x + x * z * m.y + x * y * m.z) - (d.x + d.y + d.z) / R(3);
-    return along * own_compliance(at) / (R(4) * PI * at.now.radius * at.now.radius);
+    const lanes3 d = stress.diagonal, m = stress.mixed;
+    return x * x * d.x + y * y * d.y + z * z * d.z + R(2) * (y * z * m.x + x * z * m.y + x * y * m.z) -
+           (d.x + d.y + d.z) / R(3);
 }
 
 /* Overwrites the direction of slot v, which is no longer needed: x becomes the work of point forces, y the
    contribution of contact sizes, z the deviator along the direction. The point part scales with the square of
    the forces (factor 1/2), the size part with the power 8/3 (factor 3/8). */
-INLINE void tabulate_work(Grain at, StressSum stress, SurfaceDisplacement b, int v,
+INLINE void tabulate_work(Grain at, MeanStress stress, SurfaceDisplacement b, int v,
                           EXCHANGE ContactTable* table) {
     const int slot = SLOT(v);
     const lanes force = table->elastic[slot], contact_radius = table->radius[slot];
     lanes work = R(0.5) * force * b.point;
     if (at.replica->confinement) work += own_work(at, force, contact_radius);
-    table->z[slot] = deviator_along(at, stress, table, slot);
+    table->z[slot] = deviator_along(stress, table, slot);
     table->x[slot] = work;
     table->y[slot] = R(0.375) * force * b.size;
 }
 
 /* Pressure and energies of a grain. `b`: surface displacements at its slots, at small strain. */
 INLINE Confined confined(Grain at, const SurfaceDisplacement* b, EXCHANGE ContactTable* table) {
-    const StressSum stress = stress_sum(at, table);
+    const MeanStress stress = mean_stress(at, table);
     SYNCHRONISE();
     for (int v = 0; v < at.count; ++v) tabulate_work(at, stress, b[v], v, table);
     SYNCHRONISE();
@@ -91,7 +96,7 @@ INLINE Confined confined(Grain at, const SurfaceDisplacement* b, EXCHANGE Contac
         c.deviator += own * table->z[k];
     }
     const lanes per_energy = compliance / (radius * radius * radius);
-    const lanes per_force = compliance / (R(4) * PI * radius * radius);
+    const lanes per_force = stress_per_force(at);
     c.pressure = force * per_force;
     c.deviator *= per_force;
     c.hertz *= R(0.6) * hertz_share(at) * per_energy;

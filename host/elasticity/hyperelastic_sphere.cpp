@@ -13,8 +13,8 @@ namespace {
 struct Coefficients {
     double poisson_ratio;
     std::array<double, 3> own;
-    double volume;  // q, t of kernels/confinement.h
-    double shear;
+    double volume;  // q of kernels/confinement.h
+    double shear;   // t
 };
 
 // Printed by tests/truth/fit_hyperelastic_sphere.py.

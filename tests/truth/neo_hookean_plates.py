@@ -36,9 +36,9 @@ RANDOM = {
     'random_nine': ((1, 0, 2), 5),
 }
 # Random arrangements without symmetry: number of plates, and seed.
-COUNTS = {'five': 5, 'six': 6, 'seven': 7, 'eight': 8, 'nine': 9}
-ASYMMETRIC = {f'asymmetric_{name}': (count, seed) for seed, (name, count) in enumerate(COUNTS.items(), 11)}
-ASYMMETRIC |= {f'asymmetric_{name}_b': (count, seed) for seed, (name, count) in enumerate(COUNTS.items(), 21)}
+ASYMMETRIC = {f'asymmetric_{name}': (count, seed) for seed, (name, count) in
+              enumerate((('five', 5), ('six', 6), ('seven', 7), ('eight', 8), ('nine', 9)), 11)}
+ASYMMETRIC |= {'asymmetric_five_b': (5, 21), 'asymmetric_seven_b': (7, 23)}
 OVERLAPS = (.025, .05, .075, .1, .125, .15, .175, .2)
 POISSON_RATIOS = (.3, .4, .49)
 
