@@ -1,7 +1,9 @@
 #include "calibrate/local_fit.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <cmath>
+
+#include "core/least_squares.h"
 
 namespace mcdem::inline calibrate {
 namespace {
@@ -11,17 +13,18 @@ constexpr int points_for_parabola = 6;
 /// y - target = c0 + c1 t + c2 t^2 with t from -1 to 1 over the window.
 struct Fit {
     Eigen::VectorXd coefficients;
-    Eigen::MatrixXd covariance;  ///< NaN without degrees of freedom
+    Eigen::MatrixXd products;  ///< of the powers of t, summed over the points
+    double scatter;            ///< variance of a point; NaN without degrees of freedom
     double slope(double t) const {
         return coefficients[1] + (coefficients.size() > 2 ? 2 * coefficients[2] * t : 0);
     }
     double variance(double t) const {
         const Eigen::VectorXd powers = Eigen::Vector3d(1, t, t * t).head(coefficients.size());
-        return powers.dot(covariance * powers);
+        return scatter * (powers.transpose() * least_squares(products, powers)).value();
     }
 };
 
-Fit least_squares(const std::vector<Point>& scaled, double target) {
+Fit fit_of(const std::vector<Point>& scaled, double target) {
     const auto n = static_cast<Eigen::Index>(scaled.size());
     const Eigen::Index terms = n >= points_for_parabola ? 3 : 2;
     Eigen::MatrixXd powers(n, terms);
@@ -31,10 +34,10 @@ Fit least_squares(const std::vector<Point>& scaled, double target) {
         powers.row(i) = Eigen::RowVector3d(1, t, t * t).head(terms);
         y[i] = scaled[i].y - target;
     }
-    const Eigen::VectorXd c = powers.colPivHouseholderQr().solve(y);
+    const Eigen::VectorXd c = least_squares(powers, y);
     const double residual = (y - powers * c).squaredNorm();
     const double scatter = n > terms ? residual / static_cast<double>(n - terms) : none;
-    return {c, (powers.transpose() * powers).inverse() * scatter};
+    return {c, powers.transpose() * powers, scatter};
 }
 
 /// Increasing zero of the fit within the window.
@@ -55,7 +58,7 @@ Crossing crossing_of_fit(const std::vector<Point>& points, double low, double hi
     for (const auto& point : points)
         if (point.x >= low && point.x <= high) scaled.push_back({(point.x - middle) / half, point.y});
     if (scaled.size() < 2) return {none, none};
-    const auto fit = least_squares(scaled, target);
+    const auto fit = fit_of(scaled, target);
     const double t = root(fit);
     return {middle + half * t, half * std::sqrt(fit.variance(t)) / fit.slope(t)};
 }

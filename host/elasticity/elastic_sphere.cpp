@@ -1,12 +1,13 @@
 #include "elasticity/elastic_sphere.h"
 
-#include <Eigen/QR>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <mutex>
 #include <numbers>
 
+#include "core/least_squares.h"
 #include "elasticity/elastic_sphere_series.h"
 
 namespace mcdem::inline elasticity {
@@ -53,7 +54,7 @@ VectorXd fit_polynomial(const ArrayXd& s, const ArrayXd& value, const ArrayXd& w
     }
     MatrixXd basis(s.size(), degree + 1);
     for (int n = 0; n <= degree; ++n) basis.col(n) = weight * (n * (2 * s - 1).acos()).cos();
-    const VectorXd coefficients = basis.colPivHouseholderQr().solve((weight * value).matrix());
+    const VectorXd coefficients = least_squares(basis, (weight * value).matrix());
     return powers * coefficients;
 }
 
@@ -76,7 +77,7 @@ std::array<double, self_terms> fit_self(double poisson_ratio) {
         value[i] = sphere_self_displacement(poisson_ratio, a[i]) - slope * std::log(a[i]);
         powers.row(i) << 1, a[i], a[i] * a[i], a[i] * a[i] * a[i];
     }
-    const VectorXd fitted = powers.colPivHouseholderQr().solve(value);
+    const VectorXd fitted = least_squares(powers, value);
     return {fitted[0], slope, fitted[1], fitted[2], fitted[3]};
 }
 

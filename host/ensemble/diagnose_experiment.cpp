@@ -5,16 +5,17 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdlib>
 #include <memory>
 #include <numeric>
 
 #include "core/atomic_file.h"
 #include "core/errors.h"
+#include "ensemble/change_of_the_scene.h"
 #include "ensemble/library_origin.h"
 #include "ensemble/other_protocols.h"
 #include "ensemble/paper_metrics.h"
 #include "ensemble/parts/library_parts.h"
+#include "ensemble/plate_pauses.h"
 #include "scene/keys.h"
 #include "scene/programme_text.h"
 
@@ -27,22 +28,6 @@ TrialOptions stage(const DiagnoseOptions& options, const std::string& name) {
     trial_options.on_progress = [&options, name](double fraction) { options.on_progress(name, fraction); };
     trial_options.stop_wanted = options.stop_wanted;
     return trial_options;
-}
-
-/// "contact.gamma = 1.16" for every key that differs in the second replica.
-std::vector<std::string> differing_keys(const Replica& before, const Replica& after) {
-    Settings a, b;
-    a.replica = before;
-    b.replica = after;
-    std::vector<std::string> list;
-    for (const Key& key : keys()) {
-        if (key.scope != Scope::replica || value_text(key, a) == value_text(key, b)) continue;
-        const std::string text = value_text(key, b);
-        char* end = nullptr;
-        const double value = std::strtod(text.c_str(), &end);
-        list.push_back(fmt::format("{} = {}", key.name, *end ? text : fmt::format("{:.3g}", value)));
-    }
-    return list;
 }
 
 /// Maximum number of rounds of real runs of a proposal, including the corrected ones.
@@ -66,6 +51,12 @@ public:
     Diagnosis run() {
         Evidence evidence = gather();
         auto builder = std::make_unique<DiagnosisBuilder>(confirmed(evidence));
+        if (const auto pauses = pauses_up_to(options_.refine);
+            pauses && options_.refine > 1 && builder->decision().verdict != Verdict::no_gap) {
+            builder.reset();
+            add(evidence, *pauses);
+            builder = std::make_unique<DiagnosisBuilder>(confirmed(evidence));
+        }
         if (builder->decision().verdict == Verdict::not_converged && options_.refine > 1) {
             const Refinement refinement = refinement_of(*builder, options_.refine);
             builder.reset();
@@ -84,10 +75,9 @@ public:
         diagnosis.not_testable = choice_.hindered;
         diagnosis.refinements = refinements_;
         if (diagnosis.verdict == Verdict::group) add_other_protocols(*builder, diagnosis.next);
-        if (auto pauses = simulate_pauses(model().replica, experiments_.front());
-            pauses && diagnosis.verdict != Verdict::no_gap)
-            diagnosis.next.insert(diagnosis.next.begin(), *pauses);
-        if (auto first = change_of_the_scene(diagnosis))
+        if (const auto pauses = pauses_up_to(max_refinement); pauses && diagnosis.verdict != Verdict::no_gap)
+            diagnosis.next.insert(diagnosis.next.begin(), simulate_pauses(*pauses));
+        if (auto first = change_of_the_scene(diagnosis, model(), plan_.nuisances))
             diagnosis.next.insert(diagnosis.next.begin(), *first);
         if (diagnosis.gap_reduction && paper_metrics() && options_.confirmations > 0)
             add_paper_metrics(*diagnosis.gap_reduction, experiments_.front().recording,
@@ -200,40 +190,25 @@ private:
         note_failures(evidence);
     }
 
-    /// How to change the scene according to the named effect; nothing if none is named.
-    std::optional<NextStep> change_of_the_scene(const Diagnosis& diagnosis) const {
-        if (!diagnosis.refinements.empty() && !diagnosis.refinements.back().done) {
-            const Refinement& r = diagnosis.refinements.back();
-            return NextStep{
-                fmt::format("set {} = {:.3g} in the scene (now {:.3g} {}), or let the diagnosis refine it "
-                            "with --refine {:.0f}, and diagnose again",
-                            r.key, r.to, r.from, r.unit, r.from / r.to),
-                {}};
-        }
-        if (diagnosis.verdict == Verdict::unknown_effect || diagnosis.causes.empty()) return std::nullopt;
-        Model changed = model();
-        std::vector<std::string> names;
-        for (const Cause& cause : diagnosis.causes) {
-            const bool together = diagnosis.causes.front().group.size() == 1;
-            if (!names.empty() && !together) break;  // only the leading effect of a group
-            apply_cause(changed, cause);
-            names.push_back(cause.effect);
-        }
-        std::vector<std::string> settings = differing_keys(model().replica, changed.replica);
-        if (settings.empty())
-            return NextStep{fmt::format("check the instrument for {}: no key of the scene changes it",
-                                        fmt::join(names, " and ")),
-                            {}};
-        return NextStep{
-            fmt::format("set {} in the scene, and see whether the gap goes away on another packing",
-                        fmt::join(settings, ", ")),
-            {}};
+    std::optional<PlatePauses> pauses_up_to(double most_slower) const {
+        return neglected_pauses(model().replica, experiments_.front(), most_slower);
     }
 
-    void apply_cause(Model& model, const Cause& cause) const {
-        if (const Effect* effect = find_effect(cause.effect)) return effect->apply(model, cause.amplitude);
-        const auto nuisance = std::ranges::find(plan_.nuisances, cause.effect, &Nuisance::name);
-        if (nuisance != plan_.nuisances.end()) nuisance->apply(model, cause.amplitude);
+    /// Lets the plate pause as that of the experiment. Its speed is then known and no candidate.
+    void add(Evidence& evidence, const PlatePauses& pauses) {
+        const double speed = model().replica.plate.speed;
+        refinements_.push_back({"", "protocol.pause", "s", 0, pauses.time, true});
+        if (pauses.speed != speed)
+            refinements_.push_back({"", "plate.speed", "m/s", speed, pauses.speed, true});
+        options_.on_note(
+            fmt::format("the experiment's plate pauses, and friction unloads meanwhile: from here on it "
+                        "pauses for {:.3g} s in simulations, too, at a speed of {:.3g} m/s",
+                        pauses.time, pauses.speed));
+        for (Specimen& specimen : plan_.specimens) apply(specimen.model.replica, pauses);
+        if (evidence.candidates.size() > 1)
+            std::erase_if(evidence.candidates, [](const auto& c) { return c.name == "plate_speed"; });
+        take_baseline(evidence, simulated_baseline("baseline with pauses"));
+        note_failures(evidence);
     }
 
     void note_failures(Evidence& evidence) {

@@ -16,7 +16,8 @@ struct DiagnoseOptions {
     int pairs = 8;                        ///< for every effect
     int confirmations = 8;                ///< real runs of each proposal
     /// If the simulation's own numerics explain the gap, they are refined once by at most this factor, and
-    /// the diagnosis is repeated; 1: never.
+    /// the diagnosis is repeated; 1: never. Pauses of the experiment's plate are simulated if there is a gap
+    /// and the plate is at most this factor slower than that of the scene.
     double refine = 4;
     bool paper_metrics = true;  ///< Rtop, errf, errZ, bhat before and after
     std::uint64_t seed = 1;
@@ -41,9 +42,6 @@ Experiment compared_cycles(const Scene& scene, Experiment experiment);
 /// The scene's first replica with the experiment's box, plate and scans. Throws InputError if the experiment
 /// does not contain enough data to simulate it.
 Model model_of(const Scene& scene, const Experiment& experiment);
-
-/// How to simulate the pauses of the experiment's plate; nothing if it has none, or if the scene has some.
-std::optional<NextStep> simulate_pauses(const Replica& replica, const Experiment& experiment);
 
 /// Positions of the experiment's grains at its first frame.
 Packing start_packing(const Experiment& experiment);

@@ -77,21 +77,4 @@ Model model_of(const Scene& scene, const Experiment& experiment) {
     return model;
 }
 
-std::optional<NextStep> simulate_pauses(const Replica& replica, const Experiment& experiment) {
-    const Protocol& protocol = replica.protocol;
-    if (!(experiment.plate_pause > 0) || protocol.pause > 0 || !replica.programme.empty())
-        return std::nullopt;
-    // Grains that have come to rest do not change during a longer pause.
-    const double pause = protocol.relax_time > 0 ? std::min(experiment.plate_pause, protocol.relax_time)
-                                                 : experiment.plate_pause;
-    std::string settings =
-        fmt::format("--set protocol.stop_at_scans=true --set protocol.pause={:.3g}", pause);
-    if (experiment.plate_speed && *experiment.plate_speed != replica.plate.speed)
-        settings += fmt::format(" --set plate.speed={:.3g}", *experiment.plate_speed);
-    return NextStep{fmt::format("simulate the pauses of the experiment's plate, during which friction "
-                                "unloads: {} (with a new library)",
-                                settings),
-                    {}};
-}
-
 }  // namespace mcdem::ensemble

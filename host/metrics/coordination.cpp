@@ -1,8 +1,9 @@
 #include "metrics/coordination.h"
 
-#include <Eigen/QR>
+#include <Eigen/Core>
 #include <algorithm>
 
+#include "core/least_squares.h"
 #include "metrics/top_force.h"
 
 namespace mcdem::inline metrics {
@@ -128,7 +129,7 @@ double vertex(const std::vector<double>& tau, const Eigen::ArrayXd& squared_erro
         const double x = (tau[i] - middle) / half_width;
         powers.row(i) << 1, x, x * x;
     }
-    const Eigen::Vector3d c = powers.colPivHouseholderQr().solve(squared_error.matrix());
+    const Eigen::Vector3d c = least_squares(powers, squared_error.matrix());
     return c[2] > 0 ? middle - half_width * c[1] / (2 * c[2]) : not_available;
 }
 

@@ -1,6 +1,8 @@
 #include "metrics/scaling.h"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
+
+#include "core/least_squares.h"
 
 namespace mcdem::inline metrics {
 
@@ -41,7 +43,7 @@ ScalingFit fit_scaling(const std::vector<ScalingPoint>& points, std::optional<Ph
     if (fit.points < 3) return fit;
     Eigen::MatrixXd powers(fit.points, 2);
     powers << (x / largest).matrix(), (x / largest).square().matrix();
-    const Eigen::Vector2d c = powers.colPivHouseholderQr().solve(f.matrix());
+    const Eigen::Vector2d c = least_squares(powers, f.matrix());
     fit.curvature = c[1] / c.sum();
     return fit;
 }

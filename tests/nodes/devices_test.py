@@ -96,7 +96,7 @@ def outlives_a_vanished_device(place):
 
 def goes_on_when_all_devices_vanished(place):
     """Both devices fail repeatedly: the same command continues from the finished work."""
-    (place.path / "sweep.toml").write_text(SWEEP.replace("checkpoint_minutes = 1e-4", "checkpoint_minutes = 1e-6"))
+    (place.path / "sweep.toml").write_text(SWEEP.replace("checkpoint_minutes = 5e-4", "checkpoint_minutes = 1e-6"))
     place.run_alone()
     for vanished in range(30):
         process = all_devices(place, "both", environment=vanishing())

@@ -28,7 +28,7 @@ speed = 0.05
 [protocol]
 scans_per_stroke = 6
 [output]
-checkpoint_minutes = 1e-4
+checkpoint_minutes = 5e-4
 [batch]
 replicas = 2
 [batch.vary]

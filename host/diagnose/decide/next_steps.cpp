@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <boost/math/distributions/normal.hpp>
 #include <cmath>
+#include <numbers>
 
 #include "diagnose/infer/effects.h"
 #include "diagnose/infer/library.h"
@@ -87,7 +87,8 @@ double distance(const GapSpace& space, const Candidate& a, double amplitude, con
 double power_to_tell(double squared_distance, double margin) {
     if (!(squared_distance > 0)) return 0;
     const double sigma = std::sqrt(squared_distance);
-    return cdf(boost::math::normal(), (0.5 * squared_distance - margin) / sigma);
+    return std::erfc(-(0.5 * squared_distance - margin) / sigma / std::numbers::sqrt2) /
+           2;  // normal distribution
 }
 
 /// The amplitude of a candidate in the decision.

@@ -1,5 +1,6 @@
 #include "diagnose/infer/effect_fit.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <boost/math/tools/minima.hpp>
 #include <cmath>

@@ -102,7 +102,7 @@ GapSpace::GapSpace(const Eigen::MatrixXd& noise, int mean_of, const CellChoice& 
     for (std::size_t k = 0; k < free.size(); ++k)
         precision(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(k)) +=
             1 / (free[k].sigma * free[k].sigma);
-    posterior_ = precision.inverse();
+    posterior_ = precision.llt().solve(Eigen::MatrixXd::Identity(precision.rows(), precision.cols()));
 }
 
 Eigen::VectorXd GapSpace::whiten_chosen(const Eigen::VectorXd& chosen) const {

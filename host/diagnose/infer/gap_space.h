@@ -3,7 +3,6 @@
 #pragma once
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
-#include <Eigen/LU>
 #include <vector>
 
 #include "diagnose/infer/library.h"

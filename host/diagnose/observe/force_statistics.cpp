@@ -1,6 +1,5 @@
 #include "diagnose/observe/force_statistics.h"
 
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -8,6 +7,7 @@
 #include <vector>
 
 #include "core/container.h"
+#include "core/least_squares.h"
 #include "metrics/estimate.h"
 
 namespace mcdem::inline diagnose {
@@ -128,7 +128,7 @@ double non_affine_displacement(const Recording& recording, const Scan& scan) {
         products.noalias() += x * x.transpose();
         right.noalias() += x * (scan.position[i] - before[i]).transpose();
     }
-    const Eigen::Matrix<double, 4, 3> map = products.ldlt().solve(right);
+    const Eigen::Matrix<double, 4, 3> map = least_squares(products, right);
     double square = 0;
     for (std::size_t i = 0; i < before.size(); ++i)
         square += (scan.position[i] - before[i] - map.transpose() * before[i].homogeneous()).squaredNorm();

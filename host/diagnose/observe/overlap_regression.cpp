@@ -1,11 +1,12 @@
 #include "diagnose/observe/overlap_regression.h"
 
-#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "core/container.h"
+#include "core/least_squares.h"
 #include "metrics/estimate.h"
 #include "scene/cell_pairs.h"
 
@@ -30,7 +31,7 @@ public:
     /// NaN with fewer than five rows per term.
     Terms<terms> solve() const {
         if (rows_ < 5 * terms) return Terms<terms>::Constant(not_available);
-        return products_.ldlt().solve(right_);
+        return least_squares(products_, right_);
     }
 
 private:

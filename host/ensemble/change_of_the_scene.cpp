@@ -1,0 +1,74 @@
+#include "ensemble/change_of_the_scene.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "scene/keys.h"
+
+namespace mcdem::inline ensemble {
+namespace {
+
+/// "contact.gamma = 1.16" for every key that differs in the second replica.
+std::vector<std::string> differing_keys(const Replica& before, const Replica& after) {
+    Settings a, b;
+    a.replica = before;
+    b.replica = after;
+    std::vector<std::string> list;
+    for (const Key& key : keys()) {
+        if (key.scope != Scope::replica || value_text(key, a) == value_text(key, b)) continue;
+        const std::string text = value_text(key, b);
+        char* end = nullptr;
+        const double value = std::strtod(text.c_str(), &end);
+        list.push_back(fmt::format("{} = {}", key.name, *end ? text : fmt::format("{:.3g}", value)));
+    }
+    return list;
+}
+
+void apply(Model& model, const Cause& cause, const std::vector<Nuisance>& nuisances) {
+    if (const Effect* effect = find_effect(cause.effect)) return effect->apply(model, cause.amplitude);
+    const auto nuisance = std::ranges::find(nuisances, cause.effect, &Nuisance::name);
+    if (nuisance != nuisances.end()) nuisance->apply(model, cause.amplitude);
+}
+
+/// The scene with the causes; of a group only the leading one.
+Model changed_by(const std::vector<Cause>& causes, Model model, const std::vector<Nuisance>& nuisances) {
+    const bool together = causes.front().group.size() == 1;
+    for (std::size_t k = 0; k < (together ? causes.size() : 1); ++k) apply(model, causes[k], nuisances);
+    return model;
+}
+
+NextStep to_refine(const Refinement& r) {
+    return {fmt::format("set {} = {:.3g} in the scene (now {:.3g} {}), or let the diagnosis refine it with "
+                        "--refine {:.0f}, and diagnose again",
+                        r.key, r.to, r.from, r.unit, r.from / r.to),
+            {}};
+}
+
+NextStep to_check_instrument(const std::vector<Cause>& causes) {
+    std::vector<std::string> names;
+    for (const Cause& cause : causes)
+        if (names.empty() || causes.front().group.size() == 1) names.push_back(cause.effect);
+    return {
+        fmt::format("check the instrument for {}: no key of the scene changes it", fmt::join(names, " and ")),
+        {}};
+}
+
+}  // namespace
+
+std::optional<NextStep> change_of_the_scene(const Diagnosis& diagnosis, const Model& model,
+                                            const std::vector<Nuisance>& nuisances) {
+    if (!diagnosis.refinements.empty() && !diagnosis.refinements.back().done)
+        return to_refine(diagnosis.refinements.back());
+    if (diagnosis.verdict == Verdict::unknown_effect || diagnosis.causes.empty()) return std::nullopt;
+    const Model changed = changed_by(diagnosis.causes, model, nuisances);
+    const std::vector<std::string> settings = differing_keys(model.replica, changed.replica);
+    if (settings.empty()) return to_check_instrument(diagnosis.causes);
+    return NextStep{fmt::format("set {} in the scene, and see whether the gap goes away on another packing",
+                                fmt::join(settings, ", ")),
+                    {}};
+}
+
+}  // namespace mcdem::ensemble
