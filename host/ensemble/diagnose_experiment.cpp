@@ -51,8 +51,8 @@ public:
     Diagnosis run() {
         Evidence evidence = gather();
         auto builder = std::make_unique<DiagnosisBuilder>(confirmed(evidence));
-        if (const auto pauses = pauses_up_to(options_.refine);
-            pauses && options_.refine > 1 && builder->decision().verdict != Verdict::no_gap) {
+        const auto pauses = pauses_up_to(options_.refine);
+        if (pauses && options_.refine > 1 && builder->decision().verdict != Verdict::no_gap) {
             builder.reset();
             add(evidence, *pauses);
             builder = std::make_unique<DiagnosisBuilder>(confirmed(evidence));
@@ -75,8 +75,9 @@ public:
         diagnosis.not_testable = choice_.hindered;
         diagnosis.refinements = refinements_;
         if (diagnosis.verdict == Verdict::group) add_other_protocols(*builder, diagnosis.next);
-        if (const auto pauses = pauses_up_to(max_refinement); pauses && diagnosis.verdict != Verdict::no_gap)
-            diagnosis.next.insert(diagnosis.next.begin(), simulate_pauses(*pauses));
+        const auto left = pauses_up_to(max_refinement);
+        if (left && diagnosis.verdict != Verdict::no_gap)
+            diagnosis.next.insert(diagnosis.next.begin(), simulate_pauses(*left));
         if (auto first = change_of_the_scene(diagnosis, model(), plan_.nuisances))
             diagnosis.next.insert(diagnosis.next.begin(), *first);
         if (diagnosis.gap_reduction && paper_metrics() && options_.confirmations > 0)
