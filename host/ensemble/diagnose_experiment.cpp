@@ -36,6 +36,11 @@ constexpr int max_rounds = 3;
 /// Largest factor by which a refinement of a numerical setting is recommended.
 constexpr double max_refinement = 64;
 
+/// Largest factor by which the plate of an experiment may be slower than that of the scene if its pauses are
+/// to be simulated. With rate_tolerance the plate of the scene is mostly slower than its maximum, and the
+/// runs take less than this factor longer.
+constexpr double most_slower_with_pauses = 20;
+
 /// The steps of one diagnosis, in order.
 class DiagnosisRunner {
 public:
@@ -51,7 +56,7 @@ public:
     Diagnosis run() {
         Evidence evidence = gather();
         auto builder = std::make_unique<DiagnosisBuilder>(confirmed(evidence));
-        const auto pauses = pauses_up_to(options_.refine);
+        const auto pauses = pauses_up_to(most_slower_with_pauses);
         if (pauses && options_.refine > 1 && builder->decision().verdict != Verdict::no_gap) {
             builder.reset();
             add(evidence, *pauses);

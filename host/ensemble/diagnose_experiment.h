@@ -16,8 +16,8 @@ struct DiagnoseOptions {
     int pairs = 8;                        ///< for every effect
     int confirmations = 8;                ///< real runs of each proposal
     /// If the simulation's own numerics explain the gap, they are refined once by at most this factor, and
-    /// the diagnosis is repeated; 1: never. Pauses of the experiment's plate are simulated if there is a gap
-    /// and the plate is at most this factor slower than that of the scene.
+    /// the diagnosis is repeated; 1: never. Above 1, pauses of the experiment's plate are also simulated if
+    /// there is a gap.
     double refine = 4;
     bool paper_metrics = true;  ///< Rtop, errf, errZ, bhat before and after
     std::uint64_t seed = 1;

@@ -168,8 +168,8 @@ void add_diagnose(CLI::App& app, int& exit_code) {
            "--refine", command->refine,
            "Where the scene is not converged, the largest factor by which plate.speed, "
            "grains.density or numerics.time_step is lowered before the diagnosis is repeated (runs "
-           "take that much longer); also how much slower than the scene's a plate may be whose pauses "
-           "are then simulated; 1: never")
+           "take that much longer); 1: never, and pauses of the experiment's plate are not simulated "
+           "either")
         ->check(CLI::Range(1.0, 64.0))
         ->capture_default_str();
     sub->add_option("--seed", command->seed, "Seed of all random numbers")->capture_default_str();
