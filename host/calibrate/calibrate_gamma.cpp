@@ -149,7 +149,7 @@ Window next_window(const Window& last, const Neighbours& around, const Crossing&
 Calibration calibrate_gamma(const TopForces& top_forces, double target, const Bracket& bracket,
                             const CalibrationOptions& options) {
     check(target, bracket, options);
-    Calibration result{none, none, false, none, {}};
+    Calibration result{none, none, none, false, none, {}};
     Evidence evidence;
     Window window;
     auto gammas = evenly(bracket.low, bracket.high, options.batch);
@@ -168,6 +168,7 @@ Calibration calibrate_gamma(const TopForces& top_forces, double target, const Br
         const auto root = crossing_of_fit(evidence.finite(), window.low(), window.high(), target);
         round.root = result.gamma = std::isnan(root.x) ? (around.below + around.above) / 2 : root.x;
         round.standard_error = result.standard_error = root.standard_error;
+        result.slope = root.slope;
         result.rounds.push_back(round);
         result.converged = root.standard_error <= options.tolerance &&
                            evidence.count(window.low(), window.high()) >= points_for_an_error;

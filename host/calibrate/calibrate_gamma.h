@@ -35,7 +35,8 @@ struct CalibrationRound {
 
 struct Calibration {
     double gamma = 0;
-    double standard_error = 0;
+    double standard_error = 0;  ///< from the scatter about the fit
+    double slope = 0;         ///< increase of the top force with gamma, at gamma [N]; NaN if it is not known
     bool converged = false;   ///< the tolerance was reached within the allowed rounds
     double runs_away_at = 0;  ///< lowest gamma that ran away; NaN if none did
     std::vector<CalibrationRound> rounds;

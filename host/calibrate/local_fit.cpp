@@ -57,10 +57,10 @@ Crossing crossing_of_fit(const std::vector<Point>& points, double low, double hi
     std::vector<Point> scaled;
     for (const auto& point : points)
         if (point.x >= low && point.x <= high) scaled.push_back({(point.x - middle) / half, point.y});
-    if (scaled.size() < 2) return {none, none};
+    if (scaled.size() < 2) return {none, none, none};
     const auto fit = fit_of(scaled, target);
     const double t = root(fit);
-    return {middle + half * t, half * std::sqrt(fit.variance(t)) / fit.slope(t)};
+    return {middle + half * t, half * std::sqrt(fit.variance(t)) / fit.slope(t), fit.slope(t) / half};
 }
 
 std::vector<double> rising_fit(const std::vector<Point>& points) {

@@ -16,6 +16,7 @@ struct Point {
 struct Crossing {
     double x = 0;               ///< NaN if the fit does not rise through the target in the window
     double standard_error = 0;  ///< from the scatter about the fit; NaN with too few points
+    double slope = 0;           ///< dy/dx there
 };
 
 /// Least squares over the points with low <= x <= high: a parabola for six or more points, otherwise a line.

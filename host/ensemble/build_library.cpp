@@ -132,6 +132,9 @@ CandidateChoice choose_candidates(const Model& model, const std::vector<std::str
         else
             choice.hindered.push_back(fmt::format("{}: {}", name, hindrance));
     }
+    if (choice.chosen.empty())
+        throw InputError(fmt::format("--candidates: must name an effect that can be tested, got {}",
+                                     fmt::join(choice.hindered, "; ")));
     return choice;
 }
 

@@ -38,10 +38,15 @@ public:
             Replicas replicas;
             for (std::size_t r = 0; r < packings_.size(); ++r)
                 replicas.push_back(&recordings[g * packings_.size() + r]);
-            forces.push_back(mean_top_force(replicas));
+            const Estimate mean = mean_top_force(replicas);
+            if (mean.available()) last_ = mean;
+            forces.push_back(mean.value);
         }
         return forces;
     }
+
+    /// For the last value that did not run away.
+    const Estimate& last_top_force() const { return last_; }
 
 private:
     std::vector<Recording> simulate_all(const std::vector<double>& values,
@@ -71,18 +76,19 @@ private:
             replica.grains.youngs_modulus *= value;
     }
 
-    double mean_top_force(const Replicas& replicas) const {
+    Estimate mean_top_force(const Replicas& replicas) const {
         const LevelOptions options;
         const auto forces =
             top_force_at(group_levels(replicas, options), replicas, displacement_, options.tolerance);
         const auto mean = mean_over_replicas(forces.value);
-        return 2 * std::size_t(mean.count) > replicas.size() ? mean.value : not_available;
+        return 2 * std::size_t(mean.count) > replicas.size() ? mean : Estimate{};
     }
 
     Device& device_;
     Scene scene_;
     double displacement_;
     std::vector<Packing> packings_;
+    Estimate last_;
 };
 
 }  // namespace
@@ -105,6 +111,18 @@ std::vector<Replica> calibration_replicas(const Scene& scene, ContactModel model
         chosen.push_back(std::move(replica));
     }
     return chosen;
+}
+
+double SceneCalibration::standard_error() const {
+    double variance = found.standard_error * found.standard_error;
+    for (const Estimate* force : {&target, &simulated})
+        if (std::isfinite(force->standard_error))
+            variance += std::pow(force->standard_error / found.slope, 2);
+    return std::sqrt(variance);
+}
+
+bool SceneCalibration::knows_scatter() const {
+    return std::isfinite(target.standard_error) && std::isfinite(simulated.standard_error);
 }
 
 SceneCalibration calibrate_scene(Device& device, const Scene& scene, const Replicas& reference,
@@ -140,6 +158,7 @@ SceneCalibration calibrate_scene(Device& device, const Scene& scene, const Repli
         search.what = "E over the scene's";
     }
     result.found = calibrate_gamma(top_forces, result.target.value, options.bracket, search);
+    result.simulated = batch.last_top_force();
     return result;
 }
 

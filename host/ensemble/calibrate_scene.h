@@ -23,8 +23,14 @@ struct SceneCalibration {
     Calibration found;          ///< gamma, or E over that of the scene
     double youngs_modulus = 0;  ///< of the scene [Pa]; 0 if gamma was searched for
     Estimate target;            ///< mean top force of the reference [N]
+    Estimate simulated;         ///< of the scene's packings, for the last value that was evaluated [N]
     double displacement = 0;    ///< of the plate at the target [m]
     int replicas = 0;           ///< number of packings in each evaluation
+
+    /// Standard error of found.gamma: of the fit, of the reference and of the scene's packings. A single
+    /// packing has no standard error; its scatter is left out.
+    double standard_error() const;
+    bool knows_scatter() const;
 
     bool of_modulus() const { return youngs_modulus > 0; }
     /// Name of the parameter with its unit, as in calibration.json.

@@ -54,6 +54,8 @@ public:
           plan_(std::move(plan.library)) {}
 
     Diagnosis run() {
+        if (!options_.candidates.empty())
+            for (const std::string& hindered : choice_.hindered) options_.on_note("not tested: " + hindered);
         Evidence evidence = gather();
         auto builder = std::make_unique<DiagnosisBuilder>(confirmed(evidence));
         const auto pauses = pauses_up_to(most_slower_with_pauses);

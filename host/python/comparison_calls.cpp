@@ -92,7 +92,7 @@ py::dict calibrate(const Scene& scene, const py::object& reference, const std::s
                    py::arg("displacement_m") = value(result.displacement),
                    py::arg("replicas") = result.replicas);
     found[py::str(key)] = value(unit * result.found.gamma);
-    found[py::str(key + "_standard_error")] = value(unit * result.found.standard_error);
+    found[py::str(key + "_standard_error")] = value(unit * result.standard_error());
     found[py::str("runs_away_at_" + key)] = value(unit * result.found.runs_away_at);
     return found;
 }

@@ -91,9 +91,13 @@ private:
         }
         Variation variation{&key, {}};
         bool good = true;
+        std::set<std::string> texts;
         for (const toml::node& value : *list) {
             Settings trial;
-            if (const auto problem = assign(key, value, trial)) {
+            auto problem = assign(key, value, trial);
+            if (!problem && !texts.insert(value_text(key, trial)).second)  // not an independent replica
+                problem = fmt::format("must name each value once, got {} again", shown(value));
+            if (problem) {
                 problems_.add(document_.place_of(entry, value), fmt::format("{} {}", name, *problem));
                 good = false;
             }

@@ -23,6 +23,7 @@ TEST(CrossingOfFit, error_at_the_middle_of_a_line_is_known) {
     const auto crossing = crossing_of_fit({{-3, -5}, {-1, -3}, {1, 1}, {3, 7}}, -3, 3, 0);
     EXPECT_NEAR(crossing.x, 0, 1e-12);
     EXPECT_NEAR(crossing.standard_error, std::sqrt(2.0 / 4) / 2, 1e-12);
+    EXPECT_NEAR(crossing.slope, 2, 1e-12);
 }
 
 TEST(CrossingOfFit, is_exact_for_a_parabola) {

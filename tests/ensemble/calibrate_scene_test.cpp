@@ -39,6 +39,19 @@ TEST(CalibrateScene, FindsTheGammaOfTheReference) {
     EXPECT_EQ(rounds, static_cast<int>(result.found.rounds.size()));
 }
 
+// The error of a force over the slope is that of gamma; independent errors add as squares.
+TEST(CalibrateScene, TheErrorContainsThatOfTheReference) {
+    SceneCalibration result;
+    result.found.standard_error = 0.003;
+    result.found.slope = 2;
+    EXPECT_EQ(result.standard_error(), 0.003);
+    EXPECT_FALSE(result.knows_scatter());
+    result.target = {5, 0.008, 4};
+    result.simulated = {5, 0.024, 4};
+    EXPECT_NEAR(result.standard_error(), 0.013, 1e-12);  // 3, 4 and 12 thousandths
+    EXPECT_TRUE(result.knows_scatter());
+}
+
 // Forces are proportional to the modulus: the model is fitted by E alone.
 TEST(CalibrateScene, FindsTheModulusForAModelWithoutGamma) {
     TestFolder folder;

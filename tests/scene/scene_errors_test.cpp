@@ -138,6 +138,8 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"[packing]\ncount = 1\n",
               "bad.toml: packing.packing_fraction must leave room for the largest grain"},
         Wrong{"[packing]\nfile = \"no_such.csv\"\n", "bad.toml:2: "},
+        Wrong{"[batch.vary]\n\"grains.friction\" = [0.1, 0.2, 0.10]\n",
+              "bad.toml:2: batch.vary.\"grains.friction\" must name each value once, got 0.1 again"},
         Wrong{"[contact]\ngamma = 1\n[batch.vary]\n\"contact.gamma\" = [1, 2]\n",
               "bad.toml:4: batch.vary.\"contact.gamma\" must be the only place of contact.gamma, got a value "
               "too at bad.toml:2"},
@@ -267,7 +269,7 @@ TEST(HostileScenes, AreRefusedWithPlainMessages) {
     std::string variations = "[batch.vary]\n";
     for (const char* key : {"grains.friction", "walls.friction", "contact.gamma", "grains.drag"}) {
         variations.append("\"").append(key).append("\" = [");
-        for (int i = 0; i < 5000; ++i) variations += "1,";
+        for (int i = 0; i < 5000; ++i) variations += std::to_string(i) + "e-4,";
         variations += "]\n";
     }
     EXPECT_THAT(problems_in(variations),

@@ -33,7 +33,8 @@ nlohmann::json json_of(const SceneCalibration& result, ContactModel model, const
     const double unit = result.unit();
     json["contact_model"] = name(model);
     json[key] = unit * result.found.gamma;
-    json[key + "_standard_error"] = unit * result.found.standard_error;
+    json[key + "_standard_error"] = unit * result.standard_error();
+    json[key + "_standard_error_of_fit"] = unit * result.found.standard_error;
     json["converged"] = result.found.converged;
     json["runs_away_at_" + key] = unit * result.found.runs_away_at;
     json["target_top_force_N"] = result.target.value;
@@ -71,9 +72,17 @@ void print_calibration(const SceneCalibration& result) {
     print_out("target: {} N at {:.2f} mm; {} replica{} for each value\n", with_error(result.target, 3),
               result.displacement * 1e3, result.replicas, result.replicas == 1 ? "" : "s");
     print_out("{} = {}{}{}\n", modulus ? "E" : "gamma",
-              with_error({unit * result.found.gamma, unit * result.found.standard_error, result.replicas}, 4),
+              with_error({unit * result.found.gamma, unit * result.standard_error(), result.replicas}, 4),
               modulus ? " kPa" : "",
               result.found.converged ? "" : " (tolerance not reached: raise --rounds, or use more replicas)");
+    if (!result.knows_scatter())
+        print_out(
+            "the error leaves out how much packings differ, because {} a single one; it is right if both are "
+            "the "
+            "same packing\n",
+            std::isfinite(result.simulated.standard_error) ? "the reference is"
+            : std::isfinite(result.target.standard_error)  ? "the scene has"
+                                                           : "scene and reference have");
 }
 
 void calibrate(CalibrateCommand& command) {
