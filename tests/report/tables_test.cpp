@@ -42,6 +42,11 @@ TEST(WithError, shows_only_known_errors) {
     EXPECT_EQ(with_error({0.43, 0.0123, 8}, 2), "0.43 ± 0.01");
     EXPECT_EQ(with_error({0.004, not_available, 1}, 2, 1e-3), "4.00");
     EXPECT_EQ(with_error({}, 2), "–");
+    // small forces, as of emulsions
+    EXPECT_EQ(with_error({0.0523, not_available, 1}, 2), "0.052");
+    EXPECT_EQ(with_error({3.021e-8, 4.2e-10, 8}, 2), "3.02e-08 ± 4.2e-10");
+    EXPECT_EQ(with_error({0.001, 0.22, 8}, 2), "0.00 ± 0.22");
+    EXPECT_EQ(with_error({0, not_available, 1}, 2), "0.00");
 }
 
 TEST(TableOfModels, names_reference_stroke_and_failures) {

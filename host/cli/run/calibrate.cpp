@@ -63,10 +63,9 @@ void print_calibration(const SceneCalibration& result) {
     for (std::size_t k = 0; k < result.found.rounds.size(); ++k) {
         const auto& round = result.found.rounds[k];
         for (std::size_t i = 0; i < round.gamma.size(); ++i)
-            table.rows.push_back({std::to_string(k + 1), fmt::format("{:.4f}", unit * round.gamma[i]),
-                                  std::isfinite(round.top_force[i])
-                                      ? fmt::format("{:.3f}", round.top_force[i])
-                                      : "runs away"});
+            table.rows.push_back(
+                {std::to_string(k + 1), fmt::format("{:.4f}", unit * round.gamma[i]),
+                 std::isfinite(round.top_force[i]) ? with_error({round.top_force[i]}, 3) : "runs away"});
     }
     print_out("{}\n", to_text(table, TableFormat::terminal));
     print_out("target: {} N at {:.2f} mm; {} replica{} for each value\n", with_error(result.target, 3),

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/parameters.h"
 #include "core/replaced.h"
@@ -36,9 +37,13 @@ std::vector<std::string> notes_of(const std::vector<Comparison>& comparisons) {
 
 std::string with_error(const Estimate& estimate, int decimals, double unit) {
     if (!estimate.available()) return no_number;
-    const auto value = number(estimate.value / unit, decimals);
-    if (!std::isfinite(estimate.standard_error)) return value;
-    return value + " ± " + number(estimate.standard_error / unit, decimals);
+    const bool has_error = std::isfinite(estimate.standard_error);
+    const double value = estimate.value / unit, error = estimate.standard_error / unit;
+    const double size = std::max(std::abs(value), has_error ? error : 0);
+    if (size < 1e-4 && size > 0)
+        return fmt::format("{:.2e}", value) + (has_error ? fmt::format(" ± {:.1e}", error) : "");
+    if (size > 0) decimals = std::max(decimals, 1 - static_cast<int>(std::floor(std::log10(size))));
+    return number(value, decimals) + (has_error ? " ± " + number(error, decimals) : "");
 }
 
 std::string rate_note(const std::string& what, double rate_error, bool strokes) {

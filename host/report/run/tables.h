@@ -7,7 +7,8 @@
 
 namespace mcdem::inline report {
 
-/// "0.430 ± 0.012"; without the error if it is unknown, a dash without a value.
+/// "0.430 ± 0.012"; without the error if it is unknown, a dash without a value. More decimals if fewer than
+/// two significant digits would be left, of the value or of a larger error.
 std::string with_error(const Estimate& estimate, int decimals, double unit = 1);
 
 /// "plate's speed: error of forces at most 0.5 %, estimated"; if it is large, also which key to set and, for
