@@ -59,6 +59,14 @@ TEST(RunFigures, the_distribution_is_that_of_the_level_nearest_to_the_request) {
     EXPECT_EQ(other["force_distribution"]["series"][0]["curves"][0]["phase"], "load");
 }
 
+TEST(RunFigures, the_distribution_is_of_loading_if_runs_stopped_before_unloading) {
+    auto run = two_models(1);
+    for (auto& recording : run.recordings)
+        std::erase_if(recording.scans, [](const Scan& scan) { return scan.phase == Phase::unload; });
+    const auto values = values_of(group_by_setting(run))["force_distribution"];
+    EXPECT_EQ(values["series"][0]["curves"][0]["phase"], "load");
+}
+
 TEST(RunFigures, densities_integrate_to_nearly_one) {
     const auto run = synthetic::run({{.contacts = 5000}}, 1);
     const auto curve = values_of(group_by_setting(run))["force_distribution"]["series"][0]["curves"][0];

@@ -6,7 +6,7 @@ namespace mcdem::inline report {
 namespace {
 
 /// The level with contacts nearest to the displacement in this phase; null if there is none.
-const Level* nearest_level(const Series& series, const FigureOptions& options) {
+const Level* nearest_level(const Series& series, const FigureOptions& options, Phase phase) {
     const Level* nearest = nullptr;
     const auto distance = [&](const Level& level) {
         return std::abs(level.displacement - options.distribution_displacement);
@@ -15,11 +15,18 @@ const Level* nearest_level(const Series& series, const FigureOptions& options) {
         bool known = false;
         for (const auto& scans : level.scans)
             for (const auto* scan : scans) known = known || !scan->contacts.empty();
-        if (level.phase == options.distribution_phase && known &&
-            (!nearest || distance(level) < distance(*nearest)))
+        if (level.phase == phase && known && (!nearest || distance(level) < distance(*nearest)))
             nearest = &level;
     }
     return nearest;
+}
+
+/// In the phase of the options; in the other one if that has no contacts, as in runs that stopped early.
+const Level* nearest_level(const Series& series, const FigureOptions& options) {
+    const Phase wanted = options.distribution_phase;
+    const Level* level = nearest_level(series, options, wanted);
+    return level ? level
+                 : nearest_level(series, options, wanted == Phase::load ? Phase::unload : Phase::load);
 }
 
 std::vector<ShownDensity> shown_levels(const Cast& cast, const FigureOptions& options) {

@@ -87,8 +87,7 @@ RunFigure distribution_figure(const Cast& cast, const FigureOptions& options) {
             if (density.density[b].value > 0)  // the logarithm of an empty bin cannot be drawn
                 points.push_back({density.force[b] / mN, density.density[b].value * mN,
                                   density.density[b].standard_error * mN});
-        if (!points.empty())
-            figure.series.push_back({series, "", {{options.distribution_phase, std::move(points)}}});
+        if (!points.empty()) figure.series.push_back({series, "", {{level->phase, std::move(points)}}});
     }
     return figure;
 }
