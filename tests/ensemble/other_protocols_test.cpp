@@ -94,7 +94,8 @@ TEST(OtherProtocols, AreNotMadeOfAProgramme) {
 }
 
 // Two laws of adhesion, which differ only in their friction, in a scene with little of it.
-TEST(OtherProtocols, GetAPowerInADiagnosis) {
+/// A scene and an experiment with adhesion, whose plate is said to pause for 0.2 s at this speed [m/s].
+Diagnosis diagnosis_with_pauses(double speed) {
     const TestFolder folder;
     Device device;
     Scene scene =
@@ -112,6 +113,7 @@ TEST(OtherProtocols, GetAPowerInADiagnosis) {
     experiment.recording = kept_recordings(device, question, {truth}, store).front();
     experiment.measurement = truth.model.instrument.stated;
     experiment.plate_pause = 0.2;
+    experiment.plate_speed = speed;
     DiagnoseOptions options;
     options.folder = folder.path / "diagnosis";
     options.candidates = {"adhesion", "adhesion_net_friction"};
@@ -119,7 +121,18 @@ TEST(OtherProtocols, GetAPowerInADiagnosis) {
     options.pairs = 2;
     options.confirmations = 4;
     options.limits.group_share = 0.3;  // both are in one group, but not the modulus, which gains half of that
-    const Diagnosis diagnosis = diagnose_experiment(device, scene, {experiment}, options);
+    return diagnose_experiment(device, scene, {experiment}, options);
+}
+
+bool recommends_pauses(const Diagnosis& diagnosis) {
+    return std::ranges::any_of(diagnosis.next, [](const NextStep& step) {
+        return step.what.starts_with("simulate the pauses of the experiment's plate");
+    });
+}
+
+// The plate is 30 times slower than that of the scene: pauses are recommended, not simulated.
+TEST(OtherProtocols, GetAPowerInADiagnosis) {
+    const Diagnosis diagnosis = diagnosis_with_pauses(0.001);
     ASSERT_EQ(diagnosis.verdict, Verdict::group);
     int powers = 0;
     for (const NextStep& step : diagnosis.next)
@@ -131,12 +144,21 @@ TEST(OtherProtocols, GetAPowerInADiagnosis) {
                 ++powers;
             }
     EXPECT_EQ(powers, 2);
-    EXPECT_EQ(std::ranges::count_if(diagnosis.next,
-                                    [](const NextStep& step) {
-                                        return step.what.starts_with(
-                                            "simulate the pauses of the experiment's plate");
-                                    }),
-              1);
+    EXPECT_TRUE(recommends_pauses(diagnosis));
+    EXPECT_TRUE(diagnosis.refinements.empty());
+}
+
+TEST(OtherProtocols, PausesOfThePlateAreSimulatedIfThereIsAGap) {
+    const Diagnosis diagnosis = diagnosis_with_pauses(0.06);
+    ASSERT_EQ(diagnosis.refinements.size(), 2u);
+    const Refinement &pause = diagnosis.refinements[0], &speed = diagnosis.refinements[1];
+    EXPECT_EQ(pause.key, "protocol.pause");
+    EXPECT_EQ(pause.to, 0.02) << "relax_time: grains rest by then";
+    EXPECT_EQ(speed.key, "plate.speed");
+    EXPECT_EQ(speed.from, 0.03);
+    EXPECT_EQ(speed.to, 0.06);
+    EXPECT_TRUE(pause.done && speed.done);
+    EXPECT_FALSE(recommends_pauses(diagnosis));
 }
 
 }  // namespace
