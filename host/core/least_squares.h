@@ -1,5 +1,5 @@
+// Linear least squares.
 #pragma once
-
 #include <Eigen/Core>
 
 namespace mcdem::inline core {
@@ -8,4 +8,4 @@ namespace mcdem::inline core {
 /// Compiled once: Eigen's decompositions are templates that take long to compile.
 Eigen::MatrixXd least_squares(const Eigen::MatrixXd& columns, const Eigen::MatrixXd& values);
 
-}  // namespace mcdem::inline core
+}  // namespace mcdem::core

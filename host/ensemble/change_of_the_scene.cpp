@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <span>
 
 #include "scene/keys.h"
 
@@ -33,11 +34,9 @@ void apply(Model& model, const Cause& cause, const std::vector<Nuisance>& nuisan
     if (nuisance != nuisances.end()) nuisance->apply(model, cause.amplitude);
 }
 
-/// The scene with the causes; of a group only the leading one.
-Model changed_by(const std::vector<Cause>& causes, Model model, const std::vector<Nuisance>& nuisances) {
-    const bool together = causes.front().group.size() == 1;
-    for (std::size_t k = 0; k < (together ? causes.size() : 1); ++k) apply(model, causes[k], nuisances);
-    return model;
+/// The causes that are changed together; of a group only the leading one.
+std::span<const Cause> changed_together(const std::vector<Cause>& causes) {
+    return std::span(causes).first(causes.front().group.size() == 1 ? causes.size() : 1);
 }
 
 NextStep to_refine(const Refinement& r) {
@@ -47,10 +46,9 @@ NextStep to_refine(const Refinement& r) {
             {}};
 }
 
-NextStep to_check_instrument(const std::vector<Cause>& causes) {
+NextStep to_check_instrument(std::span<const Cause> causes) {
     std::vector<std::string> names;
-    for (const Cause& cause : causes)
-        if (names.empty() || causes.front().group.size() == 1) names.push_back(cause.effect);
+    for (const Cause& cause : causes) names.push_back(cause.effect);
     return {
         fmt::format("check the instrument for {}: no key of the scene changes it", fmt::join(names, " and ")),
         {}};
@@ -63,9 +61,11 @@ std::optional<NextStep> change_of_the_scene(const Diagnosis& diagnosis, const Mo
     if (!diagnosis.refinements.empty() && !diagnosis.refinements.back().done)
         return to_refine(diagnosis.refinements.back());
     if (diagnosis.verdict == Verdict::unknown_effect || diagnosis.causes.empty()) return std::nullopt;
-    const Model changed = changed_by(diagnosis.causes, model, nuisances);
+    const auto causes = changed_together(diagnosis.causes);
+    Model changed = model;
+    for (const Cause& cause : causes) apply(changed, cause, nuisances);
     const std::vector<std::string> settings = differing_keys(model.replica, changed.replica);
-    if (settings.empty()) return to_check_instrument(diagnosis.causes);
+    if (settings.empty()) return to_check_instrument(causes);
     return NextStep{fmt::format("set {} in the scene, and see whether the gap goes away on another packing",
                                 fmt::join(settings, ", ")),
                     {}};

@@ -39,7 +39,7 @@ constexpr double max_refinement = 64;
 /// Largest factor by which the plate of an experiment may be slower than that of the scene if its pauses are
 /// to be simulated. With rate_tolerance the plate of the scene is mostly slower than its maximum, and the
 /// runs take less than this factor longer.
-constexpr double most_slower_with_pauses = 20;
+constexpr double max_slowdown_with_pauses = 20;
 
 /// The steps of one diagnosis, in order.
 class DiagnosisRunner {
@@ -58,7 +58,7 @@ public:
             for (const std::string& hindered : choice_.hindered) options_.on_note("not tested: " + hindered);
         Evidence evidence = gather();
         auto builder = std::make_unique<DiagnosisBuilder>(confirmed(evidence));
-        const auto pauses = pauses_up_to(most_slower_with_pauses);
+        const auto pauses = pauses_up_to(max_slowdown_with_pauses);
         if (pauses && options_.refine > 1 && builder->decision().verdict != Verdict::no_gap) {
             builder.reset();
             add(evidence, *pauses);
@@ -198,8 +198,8 @@ private:
         note_failures(evidence);
     }
 
-    std::optional<PlatePauses> pauses_up_to(double most_slower) const {
-        return neglected_pauses(model().replica, experiments_.front(), most_slower);
+    std::optional<PlatePauses> pauses_up_to(double max_slowdown) const {
+        return neglected_pauses(model().replica, experiments_.front(), max_slowdown);
     }
 
     /// Lets the plate pause as that of the experiment. Its speed is then known and no candidate.

@@ -5,12 +5,12 @@
 namespace mcdem::inline ensemble {
 
 std::optional<PlatePauses> neglected_pauses(const Replica& replica, const Experiment& experiment,
-                                            double most_slower) {
+                                            double max_slowdown) {
     const Protocol& protocol = replica.protocol;
     const double speed = experiment.plate_speed.value_or(0);
     if (!(experiment.plate_pause > 0) || protocol.pause > 0 || !replica.programme.empty())
         return std::nullopt;
-    if (!(speed > 0) || speed * most_slower < replica.plate.speed) return std::nullopt;
+    if (!(speed > 0) || speed * max_slowdown < replica.plate.speed) return std::nullopt;
     // Grains that have come to rest do not change during a longer pause.
     const bool rests = protocol.relax_time > 0 && protocol.relax_time < experiment.plate_pause;
     return PlatePauses{rests ? protocol.relax_time : experiment.plate_pause, speed};

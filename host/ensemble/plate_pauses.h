@@ -15,10 +15,10 @@ struct PlatePauses {
 };
 
 /// Pauses of the experiment that the scene does not simulate. Nothing if there are none, or if the
-/// experiment's plate is slower than the scene's by more than a factor of `most_slower` or its speed is not
+/// experiment's plate is slower than the scene's by more than a factor of `max_slowdown` or its speed is not
 /// stated: the slower the plate, the less friction unloads while it stands.
 std::optional<PlatePauses> neglected_pauses(const Replica& replica, const Experiment& experiment,
-                                            double most_slower);
+                                            double max_slowdown);
 void apply(Replica& replica, const PlatePauses& pauses);
 /// The settings to make, as advice.
 NextStep simulate_pauses(const PlatePauses& pauses);

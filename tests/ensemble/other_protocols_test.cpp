@@ -93,8 +93,8 @@ TEST(OtherProtocols, AreNotMadeOfAProgramme) {
     EXPECT_TRUE(other_protocols(small.question, replica, true).empty());
 }
 
-// Two laws of adhesion, which differ only in their friction, in a scene with little of it.
-/// A scene and an experiment with adhesion, whose plate is said to pause for 0.2 s at this speed [m/s].
+/// A scene with little friction and an experiment with adhesion, whose plate is said to pause for 0.2 s at
+/// this speed [m/s]. The candidates are two laws of adhesion, which differ only in their friction.
 Diagnosis diagnosis_with_pauses(double speed) {
     const TestFolder folder;
     Device device;

@@ -22,8 +22,8 @@ Compared compared(double pause, std::optional<double> speed, const std::vector<s
     return both;
 }
 
-std::optional<PlatePauses> neglected(const Compared& both, double most_slower = 4) {
-    return neglected_pauses(both.replica, both.experiment, most_slower);
+std::optional<PlatePauses> neglected(const Compared& both, double max_slowdown = 4) {
+    return neglected_pauses(both.replica, both.experiment, max_slowdown);
 }
 
 MATCHER_P2(PauseAt, time, speed, "") { return arg.has_value() && arg->time == time && arg->speed == speed; }

@@ -76,9 +76,8 @@ void print_calibration(const SceneCalibration& result) {
               result.found.converged ? "" : " (tolerance not reached: raise --rounds, or use more replicas)");
     if (!result.knows_scatter())
         print_out(
-            "the error leaves out how much packings differ, because {} a single one; it is right if both are "
-            "the "
-            "same packing\n",
+            "the error does not contain the scatter between packings: {} a single one; if both are the same "
+            "packing, there is none\n",
             std::isfinite(result.simulated.standard_error) ? "the reference is"
             : std::isfinite(result.target.standard_error)  ? "the scene has"
                                                            : "scene and reference have");
