@@ -1,6 +1,7 @@
 #include "io/export_run.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -11,6 +12,7 @@
 #include "core/parameters.h"
 #include "core/recording.h"
 #include "io/result_folder.h"
+#include "io/results.h"
 #include "io/vtk.h"
 #include "io/xyz.h"
 
@@ -44,6 +46,17 @@ std::string list_of_replicas(const ExportChoice& choice, const Run& run) {
     return lines;
 }
 
+/// Whether a selected replica has a selected scan.
+bool has_scans(const std::filesystem::path& run, const ExportChoice& choice) {
+    const Run read = read_run(run, ReadWhat::observables);
+    for (std::size_t r = 0; r < read.recordings.size(); ++r)
+        if (choice.has_replica(r) && std::ranges::any_of(read.recordings[r].scans, [&](const Scan& scan) {
+                return choice.has_scan(scan.frame);
+            }))
+            return true;
+    return false;
+}
+
 }  // namespace
 
 int export_run(const std::filesystem::path& run, const std::filesystem::path& folder,
@@ -56,9 +69,11 @@ int export_run(const std::filesystem::path& run, const std::filesystem::path& fo
     const int files = (formats.vtk ? export_vtk(run, folder, choice) : 0) +
                       (formats.xyz ? export_xyz(run, folder, choice) : 0);
     if (files == 0)
-        throw InputError(run.string() + ": has no positions to export" +
-                         (choice.scans.empty() ? "" : " at the scans that are asked for") +
-                         ": run with output.positions = true");
+        throw InputError(
+            has_scans(run, choice)
+                ? run.string() + ": has no positions to export: run with output.positions = true"
+                : fmt::format("--scan: must be among the scans of {} (column frame of plate.csv), got {}",
+                              run.string(), fmt::join(choice.scans, ", ")));
     return files;
 }
 

@@ -77,11 +77,12 @@ std::vector<fs::path> result_files(const fs::path& file_or_folder) {
         throw InputError(
             file_or_folder.string() +
             ": holds parts of a run that are not merged yet: wait for the programs that compute them, or "
-            "go on with --resume");
+            "go on with --resume (in Python resume=True)");
     const auto segments = segment_files(file_or_folder);
     if (segments.empty() && has_checkpoint(file_or_folder))
         throw InputError(file_or_folder.string() +
-                         ": holds a run that was stopped before it wrote results: go on with --resume");
+                         ": holds a run that was stopped before it wrote results: go on with --resume (in "
+                         "Python resume=True)");
     if (segments.empty())
         throw InputError(file_or_folder.string() + ": holds no run (neither run.h5 nor segment-000000.h5)");
     return segments;
@@ -107,9 +108,9 @@ ResultFolder ResultFolder::create(const fs::path& folder) {
     make_result_folder(folder);
     ResultFolder made(folder, FolderLock(folder, FolderLock::Use::alone));
     if (const fs::path file = file_of_a_run(folder); !file.empty())
-        throw InputError(
-            fmt::format("{}: holds another run ({}): give another folder, or go on with --resume",
-                        folder.string(), file.filename().string()));
+        throw InputError(fmt::format(
+            "{}: holds another run ({}): give another folder, or go on with --resume (in Python resume=True)",
+            folder.string(), file.filename().string()));
     return made;
 }
 

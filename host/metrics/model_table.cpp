@@ -19,8 +19,9 @@ const Setting& reference_of(const std::vector<Setting>& settings, const std::opt
     if (found != settings.end()) return *found;
     if (!label) return settings.front();
     std::string known;
-    for (const auto& setting : settings) known += (known.empty() ? "" : ", ") + setting.label;
-    throw InputError(fmt::format("reference setting: must be one of {}; got {}", known, *label));
+    for (const auto& setting : settings)
+        known += fmt::format("{}\"{}\"", known.empty() ? "" : ", ", setting.label);
+    throw InputError(fmt::format("reference setting: must be one of {}; got \"{}\"", known, *label));
 }
 
 /// The largest displacement of all replicas that did not stop early; NaN if all did.

@@ -79,7 +79,7 @@ std::optional<std::string> assign(const Key& key, const toml::node& value, Setti
 
 std::string shown(const toml::node& value) {
     if (value.is_table()) return "a table";
-    if (value.is_array()) return "a list";
+    if (value.is_array()) return value.as_array()->empty() ? "an empty list" : "a list";
     if (value.is_string()) return fmt::format("\"{}\"", shortened(value.as_string()->get()));
     if (value.is_floating_point()) return fmt::format("{}", value.as_floating_point()->get());
     std::ostringstream out;

@@ -35,4 +35,22 @@ PackingState packing_state(const Packing& packing, const Box& box, const PlateFa
     return state;
 }
 
+DeepestPair deepest_pair(const Packing& packing, const Box& box, double height) {
+    DeepestPair deepest;
+    if (packing.size() < 2) return deepest;
+    std::vector<Vec3> inside;
+    for (const Vec3& position : packing.position) inside.push_back(into_cell(box, position));
+    std::vector<double> diameter = packing.diameter;
+    const auto middle = diameter.begin() + static_cast<std::ptrdiff_t>(diameter.size() / 2);
+    std::ranges::nth_element(diameter, middle);
+    const double reach = std::min(4 * *middle, *std::ranges::max_element(packing.diameter));
+    CellList(inside, box, height, reach).for_each_pair([&](int i, int j) {
+        const auto a = static_cast<std::size_t>(i), b = static_cast<std::size_t>(j);
+        const double radii = (packing.diameter[a] + packing.diameter[b]) / 2;
+        const double overlap = 1 - apart(box, inside[a], inside[b]).norm() / radii;
+        if (overlap > deepest.overlap) deepest = {std::min(a, b), std::max(a, b), overlap};
+    });
+    return deepest;
+}
+
 }  // namespace mcdem::scene

@@ -13,4 +13,13 @@ struct PackingState {
 
 PackingState packing_state(const Packing& packing, const Box& box, const PlateFace& plate);
 
+struct DeepestPair {
+    std::size_t first = 0, second = 0;  ///< grains
+    double overlap = 0;                 ///< over the sum of the radii
+};
+
+/// The two grains that overlap most, without walls, among those at most four median diameters apart: one
+/// grain with an absurd diameter must not make every pair a neighbour. `height` of the container [m].
+DeepestPair deepest_pair(const Packing& packing, const Box& box, double height);
+
 }  // namespace mcdem::scene

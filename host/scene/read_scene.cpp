@@ -63,6 +63,12 @@ private:
             problems_.add(entry.place,
                           fmt::format("{0} must be a list of 1 to {1} {2} ([[{0}]]), got {3}", table->name,
                                       table->most, table->elements, shown(*entry.value)));
+        else if (const ListTable* of = find_list_table(entry.key.substr(0, entry.key.find('.')));
+                 of && !element)
+            problems_.add(
+                entry.place,
+                fmt::format("{0} must be below a header in double brackets, [[{1}]], one for each of its {2}",
+                            shown_name, of->name, of->elements));
         else if (entry.value->is_table() && element && is_table(entry.key))
             problems_.add(entry.place, fmt::format("{} must say {}, got nothing: {}", shown_name,
                                                    element->table->says, element->table->remedy));

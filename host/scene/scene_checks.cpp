@@ -222,6 +222,20 @@ std::vector<std::string> problems_of_species(Packing packing, const Settings& se
     }
 }
 
+/// The engine would stop at the first step.
+Found deep_overlap(const Settings& settings, CheckedFile& file) {
+    const Replica& replica = settings.replica;
+    const PlateFace plate = plate_face(replica, replica.plate.start);
+    if (!file.deepest) file.deepest = deepest_pair(file.packing, replica.box, plate.z);
+    if (file.deepest->overlap <= replica.numerics.overlap_limit) return std::nullopt;
+    return fmt::format(
+        "{}: grains must overlap by at most numerics.overlap_limit = {} of the sum of their radii, got "
+        "{:.2g} for "
+        "grains {} and {}, counted from 0: is one of them listed twice, or a diameter too large?",
+        settings.packing_file, replica.numerics.overlap_limit, file.deepest->overlap, file.deepest->first,
+        file.deepest->second);
+}
+
 }  // namespace
 
 std::vector<std::string> packing_file_problems(const Settings& settings, CheckedFiles& files) {
@@ -243,6 +257,8 @@ std::vector<std::string> packing_file_problems(const Settings& settings, Checked
     auto problems =
         packing_problems(file.packing, settings.replica.box,
                          plate_face(settings.replica, settings.replica.plate.start), settings.packing_file);
+    if (problems.empty())
+        if (auto deep = deep_overlap(settings, file)) problems.push_back(*deep);
     try {
         expect_room(settings.replica, file.packing);
     } catch (const InputError& error) {

@@ -1,11 +1,13 @@
 // Checks that involve several keys.
 #pragma once
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "scene/keys.h"
+#include "scene/packing_state.h"
 
 namespace mcdem::inline scene {
 
@@ -19,7 +21,8 @@ struct CheckedFile {
     std::size_t count = 0;
     double smallest = 0;  ///< diameter [m]
     Packing packing;
-    std::vector<std::string> problems;  ///< problems when reading, each with its place
+    std::optional<DeepestPair> deepest;  ///< if its grains are in their container
+    std::vector<std::string> problems;   ///< problems when reading, each with its place
 };
 using CheckedFiles = std::map<std::pair<std::string, int>, CheckedFile>;
 

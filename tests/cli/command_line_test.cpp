@@ -43,6 +43,8 @@ TEST_F(CliTest, WrongOptionsAreBadInput) {
                      "--out: must name a place, got nothing");
     expect_bad_input(mcdem({"export", "a", "--out", "b"}), "vtk, xyz or both");
     expect_bad_input(mcdem({"calibrate", "small.toml", "--experiment", "a", "--rounds", "many"}), "many");
+    expect_bad_input(mcdem({"calibrate", "small.toml", "--experiment", "a", "--model", "hertz"}),
+                     "--model: must be one of independent, ");
 }
 
 TEST_F(CliTest, MissingFilesAreBadInput) {

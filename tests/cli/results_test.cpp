@@ -74,7 +74,7 @@ TEST_F(CliTest, ReferenceSettingMustBeUnique) {
     expect_bad_input(mcdem({"compare", "a", "--against", "a"}),
                      "choose one with --setting, of independent, elastic_sphere");
     expect_bad_input(mcdem({"compare", "a", "--against", "a", "--setting", "jelly"}), "got jelly");
-    expect_bad_input(mcdem({"table", "a", "--over", "jelly"}), "got jelly");
+    expect_bad_input(mcdem({"table", "a", "--over", "jelly"}), "got \"jelly\"");
 }
 
 TEST_F(CliTest, SeveralRunsAreDistinguished) {

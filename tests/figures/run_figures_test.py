@@ -88,6 +88,7 @@ class Curves(unittest.TestCase):
             self.expect_line(axes, name, "-", densities[name])
         self.expect_points(axes, "#000000", [densities["reality"]])
         self.assertEqual(axes.get_yscale(), "log")
+        self.assertRegex(axes.get_legend().get_title().get_text(), r"^at 1[01]\.\d mm, unloading$")
 
     def test_coordination(self):
         axes = figures.coordination(folder / "run")

@@ -20,7 +20,7 @@ namespace {
 
 using ::testing::HasSubstr;
 constexpr int module_missing = 77;
-const std::string source = MCDEM_SOURCE_DIR;
+const std::string project = MCDEM_SOURCE_DIR;
 const std::string first_name = "replica_00000_mc_dem_packing_0";
 
 TEST(export_name, contains_the_label_in_shell_safe_characters) {
@@ -54,7 +54,7 @@ TEST(vtk, grains_and_contacts_are_read_by_vtk) {
     const Contact& last = scan.contacts.back();
     std::stringstream command;
     command.precision(17);
-    command << "/usr/bin/python3 " << source << "/tests/io/read_vtk.py "
+    command << "/usr/bin/python3 " << project << "/tests/io/read_vtk.py "
             << (folder / "view/replica_00001_mc_dem_packing_1").string() << " 000002 " << scan.position.size()
             << ' ' << scan.contacts.size() << ' ' << last.force.z() << ' ' << scan.plate_z << " species";
     const Finished finished = run_command(command.str());
@@ -266,7 +266,7 @@ TEST(vtk, a_scan_without_contacts_gives_files) {
     write_run(folder / "run.h5", run);
     EXPECT_EQ(export_vtk(folder / "run.h5", folder / "view"), 4);
     std::stringstream command;
-    command << "/usr/bin/python3 " << source << "/tests/io/read_vtk.py "
+    command << "/usr/bin/python3 " << project << "/tests/io/read_vtk.py "
             << (folder / "view" / first_name).string() << " 000000 27 0 0 "
             << run.recordings[0].scans[0].plate_z;
     const Finished finished = run_command(command.str());

@@ -12,6 +12,7 @@
 #include "report/diagnosis/diagnosis_text.h"
 #include "report/diagnosis/diagnosis_values.h"
 #include "report/diagnosis/diagnosis_words.h"
+#include "report/verdict_line.h"
 
 namespace mcdem {
 namespace {
@@ -110,12 +111,6 @@ private:
 
 bool names_a_cause(Verdict verdict) {
     return verdict != Verdict::no_gap && verdict != Verdict::unknown_effect;
-}
-
-std::string line(const Diagnosis& diagnosis, const std::string& about) {
-    for (const auto& [name, says] : verdict_lines(diagnosis))
-        if (name == about) return says;
-    return "";
 }
 
 /// All phrases like "81 % of the gap" in a text.

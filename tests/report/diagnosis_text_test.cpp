@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "report/diagnosis_samples.h"
+#include "report/verdict_line.h"
 
 namespace mcdem {
 namespace {
@@ -14,12 +15,6 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 using testing::StartsWith;
-
-std::string line(const Diagnosis& diagnosis, const std::string& about) {
-    for (const auto& [name, says] : verdict_lines(diagnosis))
-        if (name == about) return says;
-    return "";
-}
 
 class EveryVerdict : public testing::TestWithParam<Verdict> {};
 INSTANTIATE_TEST_SUITE_P(DiagnosisText, EveryVerdict, testing::ValuesIn(samples::all_verdicts));

@@ -12,7 +12,7 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-Run two_models(int replicas, int contacts = 300) {
+Run scattered_models(int replicas, int contacts = 300) {
     return synthetic::run({{.model = "independent", .top = 6, .scatter = 0.1, .contacts = contacts},
                            {.model = "mc_dem", .top = 15, .scatter = 0.1, .contacts = contacts}},
                           replicas);
@@ -25,7 +25,7 @@ const Chart& chart_named(const RunCharts& made, const std::string& name) {
 }
 
 TEST(RunCharts, are_the_papers_four_figures_with_the_values_of_the_printed_ones) {
-    const auto run = two_models(1);
+    const auto run = scattered_models(1);
     const auto made = run_charts(group_by_setting(run), std::nullopt);
     ASSERT_EQ(made.charts.size(), 4u);
     EXPECT_TRUE(made.notes.empty());
@@ -36,7 +36,7 @@ TEST(RunCharts, are_the_papers_four_figures_with_the_values_of_the_printed_ones)
 }
 
 TEST(RunCharts, logarithmic_axes_are_for_forces_over_several_decades) {
-    const auto run = two_models(2);
+    const auto run = scattered_models(2);
     const auto made = run_charts(group_by_setting(run), std::nullopt);
     EXPECT_EQ(chart_named(made, "top_force").log_axes, "xy");
     EXPECT_EQ(chart_named(made, "scaling").log_axes, "xy");
@@ -45,7 +45,7 @@ TEST(RunCharts, logarithmic_axes_are_for_forces_over_several_decades) {
 }
 
 TEST(RunCharts, captions_describe_the_data) {
-    const auto one = two_models(1), four = two_models(4);
+    const auto one = scattered_models(1), four = scattered_models(4);
     const auto measured = synthetic::recording({.seed = 50, .contacts = 300});
     const auto alone = run_charts(group_by_setting(one), std::nullopt);
     EXPECT_THAT(chart_named(alone, "top_force").caption, Not(HasSubstr("reference")));
@@ -59,7 +59,7 @@ TEST(RunCharts, captions_describe_the_data) {
 }
 
 TEST(RunCharts, figures_that_cannot_be_drawn_are_explained) {
-    auto run = two_models(1, 0);
+    auto run = scattered_models(1, 0);
     for (auto& recording : run.recordings)
         for (auto& scan : recording.scans)
             scan.coordination_number = scan.mean_force = scan.packing_fraction = scan.branch_length =

@@ -89,6 +89,18 @@ TEST(RunFigures, each_setting_has_its_own_tau) {
         EXPECT_EQ(series[0]["curves"][phase]["y"], series[1]["curves"][phase]["y"]);
 }
 
+TEST(RunFigures, no_tau_without_contacts_of_the_reference) {
+    const auto run = synthetic::run({{.contacts = 2000}}, 1);
+    auto measured = run.recordings[0];
+    for (auto& scan : measured.scans) {
+        scan.contacts.clear();
+        scan.coordination_number = not_available;
+    }
+    const auto series =
+        values_of(group_by_setting(run), Setting{"experiment", {&measured}})["coordination"]["series"];
+    EXPECT_EQ(series[0]["remark"], "");
+}
+
 TEST(RunFigures, the_scaling_law_has_its_slope) {
     const auto run = two_models(1);
     const auto series = values_of(group_by_setting(run))["scaling"]["series"][1];

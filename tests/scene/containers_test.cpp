@@ -15,11 +15,11 @@ using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-const std::string few = "[packing]\ncount = 150\npacking_fraction = 0.5\n";
+const std::string sparse = "[packing]\ncount = 150\npacking_fraction = 0.5\n";
 
 TEST(Containers, AreReadWithTheirSizes) {
     const auto box_of = [](const std::string& text, const std::vector<std::string>& overrides = {}) {
-        return parse_scene(text + few, "good.toml", overrides).replicas.at(0).box;
+        return parse_scene(text + sparse, "good.toml", overrides).replicas.at(0).box;
     };
     const Box plain = box_of("");
     EXPECT_EQ(plain.shape, ContainerShape::box);
@@ -38,7 +38,7 @@ TEST(Containers, AreReadWithTheirSizes) {
 
 TEST(Containers, OfSeveralShapesCanBeInOneRun) {
     const Scene scene =
-        parse_scene("[container]\nsize_x = 0.1\nsize_y = 0.11\nradius = 0.06\n" + few +
+        parse_scene("[container]\nsize_x = 0.1\nsize_y = 0.11\nradius = 0.06\n" + sparse +
                         "[batch.vary]\n\"container.shape\" = [\"box\", \"cylinder\", \"periodic\"]\n",
                     "good.toml", {});
     ASSERT_EQ(scene.replicas.size(), 3u);
@@ -53,31 +53,31 @@ TEST(Containers, OfSeveralShapesCanBeInOneRun) {
 }
 
 TEST(Containers, SizesOfOtherShapesAreRefused) {
-    EXPECT_THAT(problems_in("[container]\nshape = \"cylinder\"\nsize_x = 0.1\n" + few),
+    EXPECT_THAT(problems_in("[container]\nshape = \"cylinder\"\nsize_x = 0.1\n" + sparse),
                 ElementsAre(HasSubstr(
                     "bad.toml:3: container.size_x must be left out where container.shape = \"cylinder\"")));
-    EXPECT_THAT(problems_in("[box]\nsize_y = 0.1\n[container]\nshape = \"cylinder\"\n" + few),
+    EXPECT_THAT(problems_in("[box]\nsize_y = 0.1\n[container]\nshape = \"cylinder\"\n" + sparse),
                 ElementsAre(HasSubstr("bad.toml:2: box.size_y must be left out")));
-    EXPECT_THAT(problems_in("[container]\nradius = 0.1\n" + few),
+    EXPECT_THAT(problems_in("[container]\nradius = 0.1\n" + sparse),
                 ElementsAre(HasSubstr(
                     "bad.toml:2: container.radius must be left out where container.shape = \"box\"")));
     EXPECT_THAT(
-        problems_in("[container]\nsize_x = 0.1\n[box]\nsize_x = 0.1\n" + few),
+        problems_in("[container]\nsize_x = 0.1\n[box]\nsize_x = 0.1\n" + sparse),
         ElementsAre(HasSubstr("bad.toml:4: box.size_x must be left out where container.size_x is given")));
-    EXPECT_THAT(problems_in("[container]\nshape = \"round\"\n" + few),
+    EXPECT_THAT(problems_in("[container]\nshape = \"round\"\n" + sparse),
                 ElementsAre(HasSubstr("container.shape must be one of box, cylinder, periodic")));
 }
 
 TEST(Containers, TooSmallForTheirGrainsAreRefused) {
-    EXPECT_THAT(problems_in("[container]\nshape = \"cylinder\"\nradius = 0.024\n" + few +
+    EXPECT_THAT(problems_in("[container]\nshape = \"cylinder\"\nradius = 0.024\n" + sparse +
                             "[plate]\nstart = 3\nend = 2\n"),
                 ElementsAre(HasSubstr("bad.toml:3: container.radius must be at least the largest diameter")));
     const std::string cell =
         "[container]\nshape = \"periodic\"\nsize_x = 0.056\nsize_y = 0.2\n[plate]\nstart = 3\nend = 2\n";
-    EXPECT_THAT(problems_in(cell + few),
+    EXPECT_THAT(problems_in(cell + sparse),
                 ElementsAre(AllOf(HasSubstr("bad.toml:3: container.size_x must be at least 0.0566"),
                                   HasSubstr("two grains could meet twice"))));
-    EXPECT_NO_THROW(parse_scene(cell + few, "good.toml", {"numerics.skin=0.1"}));
+    EXPECT_NO_THROW(parse_scene(cell + sparse, "good.toml", {"numerics.skin=0.1"}));
     const TestFolder folder;
     const auto one = folder.write("one.csv", "x_m,y_m,z_m,diameter_m\n0.2,-0.3,0.02,0.024\n");
     const std::string file = "[packing]\nfile = \"" + one.string() + "\"\n";
@@ -86,7 +86,7 @@ TEST(Containers, TooSmallForTheirGrainsAreRefused) {
     EXPECT_NO_THROW(parse_scene(cell + file, "good.toml", {"container.size_x=0.06"}));
     EXPECT_THAT(problems_in("[container]\nshape = \"cylinder\"\nradius = 0.06\n" + file),
                 ElementsAre(HasSubstr("the centre of grain 0 must be in the cylinder of radius 0.06 m")));
-    EXPECT_THAT(problems_in("[container]\nshape = \"periodic\"\n[effects]\nplate_tilt_x = 0.01\n" + few),
+    EXPECT_THAT(problems_in("[container]\nshape = \"periodic\"\n[effects]\nplate_tilt_x = 0.01\n" + sparse),
                 ElementsAre(HasSubstr("a tilted plate does not repeat")));
 }
 
@@ -121,7 +121,7 @@ TEST(GeneratedPacking, FillsContainersOfEveryShape) {
         EXPECT_NEAR(height * box.size_x * box.size_y * floor_share(box) * fraction, 200 * 5.25e-6, 2e-5);
         EXPECT_LT(largest_overlap(packing, box, 1.003 * height), 0.02)
             << name(box.shape) << ' ' << box.size_x;
-        // With few contacts the container would not be filled.
+        // With sparse contacts the container would not be filled.
         const auto state = packing_state(packing, box, {height});
         EXPECT_LT(state.relative_overlap, 0.02);
         double far = 0, high = 0;

@@ -159,6 +159,28 @@ TEST(PackingState, CountsContactsAndFindsTheDeepest) {
     EXPECT_DOUBLE_EQ(loose.coordination_number, 1.5);
     EXPECT_NEAR(loose.deepest_overlap, 1e-3, 1e-12);
     EXPECT_NEAR(loose.relative_overlap, 1e-3 / 0.02, 1e-12) << "of the smaller grain";
+    const DeepestPair deepest = deepest_pair(packing, box, 0.0465);
+    EXPECT_EQ(deepest.first, 0u);
+    EXPECT_EQ(deepest.second, 1u);
+    EXPECT_NEAR(deepest.overlap, 1e-3 / 0.025, 1e-12) << "of the sum of the radii";
+    const Packing across{{Vec3(0.01, 0.5, 0.5), Vec3(0.995, 0.5, 0.5)}, {0.03, 0.03}};
+    EXPECT_NEAR(deepest_pair(across, {1, 1, ContainerShape::periodic}, 1).overlap, 0.5, 1e-12)
+        << "over the periodic side";
+    EXPECT_EQ(deepest_pair(across, box, 1).overlap, 0);
+}
+
+TEST(PackingState, GrainsInOnePlaceAreRefused) {
+    const TestFolder folder;
+    folder.write("p.csv", "x_m,y_m,z_m,diameter_m\n0.1,0.1,0.1,0.02\n0.2,0.2,0.2,0.02\n0.1,0.1,0.1,0.02\n");
+    const std::string scene =
+        "[box]\nsize_x = 0.3\nsize_y = 0.3\n[packing]\nfile = \"p.csv\"\n[plate]\nstart = "
+        "0.3\nend = 0.25\n[numerics]\noverlap_limit = ";
+    const std::string file = (folder.path() / "s.toml").string();
+    EXPECT_THAT(
+        problems_of([&] { parse_scene(scene + "0.4\n", file); }),
+        ElementsAre(HasSubstr(
+            "overlap_limit = 0.4 of the sum of their radii, got 1 for grains 0 and 2, counted from 0")));
+    EXPECT_NO_THROW(parse_scene(scene + "1\n", file));
 }
 
 }  // namespace

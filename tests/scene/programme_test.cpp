@@ -146,7 +146,7 @@ TEST(Programme, ErrorsAreReportedWithARemedy) {
          "programme.1.scan_at must be left out where scans is given"},
         {"strain = 0.1\nscan_at = [0.05, 0.02]",
          "programme.1.scan_at must be places on the way to strain = 0.1"},
-        {"strain = 0.1\nscan_at = []", "programme.1.scan_at must be a list of numbers, got a list"},
+        {"strain = 0.1\nscan_at = []", "programme.1.scan_at must be a list of numbers, got an empty list"},
         {"strain = 0.1\nscans = 0",
          "programme.1.scans and the others must leave 1 to 1000000 scans in all, got 0"},
         {"stage = \"hold\"", "programme.1.time must be given: a hold has no other end"},
@@ -179,9 +179,14 @@ TEST(Programme, ErrorsAreReportedWithARemedy) {
                     Contains(HasSubstr(wrong.told)))
             << wrong.stage;
     EXPECT_THAT(problems_in("programme = 3\n"), Contains(HasSubstr("programme")));
-    EXPECT_THAT(problems_of([] { parse_scene("programme = []\n" + box_text, "p.toml"); }),
+    EXPECT_THAT(
+        problems_of([] { parse_scene("programme = []\n" + box_text, "p.toml"); }),
+        Contains(HasSubstr(
+            "p.toml:1: programme must be a list of 1 to 100 stages ([[programme]]), got an empty list")));
+    EXPECT_THAT(problems_in("[programme]\nstrain = 0.1\n"),
                 Contains(HasSubstr(
-                    "p.toml:1: programme must be a list of 1 to 100 stages ([[programme]]), got a list")));
+                    "programme.strain must be below a header in double brackets, [[programme]], one for "
+                    "each of its stages")));
     EXPECT_THAT(problems_in("[[programme]]\nstrain = 0.1\n[[programme]]\nscans = 1\n"),
                 Contains(HasSubstr("programme.toml:13: programme.2.position")))
         << "the place of the stage";

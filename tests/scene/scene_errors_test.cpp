@@ -104,12 +104,12 @@ TEST(SceneErrors, GiveLineAndColumnOfBadSyntax) {
     EXPECT_THAT(problems_in("name = \"\xff\xfe\"\n"), ElementsAre(StartsWith("bad.toml:1:")));
 }
 
-struct Wrong {
+struct WrongScene {
     const char* text;
     const char* problem;  ///< the only one expected
 };
 
-class CrossErrors : public testing::TestWithParam<Wrong> {};
+class CrossErrors : public testing::TestWithParam<WrongScene> {};
 
 TEST_P(CrossErrors, NameBothKeys) {
     EXPECT_THAT(problems_in(GetParam().text), ElementsAre(StartsWith(GetParam().problem)));
@@ -118,57 +118,62 @@ TEST_P(CrossErrors, NameBothKeys) {
 INSTANTIATE_TEST_SUITE_P(
     All, CrossErrors,
     testing::Values(
-        Wrong{"[plate]\nend = 0.2\n", "bad.toml:2: plate.end must be below plate.start = 0.167643, got 0.2"},
-        Wrong{"[protocol]\ncycles = 3\ndiscard = 3\n",
-              "bad.toml:3: protocol.discard must be less than protocol.cycles = 3, got 3"},
-        Wrong{"[protocol]\nstop_at_scans = false\npause = 0.1\n",
-              "bad.toml:3: protocol.pause needs protocol.stop_at_scans = true"},
-        Wrong{"[protocol]\ncycles = 10000\nscans_per_stroke = 1000",
-              "bad.toml:3: protocol.scans_per_stroke must leave at most 1000000 scans"},
-        Wrong{"[packing]\ndiameter_min = 0.0215\n",
-              "bad.toml:2: packing.diameter_min must be at most packing.diameter_mean = 0.02149"},
-        Wrong{"[packing]\ndiameter_max = 0.02\n",
-              "bad.toml:2: packing.diameter_max must be at least packing.diameter_mean = 0.02149"},
-        Wrong{"[packing]\ndiameter_min = 0.002\n",
-              "bad.toml: packing.diameter_max must be at most 10 times packing.diameter_min"},
-        Wrong{"[packing]\nposition_jitter = 0.003\n",
-              "bad.toml:2: packing.position_jitter must be at most a tenth of packing.diameter_mean"},
-        Wrong{"[packing]\ncount = 600\n",
-              "bad.toml: packing.packing_fraction must keep the grains below plate.start"},
-        Wrong{"[packing]\ncount = 1\n",
-              "bad.toml: packing.packing_fraction must leave room for the largest grain"},
-        Wrong{"[packing]\nfile = \"no_such.csv\"\n", "bad.toml:2: "},
-        Wrong{"[batch.vary]\n\"grains.friction\" = [0.1, 0.2, 0.10]\n",
-              "bad.toml:2: batch.vary.\"grains.friction\" must name each value once, got 0.1 again"},
-        Wrong{"[contact]\ngamma = 1\n[batch.vary]\n\"contact.gamma\" = [1, 2]\n",
-              "bad.toml:4: batch.vary.\"contact.gamma\" must be the only place of contact.gamma, got a value "
-              "too at bad.toml:2"},
-        Wrong{"[batch]\nreplicas = 2\n[batch.vary]\n\"packing.seed\" = [1, 2]\n",
-              "bad.toml:2: batch.replicas must be 1 where packing.seed varies"},
-        Wrong{"[batch.vary]\n\"grains.friction\" = []\n",
-              "bad.toml:2: batch.vary.\"grains.friction\" must be a list of values, got an empty one"},
-        Wrong{"[batch.vary]\n\"grains.friction\" = 0.1\n",
-              "bad.toml:2: batch.vary.\"grains.friction\" must be a list of values, got 0.1"},
-        Wrong{"[batch.vary]\n\"grains.fricton\" = [0.1]\n",
-              "bad.toml:2: batch.vary.grains.fricton must be a key of a scene, got an unknown one (did you "
-              "mean grains.friction?)"},
-        Wrong{"[batch]\nreplicas = 1000\n[batch.vary]\n\"contact.gamma\" = [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, "
-              "0]\n",
-              "bad.toml:2: batch.replicas must leave at most 10000 replicas in all, got 11000"},
-        Wrong{"grains = 5\n", "bad.toml:1: grains must be a table, got 5"},
-        Wrong{"[grains.friction]\nx = 1\n",
-              "bad.toml:1: grains.friction must be a number between 0 and 10, got a table"},
-        Wrong{"[[grains]]\nfriction = 1\n", "bad.toml:1: grains must be a table, got a list"},
-        Wrong{"\"grains.friction\" = 1\n[grains]\nfriction = 1\n",
-              "bad.toml:3: grains.friction must be given once, got it again after bad.toml:1"},
-        Wrong{"name = \"\"\n", "bad.toml:1: name must be text, got \"\""},
-        Wrong{"name = \"a\\u0000b\"\n", "bad.toml:1: name must be text, got \"a?b\""},
-        Wrong{"[grains]\nfriction = nan\n",
-              "bad.toml:2: grains.friction must be a number between 0 and 10, got nan"},
-        Wrong{"[grains]\nyoungs_modulus = inf\n", "bad.toml:2: grains.youngs_modulus must be a number > 0"},
-        Wrong{"[plate]\nspeed = 2020-01-01\n",
-              "bad.toml:2: plate.speed must be a number > 0 and <= 1000 [m/s], got 2020-01-01"},
-        Wrong{"[packing]\nseed = -1\n", "bad.toml:2: packing.seed must be a whole number between 0"}));
+        WrongScene{"[plate]\nend = 0.2\n",
+                   "bad.toml:2: plate.end must be below plate.start = 0.167643, got 0.2"},
+        WrongScene{"[protocol]\ncycles = 3\ndiscard = 3\n",
+                   "bad.toml:3: protocol.discard must be less than protocol.cycles = 3, got 3"},
+        WrongScene{"[protocol]\nstop_at_scans = false\npause = 0.1\n",
+                   "bad.toml:3: protocol.pause needs protocol.stop_at_scans = true"},
+        WrongScene{"[protocol]\ncycles = 10000\nscans_per_stroke = 1000",
+                   "bad.toml:3: protocol.scans_per_stroke must leave at most 1000000 scans"},
+        WrongScene{"[packing]\ndiameter_min = 0.0215\n",
+                   "bad.toml:2: packing.diameter_min must be at most packing.diameter_mean = 0.02149"},
+        WrongScene{"[packing]\ndiameter_max = 0.02\n",
+                   "bad.toml:2: packing.diameter_max must be at least packing.diameter_mean = 0.02149"},
+        WrongScene{"[packing]\ndiameter_min = 0.002\n",
+                   "bad.toml: packing.diameter_max must be at most 10 times packing.diameter_min"},
+        WrongScene{"[packing]\nposition_jitter = 0.003\n",
+                   "bad.toml:2: packing.position_jitter must be at most a tenth of packing.diameter_mean"},
+        WrongScene{"[packing]\ncount = 600\n",
+                   "bad.toml: packing.packing_fraction must keep the grains below plate.start"},
+        WrongScene{"[packing]\ncount = 1\n",
+                   "bad.toml: packing.packing_fraction must leave room for the largest grain"},
+        WrongScene{"[packing]\nfile = \"no_such.csv\"\n", "bad.toml:2: "},
+        WrongScene{"[batch.vary]\n\"grains.friction\" = [0.1, 0.2, 0.10]\n",
+                   "bad.toml:2: batch.vary.\"grains.friction\" must name each value once, got 0.1 again"},
+        WrongScene{
+            "[contact]\ngamma = 1\n[batch.vary]\n\"contact.gamma\" = [1, 2]\n",
+            "bad.toml:4: batch.vary.\"contact.gamma\" must be the only place of contact.gamma, got a value "
+            "too at bad.toml:2"},
+        WrongScene{"[batch]\nreplicas = 2\n[batch.vary]\n\"packing.seed\" = [1, 2]\n",
+                   "bad.toml:2: batch.replicas must be 1 where packing.seed varies"},
+        WrongScene{"[batch.vary]\n\"grains.friction\" = []\n",
+                   "bad.toml:2: batch.vary.\"grains.friction\" must be a list of values, got an empty one"},
+        WrongScene{"[batch.vary]\n\"grains.friction\" = 0.1\n",
+                   "bad.toml:2: batch.vary.\"grains.friction\" must be a list of values, got 0.1"},
+        WrongScene{
+            "[batch.vary]\n\"grains.fricton\" = [0.1]\n",
+            "bad.toml:2: batch.vary.grains.fricton must be a key of a scene, got an unknown one (did you "
+            "mean grains.friction?)"},
+        WrongScene{
+            "[batch]\nreplicas = 1000\n[batch.vary]\n\"contact.gamma\" = [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, "
+            "0]\n",
+            "bad.toml:2: batch.replicas must leave at most 10000 replicas in all, got 11000"},
+        WrongScene{"grains = 5\n", "bad.toml:1: grains must be a table, got 5"},
+        WrongScene{"[grains.friction]\nx = 1\n",
+                   "bad.toml:1: grains.friction must be a number between 0 and 10, got a table"},
+        WrongScene{"[[grains]]\nfriction = 1\n", "bad.toml:1: grains must be a table, got a list"},
+        WrongScene{"\"grains.friction\" = 1\n[grains]\nfriction = 1\n",
+                   "bad.toml:3: grains.friction must be given once, got it again after bad.toml:1"},
+        WrongScene{"name = \"\"\n", "bad.toml:1: name must be text, got \"\""},
+        WrongScene{"name = \"a\\u0000b\"\n", "bad.toml:1: name must be text, got \"a?b\""},
+        WrongScene{"[grains]\nfriction = nan\n",
+                   "bad.toml:2: grains.friction must be a number between 0 and 10, got nan"},
+        WrongScene{"[grains]\nyoungs_modulus = inf\n",
+                   "bad.toml:2: grains.youngs_modulus must be a number > 0"},
+        WrongScene{"[plate]\nspeed = 2020-01-01\n",
+                   "bad.toml:2: plate.speed must be a number > 0 and <= 1000 [m/s], got 2020-01-01"},
+        WrongScene{"[packing]\nseed = -1\n", "bad.toml:2: packing.seed must be a whole number between 0"}));
 
 TEST(SceneErrors, TooManyGrainsInTotalAreRefused) {
     EXPECT_THAT(problems_in("[packing]\ncount = 5000000\npacking_fraction = 0.6\n[box]\nsize_x = 30\nsize_y "

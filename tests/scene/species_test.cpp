@@ -21,7 +21,7 @@ using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-const std::string box_text =
+const std::string mixed_box =
     "[box]\nsize_x = 0.3\nsize_y = 0.3\n[plate]\nstart = 0.3\nend = 0.2\n"
     "[packing]\ncount = 2000\npacking_fraction = 0.4\ndiameter_mean = 0.02\ndiameter_sd = 0.001\n"
     "diameter_min = 0.017\ndiameter_max = 0.023\n[grains]\ndensity = 1000\nfriction = 0.4\nrestitution = "
@@ -32,7 +32,7 @@ const std::string two =
     "poisson_ratio = 0.2\ndensity = 2500\nfriction = 0.1\nrestitution = 0.95\n";
 
 Replica replica_of(const std::string& text, const std::vector<std::string>& overrides = {}) {
-    return parse_scene(box_text + text, "s.toml", overrides).replicas.front();
+    return parse_scene(mixed_box + text, "s.toml", overrides).replicas.front();
 }
 TEST(SpeciesOfAScene, DefaultsAreThoseOfGrains) {
     const Replica replica = replica_of(two, {"species.1.density=900"});
@@ -73,14 +73,14 @@ TEST(SpeciesOfAScene, FrictionIsTheSmallerOneUnlessThePairGivesIt) {
 
 TEST(SpeciesOfAScene, VaryAndAreReadBackFromTheSceneText) {
     const Scene scene =
-        parse_scene(box_text + two + "[batch.vary]\n\"species.1.poisson_ratio\" = [0.1, 0.3]\n", "s.toml",
+        parse_scene(mixed_box + two + "[batch.vary]\n\"species.1.poisson_ratio\" = [0.1, 0.3]\n", "s.toml",
                     {"species.1.fraction=0.25"});
     ASSERT_EQ(scene.replicas.size(), 2u);
     EXPECT_EQ(scene.replicas[0].species[0].material.poisson_ratio, 0.1);
     EXPECT_EQ(scene.replicas[1].species[1].fraction, 0.75);
     const Scene again = parse_scene(scene.text, "s.toml");
     EXPECT_EQ(again.replicas[1].parameters, scene.replicas[1].parameters);
-    const Scene other = parse_scene(box_text + two, "s.toml", {"species=[{name = \"one\"}]"});
+    const Scene other = parse_scene(mixed_box + two, "s.toml", {"species=[{name = \"one\"}]"});
     EXPECT_EQ(other.replicas[0].species.size(), 1u);
 }
 
@@ -127,11 +127,11 @@ const std::vector<std::pair<std::string, std::string>> cases{
 
 TEST(SpeciesOfAScene, AreRefusedWithReasons) {
     for (const auto& [text, problem] : cases)
-        EXPECT_THAT(problems_in(box_text + text), Contains(HasSubstr(problem))) << text;
-    EXPECT_THAT(problems_of([] { parse_scene("species = 3\n" + box_text, "s.toml"); }),
+        EXPECT_THAT(problems_in(mixed_box + text), Contains(HasSubstr(problem))) << text;
+    EXPECT_THAT(problems_of([] { parse_scene("species = 3\n" + mixed_box, "s.toml"); }),
                 ElementsAre(HasSubstr("species must be a list of 1 to 8 species ([[species]]), got 3")));
     EXPECT_THAT(
-        problems_of([] { expect_plain_strokes(parse_scene(box_text + two, "s.toml"), "a diagnosis"); }),
+        problems_of([] { expect_plain_strokes(parse_scene(mixed_box + two, "s.toml"), "a diagnosis"); }),
         ElementsAre(HasSubstr("species: must be left out of a scene for a diagnosis")));
 }
 

@@ -1,5 +1,6 @@
 // mcdem calibrate
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <nlohmann/json.hpp>
 
@@ -9,6 +10,8 @@
 #include "cli/shell/messages.h"
 #include "cli/shell/progress.h"
 #include "cli/shell/standard_streams.h"
+#include "core/errors.h"
+#include "core/names.h"
 #include "core/output_file.h"
 #include "core/version.h"
 #include "ensemble/calibrate_scene.h"
@@ -109,10 +112,10 @@ void calibrate(CalibrateCommand& command) {
     print_out("wrote {}\n", file.string());
 }
 
-std::map<std::string, ContactModel> models_by_name() {
-    std::map<std::string, ContactModel> models;
-    for (const auto word : Names<ContactModel>::list) models.emplace(word, *parse<ContactModel>(word));
-    return models;
+ContactModel model_named(const std::string& word) {
+    if (const auto model = parse<ContactModel>(word)) return *model;
+    throw InputError(
+        fmt::format("--model: must be one of {}, got {}", fmt::join(Names<ContactModel>::list, ", "), word));
 }
 
 void add_search_options(CLI::App& sub, CalibrateOptions& options) {
@@ -139,9 +142,10 @@ void add_calibrate(CLI::App& app, int&) {
         *sub, command->reference, "--experiment",
         "Experiment folder or run whose mean top force at maximum compression is the target");
     sub->get_option("--experiment")->required();
-    sub->add_option("--model", command->options.model,
-                    "mc_dem: gamma is searched for; another contact model: Young's modulus of the grains")
-        ->transform(CLI::CheckedTransformer(models_by_name()))
+    sub->add_option_function<std::string>(
+           "--model", [command](const std::string& word) { command->options.model = model_named(word); },
+           "mc_dem: gamma is searched for; another contact model: Young's modulus of the grains")
+        ->type_name("MODEL")
         ->default_str("mc_dem");
     sub->add_option("--out", command->out, "Folder for calibration.json")->type_name("DIR");
     add_device_option(*sub, command->device);

@@ -91,6 +91,33 @@ void print_summary(const Run& run, const RunSummary& summary, std::size_t failed
     if (models_vary(models)) print_out("\n{}", to_text(table_of_models(models), TableFormat::terminal));
 }
 
+/// The plate of such a replica stands until the packing settles.
+bool waits_for_rest(const Recording& recording) {
+    const auto is = [&](const char* key, const char* value) {
+        const auto found = recording.parameters.find(key);
+        return found != recording.parameters.end() && found->second == value;
+    };
+    return is("protocol.stop_at_scans", "true") && is("protocol.pause", "0") && !follows_programme(recording);
+}
+
+void warn_of_unsettled(const Run& run) {
+    std::size_t unsettled = 0, all = 0;
+    for (const auto& recording : run.recordings) {
+        if (!waits_for_rest(recording)) continue;
+        for (const auto& scan : recording.scans) {
+            if (scan.plate_z == recording.plate_start) continue;  // after relax_time
+            ++all;
+            unsettled += !scan.settled;
+        }
+    }
+    if (unsettled > 0)
+        spdlog::warn(
+            "{} of {} scans were taken before the packing had settled (settled = 0 in plate.csv): forces may "
+            "still change; "
+            "raise protocol.settle_time",
+            unsettled, all);
+}
+
 void print_paths(const RunCommand& command, const std::vector<std::filesystem::path>& figures) {
     const std::filesystem::path folder = command.out;
     print_out("\nwrote\n");
@@ -104,6 +131,7 @@ int report_run(const RunCommand& command, const RunSummary& summary) {
     std::size_t failed = 0;
     for (const auto& recording : run.recordings) failed += recording.failure.has_value();
     print_summary(run, summary, failed);
+    warn_of_unsettled(run);
     std::vector<std::filesystem::path> figures;
     if (!command.no_figures) figures = draw_run(command.out);
     print_paths(command, figures);

@@ -92,10 +92,12 @@ RunFigure distribution_figure(const Cast& cast, const FigureOptions& options) {
     return figure;
 }
 
-/// Force threshold of Z [N].
-double threshold_of(const Series& series, const FigureOptions& options) {
-    if (!series.comparison) return options.threshold;
-    return series.comparison->tau.available() ? series.comparison->tau.value : 0;
+/// Force threshold of Z [N], if weaker forces are left out.
+std::optional<double> threshold_of(const Series& series, const FigureOptions& options) {
+    if (series.comparison)
+        return series.comparison->tau.available() ? std::optional(series.comparison->tau.value)
+                                                  : std::nullopt;
+    return options.threshold > 0 ? std::optional(options.threshold) : std::nullopt;
 }
 
 /// Z of the series at its threshold; as recorded without contacts, and for the reference.
@@ -105,7 +107,7 @@ std::vector<LevelMean> coordination_means(const Cast& cast, const Series& series
     Eigen::ArrayXXd z = reference_coordination(series.levels, series.setting.replicas, walls);
     if (const Coordination counted(series.levels, series.setting.replicas, walls);
         !cast.is_reference(series) && counted.known())
-        z = counted.at_threshold(threshold_of(series, options));
+        z = counted.at_threshold(threshold_of(series, options).value_or(0));
     std::vector<LevelMean> means;
     for (std::size_t l = 0; l < series.levels.size(); ++l) {
         const Eigen::ArrayXd column = z.col(l);
@@ -118,8 +120,8 @@ std::vector<LevelMean> coordination_means(const Cast& cast, const Series& series
 RunFigure coordination_figure(const Cast& cast, const FigureOptions& options) {
     RunFigure figure{"coordination", "plate displacement [mm]", "contacts per grain Z", {}, {}};
     add_each(cast, figure, [&](const Series& series) -> FigureSeries {
-        const bool cut = is_thresholded(cast, options) && !cast.is_reference(series);
-        return {&series, cut ? fmt::format("tau {:.2f} mN", threshold_of(series, options) / mN) : "",
+        const auto tau = cast.is_reference(series) ? std::nullopt : threshold_of(series, options);
+        return {&series, tau ? fmt::format("tau {:.2f} mN", *tau / mN) : "",
                 curves_of(coordination_means(cast, series, options))};
     });
     return figure;
@@ -147,7 +149,8 @@ RunFigure scaling_figure(const Cast& cast) {
 }  // namespace
 
 bool is_thresholded(const Cast& cast, const FigureOptions& options) {
-    return cast.reference || options.threshold > 0;
+    return std::ranges::any_of(
+        cast.simulated, [&](const Series& series) { return threshold_of(series, options).has_value(); });
 }
 
 Cast cast_of(const std::vector<Setting>& settings, const std::optional<Setting>& reference,

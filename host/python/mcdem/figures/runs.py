@@ -27,17 +27,18 @@ def top_force(source, axes=None):
 
 @styled
 def force_distribution(source, axes=None):
-    """Density of contact forces at one level of compression; bands: one standard error over replicas."""
+    """Density of contact forces at one level of compression, which the legend names; bands: one standard error over replicas."""
     values = read(source, "force_distribution")
     shown = entries(values, phases=())
-    axes = axes or keyed_axes(shown, is_crowded(shown))
+    axes = axes or keyed_axes(shown, True)
     for series in values["series"]:
         for curve in series["curves"]:
             (draw_points if series["is_reference"] else draw_line)(axes, series, {**curve, "phase": "load"})
     label(axes, values)
     axes.set_yscale("log")
     axes.set_xlim(left=0)
-    place_key(axes, shown, "lower left")
+    phase = PHASES[values["series"][0]["curves"][0]["phase"]]
+    key(axes, shown).set_title(f"at {values['displacement_mm']:.1f} mm, {phase}", prop={"size": axes.xaxis.label.get_size()})
     return axes
 
 

@@ -1,0 +1,3 @@
+// Headers that nearly every test of kernels and simulation includes, precompiled (tests/CMakeLists.txt).
+#include "../precompiled.h"
+#include "reference/test_scene.h"
