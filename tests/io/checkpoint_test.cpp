@@ -24,7 +24,7 @@ Checkpoint example(int segments) {
     return checkpoint;
 }
 
-void expect_same(const Checkpoint& a, const Checkpoint& b) {
+void expect_same_checkpoint(const Checkpoint& a, const Checkpoint& b) {
     EXPECT_EQ(a.scene_text, b.scene_text);
     EXPECT_EQ(a.device, b.device);
     EXPECT_EQ(a.segments, b.segments);
@@ -37,7 +37,7 @@ TEST(checkpoint, is_read_back_bit_for_bit) {
     write_checkpoint(folder.path(), example(3));
     const auto found = read_checkpoint(folder.path());
     ASSERT_TRUE(found.has_value());
-    expect_same(example(3), *found);
+    expect_same_checkpoint(example(3), *found);
     EXPECT_EQ(found->warning, "");
 }
 
@@ -49,7 +49,7 @@ TEST(checkpoint, a_damaged_newest_gives_the_previous_one_with_a_warning) {
     write_bytes(folder / "checkpoint.h5", whole.substr(0, whole.size() / 2));
     const auto found = read_checkpoint(folder.path());
     ASSERT_TRUE(found.has_value());
-    expect_same(example(3), *found);
+    expect_same_checkpoint(example(3), *found);
     EXPECT_THAT(found->warning, HasSubstr("checkpoint.h5"));
     EXPECT_THAT(found->warning, HasSubstr("going on from checkpoint.previous.h5"));
 }
@@ -106,7 +106,8 @@ TEST(checkpoint, any_flipped_bit_is_detected_or_harmless) {
         bytes[random() % bytes.size()] ^= static_cast<char>(1 << random() % 8);
         write_bytes(folder / "checkpoint.h5", bytes);
         try {
-            expect_same(written, read_checkpoint(folder.path()).value());  // a bit in a gap between objects
+            expect_same_checkpoint(written,
+                                   read_checkpoint(folder.path()).value());  // a bit in a gap between objects
         } catch (const InputError&) {
             ++noticed;
         }
