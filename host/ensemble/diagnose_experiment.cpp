@@ -54,6 +54,10 @@ public:
           plan_(std::move(plan.library)) {}
 
     Diagnosis run() {
+        if (const auto others = other_materials(model().replica, experiments_.front()); !others.empty())
+            options_.on_note(fmt::format(
+                "experiment.toml states {}: simulations have the scene's; --set gives them other values",
+                fmt::join(others, ", ")));
         if (!options_.candidates.empty())
             for (const std::string& hindered : choice_.hindered) options_.on_note("not tested: " + hindered);
         Evidence evidence = gather();

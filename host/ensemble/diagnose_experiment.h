@@ -43,6 +43,10 @@ Experiment compared_cycles(const Scene& scene, Experiment experiment);
 /// does not contain enough data to simulate it.
 Model model_of(const Scene& scene, const Experiment& experiment);
 
+/// Simulations have the materials of the scene: "grains.youngs_modulus = 30000 (scene: 23300)" for each that
+/// the experiment states and the scene does not have. With several species, which have their own, none.
+std::vector<std::string> other_materials(const Replica& replica, const Experiment& experiment);
+
 /// Positions of the experiment's grains at its first frame.
 Packing start_packing(const Experiment& experiment);
 

@@ -2,10 +2,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "core/errors.h"
 #include "ensemble/diagnose_experiment.h"
+#include "scene/keys.h"
+#include "scene/packing_fields.h"
 #include "scene/programme_text.h"
 
 namespace mcdem::inline ensemble {
@@ -75,6 +78,20 @@ Model model_of(const Scene& scene, const Experiment& experiment) {
     model.replica.protocol.scans_per_stroke = loading;
     model.replica.protocol.cycles = std::min(cycles, simulated_cycles(scene));
     return model;
+}
+
+std::vector<std::string> other_materials(const Replica& replica, const Experiment& experiment) {
+    std::vector<std::string> list;
+    if (!replica.species.empty()) return list;
+    Settings settings;
+    settings.replica = replica;
+    for (const auto& [name, stated] : experiment.materials) {
+        const std::string used = value_text(*find_key(name), settings);
+        if (const double value = to_number(used).value_or(stated);
+            std::abs(value - stated) > 1e-6 * std::abs(stated))
+            list.push_back(fmt::format("{} = {} (scene: {})", name, stated, used));
+    }
+    return list;
 }
 
 }  // namespace mcdem::ensemble

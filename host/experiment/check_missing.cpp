@@ -139,8 +139,11 @@ void missing_settings(const Experiment& experiment, Findings& findings) {
             exact.push_back(key);
     }
     if (!unknown.empty())
-        findings.missing(settings_file,
-                         fmt::format("{}: the scene's value counts", fmt::join(unknown, ", ")));
+        findings.missing(
+            settings_file,
+            fmt::format(
+                "{}: a diagnosis warns if a stated value is not that of the scene, which it simulates",
+                fmt::join(unknown, ", ")));
     if (!exact.empty())
         findings.missing(settings_file,
                          fmt::format("[uncertainty] of {}: how far each may be from the truth says "

@@ -23,6 +23,7 @@ namespace py = pybind11;
 
 struct Numbers {
     int replicas, pairs, confirmations;
+    double refine;
 };
 
 void check(const Numbers& numbers) {
@@ -34,6 +35,8 @@ void check(const Numbers& numbers) {
     expect("replicates", numbers.replicas, 8);
     expect("pairs", numbers.pairs, 2);
     expect("confirmations", numbers.confirmations, 0);
+    if (!(numbers.refine >= 1 && numbers.refine <= 64))
+        problems.push_back(fmt::format("refine: must be between 1 and 64, got {}", numbers.refine));
     if (!problems.empty()) throw InputError(problems);
 }
 
@@ -67,9 +70,9 @@ std::string diagnose_into(const Scene& scene, const Path& folder, const Diagnose
 
 py::object diagnose(const Scene& scene, const OneOrSeveral& experiment, const Path& folder,
                     const std::vector<std::string>& candidates, int replicates, int pairs, int confirmations,
-                    std::uint64_t seed, std::optional<Path> library, const std::string& choice, bool page,
-                    py::object progress) {
-    check({replicates, pairs, confirmations});
+                    double refine, std::uint64_t seed, std::optional<Path> library, const std::string& choice,
+                    bool page, py::object progress) {
+    check({replicates, pairs, confirmations, refine});
     Watch watch(std::move(progress));
     DiagnoseOptions options;
     options.folder = folder;
@@ -77,10 +80,12 @@ py::object diagnose(const Scene& scene, const OneOrSeveral& experiment, const Pa
     options.replicates = replicates;
     options.pairs = std::min(pairs, replicates);
     options.confirmations = confirmations;
+    options.refine = refine;
     options.seed = seed;
     options.library = std::move(library);
     options.program = version_text;
     options.on_progress = [&](const std::string& stage, double part) { watch.show_progress(stage, part); };
+    options.on_note = [&](const std::string& note) { watch.warn(note); };
     options.stop_wanted = [&] { return watch.stop_wanted(); };
     if (scene.replicas.size() > 1)
         watch.warn(fmt::format("the scene has {} replicas; the first one is diagnosed: {}",
@@ -100,12 +105,14 @@ py::object diagnose(const Scene& scene, const OneOrSeveral& experiment, const Pa
 void bind_diagnosis(py::module_& module) {
     module.def("diagnose", &diagnose, py::arg("scene"), py::arg("experiment"), py::arg("folder"),
                py::kw_only(), py::arg("candidates") = std::vector<std::string>{}, py::arg("replicates") = 32,
-               py::arg("pairs") = 8, py::arg("confirmations") = 8, py::arg("seed") = 1,
-               py::arg("library") = py::none(), py::arg("device") = "", py::arg("page") = true,
-               py::arg("progress") = py::none(),
+               py::arg("pairs") = 8, py::arg("confirmations") = 8, py::arg("refine") = 4.0,
+               py::arg("seed") = 1, py::arg("library") = py::none(), py::arg("device") = "",
+               py::arg("page") = true, py::arg("progress") = py::none(),
                "Where a scene and an experiment part, and which effect is to blame: what diagnosis.json "
                "says, as a dict.\n`experiment`: a folder, or a list of those of several packings, which "
-               "are diagnosed together.\n\n"
+               "are diagnosed together. `refine`: the largest factor by which a scene that is not converged "
+               "is refined, "
+               "1: not at all.\n\n"
                "Writes diagnosis.json and, with `page`, diagnosis.html into `folder`, as `mcdem diagnose` "
                "does; simulations "
                "are\nkept there, so that the same call goes on where Ctrl-C ended it. `progress(stage, "

@@ -110,7 +110,7 @@ TEST_P(DiagnoseContainerTest, NamesOnlyThePlantedEffect) {
     std::ofstream(path("tiny.toml")) << text.replace(text.find(box), box.size(), GetParam());
     experiment({});
     const std::string check = mcdem({"experiment", "check", "e"}).out;
-    EXPECT_THAT(check, HasSubstr("needs beside it: nothing"));
+    EXPECT_THAT(check, HasSubstr("also needs: nothing"));
     EXPECT_THAT(check, HasSubstr("what looks odd: nothing"));
     const Words words{"--replicates",    "16", "--pairs",      "4",
                       "--confirmations", "4",  "--candidates", "friction,viscoelasticity,force_bias"};
@@ -130,7 +130,7 @@ INSTANTIATE_TEST_SUITE_P(
 TEST_F(DiagnoseTest, PlateAndPositionsAreSufficient) {
     experiment({});
     std::filesystem::remove(path("e/contacts.csv"));
-    EXPECT_THAT(mcdem({"experiment", "check", "e"}).out, HasSubstr("needs beside it: nothing"));
+    EXPECT_THAT(mcdem({"experiment", "check", "e"}).out, HasSubstr("also needs: nothing"));
     const auto told = diagnosis(few);
     EXPECT_EQ(told["verdict"], "no_gap") << told["sentence"];
     EXPECT_THAT(told["not_measured"].dump(), HasSubstr("contacts.csv"));

@@ -228,8 +228,7 @@ TEST_F(ExperimentCommandTest, ErrorsInTablesAreReportedWithTheirLines) {
 TEST_F(ExperimentCommandTest, CheckAndDiagnoseReportTheSameMissingData) {
     run("a");
     expect_done(from_run("e", {"--replica", "0"}));
-    EXPECT_THAT(mcdem({"experiment", "check", "e"}).out,
-                HasSubstr("`mcdem diagnose` needs beside it: nothing\n"));
+    EXPECT_THAT(mcdem({"experiment", "check", "e"}).out, HasSubstr("`mcdem diagnose` also needs: nothing\n"));
     std::string toml = bytes_of_file(path("e/experiment.toml"));
     toml.erase(toml.find("[measurement]"));
     std::ofstream(path("e/experiment.toml")) << toml;
@@ -237,7 +236,7 @@ TEST_F(ExperimentCommandTest, CheckAndDiagnoseReportTheSameMissingData) {
     const auto told = [&](const std::string& words) {
         const auto checked = mcdem({"experiment", "check", "e"});
         expect_done(checked);
-        const std::string needs = checked.out.substr(checked.out.find("needs beside it"));
+        const std::string needs = checked.out.substr(checked.out.find("also needs"));
         EXPECT_THAT(std::regex_replace(needs, std::regex("\\s+"), " "), HasSubstr(words));
         expect_bad_input(mcdem(diagnose), words);
         EXPECT_FALSE(fs::exists(path("out/simulations")));

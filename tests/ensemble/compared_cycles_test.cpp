@@ -1,6 +1,8 @@
 // An experiment of two cycles against scenes of one and two: only cycles that are simulated are compared.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "ensemble/diagnose_experiment.h"
 #include "ensemble/parts/library_parts.h"
 #include "ensemble/run_scene.h"
 #include "ensemble/small_trials.h"
@@ -70,6 +72,18 @@ TEST(ComparedCycles, IncludeOneThatIsNotDiscarded) {
     scene.replicas.front().protocol.discard = 1;
     const Experiment two = experiment_of(2);
     EXPECT_EQ(compared_cycles(scene, two).recording.scans.size(), two.recording.scans.size());
+}
+
+TEST(OtherMaterials, AreStatedByTheExperimentAndNotTheScenes) {
+    const Replica replica =
+        small_scene({"grains.youngs_modulus=23300", "grains.friction=0.1"}).replicas.front();
+    Experiment experiment;
+    EXPECT_THAT(other_materials(replica, experiment), testing::IsEmpty());
+    experiment.materials = {{"grains.youngs_modulus", 23300}, {"grains.friction", 0.1}};
+    EXPECT_THAT(other_materials(replica, experiment), testing::IsEmpty());
+    experiment.materials["grains.youngs_modulus"] = 3e4;
+    EXPECT_THAT(other_materials(replica, experiment),
+                testing::ElementsAre("grains.youngs_modulus = 30000 (scene: 23300)"));
 }
 
 }  // namespace

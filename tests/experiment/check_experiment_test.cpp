@@ -295,7 +295,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Spoil{"side", missing, [](Experiment& e) { drop_wall(e, Wall::y_min); },
                             "contacts with y_min: the side force"},
                       Spoil{"material", missing, [](Experiment& e) { e.materials.erase("walls.friction"); },
-                            "walls.friction: the scene's value counts"},
+                            "walls.friction: a diagnosis warns if a stated value is not that of the scene"},
                       Spoil{"uncertainty", missing,
                             [](Experiment& e) { e.uncertainty.erase("grains.friction"); },
                             "[uncertainty] of grains.friction: "}),

@@ -53,6 +53,13 @@ class Diagnoses(unittest.TestCase):
             del said[varying], other[varying]
         self.assertEqual(said, other)
 
+    def test_notes_are_warnings(self):
+        stiffer = mcdem.Scene(SMALL, contact={"model": "elastic_sphere"}, grains={"youngs_modulus": 3e4})
+        with self.assertWarnsRegex(RuntimeWarning, r"experiment.toml states grains.youngs_modulus = .* \(scene: 30000\)"):
+            mcdem.diagnose(stiffer, self.folder / "measured", self.folder / "stiffer", refine=1, **FEW)
+        with self.assertRaisesRegex(ValueError, "refine: must be between 1 and 64, got 0.5"):
+            mcdem.diagnose(stiffer, self.folder / "measured", self.folder / "stiffer", refine=0.5, **FEW)
+
     def test_reports_runs_and_diagnoses(self):
         os.environ["MCDEM_PROGRAM"] = PROGRAM
         page = mcdem.report(self.folder / "run", self.folder / "page.html", against=[self.folder / "measured"])

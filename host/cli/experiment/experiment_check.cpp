@@ -14,7 +14,7 @@ std::string_view title(Severity severity) {
         case Severity::note:
             return "what there is";
         case Severity::missing:
-            return "what is missing, and what could be told with it";
+            return "what is missing, and what it would allow";
         case Severity::odd:
             return "what looks odd";
     }
@@ -36,7 +36,7 @@ void print_check(const std::string& folder) {
                 print_out("{}", wrapped(fmt::format("  {:<16}", finding.about), finding.text));
     }
     const auto needed = needed_to_diagnose(experiment);
-    print_out("\nwhat `mcdem diagnose` needs beside it{}\n", needed.empty() ? ": nothing" : "");
+    print_out("\nwhat `mcdem diagnose` also needs{}\n", needed.empty() ? ": nothing" : "");
     for (const std::string& text : needed) print_out("{}", wrapped("  ", text));
 }
 

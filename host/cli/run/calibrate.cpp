@@ -151,9 +151,9 @@ void add_calibrate(CLI::App& app, int&) {
     add_device_option(*sub, command->device);
     add_search_options(*sub, command->options);
     sub->footer(
-        "The scene gives packings, materials and protocol; its contact.model and contact.gamma are left "
-        "aside.\n"
-        "More packings (batch.replicas) make the result surer: single runs scatter by several per cent.\n"
+        "The scene gives packings, materials and protocol; its contact.model and contact.gamma are not "
+        "used.\n"
+        "More packings (batch.replicas) reduce the error: single runs scatter by 1 to 3 %.\n"
         "Examples:\n"
         "  mcdem calibrate scenes/compression.toml --experiment data/hydrogel --discard 5 --out out/gamma\n"
         "  mcdem calibrate scenes/small.toml --experiment out/small --setting mc_dem --rounds 2\n"

@@ -100,7 +100,7 @@ void add_figures(CLI::App& app, int&) {
         ->required();
     sub->add_option("--out", command->out, "Folder for the figures")->required()->type_name("DIR");
     add_reference_options(*sub, command->reference, "--against",
-                          "Experiment folder or run, drawn as points; several are taken together");
+                          "Experiment folder or run, drawn as points; several are combined");
     add_figure_options(*sub, command->figures);
     sub->footer(
         "PDF, PNG and SVG of the top force, the force distribution at one level, Z after thresholding and\n"

@@ -28,7 +28,8 @@ void add_verify(CLI::App& app, int& exit_code) {
            "Folder of a run, an experiment of `experiment from-run`, a diagnosis or a library; or one file")
         ->required();
     sub->footer(
-        "Every file is read to its end, and told to be good or not, and why. Exit code 1 where one is not "
+        "Reads every file to its end, and reports whether it is good, and if not, why. Exit code 1 if one is "
+        "not "
         "good.\n"
         "Examples:\n"
         "  mcdem verify out/small");

@@ -75,9 +75,7 @@ std::string_view no_slower_plate(const Model& m) {
 }
 std::string_view nothing(const Model&) { return ""; }
 std::string_view interacting_already(const Model& m) {
-    return interacting(m)
-               ? "the contacts of the scene feel one another already; gamma is refitted with every candidate"
-               : "";
+    return interacting(m) ? "the contacts of the scene interact already" : "";
 }
 std::string_view independent_contacts(const Model& m) {
     return interacting(m) ? "" : "independent contacts make no bulges";
@@ -97,7 +95,7 @@ std::string_view no_other_limit(const Model& m) {
 }
 std::string_view no_sides(const Model& m) {
     return is_periodic(m.replica.box)
-               ? "a periodic container repeats: its plate is level, and lengths are told by its edges"
+               ? "a periodic container repeats: its plate is level, and its period gives the scale of lengths"
                : "";
 }
 std::string_view no_threshold(const Model& m) {
@@ -144,7 +142,7 @@ const Effect all_effects[] = {
      -0.08, 0.08, -0.015, 0.015, one, [](Model& m, double a) { m.replica.effects.plate_tilt_x += a; }, no_sides},
     {"plate_tilt_y", "", "slope of the plate along y", "geometry",
      -0.08, 0.08, -0.015, 0.015, one, [](Model& m, double a) { m.replica.effects.plate_tilt_y += a; }, no_sides},
-    {"plate_compliance", "m/N", "how far the plate gives way per newton", "linear spring",
+    {"plate_compliance", "m/N", "deflection of the plate per newton", "linear spring",
      0, 1, 0.1, 0.3, compliance_scale, [](Model& m, double a) { m.replica.effects.plate_compliance += a; }, nothing},
     {"force_bias", "relative", "contact forces read too large by this part", "measurement",
      -0.5, 0.8, -0.1, 0.1, one, [](Model& m, double a) { m.instrument.force_bias += a; }, nothing},

@@ -295,6 +295,7 @@ def diagnose(
     replicates: int = 32,
     pairs: int = 8,
     confirmations: int = 8,
+    refine: float = 4.0,
     seed: int = 1,
     library: Path | None = None,
     device: str = "",
