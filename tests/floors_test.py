@@ -68,6 +68,27 @@ def types_twice(root):
                 seen[name] = file
 
 
+def defined_names(text):
+    """Types, functions and constants of a namespace: what is defined at the beginning of a line."""
+    for line in text.splitlines():
+        found = re.match(r"(?:struct|class|enum class) (\w+)|using (\w+) =", line) or re.match(
+            r"(?!TEST|INSTANTIATE|namespace|using|template|return|#)\w[\w:<>,&*\[\] ]*?[ &*>](\w+)(?:\(|\{|\[| =|;)", line)
+        if found:
+            yield next(filter(None, found.groups()))
+
+
+def test_names_twice(root):
+    """Tests of a floor that can be compiled together must not have names in common: overloads would be chosen silently."""
+    apart = re.search(r'if\(name MATCHES "\^\(([\w|]+)\)\$"\)  # their tests', (root / "tests/CMakeLists.txt").read_text())[1]
+    for floor in sorted(set(FLOORS) - set(apart.split("|"))):
+        seen = {}
+        for file in sorted((root / "tests" / floor).glob("*.*")):
+            for name in set(defined_names(file.read_text())) if file.suffix in (".cpp", ".h") else ():
+                if name in seen and seen[name].stem != file.stem:
+                    yield f"{file.relative_to(root)}: {name} is also in {seen[name].relative_to(root)}"
+                seen[name] = file
+
+
 def strange_folders(root):
     for folder in sorted((root / "host").iterdir()):
         if folder.is_dir() and folder.name not in FLOORS:
@@ -112,13 +133,14 @@ def self_test():
     assert list(functions(body)) == [(1, 82), (83, 2)], list(functions(body))
     constructor = "    A(int a,\n      int b)\n        : a_(a) {\n        f();\n    }\n"
     assert list(functions(constructor)) == [(1, 5)], list(functions(constructor))
+    assert list(defined_names("struct A {\n    int b;\nstd::vector<int> f(int a,\nconst int c = 3;\nTEST(A, b) {\n")) == ["A", "f", "c"]
     assert floor_of("sim/engine.h") == "sim" and floor_of("vector") is None
 
 
 def main():
     self_test()
     root = pathlib.Path(sys.argv[1])
-    problems = [problem for rule in (strange_folders, wrong_includes, types_twice, long_files, long_functions)
+    problems = [problem for rule in (strange_folders, wrong_includes, types_twice, test_names_twice, long_files, long_functions)
                 for problem in rule(root)]
     print("\n".join(problems) or f"{sum(1 for _ in sources(root))} files in order")
     return 1 if problems else 0

@@ -43,6 +43,18 @@ TEST_F(CliTest, RunPrintsSummaryTableAndPaths) {
     EXPECT_THAT(run.err, testing::StartsWith("mcdem: small: 2 replicas of 30 grains on "));
 }
 
+TEST_F(CliTest, ScansBeforeThePackingSettledAreReported) {
+    const auto told = [&](const std::string& out, const std::string& setting) {
+        const auto run = mcdem(run_words(out, {"--set", setting}));
+        expect_done(run);
+        return run.err;
+    };
+    const std::string settled = "scans were taken before the packing had settled";
+    EXPECT_THAT(told("short", "protocol.settle_time=1e-4"), HasSubstr("14 of 14 " + settled));
+    EXPECT_THAT(told("rough", "protocol.settle_unbalanced_force=1"), testing::Not(HasSubstr(settled)));
+    EXPECT_THAT(told("moving", "protocol.stop_at_scans=false"), testing::Not(HasSubstr(settled)));
+}
+
 TEST_F(CliTest, OneModelGetsNoTable) {
     const auto run = mcdem(run_words("a", {"--set", "contact.model=mc_dem"}));
     expect_done(run);

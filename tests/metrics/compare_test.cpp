@@ -132,7 +132,7 @@ TEST(ModelTable, reference_is_the_named_one_or_the_first) {
         model_table(settings, {}, "hertz");
         FAIL() << "an unknown reference must be refused";
     } catch (const InputError& error) {
-        EXPECT_THAT(error.what(), HasSubstr("sphere_to_sphere, independent; got hertz"));
+        EXPECT_THAT(error.what(), HasSubstr("\"sphere_to_sphere\", \"independent\"; got \"hertz\""));
     }
 }
 

@@ -17,7 +17,7 @@ const std::string hostile =
     "</script><script>alert(1)</script><img src=x onerror=\"alert('2')\"> & ' \" \x01\x1b[2J";
 
 /// A page with this text in all positions where a page has text.
-Page page_of(const std::string& text) {
+Page plain_page(const std::string& text) {
     Page page(text);
     page.lead(text, text, text);
     page.section(text);
@@ -34,7 +34,7 @@ Page page_of(const std::string& text) {
 
 TEST(Page, texts_are_shown_and_not_executed_in_any_position) {
     const TestFolder folder;
-    const auto page = page_of(hostile).html("library");
+    const auto page = plain_page(hostile).html("library");
     EXPECT_TRUE(well_formed(page, folder.path));
     EXPECT_FALSE(contains(page, "<script>alert"));
     EXPECT_FALSE(contains(page, "<img src=x"));
@@ -48,19 +48,19 @@ TEST(Page, texts_are_shown_and_not_executed_in_any_position) {
 
 TEST(Page, the_check_of_tags_finds_an_unclosed_one) {
     const TestFolder folder;
-    EXPECT_FALSE(well_formed(page_of("text").html("") + "</p>", folder.path));
+    EXPECT_FALSE(well_formed(plain_page("text").html("") + "</p>", folder.path));
     EXPECT_FALSE(well_formed("<p><b></p></b>", folder.path));
 }
 
 TEST(Page, invalid_utf8_is_replaced) {
-    const auto page = page_of("M\xfcller").html("");
+    const auto page = plain_page("M\xfcller").html("");
     EXPECT_THAT(content_of(page)["charts"][0]["values"]["text"].get<std::string>(),
                 HasSubstr("M\xEF\xBF\xBDller"));
 }
 
 /// Browsers enforce this policy: only the script with this digest is executed, and no address may be loaded.
 TEST(Page, policy_allows_only_its_script_and_no_address) {
-    const auto page = page_of("text").html("library");
+    const auto page = plain_page("text").html("library");
     const auto begin = page.rfind("<script>") + 8, end = page.rfind("</script>");
     const auto hex = Sha256().add(page.substr(begin, end - begin)).hex();
     const auto policies = all_matches(page, "Content-Security-Policy\" content=\"([^\"]*)");
@@ -80,7 +80,7 @@ TEST(Page, policy_allows_only_its_script_and_no_address) {
 }
 
 TEST(Page, loads_no_other_files) {
-    const auto markup = markup_of(page_of("text").html("library"));
+    const auto markup = markup_of(plain_page("text").html("library"));
     for (const char* loads : {" src=", " href=", "<link", "@import", "url(", "<iframe"})
         EXPECT_FALSE(contains(markup, loads)) << loads;
 }
@@ -102,11 +102,11 @@ TEST(Page, line_breaks_in_texts_are_kept) {
 
 TEST(Page, contains_the_installed_plotting_library) {
     const TestFolder folder;
-    write_page(page_of("text"), folder.path / "page.html");
+    write_page(plain_page("text"), folder.path / "page.html");
     EXPECT_GT(std::filesystem::file_size(folder.path / "page.html"),
               packed_plotting_library().size() * 4 / 3);
     EXPECT_LT(std::filesystem::file_size(folder.path / "page.html"), 4'000'000u);
-    EXPECT_THROW(write_page(page_of("text"), folder.path / "no/folder/page.html"), RunError);
+    EXPECT_THROW(write_page(plain_page("text"), folder.path / "no/folder/page.html"), RunError);
 }
 
 TEST(PlottingLibrary, if_missing_the_message_names_the_searched_paths_and_a_remedy) {

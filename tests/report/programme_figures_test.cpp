@@ -14,7 +14,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
 
-std::vector<std::string> names_of(const std::vector<RunFigure>& figures) {
+std::vector<std::string> figure_names(const std::vector<RunFigure>& figures) {
     std::vector<std::string> names;
     for (const RunFigure& figure : figures) names.push_back(figure.name);
     return names;
@@ -29,7 +29,7 @@ std::vector<RunFigure> figures_of(const std::vector<Setting>& settings) {
 TEST(ProgrammeFigures, OfACellShowStressesAndStrains) {
     const Recording one = synthetic::cell("mc_dem"), two = synthetic::cell("mc_dem", 2, 3);
     const auto figures = figures_of({{"mc_dem", {&one, &two}}});
-    EXPECT_THAT(names_of(figures),
+    EXPECT_THAT(figure_names(figures),
                 ElementsAre("pressure_strain", "shear_stress_strain", "cell_coordination", "stress_path",
                             "pressure_time", "volume_time", "shear_stress_time", "shear_strain_time"));
     for (const RunFigure& figure : figures)
@@ -52,14 +52,14 @@ TEST(ProgrammeFigures, OfACellWithoutShearAndHoldsAreTwo) {
     Recording plain = synthetic::cell("mc_dem");
     plain.scans.resize(2);
     plain.parameters.erase("programme.3.stage");
-    EXPECT_THAT(names_of(figures_of({{"mc_dem", {&plain}}})),
+    EXPECT_THAT(figure_names(figures_of({{"mc_dem", {&plain}}})),
                 ElementsAre("pressure_strain", "cell_coordination"));
 }
 
 TEST(ProgrammeFigures, OfAPlateHaveAStressPathIfStressesAreKnown) {
     Recording held = synthetic::recording({.levels = 2});
     held.parameters["programme.1.stage"] = "\"hold\"";
-    EXPECT_THAT(names_of(figures_of({{"held", {&held}}})),
+    EXPECT_THAT(figure_names(figures_of({{"held", {&held}}})),
                 ElementsAre("force_time", "displacement_time", "force_displacement"));
     for (Scan& scan : held.scans) scan.stress = Vec3(1, 1, 3).asDiagonal();
     const auto figures = figures_of({{"held", {&held}}});

@@ -23,8 +23,8 @@ Scene read(const std::string& stages, const std::vector<std::string>& overrides 
     return parse_scene(box_text + stages, "programme.toml", overrides);
 }
 
-std::vector<std::string> problems_in(const std::string& stages,
-                                     const std::vector<std::string>& overrides = {}) {
+std::vector<std::string> problems_of_stages(const std::string& stages,
+                                            const std::vector<std::string>& overrides = {}) {
     return problems_of([&] { read(stages, overrides); });
 }
 
@@ -175,26 +175,26 @@ TEST(Programme, ErrorsAreReportedWithARemedy) {
          "programme.1.stage and the others must be at most 100000 moves and holds in all"},
     };
     for (const Wrong& wrong : all)
-        EXPECT_THAT(problems_in("[[programme]]\n" + std::string(wrong.stage) + "\n"),
+        EXPECT_THAT(problems_of_stages("[[programme]]\n" + std::string(wrong.stage) + "\n"),
                     Contains(HasSubstr(wrong.told)))
             << wrong.stage;
-    EXPECT_THAT(problems_in("programme = 3\n"), Contains(HasSubstr("programme")));
+    EXPECT_THAT(problems_of_stages("programme = 3\n"), Contains(HasSubstr("programme")));
     EXPECT_THAT(
         problems_of([] { parse_scene("programme = []\n" + box_text, "p.toml"); }),
         Contains(HasSubstr(
             "p.toml:1: programme must be a list of 1 to 100 stages ([[programme]]), got an empty list")));
-    EXPECT_THAT(problems_in("[programme]\nstrain = 0.1\n"),
+    EXPECT_THAT(problems_of_stages("[programme]\nstrain = 0.1\n"),
                 Contains(HasSubstr(
                     "programme.strain must be below a header in double brackets, [[programme]], one for "
                     "each of its stages")));
-    EXPECT_THAT(problems_in("[[programme]]\nstrain = 0.1\n[[programme]]\nscans = 1\n"),
+    EXPECT_THAT(problems_of_stages("[[programme]]\nstrain = 0.1\n[[programme]]\nscans = 1\n"),
                 Contains(HasSubstr("programme.toml:13: programme.2.position")))
         << "the place of the stage";
 }
 
 TEST(Programme, ProblemsOfAStageAreReportedOnce) {
-    EXPECT_THAT(problems_in("[[programme]]\nforce = 1\nback = 2\n[batch.vary]\n\"contact.model\" = "
-                            "[\"independent\", \"mc_dem\"]\n"),
+    EXPECT_THAT(problems_of_stages("[[programme]]\nforce = 1\nback = 2\n[batch.vary]\n\"contact.model\" = "
+                                   "[\"independent\", \"mc_dem\"]\n"),
                 ElementsAre(HasSubstr(
                     "programme.toml:12: programme.1.back must be left out of a stage that is a move")));
 }

@@ -144,7 +144,7 @@ std::vector<double> diameters(const Packing& packing, int species) {
     return found;
 }
 
-double volume(const std::vector<double>& diameters) {
+double filled_volume(const std::vector<double>& diameters) {
     double sum = 0;
     for (const double d : diameters) sum += d * d * d;
     return sum;
@@ -205,7 +205,8 @@ TEST(GeneratedSpecies, HaveTheirFractionsOfNumberOrVolume) {
     const Packing by_number = make_packing(replica_of(text));
     EXPECT_EQ(diameters(by_number, 0).size(), 1400u);
     const Packing by_volume = make_packing(replica_of(text, {"packing.fractions_by=volume"}));
-    const double large = volume(diameters(by_volume, 0)), small = volume(diameters(by_volume, 1));
+    const double large = filled_volume(diameters(by_volume, 0)),
+                 small = filled_volume(diameters(by_volume, 1));
     EXPECT_NEAR(large / (large + small), 0.7, 2e-3);
     EXPECT_EQ(by_volume.size(), 2000u);
 }
@@ -290,7 +291,8 @@ TEST(SpeciesOfAFile, FollowTheFractionsIfTheFileHasNoNames) {
     EXPECT_EQ(drawn({}).species, drawn({}).species);
     EXPECT_NE(drawn({}).species, drawn({"packing.seed=2"}).species);
     const Packing by_volume = drawn({"packing.fractions_by=volume"});
-    const double soft = volume(diameters(by_volume, 0)), stiff = volume(diameters(by_volume, 1));
+    const double soft = filled_volume(diameters(by_volume, 0)),
+                 stiff = filled_volume(diameters(by_volume, 1));
     EXPECT_NEAR(soft / (soft + stiff), 0.3, 0.5 / 225) << "to half a grain of the 225 large ones' volume";
 }
 
