@@ -6,8 +6,8 @@
 #include <numeric>
 
 #include "core/errors.h"
+#include "core/parameters.h"
 #include "ensemble/diagnose_experiment.h"
-#include "scene/keys.h"
 #include "scene/packing_fields.h"
 #include "scene/programme_text.h"
 
@@ -83,10 +83,8 @@ Model model_of(const Scene& scene, const Experiment& experiment) {
 std::vector<std::string> other_materials(const Replica& replica, const Experiment& experiment) {
     std::vector<std::string> list;
     if (!replica.species.empty()) return list;
-    Settings settings;
-    settings.replica = replica;
     for (const auto& [name, stated] : experiment.materials) {
-        const std::string used = value_text(*find_key(name), settings);
+        const std::string used = value_of(replica.parameters, name);
         if (const double value = to_number(used).value_or(stated);
             std::abs(value - stated) > 1e-6 * std::abs(stated))
             list.push_back(fmt::format("{} = {} (scene: {})", name, stated, used));

@@ -7,6 +7,7 @@
 
 #include "core/constants.h"
 #include "core/container.h"
+#include "core/median.h"
 #include "experiment/findings.h"
 
 namespace mcdem::inline experiment {

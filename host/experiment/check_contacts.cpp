@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/container.h"
+#include "core/median.h"
 #include "experiment/findings.h"
 
 namespace mcdem::inline experiment {

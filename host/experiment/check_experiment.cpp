@@ -2,9 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
-#include <limits>
 #include <numeric>
 
 #include "core/container.h"
@@ -51,13 +49,6 @@ std::string container_words(const Box& box) {
 double mean_diameter(const Recording& recording) {
     return std::accumulate(recording.diameter.begin(), recording.diameter.end(), 0.0) /
            static_cast<double>(recording.diameter.size());
-}
-
-double median(std::vector<double> values) {
-    if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
 }
 
 std::optional<double> material(const Experiment& experiment, const std::string& key) {

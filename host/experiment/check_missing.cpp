@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "core/container.h"
+#include "core/median.h"
 #include "experiment/findings.h"
 
 namespace mcdem::inline experiment {

@@ -54,7 +54,6 @@ inline double radius_of(const Recording& recording, int grain) {
 const std::vector<Wall>& walls_of(const Box& box);  ///< existing walls
 std::string container_words(const Box& box);        ///< "box of 165 by 166 mm"
 double mean_diameter(const Recording& recording);
-double median(std::vector<double> values);  ///< NaN if empty
 std::optional<double> material(const Experiment& experiment, const std::string& key);
 
 void describe(const Experiment& experiment, Findings& findings);

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/errors.h"
+#include "core/median.h"
 #include "metrics/programmes.h"
 
 namespace mcdem::inline metrics {
@@ -42,9 +43,7 @@ double median_spacing(const Replicas& replicas) {
             if (a.phase == b.phase && a.cycle == b.cycle && spacing > 0) spacings.push_back(spacing);
         }
     if (spacings.empty()) return std::numeric_limits<double>::infinity();
-    const auto middle = spacings.begin() + static_cast<std::ptrdiff_t>(spacings.size() / 2);
-    std::nth_element(spacings.begin(), middle, spacings.end());
-    return *middle;
+    return median(std::move(spacings));
 }
 
 /// A programme reaches the same displacement at different loads and times.

@@ -8,6 +8,7 @@
 
 #include "core/container.h"
 #include "core/errors.h"
+#include "core/median.h"
 #include "scene/cell_path.h"
 #include "scene/generate_packing.h"
 #include "scene/random.h"
@@ -18,12 +19,6 @@ namespace mcdem::inline scene {
 namespace {
 
 constexpr std::size_t max_outside = 10;
-
-double median(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
 
 std::string described(const Box& box) {
     if (is_cylinder(box)) return fmt::format("cylinder of radius {} m", cylinder_radius(box));

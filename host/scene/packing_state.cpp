@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/median.h"
 #include "scene/cell_pairs.h"
 
 namespace mcdem::inline scene {
@@ -40,10 +41,7 @@ DeepestPair deepest_pair(const Packing& packing, const Box& box, double height) 
     if (packing.size() < 2) return deepest;
     std::vector<Vec3> inside;
     for (const Vec3& position : packing.position) inside.push_back(into_cell(box, position));
-    std::vector<double> diameter = packing.diameter;
-    const auto middle = diameter.begin() + static_cast<std::ptrdiff_t>(diameter.size() / 2);
-    std::ranges::nth_element(diameter, middle);
-    const double reach = std::min(4 * *middle, *std::ranges::max_element(packing.diameter));
+    const double reach = std::min(4 * median(packing.diameter), *std::ranges::max_element(packing.diameter));
     CellList(inside, box, height, reach).for_each_pair([&](int i, int j) {
         const auto a = static_cast<std::size_t>(i), b = static_cast<std::size_t>(j);
         const double radii = (packing.diameter[a] + packing.diameter[b]) / 2;

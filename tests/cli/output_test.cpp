@@ -95,10 +95,10 @@ TEST_F(OutputTest, AReportReplacesOnlyPages) {
 
 TEST_F(OutputTest, OwnFilesAreReplaced) {
     expect_done(mcdem(run_words("a")));
+    expect_bad_input(mcdem({"export", "a", "--xyz", "--scan", "100", "--out", "none"}),
+                     "--scan: must be among the scans of a (column frame of plate.csv), got 100");
     for (int k = 0; k < 2; ++k) {
         expect_done(mcdem({"export", "a", "--vtk", "--xyz", "--out", "view"}));
-        expect_bad_input(mcdem({"export", "a", "--xyz", "--scan", "100", "--out", "none"}),
-                         "--scan: must be among the scans of a (column frame of plate.csv), got 100");
         expect_done(mcdem({"figures", "a", "--out", "view"}));
         expect_done(
             mcdem({"compare", "a", "--against", "a", "--setting", "elastic_sphere", "--out", "view"}));

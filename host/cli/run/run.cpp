@@ -14,6 +14,7 @@
 #include "cli/shell/standard_streams.h"
 #include "cli/shell/subprocess.h"
 #include "core/errors.h"
+#include "core/parameters.h"
 #include "core/version.h"
 #include "ensemble/parts/run_parts.h"
 #include "io/checkpoint.h"
@@ -93,11 +94,8 @@ void print_summary(const Run& run, const RunSummary& summary, std::size_t failed
 
 /// The plate of such a replica stands until the packing settles.
 bool waits_for_rest(const Recording& recording) {
-    const auto is = [&](const char* key, const char* value) {
-        const auto found = recording.parameters.find(key);
-        return found != recording.parameters.end() && found->second == value;
-    };
-    return is("protocol.stop_at_scans", "true") && is("protocol.pause", "0") && !follows_programme(recording);
+    return value_of(recording.parameters, "protocol.stop_at_scans") == "true" &&
+           value_of(recording.parameters, "protocol.pause") == "0" && !follows_programme(recording);
 }
 
 void warn_of_unsettled(const Run& run) {
