@@ -120,6 +120,31 @@ class Images(ImportCase):
         self.assertEqual(self.unclear(tables), [])
         self.expect_truth(tables)
 
+    def test_volumes_are_those_of_spheres(self):
+        """Labels of Avizo."""
+        mm = VOXEL * 1e3
+        columns = ["index", "BaryCenterX (mm)", "BaryCenterY (mm)", "BaryCenterZ (mm)", "Volume3d (mm^3)"]
+        tables = self.guess(self.frames("labels", columns, lambda i, x, y, z: (
+            str(i + 1), x * mm, y * mm, z * mm, np.pi / 6 * (1e3 * self.truth.diameter[i]) ** 3)))
+        self.assertEqual(self.unclear(tables), [])
+        self.assertEqual(self.of(tables, "grains").word("volume"), "Volume3d (mm^3)")
+        self.expect_truth(tables)
+        self.expect_truth(self.by_mapping(mapping_text(mapping_of(tables))))
+
+    def test_plates_of_testing_machines(self):
+        for named in (["Time (s)", "Compressive extension (mm)", "Compressive load (N)"], ["Zeit [s]", "Standardweg [mm]", "Standardkraft [N]"],
+                      ["Time [s]", "Crosshead (mm)", "Axial force (Newtons)"]):
+            with self.subTest(named):
+                files = self.frames("grains", ["id", "x_mm", "y_mm", "z_mm", "d_mm"], lambda i, x, y, z: (
+                    str(i), *(1e3 * VOXEL * np.array([x, y, z])), 1e3 * self.truth.diameter[i]))
+                start = self.truth.scans[0].plate_z
+                self.known.plate_start = start
+                files[0] = self.write("machine.csv", Style(",", ".").table(named, (
+                    (0.5 * s.frame, 1e3 * (start - s.plate_z), s.top_force) for s in self.truth.scans)))
+                tables = self.guess(files)
+                self.assertEqual(self.unclear(tables), [])
+                self.expect_truth(tables)
+
     def test_trackpys_size_is_no_radius(self):
         """Features of all frames in one table; mass and size refer to the brightness."""
         self.known.voxel_size = VOXEL

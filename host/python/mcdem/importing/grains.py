@@ -1,7 +1,7 @@
 """Grains by frame, complete and ordered by id."""
 import numpy as np
 
-from .mapping import signed_column
+from .mapping import SIZE_KEYS, signed_column
 from .problems import number_text
 from .rows import FrameIndex, Rows, whole_entry
 
@@ -56,7 +56,7 @@ class GrainFrames:
 
 def _read_columns(rows, mapped, problems):
     """Number, centre and diameter in each row, and which rows are complete."""
-    unit, size_key = mapped.length_factor(), next((key for key in ("radius", "diameter") if key in rows), None)
+    unit, size_key = mapped.length_factor(), next((key for key in SIZE_KEYS if key in rows), None)
     wanted = np.nan_to_num(rows.number("where")) != 0 if "where" in rows else np.ones(len(rows), bool)
     centres = np.column_stack([rows.number(key, wanted) for key in "xyz"])
     sign = np.array([signed_column(mapped.word(key))[0] for key in "xyz"], float)
@@ -67,7 +67,7 @@ def _read_columns(rows, mapped, problems):
     if len(wrong):
         rows.problem_once("size", wrong[0], f"{size_key or 'same_diameter'} must be > 0, got {number_text(size[wrong[0]])}")
     whole = wanted & np.isfinite(centres).all(axis=1) & np.isfinite(size) & (True if ids is None else np.isfinite(ids))
-    diameter = (2 if size_key == "radius" else 1) * unit * size
+    diameter = unit * (2 * size if size_key == "radius" else np.cbrt(6 * size / np.pi) if size_key == "volume" else size)
     return ids, unit * (centres - begin), diameter, whole, sign, unit * begin
 
 
@@ -77,7 +77,7 @@ class _Reader:
 
     def read(self, table):
         mapped, rows = table.map, Rows(table, self.problems)
-        size = "radius" if "radius" in rows else "diameter"
+        size = next((key for key in SIZE_KEYS if key in rows), "diameter")
         for key in ["x", "y", "z"] + ([] if "same_diameter" in mapped else [size]):
             if key not in rows:
                 return self.problems.add(mapped.files[0], f"must have a column for {key}, got none: name it in the mapping")

@@ -3,7 +3,7 @@ import numpy as np
 
 from .assemble import import_grains
 from .guess_names import is_trackpy
-from .mapping import UNCLEAR, guess
+from .mapping import SIZE_KEYS, UNCLEAR, guess
 from .names import LENGTHS, VOXEL, column_name, DOWNWARDS, is_among
 from .problems import Problems, number_text
 
@@ -42,7 +42,7 @@ def nearest_over_radii(position, diameter):
 def _guess_same_diameter(table):
     """A suggestion if there is no column for the size."""
     mapped = table.map
-    if any(key in mapped for key in ("diameter", "radius", "same_diameter")) or not all(axis in mapped for axis in "xyz"):
+    if any(key in mapped for key in (*SIZE_KEYS, "same_diameter")) or not all(axis in mapped for axis in "xyz"):
         return
     grains = plain_grains(table.changed(same_diameter=guess("1", "stated", "")))
     if grains.keys:

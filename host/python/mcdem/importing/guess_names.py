@@ -1,8 +1,8 @@
 """Guesses role and columns of a table from the names of its columns, with their units."""
-from .mapping import UNCLEAR, guess, signed_column
+from .mapping import SIZE_KEYS, UNCLEAR, guess, signed_column
 from .names import COUNTED, FORCES, LENGTH_WORDS, VOXEL, column_name, columns_by_key, is_among
 
-LENGTH_KEYS = ("x", "y", "z", "diameter", "radius", "plate_z", "displacement")
+LENGTH_KEYS = ("x", "y", "z", *SIZE_KEYS, "plate_z", "displacement")
 FORCE_KEYS = ("fx", "fy", "fz", "force", "top_force", "set_force")
 
 
@@ -13,7 +13,7 @@ def _role_of(columns):
 
     if has("contacts", "grain", "partner") and (has("contacts", "fx", "fy", "fz") or has("contacts", "force")):
         return "contacts"
-    if has("grains", "x", "y", "z") and (has("grains", "diameter") or has("grains", "radius") or _size_is_missing(columns)):
+    if has("grains", "x", "y", "z") and (any(has("grains", key) for key in SIZE_KEYS) or _size_is_missing(columns)):
         return "grains"
     if has("plate", "top_force") and (has("plate", "plate_z") or has("plate", "displacement")):
         return "plate"
@@ -89,8 +89,8 @@ def guess_by_names(table):
             found["time"] = times
     if "plate_z" in found:
         found.pop("displacement", None)
-    if "diameter" in found:
-        found.pop("radius", None)
+    for key in [key for key in SIZE_KEYS if key in found][1:]:
+        del found[key]
     if all(key in found for key in ("fx", "fy", "fz")):
         found.pop("force", None)
     if role == "contacts" and not all(key in found for key in "xyz"):

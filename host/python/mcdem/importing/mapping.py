@@ -73,8 +73,9 @@ KEYS = {
         Key("x", "quantities", "centre; of several columns the sum, such as position and displacement"),
         Key("y", "quantities", "centre"),
         Key("z", "quantities", "centre, upwards; with a - before its name where it counts downwards"),
-        Key("diameter", "column", "this or radius"),
-        Key("radius", "column", "this or diameter"),
+        Key("diameter", "column", "this, radius or volume"),
+        Key("radius", "column", "this, diameter or volume"),
+        Key("volume", "column", "this, diameter or radius: of a sphere, in cubes of length_unit"),
         Key("same_diameter", "number", "of all grains, in the table's unit, where no column has it"),
         Key("length_unit", "word", "", _LENGTHS),
         *_LENGTH_KEYS,
@@ -105,6 +106,7 @@ KEYS = {
     ],
     "unused": [],
 }
+SIZE_KEYS = ("diameter", "radius", "volume")
 COLUMN_KINDS = ("column", "quantity", "quantities")
 
 
@@ -165,7 +167,7 @@ def must_be_stated(table):
         return any(key in table for key in keys)
 
     keys = []
-    if has("plate_z", "displacement", "x", "y", "z", "diameter", "radius", "same_diameter"):
+    if has("plate_z", "displacement", "x", "y", "z", *SIZE_KEYS, "same_diameter"):
         keys.append("length_unit")
     if table.word("length_unit") == VOXEL:
         keys.append("voxel_size")

@@ -17,7 +17,7 @@ TIMES = _factors("s sec ms min h", "s")
 VOXEL = "voxel"  # a length unit with its size in the mapping
 LENGTH_WORDS = [*LENGTHS, VOXEL]
 SYNONYMS = {"µm": "um", "μm": "um", "micron": "um", "µN": "uN", "μN": "uN", "g": "gf", "kg": "kgf", "gram": "gf", "newton": "N",
-            "meter": "m", "voxels": VOXEL, "vox": VOXEL, "vx": VOXEL, "px": VOXEL, "pixel": VOXEL, "pixels": VOXEL}
+            "newtons": "N", "meter": "m", "voxels": VOXEL, "vox": VOXEL, "vx": VOXEL, "px": VOXEL, "pixel": VOXEL, "pixels": VOXEL}
 DOWNWARDS = "depth tiefe profondeur zdown zdownwards"  # names of a downward z
 _FRAME = ("frame", "frame scan image snapshot step timestep bild schritt state time t zeit temps iter")
 
@@ -28,19 +28,22 @@ WORDS = {
         ("cycle", "cycle zyklus ncycle cyclenumber"),
         ("phase", "phase direction richtung loading"),
         ("plate_z", "platez zplate plateheight height z gap plateposition position pos hoehe h platte top ztop topz lid piston"),
-        ("displacement", "displacement disp stroke travel weg hub verschiebung compression"),
+        ("displacement", "displacement disp stroke travel weg hub verschiebung compression extension crosshead compressiveextension "
+                         "compressivedisplacement axialdisplacement standardtravel standardweg traverse traversenweg"),
         ("set_force", "setforce fset forceset setpoint sollkraft targetforce"),
-        ("top_force", "topforce force load f fz kraft last ftop forcez plateforce normalforce loadcell platefz fplate3"),
+        ("top_force", "topforce force load f fz kraft last ftop forcez plateforce normalforce loadcell platefz fplate3 compressiveload "
+                      "compressiveforce axialforce standardforce standardkraft"),
     ],
     "grains": [
         _FRAME,
         ("grain", "grain id particle label index korn teilchen nr no number atom particleid grainid bead beadid"),
-        ("x", "x xc cx posx xpos centroidx xcentroid centerx xcenter xu px positionx centroid2"),
-        ("y", "y yc cy posy ypos centroidy ycentroid centery ycenter yu py positiony centroid1"),
-        ("z", "z zc cz posz zpos centroidz zcentroid centerz zcenter zu pz positionz centroid0"),
+        ("x", "x xc cx posx xpos centroidx xcentroid centerx xcenter xu px positionx centroid2 barycenterx centerofmassx"),
+        ("y", "y yc cy posy ypos centroidy ycentroid centery ycenter yu py positiony centroid1 barycentery centerofmassy"),
+        ("z", "z zc cz posz zpos centroidz zcentroid centerz zcenter zu pz positionz centroid0 barycenterz centerofmassz"),
         ("z", DOWNWARDS),
-        ("diameter", "diameter d dia diam durchmesser diametre equivalentdiameterarea equivalentdiameter eqdiameter"),
+        ("diameter", "diameter d dia diam durchmesser diametre equivalentdiameterarea equivalentdiameter eqdiameter equivdiam equivalentsphericaldiameter"),
         ("radius", "radius r rad radii halbmesser rayon equivalentradius equivalentradii equivradius equivradii eqradius"),
+        ("volume", "volume volume3d volumen vol"),
     ],
     "contacts": [
         _FRAME,
@@ -71,15 +74,17 @@ class ColumnName:
 
 
 def _known_unit(word):
-    word = SYNONYMS.get(word, word)
+    """Lengths also cubed, as volumes have them: "mm^3", "mm3"."""
+    word = re.sub(r"(\^?3|³)$", "", word)
+    word = SYNONYMS.get(word, SYNONYMS.get(word.lower(), word))
     return word if word in LENGTH_WORDS or word in FORCES or word in TIMES else ""
 
 
 def column_name(name):
-    """"Kraft [mN]", "x_mm" and "z in mm" name units, "c_force[1]" does not."""
+    """"Kraft [mN]", "x_mm", "Volume (mm^3)" and "z in mm" name units, "c_force[1]" does not."""
     name, all_of = name.strip(), ColumnName()
     brackets = re.fullmatch(r"(.+)[\[(]([^\[(]*)[\])]", name, re.DOTALL)
-    if brackets and not re.search(r"\d", brackets[2]):
+    if brackets and (_known_unit(brackets[2].strip()) or not re.search(r"\d", brackets[2])):
         name, inside = brackets[1], brackets[2].strip()
         all_of.unit = _known_unit(inside)
         all_of.unknown = "" if all_of.unit else inside
