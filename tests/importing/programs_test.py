@@ -67,6 +67,16 @@ class Forces(ImportCase):
         self.assertEqual(self.unclear(tables), [])
 
 
+    def test_of_a_plate_are_no_pressures(self):
+        files = self.write_lab()
+        self.write("kraft.csv", Style(",", ".").table(["Time (s)", "height_mm", "Pressure (kPa)"], (
+            (0.5 * s.frame, 1e3 * s.plate_z, s.top_force) for s in self.truth.scans)))
+        tables = self.guess(files)
+        self.assertNotIn("top_force", self.of(tables, "plate"))
+        self.assertEqual(self.of(tables, "plate").word("length_unit"), "mm")
+        self.expect_among(self.unclear(tables), 'role must be confirmed, got "?plate": names say plate_z, but a plate needs its place and its force')
+
+
 class Images(ImportCase):
     """Grains of every frame in voxels, as written by image analysis programs, and the plate's table of the
     laboratory."""

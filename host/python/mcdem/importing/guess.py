@@ -10,7 +10,7 @@ from .grains import GrainFrames
 from .guess_contacts import guess_contact_meaning
 from .guess_frames import guess_frames
 from .guess_lengths import guess_grain_lengths, guess_grains_upwards
-from .guess_names import guess_by_names
+from .guess_names import guess_by_names, note_units
 from .guess_plate import guess_plate_units
 from .guess_values import guess_contacts_by_values, guess_grains_by_values, guess_plate_by_values
 from .mapping import UNCLEAR, Guess, MappedTable, columns_of, find_key, unused_columns, must_be_stated, signed_column
@@ -66,6 +66,7 @@ def guess_tables(files, known):
         guess_by_names(table)
         if table.role == "unused":
             guess_grains_by_values(table)
+            note_units(table.map)
     guess_grains_upwards(tables)
     for table in tables:
         if table.role == "grains":
@@ -79,6 +80,7 @@ def guess_tables(files, known):
     for table in open_:
         if table.role == "unused" and not has_plate:
             guess_plate_by_values(table)
+        note_units(table.map)
     guess_frames(tables)
     grains = grains if has_plate else _grains_so_far(tables)
     voxel_sizes = [table.map.number("voxel_size") for table in tables if table.role == "grains" and table.map.word("length_unit") == VOXEL]

@@ -51,6 +51,11 @@ def _note_unit(mapped, key, keys, known):
         mapped[key] = guess(first, UNCLEAR, "the columns' names say different units, and a table has one: change the table")
 
 
+def note_units(mapped):
+    _note_unit(mapped, "length_unit", LENGTH_KEYS, LENGTH_WORDS)
+    _note_unit(mapped, "force_unit", FORCE_KEYS, list(FORCES))
+
+
 def _note_tangential(mapped, columns):
     """A magnitude of the normal force together with a tangential one without direction."""
     for column in columns:
@@ -101,8 +106,7 @@ def guess_by_names(table):
         mapped[key] = guess(names[0], "sure" if one else UNCLEAR, "its name" if one else f"{len(names)} columns have such a name")
     if "force" in mapped:
         _note_tangential(mapped, columns)
-    _note_unit(mapped, "length_unit", LENGTH_KEYS, LENGTH_WORDS)
-    _note_unit(mapped, "force_unit", FORCE_KEYS, list(FORCES))
+    note_units(mapped)
     if role == "grains":
         _note_programs(mapped, columns)
 

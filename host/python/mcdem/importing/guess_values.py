@@ -3,6 +3,7 @@ import numpy as np
 
 from .guess_lengths import nearest_over_radii
 from .mapping import UNCLEAR, guess
+from .names import columns_by_key
 
 MAX_ROWS, MAX_COLUMNS = 20_000, 50  # maximum size used for guesses
 
@@ -120,8 +121,14 @@ def guess_contacts_by_values(table, grains):
 
 
 def guess_plate_by_values(table):
-    """A few columns without names, or unclear."""
+    """A few columns without names. Where a name says what a column is, the others are not guessed: a pressure is no force."""
     part, mapped = table.parts[0], table.map
+    named = {key: names for key, names in columns_by_key("plate", part.columns).items() if key in ("plate_z", "displacement", "top_force")}
+    if named:
+        mapped.role, mapped.role_sure = "plate", UNCLEAR
+        mapped.role_why = f"names say {' and '.join(named)}, but a plate needs its place and its force"
+        mapped.entries.update({key: guess(names[0], UNCLEAR, "its name") for key, names in named.items()})
+        return
     columns = _numbers_of(part, 9)
     numeric = [c for c, column in enumerate(columns) if _has_numbers(column)]
     if len(numeric) < 2 or len(part.columns) > 8:
