@@ -6,6 +6,7 @@
 #include <set>
 
 #include "core/errors.h"
+#include "core/names.h"
 #include "core/parameters.h"
 #include "ensemble/make_packings.h"
 #include "metrics/top_force.h"
@@ -160,6 +161,12 @@ SceneCalibration calibrate_scene(Device& device, const Scene& scene, const Repli
     result.found = calibrate_gamma(top_forces, result.target.value, options.bracket, search);
     result.simulated = batch.last_top_force();
     return result;
+}
+
+ContactModel calibrated_model(const std::string& model, const std::string& option) {
+    if (const auto known = parse<ContactModel>(model)) return *known;
+    throw InputError(
+        fmt::format("{} must be one of {}, got \"{}\"", option, all_names<ContactModel>(), model));
 }
 
 }  // namespace mcdem::ensemble

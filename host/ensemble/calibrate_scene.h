@@ -45,6 +45,9 @@ struct SceneCalibration {
 SceneCalibration calibrate_scene(Device& device, const Scene& scene, const Replicas& reference,
                                  const CalibrateOptions& options);
 
+/// The contact model to calibrate. Throws InputError, which names the `option` and all models.
+ContactModel calibrated_model(const std::string& model, const std::string& option);
+
 /// The replicas of a calibration for each value: one for each packing of the scene.
 std::vector<Replica> calibration_replicas(const Scene& scene, ContactModel model = ContactModel::mc_dem);
 

@@ -59,18 +59,13 @@ py::list compare_run(const SharedRun& run, const py::object& reference, const st
     return all;
 }
 
-ContactModel model_named(const std::string& word) {
-    const auto model = parse<ContactModel>(word);
-    if (!model) throw InputError("calibrate: model must be a contact model, got \"" + word + "\"");
-    return *model;
-}
-
 py::dict calibrate(const Scene& scene, const py::object& reference, const std::string& setting, int discard,
                    double low, double high, double tolerance, int batch, int rounds, const std::string& model,
                    const std::string& choice, py::object progress) {
     const SharedRun other = reference_of(reference, discard, ReadWhat::observables);
     Watch watch(std::move(progress));
-    CalibrateOptions options{model_named(model), {low, high}, {tolerance, batch, rounds, "gamma"}};
+    CalibrateOptions options{
+        calibrated_model(model, "calibrate: model"), {low, high}, {tolerance, batch, rounds, "gamma"}};
     options.on_progress = [&](int round, double part) {
         watch.show_progress((round + part) / rounds);
         if (watch.stop_wanted()) throw Interrupted();

@@ -75,7 +75,7 @@ const Key table[] = {
     {"protocol.cycles", replica<&Replica::protocol, &Protocol::cycles>, "", between(1, 10000), each, "strokes down to plate.end and back"},
     {"protocol.discard", replica<&Replica::protocol, &Protocol::discard>, "", between(0, 9999), each, "number of first cycles that metrics ignore"},
     {"protocol.scans_per_stroke", replica<&Replica::protocol, &Protocol::scans_per_stroke>, "", between(1, 10000), each, "equally spaced plate positions at which everything is recorded, the last at the stroke's end"},
-    {"protocol.stop_at_scans", replica<&Replica::protocol, &Protocol::stop_at_scans>, "", none, each, "the plate waits at each scan until the packing settles; false: scans are recorded without stopping"},
+    {"protocol.stop_at_scans", replica<&Replica::protocol, &Protocol::stop_at_scans>, "", none, each, "true: the plate waits at each scan until the packing settles, which shakes it; false: scans are recorded without stopping"},
     {"protocol.rate_tolerance", replica<&Replica::protocol, &Protocol::rate_tolerance>, "", between(0, 1), each, "maximum estimated relative error of forces caused by the plate's speed (ten times the inertial number): the plate is slow at small loads; 0: always plate.speed"},
     {"protocol.settle_unbalanced_force", replica<&Replica::protocol, &Protocol::settle_unbalanced_force>, "", above_zero_to(1), each, "the packing counts as settled below this ratio of the net force on a grain to the pressure on its cross-section (root mean square)"},
     {"protocol.settle_time", replica<&Replica::protocol, &Protocol::settle_time>, "s", duration, each, "maximum wait; a scan taken then is marked as unsettled"},

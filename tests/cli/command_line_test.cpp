@@ -44,7 +44,7 @@ TEST_F(CliTest, WrongOptionsAreBadInput) {
     expect_bad_input(mcdem({"export", "a", "--out", "b"}), "vtk, xyz or both");
     expect_bad_input(mcdem({"calibrate", "small.toml", "--experiment", "a", "--rounds", "many"}), "many");
     expect_bad_input(mcdem({"calibrate", "small.toml", "--experiment", "a", "--model", "hertz"}),
-                     "--model: must be one of independent, ");
+                     "--model must be one of independent, ");
 }
 
 TEST_F(CliTest, MissingFilesAreBadInput) {

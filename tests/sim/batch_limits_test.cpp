@@ -123,6 +123,7 @@ TEST(BatchLimits, TooManyStepsAreRefused) {
     replica.protocol.relax_time = 1;
     replica.protocol.cycles = replica.protocol.scans_per_stroke = 1000;
     replica.protocol.settle_time = 1;
+    replica.protocol.stop_at_scans = true;
     EXPECT_THROW(mcdem::expect_countable_steps(replica, 1e-6), mcdem::InputError);
     replica.protocol.stop_at_scans = false;
     EXPECT_NO_THROW(mcdem::expect_countable_steps(replica, 1e-6));

@@ -85,6 +85,7 @@ std::vector<mcdem::Scan> scans(const Replica& replica, int count = 1) {
     scene.precision = finest();
     scene.replicas = {replica};
     scene.replicas[0].protocol.scans_per_stroke = count;
+    scene.replicas[0].protocol.stop_at_scans = true;
     scene.replicas[0].protocol.settle_unbalanced_force = 1e-6;
     scene.replicas[0].box = {2.2 * radius, 2.2 * radius};
     const Packing packing{{{1.1 * radius, 1.1 * radius, replica.plate.start / 2}}, {2 * radius}};

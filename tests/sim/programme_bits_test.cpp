@@ -41,18 +41,12 @@ std::vector<Start> starts(const std::vector<int>& kinds) {
     return all;
 }
 
-void expect_alike(WholeRun& one, int r, WholeRun& other, int s) {
-    EXPECT_TRUE(one.told[r] == other.told[s]);
-    EXPECT_TRUE(same_bits(one.state(r), other.state(s)));
-    EXPECT_EQ(one.told[r].scans, 2);
-}
-
 TEST(ProgrammeBits, AreTheSameAloneAndInABatch) {
     WholeRun alone(Precision::single_precision, starts({0})),
         three(Precision::single_precision, starts({1, 2, 0}));
     alone.finish();
     three.finish();
-    expect_alike(alone, 0, three, 2);
+    expect_same(alone, 0, three, 2, 2);
 }
 
 TEST(ProgrammeBits, ARestartChangesNothing) {
@@ -66,7 +60,7 @@ TEST(ProgrammeBits, ARestartChangesNothing) {
         second.restore(first.save());
         second.told = first.told;
         second.finish();
-        for (int r = 0; r < 2; ++r) expect_alike(whole, r, second, r);
+        for (int r = 0; r < 2; ++r) expect_same(whole, r, second, r, 2);
     }
 }
 

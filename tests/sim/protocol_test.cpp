@@ -19,6 +19,7 @@ Replica replica_of(int cycles, int scans, bool stop_at_scans) {
     replica.protocol.cycles = cycles;
     replica.protocol.scans_per_stroke = scans;
     replica.protocol.stop_at_scans = stop_at_scans;
+    replica.protocol.rate_tolerance = 0;
     replica.protocol.settle_time = 0.05;
     replica.protocol.relax_time = 0.08;
     return replica;

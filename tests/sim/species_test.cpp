@@ -92,6 +92,7 @@ TEST(SpeciesChain, ForceIsThatOfSpringsInSeries) {
 /// the forces.
 TEST(SpeciesFriction, CoefficientIsThatOfThePair) {
     Replica replica = of_two(ContactModel::independent);
+    replica.contact.friction_law = FrictionLaw::saturated;
     replica.contact.sliding_velocity = 1e-9;
     replica.numerics.time_step = 1e-3;
     const std::array<std::array<double, 2>, 2> smaller{{{0.5, 0.1}, {0.1, 0.1}}};
@@ -120,6 +121,7 @@ TEST(SpeciesFriction, CoefficientIsThatOfThePair) {
 TEST(SpeciesFriction, OnWallsIsThatOfTheWallsOrOfTheirPair) {
     Replica replica = of_two(ContactModel::independent);
     replica.walls.friction = 0.25;
+    replica.contact.friction_law = FrictionLaw::saturated;
     replica.contact.sliding_velocity = 1e-9;
     replica.numerics.time_step = 1e-3;
     replica.pairs = {{"soft", "walls", 0.6, mcdem::not_given}};

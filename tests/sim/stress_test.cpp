@@ -24,6 +24,7 @@ Start compressed(ContactModel model) {
     replica.contact.friction_law = FrictionLaw::mindlin;
     replica.plate.end = 0.87 * replica.plate.start;
     replica.protocol.scans_per_stroke = 1;
+    replica.protocol.stop_at_scans = true;
     replica.protocol.settle_unbalanced_force = 1e-6;
     replica.protocol.settle_drag = 20;  // about critical: with larger drag, relaxation takes longer
     replica.protocol.settle_time = 20;

@@ -71,11 +71,15 @@ private:
     mcdem::Simulation simulation_;
 };
 
-/// Compares the output bit for bit; each run must have four scans.
-inline void expect_same(WholeRun& one, int r, WholeRun& other, int s) {
+/// Compares the output and the last state bit for bit. A replica that had finished before `other` was
+/// restarted makes no further step, in which its contacts would be computed.
+inline void expect_same(WholeRun& one, int r, WholeRun& other, int s, int scans = 4) {
     EXPECT_TRUE(one.told[r] == other.told[s]);
-    EXPECT_TRUE(same_bits(one.state(r), other.state(s)));
-    EXPECT_EQ(one.told[r].scans, 4);
+    auto state = one.state(r);
+    const auto after = other.state(s);
+    if (after.contacts.empty()) state.contacts.clear();
+    EXPECT_TRUE(same_bits(state, after));
+    EXPECT_EQ(one.told[r].scans, scans);
     EXPECT_GT(one.told[r].numbers.size(), 50u);
 }
 

@@ -1,6 +1,5 @@
 // mcdem calibrate
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <nlohmann/json.hpp>
 
@@ -112,12 +111,6 @@ void calibrate(CalibrateCommand& command) {
     print_out("wrote {}\n", file.string());
 }
 
-ContactModel model_named(const std::string& word) {
-    if (const auto model = parse<ContactModel>(word)) return *model;
-    throw InputError(
-        fmt::format("--model: must be one of {}, got {}", fmt::join(Names<ContactModel>::list, ", "), word));
-}
-
 void add_search_options(CLI::App& sub, CalibrateOptions& options) {
     sub.add_option("--low", options.bracket.low, "Smallest gamma that is tried, or E over the scene's")
         ->capture_default_str();
@@ -143,7 +136,8 @@ void add_calibrate(CLI::App& app, int&) {
         "Experiment folder or run whose mean top force at maximum compression is the target");
     sub->get_option("--experiment")->required();
     sub->add_option_function<std::string>(
-           "--model", [command](const std::string& word) { command->options.model = model_named(word); },
+           "--model",
+           [command](const std::string& word) { command->options.model = calibrated_model(word, "--model"); },
            "mc_dem: gamma is searched for; another contact model: Young's modulus of the grains")
         ->type_name("MODEL")
         ->default_str("mc_dem");

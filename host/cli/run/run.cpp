@@ -111,8 +111,7 @@ void warn_of_unsettled(const Run& run) {
     if (unsettled > 0)
         spdlog::warn(
             "{} of {} scans were taken before the packing had settled (settled = 0 in plate.csv): forces may "
-            "still change; raise protocol.settle_time, or set protocol.stop_at_scans = false with "
-            "protocol.rate_tolerance",
+            "still change; raise protocol.settle_time, or set protocol.stop_at_scans = false",
             unsettled, all);
 }
 
