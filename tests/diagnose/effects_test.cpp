@@ -111,6 +111,7 @@ Model plain_model() {
     Model model;
     model.replica.contact.model = ContactModel::independent;
     model.replica.contact.gamma = 1.125;
+    model.replica.protocol.rate_tolerance = 0;
     model.instrument.stated.force_threshold = 4e-3;
     model.mean_diameter = 0.0215;
     return model;

@@ -98,7 +98,7 @@ private:
     }
 
     void draw_protocol() {
-        text_ += fmt::format("[protocol]\nstop_at_scans = {}\nrelax_time = 0.01\nsettle_time = 0.01\n",
+        text_ += fmt::format("[protocol]\nstop_at_scans = {}\nrate_tolerance = 0\nrelax_time = 0.01\nsettle_time = 0.01\n",
                              chance(0.7));
         if (is_cell())
             draw_cell_programme();

@@ -23,6 +23,8 @@ start = 0.088
 end = 0.078
 [protocol]
 scans_per_stroke = 4
+stop_at_scans = true
+rate_tolerance = 0
 settle_time = 0.02
 relax_time = 0.02
 [batch.vary]

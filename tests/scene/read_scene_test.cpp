@@ -60,7 +60,7 @@ TEST(ReadScene, ParametersContainEveryKeyAsText) {
     EXPECT_EQ(parameters.size(), keys().size());
     EXPECT_EQ(parameters.at("contact.gamma"), "0.1");
     EXPECT_EQ(parameters.at("packing.seed"), "6") << "the copy's own";
-    EXPECT_EQ(parameters.at("protocol.stop_at_scans"), "true");
+    EXPECT_EQ(parameters.at("protocol.stop_at_scans"), "false");
     EXPECT_EQ(parameters.at("numerics.precision"), "float");
     EXPECT_EQ(parameters.at("packing.file"), "") << "does not apply";
 }
