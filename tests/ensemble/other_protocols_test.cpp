@@ -98,9 +98,9 @@ TEST(OtherProtocols, AreNotMadeOfAProgramme) {
 Diagnosis diagnosis_with_pauses(double speed) {
     const TestFolder folder;
     Device device;
-    Scene scene =
-        small_scene({"plate.end=0.074", "plate.speed=0.03", "protocol.scans_per_stroke=6",
-                     "protocol.stop_at_scans=false", "protocol.scan_at_start=true", "grains.friction=0.001"});
+    Scene scene = small_scene({"plate.end=0.074", "plate.speed=0.03", "protocol.scans_per_stroke=6",
+                               "protocol.stop_at_scans=false", "protocol.scan_at_start=true",
+                               "contact.friction_law=saturated", "grains.friction=0.001"});
     scene.replicas.resize(1);
     Trial truth{{scene.replicas.front(), {{1e-5, 1e-5, 0.01, 1e-4}}}, make_packings(scene).front()};
     truth.model.replica.effects.adhesion = 0.1;

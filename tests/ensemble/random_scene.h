@@ -98,8 +98,9 @@ private:
     }
 
     void draw_protocol() {
-        text_ += fmt::format("[protocol]\nstop_at_scans = {}\nrate_tolerance = 0\nrelax_time = 0.01\nsettle_time = 0.01\n",
-                             chance(0.7));
+        text_ += fmt::format(
+            "[protocol]\nstop_at_scans = {}\nrate_tolerance = 0\nrelax_time = 0.01\nsettle_time = 0.01\n",
+            chance(0.7));
         if (is_cell())
             draw_cell_programme();
         else if (chance(0.3))

@@ -8,9 +8,9 @@ namespace mcdem {
 
 struct SmallTrials {
     SmallTrials() {
-        Scene scene =
-            small_scene({"packing.count=18", "packing.packing_fraction=0.52", "plate.start=0.06",
-                         "plate.end=0.05", "protocol.scans_per_stroke=3", "protocol.stop_at_scans=false"});
+        Scene scene = small_scene({"packing.count=18", "packing.packing_fraction=0.52", "plate.start=0.06",
+                                   "plate.end=0.05", "protocol.scans_per_stroke=3",
+                                   "protocol.stop_at_scans=false", "contact.friction_law=saturated"});
         scene.replicas.resize(1);
         packing = make_packings(scene).front();
         model.replica = scene.replicas.front();

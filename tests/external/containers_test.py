@@ -38,6 +38,8 @@ speed = {speed}
 [protocol]
 scans_per_stroke = 5
 scan_at_start = true
+stop_at_scans = true
+rate_tolerance = 0
 settle_time = 4
 relax_time = 2
 settle_unbalanced_force = 5e-4
@@ -105,10 +107,12 @@ restitution = 0.5
 [contact]
 model = "independent"
 [protocol]
+stop_at_scans = true
 settle_time = 4
 relax_time = 2
 """
 CELL = FRICTIONLESS + """settle_unbalanced_force = 5e-4
+rate_tolerance = 0
 [[programme]]
 strain = 0.06
 rate = 0.1

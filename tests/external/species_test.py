@@ -47,6 +47,8 @@ end = 0.085
 speed = 0.1
 [protocol]
 scans_per_stroke = 1
+stop_at_scans = true
+rate_tolerance = 0
 [numerics]
 precision = "double"
 """.format(*SOFT, *STIFF)

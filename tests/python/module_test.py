@@ -340,7 +340,7 @@ class Runs(Folder):
         self.assertTrue(any("stopped at step" in str(one.message) for one in said))
 
     def test_a_failure_says_where_and_why(self):
-        scene = mcdem.Scene(SMALL, plate={"start": 0.088, "end": 0.03},
+        scene = mcdem.Scene(SMALL, plate={"start": 0.088, "end": 0.038},
                             batch={"vary": {"contact.model": ["independent", "mc_dem"]}}, contact={"gamma": 1.8})
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
