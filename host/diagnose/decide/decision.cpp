@@ -56,7 +56,7 @@ bool leaves_too_much(const Proposal& proposal, const Limits& limits) {
 }
 
 /// Whether a pair is better than a single effect: one leaves more than noise, or is much less likely, and
-/// two leave only noise. Two free amplitudes close most of many gaps with another cause, so a pair
+/// two leave only noise. Two free amplitudes take away most of many gaps with another cause, so a pair
 /// that leaves more is not named.
 bool is_better(const Proposal& pair, const Proposal& single, const Limits& limits) {
     const bool needs_second =
@@ -103,8 +103,8 @@ int proposal_of(std::size_t candidate, const Findings& findings) {
     return found == findings.proposals.end() ? -1 : static_cast<int>(found - findings.proposals.begin());
 }
 
-/// Removes members of the group that were tried and close too little of the gap, even if their likelihood is
-/// close.
+/// Removes members of the group that were tried and take away too little of the gap, even if their likelihood
+/// is close.
 void keep_those_that_do(std::vector<std::size_t>& group, const Findings& findings, const Limits& limits) {
     const auto fails = [&](std::size_t candidate) {
         const int k = proposal_of(candidate, findings);

@@ -12,10 +12,10 @@ namespace mcdem::inline diagnose {
 
 /// Thresholds of the decision. They were set on one half of the challenge and scored on the other
 /// (tests/challenge/README.md), except `reduction`: in 108 gaps from an independent solver, 63 of 63 leading
-/// effects that closed 0.6 or more were right, and 41 of 45 that closed less were wrong.
+/// effects that took away 0.6 or more were right, and 41 of 45 that took away less were wrong.
 struct Limits {
     double false_alarm = 0.01;   ///< there is a gap if p is smaller
-    double reduction = 0.6;      ///< fraction of the gap that an effect must close to be named,
+    double reduction = 0.6;      ///< fraction of the gap that an effect must take away to be named,
     double over_placebo = 0.1;   ///< and by how much this must exceed the placebo's
     double misfit = 0.001;       ///< the remainder of one effect exceeds noise if its p is smaller;
     double remainder = 0.1;      ///< largest fraction of the gap that a named effect may leave beyond noise
@@ -26,9 +26,9 @@ struct Limits {
     double second_share = 0.02;  ///< and this fraction of the leading effect's gain
     double second_certain = 50;  ///< at this gain it counts even if one effect alone leaves only noise
     double right_below =
-        0.1;  ///< probability that a leading effect is right if it closes less than `reduction`
+        0.1;  ///< probability that a leading effect is right if it takes away less than `reduction`
     double reduction_error = 0.1;   ///< by this much;
-    double right_above = 0.97;      ///< the same if it closes
+    double right_above = 0.97;      ///< the same if it takes away
     double certain = 0.8;           ///< at least this much; linear in between
     double right_pair = 0.8;        ///< the same for a pair, at most
     double reduction_margin = 0.1;  ///< error of the reduction by signatures, on either side of its interval
@@ -43,7 +43,7 @@ struct Proposal {
     double gain = 0;      ///< in log likelihood over no effect, from signatures
     double misfit_p = 1;  ///< p-value of the remainder, from signatures
     std::optional<double> confirmed_gain, confirmed_misfit_p;  ///< the same from real runs
-    double reduction = 0;  ///< fraction of the gap that it closes (Findings::held_out), from signatures
+    double reduction = 0;  ///< fraction of the gap that it takes away (Findings::held_out), from signatures
     std::optional<double> confirmed_reduction = {};  ///< the same from real runs
     bool is_pair() const { return candidates.size() == 2; }
     double best_gain() const { return confirmed_gain.value_or(gain); }

@@ -32,7 +32,7 @@ public:
     bool refit(std::size_t proposal);
 
     /// The next proposal that needs runs with part_fit(), because the verdict depends on how much of the
-    /// held-out gap they close.
+    /// held-out gap they take away.
     std::optional<std::size_t> wants_held_out() const;
     /// Parameters of proposal k fitted to the data that are not held out, from its real runs if there are
     /// any.

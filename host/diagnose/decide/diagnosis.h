@@ -13,7 +13,7 @@ enum class Verdict {
     no_gap,               ///< no detectable gap
     effect,               ///< one effect explains it
     group,                ///< one of several effects that these data cannot distinguish
-    unknown_effect,       ///< a gap, but no effect of the library closes enough of it
+    unknown_effect,       ///< a gap, but no effect of the library takes away enough of it
     not_converged,        ///< the simulation's own numerics explain it: a setting must be refined
     calibration_suspect,  ///< a stated parameter is far outside its uncertainty
 };
@@ -75,9 +75,9 @@ struct GapReduction {
     std::array<double, 2> fitted_displacement{0, 0};
 };
 
-/// How much of the gap the named explanation, otherwise the best one, closes. The verdict depends on it.
+/// How much of the gap the named explanation, otherwise the best one, takes away. The verdict depends on it.
 struct Explanation {
-    double reduction = 0;    ///< fraction of the gap that it closes
+    double reduction = 0;    ///< fraction of the gap that it takes away
     bool simulated = false;  ///< true: from real runs; false: from signatures
     bool held_out = true;    ///< of the gap in held-out data; false: these show none, so of the whole gap
     double placebo = 0;      ///< reduction by the best of random signatures

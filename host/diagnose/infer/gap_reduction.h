@@ -28,7 +28,7 @@ struct HeldOutGap {
 };
 HeldOutGap held_out_gap(const GapData& data, const Split& split, int mean_of);
 
-/// Fraction of the held-out gap closed by the given candidates (one or two), fitted on the other cells.
+/// Fraction of the held-out gap taken away by the given candidates (one or two), fitted on the other cells.
 double held_out_reduction(const GapData& data, const Split& split, const std::vector<std::size_t>& candidates,
                           int mean_of);
 /// The same for runs with the amplitudes fitted there; row: replicate. Empty if they failed.
