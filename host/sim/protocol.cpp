@@ -21,6 +21,8 @@ constexpr double max_drag = 0.5, max_relax_drag = 0.02;
 /// Before a pause the plate brakes at a constant rate, over this part of the way between two scans. Each
 /// interval covers this part of the way left, and the last one what is below `last_way` of the braking.
 constexpr double braking_part = 0.25, interval_part = 0.25, last_way = 1e-3;
+/// Distance from the grains, over their diameter, above which the plate moves at its maximum speed.
+constexpr double free_distance = 0.1;
 /// Within this distance of a level, relative to the plate's start or a strain of one, the plate has arrived.
 constexpr double position_rounding = 1e-12;
 
@@ -36,6 +38,7 @@ ProtocolRunner::ProtocolRunner(const Replica& replica, double time_step, const P
       stages_(stages_of(replica)),
       legs_(legs_of(stages_, plate_)),
       cell_(is_cell(replica.box) ? std::optional(CellControl(replica, scale)) : std::nullopt),
+      clearance_(scale.weight > 0 ? free_distance * scale.diameter : HUGE_VAL),
       scale_(cell_ ? 1 : plate_.start),
       time_step_(time_step),
       longest_time_step_(time_step),
@@ -45,6 +48,7 @@ ProtocolRunner::ProtocolRunner(const Replica& replica, double time_step, const P
     if (cell_ && std::ranges::any_of(stages_, lists)) quantities_ = scan_quantities(stages_, legs_);
     state_.plate_z = cell_ ? 0 : plate_.start;
     state_.pressure = quasi_static_.pressure(0, 0);
+    state_.free_above = scale.top + clearance_;
 }
 
 bool ProtocolRunner::by_force() const {
@@ -60,6 +64,11 @@ double ProtocolRunner::set_force() const {
 double ProtocolRunner::max_speed() const {
     if (cell_) return last_move().rate;
     return std::isnan(stage().speed) ? plate_.speed : stage().speed;
+}
+
+/// Whether the plate is so far from the grains that its speed has no effect on them.
+bool ProtocolRunner::is_free() const {
+    return !cell_ && state_.stage == Stage::move && state_.plate_z > state_.free_above;
 }
 
 /// Levels of the scans of a move.
@@ -103,7 +112,7 @@ long ProtocolRunner::max_stage_steps() const {
 }
 
 /// The next interval according to the protocol. The plate ends a move exactly at the scan position, so its
-/// last speed is slightly lower.
+/// last speed is slightly lower. On its way down it slows down before it reaches the grains.
 StepInterval ProtocolRunner::planned() const {
     if (by_force()) return planned_by_force();
     if (by_stress()) return planned_by_stress();
@@ -112,16 +121,20 @@ StepInterval ProtocolRunner::planned() const {
         return {static_cast<int>(std::min<double>(left, max_steps)), state_.plate_z, 0, drag()};
     }
     const double left = waypoint() - state_.plate_z, way = std::abs(left), braking = braking_way();
-    double step = quasi_static_.speed(max_speed(), rate_length(), state_.pressure) * time_step_;
+    double step = time_step_ * (is_free() ? max_speed()
+                                          : quasi_static_.speed(max_speed(), rate_length(), state_.pressure));
     if (way < braking) step *= std::sqrt(way / braking);
+    const double most =
+        is_free() && left < 0 ? std::ceil((state_.plate_z - state_.free_above) / step) : max_steps;
     if (way > last_way * braking && braking > 0) {
         const double part = way > braking ? way - (1 - position_rounding) * braking : interval_part * way;
         const double steps = std::max(1.0, std::ceil(part / step - 1e-9));
-        return {static_cast<int>(std::min(steps, max_steps)), state_.plate_z,
+        return {static_cast<int>(std::min({steps, most, max_steps})), state_.plate_z,
                 std::copysign(std::min(step, way / steps) / time_step_, left), 0};
     }
     const double steps = std::max(1.0, std::ceil(way / step - 1e-9));
-    return {static_cast<int>(std::min(steps, max_steps)), state_.plate_z, left / (steps * time_step_), 0};
+    return {static_cast<int>(std::min({steps, most, max_steps})), state_.plate_z, left / (steps * time_step_),
+            0};
 }
 
 /// The plate stays between plate.end and plate.start.
@@ -170,10 +183,12 @@ void ProtocolRunner::take_note(const IntervalResult& result) {
     state_.step += result.steps;
     state_.stage_step += result.steps;
     state_.time += result.steps * time_step_;
-    if (state_.stage == Stage::move)
-        state_.rate_error = quasi_static_.rate_error(fastest, rate_length(), state_.pressure);
-    state_.plate_z += velocity * time_step_ * result.steps;
     const double plate = force_along_z(result, Wall::plate);
+    if (state_.stage == Stage::move)
+        state_.rate_error =
+            is_free() && plate == 0 ? 0 : quasi_static_.rate_error(fastest, rate_length(), state_.pressure);
+    state_.plate_z += velocity * time_step_ * result.steps;
+    if (plate != 0) state_.free_above = state_.plate_z + clearance_;
     const double pressure = cell_ ? quasi_static_.pressure(result.stress)
                                   : quasi_static_.pressure(plate, force_along_z(result, Wall::floor));
     state_.pressure += pressure_share * (pressure - state_.pressure);
@@ -349,7 +364,8 @@ bool ProtocolRunner::is_possible(const ProtocolState& state) const {
     return state.step >= 0 && state.stage_step >= 0 && stage >= 0 &&
            stage <= static_cast<int>(Stage::finished) && state.cycle >= 0 && (phase == 0 || phase == 1) &&
            state.level >= 0 && state.level <= scans && state.frame >= 0 && state.settled_intervals >= 0 &&
-           state.reached_intervals >= 0 && CellControl::is_possible(state.cell);
+           state.reached_intervals >= 0 && CellControl::is_possible(state.cell) &&
+           !std::isnan(state.free_above);
 }
 
 }  // namespace mcdem::sim

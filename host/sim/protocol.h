@@ -35,11 +35,12 @@ struct ProtocolState {
     double leg_begin = 0;       ///< position [m] or force [N] from which scans of this leg are counted
     double time = 0;            ///< since the start [s]
     double hold_begin = 0;      ///< time at which the hold began [s]
+    double free_above = 0;      ///< above this position the plate touches no grain [m]
     ForceControl::State control;
     CellControl::State cell;
 };
 static_assert(std::is_trivially_copyable_v<ProtocolState> &&
-                  sizeof(ProtocolState) == 8 * (2 + 4 + 6 + 3 + 7 + 30),
+                  sizeof(ProtocolState) == 8 * (2 + 4 + 7 + 3 + 7 + 30),
               "no padding: equal states have equal bytes in checkpoints");
 
 class ProtocolRunner {
@@ -103,6 +104,7 @@ private:
     CellMove move() const { return {stage(), state_.cell.begin, state_.leg_begin}; }
     double target() const { return cell_ ? move().end : leg().target; }
     double max_speed() const;
+    bool is_free() const;
     double rate_length() const { return cell_ ? 1 : state_.plate_z; }
     double level_value(int level) const;
     const ScanQuantity& quantity() const { return quantities_[static_cast<std::size_t>(state_.leg)]; }
@@ -151,9 +153,10 @@ private:
     std::vector<Leg> legs_;
     std::vector<ScanQuantity> quantities_;  ///< of each leg, if a move of a cell lists its scans
     std::optional<CellControl> cell_;       ///< only for a cell
-    double scale_;                          ///< scale of positions: the plate's start [m], 1 for a cell
-    double time_step_;                      ///< current one [s]
-    double longest_time_step_;              ///< without shortening [s]
+    double clearance_;  ///< of a plate above grains at rest; grains without weight may be anywhere [m]
+    double scale_;      ///< scale of positions: the plate's start [m], 1 for a cell
+    double time_step_;  ///< current one [s]
+    double longest_time_step_;  ///< without shortening [s]
     QuasiStatic quasi_static_;
     ForceControl force_control_;
     ProtocolState state_;

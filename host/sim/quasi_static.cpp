@@ -16,6 +16,17 @@ constexpr double min_pressure_over_modulus = 1e-5;
 
 double sphere_volume(double diameter) { return std::numbers::pi / 6 * std::pow(diameter, 3); }
 
+/// Of a tilted plate, the lowest edge counts.
+double top_of(const Replica& replica, const Packing& packing) {
+    double top = 0;
+    for (std::size_t i = 0; i < packing.size(); ++i)
+        top = std::max(top, packing.position[i].z() + packing.diameter[i] / 2);
+    const auto& tilt = replica.effects;
+    return top + (std::abs(tilt.plate_tilt_x) * replica.box.size_x +
+                  std::abs(tilt.plate_tilt_y) * replica.box.size_y) /
+                     2;
+}
+
 }  // namespace
 
 PackingScale scale_of(const Replica& replica, const Packing& packing) {
@@ -38,7 +49,9 @@ PackingScale scale_of(const Replica& replica, const Packing& packing) {
     scale.modulus = all.size() == 1 ? plane_modulus(all[0]) : 1 / compliance;
     scale.density = all.size() == 1 ? all[0].density : scale.mass / scale.volume;
     scale.count = packing.size();
-    scale.reach = list_reach(replica, true_packing(replica, packing));
+    const Packing grains = true_packing(replica, packing);
+    scale.reach = list_reach(replica, grains);
+    scale.top = top_of(replica, grains);
     return scale;
 }
 

@@ -17,7 +17,7 @@ Replica authors_replica(ContactModel model, int scans_per_stroke) {
     replica.contact.friction_law = FrictionLaw::mindlin;
     replica.plate.speed = (replica.plate.start - replica.plate.end) / 0.3;
     replica.protocol.scans_per_stroke = scans_per_stroke;
-    replica.protocol.stop_at_scans = false;
+    replica.protocol.rate_tolerance = 0;
     replica.protocol.relax_time = 0;
     return replica;
 }

@@ -22,6 +22,7 @@ start = 0.09
 end = 0.05
 [protocol]
 rate_tolerance = 0.02
+stop_at_scans = true
 )";
 const std::string loads =
     "[[programme]]\nforce = 0.2\n[[programme]]\nforce = 1\n[[programme]]\nforce = 0.3\n";
@@ -143,8 +144,8 @@ TEST(ForceControl, UnreachableForceEndsWithItsCause) {
     EXPECT_TRUE(at_end.scans.empty());
     const Traced floating = trace(
         packing_text +
-            "[[programme]]\nposition = 0.1\n[[programme]]\nstage = \"hold\"\nkeep = \"force\"\ntime = 1\n",
-        {"plate.start=0.1"});
+            "[[programme]]\nposition = 0.11\n[[programme]]\nstage = \"hold\"\nkeep = \"force\"\ntime = 1\n",
+        {"plate.start=0.11"});
     EXPECT_NE(floating.hindrance.find(
                   "stage 2 of the programme: the force 0 N cannot be reached: no grain presses"),
               std::string::npos)

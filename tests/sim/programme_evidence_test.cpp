@@ -18,7 +18,8 @@ Traced squeezed(const std::string& programme) {
         "0.015\n"
         "[grains]\nexcess_density = 0\n[walls]\nyoungs_modulus = 1e13\n[contact]\nmodel = "
         "\"independent\"\n[effects]\n"
-        "viscoelasticity = 0.4\nrelaxation_time = 0.05\n" +
+        "viscoelasticity = 0.4\nrelaxation_time = 0.05\n[protocol]\nrate_tolerance = 0\nstop_at_scans = "
+        "true\n" +
             programme,
         "grain.toml");
     scene.precision = finest();

@@ -197,6 +197,48 @@ TEST(Protocol, KeepsTheInertialNumberWithinTheTolerance) {
     for (const auto& scan : pressed.scans) EXPECT_LE(scan.rate_error, 0.02 * (1 + 1e-9));
 }
 
+/// Plate positions and speeds of a stroke down and up, above grains that reach up to 0.15 m and yield to the
+/// plate.
+std::vector<StepInterval> stroke_above_grains(double weight) {
+    PackingScale grains = scale;
+    grains.top = 0.15;
+    grains.weight = weight;
+    Replica replica = replica_of(1, 2, false);
+    replica.protocol.rate_tolerance = 0.02;
+    ProtocolRunner runner(replica, time_step, grains);
+    std::vector<StepInterval> moves;
+    double lowest = grains.top;
+    while (!runner.finished()) {
+        const StepInterval interval = runner.next([](const StepInterval&) { return 5; });
+        const double z = interval.plate_z + interval.plate_velocity * interval.steps * time_step;
+        lowest = std::min(lowest, z);
+        IntervalResult result = answer(interval.steps, 0);
+        // Half of the way is plastic: on the way up the plate leaves the grains at 0.125 m.
+        const double surface = interval.plate_velocity < 0 ? grains.top : (grains.top + lowest) / 2;
+        result.wall_force[static_cast<int>(Wall::plate)] = {0, 0, 1e3 * std::max(0.0, surface - z)};
+        runner.made(result);
+        if (interval.plate_velocity != 0) moves.push_back(interval);
+    }
+    return moves;
+}
+
+// Farther than a tenth of a diameter, 2 mm, from the grains the plate moves at the scene's 0.5 m/s.
+TEST(Protocol, APlateThatTouchesNoGrainIsFast) {
+    for (const StepInterval& move : stroke_above_grains(1)) {
+        const double speed = std::abs(move.plate_velocity),
+                     way = move.plate_velocity * move.steps * time_step;
+        if (move.plate_z > (way < 0 ? 0.1521 : 0.1291))
+            EXPECT_NEAR(speed, 0.5, 0.5 / 40)
+                << move.plate_z << ": moves have at least 40 steps, a whole number";
+        else if (move.plate_z < (way < 0 ? 0.1519 : 0.126))
+            EXPECT_LT(speed, 0.1) << move.plate_z;
+        if (way < 0 && move.plate_z > 0.152) EXPECT_GT(move.plate_z + way, 0.152 - 0.5 * time_step);
+    }
+    for (const StepInterval& move : stroke_above_grains(0))
+        if (move.plate_velocity < 0)
+            EXPECT_LT(std::abs(move.plate_velocity), 0.1) << "grains without weight may be anywhere";
+}
+
 TEST(Protocol, WithoutAToleranceTheSpeedIsThatOfTheScene) {
     Replica replica = replica_of(1, 4, false);
     ProtocolRunner runner(replica, time_step, scale);

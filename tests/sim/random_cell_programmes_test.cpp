@@ -103,6 +103,7 @@ TEST(RandomCellProgrammes, EndAndScanAtThePrescribedValues) {
         replica.plate = {size, 0, 0.1};
         replica.programme = RandomProgramme(seed).draw();
         replica.protocol.stop_at_scans = seed % 3 > 0;
+        replica.protocol.rate_tolerance = seed % 2 ? 0 : 0.01;
         ProtocolRunner runner(replica, time_step, scale);
         const auto legs = legs_of(replica.programme, replica.plate);
         Strain begin{};
@@ -148,6 +149,7 @@ ProtocolRunner runner_of(const std::vector<Stage>& programme, bool stop_at_scans
     replica.plate = {size, 0, 0.1};
     replica.programme = programme;
     replica.protocol.stop_at_scans = stop_at_scans;
+    replica.protocol.rate_tolerance = 0;
     for (Stage& stage : replica.programme) stage.rate = 1;
     return ProtocolRunner(replica, time_step, scale);
 }

@@ -20,6 +20,7 @@ count = 100
 packing_fraction = 0.6
 [protocol]
 rate_tolerance = 0.05
+stop_at_scans = true
 )";
 
 /// Stages 0 to 2: to a pressure; 3: triaxial; 4: back to the pressure; 5: simple shear at constant pressure.
