@@ -126,8 +126,9 @@ void ProtocolRunner::follow_stress(double duration) {
     cell_->steer(state_.cell, set, duration, quasi_static_.speed(max_speed(), 1, state_.pressure),
                  state_.stage == Stage::move && driven() && state_.plate_z != waypoint());
     if (const auto stuck = cell_->stuck(state_.cell, set))
-        give_up(*stuck,
-                *stuck < 3 ? "grains would meet their own images" : "a cell cannot be sheared further");
+        give_up(*stuck, *stuck >= 3                                ? "a cell cannot be sheared further"
+                        : state_.cell.direction[*stuck].strain < 0 ? "a cell cannot be stretched further"
+                                                                   : "grains would meet their own images");
 }
 
 /// When the strains stop, the directions with a prescribed stress stop too, and then continue separately.
