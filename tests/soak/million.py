@@ -41,7 +41,7 @@ start = {size}
 end = {size - 0.0063}
 [protocol]
 scans_per_stroke = 1
-stop_at_scans = false
+rate_tolerance = 0
 relax_time = 0
 """)
 

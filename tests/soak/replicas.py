@@ -19,7 +19,7 @@ SCENE = mcdem.Scene(
     box={"size_x": 0.06, "size_y": 0.06},
     packing={"count": 20, "packing_fraction": 0.4},
     plate={"start": 0.08, "end": 0.078},
-    protocol={"scans_per_stroke": 2, "relax_time": 0.01, "settle_time": 0.01},
+    protocol={"scans_per_stroke": 2, "rate_tolerance": 0, "relax_time": 0.01},
     batch={"replicas": AT_ONCE},
 )
 
