@@ -66,11 +66,6 @@ double ProtocolRunner::max_speed() const {
     return std::isnan(stage().speed) ? plate_.speed : stage().speed;
 }
 
-/// Whether the plate is so far from the grains that its speed has no effect on them.
-bool ProtocolRunner::is_free() const {
-    return !cell_ && state_.stage == Stage::move && state_.plate_z > state_.free_above;
-}
-
 /// Levels of the scans of a move.
 double ProtocolRunner::level_value(int level) const {
     if (!cell_ || stage().scan_at.empty())

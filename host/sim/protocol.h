@@ -104,7 +104,8 @@ private:
     CellMove move() const { return {stage(), state_.cell.begin, state_.leg_begin}; }
     double target() const { return cell_ ? move().end : leg().target; }
     double max_speed() const;
-    bool is_free() const;
+    /// Whether a moving plate is so far from the grains that its speed has no effect on them.
+    bool is_free() const { return state_.plate_z > state_.free_above; }
     double rate_length() const { return cell_ ? 1 : state_.plate_z; }
     double level_value(int level) const;
     const ScanQuantity& quantity() const { return quantities_[static_cast<std::size_t>(state_.leg)]; }

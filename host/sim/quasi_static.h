@@ -3,8 +3,6 @@
 // the strain rate over the rate at which the pressure P moves a grain of diameter d by its own size (MiDi
 // 2004).
 #pragma once
-#include <cmath>
-
 #include "core/packing.h"
 #include "scene/scene.h"
 
@@ -20,8 +18,7 @@ struct PackingScale {
     double density = 0;  ///< mean density by volume [kg/m3]
     double modulus = 0;  ///< E/(1 - nu^2), mean for layers in series [Pa]
     double reach = 0;    ///< largest distance between centres of possible neighbours [m]
-    /// Highest position at which the plate would touch a grain [m]; infinite if that is not known.
-    double top = HUGE_VAL;
+    double top = 0;      ///< highest position at which the plate would touch a grain [m]
 };
 PackingScale scale_of(const Replica& replica, const Packing& packing);
 

@@ -60,7 +60,7 @@ TEST(ProgrammeBits, ARestartChangesNothing) {
         second.restore(first.save());
         second.told = first.told;
         second.finish();
-        for (int r = 0; r < 2; ++r) expect_same(whole, r, second, r, 2);
+        for (int r = 0; r < 2; ++r) expect_same(whole, r, second, r, 2, first.told[r].scans < 2);
     }
 }
 
