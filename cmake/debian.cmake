@@ -21,7 +21,7 @@ set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS
   "python3-matplotlib, fonts-dejavu-core, python3-pandas, python3-ase, python3-meshio, python3-pint")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libmcdem-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
-set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libboost-dev, libeigen3-dev, libfmt-dev, libhdf5-dev, libspdlog-dev, \
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libboost-dev, libeigen3-dev, libfmt-dev, libhdf5-dev, \
 libssl-dev, libtomlplusplus-dev, nlohmann-json3-dev, ocl-icd-opencl-dev, opencl-clhpp-headers, opencl-headers, \
 zlib1g-dev")
 math(EXPR next "${Python3_VERSION_MINOR} + 1")

@@ -165,17 +165,14 @@ std::string submit(const SlurmJob& job, const std::vector<std::size_t>& all_part
 
 void wait_for_jobs(const SlurmJob& job, const std::function<bool()>& is_done) {
     auto last_asked = Clock::now();
-    std::optional<Clock::time_point> gone;
+    auto gone = Clock::time_point::max();  // since then it is not in the queue
     while (!is_done()) {
         const auto now = Clock::now();
         if (now - last_asked > ask) {
             last_asked = now;
-            if (are_in_queue(submitted_last(job)))
-                gone.reset();
-            else if (!gone)
-                gone = now;
+            gone = are_in_queue(submitted_last(job)) ? Clock::time_point::max() : std::min(gone, now);
         }
-        if (gone && now - *gone > settle) return;
+        if (gone < now - settle) return;
         std::this_thread::sleep_for(look);
     }
 }
