@@ -7,7 +7,7 @@
 
 #include "diagnose/synthetic_evidence.h"
 
-namespace mcdem {
+namespace mcdem::gap_reduction {
 namespace {
 
 constexpr int replicates = 32;
@@ -181,4 +181,4 @@ TEST(GapReduction, IsZeroIfOnePartIsMissing) {
 }
 
 }  // namespace
-}  // namespace mcdem
+}  // namespace mcdem::gap_reduction

@@ -7,7 +7,7 @@
 
 #include "diagnose/synthetic_evidence.h"
 
-namespace mcdem {
+namespace mcdem::location {
 namespace {
 
 constexpr int replicates = 32;
@@ -106,4 +106,4 @@ TEST(Location, ReplicatesHaveNoSignificantCells) {
 }
 
 }  // namespace
-}  // namespace mcdem
+}  // namespace mcdem::location

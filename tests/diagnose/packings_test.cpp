@@ -6,7 +6,7 @@
 #include "diagnose/decide/diagnose.h"
 #include "diagnose/synthetic_evidence.h"
 
-namespace mcdem {
+namespace mcdem::packings {
 namespace {
 
 using ::testing::ElementsAre;
@@ -97,4 +97,4 @@ TEST(Packings, RowsAreAveragedByReplicate) {
 }
 
 }  // namespace
-}  // namespace mcdem
+}  // namespace mcdem::packings

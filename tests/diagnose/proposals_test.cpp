@@ -7,7 +7,7 @@
 
 #include "diagnose/synthetic_evidence.h"
 
-namespace mcdem {
+namespace mcdem::proposals {
 namespace {
 
 using ::testing::ElementsAre;
@@ -216,4 +216,4 @@ TEST(Confirmation, RequiresMoreThanOneRun) {
 }
 
 }  // namespace
-}  // namespace mcdem
+}  // namespace mcdem::proposals

@@ -7,7 +7,7 @@
 
 #include "scene/random.h"
 
-namespace mcdem {
+namespace mcdem::signature {
 namespace {
 
 /// Identical rows plus noise: linear a + curvature a^2.
@@ -109,4 +109,4 @@ TEST(Signature, FailedRunsAreExcluded) {
 }
 
 }  // namespace
-}  // namespace mcdem
+}  // namespace mcdem::signature

@@ -8,7 +8,7 @@
 #include "experiment/experiment_folder.h"
 #include "scene/random.h"
 
-namespace mcdem::test {
+namespace mcdem::test::instrument {
 namespace {
 
 constexpr int grains = 400, scans = 5;
@@ -320,4 +320,4 @@ TEST(measured, works_without_positions_and_contacts) {
 }
 
 }  // namespace
-}  // namespace mcdem::test
+}  // namespace mcdem::test::instrument

@@ -1,7 +1,7 @@
 // The memory of contacts is loaded as it was stored, in the rows that a replica needs.
 #include "kernels/test_kernel.h"
 
-namespace reference {
+namespace reference::contact_memory {
 namespace {
 
 constexpr int rows = 8, slots = 16, grains = 48, first = 16, number = 16;
@@ -75,4 +75,4 @@ TEST(ContactMemory, KeepsOnlyTheRowsThatTheReplicaNeeds) {
 }
 
 }  // namespace
-}  // namespace reference
+}  // namespace reference::contact_memory

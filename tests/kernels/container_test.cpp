@@ -1,7 +1,7 @@
 // Walls and periodic boundaries of the four containers, against geometry in double precision.
 #include "kernels/test_kernel.h"
 
-namespace reference {
+namespace reference::container {
 namespace {
 
 using Matrix = Eigen::Matrix3d;
@@ -146,4 +146,4 @@ TEST(Container, PeriodicCoordinatesAreWrappedIntoTheCell) {
 }
 
 }  // namespace
-}  // namespace reference
+}  // namespace reference::container

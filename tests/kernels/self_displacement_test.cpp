@@ -12,7 +12,7 @@
 #include "reference/plates_reference.h"
 #include "reference/test_scene.h"
 
-namespace reference {
+namespace reference::between_plates {
 namespace {
 
 constexpr double radius = 0.01, youngs_modulus = 1e5;
@@ -159,4 +159,4 @@ TEST(Plates, EquatorTouchesTheSideWallsAtTheExpectedOverlap) {
 }
 
 }  // namespace
-}  // namespace reference
+}  // namespace reference::between_plates

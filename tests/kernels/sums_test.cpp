@@ -2,7 +2,7 @@
 // kernel code.)
 #include "kernels/test_kernel.h"
 
-namespace reference {
+namespace reference::sums {
 namespace {
 
 constexpr int quantities = 7, sums = quantities + 2, slots = 16;
@@ -70,4 +70,4 @@ TEST(SlotSums, EqualTheSumsAndMaximaOfEachGrain) {
 }
 
 }  // namespace
-}  // namespace reference
+}  // namespace reference::sums

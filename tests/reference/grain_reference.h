@@ -32,6 +32,11 @@ struct Grain {
     std::vector<Slot> slots;
 };
 
+/// G = E / (2 (1 + nu)) [Pa]
+inline double shear_modulus(double youngs_modulus, double poisson_ratio) {
+    return youngs_modulus / (2 * (1 + poisson_ratio));
+}
+
 /// Range of the fitted polynomials; arguments are clamped to it.
 inline constexpr double smallest_sine = 0.15, smallest_relative_radius = 1e-3, largest_relative_radius = 0.64;
 

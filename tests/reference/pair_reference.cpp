@@ -9,13 +9,9 @@
 
 namespace reference {
 
-using std::numbers::pi;
-
 namespace {
 
-double shear_modulus(double youngs_modulus, double poisson_ratio) {
-    return youngs_modulus / (2 * (1 + poisson_ratio));
-}
+using std::numbers::pi;
 
 }  // namespace
 

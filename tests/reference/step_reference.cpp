@@ -15,10 +15,6 @@ namespace {
 
 using std::numbers::pi;
 
-double shear_modulus(double youngs_modulus, double poisson_ratio) {
-    return youngs_modulus / (2 * (1 + poisson_ratio));
-}
-
 /// Component of `v` perpendicular to the unit vector e.
 Vec3 across(const Vec3& v, const Vec3& e) { return v - v.dot(e) * e; }
 

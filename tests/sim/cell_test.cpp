@@ -14,8 +14,9 @@ namespace {
 using mcdem::Box;
 using mcdem::IntervalResult;
 using mcdem::Strain;
+using std::numbers::pi;
 
-constexpr double radius = 0.01, pi = std::numbers::pi;
+constexpr double radius = 0.01;
 
 /// No friction and no damping.
 Replica conservative(ContactModel model) {
@@ -235,12 +236,6 @@ std::vector<After> after_steps(const std::vector<Start>& starts, const std::vect
     for (std::size_t r = 0; r < starts.size(); ++r)
         all.push_back({cells.engine().state(static_cast<int>(r)), last[r]});
     return all;
-}
-
-std::vector<Vec3> forces_of(const mcdem::ReplicaState& state) {
-    std::vector<Vec3> forces;
-    for (const auto& contact : state.contacts) forces.push_back(contact.force);
-    return forces;
 }
 
 constexpr Strain some_strain{0.02, 0.01, -0.01, 0.05, -0.04, 0.03}, some_rate{0.2, -0.1, 0.1, 0.5, -0.3, 0.4};

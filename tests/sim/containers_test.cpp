@@ -9,7 +9,7 @@
 #include "core/names.h"
 #include "sim/whole_run.h"
 
-namespace reference {
+namespace reference::containers {
 namespace {
 
 using mcdem::ContainerShape;
@@ -179,12 +179,6 @@ std::vector<Start> periodic_starts(const Replica& like, int layers) {
         starts.push_back(periodic_lattice(replica, 4, layers, 31));
     }
     return starts;
-}
-
-std::vector<Vec3> forces_of(const mcdem::ReplicaState& state) {
-    std::vector<Vec3> forces;
-    for (const auto& contact : state.contacts) forces.push_back(contact.force);
-    return forces;
 }
 
 TEST(PeriodicCell, ConservesMomentumToRounding) {
@@ -362,4 +356,4 @@ TEST(PeriodicCell, IsRefusedIfGrainsCouldTouchTwice) {
 }
 
 }  // namespace
-}  // namespace reference
+}  // namespace reference::containers

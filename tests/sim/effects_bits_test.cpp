@@ -3,7 +3,7 @@
 #include "core/errors.h"
 #include "sim/whole_run.h"
 
-namespace reference {
+namespace reference::effects_bits {
 namespace {
 
 using mcdem::Effects;
@@ -108,4 +108,4 @@ TEST(EffectBits, DefaultValuesChangeNothing) {
 }
 
 }  // namespace
-}  // namespace reference
+}  // namespace reference::effects_bits

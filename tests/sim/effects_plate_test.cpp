@@ -3,7 +3,7 @@
 #include "sim/simulation.h"
 #include "sim/squeezed_grain.h"
 
-namespace reference {
+namespace reference::effects_plate {
 namespace {
 
 constexpr double radius = SqueezedGrain::radius, tilt_x = 0.1, tilt_y = -0.05, width = 6 * radius;
@@ -217,4 +217,4 @@ TEST(PlateCompliance, RigidPlateIsUnchanged) {
 }
 
 }  // namespace
-}  // namespace reference
+}  // namespace reference::effects_plate

@@ -1,7 +1,7 @@
 // A programme with all kinds of stages: bit-identical alone, in a batch, and after a restart at any point.
 #include "sim/whole_run.h"
 
-namespace reference {
+namespace reference::programme_bits {
 namespace {
 
 mcdem::Stage force_of(double force, double speed) {
@@ -65,4 +65,4 @@ TEST(ProgrammeBits, ARestartChangesNothing) {
 }
 
 }  // namespace
-}  // namespace reference
+}  // namespace reference::programme_bits

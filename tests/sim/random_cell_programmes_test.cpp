@@ -8,7 +8,7 @@
 #include "sim/protocol.h"
 #include "sim/random_draws.h"
 
-namespace mcdem {
+namespace mcdem::random_cell_programmes {
 namespace {
 
 constexpr double time_step = 1e-4, size = 0.09;
@@ -275,4 +275,4 @@ TEST(StressOfACell, DamagedCheckpointIsRefused) {
 }
 
 }  // namespace
-}  // namespace mcdem
+}  // namespace mcdem::random_cell_programmes

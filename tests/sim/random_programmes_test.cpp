@@ -9,7 +9,7 @@
 #include "sim/protocol.h"
 #include "sim/random_draws.h"
 
-namespace mcdem {
+namespace mcdem::random_programmes {
 namespace {
 
 constexpr double start = 0.1, end = 0.06, time_step = 1e-4, touching = 0.098;
@@ -132,4 +132,4 @@ TEST(RandomProgrammes, EndAndScanAtThePrescribedValues) {
 }
 
 }  // namespace
-}  // namespace mcdem
+}  // namespace mcdem::random_programmes

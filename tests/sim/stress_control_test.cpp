@@ -6,7 +6,7 @@
 
 #include "sim/traced_programme.h"
 
-namespace reference {
+namespace reference::stress_control {
 namespace {
 
 using Stage = mcdem::ProtocolState::Stage;
@@ -297,4 +297,4 @@ TEST(StressControl, UnreachableStressEndsWithItsCause) {
 }
 
 }  // namespace
-}  // namespace reference
+}  // namespace reference::stress_control

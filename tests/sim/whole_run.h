@@ -5,6 +5,13 @@
 
 namespace reference {
 
+/// Of every contact [N].
+inline std::vector<Vec3> forces_of(const mcdem::ReplicaState& state) {
+    std::vector<Vec3> forces;
+    for (const auto& contact : state.contacts) forces.push_back(contact.force);
+    return forces;
+}
+
 /// All output of one replica.
 struct Told {
     std::vector<double> numbers;
