@@ -227,16 +227,20 @@ TEST(Protocol, APlateThatTouchesNoGrainIsFast) {
     for (const StepInterval& move : stroke_above_grains(1)) {
         const double speed = std::abs(move.plate_velocity),
                      way = move.plate_velocity * move.steps * time_step;
-        if (move.plate_z > (way < 0 ? 0.1521 : 0.1291))
+        if (move.plate_z > (way < 0 ? 0.1521 : 0.1291)) {
             EXPECT_NEAR(speed, 0.5, 0.5 / 40)
                 << move.plate_z << ": moves have at least 40 steps, a whole number";
-        else if (move.plate_z < (way < 0 ? 0.1519 : 0.126))
+        } else if (move.plate_z < (way < 0 ? 0.1519 : 0.126)) {
             EXPECT_LT(speed, 0.1) << move.plate_z;
-        if (way < 0 && move.plate_z > 0.152) EXPECT_GT(move.plate_z + way, 0.152 - 0.5 * time_step);
+        }
+        if (way < 0 && move.plate_z > 0.152) {
+            EXPECT_GT(move.plate_z + way, 0.152 - 0.5 * time_step);
+        }
     }
     for (const StepInterval& move : stroke_above_grains(0))
-        if (move.plate_velocity < 0)
+        if (move.plate_velocity < 0) {
             EXPECT_LT(std::abs(move.plate_velocity), 0.1) << "grains without weight may be anywhere";
+        }
 }
 
 TEST(Protocol, WithoutAToleranceTheSpeedIsThatOfTheScene) {
