@@ -8,7 +8,7 @@
 #include "diagnose/synthetic_scan.h"
 #include "scene/random.h"
 
-namespace mcdem {
+namespace mcdem::overlap_regression {
 namespace {
 
 ContactResidual contact(int grain, int partner, double implied, double cross_contact, double residual) {
@@ -161,4 +161,4 @@ TEST(WallOverlaps, TiltOfThePlateIsFound) {
 }
 
 }  // namespace
-}  // namespace mcdem
+}  // namespace mcdem::overlap_regression

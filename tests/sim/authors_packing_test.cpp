@@ -8,7 +8,7 @@
 #include <fstream>
 #include <sstream>
 
-namespace reference {
+namespace reference::authors_packing {
 namespace {
 
 using mcdem::ContactModel;
@@ -144,4 +144,4 @@ TEST(AuthorsPacking, FloatAgreesWithDouble) {
 }
 
 }  // namespace
-}  // namespace reference
+}  // namespace reference::authors_packing
