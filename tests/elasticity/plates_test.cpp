@@ -12,7 +12,7 @@
 #include "core/names.h"
 #include "reference/plates_reference.h"
 
-namespace mcdem {
+namespace mcdem::plates {
 namespace {
 
 using reference::Plate;
@@ -244,4 +244,4 @@ TEST(SeriesTruth, DisplacedSurfacesCreateContacts) {
 }
 
 }  // namespace
-}  // namespace mcdem
+}  // namespace mcdem::plates

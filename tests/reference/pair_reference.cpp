@@ -9,12 +9,6 @@
 
 namespace reference {
 
-namespace {
-
-using std::numbers::pi;
-
-}  // namespace
-
 StepReference::PairConstants StepReference::pair_constants(const Body& a, const Body& b) const {
     const bool wall = b.radius == 0;
     const double nu = poisson_ratio(a), nu_there = poisson_ratio(b);
@@ -28,6 +22,7 @@ StepReference::PairConstants StepReference::pair_constants(const Body& a, const 
     if (b.curvature != 0) pair.radius = 1 / std::sqrt((1 / a.radius + b.curvature) / a.radius);
     pair.mass = wall ? a.mass : 1 / (1 / a.mass + 1 / b.mass);
     const auto [friction, restitution] = friction_and_restitution(a, b);
+    using std::numbers::pi;
     const double log_e = std::log(restitution);
     pair.damping = 2 * std::sqrt(5.0 / 6) * -log_e / std::sqrt(log_e * log_e + pi * pi);
     pair.friction = friction;
