@@ -13,6 +13,7 @@ import random
 import shutil
 import subprocess
 import sys
+import tomllib
 
 import cases
 import hidden
@@ -142,6 +143,11 @@ def test_sealed(mcdem, folder):
         place = folder / "made" / case["folder"]
         assert subprocess.run([mcdem, "experiment", "check", place], capture_output=True).returncode == 0
         assert not any(code in (place / "experiment.toml").read_text().lower() for code in realities.PROGRAMS)
+    for case in json.loads((folder / "truth.json").read_text())["cases"]:
+        plate = tomllib.loads((folder / "made" / case["folder"] / "experiment.toml").read_text())["plate"]
+        assert math.isclose(plate["speed"], realities.SPEED / case["slower"], rel_tol=0.01), plate
+        rests = realities.STROKE / realities.SCANS / plate["speed"] if case["protocol"] == "paused" else 0
+        assert math.isclose(plate.get("pause", 0), rests, rel_tol=0.01), plate
     before = {path: path.stat().st_mtime_ns for path in folder.glob("made/case_*/*.csv")}
     assert make("--none", "3").returncode == 0
     assert before == {path: path.stat().st_mtime_ns for path in folder.glob("made/case_*/*.csv")}

@@ -11,7 +11,7 @@ SETTINGS = """name = "{name}"
 {container}
 [plate]
 start = {start}
-[grains]
+{plate}[grains]
 youngs_modulus = 23300.0
 poisson_ratio = 0.5
 excess_density = 11.5
@@ -42,14 +42,14 @@ def container_text(shape, width):
     return box if shape == "box" else f'[container]\nshape = "{shape}"\n{box}'
 
 
-def write(folder, name, container, scans, seed, programme=""):
-    """`container`: shape and width. `programme`: its stages, if it was not a stroke.
+def write(folder, name, container, scans, seed, programme="", plate=""):
+    """`container`: shape and width. `programme`: its stages, if it was not a stroke. `plate`: lines about its motion.
 
     `scans` as returned by realities.simulate. Noise is drawn for each frame, for diameters once."""
     chance = random.Random(seed)
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "experiment.toml").write_text(SETTINGS.format(
-        name=name, container=container_text(*container), programme=programme, start=scans[0]["height"],
+        name=name, container=container_text(*container), programme=programme, plate=plate, start=scans[0]["height"],
         position=POSITION_ERROR, diameter=DIAMETER_ERROR, force=FORCE_ERROR, threshold=FORCE_THRESHOLD))
     diameters = [grain[0] + chance.gauss(0, DIAMETER_ERROR) for grain in scans[0]["grains"]]
     plate, grains, contacts = [], [], []

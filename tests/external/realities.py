@@ -241,6 +241,14 @@ def schedule(reality):
     return steps, begin, begin + len(moves(reality)) * steps
 
 
+def plate_motion(reality):
+    """What the experimenter knows of the plate's motion, for experiment.toml: its mean speed, and how long it pauses at each scan."""
+    steps, _, _ = schedule(reality)
+    interval = steps * TIME_STEP / reality["finer"]
+    pause = f"pause = {interval:.3g}\n" if reality["protocol"] == "paused" else ""
+    return f"speed = {STROKE / SCANS / interval:.3g}\n{pause}"
+
+
 def stroke_variables(reality):
     """Variables of stroke.in and liggghts.in: downward velocity of the plate over its mean speed, and the steps for which it has
     moved, as formulas of `step`. Abrupt stops shake these light grains at 5 to 20 mm/s, which unloads the walls' friction; in an
