@@ -21,7 +21,7 @@ with open_run(path) as run:
         axes.plot(stroke[~loading], force[~loading], "o--", ms=3, color=colour, mfc="white")
 axes.set_xlabel("plate displacement [mm]")
 axes.set_ylabel("top force [N]")
-axes.set_title("loading: full lines, unloading: dashed", fontsize="medium")
+axes.set_title("loading: solid lines, unloading: dashed", fontsize="medium")
 if len(replicas) <= 12:
     axes.legend(fontsize="small")
 figure.savefig(picture, dpi=150)

@@ -1,12 +1,14 @@
 // The observables of one scan: their positions in the vector, and NaN where data are missing.
 #include "diagnose/observe/scan_observables.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <set>
 
+#include "core/input_file.h"
 #include "diagnose/observe/force_statistics.h"
 #include "diagnose/synthetic_scan.h"
 
@@ -99,6 +101,16 @@ TEST(ScanObservables, WithTooFewContacts) {
     lattice.scan.contacts.assign(full.end() - min_contacts, full.end());
     EXPECT_TRUE(std::isfinite(
         value_of(scan_observables(lattice.recording, lattice.scan, soft_material()), "mean_force")));
+}
+
+TEST(ScanObservables, AllAreInTheReadme) {
+    const std::string readme = read_file(MCDEM_SOURCE_DIR "/host/diagnose/README.md");
+    const char* const needs[] = {"plate", "contacts", "positions", "programme"};
+    std::string rows;
+    for (const Observable& observable : observables())
+        rows += fmt::format("| `{}` | {} | {} |\n", observable.name,
+                            needs[static_cast<std::size_t>(observable.needs)], observable.meaning);
+    EXPECT_NE(readme.find(rows), std::string::npos) << "host/diagnose/README.md must list:\n" << rows;
 }
 
 TEST(ScanObservables, WithoutAForceOnThePlate) {

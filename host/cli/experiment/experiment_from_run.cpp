@@ -222,16 +222,17 @@ void add_instrument_options(CLI::App& sub, Instrument& instrument) {
     add("--strain-offset", instrument.strain_offset, "M",
         "Unstated error: plate positions are read too high by this [m]", CLI::Range(-1.0, 1.0));
     add("--gauge-drift", instrument.gauge_drift, "PART",
-        "Unstated error: drift of the load cell's gain, by this fraction at the end of the last cycle, "
-        "before in proportion to the plate's path",
+        "Unstated error: relative error of the load cell's gain at the end of the last cycle; it grows in "
+        "proportion to the plate's path",
         bias);
     add("--zero-drift", instrument.zero_drift, "PART",
-        "Unstated error: drift of the load cell's zero, by this fraction of the highest top force at the end "
-        "of the last cycle, before in proportion to the plate's path",
+        "Unstated error: offset of the load cell at the end of the last cycle, over the maximum top force; "
+        "it "
+        "grows in proportion to the plate's path",
         bias);
     add("--gauge-hysteresis", instrument.gauge_hysteresis, "PART",
-        "Unstated error: while the plate goes up the top force is read too large, at half the highest force "
-        "by this fraction of the highest",
+        "Unstated error: excess of the top force during unloading, at half the maximum force, over the "
+        "maximum force",
         bias);
     add("--force-saturation", instrument.force_saturation, "PER_N",
         "Unstated error: a contact force f is read as f/(1 + a f), with this a [1/N]",

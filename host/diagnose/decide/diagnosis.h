@@ -138,7 +138,7 @@ struct Diagnosis {
     std::vector<std::string>
         not_testable;  ///< candidates that this scene or these data cannot show, with reasons
     double seconds = 0;
-    std::map<std::string, std::string> provenance;  ///< scene, experiment, versions, device, seed, hashes
+    std::map<std::string, std::string> provenance;  ///< scene, experiment, program, device, seed
     double where_threshold = 0;  ///< |z| above which a cell is significant among all cells; 0: unknown
 };
 
