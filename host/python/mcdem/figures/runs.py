@@ -76,72 +76,6 @@ def scaling(source, axes=None):
     return axes
 
 
-@styled
-def force_time(source, axes=None):
-    """Force on the plate against time, scan by scan of a programme; bands: one standard error over replicas."""
-    return of_programme(source, "force_time", axes)
-
-
-@styled
-def displacement_time(source, axes=None):
-    """Displacement of the plate against time, scan by scan of a programme."""
-    return of_programme(source, "displacement_time", axes)
-
-
-@styled
-def force_displacement(source, axes=None):
-    """Force on the plate against its displacement, scan by scan of a programme."""
-    return of_programme(source, "force_displacement", axes)
-
-
-@styled
-def pressure_strain(source, axes=None):
-    """Mean stress of a cell against its volume strain."""
-    return of_programme(source, "pressure_strain", axes)
-
-
-@styled
-def shear_stress_strain(source, axes=None):
-    """Deviatoric stress q of a cell against its deviatoric strain."""
-    return of_programme(source, "shear_stress_strain", axes)
-
-
-@styled
-def stress_path(source, axes=None):
-    """Deviatoric stress q against mean stress p, for cells that are distorted and for plates."""
-    return of_programme(source, "stress_path", axes)
-
-
-@styled
-def cell_coordination(source, axes=None):
-    """Contacts per grain in a cell against its packing fraction."""
-    return of_programme(source, "cell_coordination", axes, from_zero=False)
-
-
-@styled
-def pressure_time(source, axes=None):
-    """Mean stress of a cell against time."""
-    return of_programme(source, "pressure_time", axes)
-
-
-@styled
-def volume_time(source, axes=None):
-    """Volume strain of a cell against time."""
-    return of_programme(source, "volume_time", axes)
-
-
-@styled
-def shear_stress_time(source, axes=None):
-    """Deviatoric stress of a cell against time."""
-    return of_programme(source, "shear_stress_time", axes)
-
-
-@styled
-def shear_strain_time(source, axes=None):
-    """Deviatoric strain of a cell against time."""
-    return of_programme(source, "shear_strain_time", axes)
-
-
 def of_programme(source, name, axes, from_zero=True):
     """One line per setting, in order of the scans, which are marked because paths may return to earlier points."""
     values = read(source, name)
@@ -152,6 +86,31 @@ def of_programme(source, name, axes, from_zero=True):
         axes.set_xlim(left=0)
     place_key(axes, shown, "best")
     return axes
+
+
+def programme_figure(name, meaning, **how):
+    """A figure that shows scans of a programme in their order."""
+    @styled
+    def draw(source, axes=None):
+        return of_programme(source, name, axes, **how)
+
+    draw.__name__, draw.__doc__ = name, meaning
+    return draw
+
+
+force_time = programme_figure(
+    "force_time", "Force on the plate against time, scan by scan of a programme; bands: one standard error over replicas.")
+displacement_time = programme_figure("displacement_time", "Displacement of the plate against time, scan by scan of a programme.")
+force_displacement = programme_figure("force_displacement", "Force on the plate against its displacement, scan by scan of a programme.")
+pressure_strain = programme_figure("pressure_strain", "Mean stress of a cell against its volume strain.")
+shear_stress_strain = programme_figure("shear_stress_strain", "Deviatoric stress q of a cell against its deviatoric strain.")
+stress_path = programme_figure("stress_path", "Deviatoric stress q against mean stress p, for cells that are distorted and for plates.")
+cell_coordination = programme_figure("cell_coordination", "Contacts per grain in a cell against its packing fraction.", from_zero=False)
+pressure_time = programme_figure("pressure_time", "Mean stress of a cell against time.")
+volume_time = programme_figure("volume_time", "Volume strain of a cell against time.")
+shear_stress_time = programme_figure("shear_stress_time", "Deviatoric stress of a cell against time.")
+shear_strain_time = programme_figure("shear_strain_time", "Deviatoric strain of a cell against time.")
+
 
 
 def keyed_axes(shown, is_below):
