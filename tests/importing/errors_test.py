@@ -24,7 +24,7 @@ class Errors(ImportCase):
             return problems
 
         self.assertEqual(problems_with("kraft.csv", ";0;60,5", ";null;60,5"),
-                         ['kraft.csv:2: Zeit [s] must be a finite number, got "null": leave the row out where nothing was measured'])
+                         ['kraft.csv:2: Zeit [s] must be a finite number, got "null": leave out what was not measured: a row of the plate, a contact, or the whole frame of grains'])
         self.expect_one(problems_with("kraft.csv", ";0,5;", ";-0,5;"), "kraft.csv:3: frame must rise from row to row, got -0.5 after 0")
         self.expect_among(problems_with("koerner.csv", ";2;", ";1;"),
                           "koerner.csv:3: each grain must be there once in frame 0, got 1 again: see frame in the mapping")

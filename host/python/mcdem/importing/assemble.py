@@ -10,7 +10,7 @@ from ..files import write_whole
 from .contacts import import_contacts
 from .grains import import_grains
 from .mapping import WALLS
-from .plate import PlateRows, import_plate
+from .plate import PlateRows, check_heights, import_plate
 from .problems import Problems, number_text
 
 # For the two sides of a contact: largest difference over the larger force; weak forces over the largest one of the frame.
@@ -61,6 +61,7 @@ class _Assembly:
         self.problems.report()
         if grains:
             self.place_grains(grains[0].map.word("frames_by", "plate"))
+        check_heights(plates[0], self.plate, self.known.plate_start, self.problems, self.dropped)
         tables = []
         if self.grains.row is not None and -1 not in self.grains.row:
             for table in contacts:
@@ -78,6 +79,9 @@ class _Assembly:
     def place_grains(self, by):
         grains = self.grains
         grains.place("order" if by == "order" else "rows" if by == "rows" else "plate", self.plate)
+        if by == "order" and len(grains.keys) < len(self.plate):
+            self.notes.append(f"frames_by is order: the {len(grains.keys)} frames of the grains are at the first {len(grains.keys)} of the plate's "
+                              f"{len(self.plate)} rows")
         for frame, row in enumerate(grains.row):
             rows, first = grains.where[frame]
             if row < 0:
@@ -177,7 +181,7 @@ class _Assembly:
 
     def result(self, contacts):
         plate, grains, first = self.plate, self.grains, self.dropped
-        start = self.known.plate_start if np.isfinite(self.known.plate_start) else float(np.nanmax(plate.z, initial=-np.inf))
+        start = self.known.plate_start if np.isfinite(self.known.plate_start) else float(np.nanmax(plate.z[first:], initial=-np.inf))
         rows = np.arange(first, len(plate))
         plate_table = pd.DataFrame({"frame": rows - first, "cycle": plate.cycle[rows] - (plate.cycle[first] if len(rows) else 0),
                                     "phase": np.where(plate.phase[rows] == 0, "load", "unload"), "plate_z_m": plate.z[rows],

@@ -103,14 +103,17 @@ class _Reader:
             rows.problem_once("twice", mine[twice[0] + 1], f"each grain must be there once in frame {shown}, got {ids[twice[0]]} again: "
                               "see frame in the mapping")
         if key in self.used:
-            rows.problem(mine[0], f"the rows of frame {shown} must follow one another, got more behind others: sort them")
+            rows.problem_once("sorted", mine[0], f"the rows of frame {shown} must follow one another, got more behind others: sort the table by "
+                              "frame")
         self.used.add(key)
         if not frames.keys:
             frames.ids, first = np.unique(ids, return_index=True)
             frames.diameter, centres = diameter[first], centres[first]
         else:
             others = np.isin(ids, frames.ids, invert=True).sum()
-            if others or len(np.unique(ids)) != len(frames.ids) or len(ids) != len(frames.ids):
+            if len(twice):
+                pass
+            elif others or len(np.unique(ids)) != len(frames.ids) or len(ids) != len(frames.ids):
                 rows.problem_once("all", mine[0], f"frame {shown} must list the {len(frames.ids)} grains of the first frame, got {len(ids)}, "
                                   f"of which {others} are other ones: number grains alike in all frames, and leave a frame out where "
                                   "one is missing")

@@ -97,7 +97,7 @@ def _in_order(frames, plate):
     if frames.by == "file" and here and frames.keys[0] == 0 and frames.keys[-1] < rows and not _only_counts(frames.keys):
         return guess("rows", "likely", f"the files' numbers count the plate's {rows} rows, and are none of its {plate.counts or 'frame'} numbers")
     return guess("order", UNCLEAR, f"there are {here} frames here and {rows} rows of the plate, and {_told_by(frames)} do not tell which "
-                 "belong together")
+                 "belong together: put numbers or times of the plate's rows into the files' names or into a column")
 
 
 def _match(frames, plate, grains):

@@ -117,6 +117,10 @@ def _contact_forces(tables, grains):
     return sums
 
 
+def _unclear_lengths(mapped):
+    return any(key in mapped and mapped[key].sure == UNCLEAR for key in ("length_unit", "voxel_size", "origin_z", "same_diameter"))
+
+
 def _guess_force(table, others, plate, known):
     mapped, force = table.map, plate.rows.force[np.isfinite(plate.rows.force)]
     low, high = force.min(initial=np.inf), force.max(initial=-np.inf)
@@ -124,17 +128,20 @@ def _guess_force(table, others, plate, known):
     mapped["force_sign"] = guess("-" if abs(low) > abs(high) else "+", "sure" if clear else UNCLEAR,
                                  f"forces reach from {low:.4g} to {high:.4g}, and the grains push")
     grains, sums = plate.grains, _contact_forces(others, plate.grains)
-    unit = 1 if "displacement" in mapped else mapped.length_factor()
+    start, unit = known.plate_start if "displacement" in mapped else 0, mapped.length_factor()
     by_sum = plate.force_ratio(lambda frame, z: sums[frame])
     by_hertz = plate.force_ratio(lambda frame, z: np.sum(hertz_force(
-        known, grains.diameter / 2, np.inf, grains.position[frame][:, 2] + grains.diameter / 2 - unit * z)))
+        known, grains.diameter / 2, np.inf, grains.position[frame][:, 2] + grains.diameter / 2 - start + unit * (start - z))))
     has_sum = np.isfinite(by_sum)
     ratio = by_sum if has_sum else by_hertz
     fits = fitting_units(FORCE_FACTORS, ratio, 1, *((0.6, 1.6) if has_sum else (1 / 3.1, 3.1)))
     seen = f"the largest forces are {ratio:.3g} times those " + (
         "of the contacts with the plate" if has_sum else "of Hertz from the overlaps with the plate") + " [N]" if np.isfinite(ratio) else ""
     named = mapped.get("force_unit")
-    if named and (named.sure == UNCLEAR or not has_sum or named.word in fits):
+    if named and not has_sum:  # Hertz's law is rough for strong compression and errors of position
+        clear = np.isfinite(ratio) and not any(_unclear_lengths(table.map) for table in (*others, table))
+        fits = fitting_units(FORCE_FACTORS, ratio, 1, 1 / 30, 30) if clear else [named.word]
+    if named and (named.sure == UNCLEAR or named.word in fits):
         return
     if named:
         mapped["force_unit"] = guess(named.word, UNCLEAR, "the columns' names say so, but " + seen)

@@ -43,15 +43,20 @@ def _check_order(rows, keys):
     falls = np.flatnonzero(~(np.diff(keys) > 0))
     if len(falls):
         i = falls[0] + 1
-        rows.problem_once("order", i, f"frame must rise from row to row, got {number_text(keys[i])} after {number_text(keys[i - 1])}")
+        rows.problem_once("order", i, f"frame must rise from row to row, got {number_text(keys[i])} after {number_text(keys[i - 1])}: "
+                          "repair the table, or leave frame out of the mapping where frames_by is order")
 
 
-def _check_heights(rows, plate, start, goes_down):
+def check_heights(table, plate, start, problems, first):
+    """Heights of the rows from `first` on."""
+    goes_down, rows = "displacement" in table.map, Rows(table, problems)
+    if not len(plate) or not np.isfinite(plate.z[first:]).any():
+        return
     low = np.flatnonzero(plate.z <= 0)
     if len(low):
         rows.problem_once("plate", low[0], f"the plate must be over the floor, got a height of {plate.z[low[0]]:g} m: see length_unit"
                           + (" and plate.start" if goes_down else ", plate_z and origin_z"))
-    highest, down = int(np.nanargmax(plate.z)), np.nanmin(plate.z)
+    highest, down = first + int(np.nanargmax(plate.z[first:])), np.nanmin(plate.z[first:])
     high = plate.z[highest]
     if high - start > 1e-9 * high and high - start > start - down:  # positions slightly above the start are noise
         rows.problem(highest, f"the plate must go down from plate.start, {start:g} m, got {high:g} m: "
@@ -108,7 +113,5 @@ def import_plate(table, start, problems, programme=False):
     _check_order(rows, keys)
     if programme:
         _read_programme(rows, mapped, plate, sign)
-    if np.isfinite(z).any():
-        _check_heights(rows, plate, start, goes_down)
     _read_phases(rows, plate, problems)
     return plate

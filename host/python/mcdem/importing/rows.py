@@ -64,15 +64,21 @@ class Rows:
         if "frame" in self.columns:
             self.keyed_by = "column"
             unit = TIMES.get(column_name(self.map.word("frame")).unit, 1)
-            self.key = unit * self.number("frame")
+            stated = self._stated("frame")
+            self.key = np.where(stated, unit * self.number("frame", stated), np.nan)
             known = np.isfinite(self.key)
-            self.part, self.row, self.key = self.part[known], self.row[known], self.key[known]
+            self._keep(known)
+            if self.map.role != "plate" and len(self.frames()) - 1 > len(np.unique(self.key)):  # sorted by grain, not by frame
+                self._keep(np.argsort(self.key, kind="stable"))
         elif any(part.frames for part in self.parts):
             self.keyed_by = "step"
             for number, part in enumerate(self.parts):
                 mine = self.part == number
                 steps, first = zip(*part.frames) if part.frames else ((keys[number],), (0,))
                 self.key[mine] = np.array(steps, float)[np.searchsorted(first, self.row[mine], "right") - 1]
+
+    def _keep(self, which):
+        self.part, self.row, self.key = self.part[which], self.row[which], self.key[which]
 
     @property
     def keyed(self):
@@ -103,6 +109,14 @@ class Rows:
             if len(mine):
                 yield part, self.row[mine], mine, self.columns[key][number]
 
+    def _stated(self, key):
+        """Whether the cells are not empty: a trigger has numbers in some rows only."""
+        stated = np.ones(len(self), bool)
+        for part, rows, mine, ((_, column), *_) in self.each_part(key):
+            for i in np.flatnonzero(np.isnan(part.numbers(column)[rows])) if column is not None else ():
+                stated[mine[i]] = part.text(rows[i], column).strip() != ""
+        return stated
+
     def number(self, key, of=None):
         """The entry's value in each row, the sum of several columns. NaN is a problem in the rows `of`."""
         values = np.zeros(len(self))
@@ -112,7 +126,7 @@ class Rows:
                 wrong = np.isnan(numbers) if of is None else np.isnan(numbers) & of[mine]
                 for row in rows[wrong] if wrong.any() else ():
                     self.problems.add(lambda part=part, row=row: part.where(row), f"{part.columns[column]} must be a finite number, got "
-                                      f"{quoted(part.text(row, column))}: leave the row out where nothing was measured")
+                                      f"{quoted(part.text(row, column))}: leave out what was not measured: a row of the plate, a contact, or the whole frame of grains")
                     if self.problems.full:
                         break
                 values[mine] += sign * numbers

@@ -12,7 +12,7 @@ from .problems import quoted, to_number
 SAMPLED_LINES = 100
 MAX_COLUMNS = 10_000
 NOTHING = {"", "-", "--", "nan", "NaN", "NAN", "na", "NA", "N/A", "n/a", "null", "NULL", "inf"}
-UNITS = {"", "-", "m", "cm", "mm", "um", "µm", "N", "mN", "kN", "uN", "µN", "g", "gf", "s", "ms", "%", "1", "min", "voxel"}
+UNITS = {*"- m cm mm um µm μm N cN mN kN MN uN µN μN g gf kgf lbf s ms min h % 1 voxel Pa kPa MPa bar °C C K mm/min mm/s V mV".split(), ""}
 THOUSANDS = {",": re.compile(r"[+-]?[1-9]\d{0,2}(\.\d{3})+(,.*)?", re.ASCII | re.DOTALL),  # 12.345,6 with a decimal comma
              ".": re.compile(r"[+-]?[1-9]\d{0,2}(,\d{3})+(\..*)?", re.ASCII | re.DOTALL)}
 
@@ -23,7 +23,7 @@ class Form(NamedTuple):
 
 
 # In order of preference among equally good ones.
-FORMS = [Form(";", "."), Form(";", ","), Form("\t", "."), Form("\t", ","), Form(",", "."), Form(" ", "."), Form(" ", ",")]
+FORMS = [Form(";", "."), Form(";", ","), Form("\t", "."), Form("\t", ","), Form(",", "."), Form(",", ","), Form(" ", "."), Form(" ", ",")]
 
 
 def cut(line, separator):
@@ -152,7 +152,11 @@ class _DecimalComma:
 
 
 def _without_brackets(word):
-    return word[1:-1] if len(word) >= 2 and word[0] in "[(" else word
+    return word[1:-1] if _in_brackets(word) else word
+
+
+def _in_brackets(word):
+    return len(word) >= 2 and word[0] in "[(" and word[-1] in "])"
 
 
 def _names_of(headings, comment, format_, width):
@@ -161,8 +165,8 @@ def _names_of(headings, comment, format_, width):
     if not headings:
         return comment if len(comment) == width else format_
     names = headings[-1]
-    if len(headings) > 1 and all(_without_brackets(word) in UNITS for word in names):
-        units = [_without_brackets(word) for word in names] + [""]
+    if len(headings) > 1 and all(_in_brackets(word) or word in UNITS for word in names):
+        units = ["" if (unit := _without_brackets(word)) in ("-", "1") else unit for word in names] + [""]
         names = [name + (f" [{unit}]" if unit else "") for name, unit in zip(headings[-2], units)]
     return names
 
