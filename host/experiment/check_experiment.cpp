@@ -65,8 +65,8 @@ std::vector<std::string> ExperimentCheck::of(Severity severity) const {
 
 ExperimentCheck check_experiment(const Experiment& experiment) {
     Findings findings;
-    for (const auto check :
-         {describe, find_missing, check_errors, check_plate, check_grains, check_contacts, check_balance})
+    for (const auto check : {describe, find_missing, check_errors, check_plate, check_grains, check_contacts,
+                             check_plate_load, check_balance})
         check(experiment, findings);
     ExperimentCheck result{findings.all()};
     std::stable_sort(result.findings.begin(), result.findings.end(),

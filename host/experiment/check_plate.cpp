@@ -10,8 +10,9 @@
 namespace mcdem::inline experiment {
 namespace {
 
-constexpr double clear_load = 10;  // over the threshold of a contact
-constexpr double falls = 0.5;      // ratio of the force at the end of loading to the largest force before
+constexpr double clear_load = 10;   // over the threshold of a contact
+constexpr double max_noise = 0.01;  // of plate positions, over the stroke
+constexpr double falls = 0.5;       // ratio of the force at the end of loading to the largest force before
 
 /// Whether a frame was taken during a hold, in which the plate may move in both directions.
 std::vector<bool> held_frames(const Recording& recording) {
@@ -23,6 +24,8 @@ std::vector<bool> held_frames(const Recording& recording) {
 
 void check_course(const Recording& recording, Findings& findings) {
     Tally wrong_way, unload_first, left_out;
+    const auto [lowest, highest] = std::ranges::minmax(recording.scans, {}, &Scan::plate_z);
+    const double noise = max_noise * (highest.plate_z - lowest.plate_z);
     const std::vector<bool> held = held_frames(recording);
     for (std::size_t s = 0; s < recording.scans.size(); ++s) {
         const Scan& scan = recording.scans[s];
@@ -38,7 +41,7 @@ void check_course(const Recording& recording, Findings& findings) {
                              [&] { return fmt::format("{} of cycle {}", name(scan.phase), scan.cycle); });
         if (begins || before->phase != scan.phase || held[s]) continue;
         const double down = before->plate_z - scan.plate_z;
-        if ((scan.phase == Phase::load ? down : -down) < 0)
+        if ((scan.phase == Phase::load ? down : -down) < -noise)
             wrong_way.add(scan, [&] {
                 return fmt::format("{:.6g} m after {:.6g} m in phase {}", scan.plate_z, before->plate_z,
                                    name(scan.phase));

@@ -62,6 +62,7 @@ void check_errors(const Experiment& experiment, Findings& findings);
 void check_plate(const Experiment& experiment, Findings& findings);
 void check_grains(const Experiment& experiment, Findings& findings);
 void check_contacts(const Experiment& experiment, Findings& findings);
+void check_plate_load(const Experiment& experiment, Findings& findings);
 void check_balance(const Experiment& experiment, Findings& findings);
 
 }  // namespace mcdem::experiment

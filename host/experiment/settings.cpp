@@ -134,18 +134,20 @@ private:
         known("box.size");
         const auto node = root.at_path("box.size");
         const auto* size = node.as_array();
-        if (!size || size->size() != 2 || !size->is_homogeneous<double>()) {
+        const auto width = size && size->size() == 2 ? size->get(0)->value<double>() : std::nullopt;
+        const auto depth = width ? size->get(1)->value<double>() : std::nullopt;
+        if (!depth) {
             constexpr auto what =
-                "box.size must be the inner width and depth of the box, two decimal numbers [m], such as "
-                "[0.165, 0.166]";
+                "box.size must be the inner width and depth of the box, two numbers [m], such as [0.165, "
+                "0.166]";
             if (node)
                 problem(*node.node(), what);
             else
                 problems_.add(file_, what);
             return;
         }
-        box.size_x = size->get_as<double>(0)->get();
-        box.size_y = size->get_as<double>(1)->get();
+        box.size_x = *width;
+        box.size_y = *depth;
         for (double length : {box.size_x, box.size_y})
             if (!(length > 0 && length <= largest_box))
                 problem(*node.node(),

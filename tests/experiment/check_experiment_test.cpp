@@ -18,6 +18,7 @@ using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Not;
 
 constexpr int side = 5, grains = side * side * side;
 constexpr double diameter = 0.02, width = side * 0.0193, density = 100, weight = 9.81 * density * 4.18879e-6;
@@ -199,6 +200,11 @@ void leave_out_all_contacts(Experiment& e) {
     for (Scan& scan : scans(e)) scan.contacts.clear();
 }
 
+void raise_grains(Experiment& e) {
+    for (Scan& scan : scans(e))
+        for (Vec3& centre : scan.position) centre.z() += 3e-3;
+}
+
 class spoiled_lattice : public ::testing::TestWithParam<Spoil> {};
 
 TEST_P(spoiled_lattice, is_reported) {
@@ -232,6 +238,22 @@ INSTANTIATE_TEST_SUITE_P(
               "the top force is negative"},
         Spoil{"falls", odd, [](Experiment& e) { scans(e)[4].wall_force[5].z() = 0.5; },
               "the top force falls before loading ends"},
+        Spoil{"no_touch", odd,
+              [](Experiment& e) {
+                  for (Scan& scan : scans(e)) scan.plate_z += 4e-3;
+              },
+              "the plate carries a force above the highest grain: is plate.start right, and do these frames "
+              "of the grains belong to these rows of the plate? 9 in 9 frames, first in frame 0: 3.53 mm, at "
+              "a top force of"},
+        Spoil{"heights", odd, raise_grains, "times that of Hertz's law from the overlaps with the plate"},
+        Spoil{"unit", odd,
+              [](Experiment& e) {
+                  for (Scan& scan : scans(e)) scan.wall_force[5].z() *= 1000;
+              },
+              "the top force is 9"},
+        Spoil{"no_force", odd, [](Experiment& e) { scans(e)[3].wall_force[5].z() = 0; },
+              "the plate overlaps with grains as under load, but measures hardly any force: are plate.start "
+              "and the height of the grains right? 1 in 1 frame, first in frame 3: 0 N"},
         Spoil{"rest", missing, [](Experiment& e) { e.recording.plate_start += 1e-3; },
               "the packing at rest before the first stroke: frame 0 is 1 mm below"},
         Spoil{"unload", missing, [](Experiment& e) { scans(e).resize(5); }, "unloading: viscoelasticity"},
@@ -300,6 +322,13 @@ INSTANTIATE_TEST_SUITE_P(
                             [](Experiment& e) { e.uncertainty.erase("grains.friction"); },
                             "[uncertainty] of grains.friction: "}),
     [](const auto& info) { return info.param.name; });
+
+TEST(check_experiment, noise_of_plate_positions_is_not_a_motion) {
+    Experiment experiment = lattice();
+    scans(experiment)[3].plate_z = scans(experiment)[2].plate_z + 50e-6;  // of a stroke of 10 mm
+    EXPECT_THAT(check_experiment(experiment).of(Severity::odd),
+                Not(Contains(HasSubstr("against its phase"))));
+}
 
 TEST(check_experiment, slow_motion_is_not_a_jump) {
     Experiment experiment = lattice();

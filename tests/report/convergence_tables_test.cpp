@@ -1,6 +1,7 @@
 // Table, text, JSON and figure of a convergence study contain the same numbers.
 #include "report/run/convergence_tables.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -44,8 +45,19 @@ TEST(ConvergenceTables, TextNamesCauseSizeSignPositionAndRemedy) {
 TEST(ConvergenceTables, TextSaysConvergedIfNothingExceedsItsLimit) {
     Convergence c = example();
     c.causes[0].cells[0] = {0.004, 0.0001};
-    EXPECT_THAT(words_of_convergence(c)[0], HasSubstr("Converged"));
+    EXPECT_EQ(words_of_convergence(c)[0], "Converged: no error is beyond its limit.");
     EXPECT_THAT(to_text(table_of_convergence(c), TableFormat::terminal), Not(HasSubstr(" % *")));
+}
+
+TEST(ConvergenceTables, TextSaysNotDecidedIfErrorsAreTooUncertain) {
+    Convergence c = example();
+    c.causes[0].cells[0] = {0.004, 0.02};
+    const auto words = words_of_convergence(c);
+    EXPECT_THAT(words[0],
+                HasSubstr("Not decided: no error is beyond its limit, but more replicas are needed"));
+    EXPECT_EQ(words[1], fmt::format("plate speed: nothing beyond the limits, but 1 of {} errors are known to "
+                                    "their limits only",
+                                    c.cells.size()));
 }
 
 TEST(ConvergenceTables, TableMarksErrorsBeyondTheirLimit) {

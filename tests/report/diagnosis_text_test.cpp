@@ -12,6 +12,7 @@ namespace mcdem {
 namespace {
 
 using testing::AllOf;
+using testing::EndsWith;
 using testing::HasSubstr;
 using testing::Not;
 using testing::StartsWith;
@@ -121,6 +122,19 @@ TEST(DiagnosisText, unknown_effect_states_how_little_the_best_explains) {
     EXPECT_THAT(line(d, "How far"),
                 AllOf(HasSubstr("takes away 7 % of the gap"), HasSubstr("placebo takes away 12 %")));
     EXPECT_THAT(verdict_sentence(d), HasSubstr("the best takes away 7 % of the gap"));
+}
+
+TEST(DiagnosisText, an_effect_that_is_no_better_than_the_placebo_says_so) {
+    auto d = samples::diagnosis(Verdict::unknown_effect);
+    d.explanation->reduction = 0.9;
+    d.explanation->placebo = 0.94;
+    d.explanation->needed = 1.04;
+    EXPECT_THAT(line(d, "Which"), HasSubstr("takes away 90 % of the gap, but a placebo takes away 94 %"));
+    EXPECT_THAT(diagnosis_text(d), Not(HasSubstr("104 %")));
+    d.explanation->reduction = -0.4;
+    EXPECT_THAT(line(d, "Which"), EndsWith("makes the gap 40 % larger."));
+    EXPECT_THAT(line(d, "How far"), HasSubstr("all of it remains"));
+    EXPECT_THAT(verdict_sentence(d), EndsWith("the best makes the gap 40 % larger."));
 }
 
 TEST(DiagnosisText, calibration_suspect_names_the_parameter) {

@@ -165,13 +165,17 @@ std::string where_line(const Diagnosis& diagnosis) {
     return text + ".";
 }
 
-/// "97 % of the gap": the reduction on which the verdict depends.
+/// "takes away 97 % of the gap": the reduction on which the verdict depends.
 std::string reduction_words(const Diagnosis& diagnosis) {
-    return diagnosis.explanation ? percent(diagnosis.explanation->reduction) + " of the gap" : "the gap";
+    if (!diagnosis.explanation) return "takes away the gap";
+    const double reduction = diagnosis.explanation->reduction;
+    return reduction < 0 ? "makes the gap " + percent(-reduction) + " larger"
+                         : "takes away " + percent(reduction) + " of the gap";
 }
 
 /// The reduction required to name an effect, as a continuation.
 std::string needed_words(const Explanation& explanation) {
+    if (explanation.placebo > 0.5) return "but a placebo takes away " + percent(explanation.placebo);
     const auto needed = percent(explanation.needed);
     return needed == percent(explanation.reduction) ? "a little less than is needed to name it"
                                                     : "and " + needed + " would be needed to name it";
@@ -179,10 +183,11 @@ std::string needed_words(const Explanation& explanation) {
 
 std::string unknown_line(const Diagnosis& diagnosis) {
     auto text = "none of " + library_words(diagnosis) + " explains it";
-    if (const auto* best = leader_of(diagnosis); best && diagnosis.explanation)
-        text += fmt::format("; the best of them, {}{}, takes away {}, {}", cause_words(*best),
-                            together_with(diagnosis), reduction_words(diagnosis),
-                            needed_words(*diagnosis.explanation));
+    if (const auto* best = leader_of(diagnosis); best && diagnosis.explanation) {
+        text += fmt::format("; the best of them, {}{}, {}", cause_words(*best), together_with(diagnosis),
+                            reduction_words(diagnosis));
+        if (diagnosis.explanation->reduction >= 0) text += ", " + needed_words(*diagnosis.explanation);
+    }
     return text + ".";
 }
 
@@ -238,6 +243,9 @@ std::string data_words(const Diagnosis& diagnosis) {
 
 std::string remainder_words(const Explanation& explanation) {
     if (!explanation.leaves_more_than_noise) return "what remains is noise as far as these data tell";
+    if (explanation.reduction <= 0)
+        return fmt::format("all of it remains, which no effect of the library explains ({})",
+                           p_words(explanation.remainder_p));
     const double left = std::max(0.0, explanation.remainder());
     return fmt::format("{} remain{} that no effect of the library explains ({})", percent(left),
                        left < 0.015 ? "s" : "", p_words(explanation.remainder_p));
@@ -248,7 +256,7 @@ std::string how_far_line(const Diagnosis& diagnosis) {
         return diagnosis.verdict == Verdict::no_gap ? "there is nothing to explain."
                                                     : "not known: nothing was tried.";
     const auto& explanation = *diagnosis.explanation;
-    auto text = fmt::format("{} takes away {}{}, {}; a placebo takes away {}; {}", what_is_added(diagnosis),
+    auto text = fmt::format("{} {}{}, {}; a placebo takes away {}; {}", what_is_added(diagnosis),
                             reduction_words(diagnosis), data_words(diagnosis),
                             explanation.simulated ? "simulated in full" : "by the signatures",
                             percent(explanation.placebo), remainder_words(explanation));
@@ -325,7 +333,9 @@ std::string next_line(const Diagnosis& diagnosis) {
 
 /// The reduction of the named explanation, as a continuation.
 std::string taken_away(const Diagnosis& diagnosis) {
-    return diagnosis.explanation ? ", and " + reduction_words(diagnosis) + " goes away with it" : "";
+    return diagnosis.explanation
+               ? ", and " + percent(diagnosis.explanation->reduction) + " of the gap goes away with it"
+               : "";
 }
 
 }  // namespace
@@ -336,10 +346,10 @@ std::string verdict_headline(const Diagnosis& diagnosis) {
         case Verdict::no_gap:
             return "No detectable gap";
         case Verdict::effect:
-            return fmt::format("A gap; {} takes away {}", pair ? "two effects together" : "one effect",
+            return fmt::format("A gap; {} {}", pair ? "a pair of effects" : "one effect",
                                reduction_words(diagnosis));
         case Verdict::group:
-            return fmt::format("A gap; any of a group of effects takes away {}", reduction_words(diagnosis));
+            return fmt::format("A gap; any of a group of effects {}", reduction_words(diagnosis));
         case Verdict::unknown_effect:
             return "A gap that no known effect explains";
         case Verdict::not_converged:
@@ -365,7 +375,7 @@ std::string verdict_sentence(const Diagnosis& diagnosis) {
                    ", which these data cannot tell apart" + taken_away(diagnosis) + ".";
         case Verdict::unknown_effect:
             return "There is a gap that none of " + library_words(diagnosis) + " explains" +
-                   (diagnosis.explanation ? ": the best takes away " + reduction_words(diagnosis) : "") + ".";
+                   (diagnosis.explanation ? ": the best " + reduction_words(diagnosis) : "") + ".";
         case Verdict::not_converged:
             return "The gap is consistent with a simulation that is not converged" + to_refine(diagnosis) +
                    ".";

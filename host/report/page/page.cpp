@@ -1,5 +1,6 @@
 #include "report/page/page.h"
 
+#include <dlfcn.h>
 #include <fmt/format.h>
 #include <openssl/evp.h>
 
@@ -104,12 +105,21 @@ namespace fs = std::filesystem;
 
 constexpr const char* file_name = "plotly.js.gz";
 
+/// Folder of this code: of the program, or of the Python module.
+fs::path own_folder() {
+    std::error_code unknown;
+    Dl_info info{};
+    if (dladdr(reinterpret_cast<void*>(&page_script), &info) && info.dli_fname &&
+        fs::path(info.dli_fname).extension() == ".so")
+        return fs::weakly_canonical(info.dli_fname, unknown).parent_path().parent_path();
+    return fs::read_symlink("/proc/self/exe", unknown).parent_path();
+}
+
 /// Only $MCDEM_SHARE if it is set, so that a wrong value is noticed.
 std::vector<fs::path> folders() {
     if (const char* chosen = std::getenv("MCDEM_SHARE")) return {chosen};
-    std::error_code unknown;
-    const auto program = fs::read_symlink("/proc/self/exe", unknown).parent_path();
-    return {program / "share/mcdem", program.parent_path() / "share/mcdem", MCDEM_INSTALLED_SHARE};
+    const auto own = own_folder();
+    return {own / "share/mcdem", own.parent_path() / "share/mcdem", MCDEM_INSTALLED_SHARE};
 }
 
 }  // namespace

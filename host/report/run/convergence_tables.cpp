@@ -51,9 +51,21 @@ std::string remedy_of(const Convergence& convergence, const CauseErrors& cause, 
                        fmt::format(fmt::runtime(cause.remedy), factor, factor * factor));
 }
 
+/// Errors that two standard errors do not separate from their limits.
+int uncertain_errors(const Convergence& convergence, const CauseErrors& cause) {
+    int count = 0;
+    for (std::size_t c = 0; c < convergence.cells.size(); ++c)
+        count += 2 * cause.cells[c].standard_error > convergence.limit(c) ? 1 : 0;
+    return count;
+}
+
 std::string words_of(const Convergence& convergence, const CauseErrors& cause) {
-    const int worst = convergence.worst_beyond(cause);
-    if (worst < 0) return fmt::format("{}: nothing beyond the limits", cause.cause);
+    const int worst = convergence.worst_beyond(cause), uncertain = uncertain_errors(convergence, cause);
+    if (worst < 0)
+        return fmt::format("{}: nothing beyond the limits{}", cause.cause,
+                           uncertain ? fmt::format(", but {} of {} errors are known to their limits only",
+                                                   uncertain, convergence.cells.size())
+                                     : "");
     const auto cell = static_cast<std::size_t>(worst);
     int beyond = 0;
     for (std::size_t c = 0; c < convergence.cells.size(); ++c)
@@ -108,14 +120,17 @@ TextTable table_of_convergence(const Convergence& convergence) {
 
 std::vector<std::string> words_of_convergence(const Convergence& convergence) {
     std::vector<std::string> words;
-    bool converged = true;
+    bool converged = true, decided = true;
     for (const CauseErrors& cause : convergence.causes) {
         words.push_back(words_of(convergence, cause));
         converged = converged && convergence.worst_beyond(cause) < 0;
+        decided = decided && !uncertain_errors(convergence, cause);
     }
     words.insert(words.begin(),
-                 converged ? "Converged: no error is beyond its limit as far as these replicas can tell."
-                           : "Not converged.");
+                 !converged ? "Not converged."
+                 : decided  ? "Converged: no error is beyond its limit."
+                            : "Not decided: no error is beyond its limit, but more replicas are needed "
+                              "to tell (--replicas).");
     return words;
 }
 
