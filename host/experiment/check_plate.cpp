@@ -24,8 +24,8 @@ std::vector<bool> held_frames(const Recording& recording) {
 
 void check_course(const Recording& recording, Findings& findings) {
     Tally wrong_way, unload_first, left_out;
-    const auto [lowest, highest] = std::ranges::minmax(recording.scans, {}, &Scan::plate_z);
-    const double noise = max_noise * (highest.plate_z - lowest.plate_z);
+    const auto [lowest, highest] = std::ranges::minmax_element(recording.scans, {}, &Scan::plate_z);
+    const double noise = max_noise * (highest->plate_z - lowest->plate_z);
     const std::vector<bool> held = held_frames(recording);
     for (std::size_t s = 0; s < recording.scans.size(); ++s) {
         const Scan& scan = recording.scans[s];

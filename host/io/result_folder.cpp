@@ -108,9 +108,10 @@ ResultFolder ResultFolder::create(const fs::path& folder) {
     make_result_folder(folder);
     ResultFolder made(folder, FolderLock(folder, FolderLock::Use::alone));
     if (const fs::path file = file_of_a_run(folder); !file.empty())
-        throw InputError(fmt::format(
-            "{}: holds another run ({}): give another folder, or go on with --resume (in Python resume=True)",
-            folder.string(), file.filename().string()));
+        throw InputError(
+            fmt::format("{}: already holds a run ({}): give another folder, or continue it with --resume (in "
+                        "Python resume=True)",
+                        folder.string(), file.filename().string()));
     return made;
 }
 

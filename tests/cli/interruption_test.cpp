@@ -242,7 +242,7 @@ TEST_F(InterruptionTest, UnsuitableFoldersAreRefused) {
         EXPECT_EQ(finished.exit_code, 2) << finished.err;
         EXPECT_THAT(finished.err, HasSubstr(part));
     };
-    problem(words("a", false), "holds another run");
+    problem(words("a", false), "already holds a run");
     problem(run_words("a", {"--resume"}), "must be resumed with the scene it was begun with");
     problem(words("nowhere", true), "nothing to resume");
     problem(words("small.toml", false), "is a file");

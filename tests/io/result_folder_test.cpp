@@ -106,7 +106,7 @@ TEST(result_folder, refuses_to_mix_runs) {
     TemporaryFolder place;
     const auto run = synthetic_run();
     { ResultFolder::create(place / "out").append_segment(run); }
-    EXPECT_THAT(message_of([&] { ResultFolder::create(place / "out"); }), HasSubstr("holds another run"));
+    EXPECT_THAT(message_of([&] { ResultFolder::create(place / "out"); }), HasSubstr("already holds a run"));
     { ResultFolder::open_for_resume(place / "out").finish(); }
     EXPECT_THAT(message_of([&] { ResultFolder::create(place / "out"); }), HasSubstr("run.h5"));
     write_bytes(place / "file", "");

@@ -35,7 +35,6 @@ class Diagnoses(unittest.TestCase):
 
     def test_equals_the_file_and_the_program(self):
         told = []
-        os.environ["MCDEM_SHARE"] = str(pathlib.Path(PROGRAM).parent / "share/mcdem")  # of the program, beside its library
         said = mcdem.diagnose(self.scene, self.folder / "measured", self.folder / "out", **{**FEW, "page": True},
                               progress=lambda stage, fraction: told.append((stage, fraction)))
         self.assertIn("diagnosis", (self.folder / "out/diagnosis.html").read_text().lower())

@@ -55,9 +55,15 @@ TEST(ConvergenceTables, TextSaysNotDecidedIfErrorsAreTooUncertain) {
     const auto words = words_of_convergence(c);
     EXPECT_THAT(words[0],
                 HasSubstr("Not decided: no error is beyond its limit, but more replicas are needed"));
-    EXPECT_EQ(words[1], fmt::format("plate speed: nothing beyond the limits, but 1 of {} errors are known to "
-                                    "their limits only",
+    EXPECT_EQ(words[1], fmt::format("plate speed: nothing beyond the limits, but the standard errors of 1 of "
+                                    "{} are too large to tell",
                                     c.cells.size()));
+}
+
+TEST(ConvergenceTables, TextSaysIfACauseChangesNothing) {
+    Convergence c = example();
+    c.causes[1].cells.assign(c.cells.size(), {0, 0});
+    EXPECT_EQ(words_of_convergence(c)[2], "list margin: it changes nothing in these runs");
 }
 
 TEST(ConvergenceTables, TableMarksErrorsBeyondTheirLimit) {

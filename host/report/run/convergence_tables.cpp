@@ -60,12 +60,18 @@ int uncertain_errors(const Convergence& convergence, const CauseErrors& cause) {
 }
 
 std::string words_of(const Convergence& convergence, const CauseErrors& cause) {
+    const auto is_zero = [](const CellError& error) {
+        return !(std::abs(error.value) + error.standard_error > 0);
+    };
+    if (std::ranges::all_of(cause.cells, is_zero))
+        return fmt::format("{}: it changes nothing in these runs", cause.cause);
     const int worst = convergence.worst_beyond(cause), uncertain = uncertain_errors(convergence, cause);
     if (worst < 0)
         return fmt::format("{}: nothing beyond the limits{}", cause.cause,
-                           uncertain ? fmt::format(", but {} of {} errors are known to their limits only",
-                                                   uncertain, convergence.cells.size())
-                                     : "");
+                           uncertain
+                               ? fmt::format(", but the standard errors of {} of {} are too large to tell",
+                                             uncertain, convergence.cells.size())
+                               : "");
     const auto cell = static_cast<std::size_t>(worst);
     int beyond = 0;
     for (std::size_t c = 0; c < convergence.cells.size(); ++c)

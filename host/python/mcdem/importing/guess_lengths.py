@@ -50,7 +50,7 @@ def _guess_same_diameter(table):
         why = "trackpy's size is the radius of gyration of the brightness, not a radius" if is_trackpy(table.parts[0].columns) \
             else "no column has a size"
         mapped["same_diameter"] = guess(f"{distance:.4g}" if distance > 0 else "1", UNCLEAR, why + "; the nearest neighbours are so far apart: "
-                                        "are all grains of one size? If not, give a table with diameters")
+                                        "are all grains of one size? If not, add a column with diameters or radii to the table")
 
 
 def _check_size(mapped, grains):
