@@ -46,6 +46,18 @@ class Machines(ImportCase):
         text = mapping_text(mapping_of(self.with_plate("Zeit [s],Height [mm],Load [N],frame\n" + rows, grains)))
         self.expect_truth(self.by_mapping(text.replace('frame = "Zeit [s]"', 'frame = "frame"').replace('"?', '"')))
 
+    def test_frames_between_rows_take_the_nearest_if_the_clock_is_confirmed(self):
+        rows = "".join(f"{0.5 * s.frame + late - 0.02},{1e3 * s.plate_z:.9g},{s.top_force:.9g}\n" for s in self.truth.scans for late in (0, 0.1, 0.2, 0.3))
+        tables = self.with_plate("Zeit [s],Height [mm],Load [N]\n" + rows)
+        self.expect_one(self.unclear(tables), 'frames_by must be confirmed, got "?nearest"')
+        text = mapping_text(mapping_of(tables)).replace("?nearest", "nearest")
+        imported = self.imported(self.by_mapping(text))
+        self.assertEqual([*imported.grains.frame.unique()], [4 * scan.frame for scan in self.truth.scans])
+        of_frames = imported.plate.iloc[::4]
+        self.assertEqual([*of_frames.plate_z_m.round(9)], [scan.plate_z for scan in self.truth.scans])
+        early = rows[:rows.index("\n1.48") + 1]  # ends before the last frames
+        self.expect_one(self.unclear(self.with_plate("Zeit [s],Height [mm],Load [N]\n" + early)), "?order")
+
     def test_grains_may_be_sorted_by_number(self):
         name, *rows = lab_grains(self.truth, Style(",", ".")).splitlines()
         by_number = sorted(rows, key=lambda row: int(row.split(",")[2]))

@@ -78,7 +78,7 @@ class _Assembly:
 
     def place_grains(self, by):
         grains = self.grains
-        grains.place("order" if by == "order" else "rows" if by == "rows" else "plate", self.plate)
+        grains.place(by if by in ("order", "rows", "nearest") else "plate", self.plate)
         if by == "order" and len(grains.keys) < len(self.plate):
             self.notes.append(f"frames_by is order: the {len(grains.keys)} frames of the grains are at the first {len(grains.keys)} of the plate's "
                               f"{len(self.plate)} rows")
@@ -95,6 +95,11 @@ class _Assembly:
                 rows.problem_once("inside", first, f"centres must lie in the box of {size[0]:g} by {size[1]:g} m below the plate at "
                                   f"{size[2]:g} m, got {at} in frame {number_text(grains.keys[frame])}: see length_unit, origin_x, "
                                   "origin_y, origin_z and frames_by in the mapping")
+        first_at = {row: frame for frame, row in reversed(list(enumerate(grains.row)))}
+        for frame in [frame for frame, row in enumerate(grains.row) if row >= 0 and first_at[row] < frame][:1]:
+            rows, first = grains.where[frame]
+            rows.problem_once("row", first, f"frame {number_text(grains.keys[frame])} must have a row of the plate of its own, got one that an "
+                              "earlier frame has: see frames_by in the mapping")
         if min(grains.row) > 0:  # an experiment starts at the first frame of the grains
             self.dropped = min(grains.row)
             self.notes.append(f"the plate's first {self.dropped} rows are left out: grains are known from then on")

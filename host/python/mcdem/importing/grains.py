@@ -33,8 +33,8 @@ class GrainFrames:
         if by in ("order", "rows"):
             rows = np.arange(len(keys)) if by == "order" else keys
             return np.where((rows >= 0) & (rows < self.plate_rows) & (rows == np.round(rows)), rows, -1).astype(int)
-        if by == "plate":
-            return self.plate.find(keys)
+        if by in ("plate", "nearest"):
+            return self.plate.find(keys) if by == "plate" else self.plate.nearest(keys)
         frames = self.index.find(keys)
         return np.where(frames < 0, -1, np.asarray(self.row)[frames]) if self.row is not None else np.full(len(keys), -1)
 

@@ -1,6 +1,7 @@
 """Guesses which frames of the tables belong together."""
 from dataclasses import dataclass, field
 
+import numpy as np
 
 from .mapping import UNCLEAR, guess
 from .names import COUNTED, TIMES, column_name, is_among, key_of_name
@@ -100,6 +101,18 @@ def _in_order(frames, plate):
                  "belong together: put numbers or times of the plate's rows into the files' names or into a column")
 
 
+def _between_rows(frames, plate):
+    """A proposal for times between the rows of a plate that was recorded more often; None if they are not."""
+    if not frames.counts == plate.counts == "time" or not _same_clock(frames, plate) or len(plate.keys) < 3 * len(frames.keys):
+        return None
+    rows = FrameIndex(plate.keys).nearest(frames.keys)
+    if (rows < 0).any() or len(set(rows)) < len(rows):
+        return None
+    apart = np.abs(np.array(plate.keys)[rows] - frames.keys).max()
+    return guess("nearest", UNCLEAR, f"times here lie between those of the plate's rows, at most {apart:.3g} s from the nearest: are they of the "
+                 "same clock?")
+
+
 def _match(frames, plate, grains):
     if grains and frames.by == grains.by == "place" and frames.keys == grains.keys:
         return guess("grains", "likely", "there are as many as of the grains")
@@ -110,7 +123,7 @@ def _match(frames, plate, grains):
         return _by_numbers("grains", frames, grains, "the grains'")
     if _all_among(frames.keys, plate.keys):
         return _by_numbers("plate", frames, plate, "the plate's")
-    return _in_order(frames, plate)
+    return _between_rows(frames, plate) or _in_order(frames, plate)
 
 
 def guess_frames(tables):

@@ -46,7 +46,7 @@ class Key(NamedTuple):
 
 _LENGTHS, _FORCES = tuple(LENGTH_WORDS), tuple(FORCES)
 _LENGTH_KEYS = [Key("voxel_size", "number", "edge of a voxel [m], where length_unit is voxel")]
-_FRAMES_BY = ("plate: frames have the plate's numbers, times or steps; order: the first is the plate's first row, and so on; rows: "
+_FRAMES_BY = ("plate: frames have the plate's numbers, times or steps; nearest: the row with the nearest time; order: the first is the plate's first row, and so on; rows: "
               "they are the plate's rows, counted from 0")
 KEYS = {
     "plate": [
@@ -66,7 +66,7 @@ KEYS = {
     ],
     "grains": [
         Key("frame", "column", "which rows belong together: frame number, time or step"),
-        Key("frames_by", "word", _FRAMES_BY, ("plate", "order", "rows")),
+        Key("frames_by", "word", _FRAMES_BY, ("plate", "nearest", "order", "rows")),
         Key("grain", "column", "a grain's number, alike in all frames; without it the rows of a frame count"),
         Key("first_grain", "number", "the number of the first row's grain, where no column has it"),
         Key("where", "column", "rows with 0 here are no grains"),
@@ -85,8 +85,8 @@ KEYS = {
     ],
     "contacts": [
         Key("frame", "column", "which rows belong together: frame number, time or step"),
-        Key("frames_by", "word", "whose frame numbers, times or steps these are; order: the plate's rows, one after the other; rows: "
-            "the plate's rows, counted from 0", ("plate", "grains", "order", "rows")),
+        Key("frames_by", "word", "whose frame numbers, times or steps these are; nearest: the plate's row with the nearest time; order: "
+            "the plate's rows, one after the other; rows: the plate's rows, counted from 0", ("plate", "grains", "nearest", "order", "rows")),
         Key("grain", "column", "the grain"),
         Key("partner", "column", "the other grain, or a wall; or one wall's name, where all rows are its"),
         Key("where", "column", "rows with 0 here are no contacts"),

@@ -170,6 +170,17 @@ class FrameIndex:
         steps = steps[steps > 0]
         self.tolerance = 1e-3 * steps.min() if len(steps) else 1e-9 * abs(self.sorted[0]) if len(keys) else 0.0
 
+    def nearest(self, keys):
+        """Positions of the nearest ones; -1 if there would have been a nearer one before the first or after the last."""
+        keys = np.asarray(keys, float)
+        if len(self.sorted) < 2:
+            return self.find(keys)
+        right = np.clip(np.searchsorted(self.sorted, keys), 1, len(self.sorted) - 1)
+        is_left = keys - self.sorted[right - 1] <= self.sorted[right] - keys
+        first, last = self.sorted[[0, -1]] - np.diff(self.sorted)[[0, -1]] * [0.5, -0.5]
+        inside = (keys >= first) & (keys <= last)
+        return np.where(inside, self.order[np.where(is_left, right - 1, right)], -1)
+
     def find(self, keys):
         """Positions; -1 if there is none."""
         keys = np.asarray(keys, float)
