@@ -152,7 +152,9 @@ Model full_model() {
 std::vector<std::string> names_of_readme() {
     std::ifstream in(MCDEM_SOURCE_DIR "/host/diagnose/README.md");
     std::vector<std::string> names;
-    for (std::string line; std::getline(in, line);) {
+    std::string line;
+    while (std::getline(in, line) && line != "## The effects") continue;
+    while (std::getline(in, line)) {
         if (!line.starts_with("| `")) continue;
         const std::string cell = line.substr(0, line.find('|', 1));
         for (std::size_t from = cell.find('`'); from != std::string::npos;) {

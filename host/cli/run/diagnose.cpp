@@ -16,6 +16,7 @@
 #include "core/output_file.h"
 #include "core/version.h"
 #include "ensemble/parts/library_parts.h"
+#include "experiment/check_experiment.h"
 #include "io/result_folder.h"
 #include "report/diagnosis/diagnosis_json.h"
 #include "report/diagnosis/diagnosis_page.h"
@@ -50,6 +51,13 @@ DiagnoseOptions options_of(const DiagnoseCommand& command) {
     return options;
 }
 
+void warn_of_odd_data(const std::string& folder, const Experiment& experiment) {
+    const auto odd = check_experiment(experiment).of(Severity::odd);
+    if (!odd.empty())
+        spdlog::warn("{} looks odd: {}{}; `mcdem experiment check` says more", folder, odd.front(),
+                     odd.size() > 1 ? fmt::format("; and {} more", odd.size() - 1) : "");
+}
+
 /// Several packings are named by their folders.
 std::vector<Experiment> read_experiments(const std::vector<std::string>& folders) {
     std::vector<Experiment> experiments;
@@ -57,6 +65,7 @@ std::vector<Experiment> read_experiments(const std::vector<std::string>& folders
         if (std::ranges::count(folders, folder) > 1)
             throw InputError(fmt::format("--experiment: {} is given twice", folder));
         experiments.push_back(read_experiment(folder));
+        warn_of_odd_data(folder, experiments.back());
         if (folders.size() > 1) experiments.back().name = folder;
     }
     return experiments;
