@@ -46,8 +46,7 @@ std::vector<std::string> words_of(const RunCommand& command) {
 std::string resume_command(const RunCommand& command) {
     std::string text = "mcdem " + shell_words(words_of(command));
     if (!command.device.empty()) text += " --device " + shell_word(command.device);
-    if (command.no_figures) text += " --no-figures";
-    return text + " --resume";
+    return text + " --resume" + (command.no_figures ? " --no-figures" : "");
 }
 
 void warn_of_failure(const Replica& replica, const Failure& failure) {
