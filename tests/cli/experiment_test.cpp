@@ -53,7 +53,7 @@ TEST_F(ExperimentCommandTest, ARunBecomesAnExperimentWithoutWarnings) {
     expect_done(checked);
     EXPECT_THAT(checked.out, testing::StartsWith("small, elastic_sphere\n\nwhat there is\n"));
     EXPECT_THAT(checked.out, HasSubstr("\n  grains.csv      30 grains of "));
-    EXPECT_THAT(checked.out, HasSubstr("\n  experiment.toml [uncertainty] of grains.poisson_ratio, "));
+    EXPECT_THAT(checked.out, HasSubstr("\n  experiment.toml [uncertainty] of grains.friction: "));
     EXPECT_THAT(checked.out, HasSubstr("\nwhat looks odd: nothing\n"));
     std::istringstream lines(checked.out);
     for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 110u);

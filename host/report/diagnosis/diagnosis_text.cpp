@@ -165,29 +165,20 @@ std::string where_line(const Diagnosis& diagnosis) {
     return text + ".";
 }
 
-/// "takes away 97 % of the gap": the reduction on which the verdict depends.
-std::string reduction_words(const Diagnosis& diagnosis) {
-    if (!diagnosis.explanation) return "takes away the gap";
-    const double reduction = diagnosis.explanation->reduction;
-    return reduction < 0 ? "makes the gap " + percent(-reduction) + " larger"
-                         : "takes away " + percent(reduction) + " of the gap";
-}
-
 /// The reduction required to name an effect, as a continuation.
 std::string needed_words(const Explanation& explanation) {
-    if (explanation.placebo > 0.5) return "but a placebo takes away " + percent(explanation.placebo);
+    if (explanation.reduction < 0) return "";
+    if (explanation.placebo > 0.5) return ", but a placebo takes away " + percent(explanation.placebo);
     const auto needed = percent(explanation.needed);
-    return needed == percent(explanation.reduction) ? "a little less than is needed to name it"
-                                                    : "and " + needed + " would be needed to name it";
+    return needed == percent(explanation.reduction) ? ", a little less than is needed to name it"
+                                                    : ", and " + needed + " would be needed to name it";
 }
 
 std::string unknown_line(const Diagnosis& diagnosis) {
     auto text = "none of " + library_words(diagnosis) + " explains it";
-    if (const auto* best = leader_of(diagnosis); best && diagnosis.explanation) {
-        text += fmt::format("; the best of them, {}{}, {}", cause_words(*best), together_with(diagnosis),
-                            reduction_words(diagnosis));
-        if (diagnosis.explanation->reduction >= 0) text += ", " + needed_words(*diagnosis.explanation);
-    }
+    if (const auto* best = leader_of(diagnosis); best && diagnosis.explanation)
+        text += fmt::format("; the best of them, {}{}, {}{}", cause_words(*best), together_with(diagnosis),
+                            reduction_words(diagnosis), needed_words(*diagnosis.explanation));
     return text + ".";
 }
 
@@ -243,12 +234,10 @@ std::string data_words(const Diagnosis& diagnosis) {
 
 std::string remainder_words(const Explanation& explanation) {
     if (!explanation.leaves_more_than_noise) return "what remains is noise as far as these data tell";
-    if (explanation.reduction <= 0)
-        return fmt::format("all of it remains, which no effect of the library explains ({})",
-                           p_words(explanation.remainder_p));
     const double left = std::max(0.0, explanation.remainder());
-    return fmt::format("{} remain{} that no effect of the library explains ({})", percent(left),
-                       left < 0.015 ? "s" : "", p_words(explanation.remainder_p));
+    const auto what = left >= 1 ? "all of it remains, which"
+                                : percent(left) + (left < 0.015 ? " remains that" : " remain that");
+    return fmt::format("{} no effect of the library explains ({})", what, p_words(explanation.remainder_p));
 }
 
 std::string how_far_line(const Diagnosis& diagnosis) {
@@ -333,9 +322,8 @@ std::string next_line(const Diagnosis& diagnosis) {
 
 /// The reduction of the named explanation, as a continuation.
 std::string taken_away(const Diagnosis& diagnosis) {
-    return diagnosis.explanation
-               ? ", and " + percent(diagnosis.explanation->reduction) + " of the gap goes away with it"
-               : "";
+    if (!diagnosis.explanation) return "";
+    return fmt::format(", and {} of the gap goes away with it", percent(diagnosis.explanation->reduction));
 }
 
 }  // namespace

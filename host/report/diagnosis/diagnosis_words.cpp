@@ -253,4 +253,11 @@ std::string suspect_words(const NuisanceFit& suspect) {
     return text;
 }
 
+std::string reduction_words(const Diagnosis& diagnosis) {
+    if (!diagnosis.explanation) return "takes away the gap";
+    const double reduction = diagnosis.explanation->reduction;
+    return reduction < 0 ? "makes the gap " + percent(-reduction) + " larger"
+                         : "takes away " + percent(reduction) + " of the gap";
+}
+
 }  // namespace mcdem::report

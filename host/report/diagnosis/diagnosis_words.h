@@ -64,4 +64,7 @@ std::vector<NuisanceFit> suspects_of(const Diagnosis& diagnosis);
 /// "modulus: 2.30 ± 0.20 kPa higher than stated (4.6 times its stated error)".
 std::string suspect_words(const NuisanceFit& suspect);
 
+/// "takes away 97 % of the gap", "makes the gap 20 % larger": the reduction on which the verdict depends.
+std::string reduction_words(const Diagnosis& diagnosis);
+
 }  // namespace mcdem::report
