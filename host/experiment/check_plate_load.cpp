@@ -16,19 +16,25 @@ constexpr double gap_under_load = 0.1;           // over the diameter: tilt, con
 constexpr double max_force_ratio = 4;            // to Hertz's law: strong compression, errors of the modulus
 constexpr double max_error = 0.02;               // of positions, over the diameter
 
-struct Contacts {
+/// A frame with positions.
+struct Frame {
+    const Scan* scan;
     double top = 0;    ///< of the highest grain [m]
     double hertz = 0;  ///< force on the plate for a modulus of 1 Pa and independent contacts [N]
 };
 
-Contacts contacts_with_plate(const Recording& recording, const Scan& scan) {
-    Contacts contacts;
-    for (int i = 0; i < static_cast<int>(scan.position.size()); ++i) {
-        const double radius = radius_of(recording, i), top = at(scan.position, i).z() + radius;
-        contacts.top = std::max(contacts.top, top);
-        contacts.hertz += 4.0 / 3 * std::sqrt(radius) * std::pow(std::max(0.0, top - scan.plate_z), 1.5);
+std::vector<Frame> frames_of(const Recording& recording) {
+    std::vector<Frame> frames;
+    for (const Scan& scan : recording.scans) {
+        if (scan.position.empty()) continue;
+        Frame& frame = frames.emplace_back(Frame{&scan});
+        for (int i = 0; i < static_cast<int>(scan.position.size()); ++i) {
+            const double radius = radius_of(recording, i), top = at(scan.position, i).z() + radius;
+            frame.top = std::max(frame.top, top);
+            frame.hertz += 4.0 / 3 * std::sqrt(radius) * std::pow(std::max(0.0, top - scan.plate_z), 1.5);
+        }
     }
-    return contacts;
+    return frames;
 }
 
 double largest_force(const Recording& recording) {
@@ -37,16 +43,16 @@ double largest_force(const Recording& recording) {
     return largest;
 }
 
-void check_touch(const Experiment& experiment, Findings& findings) {
+void check_touch(const Experiment& experiment, const std::vector<Frame>& frames, double largest,
+                 Findings& findings) {
     const Recording& recording = experiment.recording;
     const double tolerance =
         gap_under_load * mean_diameter(recording) + 4 * experiment.measurement.position_error;
-    const double least = unloaded * largest_force(recording);
     Tally apart;
-    for (const Scan& scan : recording.scans) {
-        if (scan.position.empty() || !(scan.top_force() > least)) continue;
-        const double gap = scan.plate_z - contacts_with_plate(recording, scan).top;
-        if (gap > tolerance)
+    for (const Frame& frame : frames) {
+        const Scan& scan = *frame.scan;
+        const double gap = scan.plate_z - frame.top;
+        if (scan.top_force() > unloaded * largest && gap > tolerance)
             apart.add(scan, [&] {
                 return fmt::format("{:.3g} mm, at a top force of {:.3g} N", 1e3 * gap, scan.top_force());
             });
@@ -57,17 +63,18 @@ void check_touch(const Experiment& experiment, Findings& findings) {
                  apart);
 }
 
-void check_force(const Experiment& experiment, Findings& findings) {
+void check_force(const Experiment& experiment, const std::vector<Frame>& frames, double largest,
+                 Findings& findings) {
     const Recording& recording = experiment.recording;
     const auto modulus = material(experiment, "grains.youngs_modulus");
     if (!modulus || experiment.measurement.position_error > max_error * mean_diameter(recording)) return;
     const double nu = material(experiment, "grains.poisson_ratio").value_or(0.5);
-    const double stiffness = *modulus / (1 - nu * nu), largest = largest_force(recording);
+    const double stiffness = *modulus / (1 - nu * nu);
     std::vector<double> ratios;
     Tally pressed;
-    for (const Scan& scan : recording.scans) {
-        if (scan.position.empty()) continue;
-        const double hertz = stiffness * contacts_with_plate(recording, scan).hertz;
+    for (const Frame& frame : frames) {
+        const Scan& scan = *frame.scan;
+        const double hertz = stiffness * frame.hertz;
         if (scan.top_force() > loaded * largest && hertz > 0) ratios.push_back(scan.top_force() / hertz);
         if (scan.top_force() < unloaded * largest && hertz > loaded * largest)
             pressed.add(scan, [&] { return fmt::format("{:.3g} N", scan.top_force()); });
@@ -92,8 +99,10 @@ void check_force(const Experiment& experiment, Findings& findings) {
 
 void check_plate_load(const Experiment& experiment, Findings& findings) {
     if (experiment.recording.diameter.empty()) return;
-    check_touch(experiment, findings);
-    check_force(experiment, findings);
+    const auto frames = frames_of(experiment.recording);
+    const double largest = largest_force(experiment.recording);
+    check_touch(experiment, frames, largest, findings);
+    check_force(experiment, frames, largest, findings);
 }
 
 }  // namespace mcdem::experiment

@@ -17,9 +17,8 @@ class Machines(ImportCase):
             scan.contacts = []
 
     def with_plate(self, text, grains=None):
-        """The guess for this table of the plate, in which nothing is unclear."""
-        tables = self.guess([self.write("machine.csv", text), self.write("grains.csv", grains or lab_grains(self.truth, Style(",", ".")))])
-        return tables
+        """The guess for this table of the plate."""
+        return self.guess([self.write("machine.csv", text), self.write("grains.csv", grains or lab_grains(self.truth, Style(",", ".")))])
 
     def expect_all_of(self, text, grains=None):
         tables = self.with_plate(text, grains)

@@ -226,9 +226,8 @@ void add_instrument_options(CLI::App& sub, Instrument& instrument) {
         "proportion to the plate's path",
         bias);
     add("--zero-drift", instrument.zero_drift, "PART",
-        "Unstated error: offset of the load cell at the end of the last cycle, over the maximum top force; "
-        "it "
-        "grows in proportion to the plate's path",
+        "Unstated error: offset of the load cell at the end of the last cycle, over the maximum top "
+        "force; it grows in proportion to the plate's path",
         bias);
     add("--gauge-hysteresis", instrument.gauge_hysteresis, "PART",
         "Unstated error: excess of the top force during unloading, at half the maximum force, over the "

@@ -51,10 +51,10 @@ DiagnoseOptions options_of(const DiagnoseCommand& command) {
     return options;
 }
 
-void warn_of_odd_data(const std::string& folder, const Experiment& experiment) {
+void warn_of_odd_data(const Experiment& experiment) {
     const auto odd = check_experiment(experiment).of(Severity::odd);
     if (!odd.empty())
-        spdlog::warn("{} looks odd: {}{}; `mcdem experiment check` says more", folder, odd.front(),
+        spdlog::warn("{} looks odd: {}{}; `mcdem experiment check` says more", experiment.name, odd.front(),
                      odd.size() > 1 ? fmt::format("; and {} more", odd.size() - 1) : "");
 }
 
@@ -65,7 +65,6 @@ std::vector<Experiment> read_experiments(const std::vector<std::string>& folders
         if (std::ranges::count(folders, folder) > 1)
             throw InputError(fmt::format("--experiment: {} is given twice", folder));
         experiments.push_back(read_experiment(folder));
-        warn_of_odd_data(folder, experiments.back());
         if (folders.size() > 1) experiments.back().name = folder;
     }
     return experiments;
@@ -80,6 +79,7 @@ Diagnosis diagnose(const DiagnoseCommand& command, const Scene& scene,
     if (scene.replicas.size() > 1)
         spdlog::warn("the scene has {} replicas; the first one is diagnosed: {}", scene.replicas.size(),
                      scene.replicas.front().label);
+    std::ranges::for_each(experiments, warn_of_odd_data);
     const Interrupt interrupt;
     StageProgress stages;
     DiagnoseOptions options = options_of(command);

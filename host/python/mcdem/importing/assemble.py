@@ -61,7 +61,7 @@ class _Assembly:
         self.problems.report()
         if grains:
             self.place_grains(grains[0].map.word("frames_by", "plate"))
-        check_heights(plates[0], self.plate, self.known.plate_start, self.problems, self.dropped)
+        check_heights(self.plate, self.known.plate_start, self.dropped)
         tables = []
         if self.grains.row is not None and -1 not in self.grains.row:
             for table in contacts:

@@ -109,11 +109,9 @@ class _Reader:
         if not frames.keys:
             frames.ids, first = np.unique(ids, return_index=True)
             frames.diameter, centres = diameter[first], centres[first]
-        else:
+        elif not len(twice):
             others = np.isin(ids, frames.ids, invert=True).sum()
-            if len(twice):
-                pass
-            elif others or len(np.unique(ids)) != len(frames.ids) or len(ids) != len(frames.ids):
+            if others or len(np.unique(ids)) != len(frames.ids) or len(ids) != len(frames.ids):
                 rows.problem_once("all", mine[0], f"frame {shown} must list the {len(frames.ids)} grains of the first frame, got {len(ids)}, "
                                   f"of which {others} are other ones: number grains alike in all frames, and leave a frame out where "
                                   "one is missing")

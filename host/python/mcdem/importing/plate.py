@@ -13,9 +13,9 @@ PHASES = {**dict.fromkeys("load loading down compression compress belastung".spl
 
 
 class PlateRows:
-    def __init__(self, z=(), force=(), keys=(), keyed=False):
+    def __init__(self, z=(), force=(), keys=(), rows=None):
         self.z, self.force = np.asarray(z, float), np.asarray(force, float)  # [m], upward force on it [N]
-        self.keys, self.keyed, self.index = np.asarray(keys, float), keyed, FrameIndex(keys)
+        self.index, self.rows = FrameIndex(keys), rows  # `rows` for messages
         self.time = self.set_force = np.full(len(self.z), np.nan)  # [s], [N]; of a programme
         self.phase = np.zeros(len(self.z), int)
         self.cycle = np.zeros(len(self.z), int)
@@ -47,11 +47,11 @@ def _check_order(rows, keys):
                           "repair the table, or leave frame out of the mapping where frames_by is order")
 
 
-def check_heights(table, plate, start, problems, first):
+def check_heights(plate, start, first):
     """Heights of the rows from `first` on."""
-    goes_down, rows = "displacement" in table.map, Rows(table, problems)
     if not len(plate) or not np.isfinite(plate.z[first:]).any():
         return
+    rows, goes_down = plate.rows, "displacement" in plate.rows
     low = np.flatnonzero(plate.z <= 0)
     if len(low):
         rows.problem_once("plate", low[0], f"the plate must be over the floor, got a height of {plate.z[low[0]]:g} m: see length_unit"
@@ -88,7 +88,7 @@ def _read_programme(rows, mapped, plate, sign):
     """Times, and prescribed forces if there are any."""
     plate.time = rows.number("time") * TIMES.get(column_name(mapped.word("time")).unit, 1)
     if "set_force" in rows:
-        stated = np.array([rows.text(i, "set_force").strip() != "" for i in range(len(rows))])
+        stated = rows.stated("set_force")
         plate.set_force = np.where(stated, rows.number("set_force", stated) * mapped.force_factor() * sign, np.nan)
 
 
@@ -107,7 +107,7 @@ def import_plate(table, start, problems, programme=False):
     force = rows.number("top_force") * mapped.force_factor() * sign
     origin = mapped.number("origin_z") * signed_column(mapped.word("plate_z"))[0]
     z = start - mapped.length_factor() * place if goes_down else mapped.length_factor() * (place - origin)
-    plate = PlateRows(z, force, keys, rows.keyed)
+    plate = PlateRows(z, force, keys, rows)
     if not len(plate):
         return plate
     _check_order(rows, keys)

@@ -64,7 +64,7 @@ class Rows:
         if "frame" in self.columns:
             self.keyed_by = "column"
             unit = TIMES.get(column_name(self.map.word("frame")).unit, 1)
-            stated = self._stated("frame")
+            stated = self.stated("frame")
             self.key = np.where(stated, unit * self.number("frame", stated), np.nan)
             known = np.isfinite(self.key)
             self._keep(known)
@@ -109,7 +109,7 @@ class Rows:
             if len(mine):
                 yield part, self.row[mine], mine, self.columns[key][number]
 
-    def _stated(self, key):
+    def stated(self, key):
         """Whether the cells are not empty: a trigger has numbers in some rows only."""
         stated = np.ones(len(self), bool)
         for part, rows, mine, ((_, column), *_) in self.each_part(key):
