@@ -66,7 +66,8 @@ def gives_up_a_part_that_kills_its_processes(place):
     """Every process of one part is killed: the other parts are computed, and the command reports the failure and
     continues later."""
     place.run_alone()
-    hold = Hold(place)
+    # Each attempt continues from the last checkpoint: six of them together must not finish the part.
+    hold = Hold(place, launches=shared_runs.LAUNCHES // 20)
     process = all_devices(place, "both", environment=hold.environment)
     killed = []
     while process.poll() is None:
