@@ -20,11 +20,11 @@ def bash(script, *words):
     """Completions of the last word by bash. compopt works only in interactive shells, so it is replaced."""
     code = ('compopt() { :; }; source "$1"; shift; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _mcdem; '
             'printf "%s\\n" "${COMPREPLY[@]}"')
-    return set(run("bash", "-c", code, "bash", script, "mcdem", *words).split())
+    return set(run("bash", "-c", code, "bash", script, str(program), *words).split())
 
 
 def fish(script, *words):
-    line = " ".join(("mcdem", *words))
+    line = " ".join((str(program), *words))
     said = run("fish", "--no-config", "-c", f"source {script}; complete -C '{line}'")
     return {one.split("\t")[0] for one in said.splitlines()}
 
@@ -34,7 +34,7 @@ def zsh(script, *words):
     instead."""
     code = ('compdef() { :; }; compadd() { print -l -- "$@" }; _files() { print files "$@" }; _message() { :; }; '
             '_describe() { print -l -- "${(@P)@[-1]%%:*}" }; source "$1"; shift; words=("$@"); CURRENT=$#; _mcdem')
-    return set(run("zsh", "-f", "-c", code, "zsh", script, "mcdem", *words).split())
+    return set(run("zsh", "-f", "-c", code, "zsh", script, str(program), *words).split())
 
 
 def check(complete, script):

@@ -36,7 +36,7 @@ void append(std::vector<CommandEntry>& tree, const CLI::App& app, const std::str
     CommandEntry entry{path, app.get_description(), app.get_footer(), {}, {}, {}};
     for (const CLI::Option* option : app.get_options())
         (option->get_positional() ? entry.positionals : entry.options).push_back(entry_of(*option, format));
-    const auto commands = app.get_subcommands([](const CLI::App*) { return true; });
+    const auto commands = app.get_subcommands([](const CLI::App* one) { return !one->get_group().empty(); });
     for (const CLI::App* command : commands) entry.commands.push_back(command->get_name());
     tree.push_back(std::move(entry));
     for (const CLI::App* command : commands)
