@@ -165,6 +165,7 @@ TEST(KeptFindings, AreReadBackUnchanged) {
                      {{{0}, {0.1}, {0.02}, 12.5, 0.3, 11.0, std::nullopt, 0.8, 0.7},
                       {{0, 1}, {0.1, 0.2}, {0.02, 0.03}, 15, 0.6, {}, {}, 0.9, {}}},
                      false,
+                     0.3,
                      0.2};
     std::ofstream(folder.path / "f.json") << findings_text(f);
     const Findings back = read_findings(folder.path / "f.json");
@@ -175,6 +176,7 @@ TEST(KeptFindings, AreReadBackUnchanged) {
     EXPECT_EQ(back.proposals.at(0).confirmed_reduction, 0.7);
     EXPECT_EQ(back.proposals.at(1).reduction, 0.9);
     EXPECT_FALSE(back.held_out);
+    EXPECT_EQ(back.held_out_noise, 0.3);
     EXPECT_EQ(back.placebo, 0.2);
 }
 

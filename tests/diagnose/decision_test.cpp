@@ -202,6 +202,28 @@ TEST(Decision, UnknownIfTheBestReducesTheGapLittle) {
     EXPECT_EQ(decide(f, limits).verdict, Verdict::unknown_effect) << "real runs count";
 }
 
+// The reduction of a small gap in held-out data is uncertain by its noise.
+TEST(Decision, ABadlyMeasuredReductionMayBeSmallerByItsNoiseIfOnlyNoiseIsLeft) {
+    Findings f = clear_case();
+    const Limits limits;
+    f.proposals[0].misfit_p = limits.only_noise;
+    f.proposals[0].reduction = 0.45;
+    EXPECT_EQ(decide(f, limits).verdict, Verdict::unknown_effect) << "the gap is well measured";
+    f.held_out_noise = 0.2;
+    EXPECT_EQ(decide(f, limits).verdict, Verdict::effect);
+    EXPECT_NEAR(explanation_of(f, decide(f, limits), limits)->needed, limits.reduction - 0.2, 1e-12);
+    EXPECT_LT(all_confidence(decide(f, limits)), 0.6) << "less certain than with a large reduction";
+    f.proposals[0].reduction = 0.39;
+    EXPECT_EQ(decide(f, limits).verdict, Verdict::unknown_effect);
+    f.held_out_noise = 0.45;
+    EXPECT_EQ(decide(f, limits).verdict, Verdict::effect);
+    f.placebo = 0.3;
+    EXPECT_EQ(decide(f, limits).verdict, Verdict::unknown_effect) << "the placebo does nearly as much";
+    f.placebo = 0;
+    f.proposals[0].misfit_p = 0.99 * limits.only_noise;
+    EXPECT_EQ(decide(f, limits).verdict, Verdict::unknown_effect) << "more than noise is left";
+}
+
 TEST(Decision, UnknownIfAPlaceboIsNearlyAsGood) {
     Findings f = clear_case();
     const Limits limits;
@@ -286,6 +308,11 @@ TEST(Decision, NamesAPairIfOneEffectIsNotSufficient) {
     EXPECT_EQ(decide(large, limits).proposal, 0);
     large.proposals[2].gain = 1000 + 1010 * limits.second_share;
     EXPECT_EQ(decide(large, limits).proposal, 2);
+    large.proposals[0].gain = large.gain[1] = 1e5;
+    large.proposals[2].gain = 1e5 + 0.99 * limits.second_enough;
+    EXPECT_EQ(decide(large, limits).proposal, 0);
+    large.proposals[2].gain = 1e5 + 1.01 * limits.second_enough;
+    EXPECT_EQ(decide(large, limits).proposal, 2) << "whatever the first one's gain";
 }
 
 // One effect leaves only noise, but two describe the data much better.

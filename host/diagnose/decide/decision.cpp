@@ -33,20 +33,23 @@ int best_single(const Findings& findings) {
 int gaining_pair(const Findings& findings, double single_gain, const Limits& limits) {
     for (std::size_t k = 0; k < findings.proposals.size(); ++k) {
         const Proposal& pair = findings.proposals[k];
-        if (pair.is_pair() &&
-            pair.best_gain() - single_gain > std::max(limits.second_gain, limits.second_share * single_gain))
+        if (pair.is_pair() && pair.best_gain() - single_gain > limits.second_margin(single_gain))
             return static_cast<int>(k);
     }
     return -1;
 }
 
-/// Reduction required to name an effect: most of the gap, and clearly more than the placebo.
-double needed_reduction(const Findings& findings, const Limits& limits) {
-    return std::max(limits.reduction, findings.placebo + limits.over_placebo);
+/// Reduction required to name an effect: most of the gap, and clearly more than the placebo. A small gap in
+/// held-out data is measured badly: if one effect leaves only noise in all data, it may take away less by the
+/// noise of the reduction.
+double needed_reduction(const Proposal& proposal, const Findings& findings, const Limits& limits) {
+    const bool only_noise = !proposal.is_pair() && proposal.best_misfit() >= limits.only_noise;
+    return std::max(limits.reduction - (only_noise ? findings.held_out_noise : 0),
+                    findings.placebo + limits.over_placebo);
 }
 
 bool takes_the_gap_away(const Proposal& proposal, const Findings& findings, const Limits& limits) {
-    return proposal.best_reduction() >= needed_reduction(findings, limits);
+    return proposal.best_reduction() >= needed_reduction(proposal, findings, limits);
 }
 
 /// Whether the remainder exceeds both noise and the allowed fraction: another cause contributes, or is the
@@ -67,7 +70,7 @@ bool is_better(const Proposal& pair, const Proposal& single, const Limits& limit
 /// Probability that an explanation with this reduction is right.
 double trust(const Proposal& proposal, const Findings& findings, const Limits& limits) {
     if (leaves_too_much(proposal, limits)) return limits.right_below;
-    const double low = needed_reduction(findings, limits) - limits.reduction_error;
+    const double low = needed_reduction(proposal, findings, limits) - limits.reduction_error;
     const double high = std::max(limits.certain, low + 2 * limits.reduction_error);
     const double above = std::clamp((proposal.best_reduction() - low) / (high - low), 0.0, 1.0);
     const double right =
@@ -212,7 +215,7 @@ std::optional<Explanation> explanation_of(const Findings& findings, const Decisi
     const bool more_than_noise = decided.best_misfit() < limits.misfit;
     const bool suspect =
         decision.verdict == Verdict::not_converged || decision.verdict == Verdict::calibration_suspect;
-    const double needed = needed_reduction(findings, limits);
+    const double needed = needed_reduction(decided, findings, limits);
     return Explanation{
         .reduction = decided.best_reduction(),
         .simulated = decided.confirmed_reduction.has_value(),

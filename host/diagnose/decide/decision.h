@@ -19,11 +19,13 @@ struct Limits {
     double over_placebo = 0.1;   ///< and by how much this must exceed the placebo's
     double misfit = 0.001;       ///< the remainder of one effect exceeds noise if its p is smaller;
     double remainder = 0.1;      ///< largest fraction of the gap that a named effect may leave beyond noise
-    double pair_misfit = 0.05;   ///< a pair is named only if its remainder is noise: p at least this
+    double only_noise = 0.05;    ///< the remainder of one effect is only noise if its p is at least this,
+    double pair_misfit = 0.01;   ///< that of a pair, which is named only then, at least this
     double group = 2.0;          ///< largest difference in log likelihood within a group,
     double group_share = 0.01;   ///< or this fraction of the leading effect's gain
     double second_gain = 8.0;    ///< gain in log likelihood required of a second effect,
-    double second_share = 0.02;  ///< and this fraction of the leading effect's gain
+    double second_share = 0.02;  ///< and this fraction of the leading effect's gain,
+    double second_enough = 100;  ///< but not more than this
     double second_certain = 50;  ///< at this gain it counts even if one effect alone leaves only noise
     double right_below =
         0.1;  ///< probability that a leading effect is right if it takes away less than `reduction`
@@ -34,6 +36,10 @@ struct Limits {
     double reduction_margin = 0.1;  ///< error of the reduction by signatures, on either side of its interval
     /// Largest difference in log likelihood within the group of an effect with this gain.
     double group_margin(double gain) const { return std::max(group, group_share * gain); }
+    /// Gain in log likelihood required of a second effect beside one with this gain.
+    double second_margin(double gain) const {
+        return std::max(second_gain, std::min(second_share * gain, second_enough));
+    }
 };
 
 /// One effect or a pair, and how well it explains the gap.
@@ -63,7 +69,8 @@ struct Findings {
     std::vector<Proposal> proposals;  ///< single effects by gain, then the best pair
     bool held_out =
         true;  ///< reductions are of the gap in held-out data; false: these show no gap, so of the whole gap
-    double placebo = 0;                      ///< reduction by the best of random signatures
+    double held_out_noise = 0;  ///< noise of these reductions, as a fraction of the gap in held-out data
+    double placebo = 0;         ///< reduction by the best of random signatures
     std::vector<std::size_t> numerics = {};  ///< effects that are the simulation's own numerics
     bool is_nuisance(std::size_t candidate) const { return static_cast<int>(candidate) >= effects; }
     bool is_numerical(std::size_t candidate) const { return std::ranges::count(numerics, candidate) > 0; }

@@ -162,7 +162,9 @@ DiagnosisBuilder::DiagnosisBuilder(const Evidence& evidence, const Limits& limit
 }
 
 void DiagnosisBuilder::measure_reductions() {
-    findings_.held_out = held_out_gap(data_, split_, mean_of_).shows();
+    const HeldOutGap held_out = held_out_gap(data_, split_, mean_of_);
+    findings_.held_out = held_out.shows();
+    findings_.held_out_noise = held_out.shows() ? held_out.noise / held_out.size : 0;
     excess_ =
         std::max(statistics_.directed, 0.5 * (statistics_.omnibus - null_.mean(&GapStatistics::omnibus)));
     if (!(excess_ > 0)) return;
