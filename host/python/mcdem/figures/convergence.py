@@ -27,7 +27,7 @@ def convergence(source, axes=None):
     axes.set_xlabel(values["x_label"])
     artists = [(axes.plot([], [], color=cause["colour"], marker=cause["marker"], linestyle="")[0], cause["words"]) for cause in causes]
     artists.append((matplotlib.patches.Patch(color="#e8e8e8", linewidth=0), "within the limit"))
-    key(axes, artists, loc="upper left", bbox_to_anchor=(1.01, 1))
+    key(axes, artists, "upper left", bbox_to_anchor=(1.01, 1))
     return axes
 
 

@@ -1,13 +1,10 @@
 """Figures of a diagnosis: location of the gap, consistent effects, gap reduction."""
-import functools
-
 import matplotlib.cm
 import matplotlib.colors
-import matplotlib.lines
 import matplotlib.patches
 import numpy as np
 
-from .style import COLUMN, INK, PAGE, figure_of, is_crowded, key, new_axes, plain, styled
+from .style import COLUMN, INK, PAGE, figure_of, is_below, key, line, new_axes, plain, styled
 from .values import read
 
 # Blue: the experiment is lower than the simulation; orange: higher.
@@ -126,7 +123,7 @@ def how_far(source, axes=None):
     placebo: the best of many random effects. `axes`: two, or one if the experiment has no top force."""
     values = read(source, "how_far")
     has_forces = bool(values["forces"])
-    below = 15 if has_forces and is_crowded(force_entries(values["forces"])) else 0
+    below = 15 if has_forces and is_below(force_entries(values["forces"]), "upper left") else 0
     if axes is None:
         axes = new_axes(COLUMN, (50 + below) * has_forces + 18 + 4.5 * len(values["bars"]), nrows=1 + has_forces, squeeze=False,
                         gridspec_kw={"height_ratios": (50 + below, 4.5 * len(values["bars"]) + 4)[-1 - has_forces:]})[:, 0]
@@ -146,8 +143,7 @@ def draw_forces(axes, values):
     axes.set_ylabel(values["y_label"])
     if min(*values["experiment"], *values["before"], *values["after"]) >= 0:
         axes.set_ylim(bottom=0)
-    entries = force_entries(values)
-    key(axes, entries, **({} if is_crowded(entries) else {"loc": "upper left"}))
+    key(axes, force_entries(values), "upper left")
 
 
 def before_look(values):
@@ -155,7 +151,6 @@ def before_look(values):
 
 
 def force_entries(values):
-    line = functools.partial(matplotlib.lines.Line2D, [], [])
     entries = [(line(**EXPERIMENT), "experiment"), (line(**before_look(values)), values["words_before"]),
                (line(color=values["colour_after"]), values["words_after"])]
     if "fitted" in values:

@@ -5,6 +5,7 @@ import math
 import pathlib
 
 import matplotlib
+import matplotlib.lines
 import matplotlib.pyplot as plt
 
 from ..files import write_whole
@@ -14,6 +15,8 @@ COLUMN = 86            # width of a column of a journal [mm]
 PAGE = 178             # width of its page [mm]
 
 INK, GREY, GRID = "#222222", "#666666", "#dddddd"
+
+line = functools.partial(matplotlib.lines.Line2D, [], [])  # for legends
 
 # Applied on top of the user's settings. Text is stored as text, so that it can be edited and searched.
 STYLE = {
@@ -39,12 +42,12 @@ def styled(draw):
     return drawn
 
 
+@styled
 def new_axes(width=COLUMN, height=62, **grid):
     """Axes on a new page of this size [mm]; `grid` as for matplotlib's `subplots`."""
-    with matplotlib.rc_context(STYLE):
-        figure, axes = plt.subplots(figsize=(width * MILLIMETRE, height * MILLIMETRE), **grid)
-        figure.get_layout_engine().set(w_pad=MILLIMETRE, h_pad=MILLIMETRE)
-        return axes
+    figure, axes = plt.subplots(figsize=(width * MILLIMETRE, height * MILLIMETRE), **grid)
+    figure.get_layout_engine().set(w_pad=MILLIMETRE, h_pad=MILLIMETRE)
+    return axes
 
 
 def figure_of(axes):
@@ -67,16 +70,17 @@ def key_columns(entries):
     return 2 if max(len(words) for _, words in entries) < 30 else 1
 
 
-def is_crowded(entries):
-    """Whether a legend inside the axes would hide curves."""
-    return len(entries) > 9 or max(len(words) for _, words in entries) > 36
+def is_below(entries, place):
+    """Whether a legend is below the axes: without a place inside them, or because it would hide curves there."""
+    return place is None or len(entries) > 9 or max(len(words) for _, words in entries) > 36
 
 
-def key(axes, entries, **place):
-    """A legend of (artist, text), inside the axes at `place`, otherwise below them."""
-    if not place:
-        place = {"loc": "upper left", "bbox_to_anchor": (-0.1, -0.17), "ncol": key_columns(entries), "columnspacing": 1.2}
-    return axes.legend([artist for artist, _ in entries], [plain(words) for _, words in entries], **place)
+def key(axes, entries, place=None, **beside):
+    """A legend of (artist, text): inside the axes at `place`, below them, or `beside` them."""
+    where = {"loc": place, **beside}
+    if not beside and is_below(entries, place):
+        where = {"loc": "upper left", "bbox_to_anchor": (-0.1, -0.17), "ncol": key_columns(entries), "columnspacing": 1.2}
+    return axes.legend([artist for artist, _ in entries], [plain(words) for _, words in entries], **where)
 
 
 @styled
