@@ -95,8 +95,8 @@ class _Assembly:
                 rows.problem_once("inside", first, f"centres must lie in the box of {size[0]:g} by {size[1]:g} m below the plate at "
                                   f"{size[2]:g} m, got {at} in frame {number_text(grains.keys[frame])}: see length_unit, origin_x, "
                                   "origin_y, origin_z and frames_by in the mapping")
-        first_at = {row: frame for frame, row in reversed(list(enumerate(grains.row)))}
-        for frame in [frame for frame, row in enumerate(grains.row) if row >= 0 and first_at[row] < frame][:1]:
+        again = (np.array(grains.row) >= 0) & (grains.frames_at(grains.row) < np.arange(len(grains.row)))
+        for frame in np.flatnonzero(again)[:1]:
             rows, first = grains.where[frame]
             rows.problem_once("row", first, f"frame {number_text(grains.keys[frame])} must have a row of the plate of its own, got one that an "
                               "earlier frame has: see frames_by in the mapping")
@@ -164,8 +164,7 @@ class _Assembly:
         lost = np.flatnonzero(contacts.x.isna())
         if not len(lost):
             return contacts
-        frame_of = {row: frame for frame, row in reversed(list(enumerate(self.grains.row)))}
-        frame = np.array([frame_of.get(scan, -1) for scan in contacts.scan[lost]])
+        frame = self.grains.frames_at(contacts.scan[lost])
         position, radius = np.array(self.grains.position), self.grains.diameter / 2
         grain, partner = contacts.grain.values[lost], contacts.partner.values[lost]
         centre = position[frame, grain]

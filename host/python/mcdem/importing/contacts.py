@@ -41,14 +41,6 @@ class _Reader:
         self.one_wall = self.map.word("partner") if self.map.word("partner") in WALLS else None
         self.has_size = "force" in self.rows
 
-    def has_columns(self):
-        before = self.problems.count
-        needed = ["grain"] + ([] if self.one_wall else ["partner"]) + ([] if self.has_size else ["fx", "fy", "fz"])
-        for key in needed:
-            if key not in self.rows:
-                self.problems.add(self.map.files[0], f"must have a column for {key}, got none: name it in the mapping")
-        return self.problems.count == before
-
     def side_of(self, key, text, number):
         """A grain, a wall, SOME_WALL or NOBODY; and the problem, or None."""
         grain = int(self.grains.number_of(int(number) + self.offset)) if is_whole(number) else -1
@@ -118,7 +110,8 @@ class _Reader:
         return self.map.force_factor() * self.rows.number("force", known)[:, None] * away
 
     def read(self):
-        if not self.has_columns() or not len(self.rows):
+        needed = ["grain"] + ([] if self.one_wall else ["partner"]) + ([] if self.has_size else ["fx", "fy", "fz"])
+        if any([self.rows.lacks(key) for key in needed]) or not len(self.rows):
             return ContactFrames()
         starts = self.rows.frames()[:-1]
         keys = self.rows.key[starts]
@@ -129,7 +122,7 @@ class _Reader:
         frames = ContactFrames(keys)
         frame = np.searchsorted(starts, np.arange(len(self.rows)), "right") - 1
         # A frame without contacts counts in the order as well.
-        wanted = np.nan_to_num(self.rows.number("where")) != 0 if "where" in self.rows else np.ones(len(self.rows), bool)
+        wanted = self.rows.wanted()
         grain, partner, swapped, known = self.partners(wanted)
         at = self.grains.frames_of(self.map.word("frames_by", "plate"), keys)[frame]
         force = self.forces(grain, partner, swapped, at, known)

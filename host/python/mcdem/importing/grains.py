@@ -45,8 +45,12 @@ class GrainFrames:
         if self.row is None:
             places = np.arange(len(keys))
             return np.where(places < len(self.keys), places, -1)
-        first = {row: frame for frame, row in reversed(list(enumerate(self.row)))}
-        return np.array([first.get(row, -1) if row >= 0 else -1 for row in self.plate_rows_of(by, keys)], int)
+        return self.frames_at(self.plate_rows_of(by, keys))
+
+    def frames_at(self, rows):
+        """The first frame at each of these rows of the plate; -1: none."""
+        first = {row: frame for frame, row in reversed(list(enumerate(self.row))) if row >= 0}
+        return np.array([first.get(row, -1) for row in rows], int)
 
     def place(self, by, plate):
         """Finds the row of the plate for each frame."""
@@ -57,7 +61,7 @@ class GrainFrames:
 def _read_columns(rows, mapped, problems):
     """Number, centre and diameter in each row, and which rows are complete."""
     unit, size_key = mapped.length_factor(), next((key for key in SIZE_KEYS if key in rows), None)
-    wanted = np.nan_to_num(rows.number("where")) != 0 if "where" in rows else np.ones(len(rows), bool)
+    wanted = rows.wanted()
     centres = np.column_stack([rows.number(key, wanted) for key in "xyz"])
     sign = np.array([signed_column(mapped.word(key))[0] for key in "xyz"], float)
     begin = sign * [mapped.number(f"origin_{axis}") for axis in "xyz"]
@@ -78,9 +82,8 @@ class _Reader:
     def read(self, table):
         mapped, rows = table.map, Rows(table, self.problems)
         size = next((key for key in SIZE_KEYS if key in rows), "diameter")
-        for key in ["x", "y", "z"] + ([] if "same_diameter" in mapped else [size]):
-            if key not in rows:
-                return self.problems.add(mapped.files[0], f"must have a column for {key}, got none: name it in the mapping")
+        if any(map(rows.lacks, ["x", "y", "z"] + ([] if "same_diameter" in mapped else [size]))):
+            return None
         first = whole_entry(mapped, "first_grain", self.problems)
         if not len(rows):
             return self.problems.add(mapped.files[0], "must have rows, one for each grain of a frame: leave a table without any out")

@@ -97,10 +97,8 @@ def import_plate(table, start, problems, programme=False):
     times."""
     mapped, rows = table.map, Rows(table, problems)
     goes_down = "displacement" in rows
-    for key in ("top_force", "displacement" if goes_down else "plate_z", *(("time",) if programme else ())):
-        if key not in rows:
-            problems.add(mapped.files[0], f"must have a column for {key}, got none: name it in the mapping")
-            return PlateRows()
+    if any(map(rows.lacks, ("top_force", "displacement" if goes_down else "plate_z", *(("time",) if programme else ())))):
+        return PlateRows()
     keys = rows.key if rows.keyed else np.arange(len(rows), dtype=float)
     place = rows.number("displacement" if goes_down else "plate_z")
     sign = -1 if mapped.word("force_sign", "+") == "-" else 1

@@ -88,6 +88,16 @@ class Rows:
     def __len__(self):
         return len(self.row)
 
+    def lacks(self, key):
+        """Whether the mapping names no column for the key, which is a problem."""
+        if key not in self:
+            self.problems.add(self.map.files[0], f"must have a column for {key}, got none: name it in the mapping")
+        return key not in self
+
+    def wanted(self):
+        """Whether a row counts, by the column for `where`."""
+        return np.nan_to_num(self.number("where")) != 0 if "where" in self else np.ones(len(self), bool)
+
     def __contains__(self, key):
         return key in self.columns
 

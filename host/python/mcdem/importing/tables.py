@@ -22,7 +22,7 @@ class Table:
         self.named, self.columns = False, []  # whether the file has names of columns; otherwise they are "column 1", ..
         self.frames = []  # of a dump: (timestep, first row)
         self.line_of = []  # of each row, from 1; empty if rows are not lines
-        self.rows, self._pending, self._chunks, self._texts = 0, [], [], {}
+        self.rows, self._pending, self._chunks = 0, [], []
 
     def begin(self, format_, lines, form):
         self.format, self.lines, self.form = format_, lines, form
@@ -77,11 +77,6 @@ class Table:
         if not self.lines:
             return number_text(self._chunks[0][row, column])
         return cut(self.lines[self.line_of[row] - 1], self.form.separator)[column]
-
-    def texts(self, column):
-        if column not in self._texts:
-            self._texts[column] = [self.text(row, column) for row in range(self.rows)]
-        return self._texts[column]
 
     def find(self, name):
         if name in self.columns:

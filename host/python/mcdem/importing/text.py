@@ -3,6 +3,7 @@
 What comes before the first row with a number in it may name the columns, and in a line below state their units; Yade's
 `#format` line, and a line of words behind a # where nothing else does, name them too.
 """
+import itertools
 import re
 from collections import Counter
 from typing import NamedTuple
@@ -32,14 +33,9 @@ def cut(line, separator):
         return line.split()
     if '"' not in line:
         return [cell.strip(" \t\r") for cell in line.split(separator)]
-    cells, first, inside = [], 0, False
-    for i, c in enumerate(line + separator):
-        inside ^= c == '"'
-        if i == len(line) or (c == separator and not inside):
-            cell = line[first:i].strip(" \t\r")
-            cells.append(cell[1:-1] if len(cell) >= 2 and cell[0] == cell[-1] == '"' else cell)
-            first = i + 1
-    return cells
+    parted = re.sub(r'"[^"]*"?', lambda quote: quote[0].replace(separator, "\0"), line).split(separator)
+    cells = [cell.replace("\0", separator).strip(" \t\r") for cell in parted]
+    return [cell[1:-1] if len(cell) >= 2 and cell[0] == cell[-1] == '"' else cell for cell in cells]
 
 
 def cell_number(cell, decimal):
@@ -52,31 +48,22 @@ def _numbers_in(cells, decimal):
     return sum(cell_number(cell, decimal) is not None for cell in cells)
 
 
-def is_blank_or_comment(line):
-    words = line.strip(" \t\r")
-    return not words or words[0] == "#"
-
-
 def sample(lines):
-    found = []
-    for line in lines:
-        if not is_blank_or_comment(line):
-            found.append(line)
-        if len(found) == SAMPLED_LINES:
-            break
-    return found
+    """The first lines that are neither blank nor comments."""
+    return list(itertools.islice((line for line in lines if line.strip(" \t\r")[:1] not in ("", "#")), SAMPLED_LINES))
 
 
-def _usual_width(lines, separator):
-    """The most frequent number of cells per line; the largest one in a tie."""
-    counts = Counter(len(cut(line, separator)) for line in lines)
+def _usual_width(rows):
+    """The most frequent number of cells; the largest one in a tie."""
+    counts = Counter(map(len, rows))
     return max(counts, key=lambda width: (counts[width], width))
 
 
 def _merit(lines, form):
     """Fraction of lines with the usual number of cells, times the fraction of numbers among their cells."""
-    width = _usual_width(lines, form.separator)
-    alike = [cells for cells in (cut(line, form.separator) for line in lines) if len(cells) == width]
+    rows = [cut(line, form.separator) for line in lines]
+    width = _usual_width(rows)
+    alike = [cells for cells in rows if len(cells) == width]
     numbers = sum(_numbers_in(cells, form.decimal) for cells in alike) / max(width, 1)
     return (1 if width > 1 else 0.1) * len(alike) / len(lines) * (0.01 + numbers / len(alike))
 
@@ -123,7 +110,7 @@ def _lines_above(lines, separator):
     rows = [cut(line, separator) for line in sample(lines)]
     if not rows:
         return 0
-    width = _usual_width(sample(lines), separator)
+    width = _usual_width(rows)
     if above := _lines_above_names(rows, width):
         return above
     for above, cells in enumerate(rows):
@@ -151,10 +138,6 @@ class _DecimalComma:
                          f"{quoted(cell)} beside {quoted(point)} in line {point_line}: write the table with points only")
 
 
-def _without_brackets(word):
-    return word[1:-1] if _in_brackets(word) else word
-
-
 def _in_brackets(word):
     return len(word) >= 2 and word[0] in "[(" and word[-1] in "])"
 
@@ -166,18 +149,9 @@ def _names_of(headings, comment, format_, width):
         return comment if len(comment) == width else format_
     names = headings[-1]
     if len(headings) > 1 and all(_in_brackets(word) or word in UNITS for word in names):
-        units = ["" if (unit := _without_brackets(word)) in ("-", "1") else unit for word in names] + [""]
+        units = ["" if (unit := word[1:-1] if _in_brackets(word) else word) in ("-", "1") else unit for word in names] + [""]
         names = [name + (f" [{unit}]" if unit else "") for name, unit in zip(headings[-2], units)]
     return names
-
-
-def _read_comment(words, separator):
-    """Names in a comment, including Yade's format line."""
-    words = words.strip(" \t\r")
-    if words.startswith("format "):
-        names = words[7:].strip().split("_")
-        return None, names[:-1] if names[-1] == "attrs" else names
-    return cut(words, separator if separator in words else " "), None
 
 
 def _has_thousands(cells, form, where, problems):
@@ -200,9 +174,12 @@ def parse_text(table, lines, form, problems):
         if not words or problems.full:
             continue
         if words[0] == "#":
-            if not table.columns:
-                names, of_yade = _read_comment(words[1:], form.separator)
-                comment, format_ = (comment, of_yade) if names is None else (names, format_)
+            words = words[1:].strip(" \t\r")
+            if not table.columns and words.startswith("format "):  # of Yade
+                names = words[7:].strip().split("_")
+                format_ = names[:-1] if names[-1] == "attrs" else names
+            elif not table.columns:
+                comment = cut(words, form.separator if form.separator in words else " ")
             continue
         cells = cut(line, form.separator)
         is_row = bool(table.columns)
