@@ -25,15 +25,14 @@ def arguments_of(words):
     parser.add_argument("--gzip", action="store_true")
     parser.add_argument("--programme", action="store_true", help="experiment.toml states one")
     for name in ("--box-x", "--box-y", "--plate-start", "--youngs-modulus", "--poisson-ratio", "--voxel-size"):
-        parser.add_argument(name, type=float)
+        parser.add_argument(name, type=float, default=argparse.SUPPRESS)
     parser.add_argument("tables", nargs="*")
     return parser.parse_args(words)
 
 
 def known_of(arguments):
-    stated = {name: getattr(arguments, name) for name in ("plate_start", "youngs_modulus", "poisson_ratio", "voxel_size")}
-    return Known(box=(arguments.box_x or 0.0, arguments.box_y or 0.0), programme=arguments.programme,
-                 **{name: value for name, value in stated.items() if value is not None})
+    stated = {name: value for name, value in vars(arguments).items() if hasattr(Known, name)}
+    return Known(box=(getattr(arguments, "box_x", 0.0), getattr(arguments, "box_y", 0.0)), **stated)
 
 
 def print_entry(key, of):
@@ -59,17 +58,11 @@ def print_mapping(mapping):
     sys.stdout.flush()
 
 
-class Results:
-    """Writes the files for the program into its folder."""
-
-    def __init__(self, folder):
-        self.folder = folder
-
-    def write(self, name, text):
-        write_whole(os.path.join(self.folder, name), text.encode("utf-8", "surrogateescape"))
-
-    def write_lines(self, name, lines):
-        self.write(name, "".join(line.replace("\n", " ") + "\n" for line in lines))
+def write(arguments, name, text):
+    """Writes a file for the program; `text` may be a list of lines."""
+    if isinstance(text, list):
+        text = "".join(line.replace("\n", " ") + "\n" for line in text)
+    write_whole(os.path.join(arguments.work, name), text.encode("utf-8", "surrogateescape"))
 
 
 def expect_kept(kept, text):
@@ -85,7 +78,7 @@ def expect_kept(kept, text):
         raise InputError(f"{kept}: is another mapping, and is not replaced: give another folder (--out), or remove it")
 
 
-def import_by_mapping(arguments, known, results):
+def import_by_mapping(arguments, known):
     text = text_of_mapping(arguments.mapping)
     tables = read_import_tables(parse_mapping(text, arguments.mapping), arguments.tables, arguments.mapping)
     mapping = mapping_of(tables)
@@ -94,11 +87,11 @@ def import_by_mapping(arguments, known, results):
         raise InputError(arguments.settings_problem)
     text = mapping_text(mapping) if arguments.tables else text
     expect_kept(arguments.kept, text)
-    results.write("mapping.toml", text)
+    write(arguments, "mapping.toml", text)
     return import_tables(tables, known)
 
 
-def import_by_guess(arguments, known, results):
+def import_by_guess(arguments, known):
     """None if the guess is uncertain."""
     if not arguments.tables:
         raise InputError("TABLE: must be at least one file, or --mapping must name them, got neither")
@@ -107,7 +100,7 @@ def import_by_guess(arguments, known, results):
     tables = guess_tables(arguments.tables, known)
     mapping = mapping_of(tables)
     text = mapping_text(mapping)
-    results.write("mapping.toml", text)
+    write(arguments, "mapping.toml", text)
     print_mapping(mapping)
     problems = unclear_entries(text, arguments.kept) + arguments.settings_problem
     rows = wrong_rows(tables) if problems else []
@@ -116,20 +109,19 @@ def import_by_guess(arguments, known, results):
             return import_tables(tables, known)
         except InputError as error:
             rows = error.problems
-    results.write_lines("problems", problems + rows)
+    write(arguments, "problems", problems + rows)
     if rows:
-        results.write("wrong_rows", "")
+        write(arguments, "wrong_rows", "")
     return None
 
 
 def main():
     arguments = arguments_of(sys.argv[1:])
-    known, results = known_of(arguments), Results(arguments.work)
-    imported = (import_by_mapping if arguments.mapping else import_by_guess)(arguments, known, results)
+    imported = (import_by_mapping if arguments.mapping else import_by_guess)(arguments, known_of(arguments))
     if imported is not None:
         write_tables(imported, arguments.work, arguments.gzip)
-        results.write("plate_start", repr(imported.plate_start))
-        results.write_lines("notes", imported.notes)
+        write(arguments, "plate_start", repr(imported.plate_start))
+        write(arguments, "notes", imported.notes)
 
 
 if __name__ == "__main__":

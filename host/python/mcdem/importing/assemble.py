@@ -12,6 +12,7 @@ from .grains import import_grains
 from .mapping import WALLS
 from .plate import PlateRows, check_heights, import_plate
 from .problems import Problems, number_text
+from .rows import of_role
 
 # For the two sides of a contact: largest difference over the larger force; weak forces over the largest one of the frame.
 MAX_APART, WEAK = 0.5, 0.01
@@ -45,11 +46,8 @@ class _Assembly:
         self.tables, self.known, self.problems = tables, known, Problems()
         self.plate, self.grains, self.notes, self.dropped = PlateRows(), None, [], 0
 
-    def of(self, role):
-        return [table for table in self.tables if table.role == role]
-
     def run(self):
-        plates, grains, contacts = map(self.of, ("plate", "grains", "contacts"))
+        plates, grains, contacts = (of_role(self.tables, role) for role in ("plate", "grains", "contacts"))
         if len(plates) != 1:
             self.problems.add("plate", f"must be one table with the plate's position and force by frame, got {len(plates)}: say "
                               '`role = "plate"` in the mapping, or give the table')
@@ -129,8 +127,7 @@ class _Assembly:
         pair = ["scan", "grain", "partner"]
         place, size = contacts.groupby(pair).cumcount(), np.linalg.norm(contacts[["fx", "fy", "fz"]], axis=1)
         first_side = contacts.groupby(pair).side.transform("first")
-        in_others = contacts[pair].apply(tuple, axis=1).isin({key for table in before for key in map(tuple, table[pair].values)}) \
-            if before and len(contacts) else np.zeros(len(contacts), bool)
+        in_others = pd.MultiIndex.from_frame(contacts[pair]).isin([key for table in before for key in zip(*table[pair].values.T)])
         from_other_side = (place == 1) & (contacts.side != first_side) & ~in_others
         twice = (place > 0) & ~(from_other_side & both) | in_others
         for i in np.flatnonzero(twice)[:1]:

@@ -1,7 +1,7 @@
 """The mapping of table columns: guessed, and written as mapping.toml for the user to correct (read_mapping reads it)."""
 import json
 import re
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 from .names import FORCES, LENGTH_WORDS, LENGTHS, VOXEL
@@ -155,10 +155,7 @@ class MappedTable:
 
     def changed(self, **entries):
         """A copy with other entries."""
-        copy = MappedTable(**vars(self))
-        copy.entries = {**self.entries, **entries}
-        copy.walls = dict(self.walls)
-        return copy
+        return replace(self, entries={**self.entries, **entries}, walls=dict(self.walls))
 
 
 def must_be_stated(table):
@@ -202,6 +199,7 @@ UNCLEAR_MARK = "  # unclear: "
 
 
 def toml_text(text):
+    """A text, or a list of texts."""
     return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
 
 
@@ -213,7 +211,7 @@ def _value_text(of):
     words = list(of.words)
     if of.sure == UNCLEAR:
         words[0] = "?" + words[0]
-    return toml_text(words[0]) if len(words) == 1 else "[" + ", ".join(map(toml_text, words)) + "]"
+    return toml_text(words[0] if len(words) == 1 else words)
 
 
 def _line_text(key, of, meaning):
@@ -233,7 +231,7 @@ def _meaning(key):
 def _table_text(table):
     text = "\n[[table]]\n" + _line_text("role", guess(table.role, table.role_sure, table.role_why),
                                         "one of plate, grains, contacts, unused")
-    text += f"files = [{', '.join(map(toml_text, table.files))}]\n"
+    text += f"files = {toml_text(table.files)}\n"
     if table.form:
         separator = {"\t": "tab", " ": "blanks"}.get(table.form.separator, table.form.separator)
         text += f'separator = "{separator}"\n'

@@ -23,6 +23,10 @@ class ImportTable:
         return self.map.role
 
 
+def of_role(tables, role):
+    return [table for table in tables if table.role == role]
+
+
 def whole_entry(mapped, key, problems):
     """An integer in the mapping, 0 if it is missing; anything else is a problem."""
     if is_whole(value := mapped.number(key)):
