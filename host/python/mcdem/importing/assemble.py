@@ -107,11 +107,10 @@ class _Assembly:
         by = table.map.word("frames_by", "plate")
         frames = import_contacts(table, self.grains, self.problems)
         scans = self.grains.plate_rows_of(by, frames.keys)
-        lost = np.flatnonzero(scans[frames.frame] < 0) if len(frames) else []
-        if len(lost):
-            key = number_text(frames.keys[frames.frame[lost[0]]])
+        for i in np.flatnonzero(scans[frames.frame] < 0)[:1] if len(frames) else ():
+            key = number_text(frames.keys[frames.frame[i]])
             whose = "grains' frames" if by == "grains" else "plate's rows"
-            frames.rows.problem_once("frame", frames.row[lost[0]], f"frame {key} must be one of the {whose}, got none like it: see frame and "
+            frames.rows.problem_once("frame", frames.row[i], f"frame {key} must be one of the {whose}, got none like it: see frame and "
                                      "frames_by in the mapping")
         reversed_ = (frames.partner >= 0) & (frames.partner < frames.grain)
         force = np.where(reversed_, -1, 1)[:, None] * frames.force
@@ -149,9 +148,7 @@ class _Assembly:
         """Weak forces may differ more, because their errors are those of the strong ones."""
         a, b = first[["fx", "fy", "fz"]].values, other[["fx", "fy", "fz"]].values
         sizes, apart = (np.linalg.norm(a, axis=1), np.linalg.norm(b, axis=1)), np.linalg.norm(a - b, axis=1)
-        wrong = np.flatnonzero(apart > np.maximum(MAX_APART * np.maximum(*sizes), WEAK * largest))
-        if len(wrong):
-            i = wrong[0]
+        for i in np.flatnonzero(apart > np.maximum(MAX_APART * np.maximum(*sizes), WEAK * largest))[:1]:
             frames.rows.problem_once("sides", other.row.iloc[i], f"the forces of a contact's two sides must be opposite, got sizes of "
                                      f"{sizes[0][i]:.4g} and {sizes[1][i]:.4g} N, {apart[i]:.4g} N apart when one is negated: leave one "
                                      'of the sides out of the table and write `sides = "one"`')
@@ -173,9 +170,8 @@ class _Assembly:
             mine = partner == -1 - wall
             point[mine] = centre[mine]
             point[mine, wall // 2] = (0, self.known.box[0], 0, self.known.box[1], 0, self.plate.z[contacts.scan.values[lost][mine]])[wall]
-        nowhere = np.flatnonzero((frame < 0) | ~np.isfinite(point).all(axis=1))
-        if len(nowhere):
-            frames.rows.problem_once("point", contacts.row[lost[nowhere[0]]], "a contact must have a point, or its grains a position in its "
+        for i in lost[(frame < 0) | ~np.isfinite(point).all(axis=1)][:1]:
+            frames.rows.problem_once("point", contacts.row[i], "a contact must have a point, or its grains a position in its "
                                      "frame, two places, got neither")
         contacts.loc[lost, ["x", "y", "z"]] = point
         return contacts

@@ -103,9 +103,8 @@ class _Reader:
             line = position[at[pairs], grain[pairs]] - position[at[pairs], partner[pairs]]
             with np.errstate(invalid="ignore", divide="ignore"):
                 away[pairs] = line / np.linalg.norm(line, axis=1)[:, None]
-        lost = np.flatnonzero(known & np.isnan(away).any(axis=1))
-        if len(lost):
-            self.rows.problem_once("size", lost[0], "a force's size needs to know its direction: both centres in this frame, at two "
+        for i in np.flatnonzero(known & np.isnan(away).any(axis=1))[:1]:
+            self.rows.problem_once("size", i, "a force's size needs to know its direction: both centres in this frame, at two "
                                    "places, or which wall")
         return self.map.force_factor() * self.rows.number("force", known)[:, None] * away
 

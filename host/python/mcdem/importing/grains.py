@@ -67,9 +67,8 @@ def _read_columns(rows, mapped, problems):
     begin = sign * [mapped.number(f"origin_{axis}") for axis in "xyz"]
     size = rows.number(size_key, wanted) if size_key else np.full(len(rows), mapped.number("same_diameter"))
     ids = rows.whole_number("grain") if "grain" in rows else None
-    wrong = np.flatnonzero((size <= 0) & wanted)
-    if len(wrong):
-        rows.problem_once("size", wrong[0], f"{size_key or 'same_diameter'} must be > 0, got {number_text(size[wrong[0]])}")
+    for i in np.flatnonzero((size <= 0) & wanted)[:1]:
+        rows.problem_once("size", i, f"{size_key or 'same_diameter'} must be > 0, got {number_text(size[i])}")
     whole = wanted & np.isfinite(centres).all(axis=1) & np.isfinite(size) & (True if ids is None else np.isfinite(ids))
     diameter = unit * (2 * size if size_key == "radius" else np.cbrt(6 * size / np.pi) if size_key == "volume" else size)
     return ids, unit * (centres - begin), diameter, whole, sign, unit * begin

@@ -29,15 +29,11 @@ def _natural(file):
 
 def _group(parts):
     """Groups files with the same columns as frames of one table, ordered by the numbers in their names."""
-    groups = []
-    for part in parts:
-        alike = next((group for group in groups if part.named and group[0].named and group[0].columns == part.columns
-                      and group[0].format == part.format and group[0].form == part.form), None)
-        if alike is None:
-            groups.append(alike := [])
-        alike.append(part)
+    groups = {}
+    for number, part in enumerate(parts):
+        groups.setdefault((tuple(part.columns), part.format, part.form) if part.named else number, []).append(part)
     tables = []
-    for group in groups:
+    for group in groups.values():
         group.sort(key=lambda part: _natural(part.file))
         if all(part.frames for part in group):
             group.sort(key=lambda part: part.frames[0][0])

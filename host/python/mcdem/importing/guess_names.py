@@ -71,7 +71,6 @@ def _note_programs(mapped, columns):
         for axis in "xyz" if "Xdisp" in columns else "":
             mapped[axis].words = [f"{axis.upper()}pos", f"{axis.upper()}disp"]
             mapped[axis].why = "SPAM's position and displacement"
-    if is_spam(columns):
         mapped["where"] = guess("Label", "likely", "label 0 is the background")
     program = "SPAM" if is_spam(columns) else "trackpy" if is_trackpy(columns) else "scikit-image" if "centroid-2" in columns else ""
     if program and "length_unit" not in mapped:

@@ -164,8 +164,11 @@ class Rows:
         self.problems.add(lambda: self.where(i), what)
 
     def problem_once(self, topic, i, what):
-        """Adds only one problem for each topic and file."""
-        self.problems.once(self.parts[self.part[i]].file + topic, lambda: self.where(i), what)
+        """Adds only one problem for each topic and file: a column in millimetres is one problem, not one for each line."""
+        topic = self.parts[self.part[i]].file + topic
+        if topic not in self.problems.told:
+            self.problems.told.add(topic)
+            self.problem(i, what)
 
     def frames(self):
         """First row of each frame, and the end of the last one: a frame is a sequence of rows with the same key."""

@@ -70,12 +70,7 @@ def _merit(lines, form):
 
 def guess_form(lines):
     lines = sample(lines)
-    best, most = Form(), -1.0
-    for form in FORMS if lines else []:
-        good = _merit(lines, form)
-        if good > most * (1 + 1e-9):
-            best, most = form, good
-    return best
+    return max(FORMS, key=lambda form: round(_merit(lines, form), 12)) if lines else Form()
 
 
 def _kind(cell):
