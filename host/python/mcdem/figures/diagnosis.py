@@ -49,8 +49,7 @@ def set_columns(axes, values, heading):
     columns = values["columns"]
     shown = columns[::len(columns) // 12 + 1]  # more labels would overlap
     axes.set_xticks([column["x"] for column in shown], [f"{column['displacement_mm']:.3g}" for column in shown])
-    axes.set_xlim(0, values["width"])
-    axes.set_xlabel(values["x_label"])
+    axes.set(xlim=(0, values["width"]), xlabel=values["x_label"])
     axes.tick_params(length=0)
     axes.grid(False)
     axes.spines[:].set_visible(False)
@@ -139,8 +138,7 @@ def draw_forces(axes, values):
     axes.plot(values["x"], values["before"], **before_look(values))
     axes.plot(values["x"], values["after"], color=values["colour_after"])
     axes.plot(values["x"], values["experiment"], **EXPERIMENT)
-    axes.set_xlabel(values["x_label"])
-    axes.set_ylabel(values["y_label"])
+    axes.set(xlabel=values["x_label"], ylabel=values["y_label"])
     if min(*values["experiment"], *values["before"], *values["after"]) >= 0:
         axes.set_ylim(bottom=0)
     key(axes, force_entries(values), "upper left")

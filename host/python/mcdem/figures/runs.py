@@ -2,7 +2,7 @@
 import matplotlib.patches
 import numpy as np
 
-from .style import GREY, is_below, key, key_height, line, new_axes, styled
+from .style import GREY, key, keyed_axes, line, styled
 from .values import read
 
 SIMULATED = {"load": {"linestyle": "-"}, "unload": {"linestyle": (0, (4, 2))}}
@@ -14,7 +14,8 @@ PHASES = {"load": "loading", "unload": "unloading"}
 def top_force(source, axes=None):
     """Force on the plate. Solid lines: loading, dashed: unloading; points: the reference, filled and open."""
     values = read(source, "top_force")
-    values["series"].sort(key=lambda series: (series["is_reference"], -largest(series)))  # order of the legend as at the ends of the curves
+    values["series"].sort(key=lambda series: (  # order of the legend as at the ends of the curves
+        series["is_reference"], -max(max(curve["y"]) for curve in series["curves"])))
     axes = draw_curves(values, axes, "upper left")
     axes.set_ylim(bottom=0)
     return axes
@@ -53,9 +54,7 @@ def scaling(source, axes=None):
         if "slope" in series:
             end = max(max(curve["x"]) for curve in series["curves"])
             axes.plot([0, end], [0, series["slope"] * end], color=series["colour"], linewidth=0.7)
-    label(axes, values)
-    axes.set_xlim(left=0)
-    axes.set_ylim(bottom=0)
+    axes.set(xlim=(0, None), ylim=(0, None), xlabel=values["x_label"], ylabel=values["y_label"])
     key(axes, shown, "upper left")
     return axes
 
@@ -86,11 +85,6 @@ shear_stress_time = programme_figure("shear_stress_time", "Deviatoric stress of 
 shear_strain_time = programme_figure("shear_strain_time", "Deviatoric strain of a cell against time.")
 
 
-def keyed_axes(shown, place):
-    """New axes with space for a legend below them if it is there."""
-    return new_axes(height=62 + key_height(shown) * is_below(shown, place))
-
-
 def draw_curves(values, axes, place=None, phases=("load", "unload"), from_zero=True, **lines):
     """Lines with bands for simulations, points with error bars for the reference, and a legend (`place` as for `key`).
 
@@ -104,7 +98,7 @@ def draw_curves(values, axes, place=None, phases=("load", "unload"), from_zero=T
                 draw_points(axes, series, curve)
             else:
                 draw_line(axes, series, curve, **lines)
-    label(axes, values)
+    axes.set(xlabel=values["x_label"], ylabel=values["y_label"])
     if from_zero:
         axes.set_xlim(left=0)
     key(axes, shown, place)
@@ -126,11 +120,6 @@ def draw_points(axes, series, curve, **look):
                   elinewidth=0.6, **{**REFERENCE[curve["phase"]], **look})
 
 
-def label(axes, values):
-    axes.set_xlabel(values["x_label"])
-    axes.set_ylabel(values["y_label"])
-
-
 def numbers(curve):
     """x, y and standard error (NaN if unknown)."""
     return [np.array(curve[quantity], float) for quantity in ("x", "y", "standard_error")]
@@ -138,10 +127,6 @@ def numbers(curve):
 
 def words(series):
     return ", ".join(filter(None, (series["words"], series["remark"])))
-
-
-def largest(series):
-    return max(max(curve["y"]) for curve in series["curves"])
 
 
 def entries(values, phases):

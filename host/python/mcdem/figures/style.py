@@ -61,11 +61,6 @@ def plain(text):
     return " " + text if text.startswith("_") else text
 
 
-def key_height(entries):
-    """Height of a legend below the axes [mm]."""
-    return 3.1 * math.ceil(len(entries) / key_columns(entries)) + 1
-
-
 def key_columns(entries):
     return 2 if max(len(words) for _, words in entries) < 30 else 1
 
@@ -73,6 +68,12 @@ def key_columns(entries):
 def is_below(entries, place):
     """Whether a legend is below the axes: without a place inside them, or because it would hide curves there."""
     return place is None or len(entries) > 9 or max(len(words) for _, words in entries) > 36
+
+
+def keyed_axes(entries, place):
+    """New axes with space for a legend below them if it is there."""
+    height = 3.1 * math.ceil(len(entries) / key_columns(entries)) + 1
+    return new_axes(height=62 + height * is_below(entries, place))
 
 
 def key(axes, entries, place=None, **beside):
