@@ -35,10 +35,9 @@ def known_of(arguments):
     return Known(box=(getattr(arguments, "box_x", 0.0), getattr(arguments, "box_y", 0.0)), **stated)
 
 
-def print_entry(key, of):
-    head = f"  {key:<13} {' + '.join(of.words):<18} {of.sure:<8}"
-    print(textwrap.fill(of.why, LINE, initial_indent=head, subsequent_indent=" " * len(head), break_long_words=False,
-                        break_on_hyphens=False) if of.why else head)
+def print_beside(head, text):
+    print(textwrap.fill(text, LINE, initial_indent=head, subsequent_indent=" " * len(head), break_long_words=False,
+                        break_on_hyphens=False) if text else head)
 
 
 def print_mapping(mapping):
@@ -47,14 +46,11 @@ def print_mapping(mapping):
         more = f" and {len(table.files) - 1} more" if len(table.files) > 1 else ""
         why = f": {table.role_why}" if table.role_why else ""
         print(f"{table.files[0]}{more}: {table.role} ({table.role_sure}{why})")
-        for key in KEYS[table.role]:
-            if key.name in table:
-                print_entry(key.name, table[key.name])
-        for word, of in sorted(table.walls.items()):
-            print_entry("wall " + word, of)
+        entries = [(key.name, table[key.name]) for key in KEYS[table.role] if key.name in table]
+        for name, of in entries + [("wall " + word, of) for word, of in sorted(table.walls.items())]:
+            print_beside(f"  {name:<13} {' + '.join(of.words):<18} {of.sure:<8}", of.why)
         if table.unused:
-            print(textwrap.fill(", ".join(table.unused), LINE, initial_indent="  not used     ", subsequent_indent=" " * 15,
-                                break_long_words=False, break_on_hyphens=False))
+            print_beside("  not used     ", ", ".join(table.unused))
     sys.stdout.flush()
 
 

@@ -193,7 +193,7 @@ class _Assembly:
         grain_table = pd.concat(of_frames) if of_frames else None
         if contacts is not None:
             contacts = contacts[contacts.scan >= first].sort_values("scan", kind="stable")
-            partner = contacts.partner.where(contacts.partner >= 0, contacts.partner.map(lambda p: WALLS[-1 - p] if p < 0 else p))
+            partner = contacts.partner.map(lambda p: WALLS[-1 - p] if p < 0 else p)
             contacts = pd.DataFrame({"frame": contacts.scan - first, "grain": contacts.grain, "partner": partner, "x_m": contacts.x,
                                      "y_m": contacts.y, "z_m": contacts.z, "fx_N": contacts.fx, "fy_N": contacts.fy, "fz_N": contacts.fz})
         return Imported(plate_table, grain_table, contacts, start, self.notes)

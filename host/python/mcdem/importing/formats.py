@@ -1,7 +1,7 @@
 """Readers for files of simulation programs: dumps and data files of LAMMPS and LIGGGHTS, VTK, extended xyz."""
 import contextlib
 import io
-import os
+import pathlib
 import tempfile
 
 import numpy as np
@@ -131,18 +131,16 @@ def parse_xyz(table, text, problems):
     chunks = []
     try:
         for place, atoms in enumerate(iread(io.StringIO(text), format="extxyz", index=":")):
-            fields = {"": atoms.positions, **{name: atoms.arrays[name] for name in sorted(atoms.arrays)
-                                              if name not in ("positions", "numbers") and atoms.arrays[name].dtype.kind in "if"}}
-            columns = ["x", "y", "z"]
-            for name, values in list(fields.items())[1:]:
-                columns += _component_names(name, 1 if values.ndim == 1 else values.shape[1])
+            fields = {name: np.atleast_2d(values.T).T for name, values in sorted(atoms.arrays.items())
+                      if name not in ("positions", "numbers") and values.dtype.kind in "if"}
+            columns = _columns(fields)
             if names not in (None, columns):
                 return problems.add(table.file, f"the fields of all frames must be those of the first, {' '.join(names)}, got "
                                     f"{' '.join(columns)}")
             names = columns
             step = next((atoms.info[key] for key in ("step", "Step", "timestep", "frame") if key in atoms.info), place)
             table.frames.append((float(step), sum(map(len, chunks))))
-            chunks.append(np.column_stack(list(fields.values())))
+            chunks.append(np.column_stack([atoms.positions, *fields.values()]))
     except Exception as error:  # ASE has no exception type for invalid files
         return problems.add(table.file, f"must be extended xyz that ASE reads, got: {quoted(str(error) or type(error).__name__)}")
     table.format, table.form = "xyz", Form(" ", ".")
@@ -162,23 +160,24 @@ def parse_mesh(table, content, problems):
 
     ending = ".vtk" if content.startswith(b"#") else ".vtu"
     with tempfile.TemporaryDirectory(prefix="mcdem-") as folder:
-        file = os.path.join(folder, "mesh" + ending)
-        with open(file, "wb") as out:
-            out.write(content)
+        file = pathlib.Path(folder, "mesh" + ending)
+        file.write_bytes(content)
         try:
             with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
                 mesh = meshio.read(file)
             fields = {name: np.asarray(values, float).reshape(len(mesh.points), -1) for name, values in mesh.point_data.items()}
         except (Exception, SystemExit) as error:  # meshio exits if a file is invalid
             return problems.add(table.file, f"must be a VTK file that meshio reads, got: {quoted(str(error) or type(error).__name__)}")
-    columns = ["x", "y", "z"]
-    for name, values in fields.items():
-        columns += _component_names(name, values.shape[1])
     if not len(mesh.points):
         return problems.add(table.file, "must hold points, got none")
     table.format, table.form = "vtk", Form(" ", ".")
-    table.set_numbers(columns, np.column_stack([mesh.points, *fields.values()]))
+    table.set_numbers(_columns(fields), np.column_stack([mesh.points, *fields.values()]))
     return None
+
+
+def _columns(fields):
+    """Names of the columns of points with these fields."""
+    return ["x", "y", "z"] + [column for name, values in fields.items() for column in _component_names(name, values.shape[1])]
 
 
 def _component_names(name, width):

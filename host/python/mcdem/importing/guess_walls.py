@@ -14,14 +14,6 @@ WORDS = {"floor": "floor bottom boden base zmin zlo", "plate": "plate top lid pi
 UPSIDE_DOWN = {"zmin": "plate", "zlo": "plate", "zmax": "floor", "zhi": "floor"}  # if z points downwards
 
 
-def _wall_word(text, downwards):
-    """Walls with known names; others are determined by the direction of their forces."""
-    base = column_name(text).base
-    if downwards and base in UPSIDE_DOWN:
-        return UPSIDE_DOWN[base]
-    return next((wall for wall, words in WORDS.items() if base in words.split()), BY_DIRECTION)
-
-
 def unknown_partners(table, grains, offset, most=None, only=""):
     """Partners in the first `most` rows that are not grains: possible names of walls."""
     found = set()
@@ -44,10 +36,13 @@ def unknown_partners(table, grains, offset, most=None, only=""):
 
 
 def set_walls(mapped, names, grains):
-    """Walls from their names or from the direction of their forces."""
+    """Walls from their names or, if those are unknown, from the direction of their forces."""
     mapped.walls = {}
     for name in names:
-        word = _wall_word(name, grains.sign[2] < 0)
+        base = column_name(name).base
+        word = next((wall for wall, words in WORDS.items() if base in words.split()), BY_DIRECTION)
+        if grains.sign[2] < 0:
+            word = UPSIDE_DOWN.get(base, word)
         mapped.walls[name] = guess(word, "likely", "no grain has this number" if word == BY_DIRECTION else "its name")
 
 
