@@ -4,7 +4,7 @@ import matplotlib.colors
 import matplotlib.patches
 import numpy as np
 
-from .style import COLUMN, INK, PAGE, figure_of, is_below, key, line, new_axes, plain, styled
+from .style import COLUMN, INK, PAGE, is_below, key, line, new_axes, plain, styled
 from .values import read
 
 # Blue: the experiment is lower than the simulation; orange: higher.
@@ -28,7 +28,7 @@ def where(source, axes=None):
         set_columns(place, values, panel["words"])
     axes[0].set_yticks(range(len(values["observables"])), [plain(words) for words in values["observables"]])
     axes[0].set_ylim(len(values["observables"]) - 0.5, -0.5)
-    figure_of(axes).colorbar(matplotlib.cm.ScalarMappable(scale, BELOW_ABOVE), ax=list(axes), location="bottom", fraction=0.03,
+    axes[0].figure.colorbar(matplotlib.cm.ScalarMappable(scale, BELOW_ABOVE), ax=list(axes), location="bottom", fraction=0.03,
                              aspect=60, pad=0.02, label=values["colour_label"])
     return axes
 

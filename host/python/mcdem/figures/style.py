@@ -7,6 +7,7 @@ import pathlib
 import matplotlib
 import matplotlib.lines
 import matplotlib.pyplot as plt
+import numpy as np
 
 from ..files import write_whole
 
@@ -33,13 +34,7 @@ STYLE = {
 }
 
 
-def styled(draw):
-    """Decorator: the function draws in STYLE, whatever else the program has set."""
-    @functools.wraps(draw)
-    def drawn(*arguments, **named):
-        with matplotlib.rc_context(STYLE):
-            return draw(*arguments, **named)
-    return drawn
+styled = matplotlib.rc_context(STYLE)  # decorator: the function draws in STYLE, whatever else the program has set
 
 
 @styled
@@ -48,11 +43,6 @@ def new_axes(width=COLUMN, height=62, **grid):
     figure, axes = plt.subplots(figsize=(width * MILLIMETRE, height * MILLIMETRE), **grid)
     figure.get_layout_engine().set(w_pad=MILLIMETRE, h_pad=MILLIMETRE)
     return axes
-
-
-def figure_of(axes):
-    """The figure of axes, or of an array of axes."""
-    return axes.figure if hasattr(axes, "figure") else next(iter(getattr(axes, "flat", axes))).figure
 
 
 def plain(text):
@@ -92,5 +82,5 @@ def save(axes, file):
     creator = {"png": "Software"}.get(kind, "Creator")  # `mcdem` recognises its own figures by this
     dates = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}  # so that the same figure has the same bytes
     page = io.BytesIO()
-    figure_of(axes).savefig(page, format=kind, metadata={creator: "mcdem figure", **dates.get(kind, {})})
+    np.ravel(axes)[0].figure.savefig(page, format=kind, metadata={creator: "mcdem figure", **dates.get(kind, {})})
     write_whole(file, page.getvalue())

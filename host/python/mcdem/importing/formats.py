@@ -2,6 +2,7 @@
 import contextlib
 import io
 import pathlib
+import re
 import tempfile
 
 import numpy as np
@@ -14,8 +15,7 @@ MAX_NUMBERS = 100_000_000
 
 
 def _whole(word):
-    digits = word.removeprefix("+").removeprefix("-")
-    return int(word) if digits.isascii() and digits.isdigit() and len(digits) < 19 else None
+    return int(word) if re.fullmatch(r"[+-]?[0-9]{1,18}", word) else None
 
 
 def parse_dump(table, lines, problems):

@@ -7,15 +7,12 @@ FORCE_KEYS = ("fx", "fy", "fz", "force", "top_force", "set_force")
 
 
 def _role_of(columns):
-    def has(role, *keys):
-        found = columns_by_key(role, columns)
-        return all(key in found for key in keys)
-
-    if has("contacts", "grain", "partner") and (has("contacts", "fx", "fy", "fz") or has("contacts", "force")):
+    contacts, grains, plate = (columns_by_key(role, columns).keys() for role in ("contacts", "grains", "plate"))
+    if {"grain", "partner"} <= contacts and ({"fx", "fy", "fz"} <= contacts or "force" in contacts):
         return "contacts"
-    if has("grains", "x", "y", "z") and (any(has("grains", key) for key in SIZE_KEYS) or _size_is_missing(columns)):
+    if {"x", "y", "z"} <= grains and (grains & {*SIZE_KEYS} or _size_is_missing(columns)):
         return "grains"
-    if has("plate", "top_force") and (has("plate", "plate_z") or has("plate", "displacement")):
+    if "top_force" in plate and plate & {"plate_z", "displacement"}:
         return "plate"
     return None
 

@@ -163,18 +163,12 @@ def must_be_stated(table):
     def has(*keys):
         return any(key in table for key in keys)
 
-    keys = []
-    if has("plate_z", "displacement", "x", "y", "z", *SIZE_KEYS, "same_diameter"):
-        keys.append("length_unit")
-    if table.word("length_unit") == VOXEL:
-        keys.append("voxel_size")
-    if has("top_force", "force", "fx", "fy", "fz"):
-        keys.append("force_unit")
-    if table.role == "plate" and has("top_force"):
-        keys.append("force_sign")
-    if table.role == "contacts" and has("fx", "fy", "fz"):
-        keys.append("force_on")
-    return keys
+    needed = {"length_unit": has("plate_z", "displacement", "x", "y", "z", *SIZE_KEYS, "same_diameter"),
+              "voxel_size": table.word("length_unit") == VOXEL,
+              "force_unit": has("top_force", "force", "fx", "fy", "fz"),
+              "force_sign": table.role == "plate" and has("top_force"),
+              "force_on": table.role == "contacts" and has("fx", "fy", "fz")}
+    return [key for key, is_needed in needed.items() if is_needed]
 
 
 def columns_of(table):
