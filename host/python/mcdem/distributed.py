@@ -51,17 +51,14 @@ def compute(words: list[str], *, client: Any = None, folder: str | os.PathLike[s
 def local_client(work):
     """A client of workers 0, 1, ..; the name is the index of the worker's device."""
     from distributed import Client, LocalCluster
-    with LocalCluster(n_workers=len(work.devices()), threads_per_worker=1, processes=True) as cluster, \
-            Client(cluster) as client:
+    devices = ask(["devices", "--alike"], work.folder).split()
+    with LocalCluster(n_workers=len(devices), threads_per_worker=1, processes=True) as cluster, Client(cluster) as client:
         yield client
 
 
 class Work:
     def __init__(self, command, folder, tries, report):
         self.command, self.folder, self.tries, self.report = command, folder, tries, report
-
-    def devices(self):
-        return ask(["devices", "--alike"], self.folder).split()
 
     def missing(self, workers):
         return [int(part) for part in ask([*self.command[1:], "--missing", "--workers", str(workers)], self.folder).split()]

@@ -22,10 +22,6 @@ class ContactFrames:
     def __len__(self):
         return len(self.grain)
 
-    @property
-    def is_wall(self):
-        return self.partner < 0
-
 
 def wall_by_direction(force):
     """The wall that exerts this force on a grain: the one whose normal is closest to it."""

@@ -53,9 +53,8 @@ def _only_counts(keys):
 
 
 def _told_by(frames):
-    if frames.by in ("place", "file"):
-        return {"place": "places in a list", "file": "numbers in file names"}[frames.by]
-    return f"{frames.counts} numbers".strip() + (f" [{frames.unit}]" if frames.unit else "")
+    told = {"place": "places in a list", "file": "numbers in file names"}.get(frames.by)
+    return told or f"{frames.counts} numbers".strip() + (f" [{frames.unit}]" if frames.unit else "")
 
 
 def _same_clock(a, b):

@@ -2,7 +2,7 @@
 import numpy as np
 
 from .contacts import import_contacts, wall_partner
-from .guess_contacts import FORCE_FACTORS, hertz_force, hertz_tells
+from .guess_contacts import FORCE_FACTORS, LIKE_NEWTONS, hertz_force
 from .guess_lengths import fitting_units, length_factors, state_voxel_size
 from .mapping import UNCLEAR, guess, signed_column
 from .plate import import_plate
@@ -147,7 +147,7 @@ def _guess_force(table, others, plate, known):
     if named:
         mapped["force_unit"] = guess(named.word, UNCLEAR, "the columns' names say so, but " + seen)
     elif len(fits) == 1:
-        mapped["force_unit"] = guess(fits[0], "sure" if has_sum or hertz_tells(fits[0]) else UNCLEAR, seen)
+        mapped["force_unit"] = guess(fits[0], "sure" if has_sum or fits[0] not in LIKE_NEWTONS else UNCLEAR, seen)
     else:
         mapped["force_unit"] = guess("N", UNCLEAR, seen or "no name says it, and nothing is known to compare with")
 

@@ -67,7 +67,7 @@ def _names_of(frames, mapped):
                     return name
         return ""
 
-    return np.array([name_of(row) for row in frames.row[frames.is_wall][:5000]], object)
+    return np.array([name_of(row) for row in frames.row[frames.partner < 0][:5000]], object)
 
 
 def guess_walls(table, frames, grains, known):
@@ -76,7 +76,7 @@ def guess_walls(table, frames, grains, known):
     mapped, box = table.map, known.box
     if not mapped.walls:
         return
-    mine = np.flatnonzero(frames.is_wall)[:5000] if len(frames) else np.zeros(0, int)
+    mine = np.flatnonzero(frames.partner < 0)[:5000] if len(frames) else np.zeros(0, int)
     names = _names_of(frames, mapped) if len(frames) else np.zeros(0, object)
     at = grains.frames_of(mapped.word("frames_by", "plate"), frames.keys)[frames.frame[mine]] if len(mine) else mine
     walls, grain = frames.partner[mine], frames.grain[mine]

@@ -201,15 +201,11 @@ def _one_line(text):
     return re.sub(r"[\x00-\x1f\x7f]", " ", text)
 
 
-def _value_text(of):
+def _line_text(key, of, meaning):
     words = list(of.words)
     if of.sure == UNCLEAR:
         words[0] = "?" + words[0]
-    return toml_text(words[0] if len(words) == 1 else words)
-
-
-def _line_text(key, of, meaning):
-    text = f"{key} = {_value_text(of)}"
+    text = f"{key} = {toml_text(words[0] if len(words) == 1 else words)}"
     if of.sure != "stated":
         text += f"  # {of.sure}: {_one_line(of.why)}"
     if of.sure == UNCLEAR and meaning:

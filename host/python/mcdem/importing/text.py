@@ -114,23 +114,20 @@ def _lines_above(lines, separator):
     return len(rows)
 
 
-class _DecimalComma:
-    """Evidence for or against a decimal comma in the cells: the first of each kind with its line."""
-
-    def __init__(self):
-        self.seen = {}
-
-    def look_at(self, cell, line):
+def _note_marks(seen, cells, line):
+    """Notes evidence for or against a decimal comma: the first cell of each kind with its line."""
+    for cell in cells:
         if cell_number(cell, ",") is not None and ("," in cell or "." in cell):
             kind = "point" if "." in cell else "either" if THOUSANDS["."].fullmatch(cell) else "comma"
-            self.seen.setdefault(kind, (cell, line))
+            seen.setdefault(kind, (cell, line))
 
-    def report(self, table, problems):
-        table.decimal_clear = "either" not in self.seen or "comma" in self.seen
-        if "either" in self.seen and "point" in self.seen:
-            (cell, line), (point, point_line) = self.seen["either"], self.seen["point"]
-            problems.add(f"{table.file}:{line}", "numbers must have one decimal mark and no separators of thousands, got "
-                         f"{quoted(cell)} beside {quoted(point)} in line {point_line}: write the table with points only")
+
+def _check_marks(seen, table, problems):
+    table.decimal_clear = "either" not in seen or "comma" in seen
+    if "either" in seen and "point" in seen:
+        (cell, line), (point, point_line) = seen["either"], seen["point"]
+        problems.add(f"{table.file}:{line}", "numbers must have one decimal mark and no separators of thousands, got "
+                     f"{quoted(cell)} beside {quoted(point)} in line {point_line}: write the table with points only")
 
 
 def _in_brackets(word):
@@ -149,20 +146,11 @@ def _names_of(headings, comment, format_, width):
     return names
 
 
-def _has_thousands(cells, form, where, problems):
-    for cell in cells:
-        if THOUSANDS[form.decimal].fullmatch(cell):
-            problems.add(where, f"numbers must have no separators of thousands, got {quoted(cell)} where the decimal is "
-                         f'"{form.decimal}": write the table without them')
-            return True
-    return False
-
-
 def parse_text(table, lines, form, problems):
     form = form or guess_form(lines)
     table.begin("text", lines, form)
     above = _lines_above(lines, form.separator)
-    comma, mark = _DecimalComma(), "." if form.decimal == "," else ","
+    seen, mark = {}, "." if form.decimal == "," else ","
     headings, comment, format_, trailing = [], [], [], False
     for number, line in enumerate(lines, 1):
         words = line.strip(" \t\r")
@@ -191,15 +179,15 @@ def parse_text(table, lines, form, problems):
                 problems.add(f"{table.file}:{number}", f"must have at most {MAX_COLUMNS} columns, got {len(cells)}")
             table.name_columns(_names_of(headings, comment, format_, len(cells)), len(cells))
         if form.decimal == ",":
-            for cell in cells:
-                comma.look_at(cell, number)
-        if mark in line and _has_thousands(cells, form, f"{table.file}:{number}", problems):
-            continue
-        if len(cells) == len(table.columns):
+            _note_marks(seen, cells, number)
+        if mark in line and (wrong := next(filter(THOUSANDS[form.decimal].fullmatch, cells), "")):
+            problems.add(f"{table.file}:{number}", f"numbers must have no separators of thousands, got {quoted(wrong)} where the decimal is "
+                         f'"{form.decimal}": write the table without them')
+        elif len(cells) == len(table.columns):
             table.add_row(cells, number)
         else:
             problems.add(f"{table.file}:{number}", f"must have {len(table.columns)} columns as the first row, got {len(cells)}")
     if form.decimal == ",":
-        comma.report(table, problems)
+        _check_marks(seen, table, problems)
     if table.rows == 0 and not problems.count:
         problems.add(table.file, "must have at least one row with a number in it, got none")
