@@ -11,6 +11,7 @@ import argparse
 import contextlib
 import json
 import os
+import shutil
 import subprocess
 import sys
 from typing import Any, Callable
@@ -101,8 +102,6 @@ class Work:
 
 def compute_part(command, folder, part):
     """The task. Returns None, or the reason why the program refuses its input. Raises RuntimeError after a failure, for another try."""
-    import shutil
-    import subprocess
     from distributed import get_worker
     words = [*command, "--part", str(part)]
     place = get_worker().name

@@ -107,15 +107,14 @@ class _Assembly:
         by = table.map.word("frames_by", "plate")
         frames = import_contacts(table, self.grains, self.problems)
         scans = self.grains.plate_rows_of(by, frames.keys)
-        for i in np.flatnonzero(scans[frames.frame] < 0)[:1] if len(frames) else ():
+        for i in np.flatnonzero(scans[frames.frame] < 0)[:1]:
             key = number_text(frames.keys[frames.frame[i]])
             whose = "grains' frames" if by == "grains" else "plate's rows"
             frames.rows.problem_once("frame", frames.row[i], f"frame {key} must be one of the {whose}, got none like it: see frame and "
                                      "frames_by in the mapping")
         reversed_ = (frames.partner >= 0) & (frames.partner < frames.grain)
         force = np.where(reversed_, -1, 1)[:, None] * frames.force
-        all_of = pd.DataFrame({"scan": scans[frames.frame] if len(frames) else frames.frame,
-                               "grain": np.where(reversed_, frames.partner, frames.grain),
+        all_of = pd.DataFrame({"scan": scans[frames.frame], "grain": np.where(reversed_, frames.partner, frames.grain),
                                "partner": np.where(reversed_, frames.grain, frames.partner), "side": reversed_, "row": frames.row,
                                **dict(zip(("x", "y", "z", "fx", "fy", "fz"), np.hstack([frames.point, force]).T))})
         all_of = all_of[all_of.scan >= 0].reset_index(drop=True)

@@ -92,7 +92,6 @@ def looks_like_data(lines):
 
 def parse_data(table, lines, problems):
     """LAMMPS data files of the styles sphere and granular: id type diameter density x y z, in the order of the ids."""
-    table.begin("data", [], Form(" ", "."))
     start = next(n for n, line in enumerate(lines) if line.partition("#")[0].split() == ["Atoms"])
     promised = next((_whole(line.split()[0]) for line in lines[:start] if line.split()[1:2] == ["atoms"]), None)
     rows = []
@@ -116,7 +115,7 @@ def parse_data(table, lines, problems):
     order = np.argsort(rows[:, 0], kind="stable")
     if len(np.unique(rows[:, 0])) < len(rows):
         problems.add(table.file, "each atom must have its own id, got one twice")
-    table.set_numbers(["x", "y", "z", "diameter"], rows[order][:, [4, 5, 6, 2]])
+    table.set_numbers("data", ["x", "y", "z", "diameter"], rows[order][:, [4, 5, 6, 2]])
 
 
 def looks_like_xyz(lines):
@@ -143,8 +142,7 @@ def parse_xyz(table, text, problems):
             chunks.append(np.column_stack([atoms.positions, *fields.values()]))
     except Exception as error:  # ASE has no exception type for invalid files
         return problems.add(table.file, f"must be extended xyz that ASE reads, got: {quoted(str(error) or type(error).__name__)}")
-    table.format, table.form = "xyz", Form(" ", ".")
-    table.set_numbers(names, np.concatenate(chunks))
+    table.set_numbers("xyz", names, np.concatenate(chunks))
     return None
 
 
@@ -170,8 +168,7 @@ def parse_mesh(table, content, problems):
             return problems.add(table.file, f"must be a VTK file that meshio reads, got: {quoted(str(error) or type(error).__name__)}")
     if not len(mesh.points):
         return problems.add(table.file, "must hold points, got none")
-    table.format, table.form = "vtk", Form(" ", ".")
-    table.set_numbers(_columns(fields), np.column_stack([mesh.points, *fields.values()]))
+    table.set_numbers("vtk", _columns(fields), np.column_stack([mesh.points, *fields.values()]))
     return None
 
 
@@ -272,12 +269,11 @@ class _Vtk:
                 values = np.column_stack([values, field])
         lines = range(self.points_at + 1, self.points_at + 1 + len(values))
         a_line_each = self.ends is None and all(len(self.lines[line - 1].split()) == 3 for line in lines)
-        self.table.set_numbers(names, values, lines if a_line_each else ())
+        self.table.set_numbers("vtk", names, values, lines if a_line_each else ())
         return None
 
 
 def parse_vtk(table, lines, problems):
-    table.format, table.form = "vtk", Form(" ", ".")
     vtk = _Vtk(table, lines, problems)
     words = vtk.next()
     if words != ["ASCII"]:

@@ -58,7 +58,7 @@ class GrainFrames:
         self.row = list(self.plate_rows_of(by, self.keys))
 
 
-def _read_columns(rows, mapped, problems):
+def _read_columns(rows, mapped):
     """Number, centre and diameter in each row, and which rows are complete."""
     unit, size_key = mapped.length_factor(), next((key for key in SIZE_KEYS if key in rows), None)
     wanted = rows.wanted()
@@ -86,7 +86,7 @@ class _Reader:
         first = whole_entry(mapped, "first_grain", self.problems)
         if not len(rows):
             return self.problems.add(mapped.files[0], "must have rows, one for each grain of a frame: leave a table without any out")
-        ids, centres, diameter, whole, self.frames.sign, self.frames.origin = _read_columns(rows, mapped, self.problems)
+        ids, centres, diameter, whole, self.frames.sign, self.frames.origin = _read_columns(rows, mapped)
         self.by_place = ids is None
         starts = rows.frames()
         for begin, end in zip(starts, starts[1:]):

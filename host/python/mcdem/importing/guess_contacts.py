@@ -26,7 +26,7 @@ class _Places:
     def __init__(self, table, grains):
         frames = import_contacts(table, grains, Problems(), MAX_ROWS)
         self.all = frames
-        at = grains.frames_of(table.map.word("frames_by", "plate"), frames.keys)[frames.frame] if len(frames) else np.zeros(0, int)
+        at = grains.frames_of(table.map.word("frames_by", "plate"), frames.keys)[frames.frame]
         kept = np.flatnonzero(at >= 0)
         position, radius = np.array(grains.position), grains.diameter / 2
         self.force, self.point, self.partner = frames.force[kept], frames.point[kept], frames.partner[kept]
@@ -47,7 +47,7 @@ class _Places:
         cosine = cosine[self.pair & np.isfinite(cosine)]
         if len(cosine) >= 3:
             return float(cosine.mean())
-        axis = np.argmax(np.abs(self.force), axis=1) if len(self.force) else np.zeros(0, int)
+        axis = np.argmax(np.abs(self.force), axis=1)
         sides = np.flatnonzero(~self.pair & (axis < 2))  # the position of the plate is unknown here
         if not len(sides):
             return 0.0

@@ -76,9 +76,8 @@ def guess_walls(table, frames, grains, known):
     mapped, box = table.map, known.box
     if not mapped.walls:
         return
-    mine = np.flatnonzero(frames.partner < 0)[:5000] if len(frames) else np.zeros(0, int)
-    names = _names_of(frames, mapped) if len(frames) else np.zeros(0, object)
-    at = grains.frames_of(mapped.word("frames_by", "plate"), frames.keys)[frames.frame[mine]] if len(mine) else mine
+    mine, names = np.flatnonzero(frames.partner < 0)[:5000], _names_of(frames, mapped)
+    at = grains.frames_of(mapped.word("frames_by", "plate"), frames.keys)[frames.frame[mine]]
     walls, grain = frames.partner[mine], frames.grain[mine]
     placed = at >= 0
     at_wall = np.zeros(len(mine), bool)

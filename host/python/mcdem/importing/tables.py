@@ -8,7 +8,7 @@ import numpy as np
 from ..errors import InputError
 from . import formats
 from .problems import Problems, number_text
-from .text import cell_number, cut, parse_text
+from .text import Form, cell_number, cut, parse_text
 
 LARGEST = 1 << 30  # maximum size of a table in bytes, uncompressed
 CHUNK = 20_000  # rows that are kept as text at a time
@@ -47,7 +47,8 @@ class Table:
         if len(self._pending) == CHUNK:
             self._convert()
 
-    def set_numbers(self, columns, values, line_of=()):
+    def set_numbers(self, format_, columns, values, line_of=()):
+        self.begin(format_, self.lines, Form(" ", "."))
         self.name_columns(columns, len(columns))
         self._chunks = [np.asarray(values, float).reshape(-1, len(columns))]
         self.rows, self.line_of = len(self._chunks[0]), list(line_of)
