@@ -11,6 +11,7 @@ import argparse
 import contextlib
 import json
 import os
+import shutil
 import subprocess
 import sys
 from typing import Any, Callable
@@ -51,17 +52,14 @@ def compute(words: list[str], *, client: Any = None, folder: str | os.PathLike[s
 def local_client(work):
     """A client of workers 0, 1, ..; the name is the index of the worker's device."""
     from distributed import Client, LocalCluster
-    with LocalCluster(n_workers=len(work.devices()), threads_per_worker=1, processes=True) as cluster, \
-            Client(cluster) as client:
+    devices = ask(["devices", "--alike"], work.folder).split()
+    with LocalCluster(n_workers=len(devices), threads_per_worker=1, processes=True) as cluster, Client(cluster) as client:
         yield client
 
 
 class Work:
     def __init__(self, command, folder, tries, report):
         self.command, self.folder, self.tries, self.report = command, folder, tries, report
-
-    def devices(self):
-        return ask(["devices", "--alike"], self.folder).split()
 
     def missing(self, workers):
         return [int(part) for part in ask([*self.command[1:], "--missing", "--workers", str(workers)], self.folder).split()]
@@ -104,8 +102,6 @@ class Work:
 
 def compute_part(command, folder, part):
     """The task. Returns None, or the reason why the program refuses its input. Raises RuntimeError after a failure, for another try."""
-    import shutil
-    import subprocess
     from distributed import get_worker
     words = [*command, "--part", str(part)]
     place = get_worker().name

@@ -10,7 +10,7 @@ import sys
 from .errors import INTERRUPTED, InputError, RunError
 
 # Module -> Debian package, if its name is not python3-MODULE.
-PACKAGES = {"PIL": "python3-pil", "skimage": "python3-skimage", "mpi4py": "python3-mpi4py"}
+PACKAGES = {"PIL": "python3-pil"}
 
 
 def say(text):

@@ -28,8 +28,7 @@ def confusion(source, axes=None):
     axes.set_xticks(range(cases.shape[1]), [plain(words) for words in values["verdicts"]], rotation=45, ha="left", rotation_mode="anchor")
     axes.xaxis.tick_top()
     axes.xaxis.set_label_position("top")
-    axes.set_xlabel("verdict")
-    axes.set_ylabel("truth")
+    axes.set(xlabel="verdict", ylabel="truth")
     axes.grid(False)
     axes.set_xticks(np.arange(cases.shape[1] + 1) - 0.5, minor=True)
     axes.set_yticks(np.arange(cases.shape[0] + 1) - 0.5, minor=True)
@@ -67,8 +66,6 @@ def proportions(values, axes):
                            elinewidth=0.8)
     for x, y, cases in zip(measured["x"], part, measured["cases"]):
         axes.annotate(str(cases), (x, y), (3, -6), textcoords="offset points", fontsize=5.5)
-    axes.set_ylim(-0.02, 1.04)
-    axes.set_xlabel(values["x_label"])
-    axes.set_ylabel(values["y_label"])
+    axes.set(ylim=(-0.02, 1.04), xlabel=values["x_label"], ylabel=values["y_label"])
     key(axes, [(points, "measured, 95 % interval, cases"), (line, values["words_predicted"])])
     return axes

@@ -20,14 +20,12 @@ def convergence(source, axes=None):
             error = row["errors"][number]
             if error:
                 draw_error(axes, place - 0.4 + 0.8 * (number + 0.5) / len(causes), error, cause)
-    axes.set_xlim(-EDGE, EDGE)
-    axes.set_ylim(len(rows) - 0.5, -0.5)
+    axes.set(xlim=(-EDGE, EDGE), ylim=(len(rows) - 0.5, -0.5), xlabel=values["x_label"])
     axes.set_yticks(range(len(rows)), [plain(row["words"]) for row in rows])
     axes.tick_params(axis="y", length=0)
-    axes.set_xlabel(values["x_label"])
     artists = [(axes.plot([], [], color=cause["colour"], marker=cause["marker"], linestyle="")[0], cause["words"]) for cause in causes]
     artists.append((matplotlib.patches.Patch(color="#e8e8e8", linewidth=0), "within the limit"))
-    key(axes, artists, loc="upper left", bbox_to_anchor=(1.01, 1))
+    key(axes, artists, "upper left", bbox_to_anchor=(1.01, 1))
     return axes
 
 

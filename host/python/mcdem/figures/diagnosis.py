@@ -1,13 +1,10 @@
 """Figures of a diagnosis: location of the gap, consistent effects, gap reduction."""
-import functools
-
 import matplotlib.cm
 import matplotlib.colors
-import matplotlib.lines
 import matplotlib.patches
 import numpy as np
 
-from .style import COLUMN, INK, PAGE, figure_of, is_crowded, key, new_axes, plain, styled
+from .style import COLUMN, INK, PAGE, is_below, key, line, new_axes, plain, styled
 from .values import read
 
 # Blue: the experiment is lower than the simulation; orange: higher.
@@ -31,7 +28,7 @@ def where(source, axes=None):
         set_columns(place, values, panel["words"])
     axes[0].set_yticks(range(len(values["observables"])), [plain(words) for words in values["observables"]])
     axes[0].set_ylim(len(values["observables"]) - 0.5, -0.5)
-    figure_of(axes).colorbar(matplotlib.cm.ScalarMappable(scale, BELOW_ABOVE), ax=list(axes), location="bottom", fraction=0.03,
+    axes[0].figure.colorbar(matplotlib.cm.ScalarMappable(scale, BELOW_ABOVE), ax=list(axes), location="bottom", fraction=0.03,
                              aspect=60, pad=0.02, label=values["colour_label"])
     return axes
 
@@ -52,8 +49,7 @@ def set_columns(axes, values, heading):
     columns = values["columns"]
     shown = columns[::len(columns) // 12 + 1]  # more labels would overlap
     axes.set_xticks([column["x"] for column in shown], [f"{column['displacement_mm']:.3g}" for column in shown])
-    axes.set_xlim(0, values["width"])
-    axes.set_xlabel(values["x_label"])
+    axes.set(xlim=(0, values["width"]), xlabel=values["x_label"])
     axes.tick_params(length=0)
     axes.grid(False)
     axes.spines[:].set_visible(False)
@@ -126,7 +122,7 @@ def how_far(source, axes=None):
     placebo: the best of many random effects. `axes`: two, or one if the experiment has no top force."""
     values = read(source, "how_far")
     has_forces = bool(values["forces"])
-    below = 15 if has_forces and is_crowded(force_entries(values["forces"])) else 0
+    below = 15 if has_forces and is_below(force_entries(values["forces"]), "upper left") else 0
     if axes is None:
         axes = new_axes(COLUMN, (50 + below) * has_forces + 18 + 4.5 * len(values["bars"]), nrows=1 + has_forces, squeeze=False,
                         gridspec_kw={"height_ratios": (50 + below, 4.5 * len(values["bars"]) + 4)[-1 - has_forces:]})[:, 0]
@@ -142,12 +138,10 @@ def draw_forces(axes, values):
     axes.plot(values["x"], values["before"], **before_look(values))
     axes.plot(values["x"], values["after"], color=values["colour_after"])
     axes.plot(values["x"], values["experiment"], **EXPERIMENT)
-    axes.set_xlabel(values["x_label"])
-    axes.set_ylabel(values["y_label"])
+    axes.set(xlabel=values["x_label"], ylabel=values["y_label"])
     if min(*values["experiment"], *values["before"], *values["after"]) >= 0:
         axes.set_ylim(bottom=0)
-    entries = force_entries(values)
-    key(axes, entries, **({} if is_crowded(entries) else {"loc": "upper left"}))
+    key(axes, force_entries(values), "upper left")
 
 
 def before_look(values):
@@ -155,7 +149,6 @@ def before_look(values):
 
 
 def force_entries(values):
-    line = functools.partial(matplotlib.lines.Line2D, [], [])
     entries = [(line(**EXPERIMENT), "experiment"), (line(**before_look(values)), values["words_before"]),
                (line(color=values["colour_after"]), values["words_after"])]
     if "fitted" in values:

@@ -1,9 +1,8 @@
 """The four figures of the paper, with or without a reference, and figures of programmes of plates and cells."""
-import matplotlib.lines
 import matplotlib.patches
 import numpy as np
 
-from .style import GREY, is_crowded, key, key_height, new_axes, styled
+from .style import GREY, key, keyed_axes, line, styled
 from .values import read
 
 SIMULATED = {"load": {"linestyle": "-"}, "unload": {"linestyle": (0, (4, 2))}}
@@ -15,13 +14,10 @@ PHASES = {"load": "loading", "unload": "unloading"}
 def top_force(source, axes=None):
     """Force on the plate. Solid lines: loading, dashed: unloading; points: the reference, filled and open."""
     values = read(source, "top_force")
-    values["series"].sort(key=lambda series: (series["is_reference"], -largest(series)))  # order of the legend as at the ends of the curves
-    shown = entries(values)
-    axes = axes or keyed_axes(shown, is_crowded(shown))
-    draw_curves(axes, values)
-    axes.set_xlim(left=0)
+    values["series"].sort(key=lambda series: (  # order of the legend as at the ends of the curves
+        series["is_reference"], -max(max(curve["y"]) for curve in series["curves"])))
+    axes = draw_curves(values, axes, "upper left")
     axes.set_ylim(bottom=0)
-    place_key(axes, shown, "upper left")
     return axes
 
 
@@ -29,70 +25,47 @@ def top_force(source, axes=None):
 def force_distribution(source, axes=None):
     """Density of contact forces at one level of compression, which the legend names; bands: one standard error over replicas."""
     values = read(source, "force_distribution")
-    shown = entries(values, phases=())
-    axes = axes or keyed_axes(shown, True)
-    for series in values["series"]:
-        for curve in series["curves"]:
-            (draw_points if series["is_reference"] else draw_line)(axes, series, {**curve, "phase": "load"})
-    label(axes, values)
+    curves = [curve for series in values["series"] for curve in series["curves"]]
+    phase = PHASES[curves[0]["phase"]]
+    for curve in curves:
+        curve["phase"] = "load"  # all of one phase: solid lines, filled points
+    axes = draw_curves(values, axes, phases=())
     axes.set_yscale("log")
-    axes.set_xlim(left=0)
-    phase = PHASES[values["series"][0]["curves"][0]["phase"]]
-    key(axes, shown).set_title(f"at {values['displacement_mm']:.1f} mm, {phase}", prop={"size": axes.xaxis.label.get_size()})
+    axes.get_legend().set_title(f"at {values['displacement_mm']:.1f} mm, {phase}", prop={"size": axes.xaxis.label.get_size()})
     return axes
 
 
 @styled
 def coordination(source, axes=None):
     """Contacts per grain, without forces below tau if there is a reference. Lines and points as in `top_force`."""
-    values = read(source, "coordination")
-    shown = entries(values)
-    axes = axes or keyed_axes(shown, True)
-    draw_curves(axes, values)
-    axes.set_xlim(left=0)
-    key(axes, shown)
-    return axes
+    return draw_curves(read(source, "coordination"), axes)
 
 
 @styled
 def scaling(source, axes=None):
     """Top force against averages over the packing. Filled points: loading, open: unloading; lines through the origin are fitted to both."""
     values = read(source, "scaling")
-    shown = [(matplotlib.lines.Line2D([], [], color=series["colour"], marker=series["marker"], linestyle=""), words(series))
-             for series in values["series"]]
-    shown += [(matplotlib.lines.Line2D([], [], color=GREY, marker="o", linestyle="", **REFERENCE[phase]), name)
-              for phase, name in PHASES.items()]
-    axes = axes or keyed_axes(shown, is_crowded(shown))
+    shown = [(line(color=series["colour"], marker=series["marker"], linestyle=""), words(series)) for series in values["series"]]
+    shown += [(line(color=GREY, marker="o", linestyle="", **REFERENCE[phase]), name) for phase, name in PHASES.items()]
+    axes = axes or keyed_axes(shown, "upper left")
     for series in values["series"]:
         for curve in series["curves"]:
             draw_points(axes, series, curve, markersize=2.2)
         if "slope" in series:
             end = max(max(curve["x"]) for curve in series["curves"])
             axes.plot([0, end], [0, series["slope"] * end], color=series["colour"], linewidth=0.7)
-    label(axes, values)
-    axes.set_xlim(left=0)
-    axes.set_ylim(bottom=0)
-    place_key(axes, shown, "upper left")
+    axes.set(xlim=(0, None), ylim=(0, None), xlabel=values["x_label"], ylabel=values["y_label"])
+    key(axes, shown, "upper left")
     return axes
 
 
-def of_programme(source, name, axes, from_zero=True):
+def programme_figure(name, meaning, from_zero=True):
     """One line per setting, in order of the scans, which are marked because paths may return to earlier points."""
-    values = read(source, name)
-    shown = entries(values, phases=())
-    axes = axes or keyed_axes(shown, is_crowded(shown))
-    draw_curves(axes, values, marker="o", markersize=1.6)
-    if from_zero and all(x >= 0 for series in values["series"] for curve in series["curves"] for x in curve["x"]):
-        axes.set_xlim(left=0)
-    place_key(axes, shown, "best")
-    return axes
-
-
-def programme_figure(name, meaning, **how):
-    """A figure that shows scans of a programme in their order."""
     @styled
     def draw(source, axes=None):
-        return of_programme(source, name, axes, **how)
+        values = read(source, name)
+        is_right = all(x >= 0 for series in values["series"] for curve in series["curves"] for x in curve["x"])
+        return draw_curves(values, axes, "best", phases=(), from_zero=from_zero and is_right, marker="o", markersize=1.6)
 
     draw.__name__, draw.__doc__ = name, meaning
     return draw
@@ -112,26 +85,24 @@ shear_stress_time = programme_figure("shear_stress_time", "Deviatoric stress of 
 shear_strain_time = programme_figure("shear_strain_time", "Deviatoric strain of a cell against time.")
 
 
+def draw_curves(values, axes, place=None, phases=("load", "unload"), from_zero=True, **lines):
+    """Lines with bands for simulations, points with error bars for the reference, and a legend (`place` as for `key`).
 
-def keyed_axes(shown, is_below):
-    """New axes with space for a legend below them."""
-    return new_axes(height=62 + key_height(shown) * is_below)
-
-
-def place_key(axes, shown, place):
-    """A legend inside the axes, or below them if it would hide curves."""
-    key(axes, shown, **({} if is_crowded(shown) else {"loc": place}))
-
-
-def draw_curves(axes, values, **lines):
-    """Lines with bands for simulations, points with error bars for the reference. `lines`: style of the lines."""
+    `lines`: style of the lines. Returns the axes, by default new ones.
+    """
+    shown = entries(values, phases)
+    axes = axes or keyed_axes(shown, place)
     for series in values["series"]:
         for curve in series["curves"]:
             if series["is_reference"]:
                 draw_points(axes, series, curve)
             else:
                 draw_line(axes, series, curve, **lines)
-    label(axes, values)
+    axes.set(xlabel=values["x_label"], ylabel=values["y_label"])
+    if from_zero:
+        axes.set_xlim(left=0)
+    key(axes, shown, place)
+    return axes
 
 
 def draw_line(axes, series, curve, **look):
@@ -149,11 +120,6 @@ def draw_points(axes, series, curve, **look):
                   elinewidth=0.6, **{**REFERENCE[curve["phase"]], **look})
 
 
-def label(axes, values):
-    axes.set_xlabel(values["x_label"])
-    axes.set_ylabel(values["y_label"])
-
-
 def numbers(curve):
     """x, y and standard error (NaN if unknown)."""
     return [np.array(curve[quantity], float) for quantity in ("x", "y", "standard_error")]
@@ -163,19 +129,15 @@ def words(series):
     return ", ".join(filter(None, (series["words"], series["remark"])))
 
 
-def largest(series):
-    return max(max(curve["y"]) for curve in series["curves"])
-
-
-def entries(values, phases=("load", "unload")):
+def entries(values, phases):
     """Legend entries of the series, followed by those of lines, points and bands."""
     series = values["series"]
-    shown = [(matplotlib.lines.Line2D([], [], color=one["colour"], **({"marker": "o", "linestyle": ""} if one["is_reference"]
-                                                                     else {"linewidth": 1.8})), words(one)) for one in series]
+    shown = [(line(color=one["colour"], **({"marker": "o", "linestyle": ""} if one["is_reference"] else {"linewidth": 1.8})), words(one))
+             for one in series]
     has_reference = any(one["is_reference"] for one in series)
     for phase in phases:
         points = {"load": " (points: full)", "unload": " (points: open)"}[phase] if has_reference else ""
-        shown.append((matplotlib.lines.Line2D([], [], color=GREY, **SIMULATED[phase]), PHASES[phase] + points))
+        shown.append((line(color=GREY, **SIMULATED[phase]), PHASES[phase] + points))
     if any(one["replicas"] > 1 for one in series):
         shown.append((matplotlib.patches.Patch(color=GREY, alpha=0.3, linewidth=0), "± standard error"))
     return shown

@@ -5,7 +5,9 @@ import math
 import pathlib
 
 import matplotlib
+import matplotlib.lines
 import matplotlib.pyplot as plt
+import numpy as np
 
 from ..files import write_whole
 
@@ -14,6 +16,8 @@ COLUMN = 86            # width of a column of a journal [mm]
 PAGE = 178             # width of its page [mm]
 
 INK, GREY, GRID = "#222222", "#666666", "#dddddd"
+
+line = functools.partial(matplotlib.lines.Line2D, [], [])  # for legends
 
 # Applied on top of the user's settings. Text is stored as text, so that it can be edited and searched.
 STYLE = {
@@ -30,26 +34,15 @@ STYLE = {
 }
 
 
-def styled(draw):
-    """Decorator: the function draws in STYLE, whatever else the program has set."""
-    @functools.wraps(draw)
-    def drawn(*arguments, **named):
-        with matplotlib.rc_context(STYLE):
-            return draw(*arguments, **named)
-    return drawn
+styled = matplotlib.rc_context(STYLE)  # decorator: the function draws in STYLE, whatever else the program has set
 
 
+@styled
 def new_axes(width=COLUMN, height=62, **grid):
     """Axes on a new page of this size [mm]; `grid` as for matplotlib's `subplots`."""
-    with matplotlib.rc_context(STYLE):
-        figure, axes = plt.subplots(figsize=(width * MILLIMETRE, height * MILLIMETRE), **grid)
-        figure.get_layout_engine().set(w_pad=MILLIMETRE, h_pad=MILLIMETRE)
-        return axes
-
-
-def figure_of(axes):
-    """The figure of axes, or of an array of axes."""
-    return axes.figure if hasattr(axes, "figure") else next(iter(getattr(axes, "flat", axes))).figure
+    figure, axes = plt.subplots(figsize=(width * MILLIMETRE, height * MILLIMETRE), **grid)
+    figure.get_layout_engine().set(w_pad=MILLIMETRE, h_pad=MILLIMETRE)
+    return axes
 
 
 def plain(text):
@@ -58,25 +51,27 @@ def plain(text):
     return " " + text if text.startswith("_") else text
 
 
-def key_height(entries):
-    """Height of a legend below the axes [mm]."""
-    return 3.1 * math.ceil(len(entries) / key_columns(entries)) + 1
-
-
 def key_columns(entries):
     return 2 if max(len(words) for _, words in entries) < 30 else 1
 
 
-def is_crowded(entries):
-    """Whether a legend inside the axes would hide curves."""
-    return len(entries) > 9 or max(len(words) for _, words in entries) > 36
+def is_below(entries, place):
+    """Whether a legend is below the axes: without a place inside them, or because it would hide curves there."""
+    return place is None or len(entries) > 9 or max(len(words) for _, words in entries) > 36
 
 
-def key(axes, entries, **place):
-    """A legend of (artist, text), inside the axes at `place`, otherwise below them."""
-    if not place:
-        place = {"loc": "upper left", "bbox_to_anchor": (-0.1, -0.17), "ncol": key_columns(entries), "columnspacing": 1.2}
-    return axes.legend([artist for artist, _ in entries], [plain(words) for _, words in entries], **place)
+def keyed_axes(entries, place):
+    """New axes with space for a legend below them if it is there."""
+    height = 3.1 * math.ceil(len(entries) / key_columns(entries)) + 1
+    return new_axes(height=62 + height * is_below(entries, place))
+
+
+def key(axes, entries, place=None, **beside):
+    """A legend of (artist, text): inside the axes at `place`, below them, or `beside` them."""
+    where = {"loc": place, **beside}
+    if not beside and is_below(entries, place):
+        where = {"loc": "upper left", "bbox_to_anchor": (-0.1, -0.17), "ncol": key_columns(entries), "columnspacing": 1.2}
+    return axes.legend([artist for artist, _ in entries], [plain(words) for _, words in entries], **where)
 
 
 @styled
@@ -87,5 +82,5 @@ def save(axes, file):
     creator = {"png": "Software"}.get(kind, "Creator")  # `mcdem` recognises its own figures by this
     dates = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}  # so that the same figure has the same bytes
     page = io.BytesIO()
-    figure_of(axes).savefig(page, format=kind, metadata={creator: "mcdem figure", **dates.get(kind, {})})
+    np.ravel(axes)[0].figure.savefig(page, format=kind, metadata={creator: "mcdem figure", **dates.get(kind, {})})
     write_whole(file, page.getvalue())

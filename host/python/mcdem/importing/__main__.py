@@ -25,21 +25,19 @@ def arguments_of(words):
     parser.add_argument("--gzip", action="store_true")
     parser.add_argument("--programme", action="store_true", help="experiment.toml states one")
     for name in ("--box-x", "--box-y", "--plate-start", "--youngs-modulus", "--poisson-ratio", "--voxel-size"):
-        parser.add_argument(name, type=float)
+        parser.add_argument(name, type=float, default=argparse.SUPPRESS)
     parser.add_argument("tables", nargs="*")
     return parser.parse_args(words)
 
 
 def known_of(arguments):
-    stated = {name: getattr(arguments, name) for name in ("plate_start", "youngs_modulus", "poisson_ratio", "voxel_size")}
-    return Known(box=(arguments.box_x or 0.0, arguments.box_y or 0.0), programme=arguments.programme,
-                 **{name: value for name, value in stated.items() if value is not None})
+    stated = {name: value for name, value in vars(arguments).items() if hasattr(Known, name)}
+    return Known(box=(getattr(arguments, "box_x", 0.0), getattr(arguments, "box_y", 0.0)), **stated)
 
 
-def print_entry(key, of):
-    head = f"  {key:<13} {' + '.join(of.words):<18} {of.sure:<8}"
-    print(textwrap.fill(of.why, LINE, initial_indent=head, subsequent_indent=" " * len(head), break_long_words=False,
-                        break_on_hyphens=False) if of.why else head)
+def print_beside(head, text):
+    print(textwrap.fill(text, LINE, initial_indent=head, subsequent_indent=" " * len(head), break_long_words=False,
+                        break_on_hyphens=False) if text else head)
 
 
 def print_mapping(mapping):
@@ -48,28 +46,19 @@ def print_mapping(mapping):
         more = f" and {len(table.files) - 1} more" if len(table.files) > 1 else ""
         why = f": {table.role_why}" if table.role_why else ""
         print(f"{table.files[0]}{more}: {table.role} ({table.role_sure}{why})")
-        for key in KEYS[table.role]:
-            if key.name in table:
-                print_entry(key.name, table[key.name])
-        for word, of in sorted(table.walls.items()):
-            print_entry("wall " + word, of)
+        entries = [(key.name, table[key.name]) for key in KEYS[table.role] if key.name in table]
+        for name, of in entries + [("wall " + word, of) for word, of in sorted(table.walls.items())]:
+            print_beside(f"  {name:<13} {' + '.join(of.words):<18} {of.sure:<8}", of.why)
         if table.unused:
-            print(textwrap.fill(", ".join(table.unused), LINE, initial_indent="  not used     ", subsequent_indent=" " * 15,
-                                break_long_words=False, break_on_hyphens=False))
+            print_beside("  not used     ", ", ".join(table.unused))
     sys.stdout.flush()
 
 
-class Results:
-    """Writes the files for the program into its folder."""
-
-    def __init__(self, folder):
-        self.folder = folder
-
-    def write(self, name, text):
-        write_whole(os.path.join(self.folder, name), text.encode("utf-8", "surrogateescape"))
-
-    def write_lines(self, name, lines):
-        self.write(name, "".join(line.replace("\n", " ") + "\n" for line in lines))
+def write(arguments, name, text):
+    """Writes a file for the program; `text` may be a list of lines."""
+    if isinstance(text, list):
+        text = "".join(line.replace("\n", " ") + "\n" for line in text)
+    write_whole(os.path.join(arguments.work, name), text.encode("utf-8", "surrogateescape"))
 
 
 def expect_kept(kept, text):
@@ -85,7 +74,7 @@ def expect_kept(kept, text):
         raise InputError(f"{kept}: is another mapping, and is not replaced: give another folder (--out), or remove it")
 
 
-def import_by_mapping(arguments, known, results):
+def import_by_mapping(arguments, known):
     text = text_of_mapping(arguments.mapping)
     tables = read_import_tables(parse_mapping(text, arguments.mapping), arguments.tables, arguments.mapping)
     mapping = mapping_of(tables)
@@ -94,11 +83,11 @@ def import_by_mapping(arguments, known, results):
         raise InputError(arguments.settings_problem)
     text = mapping_text(mapping) if arguments.tables else text
     expect_kept(arguments.kept, text)
-    results.write("mapping.toml", text)
+    write(arguments, "mapping.toml", text)
     return import_tables(tables, known)
 
 
-def import_by_guess(arguments, known, results):
+def import_by_guess(arguments, known):
     """None if the guess is uncertain."""
     if not arguments.tables:
         raise InputError("TABLE: must be at least one file, or --mapping must name them, got neither")
@@ -107,7 +96,7 @@ def import_by_guess(arguments, known, results):
     tables = guess_tables(arguments.tables, known)
     mapping = mapping_of(tables)
     text = mapping_text(mapping)
-    results.write("mapping.toml", text)
+    write(arguments, "mapping.toml", text)
     print_mapping(mapping)
     problems = unclear_entries(text, arguments.kept) + arguments.settings_problem
     rows = wrong_rows(tables) if problems else []
@@ -116,20 +105,19 @@ def import_by_guess(arguments, known, results):
             return import_tables(tables, known)
         except InputError as error:
             rows = error.problems
-    results.write_lines("problems", problems + rows)
+    write(arguments, "problems", problems + rows)
     if rows:
-        results.write("wrong_rows", "")
+        write(arguments, "wrong_rows", "")
     return None
 
 
 def main():
     arguments = arguments_of(sys.argv[1:])
-    known, results = known_of(arguments), Results(arguments.work)
-    imported = (import_by_mapping if arguments.mapping else import_by_guess)(arguments, known, results)
+    imported = (import_by_mapping if arguments.mapping else import_by_guess)(arguments, known_of(arguments))
     if imported is not None:
         write_tables(imported, arguments.work, arguments.gzip)
-        results.write("plate_start", repr(imported.plate_start))
-        results.write_lines("notes", imported.notes)
+        write(arguments, "plate_start", repr(imported.plate_start))
+        write(arguments, "notes", imported.notes)
 
 
 if __name__ == "__main__":

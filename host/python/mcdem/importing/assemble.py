@@ -12,6 +12,7 @@ from .grains import import_grains
 from .mapping import WALLS
 from .plate import PlateRows, check_heights, import_plate
 from .problems import Problems, number_text
+from .rows import of_role
 
 # For the two sides of a contact: largest difference over the larger force; weak forces over the largest one of the frame.
 MAX_APART, WEAK = 0.5, 0.01
@@ -45,11 +46,8 @@ class _Assembly:
         self.tables, self.known, self.problems = tables, known, Problems()
         self.plate, self.grains, self.notes, self.dropped = PlateRows(), None, [], 0
 
-    def of(self, role):
-        return [table for table in self.tables if table.role == role]
-
     def run(self):
-        plates, grains, contacts = map(self.of, ("plate", "grains", "contacts"))
+        plates, grains, contacts = (of_role(self.tables, role) for role in ("plate", "grains", "contacts"))
         if len(plates) != 1:
             self.problems.add("plate", f"must be one table with the plate's position and force by frame, got {len(plates)}: say "
                               '`role = "plate"` in the mapping, or give the table')
@@ -95,8 +93,8 @@ class _Assembly:
                 rows.problem_once("inside", first, f"centres must lie in the box of {size[0]:g} by {size[1]:g} m below the plate at "
                                   f"{size[2]:g} m, got {at} in frame {number_text(grains.keys[frame])}: see length_unit, origin_x, "
                                   "origin_y, origin_z and frames_by in the mapping")
-        first_at = {row: frame for frame, row in reversed(list(enumerate(grains.row)))}
-        for frame in [frame for frame, row in enumerate(grains.row) if row >= 0 and first_at[row] < frame][:1]:
+        again = (np.array(grains.row) >= 0) & (grains.frames_at(grains.row) < np.arange(len(grains.row)))
+        for frame in np.flatnonzero(again)[:1]:
             rows, first = grains.where[frame]
             rows.problem_once("row", first, f"frame {number_text(grains.keys[frame])} must have a row of the plate of its own, got one that an "
                               "earlier frame has: see frames_by in the mapping")
@@ -109,16 +107,14 @@ class _Assembly:
         by = table.map.word("frames_by", "plate")
         frames = import_contacts(table, self.grains, self.problems)
         scans = self.grains.plate_rows_of(by, frames.keys)
-        lost = np.flatnonzero(scans[frames.frame] < 0) if len(frames) else []
-        if len(lost):
-            key = number_text(frames.keys[frames.frame[lost[0]]])
+        for i in np.flatnonzero(scans[frames.frame] < 0)[:1]:
+            key = number_text(frames.keys[frames.frame[i]])
             whose = "grains' frames" if by == "grains" else "plate's rows"
-            frames.rows.problem_once("frame", frames.row[lost[0]], f"frame {key} must be one of the {whose}, got none like it: see frame and "
+            frames.rows.problem_once("frame", frames.row[i], f"frame {key} must be one of the {whose}, got none like it: see frame and "
                                      "frames_by in the mapping")
         reversed_ = (frames.partner >= 0) & (frames.partner < frames.grain)
         force = np.where(reversed_, -1, 1)[:, None] * frames.force
-        all_of = pd.DataFrame({"scan": scans[frames.frame] if len(frames) else frames.frame,
-                               "grain": np.where(reversed_, frames.partner, frames.grain),
+        all_of = pd.DataFrame({"scan": scans[frames.frame], "grain": np.where(reversed_, frames.partner, frames.grain),
                                "partner": np.where(reversed_, frames.grain, frames.partner), "side": reversed_, "row": frames.row,
                                **dict(zip(("x", "y", "z", "fx", "fy", "fz"), np.hstack([frames.point, force]).T))})
         all_of = all_of[all_of.scan >= 0].reset_index(drop=True)
@@ -129,8 +125,7 @@ class _Assembly:
         pair = ["scan", "grain", "partner"]
         place, size = contacts.groupby(pair).cumcount(), np.linalg.norm(contacts[["fx", "fy", "fz"]], axis=1)
         first_side = contacts.groupby(pair).side.transform("first")
-        in_others = contacts[pair].apply(tuple, axis=1).isin({key for table in before for key in map(tuple, table[pair].values)}) \
-            if before and len(contacts) else np.zeros(len(contacts), bool)
+        in_others = pd.MultiIndex.from_frame(contacts[pair]).isin([key for table in before for key in zip(*table[pair].values.T)])
         from_other_side = (place == 1) & (contacts.side != first_side) & ~in_others
         twice = (place > 0) & ~(from_other_side & both) | in_others
         for i in np.flatnonzero(twice)[:1]:
@@ -152,9 +147,7 @@ class _Assembly:
         """Weak forces may differ more, because their errors are those of the strong ones."""
         a, b = first[["fx", "fy", "fz"]].values, other[["fx", "fy", "fz"]].values
         sizes, apart = (np.linalg.norm(a, axis=1), np.linalg.norm(b, axis=1)), np.linalg.norm(a - b, axis=1)
-        wrong = np.flatnonzero(apart > np.maximum(MAX_APART * np.maximum(*sizes), WEAK * largest))
-        if len(wrong):
-            i = wrong[0]
+        for i in np.flatnonzero(apart > np.maximum(MAX_APART * np.maximum(*sizes), WEAK * largest))[:1]:
             frames.rows.problem_once("sides", other.row.iloc[i], f"the forces of a contact's two sides must be opposite, got sizes of "
                                      f"{sizes[0][i]:.4g} and {sizes[1][i]:.4g} N, {apart[i]:.4g} N apart when one is negated: leave one "
                                      'of the sides out of the table and write `sides = "one"`')
@@ -164,8 +157,7 @@ class _Assembly:
         lost = np.flatnonzero(contacts.x.isna())
         if not len(lost):
             return contacts
-        frame_of = {row: frame for frame, row in reversed(list(enumerate(self.grains.row)))}
-        frame = np.array([frame_of.get(scan, -1) for scan in contacts.scan[lost]])
+        frame = self.grains.frames_at(contacts.scan[lost])
         position, radius = np.array(self.grains.position), self.grains.diameter / 2
         grain, partner = contacts.grain.values[lost], contacts.partner.values[lost]
         centre = position[frame, grain]
@@ -177,9 +169,8 @@ class _Assembly:
             mine = partner == -1 - wall
             point[mine] = centre[mine]
             point[mine, wall // 2] = (0, self.known.box[0], 0, self.known.box[1], 0, self.plate.z[contacts.scan.values[lost][mine]])[wall]
-        nowhere = np.flatnonzero((frame < 0) | ~np.isfinite(point).all(axis=1))
-        if len(nowhere):
-            frames.rows.problem_once("point", contacts.row[lost[nowhere[0]]], "a contact must have a point, or its grains a position in its "
+        for i in lost[(frame < 0) | ~np.isfinite(point).all(axis=1)][:1]:
+            frames.rows.problem_once("point", contacts.row[i], "a contact must have a point, or its grains a position in its "
                                      "frame, two places, got neither")
         contacts.loc[lost, ["x", "y", "z"]] = point
         return contacts
@@ -201,7 +192,7 @@ class _Assembly:
         grain_table = pd.concat(of_frames) if of_frames else None
         if contacts is not None:
             contacts = contacts[contacts.scan >= first].sort_values("scan", kind="stable")
-            partner = contacts.partner.where(contacts.partner >= 0, contacts.partner.map(lambda p: WALLS[-1 - p] if p < 0 else p))
+            partner = contacts.partner.map(lambda p: WALLS[-1 - p] if p < 0 else p)
             contacts = pd.DataFrame({"frame": contacts.scan - first, "grain": contacts.grain, "partner": partner, "x_m": contacts.x,
                                      "y_m": contacts.y, "z_m": contacts.z, "fx_N": contacts.fx, "fy_N": contacts.fy, "fz_N": contacts.fz})
         return Imported(plate_table, grain_table, contacts, start, self.notes)

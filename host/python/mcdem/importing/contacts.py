@@ -22,10 +22,6 @@ class ContactFrames:
     def __len__(self):
         return len(self.grain)
 
-    @property
-    def is_wall(self):
-        return self.partner < 0
-
 
 def wall_by_direction(force):
     """The wall that exerts this force on a grain: the one whose normal is closest to it."""
@@ -40,14 +36,6 @@ class _Reader:
         self.offset = whole_entry(self.map, "id_offset", problems)
         self.one_wall = self.map.word("partner") if self.map.word("partner") in WALLS else None
         self.has_size = "force" in self.rows
-
-    def has_columns(self):
-        before = self.problems.count
-        needed = ["grain"] + ([] if self.one_wall else ["partner"]) + ([] if self.has_size else ["fx", "fy", "fz"])
-        for key in needed:
-            if key not in self.rows:
-                self.problems.add(self.map.files[0], f"must have a column for {key}, got none: name it in the mapping")
-        return self.problems.count == before
 
     def side_of(self, key, text, number):
         """A grain, a wall, SOME_WALL or NOBODY; and the problem, or None."""
@@ -111,14 +99,14 @@ class _Reader:
             line = position[at[pairs], grain[pairs]] - position[at[pairs], partner[pairs]]
             with np.errstate(invalid="ignore", divide="ignore"):
                 away[pairs] = line / np.linalg.norm(line, axis=1)[:, None]
-        lost = np.flatnonzero(known & np.isnan(away).any(axis=1))
-        if len(lost):
-            self.rows.problem_once("size", lost[0], "a force's size needs to know its direction: both centres in this frame, at two "
+        for i in np.flatnonzero(known & np.isnan(away).any(axis=1))[:1]:
+            self.rows.problem_once("size", i, "a force's size needs to know its direction: both centres in this frame, at two "
                                    "places, or which wall")
         return self.map.force_factor() * self.rows.number("force", known)[:, None] * away
 
     def read(self):
-        if not self.has_columns() or not len(self.rows):
+        needed = ["grain"] + ([] if self.one_wall else ["partner"]) + ([] if self.has_size else ["fx", "fy", "fz"])
+        if any([self.rows.lacks(key) for key in needed]) or not len(self.rows):
             return ContactFrames()
         starts = self.rows.frames()[:-1]
         keys = self.rows.key[starts]
@@ -129,7 +117,7 @@ class _Reader:
         frames = ContactFrames(keys)
         frame = np.searchsorted(starts, np.arange(len(self.rows)), "right") - 1
         # A frame without contacts counts in the order as well.
-        wanted = np.nan_to_num(self.rows.number("where")) != 0 if "where" in self.rows else np.ones(len(self.rows), bool)
+        wanted = self.rows.wanted()
         grain, partner, swapped, known = self.partners(wanted)
         at = self.grains.frames_of(self.map.word("frames_by", "plate"), keys)[frame]
         force = self.forces(grain, partner, swapped, at, known)

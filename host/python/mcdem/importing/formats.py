@@ -1,7 +1,8 @@
 """Readers for files of simulation programs: dumps and data files of LAMMPS and LIGGGHTS, VTK, extended xyz."""
 import contextlib
 import io
-import os
+import pathlib
+import re
 import tempfile
 
 import numpy as np
@@ -14,8 +15,7 @@ MAX_NUMBERS = 100_000_000
 
 
 def _whole(word):
-    digits = word.removeprefix("+").removeprefix("-")
-    return int(word) if digits.isascii() and digits.isdigit() and len(digits) < 19 else None
+    return int(word) if re.fullmatch(r"[+-]?[0-9]{1,18}", word) else None
 
 
 def parse_dump(table, lines, problems):
@@ -92,7 +92,6 @@ def looks_like_data(lines):
 
 def parse_data(table, lines, problems):
     """LAMMPS data files of the styles sphere and granular: id type diameter density x y z, in the order of the ids."""
-    table.begin("data", [], Form(" ", "."))
     start = next(n for n, line in enumerate(lines) if line.partition("#")[0].split() == ["Atoms"])
     promised = next((_whole(line.split()[0]) for line in lines[:start] if line.split()[1:2] == ["atoms"]), None)
     rows = []
@@ -116,7 +115,7 @@ def parse_data(table, lines, problems):
     order = np.argsort(rows[:, 0], kind="stable")
     if len(np.unique(rows[:, 0])) < len(rows):
         problems.add(table.file, "each atom must have its own id, got one twice")
-    table.set_numbers(["x", "y", "z", "diameter"], rows[order][:, [4, 5, 6, 2]])
+    table.set_numbers("data", ["x", "y", "z", "diameter"], rows[order][:, [4, 5, 6, 2]])
 
 
 def looks_like_xyz(lines):
@@ -131,22 +130,19 @@ def parse_xyz(table, text, problems):
     chunks = []
     try:
         for place, atoms in enumerate(iread(io.StringIO(text), format="extxyz", index=":")):
-            fields = {"": atoms.positions, **{name: atoms.arrays[name] for name in sorted(atoms.arrays)
-                                              if name not in ("positions", "numbers") and atoms.arrays[name].dtype.kind in "if"}}
-            columns = ["x", "y", "z"]
-            for name, values in list(fields.items())[1:]:
-                columns += _component_names(name, 1 if values.ndim == 1 else values.shape[1])
+            fields = {name: np.atleast_2d(values.T).T for name, values in sorted(atoms.arrays.items())
+                      if name not in ("positions", "numbers") and values.dtype.kind in "if"}
+            columns = _columns(fields)
             if names not in (None, columns):
                 return problems.add(table.file, f"the fields of all frames must be those of the first, {' '.join(names)}, got "
                                     f"{' '.join(columns)}")
             names = columns
             step = next((atoms.info[key] for key in ("step", "Step", "timestep", "frame") if key in atoms.info), place)
             table.frames.append((float(step), sum(map(len, chunks))))
-            chunks.append(np.column_stack(list(fields.values())))
+            chunks.append(np.column_stack([atoms.positions, *fields.values()]))
     except Exception as error:  # ASE has no exception type for invalid files
         return problems.add(table.file, f"must be extended xyz that ASE reads, got: {quoted(str(error) or type(error).__name__)}")
-    table.format, table.form = "xyz", Form(" ", ".")
-    table.set_numbers(names, np.concatenate(chunks))
+    table.set_numbers("xyz", names, np.concatenate(chunks))
     return None
 
 
@@ -162,23 +158,23 @@ def parse_mesh(table, content, problems):
 
     ending = ".vtk" if content.startswith(b"#") else ".vtu"
     with tempfile.TemporaryDirectory(prefix="mcdem-") as folder:
-        file = os.path.join(folder, "mesh" + ending)
-        with open(file, "wb") as out:
-            out.write(content)
+        file = pathlib.Path(folder, "mesh" + ending)
+        file.write_bytes(content)
         try:
             with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
                 mesh = meshio.read(file)
             fields = {name: np.asarray(values, float).reshape(len(mesh.points), -1) for name, values in mesh.point_data.items()}
         except (Exception, SystemExit) as error:  # meshio exits if a file is invalid
             return problems.add(table.file, f"must be a VTK file that meshio reads, got: {quoted(str(error) or type(error).__name__)}")
-    columns = ["x", "y", "z"]
-    for name, values in fields.items():
-        columns += _component_names(name, values.shape[1])
     if not len(mesh.points):
         return problems.add(table.file, "must hold points, got none")
-    table.format, table.form = "vtk", Form(" ", ".")
-    table.set_numbers(columns, np.column_stack([mesh.points, *fields.values()]))
+    table.set_numbers("vtk", _columns(fields), np.column_stack([mesh.points, *fields.values()]))
     return None
+
+
+def _columns(fields):
+    """Names of the columns of points with these fields."""
+    return ["x", "y", "z"] + [column for name, values in fields.items() for column in _component_names(name, values.shape[1])]
 
 
 def _component_names(name, width):
@@ -273,12 +269,11 @@ class _Vtk:
                 values = np.column_stack([values, field])
         lines = range(self.points_at + 1, self.points_at + 1 + len(values))
         a_line_each = self.ends is None and all(len(self.lines[line - 1].split()) == 3 for line in lines)
-        self.table.set_numbers(names, values, lines if a_line_each else ())
+        self.table.set_numbers("vtk", names, values, lines if a_line_each else ())
         return None
 
 
 def parse_vtk(table, lines, problems):
-    table.format, table.form = "vtk", Form(" ", ".")
     vtk = _Vtk(table, lines, problems)
     words = vtk.next()
     if words != ["ASCII"]:

@@ -45,8 +45,12 @@ class GrainFrames:
         if self.row is None:
             places = np.arange(len(keys))
             return np.where(places < len(self.keys), places, -1)
-        first = {row: frame for frame, row in reversed(list(enumerate(self.row)))}
-        return np.array([first.get(row, -1) if row >= 0 else -1 for row in self.plate_rows_of(by, keys)], int)
+        return self.frames_at(self.plate_rows_of(by, keys))
+
+    def frames_at(self, rows):
+        """The first frame at each of these rows of the plate; -1: none."""
+        first = {row: frame for frame, row in reversed(list(enumerate(self.row))) if row >= 0}
+        return np.array([first.get(row, -1) for row in rows], int)
 
     def place(self, by, plate):
         """Finds the row of the plate for each frame."""
@@ -54,18 +58,17 @@ class GrainFrames:
         self.row = list(self.plate_rows_of(by, self.keys))
 
 
-def _read_columns(rows, mapped, problems):
+def _read_columns(rows, mapped):
     """Number, centre and diameter in each row, and which rows are complete."""
     unit, size_key = mapped.length_factor(), next((key for key in SIZE_KEYS if key in rows), None)
-    wanted = np.nan_to_num(rows.number("where")) != 0 if "where" in rows else np.ones(len(rows), bool)
+    wanted = rows.wanted()
     centres = np.column_stack([rows.number(key, wanted) for key in "xyz"])
     sign = np.array([signed_column(mapped.word(key))[0] for key in "xyz"], float)
     begin = sign * [mapped.number(f"origin_{axis}") for axis in "xyz"]
     size = rows.number(size_key, wanted) if size_key else np.full(len(rows), mapped.number("same_diameter"))
     ids = rows.whole_number("grain") if "grain" in rows else None
-    wrong = np.flatnonzero((size <= 0) & wanted)
-    if len(wrong):
-        rows.problem_once("size", wrong[0], f"{size_key or 'same_diameter'} must be > 0, got {number_text(size[wrong[0]])}")
+    for i in np.flatnonzero((size <= 0) & wanted)[:1]:
+        rows.problem_once("size", i, f"{size_key or 'same_diameter'} must be > 0, got {number_text(size[i])}")
     whole = wanted & np.isfinite(centres).all(axis=1) & np.isfinite(size) & (True if ids is None else np.isfinite(ids))
     diameter = unit * (2 * size if size_key == "radius" else np.cbrt(6 * size / np.pi) if size_key == "volume" else size)
     return ids, unit * (centres - begin), diameter, whole, sign, unit * begin
@@ -78,13 +81,12 @@ class _Reader:
     def read(self, table):
         mapped, rows = table.map, Rows(table, self.problems)
         size = next((key for key in SIZE_KEYS if key in rows), "diameter")
-        for key in ["x", "y", "z"] + ([] if "same_diameter" in mapped else [size]):
-            if key not in rows:
-                return self.problems.add(mapped.files[0], f"must have a column for {key}, got none: name it in the mapping")
+        if any(map(rows.lacks, ["x", "y", "z"] + ([] if "same_diameter" in mapped else [size]))):
+            return None
         first = whole_entry(mapped, "first_grain", self.problems)
         if not len(rows):
             return self.problems.add(mapped.files[0], "must have rows, one for each grain of a frame: leave a table without any out")
-        ids, centres, diameter, whole, self.frames.sign, self.frames.origin = _read_columns(rows, mapped, self.problems)
+        ids, centres, diameter, whole, self.frames.sign, self.frames.origin = _read_columns(rows, mapped)
         self.by_place = ids is None
         starts = rows.frames()
         for begin, end in zip(starts, starts[1:]):

@@ -17,7 +17,7 @@ from .mapping import UNCLEAR, Guess, MappedTable, columns_of, find_key, unused_c
 from .names import VOXEL
 from .plate import import_plate
 from .problems import Problems
-from .rows import ImportTable
+from .rows import ImportTable, of_role
 from .tables import read_table, read_tables
 
 
@@ -29,15 +29,11 @@ def _natural(file):
 
 def _group(parts):
     """Groups files with the same columns as frames of one table, ordered by the numbers in their names."""
-    groups = []
-    for part in parts:
-        alike = next((group for group in groups if part.named and group[0].named and group[0].columns == part.columns
-                      and group[0].format == part.format and group[0].form == part.form), None)
-        if alike is None:
-            groups.append(alike := [])
-        alike.append(part)
+    groups = {}
+    for number, part in enumerate(parts):
+        groups.setdefault((tuple(part.columns), part.format, part.form) if part.named else number, []).append(part)
     tables = []
-    for group in groups:
+    for group in groups.values():
         group.sort(key=lambda part: _natural(part.file))
         if all(part.frames for part in group):
             group.sort(key=lambda part: part.frames[0][0])
@@ -50,13 +46,12 @@ def _group(parts):
 
 def _grains_so_far(tables):
     """The tables read with the present mapping; empty if that is not possible yet."""
-    of_grains, problems = [table for table in tables if table.role == "grains"], Problems()
+    of_grains, problems = of_role(tables, "grains"), Problems()
     grains = import_grains(of_grains, problems)
     if problems.count or not grains.keys:
         return GrainFrames()
-    for table in tables:
-        if table.role == "plate":
-            grains.place(of_grains[0].map.word("frames_by", "plate"), import_plate(table, 0.0, Problems()))
+    for table in of_role(tables, "plate"):
+        grains.place(of_grains[0].map.word("frames_by", "plate"), import_plate(table, 0.0, Problems()))
     return grains
 
 
@@ -68,29 +63,27 @@ def guess_tables(files, known):
             guess_grains_by_values(table)
             note_units(table.map)
     guess_grains_upwards(tables)
-    for table in tables:
-        if table.role == "grains":
-            guess_grain_lengths(table, known)
+    for table in of_role(tables, "grains"):
+        guess_grain_lengths(table, known)
     guess_frames(tables)
     grains = _grains_so_far(tables)
-    open_ = [table for table in tables if table.role == "unused" and table.map.role_sure == UNCLEAR]
+    open_ = [table for table in of_role(tables, "unused") if table.map.role_sure == UNCLEAR]
     for table in open_:
         guess_contacts_by_values(table, grains)
-    has_plate = any(table.role == "plate" for table in tables)
+    has_plate = bool(of_role(tables, "plate"))
     for table in open_:
         if table.role == "unused" and not has_plate:
             guess_plate_by_values(table)
         note_units(table.map)
     guess_frames(tables)
     grains = grains if has_plate else _grains_so_far(tables)
-    voxel_sizes = [table.map.number("voxel_size") for table in tables if table.role == "grains" and table.map.word("length_unit") == VOXEL]
+    voxel_sizes = [table.map.number("voxel_size") for table in of_role(tables, "grains") if table.map.word("length_unit") == VOXEL]
     voxel_size = known.voxel_size if known.voxel_size > 0 else voxel_sizes[0] if voxel_sizes else np.nan
+    for table in of_role(tables, "contacts"):
+        guess_contact_meaning(table, grains, known, voxel_size)
+    for table in of_role(tables, "plate"):
+        guess_plate_units(table, tables, grains, known, voxel_size)
     for table in tables:
-        if table.role == "contacts":
-            guess_contact_meaning(table, grains, known, voxel_size)
-    for table in tables:
-        if table.role == "plate":
-            guess_plate_units(table, tables, grains, known, voxel_size)
         table.map.unused = unused_columns(table.map, table.parts[0].columns)
     return tables
 

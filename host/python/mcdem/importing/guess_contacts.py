@@ -10,12 +10,8 @@ from .problems import Problems
 
 MAX_ROWS = 200_000  # maximum number of rows used for a guess
 NEAR = 1.2  # of the sum of radii: touching, including measurement errors
+LIKE_NEWTONS = ("gf", "kgf")  # with a modulus wrong by a factor of three
 FORCE_FACTORS = {unit: FORCES[unit] for unit in "N mN uN kN gf kgf".split()}  # the others are too similar to these
-
-
-def hertz_tells(unit):
-    """With a modulus wrong by a factor of three, newtons look like gf or kgf."""
-    return unit not in ("gf", "kgf")
 
 
 def hertz_force(known, radius, other, overlap):
@@ -30,7 +26,7 @@ class _Places:
     def __init__(self, table, grains):
         frames = import_contacts(table, grains, Problems(), MAX_ROWS)
         self.all = frames
-        at = grains.frames_of(table.map.word("frames_by", "plate"), frames.keys)[frames.frame] if len(frames) else np.zeros(0, int)
+        at = grains.frames_of(table.map.word("frames_by", "plate"), frames.keys)[frames.frame]
         kept = np.flatnonzero(at >= 0)
         position, radius = np.array(grains.position), grains.diameter / 2
         self.force, self.point, self.partner = frames.force[kept], frames.point[kept], frames.partner[kept]
@@ -51,7 +47,7 @@ class _Places:
         cosine = cosine[self.pair & np.isfinite(cosine)]
         if len(cosine) >= 3:
             return float(cosine.mean())
-        axis = np.argmax(np.abs(self.force), axis=1) if len(self.force) else np.zeros(0, int)
+        axis = np.argmax(np.abs(self.force), axis=1)
         sides = np.flatnonzero(~self.pair & (axis < 2))  # the position of the plate is unknown here
         if not len(sides):
             return 0.0
@@ -163,7 +159,7 @@ def _guess_force_unit(table, grains, known):
     ratio = float(np.median(ratios)) if len(ratios) >= 5 else np.nan
     fits = fitting_units(FORCE_FACTORS, ratio, 1, 1 / 3.1, 3.1)
     if len(fits) == 1:
-        mapped["force_unit"] = guess(fits[0], "sure" if hertz_tells(fits[0]) else UNCLEAR,
+        mapped["force_unit"] = guess(fits[0], UNCLEAR if fits[0] in LIKE_NEWTONS else "sure",
                                      f"then forces are {ratio * FORCES[fits[0]]:.2g} times Hertz's from the overlaps")
     elif table.parts[0].format != "text" and grains.diameter[0] < 1:
         mapped["force_unit"] = guess("N", "likely", "the grains are in metres, so the program counts in SI")

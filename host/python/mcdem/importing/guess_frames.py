@@ -6,7 +6,7 @@ import numpy as np
 from .mapping import UNCLEAR, guess
 from .names import COUNTED, TIMES, column_name, is_among, key_of_name
 from .problems import Problems
-from .rows import FrameIndex, Rows
+from .rows import FrameIndex, Rows, of_role
 
 
 @dataclass
@@ -53,9 +53,8 @@ def _only_counts(keys):
 
 
 def _told_by(frames):
-    if frames.by in ("place", "file"):
-        return {"place": "places in a list", "file": "numbers in file names"}[frames.by]
-    return f"{frames.counts} numbers".strip() + (f" [{frames.unit}]" if frames.unit else "")
+    told = {"place": "places in a list", "file": "numbers in file names"}.get(frames.by)
+    return told or f"{frames.counts} numbers".strip() + (f" [{frames.unit}]" if frames.unit else "")
 
 
 def _same_clock(a, b):
@@ -127,15 +126,14 @@ def _match(frames, plate, grains):
 
 
 def guess_frames(tables):
-    plate = next((table for table in tables if table.role == "plate"), None)
+    plate = next(iter(of_role(tables, "plate")), None)
     if plate is None:
         return
     of_plate, grains = _frames_of(plate), None
     for role in ("grains", "contacts"):
-        for table in tables:
-            if table.role == role:
-                _choose_frame_column(table, plate)
-                table.map["frames_by"] = _match(_frames_of(table), of_plate, grains if role == "contacts" else None)
-        all_of = [_frames_of(table) for table in tables if table.role == "grains"]
+        for table in of_role(tables, role):
+            _choose_frame_column(table, plate)
+            table.map["frames_by"] = _match(_frames_of(table), of_plate, grains)
+        all_of = [_frames_of(table) for table in of_role(tables, "grains")]
         keys = [key for frames in all_of for key in frames.keys]
         grains = _Frames(keys, all_of[-1].by, all_of[-1].counts, all_of[-1].unit) if keys else None

@@ -6,13 +6,11 @@ from .guess_names import is_trackpy
 from .mapping import SIZE_KEYS, UNCLEAR, guess
 from .names import LENGTHS, VOXEL, column_name, DOWNWARDS, is_among
 from .problems import Problems, number_text
-
-METRES = guess("m", "stated", "")
-
+from .rows import of_role
 
 def plain_grains(table):
     """The grains with their raw numbers taken as metres."""
-    return import_grains([table.changed(length_unit=METRES)], Problems())
+    return import_grains([table.changed(length_unit=guess("m", "stated", ""))], Problems())
 
 
 def fitting_units(factors, value, scale, low, high):
@@ -163,8 +161,8 @@ def _upwards(column, now, ends, diameter):
 def guess_grains_upwards(tables):
     """Reverses z if that is certain; marks it as unclear if it is possible."""
     told = []  # and whether the frames decide
-    for table in tables:
-        if table.role != "grains" or "z" not in table.map:
+    for table in of_role(tables, "grains"):
+        if "z" not in table.map:
             continue
         _guess_same_diameter(table)
         grains = plain_grains(table)

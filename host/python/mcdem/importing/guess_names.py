@@ -7,15 +7,12 @@ FORCE_KEYS = ("fx", "fy", "fz", "force", "top_force", "set_force")
 
 
 def _role_of(columns):
-    def has(role, *keys):
-        found = columns_by_key(role, columns)
-        return all(key in found for key in keys)
-
-    if has("contacts", "grain", "partner") and (has("contacts", "fx", "fy", "fz") or has("contacts", "force")):
+    contacts, grains, plate = (columns_by_key(role, columns).keys() for role in ("contacts", "grains", "plate"))
+    if {"grain", "partner"} <= contacts and ({"fx", "fy", "fz"} <= contacts or "force" in contacts):
         return "contacts"
-    if has("grains", "x", "y", "z") and (any(has("grains", key) for key in SIZE_KEYS) or _size_is_missing(columns)):
+    if {"x", "y", "z"} <= grains and (grains & {*SIZE_KEYS} or _size_is_missing(columns)):
         return "grains"
-    if has("plate", "top_force") and (has("plate", "plate_z") or has("plate", "displacement")):
+    if "top_force" in plate and plate & {"plate_z", "displacement"}:
         return "plate"
     return None
 
@@ -71,7 +68,6 @@ def _note_programs(mapped, columns):
         for axis in "xyz" if "Xdisp" in columns else "":
             mapped[axis].words = [f"{axis.upper()}pos", f"{axis.upper()}disp"]
             mapped[axis].why = "SPAM's position and displacement"
-    if is_spam(columns):
         mapped["where"] = guess("Label", "likely", "label 0 is the background")
     program = "SPAM" if is_spam(columns) else "trackpy" if is_trackpy(columns) else "scikit-image" if "centroid-2" in columns else ""
     if program and "length_unit" not in mapped:

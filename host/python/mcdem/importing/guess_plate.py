@@ -2,11 +2,12 @@
 import numpy as np
 
 from .contacts import import_contacts, wall_partner
-from .guess_contacts import FORCE_FACTORS, hertz_force, hertz_tells
+from .guess_contacts import FORCE_FACTORS, LIKE_NEWTONS, hertz_force
 from .guess_lengths import fitting_units, length_factors, state_voxel_size
 from .mapping import UNCLEAR, guess, signed_column
 from .plate import import_plate
 from .problems import Problems
+from .rows import of_role
 
 
 def _plain_rows(table, start):
@@ -104,9 +105,9 @@ def _guess_height(mapped, plate, start, factors):
 def _contact_forces(tables, grains):
     """Force of the grains on the plate in each of their frames, from their contacts with it; NaN if none is listed."""
     sums = np.full(len(grains.keys), np.nan)
-    for table in tables:
+    for table in of_role(tables, "contacts"):
         unit = table.map.get("force_unit")
-        if table.role != "contacts" or not unit or unit.sure == UNCLEAR:
+        if not unit or unit.sure == UNCLEAR:
             continue
         frames = import_contacts(table, grains, Problems())
         at = grains.frames_of(table.map.word("frames_by", "plate"), frames.keys)
@@ -146,7 +147,7 @@ def _guess_force(table, others, plate, known):
     if named:
         mapped["force_unit"] = guess(named.word, UNCLEAR, "the columns' names say so, but " + seen)
     elif len(fits) == 1:
-        mapped["force_unit"] = guess(fits[0], "sure" if has_sum or hertz_tells(fits[0]) else UNCLEAR, seen)
+        mapped["force_unit"] = guess(fits[0], "sure" if has_sum or fits[0] not in LIKE_NEWTONS else UNCLEAR, seen)
     else:
         mapped["force_unit"] = guess("N", UNCLEAR, seen or "no name says it, and nothing is known to compare with")
 
@@ -160,7 +161,7 @@ def guess_plate_units(table, tables, grains, known, voxel_size):
     if not len(rows):
         return
     factors = length_factors(voxel_size)
-    of_grains = next((other.map for other in tables if other.role == "grains"), None)
+    of_grains = next((other.map for other in of_role(tables, "grains")), None)
     _guess_downwards(mapped, rows)
     state_voxel_size(mapped, known)
     _guess_origin(mapped, _Plate(_plain_rows(table, start), grains), factors, of_grains.length_factor() if of_grains else 1)

@@ -14,14 +14,6 @@ WORDS = {"floor": "floor bottom boden base zmin zlo", "plate": "plate top lid pi
 UPSIDE_DOWN = {"zmin": "plate", "zlo": "plate", "zmax": "floor", "zhi": "floor"}  # if z points downwards
 
 
-def _wall_word(text, downwards):
-    """Walls with known names; others are determined by the direction of their forces."""
-    base = column_name(text).base
-    if downwards and base in UPSIDE_DOWN:
-        return UPSIDE_DOWN[base]
-    return next((wall for wall, words in WORDS.items() if base in words.split()), BY_DIRECTION)
-
-
 def unknown_partners(table, grains, offset, most=None, only=""):
     """Partners in the first `most` rows that are not grains: possible names of walls."""
     found = set()
@@ -44,10 +36,13 @@ def unknown_partners(table, grains, offset, most=None, only=""):
 
 
 def set_walls(mapped, names, grains):
-    """Walls from their names or from the direction of their forces."""
+    """Walls from their names or, if those are unknown, from the direction of their forces."""
     mapped.walls = {}
     for name in names:
-        word = _wall_word(name, grains.sign[2] < 0)
+        base = column_name(name).base
+        word = next((wall for wall, words in WORDS.items() if base in words.split()), BY_DIRECTION)
+        if grains.sign[2] < 0:
+            word = UPSIDE_DOWN.get(base, word)
         mapped.walls[name] = guess(word, "likely", "no grain has this number" if word == BY_DIRECTION else "its name")
 
 
@@ -72,7 +67,7 @@ def _names_of(frames, mapped):
                     return name
         return ""
 
-    return np.array([name_of(row) for row in frames.row[frames.is_wall][:5000]], object)
+    return np.array([name_of(row) for row in frames.row[frames.partner < 0][:5000]], object)
 
 
 def guess_walls(table, frames, grains, known):
@@ -81,9 +76,8 @@ def guess_walls(table, frames, grains, known):
     mapped, box = table.map, known.box
     if not mapped.walls:
         return
-    mine = np.flatnonzero(frames.is_wall)[:5000] if len(frames) else np.zeros(0, int)
-    names = _names_of(frames, mapped) if len(frames) else np.zeros(0, object)
-    at = grains.frames_of(mapped.word("frames_by", "plate"), frames.keys)[frames.frame[mine]] if len(mine) else mine
+    mine, names = np.flatnonzero(frames.partner < 0)[:5000], _names_of(frames, mapped)
+    at = grains.frames_of(mapped.word("frames_by", "plate"), frames.keys)[frames.frame[mine]]
     walls, grain = frames.partner[mine], frames.grain[mine]
     placed = at >= 0
     at_wall = np.zeros(len(mine), bool)

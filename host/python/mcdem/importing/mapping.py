@@ -1,7 +1,7 @@
 """The mapping of table columns: guessed, and written as mapping.toml for the user to correct (read_mapping reads it)."""
 import json
 import re
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 from .names import FORCES, LENGTH_WORDS, LENGTHS, VOXEL
@@ -155,10 +155,7 @@ class MappedTable:
 
     def changed(self, **entries):
         """A copy with other entries."""
-        copy = MappedTable(**vars(self))
-        copy.entries = {**self.entries, **entries}
-        copy.walls = dict(self.walls)
-        return copy
+        return replace(self, entries={**self.entries, **entries}, walls=dict(self.walls))
 
 
 def must_be_stated(table):
@@ -166,18 +163,12 @@ def must_be_stated(table):
     def has(*keys):
         return any(key in table for key in keys)
 
-    keys = []
-    if has("plate_z", "displacement", "x", "y", "z", *SIZE_KEYS, "same_diameter"):
-        keys.append("length_unit")
-    if table.word("length_unit") == VOXEL:
-        keys.append("voxel_size")
-    if has("top_force", "force", "fx", "fy", "fz"):
-        keys.append("force_unit")
-    if table.role == "plate" and has("top_force"):
-        keys.append("force_sign")
-    if table.role == "contacts" and has("fx", "fy", "fz"):
-        keys.append("force_on")
-    return keys
+    needed = {"length_unit": has("plate_z", "displacement", "x", "y", "z", *SIZE_KEYS, "same_diameter"),
+              "voxel_size": table.word("length_unit") == VOXEL,
+              "force_unit": has("top_force", "force", "fx", "fy", "fz"),
+              "force_sign": table.role == "plate" and has("top_force"),
+              "force_on": table.role == "contacts" and has("fx", "fy", "fz")}
+    return [key for key, is_needed in needed.items() if is_needed]
 
 
 def columns_of(table):
@@ -202,6 +193,7 @@ UNCLEAR_MARK = "  # unclear: "
 
 
 def toml_text(text):
+    """A text, or a list of texts."""
     return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
 
 
@@ -209,15 +201,11 @@ def _one_line(text):
     return re.sub(r"[\x00-\x1f\x7f]", " ", text)
 
 
-def _value_text(of):
+def _line_text(key, of, meaning):
     words = list(of.words)
     if of.sure == UNCLEAR:
         words[0] = "?" + words[0]
-    return toml_text(words[0]) if len(words) == 1 else "[" + ", ".join(map(toml_text, words)) + "]"
-
-
-def _line_text(key, of, meaning):
-    text = f"{key} = {_value_text(of)}"
+    text = f"{key} = {toml_text(words[0] if len(words) == 1 else words)}"
     if of.sure != "stated":
         text += f"  # {of.sure}: {_one_line(of.why)}"
     if of.sure == UNCLEAR and meaning:
@@ -233,7 +221,7 @@ def _meaning(key):
 def _table_text(table):
     text = "\n[[table]]\n" + _line_text("role", guess(table.role, table.role_sure, table.role_why),
                                         "one of plate, grains, contacts, unused")
-    text += f"files = [{', '.join(map(toml_text, table.files))}]\n"
+    text += f"files = {toml_text(table.files)}\n"
     if table.form:
         separator = {"\t": "tab", " ": "blanks"}.get(table.form.separator, table.form.separator)
         text += f'separator = "{separator}"\n'

@@ -40,9 +40,7 @@ def _phases(z):
 
 
 def _check_order(rows, keys):
-    falls = np.flatnonzero(~(np.diff(keys) > 0))
-    if len(falls):
-        i = falls[0] + 1
+    for i in 1 + np.flatnonzero(~(np.diff(keys) > 0))[:1]:
         rows.problem_once("order", i, f"frame must rise from row to row, got {number_text(keys[i])} after {number_text(keys[i - 1])}: "
                           "repair the table, or leave frame out of the mapping where frames_by is order")
 
@@ -52,9 +50,8 @@ def check_heights(plate, start, first):
     if not len(plate) or not np.isfinite(plate.z[first:]).any():
         return
     rows, goes_down = plate.rows, "displacement" in plate.rows
-    low = np.flatnonzero(plate.z <= 0)
-    if len(low):
-        rows.problem_once("plate", low[0], f"the plate must be over the floor, got a height of {plate.z[low[0]]:g} m: see length_unit"
+    for low in np.flatnonzero(plate.z <= 0)[:1]:
+        rows.problem_once("plate", low, f"the plate must be over the floor, got a height of {plate.z[low]:g} m: see length_unit"
                           + (" and plate.start" if goes_down else ", plate_z and origin_z"))
     highest, down = first + int(np.nanargmax(plate.z[first:])), np.nanmin(plate.z[first:])
     high = plate.z[highest]
@@ -77,9 +74,8 @@ def _read_phases(rows, plate, problems):
     if "cycle" in rows:
         cycle = np.nan_to_num(rows.whole_number("cycle"))
         plate.cycle = (cycle - cycle[0]).astype(int)  # many tables count from 1
-        falls = np.flatnonzero(np.diff(plate.cycle) < 0)
-        if len(falls):
-            rows.problem_once("cycle", falls[0] + 1, "cycle must not fall: sort the rows by time")
+        for i in 1 + np.flatnonzero(np.diff(plate.cycle) < 0)[:1]:
+            rows.problem_once("cycle", i, "cycle must not fall: sort the rows by time")
     elif not problems.count:
         plate.cycle = np.cumsum(np.diff(plate.phase, prepend=LOAD) == LOAD - UNLOAD)
 
@@ -97,10 +93,8 @@ def import_plate(table, start, problems, programme=False):
     times."""
     mapped, rows = table.map, Rows(table, problems)
     goes_down = "displacement" in rows
-    for key in ("top_force", "displacement" if goes_down else "plate_z", *(("time",) if programme else ())):
-        if key not in rows:
-            problems.add(mapped.files[0], f"must have a column for {key}, got none: name it in the mapping")
-            return PlateRows()
+    if any(map(rows.lacks, ("top_force", "displacement" if goes_down else "plate_z", *(("time",) if programme else ())))):
+        return PlateRows()
     keys = rows.key if rows.keyed else np.arange(len(rows), dtype=float)
     place = rows.number("displacement" if goes_down else "plate_z")
     sign = -1 if mapped.word("force_sign", "+") == "-" else 1

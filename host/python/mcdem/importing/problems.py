@@ -10,19 +10,13 @@ NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?", re.ASCII)
 
 class Problems:
     def __init__(self):
-        self.first, self.told, self.count = [], set(), 0
+        self.first, self.told, self.count = [], set(), 0  # told: topics of which one problem is enough
 
     def add(self, where, what):
         """`where` is a file, or file:line, or a function that finds it."""
         if len(self.first) < MAX_TOLD:
             self.first.append(f"{where() if callable(where) else where}: {what}")
         self.count += 1
-
-    def once(self, topic, where, what):
-        """Adds only one problem for each topic: a column in millimetres is one problem, not one for each line."""
-        if topic not in self.told:
-            self.told.add(topic)
-            self.add(where, what)
 
     @property
     def full(self):

@@ -23,6 +23,10 @@ class ImportTable:
         return self.map.role
 
 
+def of_role(tables, role):
+    return [table for table in tables if table.role == role]
+
+
 def whole_entry(mapped, key, problems):
     """An integer in the mapping, 0 if it is missing; anything else is a problem."""
     if is_whole(value := mapped.number(key)):
@@ -88,6 +92,16 @@ class Rows:
     def __len__(self):
         return len(self.row)
 
+    def lacks(self, key):
+        """Whether the mapping names no column for the key, which is a problem."""
+        if key not in self:
+            self.problems.add(self.map.files[0], f"must have a column for {key}, got none: name it in the mapping")
+        return key not in self
+
+    def wanted(self):
+        """Whether a row counts, by the column for `where`."""
+        return np.nan_to_num(self.number("where")) != 0 if "where" in self else np.ones(len(self), bool)
+
     def __contains__(self, key):
         return key in self.columns
 
@@ -150,8 +164,11 @@ class Rows:
         self.problems.add(lambda: self.where(i), what)
 
     def problem_once(self, topic, i, what):
-        """Adds only one problem for each topic and file."""
-        self.problems.once(self.parts[self.part[i]].file + topic, lambda: self.where(i), what)
+        """Adds only one problem for each topic and file: a column in millimetres is one problem, not one for each line."""
+        topic = self.parts[self.part[i]].file + topic
+        if topic not in self.problems.told:
+            self.problems.told.add(topic)
+            self.problem(i, what)
 
     def frames(self):
         """First row of each frame, and the end of the last one: a frame is a sequence of rows with the same key."""

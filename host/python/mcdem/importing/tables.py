@@ -8,7 +8,7 @@ import numpy as np
 from ..errors import InputError
 from . import formats
 from .problems import Problems, number_text
-from .text import cell_number, cut, parse_text
+from .text import Form, cell_number, cut, parse_text
 
 LARGEST = 1 << 30  # maximum size of a table in bytes, uncompressed
 CHUNK = 20_000  # rows that are kept as text at a time
@@ -22,7 +22,7 @@ class Table:
         self.named, self.columns = False, []  # whether the file has names of columns; otherwise they are "column 1", ..
         self.frames = []  # of a dump: (timestep, first row)
         self.line_of = []  # of each row, from 1; empty if rows are not lines
-        self.rows, self._pending, self._chunks, self._texts = 0, [], [], {}
+        self.rows, self._pending, self._chunks = 0, [], []
 
     def begin(self, format_, lines, form):
         self.format, self.lines, self.form = format_, lines, form
@@ -47,7 +47,8 @@ class Table:
         if len(self._pending) == CHUNK:
             self._convert()
 
-    def set_numbers(self, columns, values, line_of=()):
+    def set_numbers(self, format_, columns, values, line_of=()):
+        self.begin(format_, self.lines, Form(" ", "."))
         self.name_columns(columns, len(columns))
         self._chunks = [np.asarray(values, float).reshape(-1, len(columns))]
         self.rows, self.line_of = len(self._chunks[0]), list(line_of)
@@ -77,11 +78,6 @@ class Table:
         if not self.lines:
             return number_text(self._chunks[0][row, column])
         return cut(self.lines[self.line_of[row] - 1], self.form.separator)[column]
-
-    def texts(self, column):
-        if column not in self._texts:
-            self._texts[column] = [self.text(row, column) for row in range(self.rows)]
-        return self._texts[column]
 
     def find(self, name):
         if name in self.columns:

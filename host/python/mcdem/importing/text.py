@@ -3,6 +3,7 @@
 What comes before the first row with a number in it may name the columns, and in a line below state their units; Yade's
 `#format` line, and a line of words behind a # where nothing else does, name them too.
 """
+import itertools
 import re
 from collections import Counter
 from typing import NamedTuple
@@ -32,14 +33,9 @@ def cut(line, separator):
         return line.split()
     if '"' not in line:
         return [cell.strip(" \t\r") for cell in line.split(separator)]
-    cells, first, inside = [], 0, False
-    for i, c in enumerate(line + separator):
-        inside ^= c == '"'
-        if i == len(line) or (c == separator and not inside):
-            cell = line[first:i].strip(" \t\r")
-            cells.append(cell[1:-1] if len(cell) >= 2 and cell[0] == cell[-1] == '"' else cell)
-            first = i + 1
-    return cells
+    parted = re.sub(r'"[^"]*"?', lambda quote: quote[0].replace(separator, "\0"), line).split(separator)
+    cells = [cell.replace("\0", separator).strip(" \t\r") for cell in parted]
+    return [cell[1:-1] if len(cell) >= 2 and cell[0] == cell[-1] == '"' else cell for cell in cells]
 
 
 def cell_number(cell, decimal):
@@ -52,43 +48,29 @@ def _numbers_in(cells, decimal):
     return sum(cell_number(cell, decimal) is not None for cell in cells)
 
 
-def is_blank_or_comment(line):
-    words = line.strip(" \t\r")
-    return not words or words[0] == "#"
-
-
 def sample(lines):
-    found = []
-    for line in lines:
-        if not is_blank_or_comment(line):
-            found.append(line)
-        if len(found) == SAMPLED_LINES:
-            break
-    return found
+    """The first lines that are neither blank nor comments."""
+    return list(itertools.islice((line for line in lines if line.strip(" \t\r")[:1] not in ("", "#")), SAMPLED_LINES))
 
 
-def _usual_width(lines, separator):
-    """The most frequent number of cells per line; the largest one in a tie."""
-    counts = Counter(len(cut(line, separator)) for line in lines)
+def _usual_width(rows):
+    """The most frequent number of cells; the largest one in a tie."""
+    counts = Counter(map(len, rows))
     return max(counts, key=lambda width: (counts[width], width))
 
 
 def _merit(lines, form):
     """Fraction of lines with the usual number of cells, times the fraction of numbers among their cells."""
-    width = _usual_width(lines, form.separator)
-    alike = [cells for cells in (cut(line, form.separator) for line in lines) if len(cells) == width]
+    rows = [cut(line, form.separator) for line in lines]
+    width = _usual_width(rows)
+    alike = [cells for cells in rows if len(cells) == width]
     numbers = sum(_numbers_in(cells, form.decimal) for cells in alike) / max(width, 1)
     return (1 if width > 1 else 0.1) * len(alike) / len(lines) * (0.01 + numbers / len(alike))
 
 
 def guess_form(lines):
     lines = sample(lines)
-    best, most = Form(), -1.0
-    for form in FORMS if lines else []:
-        good = _merit(lines, form)
-        if good > most * (1 + 1e-9):
-            best, most = form, good
-    return best
+    return max(FORMS, key=lambda form: round(_merit(lines, form), 12)) if lines else Form()
 
 
 def _kind(cell):
@@ -123,7 +105,7 @@ def _lines_above(lines, separator):
     rows = [cut(line, separator) for line in sample(lines)]
     if not rows:
         return 0
-    width = _usual_width(sample(lines), separator)
+    width = _usual_width(rows)
     if above := _lines_above_names(rows, width):
         return above
     for above, cells in enumerate(rows):
@@ -132,27 +114,20 @@ def _lines_above(lines, separator):
     return len(rows)
 
 
-class _DecimalComma:
-    """Evidence for or against a decimal comma in the cells: the first of each kind with its line."""
-
-    def __init__(self):
-        self.seen = {}
-
-    def look_at(self, cell, line):
+def _note_marks(seen, cells, line):
+    """Notes evidence for or against a decimal comma: the first cell of each kind with its line."""
+    for cell in cells:
         if cell_number(cell, ",") is not None and ("," in cell or "." in cell):
             kind = "point" if "." in cell else "either" if THOUSANDS["."].fullmatch(cell) else "comma"
-            self.seen.setdefault(kind, (cell, line))
-
-    def report(self, table, problems):
-        table.decimal_clear = "either" not in self.seen or "comma" in self.seen
-        if "either" in self.seen and "point" in self.seen:
-            (cell, line), (point, point_line) = self.seen["either"], self.seen["point"]
-            problems.add(f"{table.file}:{line}", "numbers must have one decimal mark and no separators of thousands, got "
-                         f"{quoted(cell)} beside {quoted(point)} in line {point_line}: write the table with points only")
+            seen.setdefault(kind, (cell, line))
 
 
-def _without_brackets(word):
-    return word[1:-1] if _in_brackets(word) else word
+def _check_marks(seen, table, problems):
+    table.decimal_clear = "either" not in seen or "comma" in seen
+    if "either" in seen and "point" in seen:
+        (cell, line), (point, point_line) = seen["either"], seen["point"]
+        problems.add(f"{table.file}:{line}", "numbers must have one decimal mark and no separators of thousands, got "
+                     f"{quoted(cell)} beside {quoted(point)} in line {point_line}: write the table with points only")
 
 
 def _in_brackets(word):
@@ -166,43 +141,28 @@ def _names_of(headings, comment, format_, width):
         return comment if len(comment) == width else format_
     names = headings[-1]
     if len(headings) > 1 and all(_in_brackets(word) or word in UNITS for word in names):
-        units = ["" if (unit := _without_brackets(word)) in ("-", "1") else unit for word in names] + [""]
+        units = ["" if (unit := word[1:-1] if _in_brackets(word) else word) in ("-", "1") else unit for word in names] + [""]
         names = [name + (f" [{unit}]" if unit else "") for name, unit in zip(headings[-2], units)]
     return names
-
-
-def _read_comment(words, separator):
-    """Names in a comment, including Yade's format line."""
-    words = words.strip(" \t\r")
-    if words.startswith("format "):
-        names = words[7:].strip().split("_")
-        return None, names[:-1] if names[-1] == "attrs" else names
-    return cut(words, separator if separator in words else " "), None
-
-
-def _has_thousands(cells, form, where, problems):
-    for cell in cells:
-        if THOUSANDS[form.decimal].fullmatch(cell):
-            problems.add(where, f"numbers must have no separators of thousands, got {quoted(cell)} where the decimal is "
-                         f'"{form.decimal}": write the table without them')
-            return True
-    return False
 
 
 def parse_text(table, lines, form, problems):
     form = form or guess_form(lines)
     table.begin("text", lines, form)
     above = _lines_above(lines, form.separator)
-    comma, mark = _DecimalComma(), "." if form.decimal == "," else ","
+    seen, mark = {}, "." if form.decimal == "," else ","
     headings, comment, format_, trailing = [], [], [], False
     for number, line in enumerate(lines, 1):
         words = line.strip(" \t\r")
         if not words or problems.full:
             continue
         if words[0] == "#":
-            if not table.columns:
-                names, of_yade = _read_comment(words[1:], form.separator)
-                comment, format_ = (comment, of_yade) if names is None else (names, format_)
+            words = words[1:].strip(" \t\r")
+            if not table.columns and words.startswith("format "):  # of Yade
+                names = words[7:].strip().split("_")
+                format_ = names[:-1] if names[-1] == "attrs" else names
+            elif not table.columns:
+                comment = cut(words, form.separator if form.separator in words else " ")
             continue
         cells = cut(line, form.separator)
         is_row = bool(table.columns)
@@ -219,15 +179,15 @@ def parse_text(table, lines, form, problems):
                 problems.add(f"{table.file}:{number}", f"must have at most {MAX_COLUMNS} columns, got {len(cells)}")
             table.name_columns(_names_of(headings, comment, format_, len(cells)), len(cells))
         if form.decimal == ",":
-            for cell in cells:
-                comma.look_at(cell, number)
-        if mark in line and _has_thousands(cells, form, f"{table.file}:{number}", problems):
-            continue
-        if len(cells) == len(table.columns):
+            _note_marks(seen, cells, number)
+        if mark in line and (wrong := next(filter(THOUSANDS[form.decimal].fullmatch, cells), "")):
+            problems.add(f"{table.file}:{number}", f"numbers must have no separators of thousands, got {quoted(wrong)} where the decimal is "
+                         f'"{form.decimal}": write the table without them')
+        elif len(cells) == len(table.columns):
             table.add_row(cells, number)
         else:
             problems.add(f"{table.file}:{number}", f"must have {len(table.columns)} columns as the first row, got {len(cells)}")
     if form.decimal == ",":
-        comma.report(table, problems)
+        _check_marks(seen, table, problems)
     if table.rows == 0 and not problems.count:
         problems.add(table.file, "must have at least one row with a number in it, got none")
