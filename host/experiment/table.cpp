@@ -96,7 +96,7 @@ void split(std::string_view line, std::vector<std::string_view>& words) {
 }  // namespace
 
 std::optional<fs::path> find_table(const fs::path& folder, const std::string& name, std::uintmax_t largest,
-                                   ExperimentProblems& problems) {
+                                   FileProblems& problems) {
     const fs::path plain = folder / name, packed = folder / (name + ".gz");
     // Of the link itself: a broken link means that a table is missing.
     const auto is_there = [](const fs::path& file) {
@@ -148,7 +148,7 @@ private:
 };
 
 Table::Table(const fs::path& file, const std::vector<std::string>& columns, std::uintmax_t largest,
-             ExperimentProblems& problems, const std::vector<std::string>& optional, const std::string* text)
+             FileProblems& problems, const std::vector<std::string>& optional, const std::string* text)
     : name_(file.string()),
       columns_(columns),
       needed_(columns.size()),
