@@ -11,7 +11,6 @@
 
 #include "core/container.h"
 #include "core/input_file.h"
-#include "scene/assign.h"
 #include "scene/list_tables.h"
 #include "scene/packing_fields.h"
 #include "scene/programme_checks.h"
@@ -252,12 +251,8 @@ void override_key(toml::table& root, const std::string& word, FileProblems& prob
         path.find("..") != path.npos || path.size() > longest_key)
         return problems.add("--set", fmt::format("must be KEY=VALUE such as box.size=[0.165,0.166], got {}",
                                                  quoted(std::string_view(word))));
-    toml::table value;
-    try {
-        value = parse_toml("value = " + word.substr(equals + 1), {}, 100);
-    } catch (const toml::parse_error&) {
-        value.insert("value", word.substr(equals + 1));
-    }
+    const std::string text = word.substr(equals + 1);
+    const toml::table value = parse_value(text).value_or(toml::table{{"value", text}});
     toml::table* table = &root;
     for (auto dot = path.find('.'); dot != path.npos; dot = path.find('.')) {
         const auto part = path.substr(0, dot);
