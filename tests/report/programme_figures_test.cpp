@@ -3,8 +3,8 @@
 
 #include "metrics/synthetic.h"
 #include "report/run/figure_values.h"
-#include "report/run/run_charts.h"
 #include "report/run/run_figures.h"
+#include "report/run/run_page.h"
 
 namespace mcdem {
 namespace {
