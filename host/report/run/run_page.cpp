@@ -15,7 +15,6 @@
 #include "metrics/programmes.h"
 #include "report/page/labels.h"
 #include "report/run/figure_values.h"
-#include "report/run/scan_tables.h"
 #include "report/run/tables.h"
 
 namespace mcdem::inline report {
