@@ -17,7 +17,6 @@
 #include "experiment/experiment_files.h"
 #include "io/checkpoint.h"
 #include "io/csv.h"
-#include "io/parts.h"
 #include "io/result_file.h"
 #include "io/result_folder.h"
 #include "io/results.h"
