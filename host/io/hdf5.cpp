@@ -5,7 +5,6 @@
 
 #include "core/errors.h"
 #include "core/input_file.h"
-#include "io/chunk_filters.h"
 
 namespace mcdem::inline io::h5 {
 namespace {
