@@ -17,11 +17,8 @@ void describe_plate(const Recording& recording, Findings& findings) {
     const auto& scans = recording.scans;
     const auto loading =
         std::count_if(scans.begin(), scans.end(), [](const Scan& scan) { return scan.phase == Phase::load; });
-    const auto [high, low] = std::minmax_element(
-        scans.begin(), scans.end(), [](const Scan& a, const Scan& b) { return a.plate_z > b.plate_z; });
-    const auto [weak, strong] =
-        std::minmax_element(scans.begin(), scans.end(),
-                            [](const Scan& a, const Scan& b) { return a.top_force() < b.top_force(); });
+    const auto [low, high] = std::ranges::minmax_element(scans, {}, &Scan::plate_z);
+    const auto [weak, strong] = std::ranges::minmax_element(scans, {}, &Scan::top_force);
     findings.note(
         plate_file,
         fmt::format("frames: {} of loading, {} of unloading, cycles {} to {}; plate at {:.6g} to {:.6g} "

@@ -79,7 +79,7 @@ private:
         if (*grain < grains) return static_cast<int>(*grain);
         table_.problem(
             fmt::format("{} must be a grain of grains.csv, 0 to {}, got {}: there is no grain for this force",
-                        contact_columns()[column], grains - 1, *grain));
+                        contact_columns[column], grains - 1, *grain));
         return std::nullopt;
     }
 
@@ -144,12 +144,6 @@ private:
 };
 
 }  // namespace
-
-const std::vector<std::string>& contact_columns() {
-    static const std::vector<std::string> columns{"frame", "grain", "partner", "x_m", "y_m",
-                                                  "z_m",   "fx_N",  "fy_N",    "fz_N"};
-    return columns;
-}
 
 void read_contacts(Table& table, double youngs_modulus, Recording& recording) {
     ContactReader(table, youngs_modulus, recording).read();

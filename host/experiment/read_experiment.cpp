@@ -44,11 +44,11 @@ void read_tables(const Source& source, Experiment& experiment, FileProblems& pro
     const auto modulus = experiment.materials.find("grains.youngs_modulus");
     const double stiffness =
         modulus == experiment.materials.end() ? std::numeric_limits<double>::infinity() : modulus->second;
-    Table plate_table = source.open(*plate, plate_columns(), problems, plate_columns_of_programmes());
+    Table plate_table = source.open(*plate, plate_columns, problems, plate_columns_of_programmes);
     read_plate(plate_table, stiffness, recording);
     if (recording.scans.empty()) return;
     if (grains) {
-        Table table = source.open(*grains, grain_columns(), problems);
+        Table table = source.open(*grains, grain_columns, problems);
         read_grains(table, recording);
     }
     if (!contacts) return;
@@ -56,7 +56,7 @@ void read_tables(const Source& source, Experiment& experiment, FileProblems& pro
     if (!grains)
         return problems.add(contacts->string(),
                             "needs grains.csv with the grains of frame 0: contacts name them");
-    Table table = source.open(*contacts, contact_columns(), problems);
+    Table table = source.open(*contacts, contact_columns, problems);
     read_contacts(table, stiffness, recording);
 }
 

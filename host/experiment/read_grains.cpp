@@ -131,11 +131,6 @@ private:
 
 }  // namespace
 
-const std::vector<std::string>& grain_columns() {
-    static const std::vector<std::string> columns{"frame", "grain", "x_m", "y_m", "z_m", "diameter_m"};
-    return columns;
-}
-
 void read_grains(Table& table, Recording& recording) {
     Frames frames(table, recording);
     const long last = static_cast<long>(recording.scans.size()) - 1;
