@@ -185,9 +185,8 @@ void check_plate_load(const Experiment& experiment, Findings& findings) {
 
 void check_errors(const Experiment& experiment, Findings& findings) {
     const Measurement& errors = experiment.measurement;
-    const bool has_contacts =
-        std::any_of(experiment.recording.scans.begin(), experiment.recording.scans.end(),
-                    [](const Scan& scan) { return !scan.contacts.empty(); });
+    const bool has_contacts = std::ranges::any_of(experiment.recording.scans,
+                                                  [](const Scan& scan) { return !scan.contacts.empty(); });
     std::vector<std::string_view> zero;
     if (!experiment.recording.diameter.empty()) {
         if (errors.position_error == 0) zero.push_back("position_error");

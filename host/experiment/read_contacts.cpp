@@ -17,7 +17,7 @@ class ContactReader {
 public:
     ContactReader(Table& table, double youngs_modulus, Recording& recording)
         : table_(table), recording_(recording) {
-        const double diameter = *std::max_element(recording.diameter.begin(), recording.diameter.end());
+        const double diameter = *std::ranges::max_element(recording.diameter);
         largest_force_ = youngs_modulus * diameter * diameter;
         margin_ = Vec3::Constant(std::max(recording.box.size_x, recording.box.size_y) + diameter);
     }
@@ -43,7 +43,7 @@ private:
     };
 
     void end_frame() {
-        std::sort(rows_.begin(), rows_.end());
+        std::ranges::sort(rows_);
         for (std::size_t k = 1; k < rows_.size(); ++k)
             if (rows_[k].grain == rows_[k - 1].grain && rows_[k].partner == rows_[k - 1].partner)
                 table_.problem_at(

@@ -41,7 +41,7 @@ public:
         std::vector<double> diameter(grains, 0.0);
         std::vector<bool> seen(grains, false);
         for (const GrainRow& row : rows_) place(row, grains, position, diameter, seen);
-        const auto missing = std::find(seen.begin(), seen.end(), false);
+        const auto missing = std::ranges::find(seen, false);
         if (missing != seen.end())
             table_.problem_at(
                 table_.where(rows_.front().line),

@@ -177,13 +177,13 @@ void Table::read_header() {
         names.clear();
     }
     for (std::size_t c = 0; c < columns_.size() && !names.empty(); ++c) {
-        const auto times = std::count(names.begin(), names.end(), columns_[c]);
+        const auto times = std::ranges::count(names, columns_[c]);
         if (times != 1 && (c < needed_ || times != 0))
             problem(fmt::format("the header must name {} once, got it {} times: the columns are {}",
                                 columns_[c], times, fmt::join(columns_, ",")));
     }
     for (std::string_view name : names) {
-        const auto found = std::find(columns_.begin(), columns_.end(), name);
+        const auto found = std::ranges::find(columns_, name);
         column_of_word_.push_back(found == columns_.end() ? -1 : static_cast<int>(found - columns_.begin()));
     }
     if (problems_.count() > problems_before) lines_.reset();

@@ -103,13 +103,9 @@ fs::path file_of_a_run(const fs::path& folder) {
     return {};
 }
 
-void expect_no_file(const fs::path& folder) {
+void make_result_folder(const fs::path& folder) {
     if (fs::exists(folder) && !fs::is_directory(folder))
         throw InputError(folder.string() + ": is a file; give a folder for the results");
-}
-
-void make_result_folder(const fs::path& folder) {
-    expect_no_file(folder);
     make_folder(folder);
 }
 

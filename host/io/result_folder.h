@@ -23,9 +23,6 @@ std::vector<std::filesystem::path> result_files(const std::filesystem::path& fil
 /// A file of a run in any state in the folder; an empty path if there is none.
 std::filesystem::path file_of_a_run(const std::filesystem::path& folder);
 
-/// Throws InputError if a file exists at the path of the folder.
-void expect_no_file(const std::filesystem::path& folder);
-
 /// Like make_folder, but a file at this path is an InputError.
 void make_result_folder(const std::filesystem::path& folder);
 

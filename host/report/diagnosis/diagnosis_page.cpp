@@ -89,7 +89,7 @@ TextTable table_of_where(const Diagnosis& diagnosis) {
                      {"sigma"},
                      {"after recalibration"}};
     auto entries = diagnosis.where;
-    std::stable_sort(entries.begin(), entries.end(), [](const WhereEntry& a, const WhereEntry& b) {
+    std::ranges::stable_sort(entries, [](const WhereEntry& a, const WhereEntry& b) {
         return std::fabs(a.z_score) > std::fabs(b.z_score);
     });
     for (const auto& entry : std::span(entries).first(std::min(entries.size(), max_rows)))
@@ -192,7 +192,7 @@ TextTable table_of_observables(const Diagnosis& diagnosis) {
     table.columns = {{"observable", Align::left}, {"what it is", Align::left}};
     for (const auto& observable : observables()) {
         const auto is_it = [&](const WhereCell& cell) { return cell.observable == observable.name; };
-        if (std::any_of(diagnosis.cells.begin(), diagnosis.cells.end(), is_it))
+        if (std::ranges::any_of(diagnosis.cells, is_it))
             table.rows.push_back({words_of(std::string(observable.name)), std::string(observable.meaning)});
     }
     return table;

@@ -24,7 +24,7 @@ Cells prepared(const Cells& cells, TableFormat format) {
 
 /// Number of characters of a UTF-8 text, each assumed to be one column wide.
 std::size_t width_of(const std::string& text) {
-    return std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; });
+    return std::ranges::count_if(text, [](char c) { return (c & 0xC0) != 0x80; });
 }
 
 std::string padded(const std::string& cell, std::size_t width, Align align) {

@@ -132,7 +132,7 @@ Bins common_bins(const std::vector<ShownDensity>& shown, WallContacts walls) {
             forces.insert(forces.end(), of_replica.grain_wall.begin(), of_replica.grain_wall.end());
         }
         if (forces.empty()) continue;
-        std::sort(forces.begin(), forces.end());
+        std::ranges::sort(forces);
         bins.largest = std::max(bins.largest, forces[(forces.size() - 1) * 999 / 1000]);
         const auto contacts = static_cast<double>(forces.size());
         bins.count = std::min(bins.count, std::clamp(bin_count(contacts, contacts), 8, 30));

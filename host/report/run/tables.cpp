@@ -25,10 +25,9 @@ std::vector<std::string> notes_of(const std::vector<Comparison>& comparisons) {
     std::vector<std::string> notes;
     for (const auto& c : comparisons)
         for (const auto& note : c.notes) {
-            const bool shared =
-                std::all_of(comparisons.begin(), comparisons.end(), [&](const Comparison& other) {
-                    return std::find(other.notes.begin(), other.notes.end(), note) != other.notes.end();
-                });
+            const bool shared = std::ranges::all_of(comparisons, [&](const Comparison& other) {
+                return std::ranges::find(other.notes, note) != other.notes.end();
+            });
             if (!shared)
                 notes.push_back(words_for(c.setting) + ": " + note);
             else if (&c == &comparisons.front())
@@ -248,8 +247,8 @@ TextTable table_of_models(const ModelTable& models) {
                                  : std::string("top force [N]");
     table.columns = {
         {"model", Align::left}, {full_stroke}, {"over " + words_for(models.reference)}, {"replicas"}};
-    const bool some_failed = std::any_of(models.rows.begin(), models.rows.end(),
-                                         [](const ModelRow& row) { return row.failed > 0; });
+    const bool some_failed =
+        std::ranges::any_of(models.rows, [](const ModelRow& row) { return row.failed > 0; });
     if (some_failed) table.columns.push_back({"stopped early"});
     for (const auto& row : models.rows) {
         const auto mark = row.reached ? fmt::format(" * at {:.2f} mm", *row.reached * 1e3) : "";
