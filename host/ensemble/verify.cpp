@@ -14,7 +14,7 @@
 #include "diagnose/infer/library.h"
 #include "ensemble/observation_store.h"
 #include "ensemble/parts/manifest.h"
-#include "experiment/experiment_files.h"
+#include "experiment/experiment.h"
 #include "io/checkpoint.h"
 #include "io/csv.h"
 #include "io/result_file.h"

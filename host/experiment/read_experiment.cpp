@@ -3,7 +3,6 @@
 #include <limits>
 
 #include "core/errors.h"
-#include "experiment/experiment_files.h"
 #include "experiment/measurements.h"
 #include "experiment/settings.h"
 

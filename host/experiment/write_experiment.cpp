@@ -12,7 +12,6 @@
 #include "core/parameters.h"
 #include "core/sha256.h"
 #include "experiment/experiment.h"
-#include "experiment/experiment_files.h"
 #include "experiment/measurements.h"
 #include "experiment/settings.h"
 

@@ -8,7 +8,7 @@
 
 #include "metrics/compare.h"
 #include "metrics/force_distribution.h"
-#include "report/page/series_style.h"
+#include "report/page/labels.h"
 
 namespace mcdem::inline report {
 
