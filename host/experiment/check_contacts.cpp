@@ -139,7 +139,6 @@ void check_gauge(const Recording& recording, double force_threshold, Findings& f
 double force_over_hertz(const Recording& recording, const Scan& scan, double modulus, double nu) {
     struct Pair {
         double force, overlap, reduced_radius;
-        bool operator<(const Pair& other) const { return force < other.force; }
     };
     std::vector<Pair> pairs;
     for (const Contact& contact : scan.contacts) {
@@ -147,7 +146,7 @@ double force_over_hertz(const Recording& recording, const Scan& scan, double mod
         const double a = radius_of(recording, contact.grain), b = radius_of(recording, contact.partner);
         pairs.push_back({contact.force.norm(), -gap(recording, scan, contact), a * b / (a + b)});
     }
-    std::sort(pairs.begin(), pairs.end());
+    std::ranges::sort(pairs, {}, &Pair::force);
     std::vector<double> forces, overlaps, radii;
     for (std::size_t k = pairs.size() / 2; k < pairs.size(); ++k) {
         forces.push_back(pairs[k].force);

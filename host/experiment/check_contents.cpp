@@ -15,13 +15,9 @@ namespace {
 
 void describe_plate(const Recording& recording, Findings& findings) {
     const auto& scans = recording.scans;
-    const auto loading =
-        std::count_if(scans.begin(), scans.end(), [](const Scan& scan) { return scan.phase == Phase::load; });
-    const auto [high, low] = std::minmax_element(
-        scans.begin(), scans.end(), [](const Scan& a, const Scan& b) { return a.plate_z > b.plate_z; });
-    const auto [weak, strong] =
-        std::minmax_element(scans.begin(), scans.end(),
-                            [](const Scan& a, const Scan& b) { return a.top_force() < b.top_force(); });
+    const auto loading = std::ranges::count(scans, Phase::load, &Scan::phase);
+    const auto [low, high] = std::ranges::minmax_element(scans, {}, &Scan::plate_z);
+    const auto [weak, strong] = std::ranges::minmax_element(scans, {}, &Scan::top_force);
     findings.note(
         plate_file,
         fmt::format("frames: {} of loading, {} of unloading, cycles {} to {}; plate at {:.6g} to {:.6g} "
@@ -47,10 +43,9 @@ void describe_programme(const Recording& recording, Findings& findings) {
 
 void describe_grains(const Recording& recording, Findings& findings) {
     if (recording.diameter.empty()) return;
-    const auto frames = std::count_if(recording.scans.begin(), recording.scans.end(),
-                                      [](const Scan& scan) { return !scan.position.empty(); });
-    const auto [smallest, largest] =
-        std::minmax_element(recording.diameter.begin(), recording.diameter.end());
+    const auto frames =
+        std::ranges::count_if(recording.scans, [](const Scan& scan) { return !scan.position.empty(); });
+    const auto [smallest, largest] = std::ranges::minmax_element(recording.diameter);
     findings.note(grains_file,
                   fmt::format("{} grains of {:.4g} to {:.4g} mm, {:.4g} mm on average, in {} of {} frames",
                               recording.diameter.size(), 1e3 * *smallest, 1e3 * *largest,

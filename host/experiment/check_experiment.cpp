@@ -69,8 +69,8 @@ ExperimentCheck check_experiment(const Experiment& experiment) {
                              check_plate_load, check_balance})
         check(experiment, findings);
     ExperimentCheck result{findings.all()};
-    std::stable_sort(result.findings.begin(), result.findings.end(),
-                     [](const Finding& a, const Finding& b) { return a.severity < b.severity; });
+    std::ranges::stable_sort(result.findings,
+                             [](const Finding& a, const Finding& b) { return a.severity < b.severity; });
     return result;
 }
 

@@ -52,7 +52,7 @@ void check_walls(const Recording& recording, Findings& findings) {
 
 void check_overlaps(const Recording& recording, Findings& findings) {
     Tally tally;
-    const double largest = *std::max_element(recording.diameter.begin(), recording.diameter.end());
+    const double largest = *std::ranges::max_element(recording.diameter);
     for (const Scan& scan : recording.scans) {
         if (scan.position.empty()) continue;
         const CellList cells(scan.position, recording.box, scan.plate_z, largest);

@@ -55,7 +55,7 @@ void missing_positions(const Recording& recording, Findings& findings) {
                                 "belongs to which force is not known, which tells stiffness, cross-contact "
                                 "effects and adhesion apart");
     const auto without = [](const Scan& scan) { return scan.position.empty(); };
-    const auto scans = std::count_if(recording.scans.begin(), recording.scans.end(), without);
+    const auto scans = std::ranges::count_if(recording.scans, without);
     if (scans > 0)
         findings.missing(grains_file,
                          fmt::format("positions in {} of {} frames: overlaps and displacements of "
@@ -84,8 +84,7 @@ void missing_contacts(const Recording& recording, Findings& findings) {
             if (is_wall(contact.partner)) seen[static_cast<int>(wall_of(contact.partner))] = true;
     }
     const auto frames = static_cast<long>(recording.scans.size());
-    if (std::all_of(recording.scans.begin(), recording.scans.end(),
-                    [](const Scan& scan) { return scan.contacts.empty(); }))
+    if (std::ranges::all_of(recording.scans, [](const Scan& scan) { return scan.contacts.empty(); }))
         return findings.missing(contacts_file,
                                 "contact forces: of the packing only the top force is left, on which "
                                 "stiffness, cross-contact effects "

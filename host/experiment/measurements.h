@@ -15,22 +15,18 @@ void read_plate(Table& table, double youngs_modulus, Recording& recording);
 void read_grains(Table& table, Recording& recording);
 /// contacts.csv: contacts of the listed frames.
 void read_contacts(Table& table, double youngs_modulus, Recording& recording);
+/// The largest force on the plate in any scan, at least 0 [N].
+double highest_top_force(const Recording& recording);
 /// Computes wall forces except the plate's, Z, <f> and <b> of the scans with contacts.
 void average_contacts(Recording& recording, double force_threshold);
 
-const std::vector<std::string>& plate_columns();
-const std::vector<std::string>& plate_columns_of_programmes();  ///< additional columns
+inline const std::vector<std::string> plate_columns{"frame", "cycle", "phase", "plate_z_m", "top_force_N"};
+inline const std::vector<std::string> plate_columns_of_programmes{"set_force_N", "time_s"};  ///< additional
+inline const std::vector<std::string> grain_columns{"frame", "grain", "x_m", "y_m", "z_m", "diameter_m"};
+inline const std::vector<std::string> contact_columns{"frame", "grain", "partner", "x_m", "y_m",
+                                                      "z_m",   "fx_N",  "fy_N",    "fz_N"};
 
 /// Prescribed force at each row of plate.csv [N]; empty if the programme does not prescribe one.
 std::vector<std::optional<double>> set_forces(const Recording& recording);
-/// A row of plate.csv: its place and its prescribed force.
-struct PlateRow {
-    long line = 0;
-    std::optional<double> set_force;  ///< [N]
-};
-/// Reports rows that do not match the scans of the recording's programme.
-void check_programme(Table& table, const std::vector<PlateRow>& rows, const Recording& recording);
-const std::vector<std::string>& grain_columns();
-const std::vector<std::string>& contact_columns();
 
 }  // namespace mcdem::experiment

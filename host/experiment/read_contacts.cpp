@@ -17,7 +17,7 @@ class ContactReader {
 public:
     ContactReader(Table& table, double youngs_modulus, Recording& recording)
         : table_(table), recording_(recording) {
-        const double diameter = *std::max_element(recording.diameter.begin(), recording.diameter.end());
+        const double diameter = *std::ranges::max_element(recording.diameter);
         largest_force_ = youngs_modulus * diameter * diameter;
         margin_ = Vec3::Constant(std::max(recording.box.size_x, recording.box.size_y) + diameter);
     }
@@ -43,7 +43,7 @@ private:
     };
 
     void end_frame() {
-        std::sort(rows_.begin(), rows_.end());
+        std::ranges::sort(rows_);
         for (std::size_t k = 1; k < rows_.size(); ++k)
             if (rows_[k].grain == rows_[k - 1].grain && rows_[k].partner == rows_[k - 1].partner)
                 table_.problem_at(
@@ -79,7 +79,7 @@ private:
         if (*grain < grains) return static_cast<int>(*grain);
         table_.problem(
             fmt::format("{} must be a grain of grains.csv, 0 to {}, got {}: there is no grain for this force",
-                        contact_columns()[column], grains - 1, *grain));
+                        contact_columns[column], grains - 1, *grain));
         return std::nullopt;
     }
 
@@ -144,12 +144,6 @@ private:
 };
 
 }  // namespace
-
-const std::vector<std::string>& contact_columns() {
-    static const std::vector<std::string> columns{"frame", "grain", "partner", "x_m", "y_m",
-                                                  "z_m",   "fx_N",  "fy_N",    "fz_N"};
-    return columns;
-}
 
 void read_contacts(Table& table, double youngs_modulus, Recording& recording) {
     ContactReader(table, youngs_modulus, recording).read();

@@ -3,7 +3,6 @@
 #include <limits>
 
 #include "core/errors.h"
-#include "experiment/experiment_files.h"
 #include "experiment/measurements.h"
 #include "experiment/settings.h"
 
@@ -20,18 +19,18 @@ struct Source {
     std::uintmax_t largest = largest_table;
     const std::map<std::string, std::string>* texts = nullptr;
 
-    std::optional<fs::path> find(const std::string& name, ExperimentProblems& problems) const {
+    std::optional<fs::path> find(const std::string& name, FileProblems& problems) const {
         if (!texts) return find_table(folder, name, largest, problems);
         return texts->contains(name) ? std::optional(folder / name) : std::nullopt;
     }
-    Table open(const fs::path& file, const std::vector<std::string>& columns, ExperimentProblems& problems,
+    Table open(const fs::path& file, const std::vector<std::string>& columns, FileProblems& problems,
                const std::vector<std::string>& optional = {}) const {
         return {file,     columns,  largest,
                 problems, optional, texts ? &texts->at(file.filename().string()) : nullptr};
     }
 };
 
-void read_tables(const Source& source, Experiment& experiment, ExperimentProblems& problems) {
+void read_tables(const Source& source, Experiment& experiment, FileProblems& problems) {
     Recording& recording = experiment.recording;
     const long problems_before = problems.count();
     const auto plate = source.find("plate.csv", problems);
@@ -44,11 +43,11 @@ void read_tables(const Source& source, Experiment& experiment, ExperimentProblem
     const auto modulus = experiment.materials.find("grains.youngs_modulus");
     const double stiffness =
         modulus == experiment.materials.end() ? std::numeric_limits<double>::infinity() : modulus->second;
-    Table plate_table = source.open(*plate, plate_columns(), problems, plate_columns_of_programmes());
+    Table plate_table = source.open(*plate, plate_columns, problems, plate_columns_of_programmes);
     read_plate(plate_table, stiffness, recording);
     if (recording.scans.empty()) return;
     if (grains) {
-        Table table = source.open(*grains, grain_columns(), problems);
+        Table table = source.open(*grains, grain_columns, problems);
         read_grains(table, recording);
     }
     if (!contacts) return;
@@ -56,7 +55,7 @@ void read_tables(const Source& source, Experiment& experiment, ExperimentProblem
     if (!grains)
         return problems.add(contacts->string(),
                             "needs grains.csv with the grains of frame 0: contacts name them");
-    Table table = source.open(*contacts, contact_columns(), problems);
+    Table table = source.open(*contacts, contact_columns, problems);
     read_contacts(table, stiffness, recording);
 }
 
@@ -79,7 +78,7 @@ void expect_experiment(const fs::path& folder) {
 }  // namespace
 
 Experiment read_experiment(const fs::path& folder, std::uintmax_t largest) {
-    ExperimentProblems problems;
+    FileProblems problems;
     Experiment experiment;
     expect_experiment(folder);
     read_settings(folder / "experiment.toml", experiment, problems);
@@ -95,7 +94,7 @@ Experiment read_experiment(const fs::path& folder, std::uintmax_t largest) {
 }
 
 void expect_readable(const fs::path& folder, const std::map<std::string, std::string>& texts) {
-    ExperimentProblems problems;
+    FileProblems problems;
     Experiment read;
     const fs::path settings = folder / "experiment.toml";
     parse_settings(texts.at(settings.filename().string()), settings.string(), {}, read, problems);

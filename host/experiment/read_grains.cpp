@@ -41,7 +41,7 @@ public:
         std::vector<double> diameter(grains, 0.0);
         std::vector<bool> seen(grains, false);
         for (const GrainRow& row : rows_) place(row, grains, position, diameter, seen);
-        const auto missing = std::find(seen.begin(), seen.end(), false);
+        const auto missing = std::ranges::find(seen, false);
         if (missing != seen.end())
             table_.problem_at(
                 table_.where(rows_.front().line),
@@ -130,11 +130,6 @@ private:
 };
 
 }  // namespace
-
-const std::vector<std::string>& grain_columns() {
-    static const std::vector<std::string> columns{"frame", "grain", "x_m", "y_m", "z_m", "diameter_m"};
-    return columns;
-}
 
 void read_grains(Table& table, Recording& recording) {
     Frames frames(table, recording);

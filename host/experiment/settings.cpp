@@ -11,10 +11,8 @@
 
 #include "core/container.h"
 #include "core/input_file.h"
-#include "scene/assign.h"
 #include "scene/list_tables.h"
 #include "scene/packing_fields.h"
-#include "scene/problems.h"
 #include "scene/programme_checks.h"
 #include "scene/programme_text.h"
 #include "scene/toml_text.h"
@@ -62,7 +60,7 @@ std::string range_text(const Setting& setting) {
 
 class Reader {
 public:
-    Reader(std::string file, ExperimentProblems& problems) : file_(std::move(file)), problems_(problems) {}
+    Reader(std::string file, FileProblems& problems) : file_(std::move(file)), problems_(problems) {}
 
     void read(const toml::table& root, Experiment& experiment) {
         const auto name = root.get("name");
@@ -228,7 +226,7 @@ private:
     }
 
     std::string file_;
-    ExperimentProblems& problems_;
+    FileProblems& problems_;
     std::set<std::string> known_;
 };
 
@@ -246,19 +244,15 @@ const std::vector<std::string>& material_keys() {
 namespace {
 
 /// Puts "a.b=value" into the table; a value that is not TOML is a string.
-void override_key(toml::table& root, const std::string& word, ExperimentProblems& problems) {
+void override_key(toml::table& root, const std::string& word, FileProblems& problems) {
     const auto equals = word.find('=');
     std::string_view path = std::string_view(word).substr(0, std::min(equals, word.size()));
     if (equals == word.npos || path.empty() || path.front() == '.' || path.back() == '.' ||
         path.find("..") != path.npos || path.size() > longest_key)
         return problems.add("--set", fmt::format("must be KEY=VALUE such as box.size=[0.165,0.166], got {}",
                                                  quoted(std::string_view(word))));
-    toml::table value;
-    try {
-        value = parse_toml("value = " + word.substr(equals + 1), {}, 100);
-    } catch (const toml::parse_error&) {
-        value.insert("value", word.substr(equals + 1));
-    }
+    const std::string text = word.substr(equals + 1);
+    const toml::table value = parse_value(text).value_or(toml::table{{"value", text}});
     toml::table* table = &root;
     for (auto dot = path.find('.'); dot != path.npos; dot = path.find('.')) {
         const auto part = path.substr(0, dot);
@@ -274,7 +268,7 @@ void override_key(toml::table& root, const std::string& word, ExperimentProblems
 }  // namespace
 
 void parse_settings(std::string_view text, const std::string& file, const std::vector<std::string>& overrides,
-                    Experiment& experiment, ExperimentProblems& problems) {
+                    Experiment& experiment, FileProblems& problems) {
     try {
         toml::table root = parse_toml(text, file);
         for (const std::string& word : overrides) override_key(root, word, problems);
@@ -286,7 +280,7 @@ void parse_settings(std::string_view text, const std::string& file, const std::v
         experiment.recording.parameters[key] = fmt::format("{}", value);
 }
 
-void read_settings(const std::filesystem::path& file, Experiment& experiment, ExperimentProblems& problems) {
+void read_settings(const std::filesystem::path& file, Experiment& experiment, FileProblems& problems) {
     experiment.name = file.parent_path().stem().string();
     parse_settings(read_file(file), file.string(), {}, experiment, problems);
 }

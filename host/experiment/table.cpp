@@ -96,7 +96,7 @@ void split(std::string_view line, std::vector<std::string_view>& words) {
 }  // namespace
 
 std::optional<fs::path> find_table(const fs::path& folder, const std::string& name, std::uintmax_t largest,
-                                   ExperimentProblems& problems) {
+                                   FileProblems& problems) {
     const fs::path plain = folder / name, packed = folder / (name + ".gz");
     // Of the link itself: a broken link means that a table is missing.
     const auto is_there = [](const fs::path& file) {
@@ -148,7 +148,7 @@ private:
 };
 
 Table::Table(const fs::path& file, const std::vector<std::string>& columns, std::uintmax_t largest,
-             ExperimentProblems& problems, const std::vector<std::string>& optional, const std::string* text)
+             FileProblems& problems, const std::vector<std::string>& optional, const std::string* text)
     : name_(file.string()),
       columns_(columns),
       needed_(columns.size()),
@@ -177,13 +177,13 @@ void Table::read_header() {
         names.clear();
     }
     for (std::size_t c = 0; c < columns_.size() && !names.empty(); ++c) {
-        const auto times = std::count(names.begin(), names.end(), columns_[c]);
+        const auto times = std::ranges::count(names, columns_[c]);
         if (times != 1 && (c < needed_ || times != 0))
             problem(fmt::format("the header must name {} once, got it {} times: the columns are {}",
                                 columns_[c], times, fmt::join(columns_, ",")));
     }
     for (std::string_view name : names) {
-        const auto found = std::find(columns_.begin(), columns_.end(), name);
+        const auto found = std::ranges::find(columns_, name);
         column_of_word_.push_back(found == columns_.end() ? -1 : static_cast<int>(found - columns_.begin()));
     }
     if (problems_.count() > problems_before) lines_.reset();

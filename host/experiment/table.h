@@ -8,14 +8,14 @@
 #include <string_view>
 #include <vector>
 
-#include "experiment/experiment_problems.h"
+#include "scene/problems.h"
 
 namespace mcdem::inline experiment {
 
 /// `<folder>/<name>` or `<name>.gz`; nothing if neither exists. Problems: both exist, the file is not a
 /// regular file, or it has more than `largest` bytes.
 std::optional<std::filesystem::path> find_table(const std::filesystem::path& folder, const std::string& name,
-                                                std::uintmax_t largest, ExperimentProblems& problems);
+                                                std::uintmax_t largest, FileProblems& problems);
 
 class Table {
 public:
@@ -24,7 +24,7 @@ public:
     /// problem at an invalid byte, and after `largest` uncompressed bytes. With `text` that is read instead
     /// of the file; it must outlive the table.
     Table(const std::filesystem::path& file, const std::vector<std::string>& columns, std::uintmax_t largest,
-          ExperimentProblems& problems, const std::vector<std::string>& optional = {},
+          FileProblems& problems, const std::vector<std::string>& optional = {},
           const std::string* text = nullptr);
     ~Table();
     /// Advances to the next row with as many columns as the header. Returns false at the end or if the header
@@ -57,7 +57,7 @@ private:
     std::string name_;
     std::vector<std::string> columns_;
     std::size_t needed_;  ///< number of required columns, which come first
-    ExperimentProblems& problems_;
+    FileProblems& problems_;
     std::unique_ptr<Lines> lines_;
     std::vector<int> column_of_word_;  ///< by word of a line; -1: ignored
     std::vector<std::string_view> words_;

@@ -12,7 +12,6 @@
 #include "core/parameters.h"
 #include "core/sha256.h"
 #include "experiment/experiment.h"
-#include "experiment/experiment_files.h"
 #include "experiment/measurements.h"
 #include "experiment/settings.h"
 
@@ -79,9 +78,9 @@ void add_plate_table(std::map<std::string, std::string>& files, const Recording&
     const auto set_force = set_forces(recording);
     const bool has_times = has_programme(recording.parameters);
     const bool sets_force = std::ranges::any_of(set_force, &std::optional<double>::has_value);
-    std::vector<std::string> columns = plate_columns();
-    if (sets_force) columns.push_back(plate_columns_of_programmes()[0]);
-    if (has_times) columns.push_back(plate_columns_of_programmes()[1]);
+    std::vector<std::string> columns = plate_columns;
+    if (sets_force) columns.push_back(plate_columns_of_programmes[0]);
+    if (has_times) columns.push_back(plate_columns_of_programmes[1]);
     std::string text;
     for (std::size_t s = 0; s < recording.scans.size(); ++s) {
         const Scan& scan = recording.scans[s];
@@ -99,8 +98,8 @@ void add_plate_table(std::map<std::string, std::string>& files, const Recording&
 std::map<std::string, std::string> experiment_files(const Experiment& experiment, Packed packed) {
     const Recording& recording = experiment.recording;
     std::map<std::string, std::string> files;
-    add_table(files, "contacts.csv", contact_columns(), contact_rows(recording), packed);
-    add_table(files, "grains.csv", grain_columns(), grain_rows(recording), packed);
+    add_table(files, "contacts.csv", contact_columns, contact_rows(recording), packed);
+    add_table(files, "grains.csv", grain_columns, grain_rows(recording), packed);
     add_plate_table(files, recording, packed);
     files["experiment.toml"] = settings_text(experiment);
     return files;

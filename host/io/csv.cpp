@@ -12,6 +12,7 @@
 #include "core/errors.h"
 #include "core/output_file.h"
 #include "core/parameters.h"
+#include "core/replaced.h"
 #include "io/results.h"
 
 namespace mcdem::inline io {
@@ -27,12 +28,7 @@ constexpr const char* header =
 constexpr std::pair<int, int> voigt[] = {{0, 0}, {1, 1}, {2, 2}, {1, 2}, {0, 2}, {0, 1}};
 
 std::string quoted(const std::string& text) {
-    std::string result = "\"";
-    for (char c : text) {
-        if (c == '"') result += '"';
-        result += c == '\n' ? ' ' : c;
-    }
-    return result + '"';
+    return '"' + replaced(text, {{'"', "\"\""}, {'\n', " "}}) + '"';
 }
 
 /// Numbers are not changed, words are quoted.

@@ -13,8 +13,6 @@
 #include "core/recording.h"
 #include "io/result_folder.h"
 #include "io/results.h"
-#include "io/vtk.h"
-#include "io/xyz.h"
 
 namespace mcdem::inline io {
 namespace {

@@ -27,6 +27,20 @@ struct ExportChoice {
 int export_run(const std::filesystem::path& run, const std::filesystem::path& folder,
                const ExportFormats& formats, const ExportChoice& choice);
 
+/// Grains and contacts for ParaView, as VTKHDF files (ParaView 5.10, VTK 9.1 or later). Writes one folder per
+/// replica (export_name) with `grains_000000.hdf`, `contacts_000000.hdf`, `forces_000000.hdf`,
+/// `walls_000000.hdf`, ..: four files for every selected scan with positions, and a README.txt that explains
+/// how to view them. Scans are read one by one. Returns the number of files. Throws InputError and RunError.
+int export_vtk(const std::filesystem::path& file_or_folder, const std::filesystem::path& folder,
+               const ExportChoice& choice = {});
+
+/// The same for OVITO: extended XYZ, which ASE and other programs also read, and `dump local` of LAMMPS for
+/// the bonds. Writes `.xyz` and `.contacts.dump` files named by export_name, with one frame for every
+/// selected scan with positions, and OVITO.txt; numbers have nine digits. The number of files is 0 if there
+/// are no positions.
+int export_xyz(const std::filesystem::path& file_or_folder, const std::filesystem::path& folder,
+               const ExportChoice& choice = {});
+
 /// Name of a replica's files or folder: its number and its label, reduced to characters that are safe in all
 /// file systems and shells: "replica_00003_mc_dem_friction=0.03_2".
 std::string export_name(std::size_t number, const std::string& label);

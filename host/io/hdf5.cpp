@@ -5,7 +5,6 @@
 
 #include "core/errors.h"
 #include "core/input_file.h"
-#include "io/chunk_filters.h"
 
 namespace mcdem::inline io::h5 {
 namespace {
@@ -138,7 +137,7 @@ Handle Dataset::type() const { return checked(H5Dget_type(id_), H5Tclose, *file_
 
 Handle Dataset::select(hsize_t first, hsize_t rows) const {
     Extent start = extent(), count = start;
-    std::fill(start.begin(), start.end(), 0);
+    std::ranges::fill(start, 0);
     start.front() = first;
     count.front() = rows;
     Handle space = checked(H5Dget_space(id_), H5Sclose, *file_, where_, "has no extent");

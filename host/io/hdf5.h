@@ -5,11 +5,13 @@
 #include <hdf5.h>
 
 #include <array>
+#include <cstddef>
 #include <filesystem>
 #include <functional>
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -17,8 +19,8 @@
 #include <vector>
 
 #include "core/atomic_file.h"
+#include "core/sha256.h"
 #include "io/hdf5_driver.h"
-#include "io/table_digest.h"
 
 namespace mcdem::inline io::h5 {
 
@@ -72,6 +74,34 @@ Handle text_type(std::size_t length);
 /// Throws the error described above with its reason: that of the system, otherwise the innermost one of the
 /// library.
 [[noreturn]] void fail(const FileBelow& file, const std::string& where, const std::string& what);
+
+/// SHA-256 of a table: of its values, row by row as they are in the file, then of its type and extent.
+/// README.md describes how to compute it elsewhere.
+class TableDigest {
+public:
+    /// None yet: of a table that is written. Else what the table is to have.
+    explicit TableDigest(std::string expected = {}) : expected_(std::move(expected)) {}
+
+    hsize_t rows() const { return rows_; }
+    const std::string& expected() const { return expected_; }
+    void add(const std::vector<std::byte>& values, hsize_t rows);
+    /// Of all rows added; nothing may be added after.
+    std::string hex(hid_t type, const std::vector<hsize_t>& extent);
+
+private:
+    Sha256 sum_;
+    hsize_t rows_ = 0;
+    std::string expected_;
+};
+
+/// `values`, `count` of them, from one type to another.
+bool convert(std::vector<std::byte>& values, std::size_t count, hid_t from, hid_t to);
+
+constexpr int deflate_level = 1;  // higher levels take five times as long for a few per cent
+
+/// The stored bytes of a chunk, filtered as by the library: shuffle, deflate, fletcher32. Its values have
+/// `value_size` bytes each. May be called in several threads.
+std::vector<std::byte> filtered(std::span<const std::byte> chunk, std::size_t value_size);
 
 /// A table that grows along its first dimension. Must not outlive its file.
 class Dataset {

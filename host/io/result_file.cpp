@@ -174,8 +174,8 @@ void ResultFile::read_contacts(std::vector<Scan>& scans, std::size_t grains, std
     table.expect_row({});
     expect_fields(table, contact_row_type<double>());
     const auto offset = file_.dataset(contacts_path(replica) + "/offset").read_all<long>();
-    if (offset.size() != scans.size() + 1 || offset.front() != 0 ||
-        !std::is_sorted(offset.begin(), offset.end()) || offset.back() != static_cast<long>(table.rows()))
+    if (offset.size() != scans.size() + 1 || offset.front() != 0 || !std::ranges::is_sorted(offset) ||
+        offset.back() != static_cast<long>(table.rows()))
         throw InputError(table.where() +
                          ": offset must rise from 0 to the number of contacts, one entry a scan "
                          "and one more");
@@ -203,7 +203,7 @@ std::vector<Vec3> ResultFile::vectors_at(std::size_t row, std::size_t grains,
                                          const std::string& group) const {
     if (!has_vectors(grains, group)) return {};
     const auto step = file_.dataset(group + "/step").read_all<long>();
-    const auto found = std::find(step.begin(), step.end(), static_cast<long>(row));
+    const auto found = std::ranges::find(step, static_cast<long>(row));
     if (found == step.end()) return {};
     const h5::Dataset table = file_.dataset(group + "/value");
     table.expect_row({grains, 3});

@@ -10,7 +10,6 @@
 #include "core/make_folder.h"
 #include "core/output_file.h"
 #include "io/checkpoint.h"
-#include "io/parts.h"
 #include "io/result_file.h"
 
 namespace mcdem::inline io {
@@ -50,6 +49,16 @@ void merge(const std::vector<fs::path>& files, const fs::path& merged, const Sto
         }
     };
     write_result_file(merged, run, write, stop_wanted);
+}
+
+/// Reads part `number`. Errors in its file are InputErrors, as for any other damaged file.
+template <class Read>
+auto from_part(std::size_t number, Read read) {
+    try {
+        return read();
+    } catch (const InputError& error) {
+        throw DamagedPart(number, error.what());
+    }
 }
 
 }  // namespace
@@ -94,13 +103,9 @@ fs::path file_of_a_run(const fs::path& folder) {
     return {};
 }
 
-void expect_no_file(const fs::path& folder) {
+void make_result_folder(const fs::path& folder) {
     if (fs::exists(folder) && !fs::is_directory(folder))
         throw InputError(folder.string() + ": is a file; give a folder for the results");
-}
-
-void make_result_folder(const fs::path& folder) {
-    expect_no_file(folder);
     make_folder(folder);
 }
 
@@ -192,6 +197,34 @@ FolderLock open_output_folder(const std::filesystem::path& folder) {
     expect_no_experiment(folder);  // may have been created by another program in the meantime
     remove_temporaries(folder / "simulations");
     return lock;
+}
+
+fs::path parts_folder(const fs::path& folder) { return folder / "parts"; }
+
+void merge_parts(const std::vector<fs::path>& parts, const fs::path& merged, const StopWanted& stop_wanted) {
+    Run all;
+    std::vector<std::size_t> first{0};  // replica of each part
+    for (std::size_t p = 0; p < parts.size(); ++p) {
+        if (stop_wanted()) throw Interrupted();
+        Run part = from_part(p, [&] { return read_run_header({parts[p]}); });
+        if (p == 0)
+            all = std::move(part);
+        else
+            std::ranges::move(part.recordings, std::back_inserter(all.recordings));
+        first.push_back(all.recordings.size());
+    }
+    const auto write = [&](ResultWriter& writer) {
+        for (std::size_t p = 0; p < parts.size(); ++p) {
+            const ResultFile file = from_part(p, [&] { return ResultFile(parts[p]); });
+            for (std::size_t r = first[p]; r < first[p + 1]; ++r) {
+                auto scans = from_part(
+                    p, [&] { return file.scans(all.recordings[r], r - first[p], ReadWhat::everything); });
+                for (Scan& scan : scans) writer.append(r, std::move(scan));
+                writer.end(r, all.recordings[r].failure);
+            }
+        }
+    };
+    write_result_file(merged, all, write, stop_wanted);
 }
 
 }  // namespace mcdem::io

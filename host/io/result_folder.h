@@ -1,6 +1,8 @@
-// The folder of a run: segments while it runs, one file at the end. Output folders of other commands.
+// The folder of a run: segments while it runs, or the parts of a distributed run, one file at the end. Output
+// folders of other commands.
 #pragma once
 #include <filesystem>
+#include <stdexcept>
 #include <vector>
 
 #include "core/recording.h"
@@ -20,9 +22,6 @@ std::vector<std::filesystem::path> result_files(const std::filesystem::path& fil
 
 /// A file of a run in any state in the folder; an empty path if there is none.
 std::filesystem::path file_of_a_run(const std::filesystem::path& folder);
-
-/// Throws InputError if a file exists at the path of the folder.
-void expect_no_file(const std::filesystem::path& folder);
 
 /// Like make_folder, but a file at this path is an InputError.
 void make_result_folder(const std::filesystem::path& folder);
@@ -65,5 +64,20 @@ private:
 /// folder of an experiment, and if another program uses the folder; RunError if it cannot be created or
 /// written.
 FolderLock open_output_folder(const std::filesystem::path& folder);
+
+/// Folder of the parts of the run in `folder` until they are merged.
+std::filesystem::path parts_folder(const std::filesystem::path& folder);
+
+/// A part that cannot be read completely and must be computed again.
+struct DamagedPart : std::runtime_error {
+    DamagedPart(std::size_t number, const std::string& why) : std::runtime_error(why), part(number) {}
+    std::size_t part;
+};
+
+/// Writes the replicas of all parts in order into `merged`; the file is bit-identical to that of a single
+/// process. Holds one replica in memory. Throws Interrupted, and leaves no file, if `stop_wanted` becomes
+/// true meanwhile; DamagedPart, and RunError if `merged` cannot be written.
+void merge_parts(const std::vector<std::filesystem::path>& parts, const std::filesystem::path& merged,
+                 const StopWanted& stop_wanted = never_stop);
 
 }  // namespace mcdem::io

@@ -1,5 +1,4 @@
-#include "io/table_digest.h"
-
+// Digests of tables.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 

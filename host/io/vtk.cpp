@@ -1,10 +1,9 @@
-#include "io/vtk.h"
-
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
 
 #include "core/atomic_file.h"
@@ -14,9 +13,7 @@
 #include "core/stress.h"
 #include "io/export_run.h"
 #include "io/folder_lock.h"
-#include "io/results.h"
 #include "io/vtk_grid.h"
-#include "io/vtk_walls.h"
 
 namespace mcdem::inline io {
 namespace {
@@ -134,6 +131,16 @@ struct ContactRows {
     std::vector<int> grain, partner;
 };
 
+/// `add_data` adds the data of points and cells.
+void write_grid(const std::filesystem::path& file, const VtkCells& cells, const Recording& recording,
+                const Scan& scan, const std::function<void(VtkGrid&)>& add_data) {
+    replace_own(file, FileKind::vtk, [&](NewFile& out) {
+        VtkGrid grid(out, cells);
+        add_data(grid);
+        grid.close_with(scan, recording.box);
+    });
+}
+
 /// Grains as points with: grain, diameter; if contacts are known coordination_number, force_magnitude (sum of
 /// |force| [N]), stress (core/stress.h), pressure (a third of its trace); displacement and
 /// displacement_since_last_scan; if known, rotation (since the start, before the packing relaxes) and
@@ -161,8 +168,7 @@ void write_vtk_grains(const std::filesystem::path& file, const Recording& record
         contacts[i] = loads[i].contacts;
         force[i] = loads[i].force_magnitude;
     }
-    replace_own(file, FileKind::vtk, [&](NewFile& out) {
-        VtkGrid grid(out, points);
+    write_grid(file, points, recording, scan, [&](VtkGrid& grid) {
         grid.point_data("grain", number);
         grid.point_data("diameter", recording.diameter);
         if (!recording.species.empty()) grid.point_data("species", recording.species);
@@ -177,7 +183,6 @@ void write_vtk_grains(const std::filesystem::path& file, const Recording& record
         if (rotation.size() == since_start.size()) grid.point_data("rotation", rotation, {3});
         if (rotation_since_last_scan.size() == since_start.size())
             grid.point_data("rotation_since_last_scan", rotation_since_last_scan, {3});
-        grid.close_with(scan, recording.box);
     });
 }
 
@@ -198,14 +203,12 @@ void write_vtk_contacts(const std::filesystem::path& file, const Recording& reco
         for (int end = 0; end < 2; ++end) add(end_force, contact.force);
     }
     const ContactRows rows(recording, scan);
-    replace_own(file, FileKind::vtk, [&](NewFile& out) {
-        VtkGrid grid(out, lines);
+    write_grid(file, lines, recording, scan, [&](VtkGrid& grid) {
         grid.point_data("force", end_force, {3});  // tubes take their radius from point data
         grid.point_data("force_magnitude", end_magnitude);
         rows.write_with([&](const char* name, const auto& values, const h5::Extent& row) {
             grid.cell_data(name, values, row);
         });
-        grid.close_with(scan, recording.box);
     });
 }
 
@@ -214,26 +217,103 @@ void write_vtk_forces(const std::filesystem::path& file, const Recording& record
     VtkCells points;
     for (const Contact& contact : scan.contacts) points.add(VtkCell::vertex, {contact.point});
     const ContactRows rows(recording, scan);
-    replace_own(file, FileKind::vtk, [&](NewFile& out) {
-        VtkGrid grid(out, points);
+    write_grid(file, points, recording, scan, [&](VtkGrid& grid) {
         rows.write_with([&](const char* name, const auto& values, const h5::Extent& row) {
             grid.point_data(name, values, row);
         });
-        grid.close_with(scan, recording.box);
     });
 }
 
-/// vtk_walls.h with: wall (-1: an edge), force (total force on the wall by the grains).
+/// Cells with the wall of each; -1: an edge of a periodic container. Side walls extend from the floor to the
+/// initial height of the plate; a `cell` is drawn as the upright cell that contains the positions.
+struct VtkWalls {
+    VtkCells cells;
+    std::vector<int> wall;
+};
+
+constexpr int sides = 64;  ///< of the polygon that approximates a circle
+
+/// The floor's corners, counterclockwise as seen from above.
+std::vector<Vec3> corners_of(const Box& box) {
+    if (!is_cylinder(box))
+        return {{0, 0, 0}, {box.size_x, 0, 0}, {box.size_x, box.size_y, 0}, {0, box.size_y, 0}};
+    std::vector<Vec3> corners;
+    for (int n = 0; n < sides; ++n) {
+        const double angle = 2 * std::numbers::pi * n / sides;
+        corners.push_back(cylinder_radius(box) * Vec3(1 + std::cos(angle), 1 + std::sin(angle), 0));
+    }
+    return corners;
+}
+
+/// The wall above the edge from corner n to the next one; -1: none.
+int wall_over(const Box& box, std::size_t n) {
+    if (is_cylinder(box)) return static_cast<int>(curved_wall);
+    if (is_periodic(box)) return -1;
+    constexpr Wall walls[]{Wall::y_min, Wall::x_max, Wall::y_max, Wall::x_min};
+    return static_cast<int>(walls[n]);
+}
+
+class Builder {
+public:
+    explicit Builder(const Box& box) : corners_(corners_of(box)), box_(box) {}
+
+    void level(Wall wall, double height) {
+        std::vector<Vec3> face = corners_;
+        for (Vec3& corner : face) corner.z() = height;
+        add(VtkCell::polygon, static_cast<int>(wall), face);
+    }
+    void edges_at(double height) {
+        const Vec3 up(0, 0, height);
+        for (std::size_t n = 0; n < corners_.size(); ++n)
+            add(VtkCell::line, -1, {corners_[n] + up, next(n) + up});
+    }
+    /// Side walls, or vertical edges if there are none.
+    void upright(double height) {
+        const Vec3 up(0, 0, height);
+        for (std::size_t n = 0; n < corners_.size(); ++n) {
+            const Vec3 &here = corners_[n], &there = next(n);
+            if (const int wall = wall_over(box_, n); wall >= 0)
+                add(VtkCell::polygon, wall, {here, there, there + up, here + up});
+            else
+                add(VtkCell::line, -1, {here, here + up});
+        }
+    }
+    VtkWalls made;
+
+private:
+    const Vec3& next(std::size_t n) const { return corners_[(n + 1) % corners_.size()]; }
+    void add(VtkCell type, int wall, const std::vector<Vec3>& corners) {
+        made.cells.add(type, corners);
+        made.wall.push_back(wall);
+    }
+    std::vector<Vec3> corners_;
+    Box box_;
+};
+
+VtkWalls vtk_walls(const Recording& recording, const Scan& scan) {
+    const Box now = deformed(recording.box, scan.strain);
+    Builder walls(now);
+    if (is_cell(now)) {
+        walls.upright(now.height);
+        walls.edges_at(0);
+        walls.edges_at(now.height);
+        return walls.made;
+    }
+    walls.upright(std::max(recording.plate_start, scan.plate_z));
+    walls.level(Wall::floor, 0);
+    walls.level(Wall::plate, scan.plate_z);
+    return walls.made;
+}
+
+/// Walls with: wall (-1: an edge), force (total force on the wall by the grains).
 void write_vtk_walls(const std::filesystem::path& file, const Recording& recording, const Scan& scan) {
     const VtkWalls walls = vtk_walls(recording, scan);
     std::vector<double> force;
     for (const int wall : walls.wall)
         add(force, wall < 0 ? Vec3(Vec3::Zero()) : scan.wall_force[static_cast<std::size_t>(wall)]);
-    replace_own(file, FileKind::vtk, [&](NewFile& out) {
-        VtkGrid grid(out, walls.cells);
+    write_grid(file, walls.cells, recording, scan, [&](VtkGrid& grid) {
         grid.cell_data("wall", walls.wall);
         grid.cell_data("force", force, {3});
-        grid.close_with(scan, recording.box);
     });
 }
 

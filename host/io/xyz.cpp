@@ -1,5 +1,3 @@
-#include "io/xyz.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,7 +8,6 @@
 #include "core/make_folder.h"
 #include "core/output_file.h"
 #include "io/export_run.h"
-#include "io/results.h"
 
 namespace mcdem::inline io {
 namespace {

@@ -1,7 +1,6 @@
 // Tables that a scene can have several of, in order, such as [[programme]]. A key of the second [[species]]
 // is called species.2.density.
 #pragma once
-#include <deque>
 #include <optional>
 #include <span>
 #include <string>
@@ -42,16 +41,5 @@ Element& element(std::vector<Element>& list, std::size_t n) {
     if (list.size() <= n) list.resize(n + 1);
     return list[n];
 }
-
-/// The rows of a key table repeated for every element, with full names.
-class ListKeys {
-public:
-    ListKeys(std::string_view table, int most, std::span<const Key> rows);
-    std::span<const Key> of(int element) const { return keys_[static_cast<std::size_t>(element)]; }
-
-private:
-    std::vector<std::vector<Key>> keys_;
-    std::deque<std::string> names_;
-};
 
 }  // namespace mcdem::scene

@@ -9,13 +9,10 @@
 #include <numeric>
 
 #include "core/errors.h"
-#include "scene/problems.h"
 #include "scene/read_packing.h"
 
 namespace mcdem::inline scene {
 namespace {
-
-constexpr std::size_t max_problems = 20;
 
 template <class Number>
 std::optional<Number> whole_word(std::string_view word) {
@@ -36,20 +33,6 @@ std::optional<double> to_number(std::string_view word) {
 std::optional<long> to_whole_number(std::string_view word) { return whole_word<long>(word); }
 
 std::string quoted(std::string_view word) { return fmt::format("\"{}\"", shortened(std::string(word))); }
-
-void FileProblems::add(long line, const std::string& what) {
-    if (!full()) problems_.push_back(fmt::format("{}:{}: {}", source_, line, what));
-}
-
-void FileProblems::add(const std::string& what) {
-    if (!full()) problems_.push_back(fmt::format("{}: {}", source_, what));
-}
-
-bool FileProblems::full() const { return problems_.size() >= max_problems; }
-
-void FileProblems::report() const {
-    if (!empty()) throw InputError(problems_);
-}
 
 void add_species(Packing& packing, std::string_view word) {
     constexpr std::size_t max_names = 64;  // more than a scene can have; the last one represents all others

@@ -1,5 +1,4 @@
-// Shared code of the packing readers: lines, words and numbers, a list of problems of limited length, and
-// grains from the rows of a table.
+// Shared code of the packing readers: lines, words and numbers, and grains from the rows of a table.
 #pragma once
 #include <algorithm>
 #include <optional>
@@ -8,6 +7,7 @@
 #include <vector>
 
 #include "core/packing.h"
+#include "scene/problems.h"
 
 namespace mcdem::inline scene {
 
@@ -17,22 +17,6 @@ std::optional<long> to_whole_number(std::string_view word);
 
 /// A word for use in messages: short, without control characters.
 std::string quoted(std::string_view word);
-
-/// Problems of one file, up to a maximum number.
-class FileProblems {
-public:
-    explicit FileProblems(std::string source) : source_(std::move(source)) {}
-    void add(long line, const std::string& what);
-    void add(const std::string& what);
-    bool full() const;
-    bool empty() const { return problems_.empty(); }
-    /// Throws InputError if there are problems.
-    void report() const;
-
-private:
-    std::string source_;
-    std::vector<std::string> problems_;
-};
 
 /// Appends the name of the grain's species in the file.
 void add_species(Packing& packing, std::string_view word);

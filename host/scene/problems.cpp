@@ -20,6 +20,36 @@ void Problems::report() const {
     throw InputError(lines);
 }
 
+bool FileProblems::full() const { return first_.size() >= 20; }
+
+void FileProblems::add(const std::string& where, const std::string& what) {
+    if (!full()) first_.push_back(where + ": " + what);
+    ++count_;
+}
+
+void FileProblems::add(long line, const std::string& what) {
+    if (!full()) add(fmt::format("{}:{}", source_, line), what);
+}
+
+void FileProblems::add(const std::string& what) {
+    if (!full()) add(source_, what);
+}
+
+void FileProblems::add_once(const std::string& topic, const std::string& where, const std::string& what) {
+    if (told_.insert(topic).second) add(where, what);
+}
+
+std::vector<std::string> FileProblems::lines() const {
+    auto problems = first_;
+    const long more = count_ - static_cast<long>(first_.size());
+    if (more > 0) problems.push_back(fmt::format(".. and {} more", more));
+    return problems;
+}
+
+void FileProblems::report() const {
+    if (!empty()) throw InputError(lines());
+}
+
 std::string shortened(const std::string& text) {
     constexpr std::size_t longest = 80;
     std::string shown;

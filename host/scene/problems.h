@@ -1,4 +1,4 @@
-// Problems of one scene with their places, reported in the order of the file.
+// Problems of one scene with their places, reported in the order of the file; problems of other files.
 #pragma once
 #include <climits>
 #include <set>
@@ -26,6 +26,34 @@ public:
 
 private:
     std::set<std::pair<std::pair<int, int>, std::string>> found_;
+};
+
+/// Problems of a file or a folder in the order in which they are found, up to a maximum number.
+class FileProblems {
+public:
+    /// `source`: file of the problems that are added without its name.
+    explicit FileProblems(std::string source = {}) : source_(std::move(source)) {}
+    /// `where` is a file, or file:line. Problems beyond the maximum are only counted.
+    void add(const std::string& where, const std::string& what);
+    /// In a line of the source, or in the whole; ignored beyond the maximum.
+    void add(long line, const std::string& what);
+    void add(const std::string& what);
+    /// Adds only one problem for each `topic`: a column in millimetres is one problem, not one for each line.
+    void add_once(const std::string& topic, const std::string& where, const std::string& what);
+    /// True at the maximum.
+    bool full() const;
+    bool empty() const { return count_ == 0; }
+    long count() const { return count_; }
+    /// All problems, and the number of further ones.
+    std::vector<std::string> lines() const;
+    /// Throws InputError if there are problems.
+    void report() const;
+
+private:
+    std::string source_;
+    std::vector<std::string> first_;
+    std::set<std::string> told_;
+    long count_ = 0;
 };
 
 /// A user's word for use in messages: short, without control characters.

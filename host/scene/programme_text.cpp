@@ -6,7 +6,6 @@
 
 #include "core/errors.h"
 #include "core/parameters.h"
-#include "scene/assign.h"
 #include "scene/list_tables.h"
 #include "scene/toml_text.h"
 
@@ -15,11 +14,7 @@ namespace {
 
 /// Parses a TOML value; other text is a word.
 toml::table value_of_text(const std::string& text) {
-    try {
-        return parse_toml("value = " + text, {}, 100);
-    } catch (const toml::parse_error&) {
-        return toml::table{{"value", without_quotes(text)}};
-    }
+    return parse_value(text).value_or(toml::table{{"value", without_quotes(text)}});
 }
 
 /// Assigns a value from the text that the table of keys has written.

@@ -5,12 +5,12 @@
 #include "core/container.h"
 #include "core/errors.h"
 #include "core/input_file.h"
-#include "scene/assign.h"
 #include "scene/list_tables.h"
 #include "scene/programme_checks.h"
 #include "scene/replicas.h"
 #include "scene/scene_checks.h"
 #include "scene/scene_document.h"
+#include "scene/toml_text.h"
 
 namespace mcdem::inline scene {
 namespace {

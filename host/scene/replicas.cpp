@@ -7,10 +7,10 @@
 #include <filesystem>
 
 #include "core/container.h"
-#include "scene/assign.h"
 #include "scene/generate_packing.h"
 #include "scene/list_tables.h"
 #include "scene/resolve_species.h"
+#include "scene/toml_text.h"
 
 namespace mcdem::inline scene {
 namespace {

@@ -43,12 +43,9 @@ std::string bare(std::string key) {
 std::optional<toml::table> parse_override(const std::string& value) {
     const bool one_line = std::ranges::none_of(value, [](unsigned char c) { return c < 32 || c == 127; });
     if (!one_line) return std::nullopt;
-    try {
-        return parse_toml("value = " + value, {}, 100);
-    } catch (const toml::parse_error&) {
-        if (value.empty() || value.find_first_of("\"'[]{}=#,") != value.npos) return std::nullopt;
-        return toml::table{{"value", value}};
-    }
+    if (auto parsed = parse_value(value)) return parsed;
+    if (value.empty() || value.find_first_of("\"'[]{}=#,") != value.npos) return std::nullopt;
+    return toml::table{{"value", value}};
 }
 
 }  // namespace

@@ -5,7 +5,6 @@
 
 #include "cli/tiny_challenge.h"
 #include "core/sha256.h"
-#include "io/parts.h"
 #include "io/result_folder.h"
 
 namespace mcdem {

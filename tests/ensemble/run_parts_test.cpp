@@ -7,7 +7,6 @@
 #include "core/errors.h"
 #include "ensemble/parts/manifest.h"
 #include "ensemble/small_scene.h"
-#include "io/parts.h"
 #include "io/result_folder.h"
 
 namespace mcdem {

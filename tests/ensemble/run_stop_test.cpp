@@ -8,7 +8,6 @@
 #include "ensemble/run_scene.h"
 #include "ensemble/small_scene.h"
 #include "io/checkpoint.h"
-#include "io/parts.h"
 #include "io/result_folder.h"
 #include "io/results.h"
 

@@ -1,5 +1,4 @@
 // Chunks that are filtered on all cores must have the bytes that the HDF5 library writes.
-#include "io/chunk_filters.h"
 
 #include <gtest/gtest.h>
 #include <hdf5.h>

@@ -1,5 +1,4 @@
 // Merged parts of a run: the same bytes as the file of a single process.
-#include "io/parts.h"
 
 #include <gmock/gmock.h>
 

@@ -8,12 +8,11 @@
 
 #include "core/container.h"
 #include "core/errors.h"
+#include "io/export_run.h"
 #include "io/hdf5.h"
 #include "io/result_folder.h"
 #include "io/results.h"
 #include "io/synthetic_run.h"
-#include "io/vtk.h"
-#include "io/xyz.h"
 
 namespace mcdem::test {
 namespace {

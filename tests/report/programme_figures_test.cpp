@@ -1,11 +1,10 @@
 // Figures of programmes: forces and displacements of a plate, stresses and strains of a cell.
-#include "report/run/programme_figures.h"
-
 #include <gmock/gmock.h>
 
 #include "metrics/synthetic.h"
 #include "report/run/figure_values.h"
-#include "report/run/run_charts.h"
+#include "report/run/run_figures.h"
+#include "report/run/run_page.h"
 
 namespace mcdem {
 namespace {

@@ -1,10 +1,9 @@
-#include "report/run/run_charts.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "metrics/synthetic.h"
 #include "report/run/figure_values.h"
+#include "report/run/run_page.h"
 
 namespace mcdem {
 namespace {

@@ -1,8 +1,7 @@
-#include "report/run/run_words.h"
-
 #include <gmock/gmock.h>
 
 #include "metrics/synthetic.h"
+#include "report/run/run_page.h"
 
 namespace mcdem {
 namespace {

@@ -1,10 +1,9 @@
-#include "report/run/scan_tables.h"
-
 #include <gmock/gmock.h>
 
 #include "core/errors.h"
 #include "metrics/synthetic.h"
 #include "report/page/labels.h"
+#include "report/run/tables.h"
 
 namespace mcdem {
 namespace {

@@ -6,8 +6,8 @@
 #include <set>
 #include <sstream>
 
-#include "scene/assign.h"
 #include "scene/list_tables.h"
+#include "scene/toml_text.h"
 #include "scene_test_tools.h"
 
 namespace mcdem {

@@ -11,7 +11,6 @@
 #include "core/atomic_file.h"
 #include "core/errors.h"
 #include "core/input_file.h"
-#include "experiment/experiment_files.h"
 #include "experiment/instrument.h"
 #include "io/result_folder.h"
 #include "io/results.h"

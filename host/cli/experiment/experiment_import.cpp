@@ -46,7 +46,7 @@ fs::path whole_path(const std::string& folder) {
 }
 
 /// Values that are not in the tables; their problems are reported together with all others.
-Experiment known_of(const ImportCommand& command, ExperimentProblems& problems) {
+Experiment known_of(const ImportCommand& command, FileProblems& problems) {
     Experiment known;
     known.recording.plate_start = std::nan("");
     const std::string text = command.metadata.empty() ? "" : text_of_file(command.metadata);
@@ -72,7 +72,7 @@ std::vector<std::string> lines_of(const fs::path& file) {
 
 /// Arguments for the Python module.
 std::vector<std::string> words_of(const ImportCommand& command, const Experiment& known,
-                                  const ExperimentProblems& settings, const fs::path& work) {
+                                  const FileProblems& settings, const fs::path& work) {
     std::vector<std::string> words{"--work=" + work.string(), "--kept=" + kept_mapping(command).string()};
     const auto add = [&](const std::string& option, std::optional<double> value) {
         if (value && std::isfinite(*value)) words.push_back(fmt::format("{}={}", option, *value));
@@ -152,7 +152,7 @@ int run_import(const ImportCommand& command) {
     if (command.voxel_size && !(*command.voxel_size > 0 && *command.voxel_size <= largest_voxel))
         throw InputError(fmt::format("--voxel-size: must be > 0 and <= {} [m], got {}", largest_voxel,
                                      *command.voxel_size));
-    ExperimentProblems settings;
+    FileProblems settings;
     Experiment known = known_of(command, settings);
     const fs::path out = whole_path(command.out);
     make_folder(out.parent_path());

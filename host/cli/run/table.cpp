@@ -4,7 +4,6 @@
 #include "cli/shell/standard_streams.h"
 #include "core/errors.h"
 #include "metrics/programmes.h"
-#include "report/run/scan_tables.h"
 #include "report/run/tables.h"
 
 namespace mcdem::inline cli {

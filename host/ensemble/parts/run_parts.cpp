@@ -12,7 +12,6 @@
 #include "ensemble/run_state.h"
 #include "io/checkpoint.h"
 #include "io/csv.h"
-#include "io/parts.h"
 #include "io/result_file.h"
 #include "io/result_folder.h"
 #include "io/results.h"

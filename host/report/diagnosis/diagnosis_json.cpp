@@ -46,12 +46,9 @@ public:
         if (reads_) metres = length * mm;
     }
     void millimetres(const char* key, std::array<double, 2>& metres) {
-        Json& json = place(key);
-        for (std::size_t k = 0; k < 2; ++k) {
-            double length = std::round(metres[k] * 1e9) / 1e6;
-            exchange(reads_ ? json.at(k) : json.emplace_back(), length);
-            if (reads_) metres[k] = length * mm;
-        }
+        std::array<double, 2> lengths{std::round(metres[0] * 1e9) / 1e6, std::round(metres[1] * 1e9) / 1e6};
+        (*this)(key, lengths);
+        if (reads_) metres = {lengths[0] * mm, lengths[1] * mm};
     }
     /// Pairs as an object, in this order.
     void object(const char* key, NamedPairs& pairs) {
@@ -141,14 +138,11 @@ void describe(Members& io, Cause& cause) {
 }
 
 /// A row of GapReduction::top_force.
-struct TopForce {
-    double displacement = 0, experiment = 0, before = 0, after = 0;
-};
-void describe(Members& io, TopForce& row) {
-    io.millimetres("displacement_mm", row.displacement);
-    io("experiment_N", row.experiment);
-    io("before_N", row.before);
-    io("after_N", row.after);
+void describe(Members& io, std::array<double, 4>& row) {
+    io.millimetres("displacement_mm", row[0]);
+    io("experiment_N", row[1]);
+    io("before_N", row[2]);
+    io("after_N", row[3]);
 }
 
 void describe(Members& io, GapReduction& gap) {
@@ -163,12 +157,7 @@ void describe(Members& io, GapReduction& gap) {
     gap.metrics.insert(metrics.begin(), metrics.end());
     io("confirmed", gap.confirmed);
     io.millimetres("fitted_displacement_mm", gap.fitted_displacement);
-    std::vector<TopForce> rows;
-    for (const auto& row : gap.top_force) rows.push_back({row[0], row[1], row[2], row[3]});
-    io("top_force", rows);
-    gap.top_force.clear();
-    for (const TopForce& row : rows)
-        gap.top_force.push_back({row.displacement, row.experiment, row.before, row.after});
+    io("top_force", gap.top_force);
 }
 
 void describe(Members& io, Explanation& explanation) {

@@ -1,6 +1,7 @@
 #include "report/diagnosis/diagnosis_text.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -32,8 +33,8 @@ std::vector<std::string> members_of(const Diagnosis& diagnosis, const Cause& lea
     std::vector<std::string> members;
     for (const auto& name : leader.group) {
         const auto is_it = [&](const Cause& cause) { return cause.effect == name; };
-        const auto cause = std::find_if(diagnosis.causes.begin(), diagnosis.causes.end(), is_it);
-        const auto ranked = std::find_if(diagnosis.ranking.begin(), diagnosis.ranking.end(), is_it);
+        const auto cause = std::ranges::find_if(diagnosis.causes, is_it);
+        const auto ranked = std::ranges::find_if(diagnosis.ranking, is_it);
         if (cause != diagnosis.causes.end())
             members.push_back(cause_words(*cause));
         else
@@ -48,7 +49,7 @@ std::string together_with(const Diagnosis& diagnosis) {
     std::vector<std::string> parts;
     for (std::size_t i = 1; i < diagnosis.causes.size(); ++i) {
         const auto& group = diagnosis.causes.front().group;
-        if (std::find(group.begin(), group.end(), diagnosis.causes[i].effect) == group.end())
+        if (std::ranges::find(group, diagnosis.causes[i].effect) == group.end())
             parts.push_back(cause_words(diagnosis.causes[i]));
     }
     return parts.empty() ? "" : " together with " + listed(parts);
@@ -147,18 +148,16 @@ std::string framed_line(const Diagnosis& diagnosis) {
 std::string where_line(const Diagnosis& diagnosis) {
     if (diagnosis.where.empty()) return framed_line(diagnosis);
     auto entries = diagnosis.where;
-    std::stable_sort(entries.begin(), entries.end(), [](const WhereEntry& a, const WhereEntry& b) {
+    std::ranges::stable_sort(entries, [](const WhereEntry& a, const WhereEntry& b) {
         return std::fabs(a.z_score) > std::fabs(b.z_score);
     });
     std::vector<std::string> parts, observables;
     for (const auto& entry : entries) {
-        if (std::find(observables.begin(), observables.end(), entry.observable) != observables.end())
-            continue;
+        if (std::ranges::find(observables, entry.observable) != observables.end()) continue;
         observables.push_back(entry.observable);
         if (parts.size() < most_places) parts.push_back(where_words(entry));
     }
-    auto text = parts.front();
-    for (std::size_t i = 1; i < parts.size(); ++i) text += "; " + parts[i];
+    auto text = fmt::format("{}", fmt::join(parts, "; "));
     if (observables.size() > parts.size())
         text += fmt::format("; and {} more observable{}", observables.size() - parts.size(),
                             observables.size() - parts.size() == 1 ? "" : "s");
@@ -182,11 +181,15 @@ std::string unknown_line(const Diagnosis& diagnosis) {
     return text + ".";
 }
 
+std::string listed_suspects(const Diagnosis& diagnosis) {
+    std::vector<std::string> words;
+    for (const auto& suspect : suspects_of(diagnosis)) words.push_back(suspect_words(suspect));
+    return listed(words);
+}
+
 std::string calibration_line(const Diagnosis& diagnosis) {
-    std::vector<std::string> parts;
-    for (const auto& suspect : suspects_of(diagnosis)) parts.push_back(suspect_words(suspect));
     auto text = std::string("consistent with a wrong stated parameter, before any effect");
-    if (!parts.empty()) text += ": " + listed(parts);
+    if (const auto suspects = listed_suspects(diagnosis); !suspects.empty()) text += ": " + suspects;
     if (!diagnosis.causes.empty()) text += not_told_from(diagnosis.causes.front());
     return text + ".";
 }
@@ -261,12 +264,12 @@ std::string how_far_line(const Diagnosis& diagnosis) {
 std::vector<std::string> limits_that_matter(const Diagnosis& diagnosis) {
     auto limits = diagnosis.detection_limits;
     const auto rank = [&](const DetectionLimit& limit) {
-        return std::find_if(diagnosis.ranking.begin(), diagnosis.ranking.end(),
-                            [&](const Cause& cause) { return cause.effect == limit.effect; }) -
+        return std::ranges::find_if(diagnosis.ranking,
+                                    [&](const Cause& cause) { return cause.effect == limit.effect; }) -
                diagnosis.ranking.begin();
     };
-    std::stable_sort(limits.begin(), limits.end(),
-                     [&](const DetectionLimit& a, const DetectionLimit& b) { return rank(a) < rank(b); });
+    std::ranges::stable_sort(
+        limits, [&](const DetectionLimit& a, const DetectionLimit& b) { return rank(a) < rank(b); });
     std::vector<std::string> words;
     for (const auto& limit : limits)
         if (std::isfinite(limit.minimum_amplitude))
@@ -370,10 +373,9 @@ std::string verdict_sentence(const Diagnosis& diagnosis) {
         case Verdict::calibration_suspect:
             break;
     }
-    std::vector<std::string> parts;
-    for (const auto& suspect : suspects_of(diagnosis)) parts.push_back(suspect_words(suspect));
-    return parts.empty() ? "The gap is consistent with a wrong stated parameter."
-                         : "The gap is consistent with calibration alone: " + listed(parts) + ".";
+    const auto suspects = listed_suspects(diagnosis);
+    return suspects.empty() ? "The gap is consistent with a wrong stated parameter."
+                            : "The gap is consistent with calibration alone: " + suspects + ".";
 }
 
 std::array<VerdictLine, 6> verdict_lines(const Diagnosis& diagnosis) {

@@ -107,7 +107,7 @@ std::string words_of(const std::string& name) {
     const auto found = special_words().find(name);
     if (found != special_words().end()) return found->second;
     auto words = one_line(name);
-    std::replace(words.begin(), words.end(), '_', ' ');
+    std::ranges::replace(words, '_', ' ');
     return words;
 }
 
@@ -206,10 +206,9 @@ std::vector<std::pair<std::string, std::array<double, 2>>> metrics_in_order(
                                                                        gap_reduction.metrics.end());
     const auto place = [](const auto& metric) {
         static constexpr std::array<std::string_view, 4> order{"Rtop", "errf", "errZ", "bhat"};
-        return std::find(order.begin(), order.end(), metric.first) - order.begin();
+        return std::ranges::find(order, metric.first) - order.begin();
     };
-    std::stable_sort(metrics.begin(), metrics.end(),
-                     [&](const auto& a, const auto& b) { return place(a) < place(b); });
+    std::ranges::stable_sort(metrics, [&](const auto& a, const auto& b) { return place(a) < place(b); });
     return metrics;
 }
 
@@ -241,8 +240,8 @@ std::vector<NuisanceFit> suspects_of(const Diagnosis& diagnosis) {
     if (!suspects.empty()) return suspects;
     for (const auto& fit : diagnosis.nuisances)
         if (fit.at_bound) suspects.push_back(fit);
-    std::stable_sort(suspects.begin(), suspects.end(),
-                     [](const NuisanceFit& a, const NuisanceFit& b) { return pull(a) > pull(b); });
+    std::ranges::stable_sort(suspects,
+                             [](const NuisanceFit& a, const NuisanceFit& b) { return pull(a) > pull(b); });
     return suspects;
 }
 

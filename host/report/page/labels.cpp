@@ -1,6 +1,7 @@
 #include "report/page/labels.h"
 
 #include <array>
+#include <set>
 
 #include "core/names.h"
 
@@ -10,6 +11,12 @@ namespace {
 constexpr std::array<const char*, Names<ContactModel>::list.size()> model_words{
     "Independent contacts", "Point force on sphere", "Sphere to sphere", "Elastic half space", "MC-DEM",
     "Elastic sphere",       "Hyperelastic sphere"};
+
+// Okabe & Ito 2008, without yellow (too light on white) and black (the reference), in the order of
+// ContactModel.
+constexpr std::array<const char*, 7> palette{"#0072B2", "#56B4E9", "#009E73", "#E69F00",
+                                             "#D55E00", "#CC79A7", "#666666"};
+constexpr std::array<const char*, 7> markers{"s", "^", "v", "D", "o", "p", "h"};
 
 }  // namespace
 
@@ -40,6 +47,24 @@ std::string shortened(const std::string& text, std::size_t most) {
 StressUnit stress_unit(double largest) {
     if (largest >= 1e7) return {"MPa", 1e6};
     return largest >= 1e4 ? StressUnit{"kPa", 1e3} : StressUnit{"Pa", 1};
+}
+
+SeriesStyle reference_style() { return {"#000000", "o"}; }
+
+SeriesStyle style_number(std::size_t index) {
+    return {palette[index % palette.size()], markers[index % markers.size()]};
+}
+
+std::vector<SeriesStyle> styles_of(const std::vector<Setting>& settings) {
+    std::set<ContactModel> models;
+    for (const auto& setting : settings)
+        if (const auto model = model_of(setting.replicas)) models.insert(*model);
+    const bool by_model = models.size() == settings.size();
+    std::vector<SeriesStyle> styles;
+    for (std::size_t s = 0; s < settings.size(); ++s)
+        styles.push_back(
+            style_number(by_model ? static_cast<std::size_t>(*model_of(settings[s].replicas)) : s));
+    return styles;
 }
 
 }  // namespace mcdem::report

@@ -1,6 +1,10 @@
-// Readable names of settings, and units of stresses.
+// Readable names of settings, their colours and markers, and units of stresses. For pages and figures for
+// print.
 #pragma once
 #include <string>
+#include <vector>
+
+#include "metrics/replicas.h"
 
 namespace mcdem::inline report {
 
@@ -27,5 +31,20 @@ struct StressUnit {
     double size;  ///< [Pa]
 };
 StressUnit stress_unit(double largest);
+
+struct SeriesStyle {
+    std::string colour;  ///< "#rrggbb"
+    std::string marker;  ///< as in matplotlib
+};
+
+/// Black circles, for the reference.
+SeriesStyle reference_style();
+
+/// Style of the first, second, .. series. The colours are suitable for colour-blind readers (Okabe and Ito).
+SeriesStyle style_number(std::size_t index);
+
+/// If every setting has a different contact model, a model has the same colour in all figures; otherwise
+/// colours follow the order of the settings.
+std::vector<SeriesStyle> styles_of(const std::vector<Setting>& settings);
 
 }  // namespace mcdem::report

@@ -39,7 +39,7 @@ Shown shown_grains(const Recording& recording, int most) {
         std::nth_element(shown.grains.begin(), shown.grains.begin() + most, shown.grains.end(),
                          [&](int a, int b) { return away(a) < away(b); });
         shown.grains.resize(static_cast<std::size_t>(most));
-        std::sort(shown.grains.begin(), shown.grains.end());
+        std::ranges::sort(shown.grains);
     }
     for (std::size_t g = 0; g < shown.grains.size(); ++g)
         shown.place[static_cast<std::size_t>(shown.grains[g])] = static_cast<int>(g);

@@ -22,6 +22,11 @@ Cells prepared(const Cells& cells, TableFormat format) {
     return result;
 }
 
+/// Number of characters of a UTF-8 text, each assumed to be one column wide.
+std::size_t width_of(const std::string& text) {
+    return std::ranges::count_if(text, [](char c) { return (c & 0xC0) != 0x80; });
+}
+
 std::string padded(const std::string& cell, std::size_t width, Align align) {
     const std::string blanks(width - std::min(width, width_of(cell)), ' ');
     return align == Align::left ? cell + blanks : blanks + cell;
@@ -46,10 +51,6 @@ std::string line_of(const Cells& cells, TableFormat format) {
 }
 
 }  // namespace
-
-std::size_t width_of(const std::string& text) {
-    return std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; });
-}
 
 std::string to_text(const TextTable& table, TableFormat format) {
     std::vector<Cells> lines(1);

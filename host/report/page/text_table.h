@@ -20,7 +20,4 @@ struct TextTable {
 
 std::string to_text(const TextTable& table, TableFormat format);
 
-/// Number of characters of a UTF-8 text, each assumed to be one column wide.
-std::size_t width_of(const std::string& text);
-
 }  // namespace mcdem::report

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "report/diagnosis/diagnosis_words.h"
-#include "report/page/series_style.h"
+#include "report/page/labels.h"
 
 namespace mcdem::inline report {
 namespace {

@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 
 #include "metrics/coordination.h"
 #include "metrics/programmes.h"
 #include "metrics/scaling.h"
 #include "report/page/labels.h"
-#include "report/run/programme_figures.h"
 
 namespace mcdem::inline report {
 namespace {
@@ -76,6 +76,78 @@ RunFigure top_force_figure(const Cast& cast) {
                 curves_of(level_means(series.levels, top_force))};
     });
     return figure;
+}
+
+/// p(f) of one series at the level nearest to the requested one.
+struct ShownDensity {
+    const Series* series;
+    const Level* level;
+    ForceDensity density;
+};
+
+/// The level with contacts nearest to the displacement in this phase; null if there is none.
+const Level* nearest_level(const Series& series, const FigureOptions& options, Phase phase) {
+    const Level* nearest = nullptr;
+    const auto distance = [&](const Level& level) {
+        return std::abs(level.displacement - options.distribution_displacement);
+    };
+    for (const auto& level : series.levels) {
+        bool known = false;
+        for (const auto& scans : level.scans)
+            for (const auto* scan : scans) known = known || !scan->contacts.empty();
+        if (level.phase == phase && known && (!nearest || distance(level) < distance(*nearest)))
+            nearest = &level;
+    }
+    return nearest;
+}
+
+/// In the phase of the options; in the other one if that has no contacts, as in runs that stopped early.
+const Level* nearest_level(const Series& series, const FigureOptions& options) {
+    const Phase wanted = options.distribution_phase;
+    const Level* level = nearest_level(series, options, wanted);
+    return level ? level
+                 : nearest_level(series, options, wanted == Phase::load ? Phase::unload : Phase::load);
+}
+
+std::vector<ShownDensity> shown_levels(const Cast& cast, const FigureOptions& options) {
+    std::vector<ShownDensity> shown;
+    for (const auto& series : cast.simulated) shown.push_back({&series, nearest_level(series, options), {}});
+    if (cast.reference) shown.push_back({&*cast.reference, nearest_level(*cast.reference, options), {}});
+    std::erase_if(shown, [](const ShownDensity& s) { return !s.level; });
+    return shown;
+}
+
+/// Common bins up to a force that few contacts exceed; their number follows from the smallest sample.
+struct Bins {
+    double largest = 0;  ///< [N]
+    int count = 100;
+};
+Bins common_bins(const std::vector<ShownDensity>& shown, WallContacts walls) {
+    Bins bins;
+    for (const auto& [series, level, density] : shown) {
+        std::vector<double> forces;
+        for (const auto& scans : level->scans) {
+            const auto of_replica = contact_forces(scans, walls);
+            forces.insert(forces.end(), of_replica.grain_grain.begin(), of_replica.grain_grain.end());
+            forces.insert(forces.end(), of_replica.grain_wall.begin(), of_replica.grain_wall.end());
+        }
+        if (forces.empty()) continue;
+        std::ranges::sort(forces);
+        bins.largest = std::max(bins.largest, forces[(forces.size() - 1) * 999 / 1000]);
+        const auto contacts = static_cast<double>(forces.size());
+        bins.count = std::min(bins.count, std::clamp(bin_count(contacts, contacts), 8, 30));
+    }
+    return bins;
+}
+
+/// In common bins, up to a force that few contacts exceed; empty without data.
+std::vector<ShownDensity> shown_densities(const Cast& cast, const FigureOptions& options) {
+    const auto walls = options.compare.walls_in_distribution;
+    auto shown = shown_levels(cast, options);
+    const auto bins = common_bins(shown, walls);
+    if (!(bins.largest > 0)) return {};
+    for (auto& one : shown) one.density = force_density(*one.level, bins.count, bins.largest, walls);
+    return shown;
 }
 
 RunFigure distribution_figure(const Cast& cast, const FigureOptions& options) {
@@ -146,6 +218,106 @@ RunFigure scaling_figure(const Cast& cast) {
     return figure;
 }
 
+constexpr double distortion = 1e-6;  ///< smaller deviatoric strains of a cell are ignored
+
+/// What an axis shows.
+struct Axis {
+    std::string label;
+    double unit;
+    Estimate MeanScan::*of;
+};
+
+/// Scans of one setting.
+struct Track {
+    const Series* series;
+    std::vector<MeanScan> scans;
+};
+
+std::vector<Track> tracks_of(const Cast& cast, bool cells) {
+    std::vector<Track> tracks;
+    for (const Series& series : cast.simulated)
+        if (const auto& replicas = series.setting.replicas;
+            follows_programme(replicas) && are_cells(replicas) == cells)
+            tracks.push_back({&series, mean_scans(replicas)});
+    return tracks;
+}
+
+/// Nothing without data.
+void add_figure(std::vector<RunFigure>& figures, const std::vector<Track>& tracks, const std::string& name,
+                const std::string& title, const Axis& x, const Axis& y) {
+    RunFigure figure{name, x.label, y.label, {}, {}, title};
+    for (const Track& track : tracks) {
+        std::vector<FigurePoint> points;
+        for (const MeanScan& scan : track.scans) {
+            const Estimate &along = scan.*x.of, &up = scan.*y.of;
+            if (along.available() && up.available())
+                points.push_back({along.value / x.unit, up.value / y.unit, up.standard_error / y.unit});
+        }
+        if (!points.empty()) figure.series.push_back({track.series, "", {{Phase::load, std::move(points)}}});
+    }
+    if (!figure.series.empty()) figures.push_back(std::move(figure));
+}
+
+/// Largest value of a quantity in all scans.
+double largest(const std::vector<Track>& tracks, Estimate MeanScan::*quantity) {
+    double most = 0;
+    for (const Track& track : tracks)
+        for (const MeanScan& scan : track.scans) most = std::fmax(most, std::fabs((scan.*quantity).value));
+    return most;
+}
+
+bool are_distorted(const std::vector<Track>& cells) {
+    return largest(cells, &MeanScan::shear_strain) > distortion;
+}
+
+const Axis time_axis{"time [s]", 1, &MeanScan::time};
+const Axis volume{"volume strain [%]", 1e-2, &MeanScan::volume_strain};
+const Axis shear{"deviatoric strain [%]", 1e-2, &MeanScan::shear_strain};
+
+/// Mean and deviatoric stress of the tracks in a common unit.
+struct Stresses {
+    Axis p, q;
+};
+Stresses stresses_of(const std::vector<Track>& tracks) {
+    const StressUnit unit =
+        stress_unit(std::fmax(largest(tracks, &MeanScan::p), largest(tracks, &MeanScan::q)));
+    const std::string in = std::string(" [") + unit.name + "]";
+    return {{"mean stress p" + in, unit.size, &MeanScan::p},
+            {"deviatoric stress q" + in, unit.size, &MeanScan::q}};
+}
+
+void add_plates(const std::vector<Track>& tracks, std::vector<RunFigure>& figures) {
+    const Axis force{"top force [N]", 1, &MeanScan::top_force};
+    const Axis moved{"plate displacement [mm]", 1e-3, &MeanScan::displacement};
+    add_figure(figures, tracks, "force_time", "Force on the plate against time", time_axis, force);
+    add_figure(figures, tracks, "displacement_time", "Displacement of the plate against time", time_axis,
+               moved);
+    add_figure(figures, tracks, "force_displacement", "Force on the plate against displacement", moved,
+               force);
+}
+
+void add_cells(const std::vector<Track>& tracks, std::vector<RunFigure>& figures) {
+    const auto [p, q] = stresses_of(tracks);
+    add_figure(figures, tracks, "pressure_strain", "Mean stress against volume strain", volume, p);
+    if (are_distorted(tracks))
+        add_figure(figures, tracks, "shear_stress_strain", "Deviatoric stress against deviatoric strain",
+                   shear, q);
+    add_figure(figures, tracks, "cell_coordination", "Contacts per grain",
+               {"packing fraction φ", 1, &MeanScan::packing_fraction},
+               {"contacts per grain Z", 1, &MeanScan::coordination});
+}
+
+void add_times_of_cells(const std::vector<Track>& tracks, std::vector<RunFigure>& figures) {
+    const auto holds = [](const Track& track) { return has_hold(track.series->setting.replicas); };
+    if (std::ranges::none_of(tracks, holds)) return;
+    const auto [p, q] = stresses_of(tracks);
+    add_figure(figures, tracks, "pressure_time", "Mean stress against time", time_axis, p);
+    add_figure(figures, tracks, "volume_time", "Volume strain against time", time_axis, volume);
+    if (!are_distorted(tracks)) return;
+    add_figure(figures, tracks, "shear_stress_time", "Deviatoric stress against time", time_axis, q);
+    add_figure(figures, tracks, "shear_strain_time", "Deviatoric strain against time", time_axis, shear);
+}
+
 }  // namespace
 
 bool is_thresholded(const Cast& cast, const FigureOptions& options) {
@@ -168,6 +340,19 @@ Cast cast_of(const std::vector<Setting>& settings, const std::optional<Setting>&
         cast.reference = Series{key_words(*reference), reference_style(), *reference,
                                 group_levels(reference->replicas, options.compare.levels), std::nullopt};
     return cast;
+}
+
+std::vector<RunFigure> programme_figures(const Cast& cast) {
+    std::vector<RunFigure> figures;
+    const auto plates = tracks_of(cast, false), cells = tracks_of(cast, true);
+    add_plates(plates, figures);
+    add_cells(cells, figures);
+    auto paths = plates;
+    if (are_distorted(cells)) paths.insert(paths.end(), cells.begin(), cells.end());
+    const auto [p, q] = stresses_of(paths);
+    add_figure(figures, paths, "stress_path", "Stress path", p, q);
+    add_times_of_cells(cells, figures);
+    return figures;
 }
 
 RunFigures run_figures(const Cast& cast, const FigureOptions& options) {

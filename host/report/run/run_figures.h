@@ -1,6 +1,6 @@
 // Values of the four figures of the paper in the units of their axes: top force, force distribution at one
-// level, Z after thresholding, scaling law. programme_figures.h has those of programmes. Pages and figures
-// for print show the same values.
+// level, Z after thresholding, scaling law; and of the figures of programmes. Pages and figures for print
+// show the same values.
 #pragma once
 #include <optional>
 #include <string>
@@ -8,7 +8,7 @@
 
 #include "metrics/compare.h"
 #include "metrics/force_distribution.h"
-#include "report/page/series_style.h"
+#include "report/page/labels.h"
 
 namespace mcdem::inline report {
 
@@ -80,13 +80,9 @@ RunFigures run_figures(const Cast& cast, const FigureOptions& options);
 /// Whether Z ignores weak forces.
 bool is_thresholded(const Cast& cast, const FigureOptions& options);
 
-/// p(f) of one series at the level nearest to the requested one.
-struct ShownDensity {
-    const Series* series;
-    const Level* level;
-    ForceDensity density;
-};
-/// In common bins, up to a force that few contacts exceed; empty without data.
-std::vector<ShownDensity> shown_densities(const Cast& cast, const FigureOptions& options);
+/// Figures of programmes that have data, scan by scan: force and displacement of a plate, stress and strain
+/// of a cell, against one another and against time. Time is shown for plates, and for cells with a hold;
+/// figures of distortion only for cells that are distorted.
+std::vector<RunFigure> programme_figures(const Cast& cast);
 
 }  // namespace mcdem::report

@@ -30,4 +30,21 @@ struct RunsOnPage {
 
 void add_runs(Page& page, const RunsOnPage& runs);
 
+// Its parts.
+
+/// "514 grains in a box, compressed by a plate, 20 cycles; 7 settings, 32 packings each."
+std::string what_was_simulated(const std::vector<Setting>& settings);
+
+/// "Force on the plate at 30.13 mm: Independent contacts 7.19 N, MC-DEM 15.98 N." For a cell its largest mean
+/// stress. Also states how many replicas stopped early.
+std::string main_result(const std::vector<Setting>& settings, const LevelOptions& options = {});
+
+/// The charts that can be drawn; `notes` lists the others with reasons.
+struct RunCharts {
+    std::vector<Chart> charts;
+    std::vector<std::string> notes;
+};
+RunCharts run_charts(const std::vector<Setting>& settings, const std::optional<Setting>& reference,
+                     const FigureOptions& options = {});
+
 }  // namespace mcdem::report
