@@ -32,7 +32,7 @@ struct Limits {
     double reduction_error = 0.1;   ///< by this much;
     double right_above = 0.97;      ///< the same if it takes away
     double certain = 0.8;           ///< at least this much; linear in between
-    double right_pair = 0.8;        ///< the same for a pair, at most
+    double right_pair = 0.9;        ///< the same for a pair, at most
     double reduction_margin = 0.1;  ///< error of the reduction by signatures, on either side of its interval
     /// Largest difference in log likelihood within the group of an effect with this gain.
     double group_margin(double gain) const { return std::max(group, group_share * gain); }
