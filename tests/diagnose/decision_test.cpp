@@ -309,9 +309,9 @@ TEST(Decision, NamesAPairIfOneEffectIsNotSufficient) {
     large.proposals[2].gain = 1000 + 1010 * limits.second_share;
     EXPECT_EQ(decide(large, limits).proposal, 2);
     large.proposals[0].gain = large.gain[1] = 1e5;
-    large.proposals[2].gain = 1e5 + 0.99 * limits.second_enough;
+    large.proposals[2].gain = 1e5 + 0.99 * limits.second_certain;
     EXPECT_EQ(decide(large, limits).proposal, 0);
-    large.proposals[2].gain = 1e5 + 1.01 * limits.second_enough;
+    large.proposals[2].gain = 1e5 + 1.01 * limits.second_certain;
     EXPECT_EQ(decide(large, limits).proposal, 2) << "whatever the first one's gain";
 }
 

@@ -20,13 +20,13 @@ struct Limits {
     double misfit = 0.001;       ///< the remainder of one effect exceeds noise if its p is smaller;
     double remainder = 0.1;      ///< largest fraction of the gap that a named effect may leave beyond noise
     double only_noise = 0.05;    ///< the remainder of one effect is only noise if its p is at least this,
-    double pair_misfit = 0.01;   ///< that of a pair, which is named only then, at least this
+    double pair_misfit = 0.02;   ///< that of a pair, which is named only then, at least this
     double group = 2.0;          ///< largest difference in log likelihood within a group,
     double group_share = 0.01;   ///< or this fraction of the leading effect's gain
     double second_gain = 8.0;    ///< gain in log likelihood required of a second effect,
     double second_share = 0.02;  ///< and this fraction of the leading effect's gain,
-    double second_enough = 100;  ///< but not more than this
-    double second_certain = 50;  ///< at this gain it counts even if one effect alone leaves only noise
+    double second_certain =
+        50;  ///< but not more than this; it then counts even if one effect leaves only noise
     double right_below =
         0.1;  ///< probability that a leading effect is right if it takes away less than `reduction`
     double reduction_error = 0.1;   ///< by this much;
@@ -38,7 +38,7 @@ struct Limits {
     double group_margin(double gain) const { return std::max(group, group_share * gain); }
     /// Gain in log likelihood required of a second effect beside one with this gain.
     double second_margin(double gain) const {
-        return std::max(second_gain, std::min(second_share * gain, second_enough));
+        return std::max(second_gain, std::min(second_share * gain, second_certain));
     }
 };
 
