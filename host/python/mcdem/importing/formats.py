@@ -164,7 +164,9 @@ def parse_mesh(table, content, problems):
             with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
                 mesh = meshio.read(file)
             fields = {name: np.asarray(values, float).reshape(len(mesh.points), -1) for name, values in mesh.point_data.items()}
-        except (Exception, SystemExit) as error:  # meshio exits if a file is invalid
+        except SystemExit:  # meshio exits if it cannot read a file
+            return problems.add(table.file, "must be a VTK file that meshio reads, got one that it cannot read")
+        except Exception as error:
             return problems.add(table.file, f"must be a VTK file that meshio reads, got: {quoted(str(error) or type(error).__name__)}")
     if not len(mesh.points):
         return problems.add(table.file, "must hold points, got none")
