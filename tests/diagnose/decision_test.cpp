@@ -217,6 +217,9 @@ TEST(Decision, ABadlyMeasuredReductionMayBeSmallerByItsNoiseIfOnlyNoiseIsLeft) {
     EXPECT_EQ(decide(f, limits).verdict, Verdict::unknown_effect);
     f.held_out_noise = 0.45;
     EXPECT_EQ(decide(f, limits).verdict, Verdict::effect);
+    f.proposals[0].reduction = 0.99 * limits.min_reduction;
+    EXPECT_EQ(decide(f, limits).verdict, Verdict::unknown_effect) << "whatever the noise";
+    f.proposals[0].reduction = 0.39;
     f.placebo = 0.3;
     EXPECT_EQ(decide(f, limits).verdict, Verdict::unknown_effect) << "the placebo does nearly as much";
     f.placebo = 0;

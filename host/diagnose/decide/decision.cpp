@@ -44,8 +44,10 @@ int gaining_pair(const Findings& findings, double single_gain, const Limits& lim
 /// noise of the reduction.
 double needed_reduction(const Proposal& proposal, const Findings& findings, const Limits& limits) {
     const bool only_noise = !proposal.is_pair() && proposal.best_misfit() >= limits.only_noise;
-    return std::max(limits.reduction - (only_noise ? findings.held_out_noise : 0),
-                    findings.placebo + limits.over_placebo);
+    const double known = only_noise
+                             ? std::max(limits.reduction - findings.held_out_noise, limits.min_reduction)
+                             : limits.reduction;
+    return std::max(known, findings.placebo + limits.over_placebo);
 }
 
 bool takes_the_gap_away(const Proposal& proposal, const Findings& findings, const Limits& limits) {

@@ -16,6 +16,7 @@ namespace mcdem::inline diagnose {
 struct Limits {
     double false_alarm = 0.01;   ///< there is a gap if p is smaller
     double reduction = 0.6;      ///< fraction of the gap that an effect must take away to be named,
+    double min_reduction = 0.3;  ///< less by its noise, but this at least, if one effect leaves only noise,
     double over_placebo = 0.1;   ///< and by how much this must exceed the placebo's
     double misfit = 0.001;       ///< the remainder of one effect exceeds noise if its p is smaller;
     double remainder = 0.1;      ///< largest fraction of the gap that a named effect may leave beyond noise
