@@ -32,6 +32,7 @@ public:
         for (std::size_t c = 0; c < names.size(); ++c) findings_.gain.push_back(uniform(-1, 60));
         findings_.placebo = uniform(0, 0.8);
         findings_.held_out = coin();
+        findings_.held_out_noise = findings_.held_out ? uniform(0, 0.5) : 0;
         for (std::size_t c = 0; c < names.size(); ++c)
             if (coin()) add_proposal({c});
         if (coin()) add_proposal({0, 1 + index(effects - 1)});
