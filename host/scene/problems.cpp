@@ -5,6 +5,9 @@
 #include "core/errors.h"
 
 namespace mcdem::inline scene {
+namespace {
+constexpr std::size_t max_in_files = 20;  // problems of other files that are listed
+}
 
 void Problems::add(const Place& place, const std::string& what) {
     found_.insert({{place.line, place.column}, place.text + ": " + what});
@@ -20,7 +23,7 @@ void Problems::report() const {
     throw InputError(lines);
 }
 
-bool FileProblems::full() const { return first_.size() >= 20; }
+bool FileProblems::full() const { return first_.size() >= max_in_files; }
 
 void FileProblems::add(const std::string& where, const std::string& what) {
     if (!full()) first_.push_back(where + ": " + what);
