@@ -15,7 +15,7 @@
 #include "ensemble/other_protocols.h"
 #include "ensemble/paper_metrics.h"
 #include "ensemble/parts/library_parts.h"
-#include "ensemble/plate_pauses.h"
+#include "ensemble/plate_motion.h"
 #include "scene/keys.h"
 #include "scene/programme_text.h"
 
@@ -36,10 +36,10 @@ constexpr int max_rounds = 3;
 /// Largest factor by which a refinement of a numerical setting is recommended.
 constexpr double max_refinement = 64;
 
-/// Largest factor by which the plate of an experiment may be slower than that of the scene if its pauses are
+/// Largest factor by which the plate of an experiment may be slower than that of the scene if its motion is
 /// to be simulated. With rate_tolerance the plate of the scene is mostly slower than its maximum, and the
 /// runs take less than this factor longer.
-constexpr double max_slowdown_with_pauses = 20;
+constexpr double max_slowdown = 20;
 
 /// The steps of one diagnosis, in order.
 class DiagnosisRunner {
@@ -61,13 +61,10 @@ public:
         if (!options_.candidates.empty())
             for (const std::string& hindered : choice_.hindered) options_.on_note("not tested: " + hindered);
         Evidence evidence = gather();
+        if (const auto motion = motion_up_to(max_slowdown);
+            motion && options_.refine > 1 && has_gap(evidence))
+            follow(evidence, *motion);
         auto builder = std::make_unique<DiagnosisBuilder>(confirmed(evidence));
-        const auto pauses = pauses_up_to(max_slowdown_with_pauses);
-        if (pauses && options_.refine > 1 && builder->decision().verdict != Verdict::no_gap) {
-            builder.reset();
-            add(evidence, *pauses);
-            builder = std::make_unique<DiagnosisBuilder>(confirmed(evidence));
-        }
         if (builder->decision().verdict == Verdict::not_converged && options_.refine > 1) {
             const Refinement refinement = refinement_of(*builder, options_.refine);
             builder.reset();
@@ -86,9 +83,9 @@ public:
         diagnosis.not_testable = choice_.hindered;
         diagnosis.refinements = refinements_;
         if (diagnosis.verdict == Verdict::group) add_other_protocols(*builder, diagnosis.next);
-        const auto left = pauses_up_to(max_refinement);
+        const auto left = motion_up_to(max_refinement);
         if (left && diagnosis.verdict != Verdict::no_gap)
-            diagnosis.next.insert(diagnosis.next.begin(), simulate_pauses(*left));
+            diagnosis.next.insert(diagnosis.next.begin(), simulate_motion(model().replica, *left));
         if (auto first = change_of_the_scene(diagnosis, model(), plan_.nuisances))
             diagnosis.next.insert(diagnosis.next.begin(), *first);
         if (diagnosis.gap_reduction && paper_metrics() && options_.confirmations > 0)
@@ -164,6 +161,10 @@ private:
         if (experiments_.size() == 1) evidence.packings.clear();
     }
 
+    bool has_gap(const Evidence& evidence) const {
+        return DiagnosisBuilder(evidence, options_.limits).decision().verdict != Verdict::no_gap;
+    }
+
     DiagnosisBuilder confirmed(const Evidence& evidence) {
         DiagnosisBuilder builder(evidence, options_.limits);
         if (options_.confirmations > 0 && builder.decision().verdict != Verdict::no_gap) confirm(builder);
@@ -202,24 +203,26 @@ private:
         note_failures(evidence);
     }
 
-    std::optional<PlatePauses> pauses_up_to(double max_slowdown) const {
-        return neglected_pauses(model().replica, experiments_.front(), max_slowdown);
+    std::optional<PlateMotion> motion_up_to(double slowdown) const {
+        return neglected_motion(model().replica, experiments_.front(), slowdown);
     }
 
-    /// Lets the plate pause as that of the experiment. Its speed is then known and no candidate.
-    void add(Evidence& evidence, const PlatePauses& pauses) {
-        const double speed = model().replica.plate.speed;
-        refinements_.push_back({"", "protocol.pause", "s", 0, pauses.time, true});
-        if (pauses.speed != speed)
-            refinements_.push_back({"", "plate.speed", "m/s", speed, pauses.speed, true});
+    /// Lets the plate move as that of the experiment. Its speed is then known and no candidate.
+    void follow(Evidence& evidence, const PlateMotion& motion) {
+        std::string settings;
+        for (const Refinement& change : changes(model().replica, motion)) {
+            refinements_.push_back(change);
+            settings += fmt::format("{}{} = {:.3g}", settings.empty() ? "" : ", ", change.key, change.to);
+        }
         options_.on_note(
-            fmt::format("the experiment's plate pauses, and friction unloads meanwhile: from here on it "
-                        "pauses for {:.3g} s in simulations, too, at a speed of {:.3g} m/s",
-                        pauses.time, pauses.speed));
-        for (Specimen& specimen : plan_.specimens) apply(specimen.model.replica, pauses);
+            "there is a gap, and the experiment states how its plate moves: from here on the plate moves so "
+            "in "
+            "simulations, too (" +
+            settings + ")");
+        for (Specimen& specimen : plan_.specimens) apply(specimen.model.replica, motion);
         if (evidence.candidates.size() > 1)
             std::erase_if(evidence.candidates, [](const auto& c) { return c.name == "plate_speed"; });
-        take_baseline(evidence, simulated_baseline("baseline with pauses"));
+        take_baseline(evidence, simulated_baseline("baseline with the experiment's plate"));
         note_failures(evidence);
     }
 

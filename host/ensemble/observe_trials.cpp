@@ -56,6 +56,7 @@ std::string observation_name(const std::string& simulation, const Question& ques
                               instrument.gauge_drift,
                               instrument.zero_drift,
                               instrument.gauge_hysteresis,
+                              instrument.force_lag,
                               instrument.force_saturation,
                               m.youngs_modulus,
                               m.poisson_ratio,

@@ -30,6 +30,7 @@ struct Experiment {
     Measurement measurement;
     std::optional<double> plate_speed = {};  ///< [m/s]; empty: slow
     double plate_pause = 0;  ///< the plate stands for this time at each scan [s]; 0: it does not stop
+    double plate_hold = 0;   ///< .. at the lowest position [s]
 };
 
 /// The scene keys that `materials` and `uncertainty` may contain.

@@ -28,8 +28,9 @@ public:
           position_noise_(seed, Stream::measured_positions),
           force_noise_(seed, Stream::measured_forces) {}
 
-    /// `path`: path length of the plate up to this scan, over that of all cycles.
-    Scan read(const Scan& truth, std::size_t frame, double path) const {
+    /// `path`: path length of the plate up to this scan, over that of all cycles. `top_force`: at the load
+    /// cell [N].
+    Scan read(const Scan& truth, std::size_t frame, double path, double top_force) const {
         Scan scan = unknown_scan();
         scan.frame = static_cast<int>(frame);
         scan.cycle = truth.cycle;
@@ -37,8 +38,8 @@ public:
         if (has_times_) scan.time = truth.time;
         scan.plate_z = truth.plate_z + instrument_.strain_offset;
         scan.wall_force[static_cast<std::size_t>(Wall::plate)].z() =
-            (1 + instrument_.gauge_drift * path) * truth.top_force() +
-            instrument_.zero_drift * path * highest_ + hysteresis(truth);
+            (1 + instrument_.gauge_drift * path) * top_force + instrument_.zero_drift * path * highest_ +
+            hysteresis(truth.phase, top_force);
         const auto shift = shifts(frame);
         scan.position.reserve(truth.position.size());
         for (std::size_t i = 0; i < truth.position.size(); ++i)
@@ -49,9 +50,8 @@ public:
     }
 
 private:
-    double hysteresis(const Scan& truth) const {
-        if (truth.phase != Phase::unload || !(highest_ > 0)) return 0;
-        const double force = truth.top_force();
+    double hysteresis(Phase phase, double force) const {
+        if (phase != Phase::unload || !(highest_ > 0)) return 0;
         return 4 * instrument_.gauge_hysteresis * force * (1 - force / highest_);
     }
 
@@ -103,20 +103,37 @@ private:
     KeyedNormal position_noise_, force_noise_;
 };
 
-/// Path length of the plate up to each scan, over that of complete cycles; 0 if the plate does not move. A
-/// recording may end before its last cycle is complete.
-std::vector<double> parts_of_path(const Recording& recording) {
+/// Path length of the plate up to each scan [m].
+std::vector<double> path_of_plate(const Recording& recording) {
     std::vector<double> path;
-    double gone = 0, before = recording.plate_start, lowest = before;
+    double gone = 0, before = recording.plate_start;
     for (const Scan& scan : recording.scans) {
         path.push_back(gone += std::abs(scan.plate_z - before));
         before = scan.plate_z;
-        lowest = std::min(lowest, scan.plate_z);
     }
-    const double stroke = recording.plate_start - lowest;
-    if (stroke > 0)
-        for (double& part : path) part /= 2 * stroke * (recording.scans.back().cycle + 1);
     return path;
+}
+
+/// Path length of complete cycles [m]; 1 if the plate does not move. A recording may end before its last
+/// cycle is complete.
+double whole_path(const Recording& recording) {
+    double lowest = recording.plate_start;
+    for (const Scan& scan : recording.scans) lowest = std::min(lowest, scan.plate_z);
+    const double stroke = recording.plate_start - lowest;
+    return stroke > 0 ? 2 * stroke * (recording.scans.back().cycle + 1) : 1;
+}
+
+/// The top force that is read at scan s [N]: as it was the way `lag` [m] of the plate before, linear between
+/// scans. It has caught up where the plate rests.
+double late_top_force(const std::vector<Scan>& scans, const std::vector<double>& path, std::size_t s,
+                      double lag) {
+    const double now = scans[s].top_force();
+    if (s == 0 || path[s] == path[s - 1]) return now;
+    std::size_t next = s;  // the scan after the point that is read
+    while (next > 1 && path[next - 1] >= path[s] - lag) --next;
+    const double step = path[next] - path[next - 1];
+    const double part = std::min(1.0, (path[next] - path[s] + lag) / step);
+    return std::lerp(scans[next].top_force(), scans[next - 1].top_force(), part);
 }
 
 /// Walls with any measured contacts: on the others, no contacts does not mean no force.
@@ -188,9 +205,11 @@ Recording measured(const Recording& truth, const Instrument& instrument, std::ui
         recording.diameter[i] += instrument.stated.diameter_error * diameter_noise(i, 0);
     const Reading reading(truth, instrument, seed);
     recording.scans.reserve(truth.scans.size());
-    const std::vector<double> path = parts_of_path(truth);
+    const std::vector<double> path = path_of_plate(truth);
+    const double whole = whole_path(truth);
     for (std::size_t s = 0; s < truth.scans.size(); ++s)
-        recording.scans.push_back(reading.read(truth.scans[s], s, path[s]));
+        recording.scans.push_back(reading.read(truth.scans[s], s, path[s] / whole,
+                                               late_top_force(truth.scans, path, s, instrument.force_lag)));
     average_contacts(recording, instrument.stated.force_threshold);
     return recording;
 }

@@ -48,6 +48,7 @@ constexpr Setting measurements[] = {
 constexpr Setting plate_start{"plate.start", 0, 100, true, "m"};
 constexpr Setting plate_speed{"plate.speed", 0, 1000, true, "m/s"};
 constexpr Setting plate_pause{"plate.pause", 0, 1e6, false, "s"};
+constexpr Setting plate_hold{"plate.hold", 0, 1e6, false, "s"};
 constexpr Setting container_radius{"container.radius", 0, 10, true, "m"};
 constexpr std::size_t longest_key = 1000;  // in --set
 constexpr double largest_box = 20;         // [m]; a larger one was given in millimetres
@@ -70,6 +71,7 @@ public:
         experiment.recording.plate_start = number(root, plate_start).value_or(std::nan(""));
         experiment.plate_speed = number(root, plate_speed);
         experiment.plate_pause = number(root, plate_pause).value_or(0);
+        experiment.plate_hold = number(root, plate_hold).value_or(0);
         for (const Setting& setting : materials)
             if (const auto value = number(root, setting))
                 experiment.materials[std::string(setting.key)] = *value;
@@ -301,6 +303,7 @@ std::string settings_text(const Experiment& experiment) {
     toml::table plate{{"start", recording.plate_start}};
     if (experiment.plate_speed) plate.insert("speed", *experiment.plate_speed);
     if (experiment.plate_pause > 0) plate.insert("pause", experiment.plate_pause);
+    if (experiment.plate_hold > 0) plate.insert("hold", experiment.plate_hold);
     toml::table root{{"name", experiment.name},
                      {"plate", plate},
                      {"grains", grains},

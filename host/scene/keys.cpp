@@ -81,6 +81,7 @@ const Key table[] = {
     {"protocol.settle_time", replica<&Replica::protocol, &Protocol::settle_time>, "s", duration, each, "maximum wait; a scan taken then is marked as unsettled"},
     {"protocol.settle_drag", replica<&Replica::protocol, &Protocol::settle_drag>, "1/s", between(0, 1e6), each, "drag on velocities and spins while the plate stands still, in addition to grains.drag; a step removes at most half of a velocity"},
     {"protocol.pause", replica<&Replica::protocol, &Protocol::pause>, "s", between(0, 1e6), each, "above 0: at each scan the plate brakes, in the last quarter of the way, and stands for this time without any settling, as in an experiment that pauses for a scan; needs stop_at_scans"},
+    {"protocol.hold", replica<&Replica::protocol, &Protocol::hold>, "s", between(0, 1e6), each, "above 0: the plate stands at plate.end for this time before it goes back, without any settling; the scan there is taken at the end"},
     {"protocol.relax_time", replica<&Replica::protocol, &Protocol::relax_time>, "s", between(0, 1e6), each, "maximum relaxation time before the first stroke, with the plate at plate.start"},
     {"protocol.scan_at_start", replica<&Replica::protocol, &Protocol::scan_at_start>, "", none, each, "record a scan (frame 0) of the relaxed packing before the first stroke; needed as the start of an experiment made from the run"},
     {"protocol.force_threshold", replica<&Replica::protocol, &Protocol::force_threshold>, "N", between(0, 1e9), each, "contacts with smaller forces are ignored in Z and in the mean force"},

@@ -73,6 +73,10 @@ const std::vector<Check> checks{
         return unless(protocol.pause == 0 || protocol.stop_at_scans,
                       "needs protocol.stop_at_scans = true, because a plate that does not stop does not pause");
     }},
+    {{"protocol.hold"}, Check::Packing::any, [](const Settings& s) {
+        return unless(s.replica.protocol.hold == 0 || s.replica.programme.empty(),
+                      "must be 0 where a [[programme]] is given: stage = \"hold\" says where it holds");
+    }},
     {{"protocol.discard", "protocol.cycles"}, Check::Packing::any, [](const Settings& s) {
         const auto& protocol = s.replica.protocol;
         return unless(protocol.discard < protocol.cycles,

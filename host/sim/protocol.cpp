@@ -95,7 +95,7 @@ double ProtocolRunner::hold_time() const {
 long ProtocolRunner::max_stage_steps() const {
     if (state_.stage == Stage::relax) return std::lround(protocol_.relax_time / time_step_);
     if (state_.stage == Stage::settle)
-        return std::lround((pauses() ? protocol_.pause : protocol_.settle_time) / time_step_);
+        return std::lround((pauses() ? standing_time() : protocol_.settle_time) / time_step_);
     if (state_.stage == Stage::hold)
         return state_.stage_step + std::lround((state_.hold_begin + hold_time() - state_.time) / time_step_);
     if (cell_) return max_steps_by_stress();
@@ -116,8 +116,7 @@ StepInterval ProtocolRunner::planned() const {
         return {static_cast<int>(std::min<double>(left, max_steps)), state_.plate_z, 0, drag()};
     }
     const double left = waypoint() - state_.plate_z, way = std::abs(left), braking = braking_way();
-    double step = time_step_ * (is_free() ? max_speed()
-                                          : quasi_static_.speed(max_speed(), rate_length(), state_.pressure));
+    double step = time_step_ * (is_free() ? max_speed() : slow_speed());
     if (way < braking) step *= std::sqrt(way / braking);
     const double most =
         is_free() && left < 0 ? std::ceil((state_.plate_z - state_.free_above) / step) : max_steps;
@@ -145,7 +144,20 @@ StepInterval ProtocolRunner::planned_by_force() const {
 }
 
 /// Whether the plate stands still as in an experiment, without any settling.
-bool ProtocolRunner::pauses() const { return state_.stage == Stage::settle && protocol_.pause > 0; }
+bool ProtocolRunner::pauses() const { return state_.stage == Stage::settle && standing_time() > 0; }
+
+/// Whether the plate is held where the current move ends.
+bool ProtocolRunner::holds() const {
+    return protocol_.hold > 0 && leg().target < state_.leg_begin && waypoint_is_end();
+}
+
+double ProtocolRunner::standing_time() const { return holds() ? protocol_.hold : protocol_.pause; }
+
+/// Speed of a plate that touches grains, or rate of a cell.
+double ProtocolRunner::slow_speed() const {
+    const double speed = quasi_static_.speed(max_speed(), rate_length(), state_.pressure);
+    return cell_ ? speed : speed * quasi_static_.slowing(state_.kinetic_energy, speed);
+}
 
 /// Zero if the plate does not brake before it stops.
 double ProtocolRunner::braking_way() const {
@@ -187,6 +199,7 @@ void ProtocolRunner::take_note(const IntervalResult& result) {
     const double pressure = cell_ ? quasi_static_.pressure(result.stress)
                                   : quasi_static_.pressure(plate, force_along_z(result, Wall::floor));
     state_.pressure += pressure_share * (pressure - state_.pressure);
+    state_.kinetic_energy = result.kinetic_energy;
     ForceControl::observe(state_.control, plate, duration);
     if (by_force()) follow_force(duration);
     if (cell_) CellControl::observe(state_.cell, result.stress, duration);
@@ -305,7 +318,8 @@ std::optional<ProtocolRunner::ScanTag> ProtocolRunner::moved_by_force() {
 }
 
 std::optional<ProtocolRunner::ScanTag> ProtocolRunner::waypoint_reached() {
-    if (!protocol_.stop_at_scans || state_.level == scans_of(stage())) return arrive(false);
+    const bool stops = protocol_.stop_at_scans || holds();
+    if (!stops || state_.level == scans_of(stage())) return arrive(false);
     begin(Stage::settle);
     return std::nullopt;
 }

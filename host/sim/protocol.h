@@ -31,6 +31,7 @@ struct ProtocolState {
     int reached_intervals = 0;  ///< consecutive ones at the prescribed force or stresses
     double plate_z = 0;         ///< [m]
     double pressure = 0;        ///< smoothed over some intervals [Pa]
+    double kinetic_energy = 0;  ///< of the grains [J]
     double rate_error = 0;      ///< estimate for the last move
     double leg_begin = 0;       ///< position [m] or force [N] from which scans of this leg are counted
     double time = 0;            ///< since the start [s]
@@ -40,7 +41,7 @@ struct ProtocolState {
     CellControl::State cell;
 };
 static_assert(std::is_trivially_copyable_v<ProtocolState> &&
-                  sizeof(ProtocolState) == 8 * (2 + 4 + 7 + 3 + 7 + 30),
+                  sizeof(ProtocolState) == 8 * (2 + 4 + 8 + 3 + 7 + 30),
               "no padding: equal states have equal bytes in checkpoints");
 
 class ProtocolRunner {
@@ -120,7 +121,10 @@ private:
     long max_stage_steps() const;
     long max_steps_by_stress() const;
     StepInterval planned() const;
+    double slow_speed() const;
     bool pauses() const;
+    bool holds() const;
+    double standing_time() const;  ///< at the current scan, without settling [s]
     double braking_way() const;
     StepInterval planned_by_force() const;
     StepInterval planned_by_stress() const;

@@ -41,6 +41,8 @@ public:
     double rate_error(double speed, double plate_z, double pressure) const;
     /// Speed of the plate: `max_speed`, or less if protocol.rate_tolerance requires it [m/s].
     double speed(double max_speed, double plate_z, double pressure) const;
+    /// Factor by which protocol.rate_tolerance slows a plate of this speed [m/s] while grains rearrange.
+    double slowing(double kinetic_energy, double speed) const;
     double min_pressure() const { return min_pressure_; }  ///< lower limit of pressure() [Pa]
     /// Root mean square of the net forces on grains over the pressure on a grain's cross-section, computed
     /// from the kinetic energy. Valid if drag [1/s] dominates: a velocity is then net force / (mass drag).

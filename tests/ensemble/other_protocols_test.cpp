@@ -124,9 +124,9 @@ Diagnosis diagnosis_with_pauses(double speed) {
     return diagnose_experiment(device, scene, {experiment}, options);
 }
 
-bool recommends_pauses(const Diagnosis& diagnosis) {
+bool recommends_motion(const Diagnosis& diagnosis) {
     return std::ranges::any_of(diagnosis.next, [](const NextStep& step) {
-        return step.what.starts_with("simulate the pauses of the experiment's plate");
+        return step.what.starts_with("simulate the motion of the experiment's plate");
     });
 }
 
@@ -144,7 +144,7 @@ TEST(OtherProtocols, GetAPowerInADiagnosis) {
                 ++powers;
             }
     EXPECT_EQ(powers, 2);
-    EXPECT_TRUE(recommends_pauses(diagnosis));
+    EXPECT_TRUE(recommends_motion(diagnosis));
     EXPECT_TRUE(diagnosis.refinements.empty());
 }
 
@@ -158,7 +158,7 @@ TEST(OtherProtocols, PausesOfThePlateAreSimulatedIfThereIsAGap) {
     EXPECT_EQ(speed.from, 0.03);
     EXPECT_EQ(speed.to, 0.06);
     EXPECT_TRUE(pause.done && speed.done);
-    EXPECT_FALSE(recommends_pauses(diagnosis));
+    EXPECT_FALSE(recommends_motion(diagnosis));
 }
 
 }  // namespace

@@ -269,6 +269,25 @@ TEST(measured, a_gauge_with_hysteresis_reads_another_force_while_unloading) {
     for (int s = 0; s < 6; ++s) EXPECT_DOUBLE_EQ(seen.scans[s].top_force(), read[s]) << s;
 }
 
+TEST(measured, a_late_top_force_is_that_of_an_earlier_plate) {
+    Recording real = truth();
+    const double height[] = {0.1, 0.09, 0.07, 0.07, 0.08, 0.1};  // the plate rests at the fourth scan
+    const double force[] = {0, 0.5, 2, 1.8, 1, 0};
+    const double late[] = {0, 0.25, 1.625, 1.8, 1.4, 0.25}, later[] = {0, 0, 0.875, 1.8, 1.625, 0.75};
+    real.plate_start = 0.1;
+    real.scans.resize(6, real.scans.back());
+    for (int s = 0; s < 6; ++s) {
+        real.scans[s].plate_z = height[s];
+        real.scans[s].wall_force[static_cast<std::size_t>(Wall::plate)].z() = force[s];
+    }
+    Instrument instrument;
+    for (const auto& [lag, read] : {std::pair{0.0, force}, {0.005, late}, {0.015, later}}) {
+        instrument.force_lag = lag;
+        const Recording seen = measured(real, instrument, 1);
+        for (int s = 0; s < 6; ++s) EXPECT_NEAR(seen.scans[s].top_force(), read[s], 1e-12) << lag << ' ' << s;
+    }
+}
+
 TEST(measured, strong_contact_forces_saturate) {
     const Recording real = truth();
     Instrument saturating;

@@ -17,6 +17,7 @@ void expect_same(const Experiment& a, const Experiment& b) {
     EXPECT_EQ(a.uncertainty, b.uncertainty);
     EXPECT_EQ(a.plate_speed, b.plate_speed);
     EXPECT_EQ(a.plate_pause, b.plate_pause);
+    EXPECT_EQ(a.plate_hold, b.plate_hold);
     EXPECT_EQ(a.measurement.position_error, b.measurement.position_error);
     EXPECT_EQ(a.measurement.diameter_error, b.measurement.diameter_error);
     EXPECT_EQ(a.measurement.force_error, b.measurement.force_error);
@@ -52,6 +53,7 @@ Experiment awkward() {
     experiment.uncertainty = {{"grains.friction", 0.01}, {"walls.youngs_modulus", 1e6}};
     experiment.plate_speed = 1e-4 / 7;
     experiment.plate_pause = 100.0 / 3;
+    experiment.plate_hold = 200.0 / 3;
     experiment.measurement = {1e-4 / 3, 5e-5, 0.05, 1e-3};
     Recording& recording = experiment.recording;
     recording.box = {0.1 / 3, 0.2 / 3};

@@ -60,7 +60,8 @@ def test_readings():
     assert read("vertical_stretch", 0.1)[0]["grains"][0][1:] == (0.03, 0.0625, 0.01 * 1.1)
     edge = 0.0625 - (1 + 0.1 * (0.0325 / 0.0625)**2) * 0.0325
     assert math.isclose(read("barrel", 0.1)[0]["grains"][0][1], edge)
-    assert all(map(math.isclose, tops(read("late_force", 0.5)), [0, 1, 4, 3.5]))
+    assert all(map(math.isclose, tops(read("force_lag", 0.005)), [0, 1, 4, 3.5]))
+    assert all(map(math.isclose, tops(read("guide_friction", 0.1)), [0, 2.6, 6.6, 0.4]))
     assert all(map(math.isclose, tops(read("gauge_drift", 0.3)), [0, 2.2, 7.2, 1.3]))
     assert all(map(math.isclose, tops(read("gauge_hysteresis", 0.15)), [0, 2, 6, 1.5]))
     assert all(map(math.isclose, tops(read("zero_drift", 0.1)), [0, 2.2, 6.4, 1.6]))

@@ -158,11 +158,20 @@ def gauge_drift(scans, amplitude, chance):
         scan["top"] *= 1 + amplitude * share
 
 
-def late_force(scans, amplitude, chance):
-    """The gauge's clock is late by this fraction of the time between scans."""
-    tops = [scan["top"] for scan in scans]
-    for scan, before, now in zip(scans[1:], tops, tops[1:]):
-        scan["top"] = now + amplitude * (before - now)
+def force_lag(scans, amplitude, chance):
+    """The top force is read as it was this way of the plate before, at most the way between two scans."""
+    before = scans[0]["height"], scans[0]["top"]
+    for scan in scans[1:]:
+        now = scan["height"], scan["top"]
+        scan["top"] += amplitude / abs(now[0] - before[0]) * (before[1] - now[1])
+        before = now
+
+
+def guide_friction(scans, amplitude, chance):
+    """The plate's guide rubs: the gauge also reads this fraction of the largest force, against the motion."""
+    highest = max(scan["top"] for scan in scans)
+    for scan in scans[1:]:
+        scan["top"] += amplitude * highest * (1 if scan["phase"] == "load" else -1)
 
 
 def gauge_hysteresis(scans, amplitude, chance):
@@ -213,6 +222,7 @@ LIBRARY = {
     "force_saturation": Hidden(0.3, 2, "1/f0 of f/(1 + f/f0) [1/N]", reading=force_saturation),
     "zero_drift": Hidden(0.01, 0.05, "of the gauge, over the highest force", signed=True, reading=zero_drift),
     "gauge_hysteresis": Hidden(0.025, 0.1, "of the gauge, over the highest force", reading=gauge_hysteresis),
+    "force_lag": Hidden(3e-4, 1.2e-3, "way of the plate by which the gauge is late [m]", reading=force_lag),
     "position_bias": Hidden(0.0015, 0.0045, "lengths read too large", signed=True, reading=position_bias),
 }
 
@@ -226,7 +236,7 @@ OUTSIDE = {
     "missing_grains": Hidden(0.03, 0.1, "part of the grains not found", reading=missing_grains),
     "missing_contacts": Hidden(0.08, 0.25, "part of the contacts overlooked", reading=missing_contacts),
     "dim_walls": Hidden(0.08, 0.3, "part of the forces at walls that is not seen", reading=dim_walls),
-    "late_force": Hidden(0.2, 0.6, "lateness of the gauge over the time between scans", reading=late_force),
+    "guide_friction": Hidden(0.01, 0.04, "friction of the plate's guide, over the highest force", reading=guide_friction),
     "backlash": Hidden(4e-4, 1.5e-3, "plate read too high on the way up [m]", signed=True, reading=backlash),
 }
 

@@ -242,11 +242,12 @@ def schedule(reality):
 
 
 def plate_motion(reality):
-    """What the experimenter knows of the plate's motion, for experiment.toml: its mean speed, and how long it pauses at each scan."""
+    """What the experimenter knows of the plate's motion, for experiment.toml: its mean speed, how long it pauses at each scan, and
+    how long it is held at the lowest one."""
     steps, _, _ = schedule(reality)
     interval = steps * TIME_STEP / reality["finer"]
-    pause = f"pause = {interval:.3g}\n" if reality["protocol"] == "paused" else ""
-    return f"speed = {STROKE / SCANS / interval:.3g}\n{pause}"
+    stands = {"paused": f"pause = {interval:.3g}\n", "held": f"hold = {2 * interval:.3g}\n"}.get(reality["protocol"], "")
+    return f"speed = {STROKE / SCANS / interval:.3g}\n{stands}"
 
 
 def stroke_variables(reality):

@@ -117,7 +117,7 @@ TEST(Keys, CoverEveryMember) {
     [[maybe_unused]] const auto [c1, c2, c3, c4] = ContactLaw{};
     [[maybe_unused]] const auto [d1, d2, d3, d4, d5, d6] = GeneratedPacking{};
     [[maybe_unused]] const auto [p1, p2, p3] = Plate{};
-    [[maybe_unused]] const auto [r1, r2, r3, r4, r5, r6, r7, r8, r9, r10, r11, r12] = Protocol{};
+    [[maybe_unused]] const auto [r1, r2, r3, r4, r5, r6, r7, r8, r9, r10, r11, r12, r13] = Protocol{};
     [[maybe_unused]] const auto [n1, n2, n3, n4, n5] = Numerics{};
     [[maybe_unused]] const auto [o1, o2, o3] = Output{};
     EXPECT_EQ(count_keys("container."), 4u + 1) << "the radius of a cylinder too";
@@ -132,7 +132,7 @@ TEST(Keys, CoverEveryMember) {
     EXPECT_EQ(count_keys("contact."), 4u);
     EXPECT_EQ(count_keys("packing."), 6u + 5) << "file, frame, jitter, seed and what fractions are of too";
     EXPECT_EQ(count_keys("plate."), 3u);
-    EXPECT_EQ(count_keys("protocol."), 12u);
+    EXPECT_EQ(count_keys("protocol."), 13u);
     EXPECT_EQ(count_keys("numerics."), 5u + 2) << "precision and slots too";
     EXPECT_EQ(count_keys("output."), 3u);
 }

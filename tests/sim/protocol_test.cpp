@@ -152,6 +152,32 @@ TEST(Protocol, BrakesBeforeAPauseAndLeavesThePackingAlone) {
         EXPECT_NEAR(course.scans[k].plate_z, k < 4 ? 0.175 - 0.025 * k : 0.125 + 0.025 * (k - 4), 1e-12);
 }
 
+TEST(Protocol, HoldsThePlateAfterEachStrokeDown) {
+    for (const bool stops : {false, true}) {
+        Replica replica = replica_of(2, 4, stops);
+        const Course without(replica, 0);
+        replica.protocol.hold = 0.3;
+        const Course with(replica, 0);
+        ASSERT_EQ(with.scans.size(), 16u);
+        int undamped = 0;
+        for (const StepInterval& interval : with.intervals)
+            if (interval.plate_velocity == 0 && interval.settle_drag == 0) {
+                EXPECT_NEAR(interval.plate_z, 0.1, 1e-12);
+                undamped += interval.steps;
+            }
+        EXPECT_EQ(undamped, 2 * 300);
+        // Settled scans take two intervals of 60 steps, which the hold replaces.
+        const double longer = stops ? 0.3 - 0.05 : 0.3;
+        for (int k = 0; k < 16; ++k) {
+            const int holds = k < 3    ? 0
+                              : k < 11 ? 1
+                                       : 2;  // the scan at the lowest position is taken after the hold
+            EXPECT_NEAR(with.scans[k].time, without.scans[k].time + holds * longer, 1e-9) << k;
+            EXPECT_NEAR(with.scans[k].plate_z, without.scans[k].plate_z, 1e-12) << k;
+        }
+    }
+}
+
 /// A plate whose force increases as it moves down.
 struct Pressed {
     explicit Pressed(double tolerance) {
@@ -195,6 +221,29 @@ TEST(Protocol, KeepsTheInertialNumberWithinTheTolerance) {
     EXPECT_GT(fastest, 3 * slowest) << "slow where the load is small";
     ASSERT_EQ(pressed.scans.size(), 4u);
     for (const auto& scan : pressed.scans) EXPECT_LE(scan.rate_error, 0.02 * (1 + 1e-9));
+}
+
+// Kinetic energy of m v^2/6 is that of a homogeneous deformation; above four times as much the plate slows
+// down.
+TEST(Protocol, ThePlateWaitsWhileGrainsRearrange) {
+    Replica replica = replica_of(1, 4, false);
+    replica.plate.speed = 1e-3;  // lower than the tolerance allows
+    PackingScale grains = scale;
+    grains.mass = 0.5;
+    const double driven = grains.mass * 1e-6 / 6;
+    const auto speed_after = [&](double energy) {
+        ProtocolRunner runner(replica, time_step, grains);
+        const auto five_steps = [](const StepInterval&) { return 5; };
+        while (runner.state().stage == ProtocolState::Stage::relax) runner.made(answer(10, 0));
+        runner.made(answer(runner.next(five_steps).steps, energy));
+        return std::abs(runner.next(five_steps).plate_velocity);
+    };
+    replica.protocol.rate_tolerance = 0.02;
+    for (const auto& [energy, speed] :
+         {std::pair{0.0, 1e-3}, {4 * driven, 1e-3}, {8 * driven, 5e-4}, {16 * driven, 2.5e-4}, {1.0, 1e-4}})
+        EXPECT_NEAR(speed_after(energy), speed, 1e-6) << energy / driven;
+    replica.protocol.rate_tolerance = 0;
+    EXPECT_NEAR(speed_after(1), 1e-3, 1e-9) << "a constant speed";
 }
 
 /// Plate positions and speeds of a stroke down and up, above grains that reach up to 0.15 m and yield to the

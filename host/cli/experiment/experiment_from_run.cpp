@@ -232,6 +232,9 @@ void add_instrument_options(CLI::App& sub, Instrument& instrument) {
         "Unstated error: excess of the top force during unloading, at half the maximum force, over the "
         "maximum force",
         bias);
+    add("--force-lag", instrument.force_lag, "M",
+        "Unstated error: the top force is read as it was this way of the plate before [m]",
+        CLI::NonNegativeNumber);
     add("--force-saturation", instrument.force_saturation, "PER_N",
         "Unstated error: a contact force f is read as f/(1 + a f), with this a [1/N]",
         CLI::NonNegativeNumber);

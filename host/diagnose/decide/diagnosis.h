@@ -89,7 +89,7 @@ struct Explanation {
 
 /// A numerical setting of the simulation that is consistent with the gap.
 struct Refinement {
-    std::string effect;  ///< empty: the plate pauses as that of the experiment
+    std::string effect;  ///< empty: the plate moves as that of the experiment
     std::string key, unit;
     double from = 0, to = 0;
     bool done = false;  ///< the diagnosis refined the scene and continued; otherwise the user must set it
