@@ -7,6 +7,13 @@
 
 namespace mcdem::inline ensemble {
 
+namespace {
+
+/// A plate that pauses starts smoothly; at constant speed it would start abruptly and shake the grains.
+bool is_constant(const PlateMotion& motion) { return motion.pause == 0; }
+
+}  // namespace
+
 std::optional<PlateMotion> neglected_motion(const Replica& replica, const Experiment& experiment,
                                             double max_slowdown) {
     const Protocol& protocol = replica.protocol;
@@ -30,7 +37,7 @@ std::vector<Refinement> changes(const Replica& replica, const PlateMotion& motio
     add("protocol.pause", "s", protocol.pause, motion.pause);
     add("protocol.hold", "s", protocol.hold, motion.hold);
     add("plate.speed", "m/s", replica.plate.speed, motion.speed);
-    add("protocol.rate_tolerance", "", protocol.rate_tolerance, 0);
+    if (is_constant(motion)) add("protocol.rate_tolerance", "", protocol.rate_tolerance, 0);
     return list;
 }
 
@@ -39,7 +46,7 @@ void apply(Replica& replica, const PlateMotion& motion) {
     replica.protocol.pause = motion.pause;
     replica.protocol.hold = motion.hold;
     replica.plate.speed = motion.speed;
-    replica.protocol.rate_tolerance = 0;
+    if (is_constant(motion)) replica.protocol.rate_tolerance = 0;
 }
 
 NextStep simulate_motion(const Replica& replica, const PlateMotion& motion) {

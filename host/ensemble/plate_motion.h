@@ -12,7 +12,7 @@
 namespace mcdem::inline ensemble {
 
 struct PlateMotion {
-    double speed;      ///< constant, between pauses [m/s]
+    double speed;      ///< [m/s]; constant if the plate does not pause
     double pause = 0;  ///< at each scan [s]
     double hold = 0;   ///< at the lowest position [s]
 };

@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include "diagnose/observe/scan_observables.h"
 #include "diagnose/synthetic_evidence.h"
 
 namespace mcdem {
@@ -36,6 +37,44 @@ TEST(DiagnosisBuilder, FindsAndMeasuresAPlantedEffect) {
     ASSERT_TRUE(d.gap_reduction);
     EXPECT_GT(d.gap_reduction->fraction, 0.9);
     EXPECT_THAT(d.not_measured, ElementsAre(HasSubstr("grains.csv")));
+}
+
+/// A world with `observables_known` observables at four displacements, loading and unloading, in which the
+/// experiment differs by `size` wherever `differs`.
+template <class Differs>
+Diagnosis diagnosis_where(Differs differs, double size, int observables_known = 10) {
+    SyntheticWorld world(observables_known, 3);
+    Evidence evidence = world.evidence(1, 32);
+    world.add_effect(evidence, "adhesion", world.pattern(1));
+    for (Eigen::Index cell = 0; cell < world.known(); ++cell)
+        if (differs(cell / 8, cell % 8)) evidence.observed[cell] += size;
+    return DiagnosisBuilder(evidence, {}).diagnosis();
+}
+
+TEST(DiagnosisBuilder, ADifferenceAtOneDisplacementIsARearrangement) {
+    const auto smaller_p = [](const Diagnosis& d) { return 2 * std::min(d.p_omnibus, d.p_directed); };
+    const Diagnosis one = diagnosis_where([](auto, auto place) { return place == 2; }, 5);
+    EXPECT_LT(smaller_p(one), 1e-3) << "all cells together";
+    EXPECT_GT(one.p_value, 0.01);
+    EXPECT_EQ(one.verdict, Verdict::no_gap);
+    const Diagnosis two = diagnosis_where([](auto, auto place) { return place == 2 || place == 5; }, 5);
+    EXPECT_LT(two.p_value, 0.01);
+    EXPECT_GT(two.p_value, smaller_p(two));
+    const Diagnosis everywhere = diagnosis_where([](auto, auto) { return true; }, 2);
+    EXPECT_LT(everywhere.p_value, 0.01);
+}
+
+// The force relaxes in a hold only, and a hold belongs to one displacement.
+TEST(DiagnosisBuilder, ADifferenceInAHoldIsNoRearrangement) {
+    const int all = static_cast<int>(observables().size());
+    for (const OfProgramme kind : {OfProgramme::relaxation, OfProgramme::creep}) {
+        const auto in_hold = [&](auto observable, auto place) {
+            return observable == index_of(kind) && place == 3;
+        };
+        EXPECT_LT(diagnosis_where(in_hold, 60, all).p_value, 0.01);
+    }
+    const auto elsewhere = [&](auto observable, auto place) { return observable == 0 && place == 3; };
+    EXPECT_GT(diagnosis_where(elsewhere, 60, all).p_value, 0.01);
 }
 
 // The hidden amplitude is 4, larger than the range tried.

@@ -75,21 +75,23 @@ std::vector<std::string> advised(const Replica& replica, const PlateMotion& moti
 }
 
 TEST(PlateMotion, TheAdviceMakesTheSameScene) {
-    const PlateMotion motion{0.02, 0.01, 0.03};
     const std::vector<std::string> given{"protocol.stop_at_scans=false", "protocol.rate_tolerance=0.01"};
-    Replica replica = small_scene(given).replicas.front();
-    std::vector<std::string> settings = advised(replica, motion);
-    settings.insert(settings.begin(), given.begin(), given.end());
-    apply(replica, motion);
-    const Replica advice = small_scene(settings).replicas.front();
-    for (const Replica* one : std::initializer_list<const Replica*>{&replica, &advice}) {
-        EXPECT_TRUE(one->protocol.stop_at_scans);
-        EXPECT_EQ(one->protocol.pause, 0.01);
-        EXPECT_EQ(one->protocol.hold, 0.03);
-        EXPECT_EQ(one->protocol.rate_tolerance, 0);
-        EXPECT_EQ(one->plate.speed, 0.02);
+    for (const PlateMotion& motion : {PlateMotion{0.02, 0.01, 0.03}, PlateMotion{0.02, 0, 0.03}}) {
+        Replica replica = small_scene(given).replicas.front();
+        std::vector<std::string> settings = advised(replica, motion);
+        settings.insert(settings.begin(), given.begin(), given.end());
+        apply(replica, motion);
+        const Replica advice = small_scene(settings).replicas.front();
+        for (const Replica* one : std::initializer_list<const Replica*>{&replica, &advice}) {
+            EXPECT_EQ(one->protocol.stop_at_scans, motion.pause > 0);
+            EXPECT_EQ(one->protocol.pause, motion.pause);
+            EXPECT_EQ(one->protocol.hold, 0.03);
+            EXPECT_EQ(one->protocol.rate_tolerance, motion.pause > 0 ? 0.01 : 0)
+                << "starts smoothly after a pause";
+            EXPECT_EQ(one->plate.speed, 0.02);
+        }
+        EXPECT_THAT(changes(replica, motion), testing::IsEmpty());
     }
-    EXPECT_THAT(changes(replica, motion), testing::IsEmpty());
 }
 
 }  // namespace

@@ -19,10 +19,6 @@ namespace {
 constexpr double worth_another_run =
     0.01;  ///< another run is worthwhile if the p of the remainder is smaller
 
-/// A gap with a smaller p is not tested further; rearrangements in simulated experiments without an effect
-/// had p of 0.00002 and more.
-constexpr double beyond_rearrangements = 1e-9;
-
 /// Bonferroni correction for two tests.
 double p_of_both(const NullDistribution& null, const GapStatistics& statistics) {
     return std::min(1.0, 2 * std::min(null.p_value(&GapStatistics::omnibus, statistics.omnibus),
@@ -180,7 +176,7 @@ DiagnosisBuilder::DiagnosisBuilder(const Evidence& evidence, const Limits& limit
       statistics_(gap_statistics(space_, data_, data_.gap)),
       split_(split_cells(data_.cells, evidence.library.grid)) {
     findings_.p_value = p_of_both(null_, statistics_);
-    if (findings_.p_value < limits_.false_alarm && findings_.p_value > beyond_rearrangements)
+    if (findings_.p_value < limits_.false_alarm)
         findings_.p_value = std::max(findings_.p_value, p_without_one_place(data_, mean_of_, evidence_));
     findings_.effects = data_.effects;
     for (std::size_t c = 0; c < data_.candidates.size(); ++c) {

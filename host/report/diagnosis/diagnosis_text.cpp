@@ -98,20 +98,14 @@ std::string packings_words(const Diagnosis& diagnosis) {
                            : "of which " + listed(differing) + " differs from the others by more than noise");
 }
 
-/// Why differences do not count as a gap.
-std::string no_gap_words(const Diagnosis& diagnosis) {
-    const bool at_one_place = diagnosis.p_value > 2 * std::min(diagnosis.p_omnibus, diagnosis.p_directed);
-    return at_one_place
-               ? "the two differ at one displacement, as where grains rearrange, and noise alone gives "
-                 "differences like the others"
-               : "noise alone gives differences like these";
-}
-
 std::string gap_line(const Diagnosis& diagnosis) {
     const auto packings = packings_words(diagnosis);
+    const bool at_one_place = diagnosis.p_value > 2 * std::min(diagnosis.p_omnibus, diagnosis.p_directed);
     if (!diagnosis.detected)
         return fmt::format("none that these data show{}: {} ({}){}.", refined(diagnosis),
-                           no_gap_words(diagnosis), p_words(diagnosis.p_value), packings);
+                           at_one_place ? "they differ at one displacement only, as where grains rearrange"
+                                        : "noise alone gives differences like these",
+                           p_words(diagnosis.p_value), packings);
     return fmt::format(
         "yes: simulation and experiment differ by more than noise and calibration account for{} ({}){}.",
         refined(diagnosis), p_words(diagnosis.p_value), packings);
