@@ -5,7 +5,6 @@
 #include "diagnose/decide/decision.h"
 #include "diagnose/decide/next_steps.h"
 #include "diagnose/infer/gap_reduction.h"
-#include "diagnose/infer/rearrangements.h"
 
 namespace mcdem::inline diagnose {
 
@@ -71,7 +70,6 @@ private:
     int mean_of_;  ///< number of replicates in the baseline's mean
     GapSpace space_;
     NullDistribution null_;
-    std::vector<PlaceLeftOut> places_;  ///< if there is a gap
     GapStatistics statistics_;
     Findings findings_;
     Decision decision_;

@@ -144,7 +144,6 @@ std::vector<Proposal> propose(const GapSpace& space, const GapData& data, const 
 }
 
 std::optional<Eigen::VectorXd> confirm(Proposal& proposal, const GapData& data, const NullDistribution& null,
-                                       const std::vector<PlaceLeftOut>& places,
                                        const Eigen::VectorXd& observed, const Eigen::VectorXd& nuisances,
                                        const Eigen::MatrixXd& all_runs) {
     constexpr double still_free = 0.25;  // fraction of an amplitude
@@ -157,15 +156,11 @@ std::optional<Eigen::VectorXd> confirm(Proposal& proposal, const GapData& data, 
                         2 * proposal.errors[k] + still_free * std::abs(proposal.amplitudes[k])});
     const int mean_of = static_cast<int>(runs.rows());
     const GapSpace plain(data.noise, mean_of, data.cells, data.free);
-    const Eigen::VectorXd scatter = effect_scatter(data, proposal) / data.packings;
-    const GapSpace space(data.noise, mean_of, data.cells, free, scatter);
+    const GapSpace space(data.noise, mean_of, data.cells, free,
+                         effect_scatter(data, proposal) / data.packings);
     proposal.confirmed_gain =
         space.log_likelihood(left) - prior_cost(nuisances, data.free) - plain.log_likelihood(data.gap);
-    double misfit_p = null.misfit_p(space, left);
-    for (const PlaceLeftOut& place : places)
-        misfit_p = std::max(
-            misfit_p, place.null.misfit_p(GapSpace(data.noise, mean_of, place.cells, free, scatter), left));
-    proposal.confirmed_misfit_p = misfit_p;
+    proposal.confirmed_misfit_p = null.misfit_p(space, left);
     return space.fit_nuisances(left);
 }
 
