@@ -153,10 +153,12 @@ bool ProtocolRunner::holds() const {
 
 double ProtocolRunner::standing_time() const { return holds() ? protocol_.hold : protocol_.pause; }
 
-/// Speed of a plate that touches grains, or rate of a cell.
+/// Speed of a plate that touches grains, or rate of a cell. A plate that pauses moves as that of an
+/// experiment, which does not wait.
 double ProtocolRunner::slow_speed() const {
     const double speed = quasi_static_.speed(max_speed(), rate_length(), state_.pressure);
-    return cell_ ? speed : speed * quasi_static_.slowing(state_.kinetic_energy, speed);
+    const bool waits = !cell_ && protocol_.pause == 0;
+    return waits ? speed * quasi_static_.slowing(state_.kinetic_energy, speed) : speed;
 }
 
 /// Zero if the plate does not brake before it stops.

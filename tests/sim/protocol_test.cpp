@@ -244,6 +244,10 @@ TEST(Protocol, ThePlateWaitsWhileGrainsRearrange) {
         EXPECT_NEAR(speed_after(energy), speed, 1e-6) << energy / driven;
     replica.protocol.rate_tolerance = 0;
     EXPECT_NEAR(speed_after(1), 1e-3, 1e-9) << "a constant speed";
+    replica.protocol.rate_tolerance = 0.02;
+    replica.protocol.stop_at_scans = true;
+    replica.protocol.pause = 0.1;
+    EXPECT_NEAR(speed_after(1), 1e-3, 1e-6) << "as the plate of an experiment";
 }
 
 /// Plate positions and speeds of a stroke down and up, above grains that reach up to 0.15 m and yield to the
