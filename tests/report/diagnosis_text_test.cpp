@@ -59,6 +59,16 @@ TEST(DiagnosisText, no_gap_lists_the_detection_limits) {
                                          HasSubstr("never show rolling resistance and bias of positions")));
 }
 
+TEST(DiagnosisText, a_difference_at_one_displacement_is_said_to_be_one) {
+    auto d = samples::diagnosis(Verdict::no_gap);
+    d.p_omnibus = 1e-4;
+    d.p_directed = 0.2;
+    d.p_value = 0.3;
+    EXPECT_THAT(line(d, "Gap"), HasSubstr("they differ at one displacement only, as where grains rearrange"));
+    d.p_value = 2e-4;
+    EXPECT_THAT(line(d, "Gap"), HasSubstr("noise alone gives differences like these"));
+}
+
 TEST(DiagnosisText, no_gap_starts_with_the_limits_of_the_best_candidates) {
     auto d = samples::diagnosis(Verdict::no_gap);
     std::ranges::reverse(d.ranking);
