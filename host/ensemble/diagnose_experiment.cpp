@@ -61,15 +61,20 @@ public:
         if (!options_.candidates.empty())
             for (const std::string& hindered : choice_.hindered) options_.on_note("not tested: " + hindered);
         Evidence evidence = gather();
-        if (const auto motion = motion_up_to(max_slowdown);
-            motion && options_.refine > 1 && has_gap(evidence))
+        auto builder = std::make_unique<DiagnosisBuilder>(evidence, options_.limits);
+        const auto motion = motion_up_to(max_slowdown);
+        if (motion && options_.refine > 1 && has_gap(*builder)) {
+            builder.reset();
             follow(evidence, *motion);
-        auto builder = std::make_unique<DiagnosisBuilder>(confirmed(evidence));
+            builder = std::make_unique<DiagnosisBuilder>(evidence, options_.limits);
+        }
+        confirm(*builder);
         if (builder->decision().verdict == Verdict::not_converged && options_.refine > 1) {
             const Refinement refinement = refinement_of(*builder, options_.refine);
             builder.reset();
             refine(evidence, refinement);
-            builder = std::make_unique<DiagnosisBuilder>(confirmed(evidence));
+            builder = std::make_unique<DiagnosisBuilder>(evidence, options_.limits);
+            confirm(*builder);
         }
         if (builder->decision().verdict == Verdict::not_converged)
             refinements_.push_back(refinement_of(*builder, max_refinement));
@@ -161,14 +166,8 @@ private:
         if (experiments_.size() == 1) evidence.packings.clear();
     }
 
-    bool has_gap(const Evidence& evidence) const {
-        return DiagnosisBuilder(evidence, options_.limits).decision().verdict != Verdict::no_gap;
-    }
-
-    DiagnosisBuilder confirmed(const Evidence& evidence) {
-        DiagnosisBuilder builder(evidence, options_.limits);
-        if (options_.confirmations > 0 && builder.decision().verdict != Verdict::no_gap) confirm(builder);
-        return builder;
+    static bool has_gap(const DiagnosisBuilder& builder) {
+        return builder.decision().verdict != Verdict::no_gap;
     }
 
     Refinement refinement_of(const DiagnosisBuilder& builder, double most) {
@@ -215,10 +214,9 @@ private:
             settings += fmt::format("{}{} = {:.3g}", settings.empty() ? "" : ", ", change.key, change.to);
         }
         options_.on_note(
-            "there is a gap, and the experiment states how its plate moves: from here on the plate moves so "
-            "in "
-            "simulations, too (" +
-            settings + ")");
+            fmt::format("there is a gap, and the experiment states how its plate moves: from here "
+                        "on the plate moves so in simulations, too ({})",
+                        settings));
         for (Specimen& specimen : plan_.specimens) apply(specimen.model.replica, motion);
         if (evidence.candidates.size() > 1)
             std::erase_if(evidence.candidates, [](const auto& c) { return c.name == "plate_speed"; });
@@ -233,9 +231,10 @@ private:
         }
     }
 
-    /// Real runs of every proposal, repeated with corrections; then of the chosen one with the parameters
-    /// fitted to the first part of the data.
+    /// If there is a gap: real runs of every proposal, repeated with corrections; then of the chosen one with
+    /// the parameters fitted to the first part of the data.
     void confirm(DiagnosisBuilder& builder) {
+        if (options_.confirmations == 0 || !has_gap(builder)) return;
         std::vector<std::size_t> tried(builder.findings().proposals.size());
         std::iota(tried.begin(), tried.end(), std::size_t{0});
         for (int round = 0; round < max_rounds && !tried.empty(); ++round) {

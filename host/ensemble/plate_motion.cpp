@@ -6,7 +6,6 @@
 #include <cmath>
 
 namespace mcdem::inline ensemble {
-
 namespace {
 
 /// A plate that pauses starts smoothly; at constant speed it would start abruptly and shake the grains.

@@ -166,12 +166,9 @@ TEST(Protocol, HoldsThePlateAfterEachStrokeDown) {
                 undamped += interval.steps;
             }
         EXPECT_EQ(undamped, 2 * 300);
-        // Settled scans take two intervals of 60 steps, which the hold replaces.
-        const double longer = stops ? 0.3 - 0.05 : 0.3;
+        const double longer = stops ? 0.3 - 0.05 : 0.3;  // the hold replaces the settling
         for (int k = 0; k < 16; ++k) {
-            const int holds = k < 3    ? 0
-                              : k < 11 ? 1
-                                       : 2;  // the scan at the lowest position is taken after the hold
+            const int holds = (k + 5) / 8;  // the scans at the lowest position, 3 and 11, are taken after it
             EXPECT_NEAR(with.scans[k].time, without.scans[k].time + holds * longer, 1e-9) << k;
             EXPECT_NEAR(with.scans[k].plate_z, without.scans[k].plate_z, 1e-12) << k;
         }

@@ -40,7 +40,7 @@ CellChoice without_place(const CellChoice& cells, Eigen::Index k, Eigen::Index p
 /// The largest p of the gap if one displacement and phase is left out. A rearrangement that occurs in no
 /// replicate changes all observables there, and few elsewhere; an effect changes them in the whole stroke.
 double p_without_one_place(const GapData& data, int mean_of, const Evidence& evidence) {
-    const Eigen::Index places = data.gap.size() / static_cast<Eigen::Index>(observables().size());
+    const Eigen::Index places = cells_each(data.gap.size());
     GapData rest = data;
     double largest = 0;
     for (Eigen::Index k = 0; k < places; ++k) {

@@ -39,11 +39,11 @@ std::vector<Eigen::Index> usable_cells(const Eigen::MatrixXd& baseline,
 
 // The cells of one observable are contiguous (cells_of).
 Eigen::ArrayXd resolutions(const CellChoice& cells, Eigen::Index all) {
-    const Eigen::Index cells_each = all / static_cast<Eigen::Index>(observables().size());
+    const Eigen::Index each = cells_each(all);
     Eigen::ArrayXd list(static_cast<Eigen::Index>(cells.size()));
     for (std::size_t k = 0; k < cells.size(); ++k)
         list[static_cast<Eigen::Index>(k)] =
-            observables()[static_cast<std::size_t>(cells[k] / cells_each)].resolution;
+            observables()[static_cast<std::size_t>(cells[k] / each)].resolution;
     return list;
 }
 
@@ -60,16 +60,16 @@ namespace {
 Eigen::ArrayXd moderated(const Eigen::ArrayXd& variance, const CellChoice& cells,
                          const Eigen::MatrixXd& noise) {
     constexpr double replicates_more = 8;
-    const Eigen::Index cells_each = noise.cols() / static_cast<Eigen::Index>(observables().size());
+    const Eigen::Index each = cells_each(noise.cols());
     const double n = static_cast<double>(noise.rows());
     std::map<Eigen::Index, std::pair<double, int>> sum;
     for (std::size_t k = 0; k < cells.size(); ++k) {
-        sum[cells[k] / cells_each].first += variance[static_cast<Eigen::Index>(k)];
-        ++sum[cells[k] / cells_each].second;
+        sum[cells[k] / each].first += variance[static_cast<Eigen::Index>(k)];
+        ++sum[cells[k] / each].second;
     }
     Eigen::ArrayXd result(variance.size());
     for (std::size_t k = 0; k < cells.size(); ++k) {
-        const auto& [total, count] = sum[cells[k] / cells_each];
+        const auto& [total, count] = sum[cells[k] / each];
         const auto i = static_cast<Eigen::Index>(k);
         result[i] = (n * variance[i] + replicates_more * total / count) / (n + replicates_more);
     }

@@ -132,7 +132,7 @@ double passage(Eigen::Index place, Eigen::Index places) {
 std::vector<Eigen::VectorXd> observable_patterns(const GapSpace& space, Eigen::Index all) {
     constexpr std::size_t fewest = 3;
     const CellChoice& cells = space.cells();
-    const Eigen::Index each = all / static_cast<Eigen::Index>(observables().size());
+    const Eigen::Index each = cells_each(all);
     std::vector<Eigen::VectorXd> patterns;
     for (std::size_t first = 0, end = 0; first < cells.size(); first = end) {
         while (end < cells.size() && cells[end] / each == cells[first] / each) ++end;
