@@ -57,6 +57,7 @@ std::string observation_name(const std::string& simulation, const Question& ques
                               instrument.zero_drift,
                               instrument.gauge_hysteresis,
                               instrument.force_lag,
+                              instrument.guide_friction,
                               instrument.force_saturation,
                               m.youngs_modulus,
                               m.poisson_ratio,

@@ -6,13 +6,6 @@
 #include <cmath>
 
 namespace mcdem::inline ensemble {
-namespace {
-
-/// A plate that pauses starts smoothly; at constant speed it would start abruptly and shake the grains.
-bool is_constant(const PlateMotion& motion) { return motion.pause == 0; }
-
-}  // namespace
-
 std::optional<PlateMotion> neglected_motion(const Replica& replica, const Experiment& experiment,
                                             double max_slowdown) {
     const Protocol& protocol = replica.protocol;
@@ -36,7 +29,7 @@ std::vector<Refinement> changes(const Replica& replica, const PlateMotion& motio
     add("protocol.pause", "s", protocol.pause, motion.pause);
     add("protocol.hold", "s", protocol.hold, motion.hold);
     add("plate.speed", "m/s", replica.plate.speed, motion.speed);
-    if (is_constant(motion)) add("protocol.rate_tolerance", "", protocol.rate_tolerance, 0);
+    add("protocol.rate_tolerance", "", protocol.rate_tolerance, 0);
     return list;
 }
 
@@ -45,7 +38,7 @@ void apply(Replica& replica, const PlateMotion& motion) {
     replica.protocol.pause = motion.pause;
     replica.protocol.hold = motion.hold;
     replica.plate.speed = motion.speed;
-    if (is_constant(motion)) replica.protocol.rate_tolerance = 0;
+    replica.protocol.rate_tolerance = 0;
 }
 
 NextStep simulate_motion(const Replica& replica, const PlateMotion& motion) {

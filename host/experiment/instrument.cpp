@@ -39,7 +39,7 @@ public:
         scan.plate_z = truth.plate_z + instrument_.strain_offset;
         scan.wall_force[static_cast<std::size_t>(Wall::plate)].z() =
             (1 + instrument_.gauge_drift * path) * top_force + instrument_.zero_drift * path * highest_ +
-            hysteresis(truth.phase, top_force);
+            hysteresis(truth.phase, top_force) + (path > 0 ? friction_of_guide(truth.phase) : 0);
         const auto shift = shifts(frame);
         scan.position.reserve(truth.position.size());
         for (std::size_t i = 0; i < truth.position.size(); ++i)
@@ -53,6 +53,11 @@ private:
     double hysteresis(Phase phase, double force) const {
         if (phase != Phase::unload || !(highest_ > 0)) return 0;
         return 4 * instrument_.gauge_hysteresis * force * (1 - force / highest_);
+    }
+
+    /// Against the motion of the plate [N].
+    double friction_of_guide(Phase phase) const {
+        return (phase == Phase::load ? 1 : -1) * instrument_.guide_friction * highest_;
     }
 
     /// Errors of the grains' centres in this frame [m].

@@ -69,9 +69,9 @@ struct Protocol {
     double settle_time = 0.5;  ///< a scan is taken after this time at the latest, marked as unsettled [s]
     double settle_drag = 1e6;  ///< on velocities and spins while the plate stands still; removes at most half
                                ///< of both per step [1/s]
-    double pause = 0;          ///< > 0: at each scan the plate brakes and stands for this time instead [s]
-    double hold = 0;           ///< > 0: after each stroke down the plate stands for this time [s]
-    double relax_time = 1.0;   ///< maximum relaxation time before the first stroke [s]
+    double pause = 0;  ///< > 0: at each scan the plate stops smoothly and stands for this time instead [s]
+    double hold = 0;   ///< > 0: after each stroke down the plate stands for this time [s]
+    double relax_time = 1.0;     ///< maximum relaxation time before the first stroke [s]
     bool scan_at_start = false;  ///< record a scan (frame 0) of the relaxed packing before the first stroke
     double force_threshold = 0;  ///< contacts with smaller forces are ignored in Z and <f> [N]
 };

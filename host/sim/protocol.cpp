@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "core/container.h"
 
@@ -18,9 +19,8 @@ constexpr double pressure_share = 0.2;
 /// The integrator removes drag * time step of a velocity per step. When the plate stops, motion ends at once;
 /// before the first stroke, grains still have to settle under gravity.
 constexpr double max_drag = 0.5, max_relax_drag = 0.02;
-/// Before a pause the plate brakes at a constant rate, over this part of the way between two scans. Each
-/// interval covers this part of the way left, and the last one what is below `last_way` of the braking.
-constexpr double braking_part = 0.25, interval_part = 0.25, last_way = 1e-3;
+/// A plate that pauses has constant velocities in this number of intervals of the way between two scans.
+constexpr double intervals_of_way = 64;
 /// Distance from the grains, over their diameter, above which the plate moves at its maximum speed.
 constexpr double free_distance = 0.1;
 /// Within this distance of a level, relative to the plate's start or a strain of one, the plate has arrived.
@@ -115,20 +115,28 @@ StepInterval ProtocolRunner::planned() const {
         const long left = std::max(1L, max_stage_steps() - state_.stage_step);
         return {static_cast<int>(std::min<double>(left, max_steps)), state_.plate_z, 0, drag()};
     }
-    const double left = waypoint() - state_.plate_z, way = std::abs(left), braking = braking_way();
-    double step = time_step_ * (is_free() ? max_speed() : slow_speed());
-    if (way < braking) step *= std::sqrt(way / braking);
+    if (is_smooth()) return planned_smoothly();
+    const double left = waypoint() - state_.plate_z;
+    const double step = time_step_ * (is_free() ? max_speed() : slow_speed());
     const double most =
         is_free() && left < 0 ? std::ceil((state_.plate_z - state_.free_above) / step) : max_steps;
-    if (way > last_way * braking && braking > 0) {
-        const double part = way > braking ? way - (1 - position_rounding) * braking : interval_part * way;
-        const double steps = std::max(1.0, std::ceil(part / step - 1e-9));
-        return {static_cast<int>(std::min({steps, most, max_steps})), state_.plate_z,
-                std::copysign(std::min(step, way / steps) / time_step_, left), 0};
-    }
-    const double steps = std::max(1.0, std::ceil(way / step - 1e-9));
+    const double steps = std::max(1.0, std::ceil(std::abs(left) / step - 1e-9));
     return {static_cast<int>(std::min({steps, most, max_steps})), state_.plate_z, left / (steps * time_step_),
             0};
+}
+
+/// The velocity is half a sine over each way, which takes as long as at constant speed.
+StepInterval ProtocolRunner::planned_smoothly() const {
+    const double from = state_.level == 0 ? state_.leg_begin : level_value(state_.level);
+    const double way = waypoint() - from, speed = is_free() ? max_speed() : slow_speed();
+    const double all_steps = std::abs(way) / (speed * time_step_);
+    const double passed = std::clamp((state_.plate_z - from) / way, 0.0, 1.0);
+    const double time = std::acos(1 - 2 * passed) / std::numbers::pi;  // over that of the way
+    const double left = std::max(1.0, std::ceil((1 - time) * all_steps - 1e-9));
+    const double steps = std::min({left, std::ceil(all_steps / intervals_of_way), max_steps});
+    const double next = (1 - std::cos(std::numbers::pi * (time + steps / all_steps))) / 2;
+    const double to = steps < left ? from + next * way : waypoint();
+    return {static_cast<int>(steps), state_.plate_z, (to - state_.plate_z) / (steps * time_step_), 0};
 }
 
 /// The plate stays between plate.end and plate.start.
@@ -161,10 +169,10 @@ double ProtocolRunner::slow_speed() const {
     return waits ? speed * quasi_static_.slowing(state_.kinetic_energy, speed) : speed;
 }
 
-/// Zero if the plate does not brake before it stops.
-double ProtocolRunner::braking_way() const {
-    if (!protocol_.stop_at_scans || protocol_.pause == 0 || state_.level >= scans_of(stage())) return 0;
-    return braking_part * std::abs(target() - state_.leg_begin) / scans_of(stage());
+/// Whether the plate starts and stops smoothly, because it pauses at the next scan.
+bool ProtocolRunner::is_smooth() const {
+    return protocol_.stop_at_scans && protocol_.pause > 0 && state_.level < scans_of(stage()) &&
+           state_.plate_z != waypoint();
 }
 
 double ProtocolRunner::drag() const {

@@ -125,7 +125,8 @@ private:
     bool pauses() const;
     bool holds() const;
     double standing_time() const;  ///< at the current scan, without settling [s]
-    double braking_way() const;
+    bool is_smooth() const;
+    StepInterval planned_smoothly() const;
     StepInterval planned_by_force() const;
     StepInterval planned_by_stress() const;
     void deform(StepInterval& interval) const;

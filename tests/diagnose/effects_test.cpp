@@ -64,6 +64,7 @@ std::map<std::string, double> numbers_of(const Model& m) {
             {"zero_drift", i.zero_drift},
             {"gauge_hysteresis", i.gauge_hysteresis},
             {"force_lag", i.force_lag},
+            {"guide_friction", i.guide_friction},
             {"force_saturation", i.force_saturation},
             {"mean_diameter", m.mean_diameter}};
 }
@@ -102,6 +103,7 @@ const std::map<std::string, std::set<std::string>> moves{
     {"zero_drift", {"zero_drift"}},
     {"gauge_hysteresis", {"gauge_hysteresis"}},
     {"force_lag", {"force_lag"}},
+    {"guide_friction", {"guide_friction"}},
     {"force_saturation", {"force_saturation"}},
     {"force_threshold", {"threshold_shift"}},
     {"position_bias", {"position_bias"}},
@@ -145,6 +147,7 @@ Model full_model() {
     model.instrument.zero_drift = 0.01;
     model.instrument.gauge_hysteresis = 0.02;
     model.instrument.force_lag = 1e-4;
+    model.instrument.guide_friction = 0.01;
     model.instrument.force_saturation = 0.5;
     model.instrument.threshold_shift = 1e-3;
     model.instrument.position_bias = 1e-3;

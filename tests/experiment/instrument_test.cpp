@@ -269,6 +269,23 @@ TEST(measured, a_gauge_with_hysteresis_reads_another_force_while_unloading) {
     for (int s = 0; s < 6; ++s) EXPECT_DOUBLE_EQ(seen.scans[s].top_force(), read[s]) << s;
 }
 
+TEST(measured, a_gauge_also_reads_the_friction_of_the_guide_once_the_plate_moves) {
+    Recording real = truth();
+    real.plate_start = 0.1;
+    real.scans.resize(5, real.scans.back());
+    const double height[] = {0.1, 0.09, 0.08, 0.09, 0.1}, force[] = {0, 1, 4, 1, 0},
+                 read[] = {0, 1.2, 4.2, 0.8, -0.2};
+    for (int s = 0; s < 5; ++s) {
+        real.scans[s].phase = s < 3 ? Phase::load : Phase::unload;
+        real.scans[s].plate_z = height[s];
+        real.scans[s].wall_force[static_cast<std::size_t>(Wall::plate)].z() = force[s];
+    }
+    Instrument instrument;
+    instrument.guide_friction = 0.05;
+    const Recording seen = measured(real, instrument, 1);
+    for (int s = 0; s < 5; ++s) EXPECT_DOUBLE_EQ(seen.scans[s].top_force(), read[s]) << s;
+}
+
 TEST(measured, a_late_top_force_is_that_of_an_earlier_plate) {
     Recording real = truth();
     const double height[] = {0.1, 0.09, 0.07, 0.07, 0.08, 0.1};  // the plate rests at the fourth scan

@@ -55,6 +55,11 @@ def test_readings():
     assert [len(scan["contacts"]) for scan in read("missing_contacts", 1)] == [1] * 4, "those at walls stay"
     fewer = read("missing_grains", 1 / 3)[0]
     assert len(fewer["grains"]) == 2 and all(i < 2 for i, *_ in fewer["contacts"])
+    first, later = scans()[0]["grains"], read("swapped_labels", 2 / 3)[1]
+    moved = [i for i in range(3) if later["grains"][i] != first[i]]
+    assert len(moved) == 2 and sorted(later["grains"]) == first, "a pair of neighbours"
+    i, j, point, _ = later["contacts"][0]
+    assert math.isclose(later["grains"][i][1] + later["grains"][j][1], 2 * point[0]), "contacts stay with their grains"
     assert math.isclose(read("diameter_error", 1e-3)[0]["grains"][1][0], 0.019)
     assert read("position_bias", 0.1)[0]["grains"][0][1:] == (0.0625 - 1.1 * 0.0325, 0.0625, 0.01 * 1.1)
     assert read("vertical_stretch", 0.1)[0]["grains"][0][1:] == (0.03, 0.0625, 0.01 * 1.1)

@@ -136,6 +136,23 @@ def missing_grains(scans, amplitude, chance):
                             for i, j, point, force in scan["contacts"] if i in number and (isinstance(j, str) or j in number)]
 
 
+def swapped_labels(scans, amplitude, chance):
+    """Tracking confuses this fraction of the grains, in pairs of nearest neighbours, from the second scan on. A
+    label keeps the diameter of its first grain."""
+    centres = [centre for _, *centre in scans[0]["grains"]]
+    free, label = set(range(len(centres))), list(range(len(centres)))
+    for i in chance.sample(range(len(centres)), round(amplitude * len(centres) / 2)):
+        if i in free and len(free) > 1:
+            free.remove(i)
+            j = min(free, key=lambda k: math.dist(centres[i], centres[k]))
+            free.remove(j)
+            label[i], label[j] = j, i
+    for scan in scans[1:]:
+        scan["grains"] = [(d, *scan["grains"][label[i]][1:]) for i, (d, *_) in enumerate(scan["grains"])]
+        scan["contacts"] = [(label[i], j if isinstance(j, str) else label[j], point, force)
+                            for i, j, point, force in scan["contacts"]]
+
+
 def plate_compliance(scans, amplitude, chance):
     for scan in scans:
         scan["height"] -= amplitude * scan["top"]
@@ -223,6 +240,7 @@ LIBRARY = {
     "zero_drift": Hidden(0.01, 0.05, "of the gauge, over the highest force", signed=True, reading=zero_drift),
     "gauge_hysteresis": Hidden(0.025, 0.1, "of the gauge, over the highest force", reading=gauge_hysteresis),
     "force_lag": Hidden(3e-4, 1.2e-3, "way of the plate by which the gauge is late [m]", reading=force_lag),
+    "guide_friction": Hidden(0.01, 0.04, "friction of the plate's guide, over the highest force", reading=guide_friction),
     "position_bias": Hidden(0.0015, 0.0045, "lengths read too large", signed=True, reading=position_bias),
 }
 
@@ -236,7 +254,7 @@ OUTSIDE = {
     "missing_grains": Hidden(0.03, 0.1, "part of the grains not found", reading=missing_grains),
     "missing_contacts": Hidden(0.08, 0.25, "part of the contacts overlooked", reading=missing_contacts),
     "dim_walls": Hidden(0.08, 0.3, "part of the forces at walls that is not seen", reading=dim_walls),
-    "guide_friction": Hidden(0.01, 0.04, "friction of the plate's guide, over the highest force", reading=guide_friction),
+    "swapped_labels": Hidden(0.03, 0.15, "part of the grains whose label a neighbour has, from the second scan on", reading=swapped_labels),
     "backlash": Hidden(4e-4, 1.5e-3, "plate read too high on the way up [m]", signed=True, reading=backlash),
 }
 

@@ -235,6 +235,10 @@ void add_instrument_options(CLI::App& sub, Instrument& instrument) {
     add("--force-lag", instrument.force_lag, "M",
         "Unstated error: the top force is read as it was this way of the plate before [m]",
         CLI::NonNegativeNumber);
+    add("--guide-friction", instrument.guide_friction, "PART",
+        "Unstated error: friction of the plate's guide, which the load cell also reads, over the maximum top "
+        "force",
+        CLI::Range(0.0, 0.5));
     add("--force-saturation", instrument.force_saturation, "PER_N",
         "Unstated error: a contact force f is read as f/(1 + a f), with this a [1/N]",
         CLI::NonNegativeNumber);

@@ -154,6 +154,8 @@ const Effect all_effects[] = {
      -0.3, 0.3, -0.03, 0.03, one, [](Model& m, double a) { m.instrument.gauge_hysteresis += a; }, nothing},
     {"force_lag", "m", "way of the plate by which the reading of the top force is late", "measurement",
      0, 0.1, 0.01, 0.03, grain_diameter, [](Model& m, double a) { m.instrument.force_lag += a; }, nothing},
+    {"guide_friction", "relative", "friction of the plate's guide, which the load cell also reads, over the maximum force", "measurement",
+     0, 0.3, 0.01, 0.03, one, [](Model& m, double a) { m.instrument.guide_friction += a; }, nothing},
     {"force_saturation", "1/N", "a in f/(1 + a f), what is read of a contact force f", "measurement",
      0, 50, 2, 6, inverse_force, [](Model& m, double a) { m.instrument.force_saturation += a; }, nothing},
     {"force_threshold", "N", "true less stated threshold of contact forces", "measurement",

@@ -33,6 +33,7 @@ const std::map<std::string, std::string>& special_words() {
         {"zero_drift", "drift of the load cell's zero"},
         {"gauge_hysteresis", "hysteresis of the load cell"},
         {"force_lag", "late reading of the load cell"},
+        {"guide_friction", "friction of the plate's guide"},
         {"force_saturation", "saturation of contact forces"},
         {"force_threshold", "shifted force threshold"},
         {"position_bias", "bias of positions"},
