@@ -27,7 +27,8 @@ namespace mcdem::inline diagnose {
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(CandidateRange, name, unit, low, high)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(NuisancePrior, name, unit, sigma)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Proposal, candidates, amplitudes, errors, gain, misfit_p, confirmed_gain,
-                                   confirmed_misfit_p, reduction, confirmed_reduction)
+                                   confirmed_misfit_p, left_out, rest_misfit_p, reduction,
+                                   confirmed_reduction)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Findings, p_value, names, effects, gain, proposals, held_out,
                                    held_out_noise, placebo, numerics)
 

@@ -10,6 +10,7 @@ namespace mcdem {
 namespace {
 
 using ::testing::ElementsAre;
+using ::testing::EndsWith;
 using ::testing::HasSubstr;
 
 TEST(DiagnosisBuilder, FindsAndMeasuresAPlantedEffect) {
@@ -77,6 +78,49 @@ TEST(DiagnosisBuilder, ADifferenceInAHoldIsNoRearrangement) {
     EXPECT_GT(diagnosis_where(elsewhere, 60, all).p_value, 0.01);
 }
 
+/// Runs of a few replicates that differ by `shift` from the baseline.
+Eigen::MatrixXd runs_at(SyntheticWorld& world, const Evidence& evidence, const Eigen::VectorXd& shift) {
+    Eigen::MatrixXd runs(64, shift.size());
+    const Eigen::VectorXd centre = evidence.baseline.colwise().mean().transpose() + shift;
+    for (Eigen::Index r = 0; r < runs.rows(); ++r) runs.row(r) = (centre + world.noise()).transpose();
+    return runs;
+}
+
+/// Decides between an effect with the pattern of all differences and none, if the runs with the effect leave
+/// `left` at the chosen cells.
+template <class Chosen>
+Diagnosis with_remainder(Chosen chosen, double left) {
+    SyntheticWorld world(8, 6);
+    Evidence evidence = world.evidence(1, 32);
+    const Eigen::VectorXd pattern = world.pattern(1);
+    world.add_effect(evidence, "adhesion", pattern);
+    evidence.observed += 9 * pattern;
+    const Eigen::Index each = cells_each(evidence.observed.size());
+    for (Eigen::Index i = 0; i < evidence.observed.size(); ++i)
+        if (chosen(i / each, i % each)) evidence.observed[i] += (i / each % 2 ? 1 : -1) * left;
+    DiagnosisBuilder draft(evidence, {});
+    draft.confirm(0, runs_at(world, evidence, 9 * pattern));
+    while (const auto k = draft.wants_held_out())
+        draft.confirm_held_out(*k, runs_at(world, evidence, 9 * pattern));
+    return draft.diagnosis();
+}
+
+// Grains rearranged at one displacement of the unloading, which is held out. Differences of the same size at
+// two displacements, or everywhere in one observable, are a remainder.
+TEST(DiagnosisBuilder, ARearrangementBesideAnEffectIsLeftOut) {
+    const Diagnosis d = with_remainder([](auto, auto place) { return place == 5; }, 12);
+    EXPECT_EQ(d.verdict, Verdict::effect);
+    EXPECT_GT(d.explanation->reduction, 0.9);
+    EXPECT_THAT(d.explanation->without, EndsWith(" mm of unloading"));
+    EXPECT_FALSE(d.explanation->leaves_more_than_noise);
+    const Diagnosis two = with_remainder([](auto, auto place) { return place == 5 || place == 6; }, 12);
+    EXPECT_EQ(two.verdict, Verdict::unknown_effect);
+    EXPECT_EQ(two.explanation->without, "");
+    const Diagnosis one = with_remainder([](auto observable, auto) { return observable == 3; }, 12);
+    EXPECT_EQ(one.explanation->without, "");
+    EXPECT_TRUE(one.explanation->leaves_more_than_noise);
+}
+
 // The hidden amplitude is 4, larger than the range tried.
 TEST(DiagnosisBuilder, SaysThatAnAmplitudeIsAtTheLimitOfItsRange) {
     SyntheticWorld world(6, 3);
@@ -101,14 +145,6 @@ TEST(DiagnosisBuilder, AParameterFarFromItsStatedValueIsASymptom) {
     EXPECT_EQ(d.causes.at(0).effect, "modulus");
 }
 
-/// Runs of a few replicates that differ by `shift` from the baseline.
-Eigen::MatrixXd runs_at(SyntheticWorld& world, const Evidence& evidence, const Eigen::VectorXd& shift) {
-    Eigen::MatrixXd runs(64, shift.size());
-    const Eigen::VectorXd centre = evidence.baseline.colwise().mean().transpose() + shift;
-    for (Eigen::Index r = 0; r < runs.rows(); ++r) runs.row(r) = (centre + world.noise()).transpose();
-    return runs;
-}
-
 // Effect and parameter have the same signature. The effect's runs agree with the data; those of the
 // parameter do not reach them and leave a slightly larger gap.
 TEST(DiagnosisBuilder, AParameterIsRunAgainIfItsRunsRequireALargerAmplitude) {
@@ -131,6 +167,26 @@ TEST(DiagnosisBuilder, AParameterIsRunAgainIfItsRunsRequireALargerAmplitude) {
     EXPECT_TRUE(draft.refit(1));
     EXPECT_NEAR(draft.whole_fit(1).amplitudes[0] - before, 1.5, 0.5);
     EXPECT_FALSE(draft.refit(0));
+}
+
+TEST(DiagnosisBuilder, RunsThatFailAreRepeatedWithHalfTheAmplitude) {
+    SyntheticWorld world(6, 4);
+    Evidence evidence = world.evidence(1, 32);
+    const Eigen::VectorXd pattern = world.pattern(1);
+    world.add_effect(evidence, "adhesion", pattern);
+    evidence.observed += 9 * pattern;
+    DiagnosisBuilder draft(evidence, {});
+    const double fitted = draft.whole_fit(0).amplitudes[0];
+    Eigen::MatrixXd failed = runs_at(world, evidence, fitted * pattern);
+    failed.col(draft.data().cells[0]).setConstant(not_available);
+    draft.confirm(0, failed);
+    EXPECT_TRUE(draft.refit(0));
+    EXPECT_DOUBLE_EQ(draft.whole_fit(0).amplitudes[0], fitted / 2);
+    draft.confirm(0, runs_at(world, evidence, fitted / 2 * pattern));
+    EXPECT_GT(draft.findings().proposals[0].amplitudes[0], 0.6 * fitted)
+        << "half of the step that they require";
+    draft.confirm(0, failed);
+    EXPECT_FALSE(draft.refit(0)) << "an earlier amplitude has results";
 }
 
 }  // namespace

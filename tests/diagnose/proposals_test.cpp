@@ -141,7 +141,7 @@ Eigen::MatrixXd runs(Case& c, const Eigen::VectorXd& shift, int number) {
 TEST(Confirmation, RunsThatAgreeWithTheData) {
     Case c({0, 4}, 2);
     Proposal p = c.proposals().at(0);
-    const auto step = confirm(p, c.data, c.null, c.evidence.observed, at_priors,
+    const auto step = confirm(p, c.data, c.null, {}, 0.001, c.evidence.observed, at_priors,
                               runs(c, 4 * c.evidence.library.effects[1].linear, 16));
     ASSERT_TRUE(step);
     EXPECT_EQ(step->size(), 2);  // the modulus, then the amplitude
@@ -152,7 +152,7 @@ TEST(Confirmation, RunsThatAgreeWithTheData) {
 TEST(Confirmation, RunsThatDoNotAgreeWithTheData) {
     Case c({0, 4}, 2);
     Proposal p = c.proposals().at(0);
-    confirm(p, c.data, c.null, c.evidence.observed, at_priors,
+    confirm(p, c.data, c.null, {}, 0.001, c.evidence.observed, at_priors,
             runs(c, 4 * c.evidence.library.effects[2].linear, 16));
     EXPECT_LT(*p.confirmed_misfit_p, 1e-3);
     EXPECT_LT(*p.confirmed_gain, 0.6 * p.gain);
@@ -163,8 +163,9 @@ TEST(Confirmation, NuisanceShiftsArePenalisedByTheirPrior) {
     Case c({0, 4}, 2);
     Proposal p = c.proposals().at(0), far = p;
     const Eigen::MatrixXd meet = runs(c, 4 * c.evidence.library.effects[1].linear, 16);
-    confirm(p, c.data, c.null, c.evidence.observed, at_priors, meet);
-    confirm(far, c.data, c.null, c.evidence.observed, Eigen::VectorXd::Constant(1, 3), meet);  // three sigmas
+    confirm(p, c.data, c.null, {}, 0.001, c.evidence.observed, at_priors, meet);
+    confirm(far, c.data, c.null, {}, 0.001, c.evidence.observed, Eigen::VectorXd::Constant(1, 3),
+            meet);  // three sigmas
     EXPECT_NEAR(*p.confirmed_gain - *far.confirmed_gain, 4.5, 1e-9);
 }
 
@@ -179,7 +180,7 @@ TEST(Confirmation, ScatterThatTheDataDoNotShowIsPenalised) {
     p.candidates = {1};
     p.amplitudes = {5};
     p.errors = {0.1};
-    confirm(p, c.data, c.null, c.evidence.observed, at_priors,
+    confirm(p, c.data, c.null, {}, 0.001, c.evidence.observed, at_priors,
             runs(c, Eigen::VectorXd::Zero(c.data.mean.size()), 16));
     EXPECT_GT(*p.confirmed_misfit_p, 0.5);
     EXPECT_LT(*p.confirmed_gain, -10);
@@ -188,7 +189,7 @@ TEST(Confirmation, ScatterThatTheDataDoNotShowIsPenalised) {
 TEST(Confirmation, StepIsTheErrorOfTheAmplitude) {
     Case c({0, 4}, 2);
     Proposal p = c.proposals().at(0);
-    const auto step = confirm(p, c.data, c.null, c.evidence.observed, at_priors,
+    const auto step = confirm(p, c.data, c.null, {}, 0.001, c.evidence.observed, at_priors,
                               runs(c, 3 * c.evidence.library.effects[1].linear, 200));
     ASSERT_TRUE(step);
     EXPECT_NEAR((*step)[1], 1, 0.6);  // one sigma of the amplitude is 0.2, and the prior has some influence
@@ -200,8 +201,8 @@ TEST(Confirmation, FailedRunsAreExcluded) {
     Eigen::MatrixXd failed = runs(c, 4 * c.evidence.library.effects[1].linear, 4);
     const Eigen::MatrixXd whole = failed(std::vector{0, 1, 3}, Eigen::all);
     failed(2, c.data.cells.back()) = not_available;
-    ASSERT_TRUE(confirm(p, c.data, c.null, c.evidence.observed, at_priors, failed));
-    ASSERT_TRUE(confirm(without, c.data, c.null, c.evidence.observed, at_priors, whole));
+    ASSERT_TRUE(confirm(p, c.data, c.null, {}, 0.001, c.evidence.observed, at_priors, failed));
+    ASSERT_TRUE(confirm(without, c.data, c.null, {}, 0.001, c.evidence.observed, at_priors, whole));
     EXPECT_EQ(*p.confirmed_gain, *without.confirmed_gain);
     EXPECT_EQ(*p.confirmed_misfit_p, *without.confirmed_misfit_p);
 }
@@ -211,7 +212,7 @@ TEST(Confirmation, RequiresMoreThanOneRun) {
     Proposal p = c.proposals().at(0);
     Eigen::MatrixXd failed = runs(c, Eigen::VectorXd::Zero(c.data.mean.size()), 4);
     failed.bottomRows(3).setConstant(not_available);
-    EXPECT_FALSE(confirm(p, c.data, c.null, c.evidence.observed, at_priors, failed));
+    EXPECT_FALSE(confirm(p, c.data, c.null, {}, 0.001, c.evidence.observed, at_priors, failed));
     EXPECT_FALSE(p.confirmed_gain);
 }
 

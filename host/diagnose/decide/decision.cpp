@@ -62,11 +62,13 @@ bool leaves_too_much(const Proposal& proposal, const Limits& limits) {
 
 /// Whether a pair is better than a single effect: one leaves more than noise, or is much less likely, and
 /// two leave only noise. Two free amplitudes take away most of many gaps with another cause, so a pair
-/// that leaves more is not named.
+/// that leaves more is not named. If a place is left out for the pair, one may be left out for the single
+/// effect as well.
 bool is_better(const Proposal& pair, const Proposal& single, const Limits& limits) {
-    const bool needs_second =
-        single.best_misfit() < limits.misfit || pair.best_gain() - single.best_gain() > limits.second_certain;
-    return needs_second && pair.best_misfit() >= limits.pair_misfit;
+    if (pair.best_misfit() < limits.pair_misfit) return false;
+    if (pair.left_out) return single.best_misfit() < limits.misfit;
+    return single.whole_misfit() < limits.misfit ||
+           pair.best_gain() - single.best_gain() > limits.second_certain;
 }
 
 /// Probability that an explanation with this reduction is right.

@@ -35,6 +35,8 @@ struct Limits {
     double certain = 0.8;           ///< at least this much; linear in between
     double right_pair = 0.9;        ///< the same for a pair, at most
     double reduction_margin = 0.1;  ///< error of the reduction by signatures, on either side of its interval
+    /// p-value of the remainder below which a proposal leaves more than noise.
+    double enough(bool pair) const { return pair ? pair_misfit : misfit; }
     /// Largest difference in log likelihood within the group of an effect with this gain.
     double group_margin(double gain) const { return std::max(group, group_share * gain); }
     /// Gain in log likelihood required of a second effect beside one with this gain.
@@ -50,11 +52,15 @@ struct Proposal {
     double gain = 0;      ///< in log likelihood over no effect, from signatures
     double misfit_p = 1;  ///< p-value of the remainder, from signatures
     std::optional<double> confirmed_gain, confirmed_misfit_p;  ///< the same from real runs
+    std::optional<int> left_out = {};  ///< place of the grid without which the runs leave no more than noise:
+                                       ///< grains may have rearranged there; reductions are without it, too
+    double rest_misfit_p = 0;          ///< p-value of the remainder without it
     double reduction = 0;  ///< fraction of the gap that it takes away (Findings::held_out), from signatures
     std::optional<double> confirmed_reduction = {};  ///< the same from real runs
     bool is_pair() const { return candidates.size() == 2; }
     double best_gain() const { return confirmed_gain.value_or(gain); }
-    double best_misfit() const { return confirmed_misfit_p.value_or(misfit_p); }
+    double whole_misfit() const { return confirmed_misfit_p.value_or(misfit_p); }
+    double best_misfit() const { return left_out ? rest_misfit_p : whole_misfit(); }
     /// At most zero without a gain in likelihood: a smaller remainder in some data then costs more in others.
     double best_reduction() const {
         const double known = confirmed_reduction.value_or(reduction);

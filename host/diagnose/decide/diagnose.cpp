@@ -19,40 +19,6 @@ namespace {
 constexpr double worth_another_run =
     0.01;  ///< another run is worthwhile if the p of the remainder is smaller
 
-/// Bonferroni correction for two tests.
-double p_of_both(const NullDistribution& null, const GapStatistics& statistics) {
-    return std::min(1.0, 2 * std::min(null.p_value(&GapStatistics::omnibus, statistics.omnibus),
-                                      null.p_value(&GapStatistics::directed, statistics.directed)));
-}
-
-/// The cells without all observables at one displacement and phase (place k of `places`), except those that
-/// have one place only.
-CellChoice without_place(const CellChoice& cells, Eigen::Index k, Eigen::Index places) {
-    const Eigen::Index relaxation = index_of(OfProgramme::relaxation), creep = index_of(OfProgramme::creep);
-    CellChoice rest;
-    for (const auto cell : cells) {
-        const Eigen::Index observable = cell / places;
-        if (cell % places != k || observable == relaxation || observable == creep) rest.push_back(cell);
-    }
-    return rest;
-}
-
-/// The largest p of the gap if one displacement and phase is left out. A rearrangement that occurs in no
-/// replicate changes all observables there, and few elsewhere; an effect changes them in the whole stroke.
-double p_without_one_place(const GapData& data, int mean_of, const Evidence& evidence) {
-    const Eigen::Index places = cells_each(data.gap.size());
-    GapData rest = data;
-    double largest = 0;
-    for (Eigen::Index k = 0; k < places; ++k) {
-        rest.cells = without_place(data.cells, k, places);
-        if (rest.cells.size() == data.cells.size() || rest.cells.size() < min_cells) continue;
-        const GapSpace space(rest.noise, mean_of, rest.cells, rest.free);
-        const NullDistribution null(rest, mean_of, evidence.seed);
-        largest = std::max(largest, p_of_both(null, gap_statistics(space, rest, rest.gap)));
-    }
-    return largest;
-}
-
 GapData checked_data(const Evidence& evidence) {
     GapData data = gap_data(evidence);
     if (data.cells.size() < min_cells)
@@ -175,9 +141,11 @@ DiagnosisBuilder::DiagnosisBuilder(const Evidence& evidence, const Limits& limit
       null_(data_, mean_of_, evidence.seed),
       statistics_(gap_statistics(space_, data_, data_.gap)),
       split_(split_cells(data_.cells, evidence.library.grid)) {
-    findings_.p_value = p_of_both(null_, statistics_);
-    if (findings_.p_value < limits_.false_alarm)
-        findings_.p_value = std::max(findings_.p_value, p_without_one_place(data_, mean_of_, evidence_));
+    findings_.p_value = p_of_gap(null_, statistics_);
+    if (findings_.p_value < limits_.false_alarm) {
+        places_ = places_left_out(data_, mean_of_, evidence.seed);
+        findings_.p_value = std::max(findings_.p_value, p_without_one_place(places_, data_, mean_of_));
+    }
     findings_.effects = data_.effects;
     for (std::size_t c = 0; c < data_.candidates.size(); ++c) {
         findings_.names.push_back(data_.name(c));
@@ -221,8 +189,8 @@ double DiagnosisBuilder::likelihood_reduction(double gain) const {
 void DiagnosisBuilder::confirm(std::size_t proposal, const Eigen::MatrixXd& runs) {
     Proposal tried = findings_.proposals[proposal];
     tried.amplitudes = whole_[proposal].amplitudes;
-    step_[proposal] =
-        mcdem::confirm(tried, data_, null_, evidence_.observed, whole_[proposal].nuisances, runs);
+    step_[proposal] = mcdem::confirm(tried, data_, null_, places_, limits_.enough(tried.is_pair()),
+                                     evidence_.observed, whole_[proposal].nuisances, runs);
     if (!step_[proposal]) return;
     const Eigen::MatrixXd whole = whole_runs(runs, data_.cells);
     const Runs last{whole_[proposal], whole.colwise().mean().transpose(), static_cast<int>(whole.rows())};
@@ -251,11 +219,23 @@ bool DiagnosisBuilder::may_gain(std::size_t proposal) const {
 
 bool DiagnosisBuilder::refit(std::size_t proposal) {
     const Proposal& p = findings_.proposals[proposal];
-    if (!step_[proposal] || (p.best_misfit() >= worth_another_run && !may_gain(proposal))) return false;
     PartialFit& fit = whole_[proposal];
+    if (!step_[proposal]) {  // no run finished: signatures bend, and the amplitude is too large
+        for (double& amplitude : fit.amplitudes) amplitude /= 2;
+        return !p.confirmed_gain;
+    }
+    if (p.best_misfit() >= worth_another_run && !may_gain(proposal)) return false;
     const auto before = fit.amplitudes;
     fit = stepped(data_, p.candidates, std::move(fit), *step_[proposal]);
     return fit.amplitudes != before;
+}
+
+Split DiagnosisBuilder::split_of(const Proposal& proposal) const {
+    if (!proposal.left_out) return split_;
+    const auto rest = [&](const CellChoice& cells) {
+        return without_place(cells, *proposal.left_out, data_.gap.size());
+    };
+    return {rest(split_.fitted), rest(split_.held_out)};
 }
 
 std::optional<std::size_t> DiagnosisBuilder::wants_held_out() const {
@@ -278,7 +258,7 @@ void DiagnosisBuilder::confirm_held_out(std::size_t proposal, const Eigen::Matri
     held_out_done_[proposal] = true;
     Proposal& p = findings_.proposals[proposal];
     if (!by_likelihood(p))
-        p.confirmed_reduction = reduction_by_runs(data_, split_, evidence_.observed, runs, mean_of_);
+        p.confirmed_reduction = reduction_by_runs(data_, split_of(p), evidence_.observed, runs, mean_of_);
     decision_ = decide(findings_, limits_);
 }
 
@@ -321,7 +301,12 @@ Diagnosis DiagnosisBuilder::diagnosis() const {
     d.causes = causes.leading();
     d.explanation = explanation_of(findings_, decision_, limits_);
     const Proposal& explaining = findings_.proposals[decided()];
-    d.gap_reduction = measure_reduction(data_, split_, explaining, mean_of_, evidence_.seed);
+    if (explaining.left_out) {
+        const Cell cell = cells_of(evidence_.library.grid)[static_cast<std::size_t>(*explaining.left_out)];
+        d.explanation->without = fmt::format("{:.4g} mm of {}loading", cell.displacement * 1e3,
+                                             cell.phase == Phase::load ? "" : "un");
+    }
+    d.gap_reduction = measure_reduction(data_, split_of(explaining), explaining, mean_of_, evidence_.seed);
     d.gap_reduction->placebo = findings_.placebo;
     d.gap_reduction->interval = {d.gap_reduction->interval[0] - limits_.reduction_margin,
                                  std::min(1.0, d.gap_reduction->interval[1] + limits_.reduction_margin)};

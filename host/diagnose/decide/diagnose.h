@@ -63,6 +63,8 @@ private:
     /// to measure otherwise.
     bool by_likelihood(const Proposal& proposal) const;
     double likelihood_reduction(double gain) const;
+    /// Without the place that is left out for this proposal.
+    Split split_of(const Proposal& proposal) const;
 
     const Evidence& evidence_;
     Limits limits_;
@@ -70,6 +72,7 @@ private:
     int mean_of_;  ///< number of replicates in the baseline's mean
     GapSpace space_;
     NullDistribution null_;
+    std::vector<PlaceLeftOut> places_;  ///< if there is a gap
     GapStatistics statistics_;
     Findings findings_;
     Decision decision_;

@@ -84,6 +84,7 @@ struct Explanation {
     double needed = 0;       ///< reduction that is required to name an effect
     double remainder_p = 1;  ///< p-value of the remainder
     bool leaves_more_than_noise = false;
+    std::string without = {};  ///< displacement and phase left out, where grains may have rearranged
     double remainder() const { return 1 - reduction; }
 };
 

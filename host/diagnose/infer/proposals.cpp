@@ -144,6 +144,7 @@ std::vector<Proposal> propose(const GapSpace& space, const GapData& data, const 
 }
 
 std::optional<Eigen::VectorXd> confirm(Proposal& proposal, const GapData& data, const NullDistribution& null,
+                                       const std::vector<PlaceLeftOut>& places, double enough,
                                        const Eigen::VectorXd& observed, const Eigen::VectorXd& nuisances,
                                        const Eigen::MatrixXd& all_runs) {
     constexpr double still_free = 0.25;  // fraction of an amplitude
@@ -156,11 +157,20 @@ std::optional<Eigen::VectorXd> confirm(Proposal& proposal, const GapData& data, 
                         2 * proposal.errors[k] + still_free * std::abs(proposal.amplitudes[k])});
     const int mean_of = static_cast<int>(runs.rows());
     const GapSpace plain(data.noise, mean_of, data.cells, data.free);
-    const GapSpace space(data.noise, mean_of, data.cells, free,
-                         effect_scatter(data, proposal) / data.packings);
+    const Eigen::VectorXd scatter = effect_scatter(data, proposal) / data.packings;
+    const GapSpace space(data.noise, mean_of, data.cells, free, scatter);
     proposal.confirmed_gain =
         space.log_likelihood(left) - prior_cost(nuisances, data.free) - plain.log_likelihood(data.gap);
     proposal.confirmed_misfit_p = null.misfit_p(space, left);
+    proposal.left_out.reset();
+    if (*proposal.confirmed_misfit_p >= enough) return space.fit_nuisances(left);
+    proposal.rest_misfit_p = 0;
+    for (const auto& [place, cells, of_rest] : places)
+        if (const double p = of_rest.misfit_p(GapSpace(data.noise, mean_of, cells, free, scatter), left);
+            p >= enough && p > proposal.rest_misfit_p) {
+            proposal.left_out = place;
+            proposal.rest_misfit_p = p;
+        }
     return space.fit_nuisances(left);
 }
 

@@ -1,7 +1,7 @@
 // Proposals to be confirmed by real runs: the leading single effects, and the best pair.
 #pragma once
 #include "diagnose/decide/decision.h"
-#include "diagnose/infer/gap_tests.h"
+#include "diagnose/infer/rearrangements.h"
 
 namespace mcdem::inline diagnose {
 
@@ -11,10 +11,12 @@ std::vector<Proposal> propose(const GapSpace& space, const GapData& data, const 
 
 /// Evaluates the real runs of a proposal: its gain in log likelihood over no effect, including the cost of
 /// its scatter and its free parameters (their determinants, and the prior of the `nuisances` of the runs),
-/// and its misfit. The amplitude may still move with a prior of twice its error plus a quarter of its size,
-/// and the nuisances within their priors; these steps are returned (nuisances, then amplitudes). Returns
-/// nothing if fewer than two runs finished. `runs`: one row per replicate.
+/// and its misfit; if this is below `enough`, but not without one of the `places`, that one is left out. The
+/// amplitude may still move with a prior of twice its error plus a quarter of its size, and the nuisances
+/// within their priors; these steps are returned (nuisances, then amplitudes). Returns nothing if fewer than
+/// two runs finished. `runs`: one row per replicate.
 std::optional<Eigen::VectorXd> confirm(Proposal& proposal, const GapData& data, const NullDistribution& null,
+                                       const std::vector<PlaceLeftOut>& places, double enough,
                                        const Eigen::VectorXd& observed, const Eigen::VectorXd& nuisances,
                                        const Eigen::MatrixXd& runs);
 

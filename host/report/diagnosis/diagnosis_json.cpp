@@ -169,6 +169,7 @@ void describe(Members& io, Explanation& explanation) {
     io.derived("remainder", explanation.remainder());
     io("remainder_p", explanation.remainder_p);
     io("leaves_more_than_noise", explanation.leaves_more_than_noise);
+    io("without", explanation.without);
 }
 
 void describe(Members& io, PackingAgreement& packing) {

@@ -239,7 +239,11 @@ std::string data_words(const Diagnosis& diagnosis) {
 }
 
 std::string remainder_words(const Explanation& explanation) {
-    if (!explanation.leaves_more_than_noise) return "what remains is noise as far as these data tell";
+    const auto& without = explanation.without;
+    if (!explanation.leaves_more_than_noise)
+        return fmt::format(
+            "what remains is noise as far as these data tell{}",
+            without.empty() ? "" : ", apart from " + without + ": grains may have rearranged there");
     const double left = std::max(0.0, explanation.remainder());
     const auto what = left >= 1 ? "all of it remains, which"
                                 : percent(left) + (left < 0.015 ? " remains that" : " remain that");
