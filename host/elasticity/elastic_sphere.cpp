@@ -81,7 +81,7 @@ std::array<double, self_terms> fit_self(double poisson_ratio) {
     return {fitted[0], slope, fitted[1], fitted[2], fitted[3]};
 }
 
-ElasticSphere fit(double poisson_ratio) {
+SurfaceLaw fit(double poisson_ratio) {
     const auto [s, weight, point, size] = sample(poisson_ratio);
     // Close to the load the sphere is a half space, (1 - nu^2)/(pi d) at distance d = 2 s. A load
     // distribution with mean square radius <r^2> adds <r^2>/4 times the Laplacian, which is 1/(16 s^3) for
@@ -89,7 +89,8 @@ ElasticSphere fit(double poisson_ratio) {
     const double near_point = -(1 - poisson_ratio * poisson_ratio) / (2 * pi), near_size = near_point / 16;
     // `size` is divided by s^3, so small s needs the weight; contacts rarely meet below s = 0.3.
     const ArrayXd size_weight = weight / s.square() * (s / 0.3).pow(1.5).min(1.0);
-    ElasticSphere sphere;
+    SurfaceLaw sphere;
+    sphere.shape = SurfaceShape::sphere;
     sphere.point = with_limit<point_terms>(
         near_point, fit_polynomial(s, point - near_point / s, weight, point_terms - 2));
     sphere.size = with_limit<size_terms>(
@@ -100,9 +101,9 @@ ElasticSphere fit(double poisson_ratio) {
 
 }  // namespace
 
-ElasticSphere elastic_sphere(double poisson_ratio) {
+SurfaceLaw elastic_sphere(double poisson_ratio) {
     static std::mutex mutex;
-    static std::map<double, ElasticSphere> known;
+    static std::map<double, SurfaceLaw> known;
     const std::lock_guard lock(mutex);
     const auto place = known.find(poisson_ratio);
     if (place != known.end()) return place->second;

@@ -5,16 +5,9 @@
 
 namespace mcdem::inline elasticity {
 
-/// Coefficients of SurfaceLaw, lowest order first. Maximum errors in F/(E R), largest at nu = 0 and
-/// decreasing towards nu = 1/2: point 1e-4 and size 8e-5 for s from 0.15 to 1, self 5e-4 for a/R from 0.03 to
-/// 0.64.
-struct ElasticSphere {
-    std::array<double, point_terms> point{};
-    std::array<double, size_terms> size{};
-    std::array<double, self_terms> self{};
-};
-
-/// The fit takes some milliseconds; results are cached for every Poisson ratio. Thread-safe.
-ElasticSphere elastic_sphere(double poisson_ratio);
+/// The law of an elastic sphere. Maximum errors in F/(E R), largest at nu = 0 and decreasing towards nu =
+/// 1/2: point 1e-4 and size 8e-5 for s from 0.15 to 1, self 5e-4 for a/R from 0.03 to 0.64. The fit takes
+/// some milliseconds; results are cached for every Poisson ratio. Thread-safe.
+SurfaceLaw elastic_sphere(double poisson_ratio);
 
 }  // namespace mcdem::elasticity

@@ -43,9 +43,4 @@ struct SurfaceLaw {
 /// elastic_sphere only.
 SurfaceLaw surface_law(ContactModel model, double poisson_ratio, double gamma, double finite_strain = 0);
 
-/// Outward radial displacement, in F/(E R), of a free elastic sphere at angle theta [rad] from a point force.
-/// The load is balanced by a uniform body force, and the centre is fixed. Legendre series with its two
-/// slowest parts summed in closed form.
-double point_force_on_sphere(double poisson_ratio, double theta);
-
 }  // namespace mcdem::elasticity

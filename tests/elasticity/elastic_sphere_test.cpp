@@ -8,17 +8,19 @@
 
 #include "elasticity/elastic_sphere_series.h"
 #include "reference/grain_reference.h"
+#include "reference/point_force_reference.h"
 
 namespace mcdem {
 namespace {
 
+using reference::point_force_on_sphere;
 using reference::power_sum;
 using reference::SphereSeries;
 using std::numbers::pi;
 
 double half_sine(double degrees) { return std::sin(degrees / 2 * pi / 180); }
 
-double fitted_self(const ElasticSphere& sphere, double a) {
+double fitted_self(const SurfaceLaw& sphere, double a) {
     const auto& S = sphere.self;
     return S[0] + S[1] * std::log(a) + S[2] * a + S[3] * a * a + S[4] * a * a * a;
 }
@@ -110,7 +112,7 @@ TEST(ElasticSphere, PolynomialsHaveTheStatedErrors) {
          {Row{0.0, 1e-4, 8e-5, 5e-4}, Row{0.1, 7e-5, 7e-5, 4e-4}, Row{0.2, 5e-5, 5e-5, 3e-4},
           Row{0.3, 2e-5, 3e-5, 2e-4}, Row{0.4, 4e-6, 7e-6, 9e-5}, Row{0.45, 6e-7, 6e-7, 6e-5},
           Row{0.49, 2e-6, 4e-6, 3e-5}, Row{0.5, 2e-6, 5e-6, 3e-5}}) {
-        const ElasticSphere fitted = elastic_sphere(row.nu);
+        const SurfaceLaw fitted = elastic_sphere(row.nu);
         for (int i = 0; i <= 400; ++i) {
             const double s = 0.15 + 0.85 * i / 400;
             const SphereDisplacement exact = sphere_displacement(row.nu, s);
@@ -127,7 +129,7 @@ TEST(ElasticSphere, PolynomialsHaveTheStatedErrors) {
 
 TEST(ElasticSphere, AgreesWithAHalfSpaceCloseToTheLoad) {
     for (double nu : {0.0, 0.3, 0.5}) {
-        const ElasticSphere sphere = elastic_sphere(nu);
+        const SurfaceLaw sphere = elastic_sphere(nu);
         const double half_space = -(1 - nu * nu) / pi;  // times F/(E d), d = 2 R s
         EXPECT_DOUBLE_EQ(sphere.point[0], half_space / 2);
         EXPECT_DOUBLE_EQ(sphere.size[0], half_space / 32);
@@ -137,7 +139,7 @@ TEST(ElasticSphere, AgreesWithAHalfSpaceCloseToTheLoad) {
 }
 
 TEST(ElasticSphere, IsThreadSafe) {
-    std::array<ElasticSphere, 4> result;
+    std::array<SurfaceLaw, 4> result;
     {
         std::array<std::jthread, 4> threads;
         for (int i = 0; i < 4; ++i) threads[i] = std::jthread([&, i] { result[i] = elastic_sphere(0.123); });

@@ -7,11 +7,13 @@
 #include <random>
 
 #include "reference/grain_reference.h"
+#include "reference/point_force_reference.h"
 
 namespace mcdem {
 namespace {
 
 using reference::Grain;
+using reference::point_force_on_sphere;
 using reference::Slot;
 using std::numbers::pi;
 
