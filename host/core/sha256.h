@@ -5,20 +5,20 @@
 #include <string>
 #include <string_view>
 
+struct evp_md_ctx_st;  // of OpenSSL
+
 namespace mcdem::inline core {
 
 class Sha256 {
 public:
     Sha256();
-    ~Sha256();
     Sha256& add(std::string_view text);
     Sha256& add(std::span<const double> numbers);
     /// 64 hexadecimal digits of the digest. Do not call add afterwards.
     std::string hex();
 
 private:
-    struct Context;
-    std::unique_ptr<Context> context_;
+    std::unique_ptr<evp_md_ctx_st, void (*)(evp_md_ctx_st*)> context_;
 };
 
 }  // namespace mcdem::core

@@ -168,7 +168,7 @@ void Dataset::write_rows(hid_t memory_type, const void* data, hsize_t rows) {
 
 void Dataset::read(hid_t memory_type, void* data, hsize_t first, hsize_t rows) const {
     if (first + rows > this->rows()) fail("ends early");
-    if (digest_ && first != digest_->rows()) digest_.reset();
+    if (digest_ && first != digest_->rows) digest_.reset();
     digest_ ? read_checked(memory_type, static_cast<std::byte*>(data), rows)
             : read_rows(memory_type, data, first, rows);
 }

@@ -77,21 +77,14 @@ Handle text_type(std::size_t length);
 
 /// SHA-256 of a table: of its values, row by row as they are in the file, then of its type and extent.
 /// README.md describes how to compute it elsewhere.
-class TableDigest {
-public:
-    /// None yet: of a table that is written. Else what the table is to have.
-    explicit TableDigest(std::string expected = {}) : expected_(std::move(expected)) {}
+struct TableDigest {
+    std::string expected;  ///< empty: of a table that is written
+    hsize_t rows = 0;      ///< added to `sum` so far
+    Sha256 sum;
 
-    hsize_t rows() const { return rows_; }
-    const std::string& expected() const { return expected_; }
-    void add(const std::vector<std::byte>& values, hsize_t rows);
+    void add(const std::vector<std::byte>& values, hsize_t new_rows);
     /// Of all rows added; nothing may be added after.
     std::string hex(hid_t type, const std::vector<hsize_t>& extent);
-
-private:
-    Sha256 sum_;
-    hsize_t rows_ = 0;
-    std::string expected_;
 };
 
 /// `values`, `count` of them, from one type to another.

@@ -47,13 +47,13 @@ std::string text_of(hid_t type) {
 
 }  // namespace
 
-void TableDigest::add(const std::vector<std::byte>& values, hsize_t rows) {
-    sum_.add(std::string_view(reinterpret_cast<const char*>(values.data()), values.size()));
-    rows_ += rows;
+void TableDigest::add(const std::vector<std::byte>& values, hsize_t new_rows) {
+    sum.add(std::string_view(reinterpret_cast<const char*>(values.data()), values.size()));
+    rows += new_rows;
 }
 
 std::string TableDigest::hex(hid_t type, const std::vector<hsize_t>& extent) {
-    return sum_.add(fmt::format("{} {}", text_of(type), fmt::join(extent, "x"))).hex();
+    return sum.add(fmt::format("{} {}", text_of(type), fmt::join(extent, "x"))).hex();
 }
 
 bool convert(std::vector<std::byte>& values, std::size_t count, hid_t from, hid_t to) {
@@ -74,7 +74,7 @@ void Dataset::read_checked(hid_t memory_type, std::byte* data, hsize_t rows) con
     for (hsize_t done = 0; done < rows;) {
         const hsize_t some = std::min(in_block, rows - done);
         std::vector<std::byte> values(some * row_bytes);
-        read_rows(stored, values.data(), digest_->rows(), some);
+        read_rows(stored, values.data(), digest_->rows, some);
         digest_->add(values, some);
         done += some;
         if (!data) continue;
@@ -83,19 +83,22 @@ void Dataset::read_checked(hid_t memory_type, std::byte* data, hsize_t rows) con
         std::ranges::copy(values, data);
         data += values.size();
     }
-    if (digest_->rows() == this->rows()) check_digest();
+    if (digest_->rows == this->rows()) check_digest();
 }
 
 void Dataset::check_digest() const {
     const std::unique_ptr<TableDigest> digest = std::move(digest_);
-    if (digest->hex(type(), extent()) != digest->expected())
+    if (digest->hex(type(), extent()) != digest->expected)
         throw InputError(
             where_ +
             ": does not have the digest that it was written with; the file is damaged: restore it "
             "from a copy or run again");
 }
 
-void Dataset::expect_digest(const std::string& digest) { digest_ = std::make_unique<TableDigest>(digest); }
+void Dataset::expect_digest(const std::string& digest) {
+    keep_digest();
+    digest_->expected = digest;
+}
 
 std::string Dataset::digest() const { return digest_->hex(type(), extent()); }
 
