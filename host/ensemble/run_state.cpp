@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <cstring>
+#include <span>
 
 #include "cl/program.h"
 #include "core/errors.h"
@@ -32,31 +32,15 @@ std::string text_of(const Checkpoint& checkpoint, const std::string& field) {
     return {reinterpret_cast<const char*>(found->second.data()), found->second.size()};
 }
 
-/// 64-bit FNV-1a, number by number.
-class Digest {
-public:
-    void add(double value) {
-        std::uint64_t bits;
-        std::memcpy(&bits, &value, sizeof bits);
-        sum_ = (sum_ ^ bits) * 0x100000001b3;
-        sum_ ^= sum_ >> 29;  // mixes high bits into low ones; otherwise the sign of the last number would
-                             // have little influence
-    }
-    std::string text() const { return fmt::format("{:016x}", sum_); }
-
-private:
-    std::uint64_t sum_ = 0xcbf29ce484222325;
-};
-
 std::string digest_of(const std::vector<Packing>& packings) {
-    Digest digest;
-    for (const auto& packing : packings) {
-        digest.add(static_cast<double>(packing.size()));
-        for (const Vec3& position : packing.position)
-            for (int axis = 0; axis < 3; ++axis) digest.add(position[axis]);
-        for (const double diameter : packing.diameter) digest.add(diameter);
+    Sha256 digest;
+    for (const Packing& packing : packings) {
+        const auto size = static_cast<double>(packing.size());
+        digest.add(std::span(&size, 1));
+        if (packing.size() > 0) digest.add(std::span(packing.position.front().data(), 3 * packing.size()));
+        digest.add(packing.diameter);
     }
-    return digest.text();
+    return digest.hex();
 }
 
 /// Keys with different values in two scenes, for the first replica that differs: "contact.gamma is 1.2, was

@@ -1,7 +1,5 @@
 #include "io/checkpoint.h"
 
-#include <zlib.h>
-
 #include "core/atomic_file.h"
 #include "core/errors.h"
 #include "io/hdf5.h"
@@ -10,45 +8,18 @@ namespace mcdem::inline io {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr long checkpoint_format = 2;
+constexpr long checkpoint_format = 3;
 
 fs::path newest(const fs::path& folder) { return folder / "checkpoint.h5"; }
 fs::path previous(const fs::path& folder) { return folder / "checkpoint.previous.h5"; }
 
-/// CRC-32 over all data and their sizes, so that bytes cannot move unnoticed from one field to the next.
-class Checksum {
-public:
-    void add(const void* data, std::size_t size) {
-        const unsigned long length = size;
-        sum_ = crc32_z(sum_, reinterpret_cast<const Bytef*>(&length), sizeof length);
-        if (size > 0) sum_ = crc32_z(sum_, static_cast<const Bytef*>(data), size);
-    }
-    void add(const std::string& text) { add(text.data(), text.size()); }
-    long value() const { return static_cast<long>(sum_); }
-
-private:
-    unsigned long sum_ = crc32_z(0, nullptr, 0);
-};
-
-long checksum(const Checkpoint& checkpoint) {
-    Checksum sum;
-    sum.add(checkpoint.scene_text);
-    sum.add(checkpoint.device);
-    sum.add(&checkpoint.segments, sizeof checkpoint.segments);
-    for (const auto& [name, bytes] : checkpoint.fields) {
-        sum.add(name);
-        sum.add(bytes.data(), bytes.size());
-    }
-    return sum.value();
-}
-
 void write_file(NewFile& out, const Checkpoint& checkpoint) {
     h5::File file = h5::File::create(out);
+    file.keep_digests();
     file.make_group("/checkpoint/fields");
     file.set_attribute("/checkpoint", "format", std::vector<long>{checkpoint_format});
     file.set_attribute("/checkpoint", "device", checkpoint.device);
     file.set_attribute("/checkpoint", "segments", std::vector<long>{checkpoint.segments});
-    file.set_attribute("/checkpoint", "crc32", std::vector<long>{checksum(checkpoint)});
     file.write_texts("/checkpoint/scene", {checkpoint.scene_text});
     const h5::Handle byte = h5::number_type<unsigned char>();
     for (const auto& [name, bytes] : checkpoint.fields) {
@@ -58,8 +29,9 @@ void write_file(NewFile& out, const Checkpoint& checkpoint) {
         h5::Dataset table =
             file.create_rows("/checkpoint/fields/" + name, byte, {}, h5::Storage::plain, bytes.size());
         table.append(byte, bytes.data(), bytes.size());
-        table.close();
+        file.finish(table);
     }
+    file.write_digests();
     file.close();
 }
 
@@ -81,8 +53,10 @@ Checkpoint read_file(const fs::path& path) {
         bytes.resize(table.rows());
         table.read(h5::number_type<unsigned char>(), bytes.data(), 0, bytes.size());
     }
-    if (checksum(checkpoint) != file.integer_attribute("/checkpoint", "crc32"))
-        throw InputError(path.string() + ": the checksum does not match; the file is damaged");
+    // Every table that was read has been compared with its digest; the scene is one more.
+    if (file.digests().size() != checkpoint.fields.size() + 1)
+        throw InputError(path.string() +
+                         ": must have one digest for each of its tables; the file is damaged");
     return checkpoint;
 }
 

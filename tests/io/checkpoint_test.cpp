@@ -90,7 +90,23 @@ TEST(checkpoint, changed_bytes_with_correct_library_checksums_are_detected) {
         read_checkpoint(folder.path());
         FAIL();
     } catch (const InputError& error) {
-        EXPECT_THAT(error.what(), HasSubstr("checksum does not match"));
+        EXPECT_THAT(error.what(), HasSubstr("/checkpoint/fields/status: does not have the digest"));
+    }
+}
+
+TEST(checkpoint, a_removed_field_is_detected) {
+    TemporaryFolder folder;
+    write_checkpoint(folder.path(), example(5));
+    {
+        const h5::Handle file(H5Fopen((folder / "checkpoint.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT),
+                              H5Fclose);
+        ASSERT_GE(H5Ldelete(file, "/checkpoint/fields/status", H5P_DEFAULT), 0);
+    }
+    try {
+        read_checkpoint(folder.path());
+        FAIL();
+    } catch (const InputError& error) {
+        EXPECT_THAT(error.what(), HasSubstr("must have one digest for each of its tables"));
     }
 }
 
