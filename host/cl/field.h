@@ -1,6 +1,5 @@
 // Device memory with its quantity in the type, so that swapped kernel arguments do not compile.
 #pragma once
-#include <cstring>
 #include <utility>
 #include <vector>
 

@@ -4,7 +4,6 @@
 #pragma once
 #include <hdf5.h>
 
-#include <array>
 #include <cstddef>
 #include <filesystem>
 #include <functional>

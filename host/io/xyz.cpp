@@ -5,7 +5,6 @@
 #include "core/atomic_file.h"
 #include "core/container.h"
 #include "core/errors.h"
-#include "core/make_folder.h"
 #include "core/output_file.h"
 #include "io/export_run.h"
 

@@ -1,7 +1,6 @@
 // The table of scene keys. Reading, checking, defaults, parameters in results and the reference in
 // scenes/README.md all use it. A new key needs one row, and a member in scene.h.
 #pragma once
-#include <limits>
 #include <span>
 #include <string>
 #include <string_view>

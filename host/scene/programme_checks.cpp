@@ -1,7 +1,6 @@
 #include "scene/programme_checks.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>

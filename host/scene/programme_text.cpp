@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "core/errors.h"
 #include "core/parameters.h"
 #include "scene/list_tables.h"

@@ -1,7 +1,5 @@
 #include "sim/engine.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
