@@ -19,5 +19,12 @@ std::string without_quotes(const std::string& text);
 
 /// Keys with different values among these, in alphabetical order.
 std::vector<std::string> keys_that_vary(const std::vector<Parameters>& all);
+/// The same among the parameters of recordings or replicas.
+template <class Owner>
+std::vector<std::string> keys_that_vary(const std::vector<Owner>& owners) {
+    std::vector<Parameters> all;
+    for (const Owner& owner : owners) all.push_back(owner.parameters);
+    return keys_that_vary(all);
+}
 
 }  // namespace mcdem::core

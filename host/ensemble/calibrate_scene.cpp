@@ -95,10 +95,8 @@ private:
 }  // namespace
 
 std::vector<Replica> calibration_replicas(const Scene& scene, ContactModel model) {
-    std::vector<Parameters> all;
-    for (const Replica& replica : scene.replicas) all.push_back(replica.parameters);
     std::vector<std::string> problems;
-    for (const auto& key : keys_that_vary(all))
+    for (const auto& key : keys_that_vary(scene.replicas))
         if (!left_aside.contains(key))
             problems.push_back(fmt::format(
                 "calibrate: {} must be the same for all replicas: give one value with --set {}=..", key,

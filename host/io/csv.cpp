@@ -37,33 +37,14 @@ std::string value_text(const std::string& value) {
     return is_number || value.empty() ? value : quoted(without_quotes(value));
 }
 
-std::vector<std::string> varying_keys(const Run& run) {
-    std::vector<Parameters> all;
-    for (const auto& recording : run.recordings) all.push_back(recording.parameters);
-    return keys_that_vary(all);
-}
-
 /// The force that presses a flat wall, or a face of a cell, outwards; NaN for a wall that is missing or not
 /// flat [N].
 double pressing(const Box& box, const Scan& scan, Wall wall) {
     if ((!has_wall(box, wall) && !is_cell(box)) || (is_cylinder(box) && wall == curved_wall))
         return std::numeric_limits<double>::quiet_NaN();
-    const Vec3& force = scan.wall_force[static_cast<std::size_t>(wall)];
-    switch (wall) {
-        case Wall::x_min:
-            return -force.x();
-        case Wall::x_max:
-            return force.x();
-        case Wall::y_min:
-            return -force.y();
-        case Wall::y_max:
-            return force.y();
-        case Wall::floor:
-            return -force.z();
-        case Wall::plate:
-            return force.z();
-    }
-    return 0;
+    const int n = static_cast<int>(wall);  // two walls for each axis, the lower one first
+    const double force = scan.wall_force[static_cast<std::size_t>(n)][n / 2];
+    return n % 2 ? force : -force;
 }
 
 /// The vertical force on a cylinder's wall; NaN in other containers [N].
@@ -77,7 +58,7 @@ double along_side(const Box& box, const Scan& scan) {
 std::string csv_text(const Run& run, const StopWanted& stop_wanted) {
     fmt::memory_buffer text;
     auto out = std::back_inserter(text);
-    const auto keys = varying_keys(run);
+    const auto keys = keys_that_vary(run.recordings);
     fmt::format_to(out, header);
     const bool any_side = std::ranges::any_of(
         run.recordings, [](const Recording& recording) { return is_cylinder(recording.box); });

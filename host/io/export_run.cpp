@@ -30,10 +30,8 @@ void expect_replicas(const ExportChoice& choice, const Run& run) {
 
 /// A line for each selected replica: its name and every scene key that varies.
 std::string list_of_replicas(const ExportChoice& choice, const Run& run) {
-    std::vector<Parameters> all;
-    for (const Recording& recording : run.recordings) all.push_back(recording.parameters);
     std::string lines;
-    const auto keys = keys_that_vary(all);
+    const auto keys = keys_that_vary(run.recordings);
     for (std::size_t r = 0; r < run.recordings.size(); ++r) {
         if (!choice.has_replica(r)) continue;
         lines += export_name(r, run.recordings[r].label);
