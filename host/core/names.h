@@ -2,6 +2,7 @@
 // their names. `name` and `parse` use the same table.
 #pragma once
 #include <array>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -50,55 +51,41 @@ enum class FractionsBy { number, volume };
 
 enum class Precision { single_precision, double_precision };
 
+/// The names of an enumeration, in the order of its values; other types have none.
 template <class Enum>
-struct Names;
+inline constexpr std::nullptr_t name_list{};
 template <>
-struct Names<ContactModel> {
-    static constexpr std::array<std::string_view, 7> list{
-        "independent", "point_force_on_sphere", "sphere_to_sphere",   "elastic_half_space",
-        "mc_dem",      "elastic_sphere",        "hyperelastic_sphere"};
-};
+inline constexpr std::array<std::string_view, 7> name_list<ContactModel>{
+    "independent", "point_force_on_sphere", "sphere_to_sphere",   "elastic_half_space",
+    "mc_dem",      "elastic_sphere",        "hyperelastic_sphere"};
 template <>
-struct Names<FrictionLaw> {
-    static constexpr std::array<std::string_view, 2> list{"saturated", "mindlin"};
-};
+inline constexpr std::array<std::string_view, 2> name_list<FrictionLaw>{"saturated", "mindlin"};
 template <>
-struct Names<ContainerShape> {
-    static constexpr std::array<std::string_view, 4> list{"box", "cylinder", "periodic", "cell"};
-};
+inline constexpr std::array<std::string_view, 4> name_list<ContainerShape>{"box", "cylinder", "periodic",
+                                                                           "cell"};
 template <>
-struct Names<Wall> {
-    static constexpr std::array<std::string_view, 6> list{"x_min", "x_max", "y_min",
-                                                          "y_max", "floor", "plate"};
-};
+inline constexpr std::array<std::string_view, 6> name_list<Wall>{"x_min", "x_max", "y_min",
+                                                                 "y_max", "floor", "plate"};
 template <>
-struct Names<Phase> {
-    static constexpr std::array<std::string_view, 2> list{"load", "unload"};
-};
+inline constexpr std::array<std::string_view, 2> name_list<Phase>{"load", "unload"};
 template <>
-struct Names<SizeLaw> {
-    static constexpr std::array<std::string_view, 4> list{"normal", "lognormal", "single", "table"};
-};
+inline constexpr std::array<std::string_view, 4> name_list<SizeLaw>{"normal", "lognormal", "single", "table"};
 template <>
-struct Names<FractionsBy> {
-    static constexpr std::array<std::string_view, 2> list{"number", "volume"};
-};
+inline constexpr std::array<std::string_view, 2> name_list<FractionsBy>{"number", "volume"};
 template <>
-struct Names<Precision> {
-    static constexpr std::array<std::string_view, 2> list{"float", "double"};
-};
+inline constexpr std::array<std::string_view, 2> name_list<Precision>{"float", "double"};
 
 /// The name of `value` in scenes, files and figures.
 template <class Enum>
 constexpr std::string_view name(Enum value) {
-    return Names<Enum>::list[static_cast<std::size_t>(value)];
+    return name_list<Enum>[static_cast<std::size_t>(value)];
 }
 
 /// The value with the name `word`, if any.
 template <class Enum>
 std::optional<Enum> parse(std::string_view word) {
-    for (std::size_t i = 0; i < Names<Enum>::list.size(); ++i)
-        if (Names<Enum>::list[i] == word) return static_cast<Enum>(i);
+    for (std::size_t i = 0; i < name_list<Enum>.size(); ++i)
+        if (name_list<Enum>[i] == word) return static_cast<Enum>(i);
     return std::nullopt;
 }
 
@@ -106,7 +93,7 @@ std::optional<Enum> parse(std::string_view word) {
 template <class Enum>
 std::string all_names() {
     std::string text;
-    for (auto word : Names<Enum>::list) text += (text.empty() ? "" : ", ") + std::string(word);
+    for (auto word : name_list<Enum>) text += (text.empty() ? "" : ", ") + std::string(word);
     return text;
 }
 

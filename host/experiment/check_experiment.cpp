@@ -27,7 +27,7 @@ std::string Tally::text() const {
 
 const std::vector<Wall>& walls_of(const Box& box) {
     static const auto by_shape = [] {
-        std::array<std::vector<Wall>, Names<ContainerShape>::list.size()> lists;
+        std::array<std::vector<Wall>, name_list<ContainerShape>.size()> lists;
         for (std::size_t shape = 0; shape < lists.size(); ++shape)
             for (int wall = 0; wall < wall_count; ++wall) {
                 Box any;

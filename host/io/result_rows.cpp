@@ -24,8 +24,8 @@ h5::Handle truth_type() {
 
 h5::Handle phase_type() {
     h5::Handle type(H5Tenum_create(H5T_NATIVE_SCHAR), H5Tclose);
-    for (signed char i = 0; i < static_cast<signed char>(Names<Phase>::list.size()); ++i)
-        H5Tenum_insert(type, std::string(Names<Phase>::list[static_cast<std::size_t>(i)]).c_str(), &i);
+    for (signed char i = 0; i < static_cast<signed char>(name_list<Phase>.size()); ++i)
+        H5Tenum_insert(type, std::string(name_list<Phase>[static_cast<std::size_t>(i)]).c_str(), &i);
     return type;
 }
 
@@ -95,7 +95,7 @@ ScanRow scan_row(const Scan& scan) {
 }
 
 Scan scan_of(const ScanRow& row, const std::string& where) {
-    if (row.phase < 0 || row.phase >= static_cast<int>(Names<Phase>::list.size()))
+    if (row.phase < 0 || row.phase >= static_cast<int>(name_list<Phase>.size()))
         throw InputError(where + ": phase must be load or unload, got number " + std::to_string(row.phase));
     Scan scan;
     for_each_field([&](auto, auto, auto to, auto from) { convert(row.*from, scan.*to); });

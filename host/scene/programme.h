@@ -18,13 +18,9 @@ enum class StageKind {
 enum class Controlled { position, force, stress };
 
 template <>
-struct Names<StageKind> {
-    static constexpr std::array<std::string_view, 4> list{"move", "hold", "cycle", "repeat"};
-};
+inline constexpr std::array<std::string_view, 4> name_list<StageKind>{"move", "hold", "cycle", "repeat"};
 template <>
-struct Names<Controlled> {
-    static constexpr std::array<std::string_view, 3> list{"position", "force", "stress"};
-};
+inline constexpr std::array<std::string_view, 3> name_list<Controlled>{"position", "force", "stress"};
 
 }  // namespace mcdem::core
 

@@ -13,7 +13,7 @@ using Sets = testing::Types<ContactModel, FrictionLaw, Wall, Phase, Precision>;
 TYPED_TEST_SUITE(NamesTest, Sets);
 
 TYPED_TEST(NamesTest, EveryWordIsReadBackAsItself) {
-    const auto& list = Names<TypeParam>::list;
+    const auto& list = name_list<TypeParam>;
     for (std::size_t i = 0; i < list.size(); ++i) {
         const auto value = parse<TypeParam>(list[i]);
         ASSERT_TRUE(value.has_value()) << list[i];
@@ -23,12 +23,12 @@ TYPED_TEST(NamesTest, EveryWordIsReadBackAsItself) {
 }
 
 TYPED_TEST(NamesTest, NoWordHasTwoValues) {
-    const auto& list = Names<TypeParam>::list;
+    const auto& list = name_list<TypeParam>;
     EXPECT_EQ(std::set(list.begin(), list.end()).size(), list.size());
 }
 
 TYPED_TEST(NamesTest, OtherWordsAreRefused) {
-    const std::string first(Names<TypeParam>::list[0]);
+    const std::string first(name_list<TypeParam>[0]);
     for (const std::string& word : {std::string(), first + " ", " " + first, first + "s", first.substr(1)})
         EXPECT_FALSE(parse<TypeParam>(word).has_value()) << '"' << word << '"';
 }
@@ -45,7 +45,7 @@ TEST(Names, WordsGiveTheirValues) {
     EXPECT_EQ(name(Wall::plate), "plate");
     EXPECT_EQ(name(Phase::unload), "unload");
     EXPECT_EQ(name(Precision::double_precision), "double");
-    EXPECT_EQ(Names<Wall>::list.size(), static_cast<std::size_t>(wall_count));
+    EXPECT_EQ(name_list<Wall>.size(), static_cast<std::size_t>(wall_count));
 }
 
 TEST(Names, ListForMessages) { EXPECT_EQ(all_names<FrictionLaw>(), "saturated, mindlin"); }

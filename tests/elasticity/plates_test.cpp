@@ -172,7 +172,7 @@ std::map<std::string, double> print_table(const char* material, const std::vecto
     for (const Row& row : rows) {
         fmt::print("{:11} {:11} {:>4} {:>7}", material, row.at("case"), row.at("poisson_ratio"),
                    row.at("overlap_over_R"));
-        for (auto model : Names<ContactModel>::list) {
+        for (auto model : name_list<ContactModel>) {
             const double ratio = fem_ratio(*parse<ContactModel>(model), row);
             fmt::print(" {:>21.3f}", ratio);
             const double miss = std::isnan(ratio) ? 1 : std::abs(ratio - 1);
@@ -186,7 +186,7 @@ std::map<std::string, double> print_table(const char* material, const std::vecto
 TEST_F(FiniteElements, TableOfModels) {
     fmt::print("force of the model / finite elements (mc_dem: gamma 1.125; nan: no static solution)\n");
     fmt::print("{:11} {:11} {:>4} {:>7}", "material", "case", "nu", "overlap");
-    for (auto model : Names<ContactModel>::list) fmt::print(" {:>21}", model);
+    for (auto model : name_list<ContactModel>) fmt::print(" {:>21}", model);
     fmt::print("\n");
     const auto worst = print_table("linear", forces_);
     for (const auto& [model, miss] : worst) {

@@ -142,7 +142,7 @@ Grain crowded_grain(double poisson_ratio, unsigned seed) {
 
 TEST(SurfaceDisplacement, LawsAgreeWithTheirModels) {
     for (double nu : {0.1, 0.3, 0.5})
-        for (std::size_t m = 0; m < Names<ContactModel>::list.size(); ++m) {
+        for (std::size_t m = 0; m < name_list<ContactModel>.size(); ++m) {
             const auto model = static_cast<ContactModel>(m);
             if (model == ContactModel::hyperelastic_sphere) continue;  // no series exists for it
             const Grain grain = crowded_grain(nu, 5);

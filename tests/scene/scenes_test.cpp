@@ -32,9 +32,9 @@ TEST(Scenes, FirstPackingOfEachCanBeMade) {
 
 TEST(Scenes, CompressionComparesAllModelsOnOnePacking) {
     const Scene scene = read_scene(folder / "compression.toml");
-    ASSERT_EQ(scene.replicas.size(), Names<ContactModel>::list.size());
+    ASSERT_EQ(scene.replicas.size(), name_list<ContactModel>.size());
     for (std::size_t i = 0; i < scene.replicas.size(); ++i) {
-        EXPECT_EQ(scene.replicas[i].label, Names<ContactModel>::list[i]);
+        EXPECT_EQ(scene.replicas[i].label, name_list<ContactModel>[i]);
         EXPECT_EQ(scene.replicas[i].packing.seed, scene.replicas[0].packing.seed);
         EXPECT_EQ(scene.replicas[i].protocol.cycles, 1);
     }

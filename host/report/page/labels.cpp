@@ -8,7 +8,7 @@
 namespace mcdem::inline report {
 namespace {
 
-constexpr std::array<const char*, Names<ContactModel>::list.size()> model_words{
+constexpr std::array<const char*, name_list<ContactModel>.size()> model_words{
     "Independent contacts", "Point force on sphere", "Sphere to sphere", "Elastic half space", "MC-DEM",
     "Elastic sphere",       "Hyperelastic sphere"};
 
