@@ -108,12 +108,13 @@ std::vector<Scan> ResultFile::scans(const Recording& recording, std::size_t repl
     std::vector<Scan> scans;
     scans.reserve(rows.size());
     for (const ScanRow& row : rows) scans.push_back(scan_of(row, table.where()));
+    const Window all{scans, 0, true};
     const std::size_t grains = recording.diameter.size();
     if (what == ReadWhat::positions || what == ReadWhat::everything) {
-        read_vectors(scans, &Scan::position, grains, particles_path(replica) + "/position");
-        read_vectors(scans, &Scan::rotation, grains, particles_path(replica) + "/rotation");
+        read_vectors(all, &Scan::position, grains, particles_path(replica) + "/position");
+        read_vectors(all, &Scan::rotation, grains, particles_path(replica) + "/rotation");
     }
-    if (what == ReadWhat::contacts || what == ReadWhat::everything) read_contacts(scans, grains, replica);
+    if (what == ReadWhat::contacts || what == ReadWhat::everything) read_contacts(all, grains, replica);
     return scans;
 }
 
@@ -142,23 +143,22 @@ std::vector<Contact> read_contact_rows(const h5::Dataset& table, std::size_t gra
 
 }  // namespace
 
-/// Files of earlier versions have no rotations.
-bool ResultFile::has_vectors(std::size_t grains, const std::string& group) const {
-    return grains > 0 && (!group.ends_with("/rotation") || file_.exists(group));
-}
-
-void ResultFile::read_vectors(std::vector<Scan>& scans, std::vector<Vec3> Scan::*vectors, std::size_t grains,
+void ResultFile::read_vectors(const Window& window, std::vector<Vec3> Scan::*vectors, std::size_t grains,
                               const std::string& group) const {
-    if (!has_vectors(grains, group)) return;
+    // Files of earlier versions have no rotations.
+    if (grains == 0 || (group.ends_with("/rotation") && !file_.exists(group))) return;
     const h5::Dataset table = file_.dataset(group + "/value");
     table.expect_row({grains, 3});
     const auto step = file_.dataset(group + "/step").read_all<long>();
     if (step.size() != table.rows()) throw InputError(table.where() + ": must have one row for each of step");
+    const auto scans = static_cast<long>(window.scans.size());
     for (std::size_t k = 0; k < step.size(); ++k) {
-        if (step[k] < 0 || step[k] >= static_cast<long>(scans.size()))
+        const long scan = step[k] - window.first;
+        if (scan >= 0 && scan < scans)
+            window.scans[static_cast<std::size_t>(scan)].*vectors = vectors_in(table, k, grains);
+        else if (window.all)
             throw InputError(fmt::format("{}: step {} must be the row of a scan, 0 to {}", table.where(),
-                                         step[k], static_cast<long>(scans.size()) - 1));
-        scans[static_cast<std::size_t>(step[k])].*vectors = vectors_in(table, k, grains);
+                                         step[k], scans - 1));
     }
 }
 
@@ -168,45 +168,33 @@ std::vector<Contact> ResultFile::contact_rows(const h5::Dataset& table, std::siz
                       : read_contact_rows<float>(table, grains, first, last);
 }
 
-void ResultFile::read_contacts(std::vector<Scan>& scans, std::size_t grains, std::size_t replica) const {
+void ResultFile::read_contacts(const Window& window, std::size_t grains, std::size_t replica) const {
     const h5::Dataset table = file_.dataset(contacts_path(replica) + "/contact");
+    const h5::Dataset offsets = file_.dataset(contacts_path(replica) + "/offset");
     table.expect_row({});
+    offsets.expect_row({});
     expect_fields(table, contact_row_type<double>());
-    const auto offset = file_.dataset(contacts_path(replica) + "/offset").read_all<long>();
-    if (offset.size() != scans.size() + 1 || offset.front() != 0 || !std::ranges::is_sorted(offset) ||
-        offset.back() != static_cast<long>(table.rows()))
+    std::vector<long> offset(window.scans.size() + 1);
+    const auto contacts = static_cast<long>(table.rows());
+    bool good = !window.all || offsets.rows() == offset.size();
+    if (good)
+        offsets.read(h5::number_type<long>(), offset.data(), static_cast<hsize_t>(window.first),
+                     offset.size());
+    good = good && std::ranges::is_sorted(offset) && offset.front() >= 0 && offset.back() <= contacts;
+    if (!good || (window.all && (offset.front() != 0 || offset.back() != contacts)))
         throw InputError(table.where() +
                          ": offset must rise from 0 to the number of contacts, one entry a scan "
                          "and one more");
     // One scan at a time, because the rows of a whole replica would double the memory.
-    for (std::size_t s = 0; s < scans.size(); ++s)
-        scans[s].contacts = contact_rows(table, grains, offset[s], offset[s + 1]);
+    for (std::size_t s = 0; s < window.scans.size(); ++s)
+        window.scans[s].contacts = contact_rows(table, grains, offset[s], offset[s + 1]);
 }
 
 void ResultFile::fill(Scan& scan, std::size_t grains, std::size_t replica, std::size_t row) const {
-    const h5::Dataset contacts = file_.dataset(contacts_path(replica) + "/contact");
-    const h5::Dataset offset = file_.dataset(contacts_path(replica) + "/offset");
-    contacts.expect_row({});
-    offset.expect_row({});
-    expect_fields(contacts, contact_row_type<double>());
-    long bounds[2] = {0, 0};
-    offset.read(h5::number_type<long>(), bounds, row, 2);
-    if (bounds[0] < 0 || bounds[1] < bounds[0] || bounds[1] > static_cast<long>(contacts.rows()))
-        throw InputError(offset.where() + ": must rise from 0 to the number of contacts");
-    scan.contacts = contact_rows(contacts, grains, bounds[0], bounds[1]);
-    scan.position = vectors_at(row, grains, particles_path(replica) + "/position");
-    scan.rotation = vectors_at(row, grains, particles_path(replica) + "/rotation");
-}
-
-std::vector<Vec3> ResultFile::vectors_at(std::size_t row, std::size_t grains,
-                                         const std::string& group) const {
-    if (!has_vectors(grains, group)) return {};
-    const auto step = file_.dataset(group + "/step").read_all<long>();
-    const auto found = std::ranges::find(step, static_cast<long>(row));
-    if (found == step.end()) return {};
-    const h5::Dataset table = file_.dataset(group + "/value");
-    table.expect_row({grains, 3});
-    return vectors_in(table, static_cast<std::size_t>(found - step.begin()), grains);
+    const Window one{{&scan, 1}, static_cast<long>(row), false};
+    read_contacts(one, grains, replica);
+    read_vectors(one, &Scan::position, grains, particles_path(replica) + "/position");
+    read_vectors(one, &Scan::rotation, grains, particles_path(replica) + "/rotation");
 }
 
 void ResultFile::expect_whole(const std::function<void()>& before_each) const {

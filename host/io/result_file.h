@@ -3,6 +3,8 @@
 #pragma once
 #include <functional>
 #include <optional>
+#include <set>
+#include <span>
 
 #include "core/recording.h"
 #include "core/stop.h"
@@ -83,15 +85,18 @@ public:
     void expect_whole(std::size_t replica) const;
 
 private:
+    /// Scans to read: those in the rows from `first` on, and whether these are all.
+    struct Window {
+        std::span<Scan> scans;
+        long first;
+        bool all;
+    };
     Recording recording_header(std::size_t replica) const;
     void read_species(Recording& recording, const std::string& particles) const;
     /// Positions or rotations, from an element of H5MD.
-    void read_vectors(std::vector<Scan>& scans, std::vector<Vec3> Scan::*vectors, std::size_t grains,
+    void read_vectors(const Window& window, std::vector<Vec3> Scan::*vectors, std::size_t grains,
                       const std::string& group) const;
-    /// The same for one scan; empty if there are none.
-    std::vector<Vec3> vectors_at(std::size_t row, std::size_t grains, const std::string& group) const;
-    bool has_vectors(std::size_t grains, const std::string& group) const;
-    void read_contacts(std::vector<Scan>& scans, std::size_t grains, std::size_t replica) const;
+    void read_contacts(const Window& window, std::size_t grains, std::size_t replica) const;
     std::vector<Contact> contact_rows(const h5::Dataset& table, std::size_t grains, long first,
                                       long last) const;
     h5::File file_;
@@ -103,13 +108,16 @@ private:
 class ResultFiles {
 public:
     explicit ResultFiles(std::vector<std::filesystem::path> paths)
-        : paths_(std::move(paths)), open_(paths_.size()) {}
+        : paths_(std::move(paths)), open_(paths_.size()), checked_(paths_.size()) {}
     const std::vector<std::filesystem::path>& paths() const { return paths_; }
     const ResultFile& open(std::size_t index);
+    /// The file, after checking the digests of this replica's positions and contacts.
+    const ResultFile& checked(std::size_t index, std::size_t replica);
 
 private:
     std::vector<std::filesystem::path> paths_;
     std::vector<std::optional<ResultFile>> open_;
+    std::vector<std::set<std::size_t>> checked_;  ///< replicas by file
 };
 
 /// Provenance and recordings, without scans, of a run in several consecutive files.

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <optional>
-#include <set>
 
 #include "core/errors.h"
 #include "io/result_file.h"
@@ -102,24 +101,15 @@ const ResultFile& ResultFiles::open(std::size_t index) {
     return open_[index].emplace(paths_[index]);
 }
 
-class RunReader::Files : public ResultFiles {
-public:
-    explicit Files(std::vector<std::filesystem::path> paths)
-        : ResultFiles(std::move(paths)), looked_at_(this->paths().size()) {}
-    /// The file, after checking the digests of this replica's positions and contacts.
-    const ResultFile& checked(std::size_t index, std::size_t replica) {
-        const ResultFile& file = open(index);
-        if (looked_at_[index].insert(replica).second) file.expect_whole(replica);
-        return file;
-    }
-
-private:
-    std::vector<std::set<std::size_t>> looked_at_;  ///< checked replicas by file
-};
+const ResultFile& ResultFiles::checked(std::size_t index, std::size_t replica) {
+    const ResultFile& file = open(index);
+    if (checked_[index].insert(replica).second) file.expect_whole(replica);
+    return file;
+}
 
 RunReader::RunReader(const std::filesystem::path& file_or_folder) {
     read_settled(file_or_folder, [&](const std::vector<std::filesystem::path>& paths) {
-        files_ = std::make_unique<Files>(paths);
+        files_ = std::make_unique<ResultFiles>(paths);
         run_ = {};
         first_scan_.clear();
         for (std::size_t f = 0; f < paths.size(); ++f) {

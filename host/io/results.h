@@ -33,9 +33,8 @@ public:
     Scan read_scan(std::size_t replica, std::size_t scan);
 
 private:
-    class Files;
     Run run_;
-    std::unique_ptr<Files> files_;
+    std::unique_ptr<class ResultFiles> files_;
     std::vector<std::vector<std::size_t>> first_scan_;  ///< by file and replica
 };
 
