@@ -1,7 +1,7 @@
 // Readers of the tables of an experiment folder.
 #pragma once
 #include "experiment/experiment.h"
-#include "experiment/table.h"
+#include "scene/table.h"
 
 namespace mcdem::inline experiment {
 

@@ -3,11 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <sstream>
+#include <set>
 
 #include "core/errors.h"
 #include "core/input_file.h"
 #include "scene/packing_fields.h"
+#include "scene/table.h"
 
 namespace mcdem::inline scene {
 namespace {
@@ -271,6 +272,33 @@ Packing read_yade_packing(std::string_view text, const std::string& source) {
     return grains->packing();
 }
 
+Packing read_csv_packing(const std::string& text, const std::string& source, std::optional<long> wanted) {
+    FileProblems problems(source);
+    Table table(source, {"x_m", "y_m", "z_m", "diameter_m"}, text.size(), problems,
+                {"frame", "species", "type"}, &text);
+    const bool has_frames = table.has(4), has_species = table.has(5) || table.has(6);
+    const std::size_t species_column = table.has(5) ? 5 : 6;
+    if (wanted && !has_frames && problems.empty())
+        problems.add("must have a column frame where packing.frame is given, got none");
+    GrainColumns columns{.x = 0, .y = 1, .z = 2, .size = 3, .id = {}, .species = {}};
+    if (has_species) columns.species = 4;
+    GrainRows grains(columns, {"x", "y", "z", "diameter", "species"}, problems);
+    std::set<long> frames;
+    while (!problems.full() && table.next()) {
+        const auto frame = has_frames ? table.whole_number(4, 0) : wanted;
+        if (has_frames && frame) frames.insert(*frame);
+        if (!wanted) wanted = frame;  // the first
+        if (frame != wanted) continue;
+        const std::string_view species = table.text(species_column);
+        grains.add({table.text(0), table.text(1), table.text(2), table.text(3), species}, table.line());
+        if (has_species && species.empty()) table.problem("the species must be a name or a number, got none");
+    }
+    if (grains.size() == 0 && problems.empty() && !frames.empty())
+        problems.add(fmt::format("the frame must be one of its {} frames, {} to {}, got {}", frames.size(),
+                                 *frames.begin(), *frames.rbegin(), *wanted));
+    return grains.packing();
+}
+
 Packing read_packing(const std::filesystem::path& file, std::optional<long> frame) {
     std::error_code error;
     if (!std::filesystem::exists(file, error))
@@ -289,10 +317,7 @@ Packing read_packing(const std::filesystem::path& file, std::optional<long> fram
     }
     if (beginning.starts_with("\x1f\x8b"))
         throw InputError(fmt::format("{}: must not be packed, got a file of gzip: unpack it", source));
-    if (file.extension() == ".csv") {
-        std::istringstream input(text);
-        return read_csv_packing(input, source, frame);
-    }
+    if (file.extension() == ".csv") return read_csv_packing(text, source, frame);
     if (looks_like_dump(beginning)) return read_dump_packing(text, source, frame);
     if (frame)
         throw InputError(

@@ -1,7 +1,6 @@
 // Packings from files. Every problem is reported as `file:line: must be .., got ..`.
 #pragma once
 #include <filesystem>
-#include <istream>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -30,7 +29,7 @@ Packing read_lammps_packing(std::string_view text, const std::string& source);
 
 /// CSV with the columns x_m, y_m, z_m, diameter_m in any order, optionally frame and species or type; other
 /// columns, such as `grain`, are ignored. Grains are numbered from 0 in the order of the lines.
-Packing read_csv_packing(std::istream& input, const std::string& source, std::optional<long> frame = {});
+Packing read_csv_packing(const std::string& text, const std::string& source, std::optional<long> frame = {});
 
 // Detection by the first lines. Yade's text may be truncated anywhere.
 bool looks_like_dump(std::string_view text);

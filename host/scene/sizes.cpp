@@ -1,42 +1,17 @@
-// GCC warns about a file name that libfccp truncates on purpose for its own messages, which are not used
-// here.
-#if defined(__GNUC__) && !defined(__clang__)
-#pragma GCC diagnostic ignored "-Wstringop-truncation"
-#endif
 #include "scene/sizes.h"
 
 #include <fmt/format.h>
-#include <libfccp/csv.h>
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <numbers>
 #include <numeric>
 
-#include "core/errors.h"
-#include "scene/packing_fields.h"
+#include "core/input_file.h"
 #include "scene/random.h"
+#include "scene/table.h"
 
 namespace mcdem::inline scene {
-namespace {
-
-using DiameterReader = io::CSVReader<1, io::trim_chars<' ', '\t'>, io::no_quote_escape<','>,
-                                     io::throw_on_overflow, io::single_and_empty_line_comment<'#'>>;
-
-void read_rows(DiameterReader& reader, std::vector<double>& diameters, FileProblems& problems) {
-    const char* word = nullptr;
-    while (!problems.full() && reader.read_row(word)) {
-        const auto number = to_number(word);
-        if (!number || !(*number >= 1e-7 && *number <= 10))
-            problems.add(
-                static_cast<long>(reader.get_file_line()),
-                fmt::format("diameter_m must be a number between 1e-07 and 10 [m], got {}", quoted(word)));
-        diameters.push_back(number.value_or(0));
-    }
-}
-
-}  // namespace
 
 LogNormal log_normal(double mean, double sd) {
     const double variance = std::log1p(sd * sd / (mean * mean));
@@ -71,19 +46,17 @@ double mean_volume(const Sizes& sizes) {
 }
 
 std::vector<double> read_diameters(const std::string& file) {
-    FileProblems problems(file);
+    FileProblems problems;
     std::vector<double> diameters;
-    std::ifstream input(file);
-    if (!input)
-        throw InputError(file + ": must be a CSV with a column diameter_m, got no file that can be read");
-    try {
-        DiameterReader reader(file, input);
-        reader.read_header(io::ignore_extra_column, "diameter_m");
-        read_rows(reader, diameters, problems);
-    } catch (const io::error::base& error) {
-        problems.add(fmt::format("must be a CSV with a column diameter_m, got: {}", error.what()));
+    const std::string text =
+        read_file(file, file + ": must be a CSV with a column diameter_m, got no file that can be read");
+    Table table(file, {"diameter_m"}, text.size(), problems, {}, &text);
+    while (!problems.full() && table.next()) {
+        const auto diameter = table.number(0);
+        if (diameter && !(*diameter >= 1e-7 && *diameter <= 10))
+            table.problem(fmt::format("diameter_m must be between 1e-07 and 10 [m], got {}", *diameter));
+        diameters.push_back(diameter.value_or(0));
     }
-    if (diameters.empty() && problems.empty()) problems.add("must have at least 1 diameter, got none");
     problems.report();
     std::ranges::sort(diameters);
     return diameters;

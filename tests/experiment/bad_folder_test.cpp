@@ -41,7 +41,7 @@ TEST(bad_folder, an_empty_table_is_reported) {
         for (const std::string end : {"", "\n", "\r\n# end\r\n"}) {
             folder[table] = header + end;
             EXPECT_THAT(folder.error(),
-                        StartsWith(table + ": must have at least one row: remove the file if nothing was"));
+                        StartsWith(table + ": must have at least one row, got none: add rows, or leave"));
         }
     }
 }

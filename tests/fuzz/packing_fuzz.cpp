@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <functional>
-#include <sstream>
+#include <string>
 
 #include "core/errors.h"
 #include "scene/read_packing.h"
@@ -24,10 +24,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
     const std::string text(reinterpret_cast<const char*>(bytes), size);
     const std::function<mcdem::Packing()> readers[] = {
         [&] { return mcdem::read_lammps_packing(text, "packing"); },
-        [&] {
-            std::istringstream input(text);
-            return mcdem::read_csv_packing(input, "packing");
-        },
+        [&] { return mcdem::read_csv_packing(text, "packing"); },
         [&] { return mcdem::read_dump_packing(text, "packing"); },
         [&] { return mcdem::read_yade_packing(text, "packing"); }};
     for (const auto& read : readers) try {

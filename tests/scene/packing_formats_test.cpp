@@ -120,7 +120,7 @@ TEST(PackingOfGrainsCsv, IsOneFrame) {
                 ElementsAre(HasSubstr("must have a column frame where packing.frame is given, got none")));
     const auto wrong = folder.write("wrong.csv", "frame,x_m,y_m,z_m,diameter_m\nx,0.1,0.2,0.3,0.01\n");
     EXPECT_THAT(problems_of([&] { read_packing(wrong); }),
-                ElementsAre(HasSubstr("wrong.csv:2: frame must be a whole number, got \"x\"")));
+                ElementsAre(HasSubstr("wrong.csv:2: frame must be a whole number from 0 on, got \"x\"")));
     EXPECT_THAT(problems_of([&] { read_packing(folder.write("grains.csv.gz", "\x1f\x8b")); }),
                 ElementsAre(HasSubstr("must not be packed")));
 }

@@ -1,4 +1,4 @@
-#include "experiment/table.h"
+#include "scene/table.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -19,7 +19,7 @@
 #include "core/input_file.h"
 #include "scene/packing_fields.h"
 
-namespace mcdem::inline experiment {
+namespace mcdem::inline scene {
 namespace {
 
 namespace fs = std::filesystem;
@@ -78,17 +78,12 @@ private:
     bool ended_ = false;
 };
 
-std::string_view trimmed(std::string_view word) {
-    const auto first = word.find_first_not_of(" \t");
-    if (first == std::string_view::npos) return {};
-    return word.substr(first, word.find_last_not_of(" \t") - first + 1);
-}
-
 void split(std::string_view line, std::vector<std::string_view>& words) {
     words.clear();
     for (std::size_t first = 0; first != std::string_view::npos;) {
         const std::size_t comma = line.find(',', first);
-        words.push_back(trimmed(line.substr(first, comma == std::string_view::npos ? comma : comma - first)));
+        words.push_back(
+            without_blanks(line.substr(first, comma == std::string_view::npos ? comma : comma - first)));
         first = comma == std::string_view::npos ? comma : comma + 1;
     }
 }
@@ -131,7 +126,7 @@ public:
     std::optional<std::string_view> next() {
         try {
             while (const char* line = reader_.next_line()) {
-                const std::string_view text = trimmed(line);
+                const std::string_view text = without_blanks(line);
                 if (!text.empty() && text.front() != '#') return text;
             }
         } catch (const io::error::line_length_limit_exceeded&) {
@@ -201,7 +196,7 @@ bool Table::next() {
             if (!lines_->failure().empty())
                 problems_.add(name_, lines_->failure());
             else if (rows_ == 0)
-                problems_.add(name_, "must have at least one row: remove the file if nothing was measured");
+                problems_.add(name_, "must have at least one row, got none: add rows, or leave the file out");
             lines_.reset();
             return false;
         }
@@ -222,9 +217,8 @@ bool Table::next() {
 std::optional<double> Table::number(std::size_t column) {
     const auto value = to_number(words_[column]);
     if (!value)
-        problem(
-            fmt::format("{} must be a finite number, got {}: leave the row out where nothing was measured",
-                        columns_[column], quoted(words_[column])));
+        problem(fmt::format("{} must be a finite number, got {}: correct it, or leave the row out",
+                            columns_[column], quoted(words_[column])));
     return value;
 }
 
@@ -238,5 +232,5 @@ std::optional<long> Table::whole_number(std::size_t column, long least) {
 
 std::string Table::where(long line) const { return fmt::format("{}:{}", name_, line); }
 
-}  // namespace mcdem::experiment
+}  // namespace mcdem::scene
 #pragma GCC diagnostic pop

@@ -1,4 +1,4 @@
-// One CSV table of an experiment, plain or compressed with gzip, read row by row.
+// One CSV table, plain or compressed with gzip, read row by row.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -10,7 +10,7 @@
 
 #include "scene/problems.h"
 
-namespace mcdem::inline experiment {
+namespace mcdem::inline scene {
 
 /// `<folder>/<name>` or `<name>.gz`; nothing if neither exists. Problems: both exist, the file is not a
 /// regular file, or it has more than `largest` bytes.
@@ -64,4 +64,4 @@ private:
     long line_ = 1, rows_ = 0;
 };
 
-}  // namespace mcdem::experiment
+}  // namespace mcdem::scene
