@@ -38,12 +38,10 @@ public:
 
 private:
     void read_entry(const Entry& entry) {
-        const bool varied = entry.key.starts_with(vary_prefix);
-        const std::string key_name = varied ? entry.key.substr(vary_prefix.size()) : entry.key;
-        const Key* key = find_key(key_name);
+        const Key* key = find_key(entry.key);
         if (!key) {
-            refuse_unknown(entry, key_name);
-        } else if (varied) {
+            refuse_unknown(entry);
+        } else if (entry.varied) {
             read_variation(entry, *key);
         } else if (const auto problem = assign(*key, *entry.value, settings_)) {
             problems_.add(entry.place, fmt::format("{} {}", key->name, *problem));
@@ -56,29 +54,29 @@ private:
         if (const Key* same = same_key(key.name)) bad_.insert(std::string(same->name));
     }
 
-    void refuse_unknown(const Entry& entry, const std::string& key_name) {
-        const std::string shown_name = shortened(entry.key);
-        const auto element = list_element(entry.key);
-        if (const ListTable* table = find_list_table(entry.key))
+    void refuse_unknown(const Entry& entry) {
+        const std::string full_name = entry.full_name(), shown_name = shortened(full_name);
+        const auto element = list_element(full_name);
+        if (const ListTable* table = find_list_table(full_name))
             problems_.add(entry.place,
                           fmt::format("{0} must be a list of 1 to {1} {2} ([[{0}]]), got {3}", table->name,
                                       table->most, table->elements, shown(*entry.value)));
-        else if (const ListTable* of = find_list_table(entry.key.substr(0, entry.key.find('.')));
+        else if (const ListTable* of = find_list_table(full_name.substr(0, full_name.find('.')));
                  of && !element)
             problems_.add(
                 entry.place,
                 fmt::format("{0} must be below a header in double brackets, [[{1}]], one for each of its {2}",
                             shown_name, of->name, of->elements));
-        else if (entry.value->is_table() && element && is_table(entry.key))
+        else if (entry.value->is_table() && element && is_table(full_name))
             problems_.add(entry.place, fmt::format("{} must say {}, got nothing: {}", shown_name,
                                                    element->table->says, element->table->remedy));
-        else if (is_table(entry.key))
+        else if (is_table(full_name))
             problems_.add(entry.place,
                           fmt::format("{} must be a table, got {}", shown_name, shown(*entry.value)));
         else
             problems_.add(entry.place,
                           fmt::format("{} must be a {} of a scene, got an unknown one{}", shown_name,
-                                      entry.value->is_table() ? "table" : "key", suggestion(key_name)));
+                                      entry.value->is_table() ? "table" : "key", suggestion(entry.key)));
     }
 
     void read_variation(const Entry& entry, const Key& key) {
@@ -118,7 +116,7 @@ private:
 
     void check_said_once(const Entry& entry, const Key& key) {
         for (const Entry& other : document_.entries())
-            if (other.key == key.name)
+            if (!other.varied && other.key == key.name)
                 problems_.add(
                     entry.place,
                     fmt::format("batch.vary.\"{}\" must be the only place of {}, got a value too at {}",
@@ -134,9 +132,7 @@ private:
     /// Keys that are set or varied.
     std::set<std::string> said() const {
         std::set<std::string> keys;
-        for (const Entry& entry : document_.entries())
-            keys.insert(entry.key.starts_with(vary_prefix) ? entry.key.substr(vary_prefix.size())
-                                                           : entry.key);
+        for (const Entry& entry : document_.entries()) keys.insert(entry.key);
         return keys;
     }
 
@@ -146,21 +142,18 @@ private:
         const auto element = list_element(key);
         if (place.line > 0 || !element) return place;
         for (const Entry& entry : document_.entries())
-            if (list_element(entry.key) == element) return entry.place;
+            if (!entry.varied && list_element(entry.key) == element) return entry.place;
         return place;
     }
 
     /// A packing file and generated grains are mutually exclusive.
     void check_packing_source() {
         const bool from_file = !settings_.packing_file.empty() || varies("packing.file");
-        for (const Entry& entry : document_.entries()) {
-            const bool varied = entry.key.starts_with(vary_prefix);
-            const std::string key = varied ? entry.key.substr(vary_prefix.size()) : entry.key;
-            if (from_file && is_generator_key(key))
-                problems_.add(entry.place, key + " must be left out where packing.file is given");
-        }
+        for (const Entry& entry : document_.entries())
+            if (from_file && is_generator_key(entry.key))
+                problems_.add(entry.place, entry.key + " must be left out where packing.file is given");
         const bool may_be_cell = is_cell(settings_.replica.box) || varies("container.shape");
-        if (const Entry* height = entry_of("container.height"); height && !from_file && may_be_cell)
+        if (const Entry* height = document_.find("container.height"); height && !from_file && may_be_cell)
             problems_.add(height->place,
                           "container.height must be left out where the packing is generated: it "
                           "follows from packing.count and packing.packing_fraction");
@@ -171,13 +164,6 @@ private:
             problems_.add(
                 document_.place_of("batch.replicas"),
                 "batch.replicas must be 1 where packing.seed varies: it gives every copy its own seed");
-    }
-
-    /// Entry (set or varied) that provides `key`; null if there is none.
-    const Entry* entry_of(std::string_view key) const {
-        for (const Entry& entry : document_.entries())
-            if (entry.key == key || entry.key == std::string(vary_prefix) + std::string(key)) return &entry;
-        return nullptr;
     }
 
     /// Sizes are given only once, and belong to the selected shape.
@@ -191,13 +177,13 @@ private:
                     shapes.insert(trial.replica.box.shape);
                 }
         for (const Key& key : keys()) {
-            const Entry* entry = entry_of(key.name);
+            const Entry* entry = document_.find(key.name);
             if (!entry) continue;
             if (std::ranges::none_of(shapes, [&](auto shape) { return is_key_of(shape, key.name); }))
                 problems_.add(entry->place, fmt::format("{} must be left out where container.shape = \"{}\"",
                                                         key.name, name(*shapes.begin())));
             const Key* same = same_key(key.name);
-            if (same && key.name.starts_with("box.") && entry_of(same->name))
+            if (same && key.name.starts_with("box.") && document_.find(same->name))
                 problems_.add(entry->place,
                               fmt::format("{} must be left out where {} is given", key.name, same->name));
         }
@@ -206,7 +192,7 @@ private:
     /// The key's name as used in the scene.
     std::string given_name(const std::string& key) const {
         const Key* same = same_key(key);
-        return std::string(same && !entry_of(key) && entry_of(same->name) ? same->name : key);
+        return std::string(same && !document_.find(key) && document_.find(same->name) ? same->name : key);
     }
 
     void check_size(double grains) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <map>
 #include <sstream>
 
@@ -100,18 +101,23 @@ void SceneDocument::flatten(toml::array& elements, const std::string& table, std
 
 Entry SceneDocument::entry_of(std::string key, toml::node& node) const {
     const auto& at = node.source().begin;
-    return {std::move(key), &node, {fmt::format("{}:{}", source_, at.line), int(at.line), int(at.column)}};
+    const bool varied = key.starts_with(vary_prefix);
+    if (varied) key.erase(0, vary_prefix.size());
+    return {std::move(key),
+            varied,
+            &node,
+            {fmt::format("{}:{}", source_, at.line), int(at.line), int(at.column)}};
 }
 
 void SceneDocument::sort_entries(Problems& problems) {
     std::ranges::stable_sort(
         entries_, {}, [](const Entry& entry) { return std::pair(entry.place.line, entry.place.column); });
-    std::map<std::string_view, const Entry*> first;
+    std::map<std::string, const Entry*> first;
     for (const Entry& entry : entries_) {
-        const auto [earlier, is_new] = first.emplace(entry.key, &entry);
+        const auto [earlier, is_new] = first.emplace(entry.full_name(), &entry);
         if (is_new) continue;
         problems.add(entry.place, fmt::format("{} must be given once, got it again after {}",
-                                              shortened(entry.key), earlier->second->place.text));
+                                              shortened(entry.full_name()), earlier->second->place.text));
     }
 }
 
@@ -139,9 +145,10 @@ void SceneDocument::apply(const std::string& override_text, Problems& problems) 
     else if (value.is_array() && is_list_table(key, value))
         flatten(*value.as_array(), key, given);
     else
-        given.push_back({key, &value, {}});
+        given.push_back(entry_of(key, value));
     if (find_list_table(key))
-        std::erase_if(entries_, [&](const Entry& entry) { return entry.key.starts_with(key + "."); });
+        std::erase_if(entries_,
+                      [&](const Entry& entry) { return !entry.varied && entry.key.starts_with(key + "."); });
     for (Entry& entry : given) {
         entry.place = place;
         put(entry);
@@ -151,17 +158,14 @@ void SceneDocument::apply(const std::string& override_text, Problems& problems) 
 /// An override removes what it contradicts: the same key, its variation or the value that it varies, its
 /// other name, and a packing file or generated grains.
 void SceneDocument::put(const Entry& entry) {
-    const bool varied = entry.key.starts_with(vary_prefix);
-    const std::string key = varied ? entry.key.substr(vary_prefix.size()) : entry.key;
+    const std::string& key = entry.key;
     const auto contradicted = [&](const Entry& other) {
-        const bool is_variation = other.key.starts_with(vary_prefix);
-        const std::string other_key = is_variation ? other.key.substr(vary_prefix.size()) : other.key;
-        if (other_key == key) return true;
-        if (const Key* same = same_key(key); same && other_key == same->name) return true;
+        if (other.key == key) return true;
+        if (const Key* same = same_key(key); same && other.key == same->name) return true;
         if (other.place.line == entry.place.line)
             return false;  // overrides that contradict each other are an error
-        return exclude_each_other(key, other_key) || (key == "packing.file" && is_generator_key(other_key)) ||
-               (is_generator_key(key) && other_key == "packing.file");
+        return exclude_each_other(key, other.key) || (key == "packing.file" && is_generator_key(other.key)) ||
+               (is_generator_key(key) && other.key == "packing.file");
     };
     std::erase_if(entries_, contradicted);
     entries_.push_back(entry);
@@ -180,9 +184,10 @@ void SceneDocument::resolve_files() {
         return key == "packing.file" || (list_element(key) && key.ends_with(".diameter_file"));
     };
     for (Entry& entry : entries_) {
-        if (is_path(entry.key)) resolve(*entry.value, entry.place);
-        const bool varied = entry.key.starts_with(vary_prefix);
-        if (varied && is_path(entry.key.substr(vary_prefix.size())) && entry.value->is_array())
+        if (!is_path(entry.key)) continue;
+        if (!entry.varied)
+            resolve(*entry.value, entry.place);
+        else if (entry.value->is_array())
             for (auto& element : *entry.value->as_array()) resolve(element, entry.place);
     }
 }
@@ -193,9 +198,8 @@ const Entry* SceneDocument::find(std::string_view key) const {
 }
 
 Place SceneDocument::place_of(std::string_view key) const {
-    if (const Entry* entry = find(key)) return entry->place;
-    if (const Entry* entry = find(std::string(vary_prefix) + std::string(key))) return entry->place;
-    return {source_, 0, 0};
+    const Entry* entry = find(key);
+    return entry ? entry->place : Place{source_, 0, 0};
 }
 
 Place SceneDocument::place_of(const Entry& entry, const toml::node& element) const {
@@ -213,9 +217,8 @@ std::string SceneDocument::text() const {
     for (const Entry& entry : entries_) {
         toml::table* table = &whole;
         std::string key = entry.key;
-        if (key.starts_with(vary_prefix)) {
+        if (entry.varied) {
             table = &inner(inner(whole, "batch"), "vary");
-            key = key.substr(vary_prefix.size());
         } else if (const auto element = list_element(key)) {
             auto& list = *whole.insert(element->table->name, toml::array{}).first->second.as_array();
             const auto place = static_cast<std::size_t>(element->number);

@@ -15,9 +15,11 @@ namespace mcdem::inline scene {
 inline constexpr std::string_view vary_prefix = "batch.vary.";
 
 struct Entry {
-    std::string key;
+    std::string key;  ///< without the prefix of a variation
+    bool varied = false;
     toml::node* value = nullptr;  ///< owned by the document
     Place place;
+    std::string full_name() const { return std::string(varied ? vary_prefix : "") + key; }
 };
 
 class SceneDocument {
@@ -30,7 +32,9 @@ public:
 
     /// In order of the file, followed by the overrides.
     const std::vector<Entry>& entries() const { return entries_; }
-    /// Place where the key or its variation is set; the whole file if it is not set.
+    /// The first entry that sets or varies the key; null if there is none.
+    const Entry* find(std::string_view key) const;
+    /// Its place; the whole file if there is none.
     Place place_of(std::string_view key) const;
     /// Place of one value of a list.
     Place place_of(const Entry& entry, const toml::node& element) const;
@@ -47,7 +51,6 @@ private:
     void apply(const std::string& override_text, Problems& problems);
     void put(const Entry& entry);
     void resolve_files();
-    const Entry* find(std::string_view key) const;
 
     std::string source_;
     std::string text_;
