@@ -13,8 +13,8 @@
 #include "core/input_file.h"
 #include "scene/list_tables.h"
 #include "scene/packing_fields.h"
-#include "scene/programme_checks.h"
 #include "scene/programme_text.h"
+#include "scene/scene_checks.h"
 #include "scene/toml_text.h"
 
 namespace mcdem::inline experiment {

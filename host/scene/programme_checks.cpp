@@ -1,5 +1,4 @@
-#include "scene/programme_checks.h"
-
+// Checks of the stages of a programme.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +7,7 @@
 #include "core/container.h"
 #include "scene/legs.h"
 #include "scene/scan_quantity.h"
+#include "scene/scene_checks.h"
 
 namespace mcdem::inline scene {
 namespace {
@@ -15,6 +15,26 @@ namespace {
 /// Contacts may be stiffer than Hertz's law by this factor because of displaced surfaces, stiffening or
 /// finite strain.
 constexpr double beyond_hertz = 10;
+
+/// Force on the plate [N] above which the contacts under it would exceed numerics.overlap_limit.
+double max_plate_force(const Settings& settings) {
+    const auto& replica = settings.replica;
+    const double radius = settings.generated.diameter_min / 2;
+    const double grains = std::max(1.0, replica.box.size_x * replica.box.size_y / (3.4 * radius * radius));
+    const double modulus = plane_modulus(stiffest(replica));
+    const double overlap = std::min(1.0, replica.numerics.overlap_limit) * 2 * radius;
+    return beyond_hertz * grains * 4 / 3 * modulus * std::sqrt(radius) * std::pow(overlap, 1.5);
+}
+
+/// The same for the stress of a cell [Pa].
+double max_cell_stress(const Settings& settings) {
+    const auto& replica = settings.replica;
+    const double radius = settings.generated.diameter_min / 2;
+    const double overlap = std::min(1.0, replica.numerics.overlap_limit) * 2 * radius;
+    const double force =
+        4.0 / 3 * plane_modulus(stiffest(replica)) / 2 * std::sqrt(radius / 2) * std::pow(overlap, 1.5);
+    return beyond_hertz * force / (2 * std::sqrt(3.0) * radius * radius);
+}
 
 /// Whether a kind of stage has a key; all have `stage`.
 bool belongs(StageKind kind, std::string_view key, bool cell) {
@@ -211,7 +231,7 @@ std::vector<double> forces_of(const Stage& stage) {
 
 void check_forces(const Settings& settings, std::vector<CrossProblem>& problems) {
     if (!settings.packing_file.empty()) return;
-    const double max_force = max_plate_force(settings, settings.generated.diameter_min);
+    const double max_force = max_plate_force(settings);
     for (std::size_t n = 0; n < settings.replica.programme.size(); ++n)
         for (const double force : forces_of(settings.replica.programme[n]))
             if (force > max_force)
@@ -272,24 +292,6 @@ void check_kept_stresses(const std::vector<Stage>& programme, const Plate& plate
 }
 
 }  // namespace
-
-double max_plate_force(const Settings& settings, double smallest_diameter) {
-    const auto& replica = settings.replica;
-    const double radius = smallest_diameter / 2;
-    const double grains = std::max(1.0, replica.box.size_x * replica.box.size_y / (3.4 * radius * radius));
-    const double modulus = plane_modulus(stiffest(replica));
-    const double overlap = std::min(1.0, replica.numerics.overlap_limit) * 2 * radius;
-    return beyond_hertz * grains * 4 / 3 * modulus * std::sqrt(radius) * std::pow(overlap, 1.5);
-}
-
-double max_cell_stress(const Settings& settings) {
-    const auto& replica = settings.replica;
-    const double radius = settings.generated.diameter_min / 2;
-    const double overlap = std::min(1.0, replica.numerics.overlap_limit) * 2 * radius;
-    const double force =
-        4.0 / 3 * plane_modulus(stiffest(replica)) / 2 * std::sqrt(radius / 2) * std::pow(overlap, 1.5);
-    return beyond_hertz * force / (2 * std::sqrt(3.0) * radius * radius);
-}
 
 std::vector<CrossProblem> programme_problems(const Settings& settings, const std::set<std::string>& said,
                                              const std::set<std::string, std::less<>>& bad) {

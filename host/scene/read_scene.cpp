@@ -6,7 +6,6 @@
 #include "core/errors.h"
 #include "core/input_file.h"
 #include "scene/list_tables.h"
-#include "scene/programme_checks.h"
 #include "scene/replicas.h"
 #include "scene/scene_checks.h"
 #include "scene/scene_document.h"

@@ -35,6 +35,10 @@ std::vector<CrossProblem> cross_problems(const Settings& settings,
 std::vector<CrossProblem> species_problems(const Settings& settings, const std::set<std::string>& said,
                                            const std::set<std::string, std::less<>>& bad);
 
+/// The same for the stages of the setting's programme.
+std::vector<CrossProblem> programme_problems(const Settings& settings, const std::set<std::string>& said,
+                                             const std::set<std::string, std::less<>>& bad);
+
 /// Reads the packing file of the setting, if any, and checks that it fits. Problems name lines of the file.
 std::vector<std::string> packing_file_problems(const Settings& settings, CheckedFiles& files);
 
