@@ -12,7 +12,6 @@ void bind_scene(pybind11::module_& module);
 void bind_results(pybind11::module_& module);
 void bind_simulation(pybind11::module_& module);
 void bind_diagnosis(pybind11::module_& module);
-void bind_convergence(pybind11::module_& module);
 void bind_comparison(pybind11::module_& module);
 
 /// A run in Python: shared by arrays and recordings, immutable.

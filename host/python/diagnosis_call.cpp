@@ -1,4 +1,4 @@
-// mcdem.diagnose
+// mcdem.diagnose, mcdem.converge
 #include <fmt/format.h>
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
@@ -9,12 +9,14 @@
 #include "core/errors.h"
 #include "core/output_file.h"
 #include "core/version.h"
+#include "ensemble/converge_scene.h"
 #include "ensemble/diagnose_experiment.h"
 #include "io/result_folder.h"
 #include "python/bindings.h"
 #include "python/watch.h"
 #include "report/diagnosis/diagnosis_json.h"
 #include "report/diagnosis/diagnosis_page.h"
+#include "report/run/convergence_tables.h"
 
 namespace mcdem::inline python {
 namespace {
@@ -100,6 +102,33 @@ py::object diagnose(const Scene& scene, const OneOrSeveral& experiment, const Pa
     return py::module_::import("json").attr("loads")(text);
 }
 
+py::object converge(const Scene& scene, const std::filesystem::path& folder, int replicas, double force_limit,
+                    double sd_limit, double jitter, std::uint64_t seed, const std::string& choice,
+                    py::object progress) {
+    if (replicas < 8) throw InputError(fmt::format("replicas: must be 8 or more, got {}", replicas));
+    Watch watch(std::move(progress));
+    ConvergeOptions options;
+    options.folder = folder;
+    options.replicas = replicas;
+    options.jitter = jitter;
+    options.seed = seed;
+    options.limits = {force_limit, sd_limit};
+    options.program = version_text;
+    options.on_progress = [&](const std::string& cause, double part) { watch.show_progress(cause, part); };
+    options.stop_wanted = [&] { return watch.stop_wanted(); };
+    std::string text;
+    try {
+        const py::gil_scoped_release others_go_on;
+        const FolderLock lock = open_output_folder(folder);
+        Device device(choice);
+        text = convergence_json(converge_scene(device, scene, options));
+        replace_own(folder / "convergence.json", FileKind::convergence, text);
+    } catch (const Interrupted&) {
+    }
+    watch.raise();
+    return py::module_::import("json").attr("loads")(text);
+}
+
 }  // namespace
 
 void bind_diagnosis(py::module_& module) {
@@ -118,6 +147,14 @@ void bind_diagnosis(py::module_& module) {
                "are\nkept there, so that the same call goes on where Ctrl-C ended it. `progress(stage, "
                "fraction)` is called as "
                "it\ngoes. host/report/DIAGNOSIS_OUTPUT.md explains the keys.");
+    module.def(
+        "converge", &converge, py::arg("scene"), py::arg("folder"), py::kw_only(), py::arg("replicas") = 32,
+        py::arg("force_limit") = ConvergenceLimits{}.force,
+        py::arg("sd_limit") = ConvergenceLimits{}.deviations, py::arg("jitter") = 0.0, py::arg("seed") = 1,
+        py::arg("device") = "", py::arg("progress") = py::none(),
+        "What plate speed, inertia, time step, settling, precision and list margin do to the observables of "
+        "a\n"
+        "scene's first replica: what convergence.json says, as a dict. `mcdem converge --help` says how.");
 }
 
 }  // namespace mcdem::python

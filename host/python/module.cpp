@@ -44,6 +44,5 @@ PYBIND11_MODULE(_engine, module) {
     mcdem::bind_results(module);
     mcdem::bind_simulation(module);
     mcdem::bind_diagnosis(module);
-    mcdem::bind_convergence(module);
     mcdem::bind_comparison(module);
 }

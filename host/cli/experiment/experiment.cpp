@@ -4,12 +4,78 @@
 #include <fmt/format.h>
 
 #include "cli/shell/commands.h"
+#include "cli/shell/standard_streams.h"
 #include "core/errors.h"
+#include "diagnose/observe/needed_to_diagnose.h"
+#include "experiment/check_experiment.h"
 
 namespace mcdem::inline cli {
 namespace {
+
 constexpr std::size_t line_length = 110;
+
+/// Wraps a text; all lines but the first are indented to the text.
+std::string wrapped(const std::string& head, const std::string& text) {
+    const std::string indent(head.size(), ' ');
+    std::string all, line = head;
+    for (std::size_t first = 0; first < text.size();) {
+        const auto end = std::min(text.find(' ', first), text.size());
+        const std::string word = text.substr(first, end - first);
+        if (line.size() + 1 + word.size() > line_length && line.size() > head.size()) {
+            all += line + '\n';
+            line = indent;
+        }
+        line += (line.size() > head.size() ? " " : "") + word;
+        first = end + 1;
+    }
+    return all + line + '\n';
 }
+
+std::string_view title(Severity severity) {
+    switch (severity) {
+        case Severity::note:
+            return "what there is";
+        case Severity::missing:
+            return "what is missing, and what it would allow";
+        case Severity::odd:
+            return "what looks odd";
+    }
+    return "";
+}
+
+void print_check(const std::string& folder) {
+    const Experiment experiment = read_experiment(folder);
+    const ExperimentCheck check = check_experiment(experiment);
+    print_out("{}\n", experiment.name);
+    for (const Severity severity : {Severity::note, Severity::missing, Severity::odd}) {
+        if (check.of(severity).empty()) {
+            if (severity != Severity::note) print_out("\n{}: nothing\n", title(severity));
+            continue;
+        }
+        print_out("\n{}\n", title(severity));
+        for (const Finding& finding : check.findings)
+            if (finding.severity == severity)
+                print_out("{}", wrapped(fmt::format("  {:<16}", finding.about), finding.text));
+    }
+    const auto needed = needed_to_diagnose(experiment);
+    print_out("\nwhat `mcdem diagnose` also needs{}\n", needed.empty() ? ": nothing" : "");
+    for (const std::string& text : needed) print_out("{}", wrapped("  ", text));
+}
+
+void add_experiment_check(CLI::App& experiment) {
+    auto* sub = experiment.add_subcommand(
+        "check", "Report what an experiment contains, what is missing and what looks wrong");
+    auto folder = std::make_shared<std::string>();
+    sub->add_option("DIR", *folder, "Experiment folder")->required();
+    sub->footer(
+        "The last lines say what must be added before `mcdem diagnose` accepts the folder.\n"
+        "The exit code is 0 if the folder can be read, and 2 if it cannot.\n"
+        "Example:\n"
+        "  mcdem experiment check data/hydrogel");
+    sub->callback([folder] { print_check(*folder); });
+}
+
+}  // namespace
 
 void expect_free(const std::filesystem::path& out) {
     std::error_code ignored;
@@ -30,22 +96,6 @@ void expect_free(const std::filesystem::path& out) {
                                          path.filename() == out.filename()
                                              ? ""
                                              : fmt::format(" in its way, {}", path.filename().string())));
-}
-
-std::string wrapped(const std::string& head, const std::string& text) {
-    const std::string indent(head.size(), ' ');
-    std::string all, line = head;
-    for (std::size_t first = 0; first < text.size();) {
-        const auto end = std::min(text.find(' ', first), text.size());
-        const std::string word = text.substr(first, end - first);
-        if (line.size() + 1 + word.size() > line_length && line.size() > head.size()) {
-            all += line + '\n';
-            line = indent;
-        }
-        line += (line.size() > head.size() ? " " : "") + word;
-        first = end + 1;
-    }
-    return all + line + '\n';
 }
 
 void add_experiment(CLI::App& app, int& exit_code) {

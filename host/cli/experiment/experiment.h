@@ -6,14 +6,10 @@
 
 namespace mcdem::inline cli {
 
-void add_experiment_check(CLI::App& experiment);
 void add_experiment_from_run(CLI::App& experiment);
 void add_experiment_import(CLI::App& experiment, int& exit_code);
 
 /// Throws InputError if the folder contains another experiment or a run.
 void expect_free(const std::filesystem::path& out);
-
-/// Wraps a text; all lines but the first are indented to the text.
-std::string wrapped(const std::string& head, const std::string& text);
 
 }  // namespace mcdem::cli

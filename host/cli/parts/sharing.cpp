@@ -3,7 +3,13 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "cli/parts/deal_to_devices.h"
+#include <chrono>
+#include <csignal>
+#include <deque>
+#include <list>
+#include <map>
+#include <thread>
+
 #include "cli/parts/ranks.h"
 #include "cli/parts/slurm.h"
 #include "cli/shell/commands.h"
@@ -90,6 +96,96 @@ std::vector<std::string> part_words(const SharedWork& work) {
     return words;
 }
 
+constexpr int max_kills = 3;  ///< per part
+
+struct Running {
+    std::size_t part;
+    int device;
+    Subprocess process;
+};
+
+/// Distributes parts to the devices of this machine, one process per device: runs `words --part K --device D`
+/// for every part. A device whose process fails is removed from `devices`, and another one gets the part.
+/// After a signal the part is tried again on any device; it is given up when its processes were killed three
+/// times. The caller has an Interrupt.
+class Dealing {
+public:
+    Dealing(const std::vector<std::string>& words, const std::vector<std::size_t>& parts,
+            std::vector<int>& devices)
+        : words_(words),
+          all_(parts.size()),
+          parts_(parts.begin(), parts.end()),
+          devices_(devices),
+          free_(devices) {}
+
+    /// An exit code: interrupted; bad input if a process reported it; failed if no device is left; otherwise
+    /// done.
+    int all() {
+        bool passed_on = false;
+        while (!running_.empty() || can_start()) {
+            while (can_start()) start();
+            std::this_thread::sleep_for(std::chrono::milliseconds(20));
+            if (Interrupt::wanted() && !std::exchange(passed_on, true))
+                for (const Running& one : running_) one.process.send(SIGTERM);
+            for (auto one = running_.begin(); one != running_.end();) {
+                const auto end = one->process.ended();
+                if (end) note(*one, *end);
+                one = end ? running_.erase(one) : std::next(one);
+            }
+            progress_.show(static_cast<double>(done_) / static_cast<double>(all_));
+        }
+        progress_.clear();
+        if (code_ == exit_done && Interrupt::wanted()) code_ = exit_interrupted;
+        return code_ == exit_done && !parts_.empty() ? exit_failed : code_;
+    }
+
+private:
+    bool can_start() const {
+        return code_ == exit_done && !Interrupt::wanted() && !parts_.empty() && !free_.empty();
+    }
+
+    void start() {
+        const std::size_t part = parts_.front();
+        const int device = free_.back();
+        std::vector<std::string> words = words_;
+        words.insert(words.end(), {"--part", std::to_string(part), "--device", std::to_string(device)});
+        running_.push_back({part, device, Subprocess(words)});
+        parts_.pop_front();
+        free_.pop_back();
+    }
+
+    void note(const Running& one, const ProgramEnd& end) {
+        if (end.signal == 0 && end.exit_code != exit_failed) {
+            if (end.exit_code != exit_done) code_ = end.exit_code;
+            free_.push_back(one.device);
+            ++done_;
+            return;
+        }
+        progress_.clear();
+        if (end.signal != 0) {
+            spdlog::warn("part {}: its process on device {} was ended by signal {}", one.part, one.device,
+                         end.signal);
+            free_.push_back(one.device);
+            if (++kills_[one.part] >= max_kills) return;
+        } else {
+            spdlog::warn("part {}: has failed on device {}, which is left out from here on", one.part,
+                         one.device);
+            std::erase(devices_, one.device);
+        }
+        parts_.push_back(one.part);
+    }
+
+    const std::vector<std::string>& words_;
+    std::size_t all_, done_ = 0;
+    std::deque<std::size_t> parts_;
+    std::vector<int>& devices_;
+    std::vector<int> free_;
+    std::list<Running> running_;
+    std::map<std::size_t, int> kills_;
+    Progress progress_{stderr, progress_style(stderr)};
+    int code_ = exit_done;
+};
+
 int compute_on_all_devices(const SharedWork& work, PartedWork& parts, const std::vector<int>& devices) {
     for (const DeviceInfo& info : list_devices())
         if (std::ranges::find(devices, info.index) == devices.end())
@@ -97,9 +193,10 @@ int compute_on_all_devices(const SharedWork& work, PartedWork& parts, const std:
                          info.name, devices.front());
     if (devices.size() == 1) return compute_here(work, parts, std::to_string(devices.front()));
     spdlog::info("{} devices, a process on each", devices.size());
+    const std::vector<std::string> words = part_words(work);
     std::vector<int> left_devices = devices;
     return until_merged(work, parts, [&](const Numbers& left) {
-        const int code = deal_to_devices(part_words(work), left, left_devices);
+        const int code = Dealing(words, left, left_devices).all();
         if (code == exit_interrupted) return interrupted(work);
         if (code == exit_failed)
             spdlog::error("no device is left; results are kept in {}; run the same command again to continue",

@@ -1,12 +1,15 @@
 #include "cli/shell/cli.h"
 
+#include <unistd.h>
+
+#include <csignal>
 #include <cstdio>
+#include <initializer_list>
 #include <new>
 
 #include "cl/kernel_cache.h"
 #include "cl/process_limits.h"
 #include "cli/shell/commands.h"
-#include "cli/shell/crash_hint.h"
 #include "cli/shell/messages.h"
 #include "cli/shell/standard_streams.h"
 #include "core/version.h"
@@ -83,6 +86,34 @@ int command_line(int argc, const char* const* argv) {
         return exit_code;
     } catch (const CLI::ParseError& error) {
         return error.get_exit_code() == 0 ? app.exit(error) : report_usage(app, error);
+    }
+}
+
+constexpr char hint[] =
+    "mcdem: ended by a defect of the program or of the OpenCL driver. If it happens again, remove the "
+    "compiled kernels (the "
+    "folder of POCL_CACHE_DIR, else ~/.cache/pocl/kcache), which may be damaged: they are made anew. A run "
+    "goes on with "
+    "--resume\n";
+
+void say_hint(int signal) {
+    const ssize_t written = write(STDERR_FILENO, hint, sizeof hint - 1);
+    (void)written;
+    raise(signal);  // default action again because of SA_RESETHAND
+}
+
+/// Installs handlers that print the hint for signals of crashes, unless another handler is installed. PoCL's
+/// compiler installs some, so call this again after OpenCL has started.
+void hint_at_crashes() {
+    for (const int signal : {SIGABRT, SIGBUS, SIGSEGV, SIGILL, SIGFPE}) {
+        struct sigaction before {};
+        const bool is_free = sigaction(signal, nullptr, &before) == 0 && before.sa_handler == SIG_DFL;
+        if (!is_free && signal != SIGABRT)
+            continue;  // handler of a sanitizer, or one that continues with the previous handler
+        struct sigaction action {};
+        action.sa_handler = say_hint;
+        action.sa_flags = static_cast<int>(SA_RESETHAND);
+        sigaction(signal, &action, nullptr);
     }
 }
 
