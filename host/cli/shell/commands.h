@@ -2,6 +2,7 @@
 // stored in `exit_code` when it runs; errors are thrown.
 #pragma once
 #include <CLI/CLI.hpp>
+#include <vector>
 
 namespace mcdem::inline cli {
 
@@ -30,5 +31,8 @@ void add_challenge_score(CLI::App& challenge, int& exit_code);
 void add_experiment(CLI::App& app, int& exit_code);
 void add_completion(CLI::App& app, int& exit_code);
 void add_manual(CLI::App& app, int& exit_code);
+
+/// The subcommands that the help lists.
+std::vector<const CLI::App*> listed_commands(const CLI::App& command);
 
 }  // namespace mcdem::cli

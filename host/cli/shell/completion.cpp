@@ -2,9 +2,8 @@
 // `complete`).
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <sstream>
 
-#include "cli/shell/command_tree.h"
 #include "cli/shell/commands.h"
 #include "cli/shell/standard_streams.h"
 #include "scene/keys.h"
@@ -19,35 +18,53 @@ void offer(const std::string& word, const std::string& candidate, const std::str
     print_out("{}{}{}\n", candidate, line.empty() ? "" : "\t", line);
 }
 
-void offer_values(const OptionEntry& option, const std::string& word) {
-    for (const std::string& choice : option.choices) offer(word, choice);
-    if (option.value == "DIR") print_out(":folders\n");
-    if (option.value == "FILE") print_out(":files\n");
-    if (option.value == "KEY=VALUE" && option.names.front() == "--set")
+/// Choices in the type name of an option: "TEXT:{bash,zsh,fish}".
+std::vector<std::string> choices_of(const CLI::Option& option) {
+    const std::string type = option.get_type_name();
+    const auto from = type.find('{'), to = type.find('}');
+    if (from == type.npos || to == type.npos) return {};
+    std::stringstream list(type.substr(from + 1, to - from - 1));
+    std::vector<std::string> words;
+    for (std::string word; std::getline(list, word, ',');) words.push_back(word);
+    return words;
+}
+
+void offer_values(const CLI::Option& option, const std::string& word) {
+    for (const std::string& choice : choices_of(option)) offer(word, choice);
+    const std::string type = option.get_type_name();
+    if (type == "DIR") print_out(":folders\n");
+    if (type == "FILE") print_out(":files\n");
+    if (type == "KEY=VALUE" && option.check_name("--set"))
         for (const Key& key : keys()) offer(word, std::string(key.name) + "=");
 }
 
 /// The candidates for the last word of a command line. `:files` and `:folders` stand for those that the shell
 /// finds.
-void complete(const std::vector<CommandEntry>& tree, std::vector<std::string> words) {
+void complete(const CLI::App& app, std::vector<std::string> words) {
     const std::string word = words.empty() ? "" : words.back();
     if (!words.empty()) words.pop_back();
-    const CommandEntry* command = &tree.front();
+    const CLI::App* command = &app;
     for (const std::string& name : words)
-        if (std::ranges::count(command->commands, name)) command = &below(tree, command->path, name);
-    for (const OptionEntry& option : command->options)
-        if (!option.value.empty() && !words.empty() && std::ranges::count(option.names, words.back()))
-            return offer_values(option, word);
+        for (const CLI::App* one : listed_commands(*command))
+            if (one->get_name() == name) command = one;
+    const auto options = command->get_options([](const CLI::Option* one) { return !one->get_positional(); });
+    for (const CLI::Option* option : options)
+        if (option->get_items_expected_max() > 0 && !words.empty() && option->check_name(words.back()))
+            return offer_values(*option, word);
     if (word.starts_with("-")) {
-        for (const OptionEntry& option : command->options)
-            for (const std::string& name : option.names) offer(word, name, option.help);
+        for (const CLI::Option* option : options) {
+            for (const auto& name : option->get_lnames()) offer(word, "--" + name, option->get_description());
+            for (const auto& name : option->get_snames()) offer(word, "-" + name, option->get_description());
+        }
         return;
     }
-    for (const std::string& name : command->commands)
-        offer(word, name, below(tree, command->path, name).about);
-    for (const OptionEntry& positional : command->positionals) {
-        for (const std::string& choice : positional.choices) offer(word, choice);
-        if (positional.choices.empty()) return print_out(":files\n");
+    for (const CLI::App* one : listed_commands(*command))
+        offer(word, one->get_name(), one->get_description());
+    for (const CLI::Option* positional :
+         command->get_options([](const CLI::Option* one) { return one->get_positional(); })) {
+        const auto choices = choices_of(*positional);
+        for (const std::string& choice : choices) offer(word, choice);
+        if (choices.empty()) return print_out(":files\n");
     }
 }
 
@@ -119,7 +136,7 @@ void add_completion(CLI::App& app, int&) {
     auto* asked = app.add_subcommand("complete", "Words that can follow")->group("");
     auto words = std::make_shared<std::vector<std::string>>();
     asked->add_option("WORD", *words, "Words after the program's name");
-    asked->callback([&app, words] { complete(command_tree(app), *words); });
+    asked->callback([&app, words] { complete(app, *words); });
 }
 
 }  // namespace mcdem::cli

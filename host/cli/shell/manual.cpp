@@ -3,7 +3,6 @@
 
 #include <filesystem>
 
-#include "cli/shell/command_tree.h"
 #include "cli/shell/commands.h"
 #include "core/output_file.h"
 #include "core/replaced.h"
@@ -28,57 +27,69 @@ std::string literal(const std::string& text) {
     return roff;
 }
 
-std::string page_name(const std::string& path) {
-    return path.empty() ? "mcdem" : "mcdem-" + replaced(path, {{' ', "-"}});
+/// "mcdem-experiment-check" with '-' between.
+std::string full_name(const CLI::App& command, char between) {
+    const CLI::App* parent = command.get_parent();
+    return parent ? full_name(*parent, between) + between + command.get_name() : "mcdem";
 }
 
-std::string program_and(const std::string& path) { return path.empty() ? "mcdem" : "mcdem " + path; }
-
-std::string list_of(const std::string& heading, const std::vector<OptionEntry>& options) {
-    if (options.empty()) return "";
-    std::string roff = ".SH " + heading + "\n";
-    for (const OptionEntry& option : options)
-        roff += fmt::format(".TP\n.B {}\n{}\n", literal(option.text), literal(option.help));
-    return roff;
+std::vector<const CLI::Option*> options_of(const CLI::App& command, bool positional) {
+    return command.get_options([=](const CLI::Option* one) { return one->get_positional() == positional; });
 }
 
-std::string synopsis(const CommandEntry& command) {
-    std::string roff = ".SH SYNOPSIS\n.B " + literal(program_and(command.path)) + "\n[\\fIOPTIONS\\fR]";
-    for (const OptionEntry& positional : command.positionals)
-        roff += " \\fI" + literal(positional.names.front()) + "\\fR";
-    return roff + (command.commands.empty() ? "\n" : " \\fICOMMAND\\fR ...\n");
+std::string list_of(const std::string& heading, const CLI::App& command, bool positional) {
+    const CLI::Formatter format;
+    std::string roff;
+    for (const CLI::Option* option : options_of(command, positional))
+        roff += fmt::format(
+            ".TP\n.B {}\n{}\n",
+            literal(format.make_option_name(option, positional) + format.make_option_opts(option)),
+            literal(format.make_option_desc(option)));
+    return roff.empty() ? "" : ".SH " + heading + "\n" + roff;
 }
 
-std::string commands_of(const std::vector<CommandEntry>& tree, const CommandEntry& command) {
-    if (command.commands.empty()) return "";
-    std::string roff = ".SH COMMANDS\n";
-    for (const std::string& name : command.commands) {
-        const CommandEntry& entry = below(tree, command.path, name);
-        roff += fmt::format(".TP\n.BR {} (1)\n{}\n", literal(page_name(entry.path)), literal(entry.about));
-    }
-    return roff;
+std::string synopsis(const CLI::App& command) {
+    std::string roff = ".SH SYNOPSIS\n.B " + literal(full_name(command, ' ')) + "\n[\\fIOPTIONS\\fR]";
+    for (const CLI::Option* positional : options_of(command, true))
+        roff += " \\fI" + literal(positional->get_name(true)) + "\\fR";
+    return roff + (listed_commands(command).empty() ? "\n" : " \\fICOMMAND\\fR ...\n");
 }
 
-std::string page(const std::vector<CommandEntry>& tree, const CommandEntry& command,
-                 const std::string& version) {
-    const std::string name = page_name(command.path);
+std::string commands_of(const CLI::App& command) {
+    std::string roff;
+    for (const CLI::App* one : listed_commands(command))
+        roff += fmt::format(".TP\n.BR {} (1)\n{}\n", literal(full_name(*one, '-')),
+                            literal(one->get_description()));
+    return roff.empty() ? "" : ".SH COMMANDS\n" + roff;
+}
+
+std::string page(const CLI::App& command) {
+    const std::string name = full_name(command, '-');
+    const std::string version = std::string(version_text).substr(0, std::string(version_text).find(' '));
     std::string upper = name;
     for (char& c : upper) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
     std::string roff = fmt::format(".TH {} 1 \"\" \"mcdem {}\" \"User Commands\"\n", literal(upper), version);
-    roff +=
-        fmt::format(".SH NAME\n{} \\- {}\n", literal(name), literal(replaced(command.about, {{'\n', " "}})));
-    roff += synopsis(command) + commands_of(tree, command);
-    roff += list_of("ARGUMENTS", command.positionals) + list_of("OPTIONS", command.options);
-    if (!command.notes.empty()) roff += ".SH NOTES\n.nf\n" + literal(command.notes) + "\n.fi\n";
-    if (!command.path.empty()) {
-        const auto space = command.path.rfind(' ');
-        const std::string parent = space == command.path.npos ? "" : command.path.substr(0, space);
-        roff += fmt::format(".SH SEE ALSO\n.BR {} (1)\n", literal(page_name(parent)));
-    }
+    roff += fmt::format(".SH NAME\n{} \\- {}\n", literal(name),
+                        literal(replaced(command.get_description(), {{'\n', " "}})));
+    roff += synopsis(command) + commands_of(command);
+    roff += list_of("ARGUMENTS", command, true) + list_of("OPTIONS", command, false);
+    if (const std::string notes = command.get_footer(); !notes.empty())
+        roff += ".SH NOTES\n.nf\n" + literal(notes) + "\n.fi\n";
+    if (const CLI::App* parent = command.get_parent())
+        roff += fmt::format(".SH SEE ALSO\n.BR {} (1)\n", literal(full_name(*parent, '-')));
     return roff;
 }
 
+void write_pages(const CLI::App& command, const std::filesystem::path& folder) {
+    replace_own(folder / (full_name(command, '-') + ".1"), FileKind::manual, page(command));
+    for (const CLI::App* one : listed_commands(command)) write_pages(*one, folder);
+}
+
 }  // namespace
+
+std::vector<const CLI::App*> listed_commands(const CLI::App& command) {
+    return command.get_subcommands([](const CLI::App* one) { return !one->get_group().empty(); });
+}
 
 void add_manual(CLI::App& app, int&) {
     auto* sub = app.add_subcommand("manual", "Write the manual pages of all commands to a folder");
@@ -92,11 +103,7 @@ void add_manual(CLI::App& app, int&) {
         "  man -l out/manual/mcdem-run.1");
     sub->callback([&app, folder] {
         const FolderLock lock = open_output_folder(*folder);
-        const std::string version = std::string(version_text).substr(0, std::string(version_text).find(' '));
-        const auto tree = command_tree(app);
-        for (const CommandEntry& command : tree)
-            replace_own(std::filesystem::path(*folder) / (page_name(command.path) + ".1"), FileKind::manual,
-                        page(tree, command, version));
+        write_pages(app, *folder);
     });
 }
 
