@@ -78,9 +78,7 @@ private:
     }
 
     Estimate mean_top_force(const Replicas& replicas) const {
-        const LevelOptions options;
-        const auto forces =
-            top_force_at(group_levels(replicas, options), replicas, displacement_, options.tolerance);
+        const auto forces = top_force_at(group_levels(replicas), replicas, displacement_);
         const auto mean = mean_over_replicas(forces.value);
         return 2 * std::size_t(mean.count) > replicas.size() ? mean : Estimate{};
     }
@@ -127,18 +125,16 @@ bool SceneCalibration::knows_scatter() const {
 SceneCalibration calibrate_scene(Device& device, const Scene& scene, const Replicas& reference,
                                  const CalibrateOptions& options) {
     expect_plain_strokes(scene, "a calibration");
-    const LevelOptions levels;
-    const auto reference_levels = group_levels(reference, levels);
+    const auto reference_levels = group_levels(reference);
     SceneCalibration result;
     result.displacement = full_stroke(reference_levels, reference);
     if (!std::isfinite(result.displacement))
         throw InputError(
             "calibrate: the reference must have a scan, got none (all cycles discarded, or all "
             "replicas failed)");
-    result.target = mean_over_replicas(
-        top_force_at(reference_levels, reference, result.displacement, levels.tolerance).value);
+    result.target = mean_over_replicas(top_force_at(reference_levels, reference, result.displacement).value);
     ValueBatch batch(device, scene, options.model, result.displacement);
-    if (batch.stroke() < result.displacement - levels.tolerance)
+    if (batch.stroke() < result.displacement - level_tolerance)
         throw InputError(
             fmt::format("calibrate: plate.start - plate.end must reach the reference's greatest "
                         "displacement of {:.3f} mm, got {:.3f} mm",

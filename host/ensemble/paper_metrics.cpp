@@ -22,12 +22,11 @@ void add_paper_metrics(GapReduction& gap_reduction, const Recording& experiment,
     add(gap_reduction, "errZ", before.errZ, after.errZ);
     add(gap_reduction, "bhat", before.bhat, after.bhat);
 
-    const LevelOptions options;
-    const Levels measured = group_levels(reference, options);
+    const Levels measured = group_levels(reference);
     Eigen::ArrayXd forces[2];
     for (int k = 0; k < 2; ++k) {
-        const Levels levels = group_levels(settings[k].replicas, options);
-        const auto matches = match_levels(levels, measured, options.tolerance);
+        const Levels levels = group_levels(settings[k].replicas);
+        const auto matches = match_levels(levels, measured);
         forces[k] = mean_without(at_reference(by_replica(levels, top_force), matches), -1);
     }
     const Eigen::ArrayXd experiment_force = mean_without(by_replica(measured, top_force), -1);

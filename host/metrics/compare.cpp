@@ -44,23 +44,21 @@ void note_levels(const Levels& simulated, const Levels& reference, const std::ve
                         missing, reference.size()));
 }
 
-void note_stroke(const TopForceRatio& ratio, double tolerance, Comparison& comparison) {
+void note_stroke(const TopForceRatio& ratio, Comparison& comparison) {
     if (std::isnan(ratio.displacement))
         comparison.notes.push_back("Rtop: no replica came to the end of its protocol");
-    else if (ratio.displacement < ratio.reference_end - tolerance)
+    else if (ratio.displacement < ratio.reference_end - level_tolerance)
         comparison.notes.push_back(
             fmt::format("Rtop is taken at {:.2f} mm, where the simulation ends; the "
                         "reference goes to {:.2f} mm",
                         ratio.displacement / mm, ratio.reference_end / mm));
 }
 
-void note_contacts(const CompareOptions& options, bool reference_known, Comparison& comparison) {
+void note_contacts(Comparison& comparison) {
     if (comparison.levels_errZ == 0)
         comparison.notes.push_back("errZ: Z is not known on both sides at any level");
     else if (!comparison.tau.available())
         comparison.notes.push_back("errZ is without threshold: the simulation has no contacts recorded");
-    else if (!reference_known && options.walls_in_coordination == WallContacts::left_out)
-        comparison.notes.push_back("errZ: the reference has no contacts recorded, its Z may count walls");
     if (comparison.levels_bhat == 0)
         comparison.notes.push_back("bhat: contacts are not recorded on both sides at any level");
     else if (comparison.levels_bhat < comparison.levels_errf)
@@ -68,8 +66,8 @@ void note_contacts(const CompareOptions& options, bool reference_known, Comparis
             fmt::format("bhat rests on the {} levels with contacts on both sides", comparison.levels_bhat));
 }
 
-Levels levels_or_error(const Replicas& replicas, const LevelOptions& options, const std::string& whose) {
-    auto levels = group_levels(replicas, options);
+Levels levels_or_error(const Replicas& replicas, const std::string& whose) {
+    auto levels = group_levels(replicas);
     if (levels.empty())
         throw InputError(
             fmt::format("{}: must have scans after its discarded cycles, got none: record more "
@@ -80,11 +78,10 @@ Levels levels_or_error(const Replicas& replicas, const LevelOptions& options, co
 
 }  // namespace
 
-Comparison compare(const Setting& simulated, const Replicas& reference, const CompareOptions& options) {
-    const double tolerance = options.levels.tolerance;
-    const auto measured = levels_or_error(reference, options.levels, "reference");
-    const auto levels = group_levels(simulated.replicas, options.levels);
-    const auto matches = match_levels(levels, measured, tolerance);
+Comparison compare(const Setting& simulated, const Replicas& reference, std::optional<double> touch_force) {
+    const auto measured = levels_or_error(reference, "reference");
+    const auto levels = group_levels(simulated.replicas);
+    const auto matches = match_levels(levels, measured);
     const Jackknife jackknife(seeds_of(simulated.replicas), seeds_of(reference));
 
     Comparison comparison;
@@ -98,27 +95,24 @@ Comparison compare(const Setting& simulated, const Replicas& reference, const Co
     }
     note_levels(levels, measured, matches, comparison);
 
-    const auto ratio = top_force_ratio(levels, simulated.replicas, measured, reference, tolerance);
+    const auto ratio = top_force_ratio(levels, simulated.replicas, measured, reference);
     comparison.Rtop = ratio.Rtop;
-    note_stroke(ratio, tolerance, comparison);
+    note_stroke(ratio, comparison);
 
-    const auto errf = top_force_error(levels, measured, matches, jackknife.omissions(), options.touch_force);
+    const auto errf = top_force_error(levels, measured, matches, jackknife.omissions(), touch_force);
     comparison.errf = jackknife.estimate(errf.by_omission);
     comparison.levels_errf = errf.levels_used;
 
-    const auto walls = options.walls_in_coordination;
-    const auto z =
-        coordination_error(levels, simulated.replicas, reference_coordination(measured, reference, walls),
-                           matches, jackknife, walls);
+    const auto z = coordination_error(levels, simulated.replicas, reference_coordination(measured, reference),
+                                      matches, jackknife);
     comparison.errZ = z.errZ;
     comparison.tau = z.tau;
     comparison.levels_errZ = z.levels_used;
 
-    const auto distance =
-        distribution_distance(levels, measured, matches, jackknife, options.walls_in_distribution);
+    const auto distance = distribution_distance(levels, measured, matches, jackknife);
     comparison.bhat = distance.bhat;
     comparison.levels_bhat = distance.levels_used;
-    note_contacts(options, Coordination(measured, reference, walls).known(), comparison);
+    note_contacts(comparison);
     return comparison;
 }
 

@@ -1,18 +1,9 @@
 // The comparison table of the paper: replicas of one setting against reference recordings, measured or
 // simulated.
 #pragma once
-#include "metrics/contact_forces.h"
 #include "metrics/levels.h"
 
 namespace mcdem::inline metrics {
-
-struct CompareOptions {
-    LevelOptions levels;
-    WallContacts walls_in_coordination = WallContacts::counted;
-    WallContacts walls_in_distribution = WallContacts::left_out;  ///< the paper: "interparticle" forces
-    std::optional<double>
-        touch_force;  ///< errf ignores levels at which the reference's force does not exceed this [N]
-};
 
 struct Comparison {
     std::string setting;
@@ -27,6 +18,8 @@ struct Comparison {
     std::vector<std::string> notes;                         ///< unavailable data, and what was done instead
 };
 
-Comparison compare(const Setting& simulated, const Replicas& reference, const CompareOptions& options = {});
+/// errf ignores levels at which the reference's force does not exceed `touch_force` [N].
+Comparison compare(const Setting& simulated, const Replicas& reference,
+                   std::optional<double> touch_force = std::nullopt);
 
 }  // namespace mcdem::metrics

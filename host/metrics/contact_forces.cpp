@@ -6,7 +6,7 @@ namespace mcdem::inline metrics {
 
 bool contacts_known(const Scan& scan) { return !scan.contacts.empty() || scan.coordination_number == 0; }
 
-ForceLists contact_forces(const std::vector<const Scan*>& scans, WallContacts walls) {
+ForceLists contact_forces(const std::vector<const Scan*>& scans) {
     ForceLists forces;
     for (const auto* scan : scans) {
         if (!contacts_known(*scan)) continue;
@@ -14,10 +14,7 @@ ForceLists contact_forces(const std::vector<const Scan*>& scans, WallContacts wa
         for (const auto& contact : scan->contacts) {
             const double magnitude = contact.force.norm();
             if (!std::isfinite(magnitude)) continue;
-            if (!is_wall(contact.partner))
-                forces.grain_grain.push_back(magnitude);
-            else if (walls == WallContacts::counted)
-                forces.grain_wall.push_back(magnitude);
+            (is_wall(contact.partner) ? forces.grain_wall : forces.grain_grain).push_back(magnitude);
         }
     }
     return forces;

@@ -23,11 +23,11 @@ double recorded_coordination(const Scan& scan) { return scan.coordination_number
 
 }  // namespace
 
-Coordination::Coordination(const Levels& levels, const Replicas& replicas, WallContacts walls)
+Coordination::Coordination(const Levels& levels, const Replicas& replicas)
     : replicas_(replicas.size()), levels_(levels.size()) {
     for (std::size_t r = 0; r < replicas.size(); ++r)
         for (const auto& level : levels) {
-            Cell cell{contact_forces(level.scans[r], walls)};
+            Cell cell{contact_forces(level.scans[r])};
             cell.grain_scans = static_cast<double>(replicas[r]->diameter.size()) * cell.forces.scans;
             std::sort(cell.forces.grain_grain.begin(), cell.forces.grain_grain.end());
             std::sort(cell.forces.grain_wall.begin(), cell.forces.grain_wall.end());
@@ -65,8 +65,8 @@ bool Coordination::known() const {
     return std::any_of(cells_.begin(), cells_.end(), [](const Cell& cell) { return cell.grain_scans > 0; });
 }
 
-Eigen::ArrayXXd reference_coordination(const Levels& levels, const Replicas& replicas, WallContacts walls) {
-    const Coordination counted(levels, replicas, walls);
+Eigen::ArrayXXd reference_coordination(const Levels& levels, const Replicas& replicas) {
+    const Coordination counted(levels, replicas);
     const auto from_contacts = counted.at_threshold(0);
     return from_contacts.isFinite().select(from_contacts, by_replica(levels, recorded_coordination));
 }
@@ -150,8 +150,8 @@ double error_of_tau(const Objective& objective, double tau, const Jackknife& jac
 
 CoordinationError coordination_error(const Levels& simulated, const Replicas& simulated_replicas,
                                      const Eigen::ArrayXXd& reference, const std::vector<LevelMatch>& matches,
-                                     const Jackknife& jackknife, WallContacts walls) {
-    const Coordination coordination(simulated, simulated_replicas, walls);
+                                     const Jackknife& jackknife) {
+    const Coordination coordination(simulated, simulated_replicas);
     CoordinationError error;
     const auto finish = [&](const LevelError& levels) {
         error.errZ = jackknife.estimate(levels.by_omission);

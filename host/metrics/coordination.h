@@ -1,8 +1,7 @@
 // Z(tau): contacts per grain when contacts with |f| < tau are ignored. errZ: difference to the reference at
 // the tau that minimises it.
 //
-// A contact between two grains counts for both, a contact with a wall for one grain. Contacts with walls are
-// optional (Scan includes them).
+// A contact between two grains counts for both, a contact with a wall for one grain.
 #pragma once
 #include "metrics/contact_forces.h"
 #include "metrics/levels.h"
@@ -12,7 +11,7 @@ namespace mcdem::inline metrics {
 /// Sorted contact forces of every replica at every level: Z at a threshold needs two binary searches.
 class Coordination {
 public:
-    Coordination(const Levels& levels, const Replicas& replicas, WallContacts walls);
+    Coordination(const Levels& levels, const Replicas& replicas);
     /// Row: replica, column: level. NaN if contacts were not recorded.
     Eigen::ArrayXXd at_threshold(double tau) const;
     /// About `count` quantiles of the forces of all levels, ascending, starting at 0 [N].
@@ -33,7 +32,7 @@ private:
 
 /// Z of a reference, by replica and level: computed from its contacts if recorded, otherwise as recorded per
 /// scan.
-Eigen::ArrayXXd reference_coordination(const Levels& levels, const Replicas& replicas, WallContacts walls);
+Eigen::ArrayXXd reference_coordination(const Levels& levels, const Replicas& replicas);
 
 struct CoordinationError {
     Estimate errZ;
@@ -47,6 +46,6 @@ struct CoordinationError {
 /// errors by jackknife: of errZ at that tau (where it is stationary), of tau from a parabola.
 CoordinationError coordination_error(const Levels& simulated, const Replicas& simulated_replicas,
                                      const Eigen::ArrayXXd& reference, const std::vector<LevelMatch>& matches,
-                                     const Jackknife& jackknife, WallContacts walls);
+                                     const Jackknife& jackknife);
 
 }  // namespace mcdem::metrics

@@ -20,14 +20,9 @@ std::vector<double> concatenate(const std::vector<std::vector<double>>& lists) {
     return all;
 }
 
-std::vector<std::vector<double>> forces_by_replica(const Level& level, WallContacts walls) {
+std::vector<std::vector<double>> forces_by_replica(const Level& level) {
     std::vector<std::vector<double>> lists;
-    for (const auto& scans : level.scans) {
-        auto forces = contact_forces(scans, walls);
-        forces.grain_grain.insert(forces.grain_grain.end(), forces.grain_wall.begin(),
-                                  forces.grain_wall.end());
-        lists.push_back(std::move(forces.grain_grain));
-    }
+    for (const auto& scans : level.scans) lists.push_back(contact_forces(scans).grain_grain);
     return lists;
 }
 
@@ -40,9 +35,9 @@ std::vector<Histogram> histograms(const std::vector<std::vector<double>>& lists,
 
 /// B at one level for each omission.
 std::vector<double> overlaps(const Level& below, const Level& above, double weight, const Level& reference,
-                             const std::vector<Omission>& omissions, WallContacts walls) {
-    const auto p_below = forces_by_replica(below, walls), q = forces_by_replica(reference, walls);
-    const auto p_above = &below == &above ? p_below : forces_by_replica(above, walls);
+                             const std::vector<Omission>& omissions) {
+    const auto p_below = forces_by_replica(below), q = forces_by_replica(reference);
+    const auto p_above = &below == &above ? p_below : forces_by_replica(above);
     auto p_all = concatenate(p_below);
     if (&below != &above) {
         const auto more = concatenate(p_above);
@@ -122,14 +117,14 @@ double bhattacharyya(const Histogram& p, const Histogram& q) {
 }
 
 DistributionDistance distribution_distance(const Levels& simulated, const Levels& reference,
-                                           const std::vector<LevelMatch>& matches, const Jackknife& jackknife,
-                                           WallContacts walls) {
+                                           const std::vector<LevelMatch>& matches,
+                                           const Jackknife& jackknife) {
     DistributionDistance distance;
     std::vector<double> sums(jackknife.omissions().size(), 0);
     for (std::size_t l = 0; l < matches.size(); ++l) {
         if (!matches[l].found()) continue;
         const auto b = overlaps(simulated[matches[l].below], simulated[matches[l].above], matches[l].weight,
-                                reference[l], jackknife.omissions(), walls);
+                                reference[l], jackknife.omissions());
         if (!std::isfinite(b[0])) continue;
         ++distance.levels_used;
         for (std::size_t o = 0; o < b.size(); ++o) sums[o] += b[o];
@@ -142,12 +137,12 @@ DistributionDistance distribution_distance(const Levels& simulated, const Levels
     return distance;
 }
 
-ForceDensity force_density(const Level& level, int bins, double largest, WallContacts walls) {
+ForceDensity force_density(const Level& level, int bins, double largest) {
     ForceDensity result;
     const double width = largest / bins;
     std::vector<double> edges;
     for (int i = 1; i <= bins; ++i) edges.push_back(i * width);
-    const auto replicas = histograms(forces_by_replica(level, walls), edges);
+    const auto replicas = histograms(forces_by_replica(level), edges);
     for (int i = 0; i < bins; ++i) {
         std::vector<double> densities;
         for (const auto& replica : replicas)

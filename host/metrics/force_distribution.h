@@ -1,5 +1,5 @@
-// Similarity of two distributions of contact forces: Bhattacharyya's B = integral sqrt(p q) df at each level,
-// and bhat = -log of the mean of B over levels.
+// Similarity of two distributions of the contact forces between grains (the paper: "interparticle"):
+// Bhattacharyya's B = integral sqrt(p q) df at each level, and bhat = -log of the mean of B over levels.
 //
 // B is invariant under transformations of f, so bins need not have the same width. Their edges are quantiles
 // of the two samples together, and every bin is well filled. Few bins blur the difference between p and q;
@@ -42,14 +42,14 @@ struct DistributionDistance {
 /// Ignores levels at which either side has no recorded contacts. Between two simulated levels the
 /// distribution is interpolated like any other quantity.
 DistributionDistance distribution_distance(const Levels& simulated, const Levels& reference,
-                                           const std::vector<LevelMatch>& matches, const Jackknife& jackknife,
-                                           WallContacts walls);
+                                           const std::vector<LevelMatch>& matches,
+                                           const Jackknife& jackknife);
 
 /// Density p(f) at one level in equal bins from 0 to `largest` [N], for figures.
 struct ForceDensity {
     std::vector<double> force;      ///< centre of each bin [N]
     std::vector<Estimate> density;  ///< [1/N]; error over replicas
 };
-ForceDensity force_density(const Level& level, int bins, double largest, WallContacts walls);
+ForceDensity force_density(const Level& level, int bins, double largest);
 
 }  // namespace mcdem::metrics

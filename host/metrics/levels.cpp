@@ -17,10 +17,10 @@ struct Placed {
     const Scan* scan;
 };
 
-std::vector<Placed> scans_of_phase(const Replicas& replicas, Phase phase, const LevelOptions& options) {
+std::vector<Placed> scans_of_phase(const Replicas& replicas, Phase phase) {
     std::vector<Placed> placed;
     for (std::size_t r = 0; r < replicas.size(); ++r) {
-        const int discard = options.discard.value_or(discard_of(*replicas[r]));
+        const int discard = discard_of(*replicas[r]);
         for (const auto& scan : replicas[r]->scans) {
             const double displacement = replicas[r]->displacement(scan);
             if (scan.phase == phase && scan.cycle >= discard && std::isfinite(displacement))
@@ -59,13 +59,13 @@ void expect_strokes(const Replicas& replicas) {
 
 }  // namespace
 
-Levels group_levels(const Replicas& replicas, const LevelOptions& options) {
+Levels group_levels(const Replicas& replicas) {
     expect_strokes(replicas);
-    const double tolerance = std::min(options.tolerance, median_spacing(replicas) / 3);
+    const double tolerance = std::min(level_tolerance, median_spacing(replicas) / 3);
     Levels levels;
     for (Phase phase : {Phase::load, Phase::unload}) {
         int in_level = 0;
-        for (const auto& [displacement, replica, scan] : scans_of_phase(replicas, phase, options)) {
+        for (const auto& [displacement, replica, scan] : scans_of_phase(replicas, phase)) {
             if (in_level == 0 || displacement - levels.back().displacement > tolerance) {
                 levels.push_back({phase, 0, std::vector<std::vector<const Scan*>>(replicas.size())});
                 in_level = 0;
@@ -104,7 +104,7 @@ std::vector<LevelMean> level_means(const Levels& levels, const Quantity& quantit
     return means;
 }
 
-std::vector<LevelMatch> match_levels(const Levels& simulated, const Levels& reference, double tolerance) {
+std::vector<LevelMatch> match_levels(const Levels& simulated, const Levels& reference) {
     std::vector<LevelMatch> matches;
     for (const auto& wanted : reference) {
         int below = -1, above = -1;  // neighbouring levels; equal if a level matches
@@ -118,8 +118,9 @@ std::vector<LevelMatch> match_levels(const Levels& simulated, const Levels& refe
                          : std::abs(simulated[s].displacement - wanted.displacement);
         };
         const int nearest = distance(below) <= distance(above) ? below : above;
-        const bool dense = below >= 0 && above >= 0 && distance(below) + distance(above) < 4 * tolerance;
-        if (distance(nearest) <= tolerance && (!dense || below == above))
+        const bool dense =
+            below >= 0 && above >= 0 && distance(below) + distance(above) < 4 * level_tolerance;
+        if (distance(nearest) <= level_tolerance && (!dense || below == above))
             matches.push_back({nearest, nearest, 0});
         else if (below >= 0 && above >= 0)
             matches.push_back({below, above, distance(below) / (distance(below) + distance(above))});

@@ -9,13 +9,9 @@
 
 namespace mcdem::inline metrics {
 
-struct LevelOptions {
-    std::optional<int> discard = std::nullopt;  ///< number of first cycles that are left out; default: each
-                                                ///< recording's own `protocol.discard`
-    /// Displacements within this distance of a level's mean belong to it [m]. If the scans of a recording are
-    /// closer (recorded without stopping), a third of their median spacing is used.
-    double tolerance = 0.1e-3;
-};
+/// Displacements within this distance of a level's mean belong to it [m]. If the scans of a recording are
+/// closer (recorded without stopping), a third of their median spacing is used.
+inline constexpr double level_tolerance = 0.1e-3;
 
 struct Level {
     Phase phase = Phase::load;
@@ -24,9 +20,10 @@ struct Level {
         scans;  ///< by replica: one scan for each cycle that reached the level
 };
 
-/// Loading levels first; each phase in order of increasing displacement.
+/// Loading levels first; each phase in order of increasing displacement. Without the first cycles that each
+/// recording's `protocol.discard` leaves out.
 using Levels = std::vector<Level>;
-Levels group_levels(const Replicas& replicas, const LevelOptions& options = {});
+Levels group_levels(const Replicas& replicas);
 
 /// A quantity of a scan; NaN if the scan does not have it.
 using Quantity = std::function<double(const Scan&)>;
@@ -53,7 +50,7 @@ struct LevelMatch {
 /// One match for each reference level: a simulated level within the tolerance, otherwise linear interpolation
 /// between the two neighbours of the same phase (always if simulated levels are close together). No
 /// extrapolation.
-std::vector<LevelMatch> match_levels(const Levels& simulated, const Levels& reference, double tolerance);
+std::vector<LevelMatch> match_levels(const Levels& simulated, const Levels& reference);
 
 /// Columns of `values` (by replica and simulated level) interpolated to the reference levels.
 Eigen::ArrayXXd at_reference(const Eigen::ArrayXXd& values, const std::vector<LevelMatch>& matches);

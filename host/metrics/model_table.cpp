@@ -25,10 +25,10 @@ const Setting& reference_of(const std::vector<Setting>& settings, const std::opt
 }
 
 /// The largest displacement of all replicas that did not stop early; NaN if all did.
-double largest_stroke(const std::vector<Setting>& settings, const LevelOptions& options) {
+double largest_stroke(const std::vector<Setting>& settings) {
     double largest = not_available;
     for (const auto& setting : settings)
-        largest = std::fmax(largest, full_stroke(group_levels(setting.replicas, options), setting.replicas));
+        largest = std::fmax(largest, full_stroke(group_levels(setting.replicas), setting.replicas));
     return largest;
 }
 
@@ -52,20 +52,19 @@ double largest_rate_error(const Replicas& replicas) {
     return largest;
 }
 
-ModelTable model_table(const std::vector<Setting>& settings, const LevelOptions& options,
-                       const std::optional<std::string>& reference) {
+ModelTable model_table(const std::vector<Setting>& settings, const std::optional<std::string>& reference) {
     ModelTable table;
     if (settings.empty()) return table;
     const auto& over = reference_of(settings, reference);
-    const auto over_levels = group_levels(over.replicas, options);
+    const auto over_levels = group_levels(over.replicas);
     table.reference = over.label;
     table.displacement = full_stroke(over_levels, over.replicas);
-    if (std::isnan(table.displacement)) table.displacement = largest_stroke(settings, options);
+    if (std::isnan(table.displacement)) table.displacement = largest_stroke(settings);
     for (const auto& setting : settings) {
-        const auto levels = group_levels(setting.replicas, options);
+        const auto levels = group_levels(setting.replicas);
         const auto at = [&](double displacement) {
-            const auto above = top_force_at(levels, setting.replicas, displacement, options.tolerance);
-            const auto below = top_force_at(over_levels, over.replicas, displacement, options.tolerance);
+            const auto above = top_force_at(levels, setting.replicas, displacement);
+            const auto below = top_force_at(over_levels, over.replicas, displacement);
             return ModelRow{setting.label, model_of(setting.replicas), mean_over_replicas(above.value),
                             ratio_of_means(above, below), static_cast<int>(setting.replicas.size())};
         };

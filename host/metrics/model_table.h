@@ -31,7 +31,7 @@ struct ModelTable {
 double largest_rate_error(const Replicas& replicas);
 
 /// The reference is the setting with that label; default: the first with model mc_dem, otherwise the first.
-ModelTable model_table(const std::vector<Setting>& settings, const LevelOptions& options = {},
+ModelTable model_table(const std::vector<Setting>& settings,
                        const std::optional<std::string>& reference = std::nullopt);
 
 }  // namespace mcdem::metrics

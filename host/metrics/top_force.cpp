@@ -18,11 +18,11 @@ double full_stroke(const Levels& levels, const Replicas& replicas) {
     return end;
 }
 
-Sample top_force_at(const Levels& levels, const Replicas& replicas, double displacement, double tolerance) {
+Sample top_force_at(const Levels& levels, const Replicas& replicas, double displacement) {
     const auto forces = by_replica(levels, top_force);
     Sample sample{seeds_of(replicas), std::vector<double>(replicas.size(), not_available)};
     for (Phase phase : {Phase::load, Phase::unload}) {
-        const auto at = at_reference(forces, match_levels(levels, level_at(phase, displacement), tolerance));
+        const auto at = at_reference(forces, match_levels(levels, level_at(phase, displacement)));
         for (std::size_t r = 0; r < replicas.size(); ++r)
             if (!std::isfinite(sample.value[r]) && at.rows() > 0) sample.value[r] = at(r, 0);
     }
@@ -30,15 +30,15 @@ Sample top_force_at(const Levels& levels, const Replicas& replicas, double displ
 }
 
 TopForceRatio top_force_ratio(const Levels& simulated, const Replicas& simulated_replicas,
-                              const Levels& reference, const Replicas& reference_replicas, double tolerance) {
+                              const Levels& reference, const Replicas& reference_replicas) {
     TopForceRatio ratio;
     ratio.reference_end = full_stroke(reference, reference_replicas);
     const double simulated_end = full_stroke(simulated, simulated_replicas);
     if (std::isnan(simulated_end) || std::isnan(ratio.reference_end)) return ratio;
-    const bool ends_before = simulated_end < ratio.reference_end - tolerance;
+    const bool ends_before = simulated_end < ratio.reference_end - level_tolerance;
     ratio.displacement = ends_before ? simulated_end : ratio.reference_end;
-    ratio.Rtop = ratio_of_means(top_force_at(simulated, simulated_replicas, ratio.displacement, tolerance),
-                                top_force_at(reference, reference_replicas, ratio.displacement, tolerance));
+    ratio.Rtop = ratio_of_means(top_force_at(simulated, simulated_replicas, ratio.displacement),
+                                top_force_at(reference, reference_replicas, ratio.displacement));
     return ratio;
 }
 

@@ -9,7 +9,7 @@ double full_stroke(const Levels& levels, const Replicas& replicas);
 
 /// Top force of each replica at a displacement [N]: on the loading branch, or on the unloading branch if
 /// loading does not reach it (a turning point belongs to both).
-Sample top_force_at(const Levels& levels, const Replicas& replicas, double displacement, double tolerance);
+Sample top_force_at(const Levels& levels, const Replicas& replicas, double displacement);
 
 /// Ratio of mean top forces at maximum compression. If the simulation ends before the reference, the ratio is
 /// taken at the end of the simulation (`displacement`).
@@ -19,7 +19,7 @@ struct TopForceRatio {
     double reference_end = not_available;  ///< maximum compression of the reference [m]
 };
 TopForceRatio top_force_ratio(const Levels& simulated, const Replicas& simulated_replicas,
-                              const Levels& reference, const Replicas& reference_replicas, double tolerance);
+                              const Levels& reference, const Replicas& reference_replicas);
 
 /// RMS over levels, for each omission of the jackknife.
 struct LevelError {

@@ -49,10 +49,9 @@ py::list compare_run(const SharedRun& run, const py::object& reference, const st
     std::vector<Comparison> comparisons;
     {
         const py::gil_scoped_release others_go_on;
-        CompareOptions options;
-        options.touch_force = touch_force;
         const auto against = chosen_setting(*other, setting, other->name, "setting").replicas;
-        for (const auto& one : group_by_setting(*run)) comparisons.push_back(compare(one, against, options));
+        for (const auto& one : group_by_setting(*run))
+            comparisons.push_back(compare(one, against, touch_force));
     }
     py::list all;
     for (const auto& comparison : comparisons) all.append(dict_of(comparison));

@@ -62,12 +62,11 @@ TEST(Compare, lists_missing_quantities) {
 }
 
 TEST(Compare, discarding_all_cycles_is_an_error) {
-    const auto run = synthetic::run({{}}, 1);
-    CompareOptions options;
-    options.levels.discard = 1;
-    EXPECT_THROW(compare(group_by_setting(run)[0], {&run.recordings[0]}, options), InputError);
+    auto run = synthetic::run({{}}, 1);
     auto measured = synthetic::recording({.cycles = 2});
-    EXPECT_THAT(compare(group_by_setting(run)[0], {&measured}, options).notes,
+    run.recordings[0].parameters["protocol.discard"] = measured.parameters["protocol.discard"] = "1";
+    EXPECT_THROW(compare(group_by_setting(run)[0], {&run.recordings[0]}), InputError);
+    EXPECT_THAT(compare(group_by_setting(run)[0], {&measured}).notes,
                 Contains(HasSubstr("no scans after the discarded cycles")));
 }
 
@@ -127,9 +126,9 @@ TEST(ModelTable, reference_is_the_named_one_or_the_first) {
         synthetic::run({{.model = "sphere_to_sphere", .top = 10}, {.model = "independent", .top = 5}}, 1);
     const auto settings = group_by_setting(run);
     EXPECT_EQ(model_table(settings).reference, "sphere_to_sphere");
-    EXPECT_NEAR(model_table(settings, {}, "independent").rows[0].ratio.value, 2, 1e-12);
+    EXPECT_NEAR(model_table(settings, "independent").rows[0].ratio.value, 2, 1e-12);
     try {
-        model_table(settings, {}, "hertz");
+        model_table(settings, "hertz");
         FAIL() << "an unknown reference must be refused";
     } catch (const InputError& error) {
         EXPECT_THAT(error.what(), HasSubstr("\"sphere_to_sphere\", \"independent\"; got \"hertz\""));

@@ -25,14 +25,13 @@ Recording three_grains() {
     return made;
 }
 
-double z_at(const Recording& recording, double tau, WallContacts walls = WallContacts::counted) {
+double z_at(const Recording& recording, double tau) {
     const Replicas replicas{&recording};
-    return Coordination(group_levels(replicas), replicas, walls).at_threshold(tau)(0, 0);
+    return Coordination(group_levels(replicas), replicas).at_threshold(tau)(0, 0);
 }
 
 TEST(Coordination, grain_contacts_count_twice_wall_contacts_once) {
     EXPECT_DOUBLE_EQ(z_at(three_grains(), 0), 5.0 / 3);
-    EXPECT_DOUBLE_EQ(z_at(three_grains(), 0, WallContacts::left_out), 4.0 / 3);
 }
 
 TEST(Coordination, includes_forces_equal_to_the_threshold) {
@@ -55,9 +54,8 @@ TEST(Coordination, unrecorded_contacts_are_not_zero_contacts) {
 
 CoordinationError error_between(const Replicas& simulated, const Replicas& reference) {
     const auto a = group_levels(simulated), b = group_levels(reference);
-    return coordination_error(a, simulated, reference_coordination(b, reference, WallContacts::counted),
-                              match_levels(a, b, 0.1e-3), Jackknife(seeds_of(simulated), seeds_of(reference)),
-                              WallContacts::counted);
+    return coordination_error(a, simulated, reference_coordination(b, reference), match_levels(a, b),
+                              Jackknife(seeds_of(simulated), seeds_of(reference)));
 }
 
 TEST(ErrZ, finds_the_threshold_of_the_reference) {

@@ -75,8 +75,8 @@ TEST(Bhattacharyya, equal_forces_are_allowed) {
 
 DistributionDistance distance(const Replicas& simulated, const Replicas& reference) {
     const auto a = group_levels(simulated), b = group_levels(reference);
-    return distribution_distance(a, b, match_levels(a, b, 0.1e-3),
-                                 Jackknife(seeds_of(simulated), seeds_of(reference)), WallContacts::left_out);
+    return distribution_distance(a, b, match_levels(a, b),
+                                 Jackknife(seeds_of(simulated), seeds_of(reference)));
 }
 
 TEST(Bhat, of_two_samples_of_one_distribution_is_small) {
@@ -122,7 +122,7 @@ TEST(Bhat, standard_error_equals_the_scatter_of_repeated_experiments) {
 
 TEST(ForceDensity, integrates_to_one_and_agrees_with_the_distribution) {
     const auto recording = synthetic::recording({.levels = 1, .touch = -1e9, .contacts = 50000});
-    const auto density = force_density(group_levels({&recording})[0], 40, 0.4, WallContacts::left_out);
+    const auto density = force_density(group_levels({&recording})[0], 40, 0.4);
     double sum = 0;
     for (const auto& d : density.density) sum += d.value * 0.01;
     EXPECT_NEAR(sum, 1, 0.001);

@@ -21,21 +21,27 @@ TEST(GroupLevels, one_for_each_phase_and_displacement) {
     for (const auto& level : levels) EXPECT_EQ(level.scans[0].size(), 3u);
 }
 
-TEST(GroupLevels, discards_first_cycles_by_option_or_by_the_key_of_the_recording) {
+TEST(GroupLevels, discards_first_cycles_by_the_key_of_the_recording) {
     auto recording = synthetic::recording({.cycles = 4, .levels = 2});
-    EXPECT_EQ(group_levels({&recording}, {.discard = 3})[0].scans[0].size(), 1u);
-    EXPECT_EQ(group_levels({&recording}, {.discard = 3})[0].scans[0][0]->cycle, 3);
-    recording.parameters.insert_or_assign("protocol.discard", "1");
+    recording.parameters["protocol.discard"] = "3";
+    EXPECT_EQ(group_levels({&recording})[0].scans[0].size(), 1u);
+    EXPECT_EQ(group_levels({&recording})[0].scans[0][0]->cycle, 3);
+    recording.parameters["protocol.discard"] = "1";
     EXPECT_EQ(group_levels({&recording})[0].scans[0].size(), 3u);
-    EXPECT_TRUE(group_levels({&recording}, {.discard = 4}).empty());
+    recording.parameters["protocol.discard"] = "4";
+    EXPECT_TRUE(group_levels({&recording}).empty());
 }
 
 TEST(GroupLevels, displacements_within_the_tolerance_are_one_level) {
     auto recording = synthetic::recording({.cycles = 2, .levels = 3});
-    for (auto& scan : recording.scans) scan.plate_z += scan.cycle == 0 ? 0.04e-3 : -0.04e-3;
-    EXPECT_EQ(group_levels({&recording}, {.tolerance = 0.1e-3}).size(), 6u);
+    const auto move_apart = [&](double way) {
+        for (auto& scan : recording.scans) scan.plate_z += scan.cycle == 0 ? way : -way;
+    };
+    move_apart(0.04e-3);
+    EXPECT_EQ(group_levels({&recording}).size(), 6u);
     EXPECT_NEAR(group_levels({&recording})[0].displacement, 10e-3, 1e-9);
-    EXPECT_EQ(group_levels({&recording}, {.tolerance = 0.05e-3}).size(), 12u);
+    move_apart(0.02e-3);
+    EXPECT_EQ(group_levels({&recording}).size(), 12u);
 }
 
 TEST(GroupLevels, scans_recorded_during_motion_keep_their_own_levels) {
@@ -75,7 +81,7 @@ TEST(MatchLevels, finds_levels_within_the_tolerance) {
     const auto recording = synthetic::recording({.levels = 4});
     auto shifted = recording;
     for (auto& scan : shifted.scans) scan.plate_z -= 0.09e-3;
-    const auto matches = match_levels(group_levels({&shifted}), group_levels({&recording}), 0.1e-3);
+    const auto matches = match_levels(group_levels({&shifted}), group_levels({&recording}));
     for (std::size_t i = 0; i < matches.size(); ++i) {
         EXPECT_EQ(matches[i].below, static_cast<int>(i));
         EXPECT_EQ(matches[i].above, static_cast<int>(i));
@@ -87,14 +93,14 @@ TEST(MatchLevels, dense_levels_are_interpolated_not_rounded) {
     const auto levels = group_levels({&dense});
     const auto displacement = [&](const Scan& scan) { return dense.displacement(scan); };
     const auto at =
-        at_reference(by_replica(levels, displacement), match_levels(levels, group_levels({&wanted}), 0.1e-3));
+        at_reference(by_replica(levels, displacement), match_levels(levels, group_levels({&wanted})));
     for (int l = 0; l < 7; ++l) EXPECT_NEAR(at(0, l), 30e-3 * (l + 1) / 7, 1e-9);
 }
 
 TEST(MatchLevels, interpolates_linearly_within_a_phase_and_never_beyond) {
     const auto coarse = synthetic::recording({.levels = 2}), fine = synthetic::recording({.levels = 4});
     const auto levels = group_levels({&coarse}), wanted = group_levels({&fine});
-    const auto matches = match_levels(levels, wanted, 0.1e-3);
+    const auto matches = match_levels(levels, wanted);
     const auto displacement = [&](Phase phase) {
         return [phase, start = fine.plate_start](const Scan& scan) {
             return scan.phase == phase ? start - scan.plate_z : not_available;

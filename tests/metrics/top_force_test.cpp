@@ -7,8 +7,6 @@
 namespace mcdem {
 namespace {
 
-constexpr double tolerance = 0.1e-3;
-
 struct Ready {
     explicit Ready(Recording made) : recording(std::move(made)) { levels = group_levels(replicas); }
     Recording recording;
@@ -17,11 +15,10 @@ struct Ready {
 };
 
 TopForceRatio ratio(const Ready& a, const Ready& b) {
-    return top_force_ratio(a.levels, a.replicas, b.levels, b.replicas, tolerance);
+    return top_force_ratio(a.levels, a.replicas, b.levels, b.replicas);
 }
 LevelError error(const Ready& a, const Ready& b, std::optional<double> touch = std::nullopt) {
-    return top_force_error(a.levels, b.levels, match_levels(a.levels, b.levels, tolerance), {Omission{}},
-                           touch);
+    return top_force_error(a.levels, b.levels, match_levels(a.levels, b.levels), {Omission{}}, touch);
 }
 
 TEST(Rtop, is_the_ratio_at_maximum_compression) {

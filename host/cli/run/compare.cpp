@@ -15,7 +15,6 @@ struct CompareCommand {
     std::vector<std::string> runs;
     ReferenceOptions reference;
     std::string out;
-    std::optional<double> touch_force;
     FigureOptions figures;
     bool markdown = false;
 };
@@ -31,9 +30,8 @@ void print_comparison(const CompareCommand& command) {
     std::optional<FolderLock> lock;
     if (!command.out.empty()) lock.emplace(open_output_folder(command.out));
     FigureOptions options = command.figures;
-    options.compare.touch_force = command.touch_force;
     for (const auto& setting : loaded.settings)
-        options.comparisons.push_back(compare(setting, reference.setting.replicas, options.compare));
+        options.comparisons.push_back(compare(setting, reference.setting.replicas, options.touch_force));
     print_out("against {}\n\n{}", reference.setting.label,
               to_text(table_of_comparisons(options.comparisons),
                       command.markdown ? TableFormat::markdown : TableFormat::terminal));
@@ -76,7 +74,7 @@ void add_compare(CLI::App& app, int&) {
     sub->get_option("--against")->required();
     sub->add_option("--out", command->out, "Folder for the four figures; without it no figures are drawn")
         ->type_name("DIR");
-    sub->add_option("--touch-force", command->touch_force,
+    sub->add_option("--touch-force", command->figures.touch_force,
                     "Leave levels out of errf where the reference's top force is not above this [N]")
         ->type_name("N");
     add_figure_options(*sub, command->figures);

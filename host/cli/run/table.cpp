@@ -29,7 +29,7 @@ void print_tables(const TableCommand& command) {
     }
     for (const TextTable& table : tables_of_scans(programmes)) print_out("{}\n", to_text(table, format));
     if (strokes.empty()) return;
-    const auto models = model_table(strokes, {}, over);
+    const auto models = model_table(strokes, over);
     if (command.csv) return print_out("{}", csv_of_models(models, strokes));
     print_out("{}\n", to_text(table_of_models(models), format));
     print_out("{}", to_text(table_of_scaling(strokes), format));

@@ -22,7 +22,7 @@ std::optional<Comparison> comparison_of(const Setting& setting, const std::optio
     if (!reference) return std::nullopt;
     for (const auto& comparison : options.comparisons)
         if (comparison.setting == setting.label) return comparison;
-    return compare(setting, reference->replicas, options.compare);
+    return compare(setting, reference->replicas, options.touch_force);
 }
 
 std::string key_words(const Setting& setting) { return shortened(words_for(setting.label), key_characters); }
@@ -101,12 +101,10 @@ const Level* nearest_level(const Series& series, const FigureOptions& options, P
     return nearest;
 }
 
-/// In the phase of the options; in the other one if that has no contacts, as in runs that stopped early.
+/// While unloading; while loading if unloading has no contacts, as in runs that stopped early.
 const Level* nearest_level(const Series& series, const FigureOptions& options) {
-    const Phase wanted = options.distribution_phase;
-    const Level* level = nearest_level(series, options, wanted);
-    return level ? level
-                 : nearest_level(series, options, wanted == Phase::load ? Phase::unload : Phase::load);
+    const Level* level = nearest_level(series, options, Phase::unload);
+    return level ? level : nearest_level(series, options, Phase::load);
 }
 
 std::vector<ShownDensity> shown_levels(const Cast& cast, const FigureOptions& options) {
@@ -122,14 +120,13 @@ struct Bins {
     double largest = 0;  ///< [N]
     int count = 100;
 };
-Bins common_bins(const std::vector<ShownDensity>& shown, WallContacts walls) {
+Bins common_bins(const std::vector<ShownDensity>& shown) {
     Bins bins;
     for (const auto& [series, level, density] : shown) {
         std::vector<double> forces;
         for (const auto& scans : level->scans) {
-            const auto of_replica = contact_forces(scans, walls);
-            forces.insert(forces.end(), of_replica.grain_grain.begin(), of_replica.grain_grain.end());
-            forces.insert(forces.end(), of_replica.grain_wall.begin(), of_replica.grain_wall.end());
+            const auto of_replica = contact_forces(scans).grain_grain;
+            forces.insert(forces.end(), of_replica.begin(), of_replica.end());
         }
         if (forces.empty()) continue;
         std::ranges::sort(forces);
@@ -142,11 +139,10 @@ Bins common_bins(const std::vector<ShownDensity>& shown, WallContacts walls) {
 
 /// In common bins, up to a force that few contacts exceed; empty without data.
 std::vector<ShownDensity> shown_densities(const Cast& cast, const FigureOptions& options) {
-    const auto walls = options.compare.walls_in_distribution;
     auto shown = shown_levels(cast, options);
-    const auto bins = common_bins(shown, walls);
+    const auto bins = common_bins(shown);
     if (!(bins.largest > 0)) return {};
-    for (auto& one : shown) one.density = force_density(*one.level, bins.count, bins.largest, walls);
+    for (auto& one : shown) one.density = force_density(*one.level, bins.count, bins.largest);
     return shown;
 }
 
@@ -175,9 +171,8 @@ std::optional<double> threshold_of(const Series& series, const FigureOptions& op
 /// Z of the series at its threshold; as recorded without contacts, and for the reference.
 std::vector<LevelMean> coordination_means(const Cast& cast, const Series& series,
                                           const FigureOptions& options) {
-    const auto walls = options.compare.walls_in_coordination;
-    Eigen::ArrayXXd z = reference_coordination(series.levels, series.setting.replicas, walls);
-    if (const Coordination counted(series.levels, series.setting.replicas, walls);
+    Eigen::ArrayXXd z = reference_coordination(series.levels, series.setting.replicas);
+    if (const Coordination counted(series.levels, series.setting.replicas);
         !cast.is_reference(series) && counted.known())
         z = counted.at_threshold(threshold_of(series, options).value_or(0));
     std::vector<LevelMean> means;
@@ -331,14 +326,14 @@ Cast cast_of(const std::vector<Setting>& settings, const std::optional<Setting>&
     const auto styles = styles_of(settings);
     for (std::size_t s = 0; s < settings.size(); ++s) {
         const bool programme = follows_programme(settings[s].replicas);
-        auto levels = programme ? Levels() : group_levels(settings[s].replicas, options.compare.levels);
+        auto levels = programme ? Levels() : group_levels(settings[s].replicas);
         if (programme || !levels.empty())
             cast.simulated.push_back({key_words(settings[s]), styles[s], settings[s], std::move(levels),
                                       comparison_of(settings[s], reference, options)});
     }
     if (reference)
         cast.reference = Series{key_words(*reference), reference_style(), *reference,
-                                group_levels(reference->replicas, options.compare.levels), std::nullopt};
+                                group_levels(reference->replicas), std::nullopt};
     return cast;
 }
 

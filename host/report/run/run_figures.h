@@ -13,11 +13,10 @@
 namespace mcdem::inline report {
 
 struct FigureOptions {
-    CompareOptions compare;
+    std::optional<double> touch_force = {};  ///< of compare()
     std::vector<Comparison> comparisons =
         {};  ///< comparisons of the settings with the reference, if available; otherwise computed
-    Phase distribution_phase = Phase::unload;  ///< phase of the force distribution,
-    double distribution_displacement = 18e-3;  ///< which is shown at the level nearest to this [m]
+    double distribution_displacement = 18e-3;  ///< of the force distribution: the level nearest to this [m]
     double threshold = 0;                      ///< for Z, if no reference determines tau [N]
 };
 

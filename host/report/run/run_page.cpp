@@ -85,8 +85,8 @@ std::string listed(const std::string& quantity, std::vector<Reached> reached) {
     return fmt::format(" {}: {}.", quantity, fmt::join(words, ", "));
 }
 
-std::string of_strokes(const std::vector<Setting>& settings, const LevelOptions& options) {
-    const auto table = model_table(settings, options);
+std::string of_strokes(const std::vector<Setting>& settings) {
+    const auto table = model_table(settings);
     std::vector<Reached> reached;
     for (const ModelRow& row : table.rows)
         reached.push_back({row.setting, row.top_force.value,
@@ -210,7 +210,7 @@ std::string species_of(const RunsOnPage& runs) {
 std::string head_of(const RunsOnPage& runs) {
     std::string words = what_was_simulated(runs.settings) + species_of(runs);
     if (runs.reference) words += " Held against " + runs.reference->label + ".";
-    const auto result = main_result(runs.settings, runs.figures.compare.levels);
+    const auto result = main_result(runs.settings);
     return result.empty() ? words : words + " " + result;
 }
 
@@ -222,8 +222,8 @@ void add_tables(Page& page, const RunsOnPage& runs, const std::vector<Comparison
         page.table("Scans", table);
     const auto strokes = with_programme(runs.settings, false);
     if (strokes.empty()) return;
-    page.table("Top force", table_of_models(model_table(strokes, runs.figures.compare.levels)));
-    page.table("Scaling law", table_of_scaling(strokes, runs.figures.compare.levels));
+    page.table("Top force", table_of_models(model_table(strokes)));
+    page.table("Scaling law", table_of_scaling(strokes));
 }
 
 void add_charts(Page& page, const RunsOnPage& runs, const FigureOptions& options) {
@@ -303,7 +303,7 @@ std::string what_was_simulated(const std::vector<Setting>& settings) {
                        *packings.rbegin() == 1 ? "" : "s");
 }
 
-std::string main_result(const std::vector<Setting>& settings, const LevelOptions& options) {
+std::string main_result(const std::vector<Setting>& settings) {
     const auto strokes = with_programme(settings, false);
     std::size_t replicas = 0, failed = 0;
     for (const Setting& setting : settings) {
@@ -312,7 +312,7 @@ std::string main_result(const std::vector<Setting>& settings, const LevelOptions
             setting.replicas, [](const Recording* recording) { return recording->failure.has_value(); }));
     }
     std::string words =
-        (strokes.empty() ? "" : of_strokes(strokes, options)) + of_programmes(with_programme(settings, true));
+        (strokes.empty() ? "" : of_strokes(strokes)) + of_programmes(with_programme(settings, true));
     if (failed) words += fmt::format(" {} of {} replicas stopped early.", failed, replicas);
     return words.empty() ? words : words.substr(1);
 }
@@ -336,7 +336,7 @@ void add_runs(Page& page, const RunsOnPage& runs) {
     auto options = runs.figures;
     if (runs.reference && options.comparisons.empty())
         for (const auto& setting : runs.settings)
-            options.comparisons.push_back(compare(setting, runs.reference->replicas, options.compare));
+            options.comparisons.push_back(compare(setting, runs.reference->replicas, options.touch_force));
     add_charts(page, runs, options);
     add_packing(page, runs);
     add_tables(page, runs, options.comparisons);

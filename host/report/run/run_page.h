@@ -37,7 +37,7 @@ std::string what_was_simulated(const std::vector<Setting>& settings);
 
 /// "Force on the plate at 30.13 mm: Independent contacts 7.19 N, MC-DEM 15.98 N." For a cell its largest mean
 /// stress. Also states how many replicas stopped early.
-std::string main_result(const std::vector<Setting>& settings, const LevelOptions& options = {});
+std::string main_result(const std::vector<Setting>& settings);
 
 /// The charts that can be drawn; `notes` lists the others with reasons.
 struct RunCharts {

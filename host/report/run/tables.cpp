@@ -298,7 +298,7 @@ TextTable table_of_comparisons(const std::vector<Comparison>& comparisons) {
     return table;
 }
 
-TextTable table_of_scaling(const std::vector<Setting>& settings, const LevelOptions& options) {
+TextTable table_of_scaling(const std::vector<Setting>& settings) {
     TextTable table;
     table.columns = {{"model", Align::left},
                      {"phase", Align::left},
@@ -307,7 +307,7 @@ TextTable table_of_scaling(const std::vector<Setting>& settings, const LevelOpti
                      {"curvature"},
                      {"levels"}};
     for (const auto& setting : settings) {
-        const auto points = scaling_points(group_levels(setting.replicas, options));
+        const auto points = scaling_points(group_levels(setting.replicas));
         for (Phase phase : {Phase::load, Phase::unload}) {
             const auto fit = fit_scaling(points, phase);
             table.rows.push_back({words_for(setting.label), std::string(name(phase)),

@@ -22,7 +22,7 @@ std::string csv_of_models(const ModelTable& models, const std::vector<Setting>& 
 TextTable table_of_comparisons(const std::vector<Comparison>& comparisons);
 
 /// Coefficient, R^2 and curvature of the scaling law by setting and phase.
-TextTable table_of_scaling(const std::vector<Setting>& settings, const LevelOptions& options = {});
+TextTable table_of_scaling(const std::vector<Setting>& settings);
 
 /// One table for plates and one for cells, if there are any, with notes.
 std::vector<TextTable> tables_of_scans(const std::vector<Setting>& settings);
