@@ -29,6 +29,7 @@ struct NumericalSetting {
 /// A way in which reality may differ from the model; the amplitude is zero for the unchanged model.
 struct Effect {
     std::string_view name;
+    std::string_view words;         ///< in texts; empty: the name with blanks
     std::string_view unit;          ///< of the amplitude; empty for dimensionless ones
     std::string_view formula;       ///< meaning of the amplitude
     std::string_view source;        ///< reference for the formula

@@ -5,42 +5,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "diagnose/infer/effects.h"
 #include "report/page/labels.h"
 
 namespace mcdem::inline report {
 namespace {
 
+/// Names that are not of effects.
 const std::map<std::string, std::string>& special_words() {
     static const std::map<std::string, std::string> words{
-        {"cross_contact", "cross-contact deformation"},
-        {"bulge_contacts", "contacts made by bulges"},
-        {"friction", "friction between grains"},
-        {"wall_friction", "friction at the walls"},
-        {"friction_history", "friction with memory"},
-        {"adhesion_net_friction", "adhesion with friction of the net force"},
-        {"cohesion", "cohesion per contact area"},
-        {"stiffening", "stiffening at large strain"},
-        {"finite_strain", "finite strain of the grains"},
-        {"buoyancy", "weight under buoyancy"},
-        {"diameter_error", "error of all diameters"},
-        {"polydispersity", "scatter of diameters"},
-        {"modulus_scatter", "scatter of moduli"},
-        {"plate_tilt", "tilt of the plate along x"},
-        {"plate_tilt_y", "tilt of the plate along y"},
-        {"plate_compliance", "compliance of the plate"},
-        {"force_bias", "bias of contact forces"},
-        {"gauge_drift", "drift of the load cell's gain"},
-        {"zero_drift", "drift of the load cell's zero"},
-        {"gauge_hysteresis", "hysteresis of the load cell"},
-        {"force_lag", "late reading of the load cell"},
-        {"guide_friction", "friction of the plate's guide"},
-        {"force_saturation", "saturation of contact forces"},
-        {"force_threshold", "shifted force threshold"},
-        {"position_bias", "bias of positions"},
         {"strain_offset", "zero of the displacement"},
         {"non_affine", "non-affine displacement"},
-        {"plate_speed", "speed of the plate"},
-        {"inertia", "inertia of the grains"},
         {"modulus", "modulus of the grains"},
     };
     return words;
@@ -108,6 +83,8 @@ double pull(const NuisanceFit& fit) { return fit.prior > 0 ? std::fabs(fit.value
 std::string words_of(const std::string& name) {
     const auto found = special_words().find(name);
     if (found != special_words().end()) return found->second;
+    if (const Effect* effect = find_effect(name); effect && !effect->words.empty())
+        return std::string(effect->words);
     auto words = one_line(name);
     std::ranges::replace(words, '_', ' ');
     return words;
