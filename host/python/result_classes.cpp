@@ -130,7 +130,6 @@ auto list_property(std::vector<Row> Recording::*list, py::dtype (*type)()) {
     };
 }
 
-/// Vectors by grain at one scan.
 auto vectors_at(std::vector<Vec3> Scan::*vectors) {
     return [vectors](const py::object& self, py::ssize_t scan) {
         const auto& list = scan_at(self.cast<const OneRecording&>(), scan).*vectors;
@@ -164,7 +163,6 @@ void bind_failure(py::module_& module) {
         });
 }
 
-/// Arrays with one entry per scan.
 void bind_scan_arrays(py::class_<OneRecording>& recording) {
     recording
         .def_property_readonly(

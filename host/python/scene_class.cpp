@@ -1,4 +1,3 @@
-// mcdem.Scene
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 

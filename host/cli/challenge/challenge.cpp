@@ -1,4 +1,3 @@
-// mcdem challenge
 #include "cli/shell/commands.h"
 
 namespace mcdem::inline cli {

@@ -1,4 +1,3 @@
-// mcdem challenge make
 #include "challenge/make.h"
 #include "cli/run/scene_options.h"
 #include "cli/shell/commands.h"

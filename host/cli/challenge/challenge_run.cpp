@@ -1,4 +1,3 @@
-// mcdem challenge run
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 

@@ -1,4 +1,3 @@
-// mcdem challenge score
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
@@ -134,7 +133,6 @@ TextTable table_of_arms(const ChallengeScore& score) {
     return table;
 }
 
-/// Detected and named cases by effect.
 TextTable table_of_effects(const ChallengeScore& score) {
     TextTable table;
     table.columns = {{"effect", Align::left}, {"detected"}, {"named first"}};

@@ -1,4 +1,3 @@
-// mcdem experiment
 #include "cli/experiment/experiment.h"
 
 #include <fmt/format.h>

@@ -1,4 +1,3 @@
-// The commands of `mcdem experiment`.
 #pragma once
 #include <CLI/CLI.hpp>
 #include <filesystem>

@@ -1,4 +1,3 @@
-// mcdem experiment from-run
 #include <fmt/format.h>
 
 #include <algorithm>

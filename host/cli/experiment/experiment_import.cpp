@@ -1,4 +1,3 @@
-// mcdem experiment import
 #include <fmt/format.h>
 
 #include <cmath>

@@ -1,4 +1,3 @@
-// mcdem distribute
 #include <cstdlib>
 
 #include "cli/shell/commands.h"

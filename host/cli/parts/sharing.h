@@ -31,7 +31,6 @@ void add_sharing_options(CLI::App& command, SharingOptions& options, std::string
 /// Whether the command line requests work in parts.
 bool is_shared(const SharingOptions& options, const std::string& device);
 
-/// The work of a command.
 struct SharedWork {
     std::vector<std::string> words;  ///< command line without the options above: "run", scene, ..
     std::filesystem::path out;       ///< the shared folder

@@ -1,4 +1,3 @@
-// mcdem calibrate
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>

@@ -1,4 +1,3 @@
-// mcdem converge
 #include <fmt/format.h>
 
 #include "cli/run/figures.h"

@@ -1,4 +1,3 @@
-// mcdem devices
 #include <fmt/format.h>
 
 #include "cl/device.h"

@@ -1,4 +1,3 @@
-// mcdem diagnose
 #include <fmt/ranges.h>
 
 #include <algorithm>

@@ -1,4 +1,3 @@
-// mcdem export
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 

@@ -1,4 +1,3 @@
-// mcdem report
 #include <fmt/format.h>
 
 #include "cli/run/figures.h"

@@ -22,7 +22,6 @@ struct LoadedRuns {
 /// that of its run.
 LoadedRuns load_runs(const std::vector<std::string>& paths, ReadWhat what);
 
-/// Options for the reference.
 struct ReferenceOptions {
     std::vector<std::string> paths;  ///< experiment folders, result folders or files
     std::string setting;             ///< of a run with several settings; default: mc_dem, if it exists

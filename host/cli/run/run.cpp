@@ -1,4 +1,3 @@
-// mcdem run
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -137,7 +136,6 @@ int report_run(const RunCommand& command, const RunSummary& summary) {
     return exit_failed;
 }
 
-/// The run in parts.
 SharedWork shared_work(const RunCommand& command, const Scene& scene) {
     SharedWork work;
     work.words = words_of(command);

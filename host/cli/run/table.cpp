@@ -1,4 +1,3 @@
-// mcdem table
 #include "cli/run/results.h"
 #include "cli/shell/commands.h"
 #include "cli/shell/standard_streams.h"

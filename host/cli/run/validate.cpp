@@ -1,4 +1,3 @@
-// mcdem validate
 #include <fmt/format.h>
 
 #include <optional>
@@ -36,7 +35,6 @@ void print_memory(const Scene& scene, const std::optional<Device>& device) {
     print_out("\n");
 }
 
-/// Prints properties of each packing file.
 void print_packings(const Scene& scene) {
     std::set<std::pair<std::string, std::optional<long>>> printed;
     for (const Replica& replica : scene.replicas) {

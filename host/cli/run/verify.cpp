@@ -1,4 +1,3 @@
-// mcdem verify
 #include "ensemble/verify.h"
 
 #include "cli/shell/commands.h"

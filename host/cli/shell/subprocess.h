@@ -9,7 +9,6 @@
 
 namespace mcdem::inline cli {
 
-/// How a program ended.
 struct ProgramEnd {
     int exit_code = -1;  ///< -1 if a signal ended it
     int signal = 0;
@@ -38,7 +37,6 @@ private:
 /// Runs a program from the search path and captures its output. Nothing if the program does not exist.
 std::optional<ProgramEnd> output_of(std::vector<std::string> words);
 
-/// Path of this program.
 std::filesystem::path this_program();
 
 /// The word, in quotes if a shell would interpret it.

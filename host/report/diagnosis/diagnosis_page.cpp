@@ -30,7 +30,6 @@ std::string others(const std::vector<std::string>& group, const std::string& eff
     return words.empty() ? no_number : listed(words);
 }
 
-/// Region and force class of the entry.
 std::string part_words(const WhereEntry& entry) {
     std::vector<std::string> words;
     if (entry.region && !entry.region->empty()) words.push_back(words_of(*entry.region));
@@ -39,7 +38,6 @@ std::string part_words(const WhereEntry& entry) {
     return words.empty() ? "all" : listed(words);
 }
 
-/// The ideal value of a metric.
 std::string perfect(const std::string& metric) { return metric == "Rtop" ? "1" : "0"; }
 
 /// Meaning of a metric of the paper; empty for others.
@@ -116,7 +114,6 @@ TextTable table_of_detection_limits(const Diagnosis& diagnosis) {
     return table;
 }
 
-/// Fitted shifts of the uncertain parameters.
 TextTable table_of_nuisances(const Diagnosis& diagnosis) {
     TextTable table;
     table.columns = {{"parameter", Align::left},

@@ -1,4 +1,3 @@
-// A diagnosis on a page.
 #pragma once
 #include <filesystem>
 #include <string>

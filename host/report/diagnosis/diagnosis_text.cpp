@@ -78,7 +78,6 @@ std::string to_refine(const Diagnosis& diagnosis) {
     return "";
 }
 
-/// Packings that differ significantly from the others.
 std::vector<std::string> differing_packings(const Diagnosis& diagnosis) {
     std::vector<std::string> names;
     for (const auto& packing : diagnosis.packings)

@@ -1,4 +1,3 @@
-// The verdict of a diagnosis in words.
 #pragma once
 #include <array>
 #include <string>
@@ -7,13 +6,9 @@
 
 namespace mcdem::inline report {
 
-/// The verdict as a title.
 std::string verdict_headline(const Diagnosis& diagnosis);
-
-/// One sentence.
 std::string verdict_sentence(const Diagnosis& diagnosis);
 
-/// A line with its topic.
 struct VerdictLine {
     std::string about;  ///< Gap, Where, Which, How far, Limits, Next
     std::string says;

@@ -8,10 +8,8 @@
 
 namespace mcdem::inline report {
 
-/// Shown for an unknown number.
 inline const std::string no_number = "–";
 
-/// Units of numbers shown in millimetres and millinewtons.
 constexpr double mm = 1e-3, mN = 1e-3;
 
 /// Replaces contact models by their full names ("mc_dem, gamma = 1" becomes "MC-DEM, gamma = 1"); other

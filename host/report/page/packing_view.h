@@ -9,13 +9,11 @@
 
 namespace mcdem::inline report {
 
-/// The packing of one setting, with a selection of its scans.
 struct ShownPacking {
     std::string label;
     Recording recording;  ///< the selected scans, with positions and contacts
 };
 
-/// Limits of the data on a page.
 struct PackingLimits {
     std::optional<int> scans = std::nullopt;  ///< maximum for each packing; default: as many as fit
     long max_numbers = 600'000;               ///< of all packings together, about 3 MB
@@ -27,7 +25,6 @@ struct PackingLimits {
 std::vector<std::size_t> scans_shown(const Recording& recording, long numbers,
                                      const PackingLimits& limits = {});
 
-/// Numbers in a scan with this many grains and contacts.
 long numbers_of_scan(long grains, long contacts);
 
 /// Input of page_packing.js: lengths in mm, forces in mN, with five digits. The colour scale ends at the

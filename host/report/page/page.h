@@ -34,7 +34,6 @@ public:
     /// A table under its heading; nothing if it has no rows.
     void table(const std::string& heading, const TextTable& table);
     void list(const std::vector<std::string>& texts);
-    /// Terms and their descriptions.
     void definitions(const std::vector<std::pair<std::string, std::string>>& lines);
     /// A long text, collapsed under its heading.
     void folded(const std::string& heading, const std::string& text);

@@ -10,7 +10,6 @@ namespace mcdem::inline report {
 
 nlohmann::ordered_json figure_values(const RunFigures& figures, const Cast& cast);
 
-/// The text of the file.
 std::string figure_file(const nlohmann::ordered_json& figures);
 
 }  // namespace mcdem::report

@@ -215,7 +215,6 @@ RunFigure scaling_figure(const Cast& cast) {
 
 constexpr double distortion = 1e-6;  ///< smaller deviatoric strains of a cell are ignored
 
-/// What an axis shows.
 struct Axis {
     std::string label;
     double unit;
@@ -253,7 +252,6 @@ void add_figure(std::vector<RunFigure>& figures, const std::vector<Track>& track
     if (!figure.series.empty()) figures.push_back(std::move(figure));
 }
 
-/// Largest value of a quantity in all scans.
 double largest(const std::vector<Track>& tracks, Estimate MeanScan::*quantity) {
     double most = 0;
     for (const Track& track : tracks)

@@ -50,7 +50,6 @@ struct FigureCurve {
     std::vector<FigurePoint> points;
 };
 
-/// Data of one series in a figure.
 struct FigureSeries {
     const Series* series;             ///< in the cast
     std::string remark;               ///< appended to the name in the legend: "tau 4.00 mN"; may be empty

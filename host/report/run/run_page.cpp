@@ -64,7 +64,6 @@ std::string protocol_words(const Recording& recording) {
     return "compressed by a plate" + (cycles.empty() || cycles == "1" ? "" : ", " + cycles + " cycles");
 }
 
-/// Result of a setting.
 struct Reached {
     std::string setting;
     double value;
@@ -143,7 +142,6 @@ std::string phases_words(const Cast& cast, const RunFigure& figure) {
            (several_replicas(figure) ? " Bands and bars: one standard error over replicas." : "");
 }
 
-/// Explanation of the axes of a programme, if necessary.
 std::string axes_words(const RunFigure& figure) {
     std::string words;
     const auto has = [&](const char* quantity) {
@@ -206,7 +204,6 @@ std::string species_of(const RunsOnPage& runs) {
     return names.empty() ? "" : fmt::format(" Grains of {}.", fmt::join(names, ", "));
 }
 
-/// Sentences at the head of the page.
 std::string head_of(const RunsOnPage& runs) {
     std::string words = what_was_simulated(runs.settings) + species_of(runs);
     if (runs.reference) words += " Held against " + runs.reference->label + ".";

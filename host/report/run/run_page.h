@@ -11,7 +11,6 @@
 
 namespace mcdem::inline report {
 
-/// Origin of a run's results.
 struct RunOrigin {
     std::string path;                                          ///< of its folder or file
     const Run* run = nullptr;                                  ///< observables are sufficient
