@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "core/names.h"
+
 namespace mcdem::inline challenge {
 
 enum class CaseKind {
@@ -13,6 +15,16 @@ enum class CaseKind {
     unknown,        ///< an effect that the library of its diagnosis does not have
     outside_prior,  ///< no effect, but a nuisance far outside its prior
 };
+
+}  // namespace mcdem::challenge
+
+template <>
+struct mcdem::Names<mcdem::CaseKind> {
+    static constexpr std::array<std::string_view, 5> list{"none", "effect", "pair", "unknown",
+                                                          "outside_prior"};
+};
+
+namespace mcdem::inline challenge {
 
 /// An effect or a nuisance with its amplitude.
 struct Hidden {
@@ -36,7 +48,7 @@ struct ChallengeCase {
 /// The hidden truth.
 struct Challenge {
     std::uint64_t seed = 0;
-    std::string scene;                         ///< SHA-256 of the scene's text
+    std::string scene_sha256;                  ///< SHA-256 of the scene's text
     std::vector<std::uint64_t> packing_seeds;  ///< by packing
     std::vector<ChallengeCase> cases;          ///< in the order of their folders
     bool operator==(const Challenge&) const = default;

@@ -9,11 +9,12 @@
 
 #include "core/errors.h"
 #include "core/input_file.h"
+#include "diagnose/infer/json_numbers.h"
 
 namespace mcdem::inline challenge {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using nlohmann::json;
 constexpr int challenge_format = 1;
 
 /// Names of cases are also names of files of results: only plain names that do not collide with other files.
@@ -38,34 +39,26 @@ void expect_names(const OpenChallenge& challenge, const std::filesystem::path& f
 
 }  // namespace
 
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(OpenCase, folder, candidates)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(OpenChallenge, scene_sha256, sealed_sha256, cases)
+
 std::string open_challenge_text(const OpenChallenge& challenge) {
-    Json cases = Json::array();
-    for (const OpenCase& c : challenge.cases)
-        cases.push_back({{"folder", c.folder}, {"candidates", c.candidates ? Json(*c.candidates) : Json()}});
-    return Json{{"format", challenge_format},
-                {"scene_sha256", challenge.scene},
-                {"sealed_sha256", challenge.sealed},
-                {"cases", cases}}
-               .dump(1) +
-           "\n";
+    json text = challenge;
+    text["format"] = challenge_format;
+    return text.dump(1) + "\n";
 }
 
 OpenChallenge read_open_challenge(const std::filesystem::path& folder) {
     const auto file = folder / "challenge.json";
     const std::string text = read_file(file, "there is no challenge; `mcdem challenge make` makes one");
     try {
-        const auto json = nlohmann::json::parse(text);
-        if (json.at("format") != challenge_format)
+        const json open = json::parse(text);
+        if (open.at("format") != challenge_format)
             throw InputError(file.string() + ": made by another version; generate it again");
-        OpenChallenge challenge{json.at("scene_sha256"), json.at("sealed_sha256"), {}};
-        for (const auto& c : json.at("cases")) {
-            challenge.cases.push_back({c.at("folder"), std::nullopt});
-            if (!c.at("candidates").is_null())
-                challenge.cases.back().candidates = c.at("candidates").get<std::vector<std::string>>();
-        }
+        const OpenChallenge challenge = open;
         expect_names(challenge, file);
         return challenge;
-    } catch (const nlohmann::json::exception& error) {
+    } catch (const json::exception& error) {
         throw InputError(fmt::format("{}: not a challenge ({})", file.string(), error.what()));
     }
 }

@@ -13,8 +13,8 @@ struct OpenCase {
 };
 
 struct OpenChallenge {
-    std::string scene;   ///< SHA-256 of the scene's text
-    std::string sealed;  ///< SHA-256 of the truth file
+    std::string scene_sha256;   ///< of the scene's text
+    std::string sealed_sha256;  ///< of the truth file
     std::vector<OpenCase> cases;
 };
 

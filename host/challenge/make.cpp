@@ -142,10 +142,12 @@ private:
 
     /// Writes the truth first, then the public data.
     std::string seal_all() const {
-        const std::string truth = truth_text(challenge_), seal = seal_of(truth);
+        const std::string truth = is_sealed_ ? read_file(options_.truth) : truth_text(challenge_);
+        const std::string seal = seal_of(truth);
         const fs::path open_file = options_.folder / "challenge.json";
         const std::string open = open_text(seal);
-        if (fs::exists(open_file) && read_file(open_file) != open) throw of_another_challenge(open_file);
+        if (fs::exists(open_file) && open_challenge_text(read_open_challenge(options_.folder)) != open)
+            throw of_another_challenge(open_file);
         if (!fs::exists(open_file)) expect_no_cases();
         if (!is_sealed_ && !create_file(options_.truth, truth)) throw of_another_challenge(options_.truth);
         if (!fs::exists(open_file)) replace_file(open_file, open);
@@ -163,7 +165,7 @@ private:
     }
 
     std::string open_text(const std::string& seal) const {
-        OpenChallenge open{challenge_.scene, seal, {}};
+        OpenChallenge open{challenge_.scene_sha256, seal, {}};
         for (const ChallengeCase& c : challenge_.cases) {
             open.cases.push_back({c.folder, std::nullopt});
             if (c.struck.empty()) continue;

@@ -10,18 +10,6 @@
 #include "core/input_file.h"
 #include "diagnose/infer/json_numbers.h"
 
-namespace nlohmann {
-
-template <class Value>
-struct adl_serializer<std::optional<Value>> {
-    static void to_json(json& j, const std::optional<Value>& value) { j = value ? json(*value) : json(); }
-    static void from_json(const json& j, std::optional<Value>& value) {
-        value = j.is_null() ? std::nullopt : std::optional(j.get<Value>());
-    }
-};
-
-}  // namespace nlohmann
-
 namespace mcdem::inline diagnose {
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(CandidateRange, name, unit, low, high)
@@ -31,6 +19,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Proposal, candidates, amplitudes, errors, gai
                                    confirmed_reduction)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Findings, p_value, names, effects, gain, proposals, held_out,
                                    held_out_noise, placebo, numerics)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Evidence, seed, observed, baseline, candidates, nuisances)
 
 }  // namespace mcdem::diagnose
 
@@ -69,43 +58,31 @@ CaseResult read_case(const fs::path& folder, const OpenCase& open_case) {
     return result;
 }
 
-void expect(bool right, const std::string& what, const json& where) {
-    if (!right) throw json::other_error::create(501, what, &where);
-}
-
 bool has(const std::vector<Signature>& list, const std::string& name) {
     return std::ranges::find(list, name, &Signature::name) != list.end();
 }
 
 Evidence evidence_of(const json& j, const Library& library) {
-    Evidence evidence;
+    Evidence evidence = j;
     evidence.library = library;
     evidence.library_is_own = false;  // a challenge has one library for all
-    evidence.seed = j.at("seed");
-    evidence.observed = numbers_of(j.at("observed"));
     const auto cells = library.baseline.cols();
-    expect(evidence.observed.size() == cells, "it has other observables than the library", j);
-    const json& rows = j.at("baseline");
-    evidence.baseline.resize(static_cast<Eigen::Index>(rows.size()), cells);
-    for (std::size_t r = 0; r < rows.size(); ++r) {
-        expect(static_cast<Eigen::Index>(rows[r].size()) == cells, "its rows are of unequal length", j);
-        evidence.baseline.row(static_cast<Eigen::Index>(r)) = numbers_of(rows[r]);
-    }
-    j.at("candidates").get_to(evidence.candidates);
+    expect_json(evidence.observed.size() == cells && evidence.baseline.cols() == cells,
+                "it has other observables than the library", j);
     for (const CandidateRange& c : evidence.candidates)
-        expect(has(library.effects, c.name), "the library lacks an effect of it", c);
-    j.at("nuisances").get_to(evidence.nuisances);
+        expect_json(has(library.effects, c.name), "the library lacks an effect of it", c);
     for (const NuisancePrior& n : evidence.nuisances)
-        expect(has(library.nuisances, n.name), "the library lacks a nuisance of it", n);
+        expect_json(has(library.nuisances, n.name), "the library lacks a nuisance of it", n);
     return evidence;
 }
 
 Findings findings_of(const json& j) {
     const Findings findings = j;
-    expect(findings.names.size() == findings.gain.size(), "it has not one gain a candidate", j);
+    expect_json(findings.names.size() == findings.gain.size(), "it has not one gain a candidate", j);
     for (const Proposal& proposal : findings.proposals)
         for (const std::size_t candidate : proposal.candidates)
-            expect(candidate < findings.names.size(), "it proposes a candidate that there is not", proposal);
+            expect_json(candidate < findings.names.size(), "it proposes a candidate that there is not",
+                        proposal);
     return findings;
 }
 
@@ -125,17 +102,7 @@ ChallengeResults read_challenge_results(const fs::path& folder, const OpenChalle
     return results;
 }
 
-std::string evidence_text(const Evidence& evidence) {
-    json baseline = json::array();
-    for (Eigen::Index r = 0; r < evidence.baseline.rows(); ++r)
-        baseline.push_back(numbers_json(evidence.baseline.row(r)));
-    return json{{"seed", evidence.seed},
-                {"observed", numbers_json(evidence.observed)},
-                {"baseline", baseline},
-                {"candidates", evidence.candidates},
-                {"nuisances", evidence.nuisances}}
-        .dump();
-}
+std::string evidence_text(const Evidence& evidence) { return json(evidence).dump(); }
 
 Evidence read_evidence(const std::filesystem::path& file, const Library& library) try {
     return evidence_of(parsed(file), library);

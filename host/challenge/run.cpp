@@ -49,7 +49,7 @@ class ChallengeParts : public PartedWork {
 public:
     ChallengeParts(const Scene& scene, const ChallengeRunOptions& options, FolderLock::Use use)
         : scene_(scene), options_(options), challenge_(read_open_challenge(options.challenge)) {
-        if (Sha256().add(scene.text).hex() != challenge_.scene)
+        if (Sha256().add(scene.text).hex() != challenge_.scene_sha256)
             throw InputError(fmt::format("{}: is not the scene that {} was made with", scene.name,
                                          (options.challenge / "challenge.json").string()));
         for (const OpenCase& c : challenge_.cases)

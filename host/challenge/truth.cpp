@@ -2,80 +2,37 @@
 
 #include <fmt/format.h>
 
-#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "core/errors.h"
 #include "core/input_file.h"
 #include "core/sha256.h"
+#include "diagnose/infer/json_numbers.h"
 
 namespace mcdem::inline challenge {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using nlohmann::json;
 constexpr int truth_format = 1;
-constexpr std::string_view kinds[] = {"none", "effect", "pair", "unknown", "outside_prior"};
-
-Json hidden_json(const std::vector<Hidden>& list) {
-    Json json = Json::array();
-    for (const Hidden& hidden : list)
-        json.push_back({{"name", hidden.name}, {"amplitude", hidden.amplitude}});
-    return json;
-}
-
-std::vector<Hidden> hidden_of(const Json& json) {
-    std::vector<Hidden> list;
-    for (const auto& entry : json) list.push_back({entry.at("name"), entry.at("amplitude")});
-    return list;
-}
-
-CaseKind kind_of(const std::string& name) {
-    for (std::size_t k = 0; k < std::size(kinds); ++k)
-        if (kinds[k] == name) return static_cast<CaseKind>(k);
-    throw InputError("there is no kind " + name);
-}
-
-ChallengeCase case_of(const Json& json) {
-    return {json.at("folder"),
-            kind_of(json.at("kind")),
-            hidden_of(json.at("effects")),
-            hidden_of(json.at("nuisances")),
-            json.at("struck"),
-            json.at("packing"),
-            json.at("seed")};
-}
 
 }  // namespace
 
-std::string_view case_kind_name(CaseKind kind) { return kinds[static_cast<std::size_t>(kind)]; }
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Hidden, name, amplitude)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ChallengeCase, folder, kind, effects, nuisances, struck, packing, seed)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Challenge, seed, scene_sha256, packing_seeds, cases)
 
 std::string truth_text(const Challenge& challenge) {
-    Json cases = Json::array();
-    for (const ChallengeCase& c : challenge.cases)
-        cases.push_back({{"folder", c.folder},
-                         {"kind", case_kind_name(c.kind)},
-                         {"effects", hidden_json(c.effects)},
-                         {"nuisances", hidden_json(c.nuisances)},
-                         {"struck", c.struck},
-                         {"packing", c.packing},
-                         {"seed", c.seed}});
-    return Json{{"format", truth_format},
-                {"seed", challenge.seed},
-                {"scene_sha256", challenge.scene},
-                {"packing_seeds", challenge.packing_seeds},
-                {"cases", cases}}
-               .dump(1) +
-           "\n";
+    json text = challenge;
+    text["format"] = truth_format;
+    return text.dump(1) + "\n";
 }
 
 Challenge parse_truth(const std::string& text, const std::string& file_name) {
     try {
-        const Json json = Json::parse(text);
-        if (json.at("format") != truth_format) throw InputError(file_name + ": made by another version");
-        Challenge challenge{json.at("seed"), json.at("scene_sha256"), json.at("packing_seeds"), {}};
-        for (const auto& c : json.at("cases")) challenge.cases.push_back(case_of(c));
-        return challenge;
-    } catch (const Json::exception& error) {
+        const json truth = json::parse(text);
+        if (truth.at("format") != truth_format) throw InputError(file_name + ": made by another version");
+        return truth;
+    } catch (const json::exception& error) {
         throw InputError(fmt::format("{}: not the truth of a challenge ({})", file_name, error.what()));
     }
 }

@@ -17,7 +17,4 @@ std::string seal_of(const std::string& text);
 /// Throws InputError if the file is missing or does not match the seal.
 Challenge open_truth(const std::filesystem::path& file, const std::string& seal);
 
-/// Name of a kind in files and tables: none, effect, ...
-std::string_view case_kind_name(CaseKind kind);
-
 }  // namespace mcdem::challenge

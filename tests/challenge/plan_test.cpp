@@ -140,8 +140,7 @@ TEST(ChallengePlan, EveryKindIsInBothHalves) {
     std::map<std::string, std::array<int, 2>> dealt;
     std::array<int, 24> by_packing{};
     for (const ChallengeCase& c : draw(7).cases) {
-        const std::string what =
-            c.kind == CaseKind::effect ? c.effects[0].name : std::string(case_kind_name(c.kind));
+        const std::string what = c.kind == CaseKind::effect ? c.effects[0].name : std::string(name(c.kind));
         ++dealt[what][in_first_half(c.packing)];
         ++by_packing[static_cast<std::size_t>(c.packing)];
     }

@@ -141,7 +141,21 @@ TEST_F(LibraryFile, IsRefusedIfItHasOtherObservables) {
     auto json = content();
     json["baseline"][2].erase(0);
     replace(json.dump());
+    expect_refused("its rows are of unequal length");
+    for (const std::size_t row : {0, 1}) json["baseline"][row].erase(0);
+    for (std::size_t row = 3; row < json["baseline"].size(); ++row) json["baseline"][row].erase(0);
+    replace(json.dump());
     expect_refused("it has other observables than this program");
+}
+
+TEST_F(LibraryFile, IsRefusedIfAHoldCannotBe) {
+    auto json = content();
+    json["holds"][0]["begin"] = 6;
+    replace(json.dump());
+    expect_refused("it has a hold that cannot be");
+    json["holds"][0]["phase"] = "sideways";
+    replace(json.dump());
+    expect_refused("there is no \"sideways\"");
 }
 
 TEST_F(LibraryFile, IsRefusedIfASignatureHasAnotherLength) {
@@ -154,7 +168,7 @@ TEST_F(LibraryFile, IsRefusedIfASignatureHasAnotherLength) {
     }
     replace(library_text(library));
     auto json = content();
-    json["effects"][0]["slopes"][0].erase(0);
+    for (auto& row : json["effects"][0]["slopes"]) row.erase(0);
     replace(json.dump());
     expect_refused("it has other observables than this program");
 }

@@ -260,8 +260,9 @@ void expect_folder(const std::filesystem::path& answers) {
 void score(const ScoreCommand& command) {
     const std::filesystem::path folder = command.challenge, out = command.out;
     const OpenChallenge open = read_open_challenge(folder);
-    const Challenge truth = open_truth(
-        command.truth.empty() ? folder / "truth.json" : std::filesystem::path(command.truth), open.sealed);
+    const Challenge truth =
+        open_truth(command.truth.empty() ? folder / "truth.json" : std::filesystem::path(command.truth),
+                   open.sealed_sha256);
     expect_folder(out);
     const FolderLock lock = open_output_folder(out);
     expect_replaceable(out / "score.json", FileKind::score);
