@@ -236,12 +236,7 @@ private:
 
     ObservationStore store() const { return ObservationStore(options_.out / "simulations"); }
 
-    TrialOptions trial_options() const {
-        TrialOptions trials;
-        trials.on_progress = on_progress;
-        trials.stop_wanted = options_.stop_wanted;
-        return trials;
-    }
+    TrialOptions trial_options() const { return {on_progress, options_.stop_wanted}; }
 
     /// Reads the library, or computes it for the measurement of the first case, and copies it to the results.
     /// Throws InputError if its origin differs, or the results belong to another one.

@@ -50,13 +50,6 @@ std::vector<int> folds_of(const std::vector<int>& packing) {
 constexpr double enough_cells = 0.5;
 constexpr std::size_t min_replicates = 8, min_own_replicates = 4;
 
-std::vector<Eigen::Index> rows_with_numbers(const Eigen::MatrixXd& rows) {
-    std::vector<Eigen::Index> list;
-    for (Eigen::Index r = 0; r < rows.rows(); ++r)
-        if (rows.row(r).array().isFinite().any()) list.push_back(r);
-    return list;
-}
-
 std::string cause_of(const FailureCauses& causes, const std::string& name, const std::string& otherwise) {
     const auto cause = causes.find(name);
     return cause == causes.end() ? otherwise : cause->second;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <vector>
 
 #include "metrics/estimate.h"
 
@@ -21,18 +20,17 @@ Moments moments(const Eigen::MatrixXd& rows) {
     return {mean.array(), apart.array().square().colwise().sum().transpose() / (n * std::max(1.0, n - 1))};
 }
 
-/// Rows of complete runs; a failed run has only NaN.
-std::vector<Eigen::Index> whole(const Eigen::MatrixXd& rows) {
+/// Factor of each mean after shrinkage.
+Eigen::ArrayXd kept(const Moments& m) { return (1 - m.variance / m.mean.square().max(1e-300)).max(0.0); }
+
+}  // namespace
+
+std::vector<Eigen::Index> rows_with_numbers(const Eigen::MatrixXd& rows) {
     std::vector<Eigen::Index> list;
     for (Eigen::Index r = 0; r < rows.rows(); ++r)
         if (rows.row(r).array().isFinite().any()) list.push_back(r);
     return list;
 }
-
-/// Factor of each mean after shrinkage.
-Eigen::ArrayXd kept(const Moments& m) { return (1 - m.variance / m.mean.square().max(1e-300)).max(0.0); }
-
-}  // namespace
 
 Eigen::VectorXd Signature::at(double amplitude) const {
     const double inside = std::clamp(amplitude, -reach, reach);
@@ -104,7 +102,7 @@ Signature continued_from(const Signature& signature, double done) {
 Signature learn_signature(const std::string& name, double first, double second,
                           const Eigen::MatrixXd& at_first, const Eigen::MatrixXd& at_second) {
     const auto needed = std::min<std::size_t>(2, static_cast<std::size_t>(at_first.rows()));
-    const auto holds_first = whole(at_first), holds_second = whole(at_second);
+    const auto holds_first = rows_with_numbers(at_first), holds_second = rows_with_numbers(at_second);
     std::vector<Eigen::Index> both;
     std::ranges::set_intersection(holds_first, holds_second, std::back_inserter(both));
     if (both.size() >= needed)

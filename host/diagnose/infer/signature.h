@@ -2,6 +2,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <string>
+#include <vector>
 
 namespace mcdem::inline diagnose {
 
@@ -21,6 +22,9 @@ struct Signature {
     /// Variance over pairs of `slopes`: differences between packings, random draws of the effect, and chaos.
     Eigen::VectorXd spread() const;
 };
+
+/// Rows of complete runs; a failed run has only NaN.
+std::vector<Eigen::Index> rows_with_numbers(const Eigen::MatrixXd& rows);
 
 /// The signature of a further reduction `b` of a setting after it was reduced by `done`: that of the
 /// amplitude done + b (1 - done) minus that of `done`.

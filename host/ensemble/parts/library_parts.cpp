@@ -38,10 +38,7 @@ public:
         if (part >= parts_.size())
             throw InputError(fmt::format(
                 "--part: must be below {}, the number of parts of the library, got {}", parts_.size(), part));
-        TrialOptions trials;
-        trials.on_progress = on_progress;
-        trials.stop_wanted = options_.stop_wanted;
-        observe_trials(device, question_, parts_[part], store_, trials);
+        observe_trials(device, question_, parts_[part], store_, {on_progress, options_.stop_wanted});
     }
 
     bool merge() override { return true; }
