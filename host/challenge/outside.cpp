@@ -19,14 +19,14 @@ void add_backlash(Recording& recording, double amplitude) {
 
 // clang-format off
 const OutsideEffect table[] = {
-    {"soft_walls", "", "Young's modulus of the walls over that of the grains",
-     0.5, 3, false, [](Replica& r, double a) { r.walls.youngs_modulus = a * r.grains.youngs_modulus; }, nullptr},
-    {"vertical_stretch", "", "part by which the heights of grains, not of the plate, are read too large",
-     0.005, 0.015, true, nullptr, stretch_heights},
-    {"box_error", "", "part by which the box is narrower along x than stated",
-     0.007, 0.02, false, [](Replica& r, double a) { r.box.size_x *= 1 - a; }, nullptr},
-    {"plate_backlash", "m", "by which the plate is read too high while it goes up",
-     0.5e-3, 1.5e-3, true, nullptr, add_backlash},
+    // Young's modulus of the walls over that of the grains
+    {"soft_walls", 0.5, 3, false, [](Replica& r, double a) { r.walls.youngs_modulus = a * r.grains.youngs_modulus; }, nullptr},
+    // part by which the heights of grains, not of the plate, are read too large
+    {"vertical_stretch", 0.005, 0.015, true, nullptr, stretch_heights},
+    // part by which the box is narrower along x than stated
+    {"box_error", 0.007, 0.02, false, [](Replica& r, double a) { r.box.size_x *= 1 - a; }, nullptr},
+    // by which the plate is read too high while it goes up [m]
+    {"plate_backlash", 0.5e-3, 1.5e-3, true, nullptr, add_backlash},
 };
 // clang-format on
 

@@ -10,9 +10,7 @@ namespace mcdem::inline challenge {
 
 struct OutsideEffect {
     std::string_view name;
-    std::string_view unit;     ///< of the amplitude; empty for dimensionless ones
-    std::string_view formula;  ///< meaning of the amplitude
-    double low, high;          ///< range of amplitudes, log-uniform
+    double low, high;  ///< range of amplitudes, log-uniform
     bool both_signs;
     void (*change_model)(Replica&, double amplitude);  ///< before the simulation; may be null
     void (*change_reading)(Recording&,

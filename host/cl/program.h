@@ -31,7 +31,6 @@ struct KernelBuild {
         const auto wide = static_cast<std::size_t>(lanes), all = static_cast<std::size_t>(slots);
         return place / (wide * all) * wide + place % wide;
     }
-    std::size_t real_size() const { return precision == Precision::double_precision ? 8 : 4; }
 };
 
 /// The build for `device`: vectors of grains on a CPU, one work-item per slot on a GPU. The environment

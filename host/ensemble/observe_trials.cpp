@@ -7,7 +7,6 @@
 #include <numeric>
 #include <optional>
 
-#include "core/constants.h"
 #include "core/in_parallel.h"
 #include "core/sha256.h"
 #include "metrics/estimate.h"
@@ -64,8 +63,6 @@ std::string observation_name(const std::string& simulation, const Question& ques
                               m.wall_youngs_modulus,
                               m.wall_poisson_ratio,
                               m.friction,
-                              m.wall_friction,
-                              m.weight_density,
                               m.force_threshold,
                               question.grid.width,
                               question.grid.force_width,
@@ -285,14 +282,8 @@ std::vector<Recording> kept_recordings(const Device& device, const Question& que
 ReferenceMaterial reference_material(const Model& model) {
     const auto& grains = model.replica.grains;
     const auto& walls = model.replica.walls;
-    return {grains.youngs_modulus,
-            grains.poisson_ratio,
-            walls.youngs_modulus,
-            walls.poisson_ratio,
-            grains.friction,
-            walls.friction,
-            grains.excess_density * gravity,
-            model.instrument.stated.force_threshold};
+    return {grains.youngs_modulus, grains.poisson_ratio, walls.youngs_modulus,
+            walls.poisson_ratio,   grains.friction,      model.instrument.stated.force_threshold};
 }
 
 }  // namespace mcdem::ensemble

@@ -51,20 +51,20 @@ Eigen::MatrixXd by_double_loop(const Eigen::MatrixXd& x) {
 
 TEST(ShrunkCovariance, AgreesWithLedoitAndWolf) {
     for (const int rows : {6, 30}) {
-        const Eigen::MatrixXd x = pick_columns(noise_rows(rows, 2, 5), first_cells(12)) * 1e-3;
+        const Eigen::MatrixXd x = noise_rows(rows, 2, 5)(Eigen::all, first_cells(12)) * 1e-3;
         EXPECT_LT((shrunk_covariance(x) - by_double_loop(x)).norm(), 1e-12 * by_double_loop(x).norm());
     }
 }
 
 TEST(ShrunkCovariance, IsHardlyShrunkForManyRows) {
-    const Eigen::MatrixXd x = pick_columns(noise_rows(5000, 1, 6), first_cells(8));
+    const Eigen::MatrixXd x = noise_rows(5000, 1, 6)(Eigen::all, first_cells(8));
     const Eigen::MatrixXd sample = x.transpose() * x / 5000;
     EXPECT_LT((shrunk_covariance(x) - sample).norm(), 0.01 * sample.norm());
     EXPECT_NEAR(shrunk_covariance(x)(3, 4) / shrunk_covariance(x)(3, 3), 0.5, 0.05);
 }
 
 TEST(ShrunkCovariance, IsPositiveDefiniteForFewRows) {
-    const Eigen::MatrixXd x = pick_columns(noise_rows(5, 10, 7), first_cells(80));
+    const Eigen::MatrixXd x = noise_rows(5, 10, 7)(Eigen::all, first_cells(80));
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(shrunk_covariance(x));
     EXPECT_GT(eigen.eigenvalues().minCoeff(), 0.01);
     const Eigen::VectorXd variance = x.colwise().squaredNorm() / 5;
@@ -99,7 +99,7 @@ struct DenseSpace {
     DenseSpace() {
         SyntheticWorld world(2, 9);
         free = {{world.pattern(0.7), 1.5}, {world.pattern(2), 0.4}};
-        noise_covariance = 1.25 * shrunk_covariance(pick_columns(noise, cells));
+        noise_covariance = 1.25 * shrunk_covariance(noise(Eigen::all, cells));
         noise_covariance.diagonal().array() += resolutions(cells, noise.cols()).square();
         noise_covariance.diagonal() += pick(extra, cells);
         directions.resize(static_cast<Eigen::Index>(cells.size()), 2);
@@ -146,7 +146,7 @@ TEST(GapSpace, LogLikelihoodIsTheNormalDensity) {
     const Eigen::VectorXd extra = Eigen::VectorXd::Constant(cells_all, 0.3);
     const GapSpace space(noise, 4, cells, {free}, extra);
     const auto covariance = [&]() -> Eigen::MatrixXd {
-        Eigen::MatrixXd c = 1.25 * shrunk_covariance(pick_columns(noise, cells));
+        Eigen::MatrixXd c = 1.25 * shrunk_covariance(noise(Eigen::all, cells));
         c.diagonal().array() += resolutions(cells, cells_all).square() + 0.3;
         return c.array() + 2 * 2 * 1.5 * 1.5;
     }();

@@ -11,7 +11,6 @@ inline ReferenceMaterial soft_material() {
     material.wall_youngs_modulus = 60e3;  // not much stiffer than the grains, so that its compliance matters
     material.wall_poisson_ratio = 0.3;
     material.friction = 0.03;
-    material.wall_friction = 0.02;
     return material;
 }
 

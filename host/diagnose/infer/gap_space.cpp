@@ -48,9 +48,6 @@ Eigen::ArrayXd resolutions(const CellChoice& cells, Eigen::Index all) {
 }
 
 Eigen::VectorXd pick(const Eigen::VectorXd& all, const CellChoice& cells) { return all(cells); }
-Eigen::MatrixXd pick_columns(const Eigen::MatrixXd& all, const CellChoice& cells) {
-    return all(Eigen::all, cells);
-}
 
 namespace {
 
@@ -80,9 +77,9 @@ Eigen::ArrayXd moderated(const Eigen::ArrayXd& variance, const CellChoice& cells
 
 GapSpace::GapSpace(const Eigen::MatrixXd& noise, int mean_of, const CellChoice& cells,
                    const std::vector<FreeParameter>& free, const Eigen::VectorXd& extra)
-    : cells_(cells), free_(free) {
+    : cells_(cells) {
     const double both = 1 + (mean_of > 0 ? 1.0 / mean_of : 0);  // scatter of the observation and of the mean
-    Eigen::MatrixXd covariance = both * shrunk_covariance(pick_columns(noise, cells));
+    Eigen::MatrixXd covariance = both * shrunk_covariance(noise(Eigen::all, cells));
     covariance.diagonal() += resolutions(cells, noise.cols()).square().matrix();
     if (extra.size() > 0) covariance.diagonal() += pick(extra, cells);
     sigma_ = moderated(covariance.diagonal().array(), cells, noise).sqrt();
@@ -105,8 +102,8 @@ GapSpace::GapSpace(const Eigen::MatrixXd& noise, int mean_of, const CellChoice& 
     posterior_ = precision.llt().solve(Eigen::MatrixXd::Identity(precision.rows(), precision.cols()));
 }
 
-Eigen::VectorXd GapSpace::whiten_chosen(const Eigen::VectorXd& chosen) const {
-    return total_.matrixL().solve(chosen);
+Eigen::VectorXd GapSpace::whiten(const Eigen::VectorXd& all) const {
+    return total_.matrixL().solve(pick(all, cells_));
 }
 
 double GapSpace::log_likelihood(const Eigen::VectorXd& all) const {

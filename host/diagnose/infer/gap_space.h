@@ -23,7 +23,6 @@ using CellChoice = std::vector<Eigen::Index>;
 
 /// Rows of `all` in the order of `cells`.
 Eigen::VectorXd pick(const Eigen::VectorXd& all, const CellChoice& cells);
-Eigen::MatrixXd pick_columns(const Eigen::MatrixXd& all, const CellChoice& cells);
 
 /// Observable::resolution of each selected cell, of `all` cells.
 Eigen::ArrayXd resolutions(const CellChoice& cells, Eigen::Index all);
@@ -44,8 +43,7 @@ public:
 
     const CellChoice& cells() const { return cells_; }
     /// Whitens a vector on all cells; its square is a chi-square of the gap with nuisances marginalised.
-    Eigen::VectorXd whiten(const Eigen::VectorXd& all) const { return whiten_chosen(pick(all, cells_)); }
-    Eigen::VectorXd whiten_chosen(const Eigen::VectorXd& chosen) const;
+    Eigen::VectorXd whiten(const Eigen::VectorXd& all) const;
     /// Marginal log likelihood of a difference on all cells, up to a constant that depends on the number of
     /// cells.
     double log_likelihood(const Eigen::VectorXd& all) const;
@@ -58,11 +56,9 @@ public:
     Eigen::VectorXd refitted(const Eigen::VectorXd& all) const;
     /// One sigma of a weighted sum of selected cells, without nuisances.
     double sigma_of(const Eigen::VectorXd& weights) const;
-    const std::vector<FreeParameter>& free() const { return free_; }
 
 private:
     CellChoice cells_;
-    std::vector<FreeParameter> free_;
     Eigen::ArrayXd sigma_;
     Eigen::LLT<Eigen::MatrixXd> noise_, total_;
     Eigen::MatrixXd directions_;  // column: nuisance, on the chosen cells

@@ -16,7 +16,7 @@ namespace mcdem::inline diagnose {
 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(HoldScans, begin, first, end, keep, phase, displacement)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Grid, displacement, width, stroke, force, force_width, holds)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Signature, name, reach, linear, curvature, variance, slopes)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Signature, name, reach, linear, curvature, slopes)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Library, baseline, packing, effects, nuisances, provenance, origin)
 
 namespace {
@@ -39,7 +39,7 @@ std::string digest_of_content(json j) {
 
 void expect_cells(const std::vector<Signature>& signatures, Eigen::Index cells, const json& j) {
     for (const Signature& s : signatures) {
-        expect_json(s.linear.size() == cells && s.curvature.size() == cells && s.variance.size() == cells,
+        expect_json(s.linear.size() == cells && s.curvature.size() == cells,
                     "signature " + s.name + " is of another length than the cells", j);
         expect_json(s.pairs() == 0 || s.slopes.cols() == cells, other_observables, j);
     }

@@ -56,7 +56,6 @@ Signature straight_signature(const std::string& name, double amplitude, const Ei
     s.reach = std::abs(amplitude);
     s.linear = kept(line) * line.mean;
     s.curvature = Eigen::VectorXd::Zero(at.cols());
-    s.variance = line.variance;
     s.slopes = at / amplitude;
     return s;
 }
@@ -77,7 +76,6 @@ Signature parabola_signature(const std::string& name, double first, double secon
     s.reach = std::max(std::abs(first), std::abs(second));
     s.linear = seen * linear.mean;
     s.curvature = bent * curvature.mean;
-    s.variance = linear.variance;
     s.slopes = at_second / second;
     return s;
 }
@@ -88,7 +86,6 @@ Signature continued_from(const Signature& signature, double done) {
     const double left = 1 - done;
     Signature s = signature;
     s.linear = left * signature.slope(done);
-    s.variance *= left * left;
     s.slopes *= left;
     if (done < signature.reach) {
         s.curvature *= left * left;
@@ -113,7 +110,7 @@ Signature learn_signature(const std::string& name, double first, double second,
     if (holds_first.size() >= needed)
         return straight_signature(name, first, at_first(holds_first, Eigen::all));
     const Eigen::VectorXd none = Eigen::VectorXd::Constant(at_first.cols(), not_available);
-    return {name, std::max(std::abs(first), std::abs(second)), none, none, none, {}};
+    return {name, std::max(std::abs(first), std::abs(second)), none, none, {}};
 }
 
 }  // namespace mcdem::diagnose

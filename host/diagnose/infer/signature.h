@@ -13,7 +13,6 @@ struct Signature {
     double reach = 0;           ///< largest |a| of the paired runs
     Eigen::VectorXd linear;     ///< per unit amplitude
     Eigen::VectorXd curvature;  ///< per unit amplitude squared
-    Eigen::VectorXd variance;   ///< of `linear`, from the scatter over pairs
     Eigen::MatrixXd slopes;     ///< row: pair; difference at the second amplitude over that amplitude
 
     Eigen::VectorXd at(double amplitude) const;

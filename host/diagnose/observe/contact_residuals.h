@@ -13,9 +13,7 @@ struct ReferenceMaterial {
     double poisson_ratio = 0.5;
     double wall_youngs_modulus = 0;  ///< [Pa]
     double wall_poisson_ratio = 0.5;
-    double friction = 0;  ///< between grains
-    double wall_friction = 0;
-    double weight_density = 0;   ///< (density - fluid density) g [N/m3]
+    double friction = 0;         ///< between grains
     double force_threshold = 0;  ///< as stated by the instrument [N]
 };
 
