@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <map>
 #include <numeric>
 #include <optional>
@@ -40,36 +42,21 @@ std::string simulation_name(const std::string& device, const Question& question,
     return digest.add(jitter).add(std::to_string(trial.seed)).hex();
 }
 
+/// The members of a type that has only real numbers.
+template <class Numbers>
+auto members_of(const Numbers& numbers) {
+    static_assert(sizeof(Numbers) % sizeof(double) == 0);
+    return std::bit_cast<std::array<double, sizeof(Numbers) / sizeof(double)>>(numbers);
+}
+
 std::string observation_name(const std::string& simulation, const Question& question,
                              const Instrument& instrument) {
-    const Measurement& stated = instrument.stated;
-    const ReferenceMaterial& m = question.material;
-    const double numbers[] = {stated.position_error,
-                              stated.diameter_error,
-                              stated.force_error,
-                              stated.force_threshold,
-                              instrument.force_bias,
-                              instrument.threshold_shift,
-                              instrument.position_bias,
-                              instrument.strain_offset,
-                              instrument.gauge_drift,
-                              instrument.zero_drift,
-                              instrument.gauge_hysteresis,
-                              instrument.force_lag,
-                              instrument.guide_friction,
-                              instrument.force_saturation,
-                              m.youngs_modulus,
-                              m.poisson_ratio,
-                              m.wall_youngs_modulus,
-                              m.wall_poisson_ratio,
-                              m.friction,
-                              m.force_threshold,
-                              question.grid.width,
-                              question.grid.force_width,
-                              static_cast<double>(question.discard)};
+    const Grid& grid = question.grid;
+    const double widths[] = {grid.width, grid.force_width, static_cast<double>(question.discard)};
     Sha256 digest;
-    digest.add(simulation).add(numbers).add(question.grid.displacement).add(question.grid.force);
-    for (const HoldScans& hold : question.grid.holds)
+    digest.add(simulation).add(members_of(instrument)).add(members_of(question.material)).add(widths);
+    digest.add(grid.displacement).add(grid.force);
+    for (const HoldScans& hold : grid.holds)
         digest.add(fmt::format("{}-{}-{} at {};", hold.begin, hold.first, hold.end, hold.displacement));
     for (const Observable& observable : observables()) digest.add(observable.name).add(";");
     return digest.hex();
