@@ -47,37 +47,26 @@ struct OtherArms {
 };
 
 /// Evaluates all methods for all diagnosed cases, on all cores.
-class Trying {
-public:
-    Trying(const OpenChallenge& open, const ChallengeResults& results, const std::filesystem::path& folder)
-        : open_(open), results_(results), folder_(folder) {}
-
-    OtherArms all(const std::function<void(double)>& on_progress) {
-        OtherArms arms{{ablations().size(), std::vector<Findings>(open_.cases.size())},
-                       {simpler_methods().size(), std::vector<Answer>(open_.cases.size())}};
-        std::mutex turn;
-        std::size_t done = 0;
-        in_parallel(open_.cases.size(), [&](std::size_t k) {
-            if (results_.cases[k].problem.empty()) one(k, arms);
-            const std::lock_guard lock(turn);
-            on_progress(static_cast<double>(++done) / static_cast<double>(open_.cases.size()));
-        });
-        return arms;
-    }
-
-private:
-    void one(std::size_t k, OtherArms& arms) const {
-        const Evidence evidence = read_evidence(evidence_file(folder_, open_.cases[k]), results_.library);
-        for (std::size_t a = 0; a < arms.findings.size(); ++a)
-            arms.findings[a][k] = ablated_findings(evidence, ablations()[a]);
-        for (std::size_t a = 0; a < arms.answers.size(); ++a)
-            arms.answers[a][k] = simpler_methods()[a].answer(evidence);
-    }
-
-    const OpenChallenge& open_;
-    const ChallengeResults& results_;
-    const std::filesystem::path& folder_;
-};
+OtherArms try_other_arms(const OpenChallenge& open, const ChallengeResults& results,
+                         const std::filesystem::path& folder,
+                         const std::function<void(double)>& on_progress) {
+    OtherArms arms{{ablations().size(), std::vector<Findings>(open.cases.size())},
+                   {simpler_methods().size(), std::vector<Answer>(open.cases.size())}};
+    std::mutex turn;
+    std::size_t done = 0;
+    in_parallel(open.cases.size(), [&](std::size_t k) {
+        if (results.cases[k].problem.empty()) {
+            const Evidence evidence = read_evidence(evidence_file(folder, open.cases[k]), results.library);
+            for (std::size_t a = 0; a < arms.findings.size(); ++a)
+                arms.findings[a][k] = ablated_findings(evidence, ablations()[a]);
+            for (std::size_t a = 0; a < arms.answers.size(); ++a)
+                arms.answers[a][k] = simpler_methods()[a].answer(evidence);
+        }
+        const std::lock_guard lock(turn);
+        on_progress(static_cast<double>(++done) / static_cast<double>(open.cases.size()));
+    });
+    return arms;
+}
 
 /// The cases of one half.
 template <class Case>
@@ -88,39 +77,25 @@ std::vector<Case> half_of(const std::vector<Case>& cases, bool first) {
     return half;
 }
 
-class Scoring {
-public:
-    Scoring(const Challenge& truth, const ChallengeResults& results) : truth_(truth), results_(results) {}
+ArmScore score_with_limits(const Challenge& truth, const ChallengeResults& results, std::string_view name,
+                           std::string_view meaning, const std::vector<Findings>& findings) {
+    std::vector<LimitCase> cases;
+    for (std::size_t k = 0; k < truth.cases.size(); ++k)
+        cases.push_back({&truth.cases[k], &findings[k], over_limit(truth.cases[k], results.cases[k])});
+    const auto first = half_of(cases, true), second = half_of(cases, false);
+    ArmScore arm{std::string(name), std::string(meaning), true, choose_limits(first), {}, {}};
+    arm.first = merits_with(first, arm.limits);
+    arm.second = merits_with(second, arm.limits);
+    return arm;
+}
 
-    ArmScore with_limits(std::string_view name, std::string_view meaning,
-                         const std::vector<Findings>& findings) const {
-        std::vector<LimitCase> cases;
-        for (std::size_t k = 0; k < truth_.cases.size(); ++k)
-            cases.push_back({&truth_.cases[k], &findings[k], over_limit(truth_.cases[k], results_.cases[k])});
-        const auto first = half_of(cases, true), second = half_of(cases, false);
-        ArmScore arm{std::string(name), std::string(meaning), true, choose_limits(first), {}, {}};
-        arm.first = merits_with(first, arm.limits);
-        arm.second = merits_with(second, arm.limits);
-        return arm;
-    }
-
-    ArmScore without_limits(const SimplerMethod& method, const std::vector<Answer>& answers) const {
-        const auto cases = scored(answers);
-        return {std::string(method.name),        std::string(method.meaning),     false, {},
-                merits_of(half_of(cases, true)), merits_of(half_of(cases, false))};
-    }
-
-    std::vector<ScoredCase> scored(const std::vector<Answer>& answers) const {
-        std::vector<ScoredCase> cases;
-        for (std::size_t k = 0; k < truth_.cases.size(); ++k)
-            cases.push_back({&truth_.cases[k], answers[k], over_limit(truth_.cases[k], results_.cases[k])});
-        return cases;
-    }
-
-private:
-    const Challenge& truth_;
-    const ChallengeResults& results_;
-};
+std::vector<ScoredCase> scored(const Challenge& truth, const ChallengeResults& results,
+                               const std::vector<Answer>& answers) {
+    std::vector<ScoredCase> cases;
+    for (std::size_t k = 0; k < truth.cases.size(); ++k)
+        cases.push_back({&truth.cases[k], answers[k], over_limit(truth.cases[k], results.cases[k])});
+    return cases;
+}
 
 void expect_same_cases(const Challenge& truth, const OpenChallenge& open) {
     bool same = truth.cases.size() == open.cases.size();
@@ -136,8 +111,7 @@ ChallengeScore score_challenge(const Challenge& truth, const OpenChallenge& open
                                const std::function<void(double)>& on_progress) {
     expect_same_cases(truth, open);
     const ChallengeResults results = read_challenge_results(folder, open);
-    const OtherArms others = Trying(open, results, folder).all(on_progress);
-    const Scoring scoring(truth, results);
+    const OtherArms others = try_other_arms(open, results, folder, on_progress);
     ChallengeScore score;
     score.cases = static_cast<int>(truth.cases.size());
     std::vector<Findings> whole;
@@ -146,16 +120,23 @@ ChallengeScore score_challenge(const Challenge& truth, const OpenChallenge& open
         if (const std::string& problem = results.cases[k].problem; !problem.empty())
             score.not_diagnosed.push_back(open.cases[k].folder + ": " + problem);
     }
-    score.arms.push_back(scoring.with_limits("whole method", "with confirming runs", whole));
+    const auto with_limits = [&](std::string_view name, std::string_view meaning, const auto& findings) {
+        score.arms.push_back(score_with_limits(truth, results, name, meaning, findings));
+    };
+    with_limits("whole method", "with confirming runs", whole);
     for (std::size_t a = 0; a < others.findings.size(); ++a)
+        with_limits(ablations()[a].name, ablations()[a].meaning, others.findings[a]);
+    for (std::size_t a = 0; a < others.answers.size(); ++a) {
+        const SimplerMethod& method = simpler_methods()[a];
+        const auto cases = scored(truth, results, others.answers[a]);
+        const Merits first = merits_of(half_of(cases, true)), second = merits_of(half_of(cases, false));
         score.arms.push_back(
-            scoring.with_limits(ablations()[a].name, ablations()[a].meaning, others.findings[a]));
-    for (std::size_t a = 0; a < others.answers.size(); ++a)
-        score.arms.push_back(scoring.without_limits(simpler_methods()[a], others.answers[a]));
+            {std::string(method.name), std::string(method.meaning), false, {}, first, second});
+    }
     score.gap_reduction = score_gap_reduction(results.cases);
     std::vector<Answer> answers;
     for (const Findings& findings : whole) answers.push_back(answer_of(findings, score.arms.front().limits));
-    score.scored = half_of(scoring.scored(answers), false);
+    score.scored = half_of(scored(truth, results, answers), false);
     return score;
 }
 
