@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <fstream>
-#include <functional>
 #include <set>
 #include <sstream>
+#include <type_traits>
 
 #include "core/errors.h"
 #include "core/input_file.h"
@@ -26,13 +26,26 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// `check` returns what could not be checked, and throws InputError if the file is damaged.
-Verified looked_at(const fs::path& file, const std::function<std::string()>& check) {
+/// `check` may return what could not be checked, and throws InputError if the file is damaged.
+template <class Check>
+void look(std::vector<Verified>& all, const fs::path& file, Check check) {
     try {
-        return {file, true, check()};
+        std::string note;
+        if constexpr (std::is_void_v<decltype(check())>)
+            check();
+        else
+            note = check();
+        all.push_back({file, true, note});
     } catch (const InputError& error) {
-        return {file, false, error.what()};
+        all.push_back({file, false, error.what()});
     }
+}
+
+std::vector<fs::path> sorted_files(const fs::path& folder) {
+    std::vector<fs::path> files;
+    for (const auto& entry : fs::directory_iterator(folder)) files.push_back(entry.path());
+    std::ranges::sort(files);
+    return files;
 }
 
 std::string check_result_file(const fs::path& file) {
@@ -44,10 +57,9 @@ std::string check_result_file(const fs::path& file) {
     return "";
 }
 
-std::string check_plate_table(const fs::path& folder) {
+void check_plate_table(const fs::path& folder) {
     if (read_file(folder / "plate.csv") != csv_text(read_run(folder, ReadWhat::observables)))
         throw InputError("it is not what run.h5 gives: `mcdem run .. --resume` writes it again");
-    return "";
 }
 
 /// Reports files of an experiment that are not listed.
@@ -69,14 +81,13 @@ void check_sums(const fs::path& folder, std::vector<Verified>& all) {
         const fs::path file =
             line.size() > digits + 2 ? folder / line.substr(digits + 2) : folder / sums_file;
         listed.insert(file.filename().string());
-        all.push_back(looked_at(file, [&]() -> std::string {
+        look(all, file, [&] {
             if (line.size() <= digits + 2 || fs::path(line.substr(digits + 2)).has_parent_path())
                 throw InputError("its lines must be a SHA-256 and the name of a file in the same folder");
             if (Sha256().add(read_file(file)).hex() != line.substr(0, digits))
                 throw InputError(std::string("it has another SHA-256 than ") + sums_file +
                                  " says: it was changed");
-            return "";
-        }));
+        });
     }
     check_listed(folder, listed, all);
 }
@@ -85,27 +96,23 @@ void check_sums(const fs::path& folder, std::vector<Verified>& all) {
 void check_manifests(const fs::path& folder, std::vector<Verified>& all) {
     for (const fs::path& file : {manifest_file(folder), device_file(folder)})
         if (fs::exists(file))
-            all.push_back(looked_at(file, [&]() -> std::string {
+            look(all, file, [&] {
                 if (!read_manifest(file)) throw InputError("it is damaged");
-                return "";
-            }));
+            });
 }
 
 void check_run(const fs::path& folder, std::vector<Verified>& all) {
     const auto result = [&](const fs::path& file) {
-        all.push_back(looked_at(file, [&] { return check_result_file(file); }));
+        look(all, file, [&] { return check_result_file(file); });
     };
     if (fs::exists(run_file(folder))) {
         result(run_file(folder));
         if (fs::exists(folder / "plate.csv"))
-            all.push_back(looked_at(folder / "plate.csv", [&] { return check_plate_table(folder); }));
+            look(all, folder / "plate.csv", [&] { check_plate_table(folder); });
     }
     for (const char* name : {"checkpoint.h5", "checkpoint.previous.h5"})
         if (fs::exists(folder / name))
-            all.push_back(looked_at(folder / name, [&] {
-                expect_whole_checkpoint(folder / name);
-                return std::string();
-            }));
+            look(all, folder / name, [&] { expect_whole_checkpoint(folder / name); });
     try {
         for (const fs::path& segment : segment_files(folder)) result(segment);
     } catch (const InputError& error) {
@@ -114,36 +121,25 @@ void check_run(const fs::path& folder, std::vector<Verified>& all) {
     const fs::path parts = parts_folder(folder);
     if (!fs::is_directory(parts)) return;
     check_manifests(parts, all);
-    std::vector<fs::path> files;
-    for (const auto& entry : fs::directory_iterator(parts)) {
-        if (entry.path().extension() == ".h5") files.push_back(entry.path());
+    for (const auto& entry : fs::directory_iterator(parts))
         if (entry.is_directory()) check_run(entry.path(), all);
-    }
-    std::ranges::sort(files);
-    for (const fs::path& file : files) result(file);
+    for (const fs::path& file : sorted_files(parts))
+        if (file.extension() == ".h5") result(file);
 }
 
 /// Checks a diagnosis or a library: library.json, and all stored simulations.
 void check_library(const fs::path& folder, std::vector<Verified>& all) {
     if (fs::exists(folder / "library.json"))
-        all.push_back(looked_at(folder / "library.json", [&] {
-            read_library(folder / "library.json");
-            return std::string();
-        }));
+        look(all, folder / "library.json", [&] { read_library(folder / "library.json"); });
     const fs::path simulations = folder / "simulations";
     if (!fs::is_directory(simulations)) return;
-    std::vector<fs::path> files;
-    for (const auto& entry : fs::directory_iterator(simulations)) files.push_back(entry.path());
-    std::ranges::sort(files);
-    for (const fs::path& file : files) {
-        if (file.extension() == ".h5")
-            all.push_back(looked_at(file, [&] { return check_result_file(file); }));
+    for (const fs::path& file : sorted_files(simulations)) {
+        if (file.extension() == ".h5") look(all, file, [&] { return check_result_file(file); });
         if (file.extension() == ".obs")
-            all.push_back(looked_at(file, [&]() -> std::string {
+            look(all, file, [&] {
                 if (!read_observation(file))
                     throw InputError("its digest does not match: it is simulated again when it is needed");
-                return "";
-            }));
+            });
     }
 }
 
@@ -153,13 +149,13 @@ bool is_json(const fs::path& file) {
 }
 
 /// Checks a file outside of its folder.
-Verified looked_at_alone(const fs::path& file) {
+void look_alone(std::vector<Verified>& all, const fs::path& file) {
     const bool is_library = is_json(file);
     if (file.extension() != ".h5" && !is_library)
         throw InputError(file.string() +
                          ": must be a folder, a .h5 file of a run or the .json of a library: other files are "
                          "verified with the folder that they are in");
-    return looked_at(file, [&]() -> std::string {
+    look(all, file, [&]() -> std::string {
         if (is_library)
             read_library(file);
         else if (file.filename().string().starts_with("checkpoint."))
@@ -175,7 +171,7 @@ Verified looked_at_alone(const fs::path& file) {
 std::vector<Verified> verify(const fs::path& path) {
     std::vector<Verified> all;
     if (!fs::is_directory(path)) {
-        all.push_back(looked_at_alone(path));
+        look_alone(all, path);
         return all;
     }
     check_run(path, all);
@@ -184,10 +180,10 @@ std::vector<Verified> verify(const fs::path& path) {
     if (fs::exists(path / sums_file))
         check_sums(path, all);
     else if (fs::exists(path / "experiment.toml"))
-        all.push_back(looked_at(path / "experiment.toml", [&]() -> std::string {
+        look(all, path / "experiment.toml", [&] {
             read_experiment(path);
             return fmt::format("the experiment has no {}; all of it can be read", sums_file);
-        }));
+        });
     if (all.empty())
         throw InputError(path.string() +
                          ": holds no run, experiment, diagnosis or library that could be verified");
