@@ -22,11 +22,7 @@ struct KernelBuild {
     int work_items() const { return lanes > 1 ? block() / lanes : block() * slots; }
     /// Size of a work-group of the kernels that list neighbours, with one work-item per grain.
     int list_items() const { return std::min(group, lanes > 1 ? block() : 64); }
-    /// Place of a slot in fields with one number per slot (SLOT_PLACE in kernels/lanes.h), and the inverse.
-    std::size_t slot_place(std::size_t grain, std::size_t slot) const {
-        const auto wide = static_cast<std::size_t>(lanes), all = static_cast<std::size_t>(slots);
-        return grain / wide * wide * all + slot * wide + grain % wide;
-    }
+    /// Grain of a place in fields with one number per slot (SLOT_PLACE in kernels/lanes.h).
     std::size_t grain_of_slot(std::size_t place) const {
         const auto wide = static_cast<std::size_t>(lanes), all = static_cast<std::size_t>(slots);
         return place / (wide * all) * wide + place % wide;

@@ -32,12 +32,6 @@ std::vector<int> spatial_order(const Packing& packing) {
 
 }  // namespace
 
-std::vector<int> Layout::places(int replica) const {
-    std::vector<int> place(order[replica].size());
-    for (std::size_t k = 0; k < place.size(); ++k) place[order[replica][k]] = static_cast<int>(k);
-    return place;
-}
-
 std::vector<Portion> Layout::portions(int replica) const {
     std::vector<Portion> all;
     for (int first = 0; first < grain_count[replica]; first += PORTION_GRAINS)

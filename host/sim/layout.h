@@ -21,8 +21,6 @@ struct Layout {
     int first_block(int replica) const { return first_grain[replica] / block; }
     /// Portions of a replica's grains for sums by work-groups.
     std::vector<Portion> portions(int replica) const;
-    /// Position of each of the user's grains within its replica: the inverse of order.
-    std::vector<int> places(int replica) const;
 };
 
 /// Number of portions of that many grains.

@@ -32,7 +32,7 @@ Eigen::Matrix3d moments(const mcdem::f32::Replica& replica, const std::vector<Ve
     for (auto& component : force) component.assign(rows, 0);
     for (const Contact& c : contacts) {
         const auto grain = static_cast<std::size_t>(c.grain);
-        const std::size_t slot = kernels.slot_place(grain, static_cast<std::size_t>(used[grain]++));
+        const std::size_t slot = slot_place(kernels, grain, static_cast<std::size_t>(used[grain]++));
         partner[slot] = c.partner;
         for (int axis = 0; axis < 3; ++axis)
             force[static_cast<std::size_t>(axis)][slot] = static_cast<float>(c.force[axis]);

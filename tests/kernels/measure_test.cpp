@@ -17,7 +17,7 @@ struct Grains {
             for (int k = 0; k < 4; ++k) energy.push_back(static_cast<float>(uniform(0, 1)));
             frequency.push_back(static_cast<float>(uniform(0, 1)));
             for (int slot = 0; slot < slots; ++slot) {
-                const std::size_t place = kernels.slot_place(i, slot);
+                const std::size_t place = slot_place(kernels, i, slot);
                 partner[place] = slot < 6 ? WALL_PARTNER(slot) : slot < 9 ? i / 2 : NO_PARTNER;
                 for (auto& component : force) component[place] = static_cast<float>(uniform(-1, 1));
             }
@@ -83,7 +83,7 @@ TEST(Reduce, SumsAndMaximaAreThoseOfAllGrains) {
             fastest = std::max<double>(fastest, grains.frequency[i]);
             for (std::size_t wall = 0; wall < 6; ++wall)
                 for (std::size_t axis = 0; axis < 3; ++axis)
-                    walls[3 * wall + axis] -= grains.force[axis][kernels.slot_place(i, wall)];
+                    walls[3 * wall + axis] -= grains.force[axis][slot_place(kernels, i, wall)];
         }
         EXPECT_NEAR(report.kinetic_energy, kinetic, 1e-5 * kinetic);
         EXPECT_NEAR(report.elastic_energy, elastic, 1e-5 * elastic);

@@ -1,5 +1,6 @@
 // State of the slots from an engine's saved state, by the user's grain numbers.
 #pragma once
+#include <algorithm>
 #include <cstring>
 #include <map>
 #include <vector>
@@ -41,12 +42,14 @@ public:
     std::vector<int> row(int replica, int grain) const {
         std::vector<int> entries;
         for (int c = 0; c < build_.slots; ++c)
-            entries.push_back(partner_[build_.slot_place(index(replica, grain), c)]);
+            entries.push_back(partner_[slot_place(build_, index(replica, grain), c)]);
         return entries;
     }
     /// Index of a grain in the device's arrays.
     int index(int replica, int grain) const {
-        return layout_.first_grain[replica] + layout_.places(replica)[grain];
+        return layout_.first_grain[replica] +
+               static_cast<int>(std::ranges::find(layout_.order[replica], grain) -
+                                layout_.order[replica].begin());
     }
     /// An entry of a row, in the user's numbers.
     int user_partner(int replica, int entry) const {
@@ -60,10 +63,10 @@ public:
         const auto entries = row(replica, grain);
         const std::size_t rows = values.size() / partner_.size();
         const std::size_t lane = index(replica, grain) % build_.lanes;
-        const std::size_t block = build_.slot_place(index(replica, grain) - lane, 0);
+        const std::size_t block = slot_place(build_, index(replica, grain) - lane, 0);
         for (int c = 0; c < build_.slots; ++c)
             if (entries[c] != NO_PARTNER)
-                found[user_partner(replica, entries[c])] = values[rows * block + build_.slot_place(lane, c)];
+                found[user_partner(replica, entries[c])] = values[rows * block + slot_place(build_, lane, c)];
         return found;
     }
     std::vector<int> partner_slots() const { return saved_values<int>(saved_, "partner_slot"); }
