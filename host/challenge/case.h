@@ -19,10 +19,8 @@ enum class CaseKind {
 }  // namespace mcdem::challenge
 
 template <>
-struct mcdem::Names<mcdem::CaseKind> {
-    static constexpr std::array<std::string_view, 5> list{"none", "effect", "pair", "unknown",
-                                                          "outside_prior"};
-};
+inline constexpr std::array<std::string_view, 5> mcdem::name_list<mcdem::CaseKind>{
+    "none", "effect", "pair", "unknown", "outside_prior"};
 
 namespace mcdem::inline challenge {
 

@@ -27,7 +27,7 @@ Eigen::VectorXd cells_where(const Grid& grid, bool (*wanted)(const Observable&))
 
 Signature signature(const std::string& name, const Eigen::VectorXd& linear) {
     const Eigen::VectorXd zero = Eigen::VectorXd::Zero(linear.size());
-    return {name, 1, linear, zero, zero, linear.transpose().replicate(8, 1)};
+    return {name, 1, linear, zero, linear.transpose().replicate(8, 1)};
 }
 
 /// Noise of 1 between replicates and of 3 between packings. "adhesion" is visible only in observables that

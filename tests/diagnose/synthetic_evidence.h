@@ -41,7 +41,7 @@ public:
 
     Signature signature(const std::string& name, const Eigen::VectorXd& linear) const {
         const Eigen::VectorXd zero = Eigen::VectorXd::Zero(cells_);
-        return {name, 10, linear, zero, zero, linear.transpose().replicate(8, 1)};
+        return {name, 10, linear, zero, linear.transpose().replicate(8, 1)};
     }
 
     /// Replicates of packings that differ by `packing_scatter`. The last packing is that of the experiment;

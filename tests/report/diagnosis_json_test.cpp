@@ -54,7 +54,7 @@ TEST(DiagnosisJson, has_the_documented_keys_in_their_order) {
                 ElementsAre("effect", "key", "was", "to", "unit", "done"));
     EXPECT_THAT(keys_of(json["explanation"]),
                 ElementsAre("reduction", "simulated", "held_out", "placebo", "needed", "remainder",
-                            "remainder_p", "leaves_more_than_noise"));
+                            "remainder_p", "leaves_more_than_noise", "without"));
     EXPECT_THAT(keys_of(json["shrink"]),
                 ElementsAre("held_out", "before", "after", "fraction", "interval", "placebo", "metrics",
                             "confirmed", "fitted_displacement_mm", "top_force"));

@@ -193,7 +193,11 @@ TEST(DiagnosisText, a_remainder_within_noise_is_stated) {
     auto d = samples::diagnosis(Verdict::effect);
     d.explanation->leaves_more_than_noise = false;
     EXPECT_THAT(line(d, "How far"),
-                AllOf(HasSubstr("what remains is noise"), Not(HasSubstr("no effect of the library"))));
+                AllOf(HasSubstr("what remains is noise"), Not(HasSubstr("no effect of the library")),
+                      Not(HasSubstr("rearranged"))));
+    d.explanation->without = "13.6 mm of loading";
+    EXPECT_THAT(line(d, "How far"),
+                HasSubstr("apart from 13.6 mm of loading: grains may have rearranged there"));
 }
 
 // Cells that are framed in the figure are in the text, even without an entry.

@@ -52,11 +52,11 @@ struct Proposal {
     double gain = 0;      ///< in log likelihood over no effect, from signatures
     double misfit_p = 1;  ///< p-value of the remainder, from signatures
     std::optional<double> confirmed_gain, confirmed_misfit_p;  ///< the same from real runs
+    double reduction = 0;  ///< fraction of the gap that it takes away (Findings::held_out), from signatures
+    std::optional<double> confirmed_reduction = {};  ///< the same from real runs
     std::optional<int> left_out = {};  ///< place of the grid without which the runs leave no more than noise:
                                        ///< grains may have rearranged there; reductions are without it, too
     double rest_misfit_p = 0;          ///< p-value of the remainder without it
-    double reduction = 0;  ///< fraction of the gap that it takes away (Findings::held_out), from signatures
-    std::optional<double> confirmed_reduction = {};  ///< the same from real runs
     bool is_pair() const { return candidates.size() == 2; }
     double best_gain() const { return confirmed_gain.value_or(gain); }
     double whole_misfit() const { return confirmed_misfit_p.value_or(misfit_p); }

@@ -29,7 +29,7 @@ struct adl_serializer<std::optional<Value>> {
 };
 
 template <class Enum>
-requires requires { mcdem::Names<Enum>::list; }
+requires requires { mcdem::name_list<Enum>.size(); }
 struct adl_serializer<Enum> {
     static void to_json(json& j, Enum value) { j = mcdem::name(value); }
     static void from_json(const json& j, Enum& value) {

@@ -98,6 +98,7 @@ class Explanation(TypedDict):
     remainder: float | None
     remainder_p: float | None
     leaves_more_than_noise: bool
+    without: str
 
 class Refinement(TypedDict):
     effect: str

@@ -237,18 +237,6 @@ std::string data_words(const Diagnosis& diagnosis) {
     return " on data held out" + (held_out.empty() ? "" : " (" + held_out + ")");
 }
 
-std::string remainder_words(const Explanation& explanation) {
-    const auto& without = explanation.without;
-    if (!explanation.leaves_more_than_noise)
-        return fmt::format(
-            "what remains is noise as far as these data tell{}",
-            without.empty() ? "" : ", apart from " + without + ": grains may have rearranged there");
-    const double left = std::max(0.0, explanation.remainder());
-    const auto what = left >= 1 ? "all of it remains, which"
-                                : percent(left) + (left < 0.015 ? " remains that" : " remain that");
-    return fmt::format("{} no effect of the library explains ({})", what, p_words(explanation.remainder_p));
-}
-
 std::string how_far_line(const Diagnosis& diagnosis) {
     if (!diagnosis.explanation)
         return diagnosis.verdict == Verdict::no_gap ? "there is nothing to explain."

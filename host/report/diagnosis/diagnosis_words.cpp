@@ -196,6 +196,18 @@ std::string library_words(const Diagnosis& diagnosis) {
     return count > 0 ? fmt::format("the {} known effects", count) : "the known effects";
 }
 
+std::string remainder_words(const Explanation& explanation) {
+    const auto& without = explanation.without;
+    if (!explanation.leaves_more_than_noise)
+        return fmt::format(
+            "what remains is noise as far as these data tell{}",
+            without.empty() ? "" : ", apart from " + without + ": grains may have rearranged there");
+    const double left = std::max(0.0, explanation.remainder());
+    const auto what = left >= 1 ? "all of it remains, which"
+                                : percent(left) + (left < 0.015 ? " remains that" : " remain that");
+    return fmt::format("{} no effect of the library explains ({})", what, p_words(explanation.remainder_p));
+}
+
 std::string refinement_words(const Refinement& refinement) {
     return one_line(fmt::format("{} = {:.3g}{} instead of {:.3g}", refinement.key, refinement.to,
                                 refinement.unit.empty() ? "" : " " + refinement.unit, refinement.from));

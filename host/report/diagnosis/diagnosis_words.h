@@ -51,6 +51,9 @@ std::vector<std::pair<std::string, std::array<double, 2>>> metrics_in_order(
 /// The effects that were tried: "the 18 known effects".
 std::string library_words(const Diagnosis& diagnosis);
 
+/// "3 % remain that no effect of the library explains (p = 0.0004)".
+std::string remainder_words(const Explanation& explanation);
+
 /// "plate.speed = 0.025 m/s instead of 0.1".
 std::string refinement_words(const Refinement& refinement);
 
