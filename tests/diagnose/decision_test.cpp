@@ -280,6 +280,37 @@ TEST(Decision, ASmallRemainderIsStatedAndDoesNotChangeTheVerdict) {
     EXPECT_FALSE(explanation_of(f, decide(f, limits), limits)) << "no gap, nothing to explain";
 }
 
+TEST(Decision, AVerySignificantRemainderMayHaveAnotherCause) {
+    Findings f = clear_case();
+    const Limits limits;
+    f.proposals[0].misfit_p = 2 * limits.another_form;
+    expect_sum_of_known(decide(f, limits));
+    f.proposals[0].misfit_p = limits.another_form / 2;
+    const Decision d = decide(f, limits);
+    EXPECT_EQ(d.verdict, Verdict::effect);
+    EXPECT_NEAR(all_confidence(d), limits.right_form, 1e-12);
+}
+
+void leave_out_a_place(Proposal& p, double rest) {
+    p.left_out = 2;
+    p.rest_misfit_p = rest;
+}
+
+TEST(Decision, APlaceThatIsLeftOutForAPairMayBeLeftOutForOneEffect) {
+    Findings f = clear_case();
+    const Limits limits;
+    f.proposals[0].misfit_p = 1e-6;
+    f.proposals.push_back(proposal({1, 3}, 80, 1e-6));
+    Proposal &single = f.proposals[0], &pair = f.proposals[2];
+    leave_out_a_place(pair, 0.3);
+    EXPECT_EQ(decide(f, limits).proposal, 2);
+    leave_out_a_place(single, 0.1);
+    EXPECT_EQ(decide(f, limits).proposal, 0);
+    pair.left_out.reset();
+    pair.misfit_p = 0.3;
+    EXPECT_EQ(decide(f, limits).proposal, 2) << "two effects explain all places";
+}
+
 TEST(Decision, NamesAPairIfOneEffectIsNotSufficient) {
     Findings f = clear_case();
     const Limits limits;

@@ -34,6 +34,8 @@ struct Limits {
     double right_above = 0.97;      ///< the same if it takes away
     double certain = 0.8;           ///< at least this much; linear in between
     double right_pair = 0.9;        ///< the same for a pair, at most
+    double another_form = 1e-10;    ///< another effect may be the cause if the p of the remainder is smaller;
+    double right_form = 0.5;        ///< the same then, at most
     double reduction_margin = 0.1;  ///< error of the reduction by signatures, on either side of its interval
     /// p-value of the remainder below which a proposal leaves more than noise.
     double enough(bool pair) const { return pair ? pair_misfit : misfit; }
