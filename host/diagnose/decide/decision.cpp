@@ -67,7 +67,6 @@ bool leaves_too_much(const Proposal& proposal, const Limits& limits) {
 bool is_better(const Proposal& pair, const Proposal& single, const Limits& limits) {
     if (pair.best_misfit() < limits.pair_misfit) return false;
     if (pair.left_out) return single.best_misfit() < limits.misfit;
-
     return single.whole_misfit() < limits.misfit ||
            pair.best_gain() - single.best_gain() > limits.second_certain;
 }
@@ -80,7 +79,6 @@ double trust(const Proposal& proposal, const Findings& findings, const Limits& l
     const double above = std::clamp((proposal.best_reduction() - low) / (high - low), 0.0, 1.0);
     double right = proposal.is_pair() ? std::min(limits.right_above, limits.right_pair) : limits.right_above;
     if (proposal.best_misfit() < limits.another_form) right = std::min(right, limits.right_form);
-
     return limits.right_below + above * (right - limits.right_below);
 }
 
