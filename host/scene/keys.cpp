@@ -114,7 +114,7 @@ const Key table[] = {
 
     {"output.positions", run<&Scene::output, &Output::positions>, "", none, one_run, "record the position of every grain at scans"},
     {"output.contacts", run<&Scene::output, &Output::contacts>, "", none, one_run, "record the force of every contact at scans"},
-    {"output.checkpoint_minutes", run<&Scene::output, &Output::checkpoint_minutes>, "min", above_zero_to(1e5), one_run, "wall-clock time between checkpoints"},
+    {"output.checkpoint_minutes", run<&Scene::output, &Output::checkpoint_minutes>, "min", above_zero_to(1e5), one_run, "wall-clock time between checkpoints; at least 20 times the time that writing one takes, if this is more than a second"},
 
     {"batch.replicas", &follow<&Settings::copies>, "", between(1, 10000), one_run, "number of copies of every setting, each with its own packing seed"},
 };
