@@ -36,8 +36,8 @@ struct Experiment {
 /// The scene keys that `materials` and `uncertainty` may contain.
 const std::vector<std::string>& material_keys();
 
-/// Maximum uncompressed size of one table [bytes]: 1 GiB, about 12 million contacts. Reading needs about as
-/// much memory as the tables have bytes.
+/// Maximum uncompressed size of one table [bytes]: 1 GiB, about 12 million contacts. Reading needs about
+/// twice as much memory as the tables have bytes.
 inline constexpr std::uintmax_t largest_table = std::uintmax_t{1} << 30;
 
 /// Throws InputError with all problems (at most 20), each as file:line and a remedy.

@@ -2,22 +2,15 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-// GCC 12 warns about an intended truncation in libfccp.
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wpragmas"
-#pragma GCC diagnostic ignored "-Wunknown-warning-option"
-#pragma GCC diagnostic ignored "-Wstringop-truncation"
-#include <libfccp/csv.h>
 #include <zlib.h>
 
 #include <algorithm>
 #include <cerrno>
-#include <cstring>
+#include <memory>
 #include <new>
 #include <span>
 
 #include "core/input_file.h"
-#include "scene/packing_fields.h"
 
 namespace mcdem::inline scene {
 namespace {
@@ -27,56 +20,38 @@ namespace fs = std::filesystem;
 constexpr auto too_large =
     "is larger than an experiment's table may be: leave out frames, or split it into several experiments";
 
-/// The bytes of a file, decompressed if necessary, or of a text. Always ends with a newline, because libfccp
-/// otherwise reads one byte past the end of the last line.
-class Bytes : public io::ByteSourceBase {
-public:
-    Bytes(const fs::path& file, const std::string* text, std::uintmax_t largest, std::string& failure)
-        : path_(file), left_(largest), failure_(failure) {
-        if (text) {
-            text_ = *text;
-            return;
-        }
-        file_ = gzdopen(open_input(file), "rb");
-        if (!file_) throw std::bad_alloc();
-    }
-    ~Bytes() override {
-        if (file_) gzclose(file_);
-    }
-    int read(char* buffer, int size) override {
-        if (ended_) return 0;
-        int count = file_ ? gzread(file_, buffer, static_cast<unsigned>(size)) : read_text(buffer, size);
+/// The file's text, decompressed if necessary; reading stops above `largest` bytes. `failure` says why it
+/// cannot be unpacked.
+std::string table_text(const fs::path& file, std::uintmax_t largest, std::string& failure) {
+    const std::unique_ptr<gzFile_s, decltype(&gzclose)> in(gzdopen(open_input(file), "rb"), &gzclose);
+    if (!in) throw std::bad_alloc();
+    std::string text;
+    char block[65536];
+    for (int count = 1; count > 0 && text.size() <= largest;) {
+        count = gzread(in.get(), block, sizeof block);
         int error = Z_OK;
-        const char* reason = file_ ? gzerror(file_, &error) : "";
-        if (error == Z_ERRNO) fail_reading(path_.string() + ": cannot be read", errno);
-        if (count < 0 || error != Z_OK)
-            failure_ = std::string("cannot be unpacked (") + reason + "): pack it again with gzip";
-        count = std::max(count, 0);
-        if (static_cast<std::uintmax_t>(count) > left_) failure_ = too_large;
-        left_ -= std::min<std::uintmax_t>(left_, static_cast<std::uintmax_t>(count));
-        if (std::memchr(buffer, 0, static_cast<std::size_t>(count)))
-            failure_ = "holds zero bytes and is no table: save it as text in UTF-8";
-        if (!failure_.empty()) count = 0;
-        if (count < size) {
-            ended_ = true;
-            buffer[count++] = '\n';
+        const char* reason = gzerror(in.get(), &error);
+        if (error == Z_ERRNO) fail_reading(file.string() + ": cannot be read", errno);
+        if (count < 0 || error != Z_OK) {
+            failure = std::string("cannot be unpacked (") + reason + "): pack it again with gzip";
+            break;
         }
-        return count;
+        text.append(block, static_cast<std::size_t>(count));
     }
+    return text;
+}
 
-private:
-    int read_text(char* buffer, int size) {
-        const std::size_t count = text_.copy(buffer, static_cast<std::size_t>(size));
-        text_.remove_prefix(count);
-        return static_cast<int>(count);
-    }
-    fs::path path_;
-    gzFile file_ = nullptr;
-    std::string_view text_;  ///< what is left of it
-    std::uintmax_t left_;    ///< remaining number of bytes
-    std::string& failure_;
-    bool ended_ = false;
-};
+/// Why the text is not read as a table; empty if it is.
+std::string failure_of(std::string_view text, std::uintmax_t largest) {
+    if (text.size() > largest) return too_large;
+    if (text.find('\0') != text.npos) return "holds zero bytes and is no table: save it as text in UTF-8";
+    TextLines lines(text);
+    while (const auto line = lines.next())
+        if (line->size() >= std::size_t{1} << 24)
+            return fmt::format("line {} has more than 16 million characters: is this a table?",
+                               lines.number());
+    return {};
+}
 
 void split(std::string_view line, std::vector<std::string_view>& words) {
     words.clear();
@@ -116,54 +91,39 @@ std::optional<fs::path> find_table(const fs::path& folder, const std::string& na
     return std::nullopt;
 }
 
-/// Iteration over the data lines.
-class Table::Lines {
-public:
-    Lines(const fs::path& file, const std::string* text, std::uintmax_t largest)
-        : reader_(file.string(),
-                  std::unique_ptr<io::ByteSourceBase>(new Bytes(file, text, largest, failure_))) {}
-    /// Nothing at the end, or if the file cannot be read; failure() gives the reason.
-    std::optional<std::string_view> next() {
-        try {
-            while (const char* line = reader_.next_line()) {
-                const std::string_view text = without_blanks(line);
-                if (!text.empty() && text.front() != '#') return text;
-            }
-        } catch (const io::error::line_length_limit_exceeded&) {
-            failure_ = fmt::format("line {} has more than 16 million characters: is this a table?", number());
-        }
-        return std::nullopt;
-    }
-    const std::string& failure() const { return failure_; }
-    long number() const { return reader_.get_file_line(); }
-
-private:
-    std::string failure_;
-    io::LineReader reader_;
-};
-
 Table::Table(const fs::path& file, const std::vector<std::string>& columns, std::uintmax_t largest,
              FileProblems& problems, const std::vector<std::string>& optional, const std::string* text)
-    : name_(file.string()),
-      columns_(columns),
-      needed_(columns.size()),
-      problems_(problems),
-      lines_(std::make_unique<Lines>(file, text, largest)) {
+    : name_(file.string()), columns_(columns), needed_(columns.size()), problems_(problems) {
     columns_.insert(columns_.end(), optional.begin(), optional.end());
     words_.resize(columns_.size());
+    std::string failure;
+    if (!text) text_ = table_text(file, largest, failure);
+    std::string_view all = text ? *text : text_;
+    if (failure.empty()) failure = failure_of(all, largest);
+    if (!failure.empty()) {
+        problems_.add(name_, failure);
+        return;
+    }
+    constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+    if (all.starts_with(byte_order_mark)) all.remove_prefix(byte_order_mark.size());
+    lines_.emplace(all);
     read_header();
 }
 
-Table::~Table() = default;
+std::optional<std::string_view> Table::next_line() {
+    while (const auto line = lines_->next()) {
+        const std::string_view text = without_blanks(*line);
+        if (!text.empty() && text.front() != '#') return text;
+    }
+    return std::nullopt;
+}
 
 void Table::read_header() {
-    const auto header = lines_->next();
+    const auto header = next_line();
     std::vector<std::string_view> names;
     if (header) split(*header, names);
     const long problems_before = problems_.count();
-    if (!lines_->failure().empty())
-        problems_.add(name_, lines_->failure());
-    else if (!header)
+    if (!header)
         problems_.add(name_, fmt::format("is empty: it must begin with the header {}",
                                          fmt::join(std::span(columns_).first(needed_), ",")));
     line_ = lines_->number();
@@ -191,11 +151,9 @@ bool Table::has(std::size_t column) const {
 bool Table::next() {
     std::vector<std::string_view> words;
     while (lines_) {
-        const auto line = lines_->next();
+        const auto line = next_line();
         if (!line) {
-            if (!lines_->failure().empty())
-                problems_.add(name_, lines_->failure());
-            else if (rows_ == 0)
+            if (rows_ == 0)
                 problems_.add(name_, "must have at least one row, got none: add rows, or leave the file out");
             lines_.reset();
             return false;
@@ -233,4 +191,3 @@ std::optional<long> Table::whole_number(std::size_t column, long least) {
 std::string Table::where(long line) const { return fmt::format("{}:{}", name_, line); }
 
 }  // namespace mcdem::scene
-#pragma GCC diagnostic pop

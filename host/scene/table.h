@@ -2,12 +2,12 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
-#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "scene/packing_fields.h"
 #include "scene/problems.h"
 
 namespace mcdem::inline scene {
@@ -19,14 +19,14 @@ std::optional<std::filesystem::path> find_table(const std::filesystem::path& fol
 
 class Table {
 public:
-    /// Opens the file and reads its header, in any order of columns. It must contain all `columns` and may
-    /// contain the `optional` ones, which are numbered after them; others are ignored. Reading ends with a
-    /// problem at an invalid byte, and after `largest` uncompressed bytes. With `text` that is read instead
-    /// of the file; it must outlive the table.
+    /// Reads the file and its header, in any order of columns. It must contain all `columns` and may contain
+    /// the `optional` ones, which are numbered after them; others are ignored. An invalid byte and more than
+    /// `largest` uncompressed bytes are problems. With `text` that is read instead of the file; it must
+    /// outlive the table.
     Table(const std::filesystem::path& file, const std::vector<std::string>& columns, std::uintmax_t largest,
           FileProblems& problems, const std::vector<std::string>& optional = {},
           const std::string* text = nullptr);
-    ~Table();
+    Table(const Table&) = delete;
     /// Advances to the next row with as many columns as the header. Returns false at the end or if the header
     /// is unusable; a table without rows is a problem. Empty lines and lines that start with # are skipped.
     bool next();
@@ -52,13 +52,15 @@ public:
     bool complete() const { return problems_.empty(); }
 
 private:
-    class Lines;
     void read_header();
+    /// The next line that is neither empty nor a comment.
+    std::optional<std::string_view> next_line();
     std::string name_;
     std::vector<std::string> columns_;
     std::size_t needed_;  ///< number of required columns, which come first
     FileProblems& problems_;
-    std::unique_ptr<Lines> lines_;
+    std::string text_;  ///< of the file
+    std::optional<TextLines> lines_;
     std::vector<int> column_of_word_;  ///< by word of a line; -1: ignored
     std::vector<std::string_view> words_;
     long line_ = 1, rows_ = 0;
