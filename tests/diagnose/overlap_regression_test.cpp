@@ -86,6 +86,17 @@ TEST(GrainOverlaps, ScatterProportionalToTheOverlapIsFound) {
     EXPECT_LT(fit[5], 0.2 * 0.02 * variance / (mean * mean) + 0.0005);
 }
 
+// Half of the contacts pull as much as the others push: the mean overlap is zero.
+TEST(GrainOverlaps, ScatterInProportionToTheOverlapIsFiniteIfGrainsAttract) {
+    auto contacts = random_contacts(200, 5);
+    Random random(6, Stream::positions);
+    for (std::size_t k = 0; k < contacts.size(); ++k) {
+        if (k % 2) contacts[k].implied = -contacts[k - 1].implied;
+        contacts[k].measured = contacts[k].implied - 0.001 * random.normal();
+    }
+    EXPECT_LT(std::abs(grain_overlaps(grains_of(200), contacts)[6]), 0.002);
+}
+
 TEST(GrainOverlaps, RequireFiveContactsPerTerm) {
     auto contacts = random_contacts(50, 1);
     contacts.resize(19);

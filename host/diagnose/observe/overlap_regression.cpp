@@ -116,7 +116,7 @@ std::array<double, 7> grain_overlaps(const Recording& recording, std::span<const
     for (const ContactResidual& c : contacts) {
         if (is_wall(c.partner)) continue;
         regression.add(grain_terms(c), c.residual());
-        overlaps += c.implied;
+        overlaps += std::abs(c.implied);  // contacts that pull have negative ones
         ++number;
     }
     const Terms<4> fit = regression.solve();
