@@ -120,12 +120,10 @@ ChallengeScore score_challenge(const Challenge& truth, const OpenChallenge& open
         if (const std::string& problem = results.cases[k].problem; !problem.empty())
             score.not_diagnosed.push_back(open.cases[k].folder + ": " + problem);
     }
-    const auto with_limits = [&](std::string_view name, std::string_view meaning, const auto& findings) {
-        score.arms.push_back(score_with_limits(truth, results, name, meaning, findings));
-    };
-    with_limits("whole method", "with confirming runs", whole);
+    score.arms.push_back(score_with_limits(truth, results, "whole method", "with confirming runs", whole));
     for (std::size_t a = 0; a < others.findings.size(); ++a)
-        with_limits(ablations()[a].name, ablations()[a].meaning, others.findings[a]);
+        score.arms.push_back(score_with_limits(truth, results, ablations()[a].name, ablations()[a].meaning,
+                                               others.findings[a]));
     for (std::size_t a = 0; a < others.answers.size(); ++a) {
         const SimplerMethod& method = simpler_methods()[a];
         const auto cases = scored(truth, results, others.answers[a]);

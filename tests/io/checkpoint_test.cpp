@@ -13,6 +13,7 @@ namespace mcdem::test {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
 
 Checkpoint example(int segments) {
     Checkpoint checkpoint{"name = 1\n", "a device", segments, {}, ""};
@@ -76,38 +77,29 @@ TEST(checkpoint, if_both_are_damaged_the_error_names_both) {
     }
 }
 
+h5::Handle opened_to_change(const TemporaryFolder& folder) {
+    return {H5Fopen((folder / "checkpoint.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose};
+}
+
 TEST(checkpoint, changed_bytes_with_correct_library_checksums_are_detected) {
     TemporaryFolder folder;
     write_checkpoint(folder.path(), example(5));
     {
-        const h5::Handle file(H5Fopen((folder / "checkpoint.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT),
-                              H5Fclose);
+        const h5::Handle file = opened_to_change(folder);
         const h5::Handle field(H5Dopen2(file, "/checkpoint/fields/status", H5P_DEFAULT), H5Dclose);
         const unsigned char bytes[3] = {1, 2, 3};
         ASSERT_GE(H5Dwrite(field, H5T_NATIVE_UCHAR, H5S_ALL, H5S_ALL, H5P_DEFAULT, bytes), 0);
     }
-    try {
-        read_checkpoint(folder.path());
-        FAIL();
-    } catch (const InputError& error) {
-        EXPECT_THAT(error.what(), HasSubstr("/checkpoint/fields/status: does not have the digest"));
-    }
+    EXPECT_THAT([&] { read_checkpoint(folder.path()); },
+                ThrowsMessage<InputError>(HasSubstr("/checkpoint/fields/status: does not have the digest")));
 }
 
 TEST(checkpoint, a_removed_field_is_detected) {
     TemporaryFolder folder;
     write_checkpoint(folder.path(), example(5));
-    {
-        const h5::Handle file(H5Fopen((folder / "checkpoint.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT),
-                              H5Fclose);
-        ASSERT_GE(H5Ldelete(file, "/checkpoint/fields/status", H5P_DEFAULT), 0);
-    }
-    try {
-        read_checkpoint(folder.path());
-        FAIL();
-    } catch (const InputError& error) {
-        EXPECT_THAT(error.what(), HasSubstr("must have one digest for each of its tables"));
-    }
+    ASSERT_GE(H5Ldelete(opened_to_change(folder), "/checkpoint/fields/status", H5P_DEFAULT), 0);
+    EXPECT_THAT([&] { read_checkpoint(folder.path()); },
+                ThrowsMessage<InputError>(HasSubstr("must have one digest for each of its tables")));
 }
 
 TEST(checkpoint, any_flipped_bit_is_detected_or_harmless) {

@@ -303,8 +303,7 @@ Diagnosis DiagnosisBuilder::diagnosis() const {
     const Proposal& explaining = findings_.proposals[decided()];
     if (explaining.left_out) {
         const Cell cell = cells_of(evidence_.library.grid)[static_cast<std::size_t>(*explaining.left_out)];
-        d.explanation->without = fmt::format("{:.4g} mm of {}loading", cell.displacement * 1e3,
-                                             cell.phase == Phase::load ? "" : "un");
+        d.explanation->without = fmt::format("{:.4g} mm of {}ing", cell.displacement * 1e3, name(cell.phase));
     }
     d.gap_reduction = measure_reduction(data_, split_of(explaining), explaining, mean_of_, evidence_.seed);
     d.gap_reduction->placebo = findings_.placebo;
