@@ -133,11 +133,12 @@ Json power_values(std::vector<ScoredCase> cases, double false_alarm) {
     return json;
 }
 
-/// Success rate against the probability that the diagnosis states.
+/// Success rate of leading effects, named or not, against the probability that the diagnosis states.
 Json confidence_values(std::vector<ScoredCase> cases) {
-    std::erase_if(cases, [](const ScoredCase& c) { return !c.answer.names(); });
+    std::erase_if(cases, [](const ScoredCase& c) { return !c.answer.leads(); });
     Json points = measured(
-        cases, {0.4, 0.6, 0.8, 0.95}, [](const ScoredCase& c) { return c.answer.confidence; }, leads_rightly);
+        cases, {0.2, 0.4, 0.6, 0.8, 0.95}, [](const ScoredCase& c) { return c.answer.confidence; },
+        leader_is_true);
     if (points.is_null()) return points;
     return {{"x_label", "probability stated"},
             {"y_label", "part that is right"},

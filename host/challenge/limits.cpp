@@ -17,7 +17,9 @@ const std::vector<Choice> choices{
     {"reduction",    &Limits::reduction,    {0.5, 0.6, 0.7, 0.8}},
     {"over_placebo", &Limits::over_placebo, {0.1, 0.2, 0.4}},
     {"misfit",       &Limits::misfit,       {1e-4, 1e-3, 3e-3, 0.01, 0.03, 0.1}},
-    {"remainder",    &Limits::remainder,    {0.05, 0.1, 0.15, 0.2, 1}},
+    {"remainder",    &Limits::remainder,    {0.1, 0.2, 0.3, 0.4}},
+    {"form_remainder", &Limits::form_remainder, {0.05, 0.1, 0.15, 0.2}},
+    {"pair_reduction", &Limits::pair_reduction, {0.6, 0.7, 0.8, 0.9}},
     {"pair_misfit",  &Limits::pair_misfit,  {0.01, 0.02, 0.05, 0.1, 0.2}},
     {"only_noise",   &Limits::only_noise,   {0.01, 0.05, 0.2, 2}},
     {"group",        &Limits::group,        {1, 2, 3, 5}},
@@ -26,9 +28,8 @@ const std::vector<Choice> choices{
     {"second_share", &Limits::second_share, {0.02, 0.04, 0.08, 0.15, 0.3}},
     {"second_certain", &Limits::second_certain, {25, 50, 100, 1e9}},
     {"right_below",  &Limits::right_below,  {0.03, 0.1, 0.3}},
-    {"certain",      &Limits::certain,      {0.7, 0.8, 0.9, 0.95, 1}},
-    {"right_above",  &Limits::right_above,  {0.9, 0.94, 0.97, 0.99}},
-    {"right_pair",   &Limits::right_pair,   {0.7, 0.8, 0.9, 0.97}},
+    {"right_above",  &Limits::right_above,  {0.9, 0.94, 0.96, 0.98}},
+    {"right_form",   &Limits::right_form,   {0.2, 0.4, 0.6, 0.8}},
 };
 // clang-format on
 constexpr int max_rounds = 5;

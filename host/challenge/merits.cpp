@@ -20,7 +20,7 @@ void add_effect(Merits& m, Sums& sums, const ScoredCase& scored) {
     const Answer& answer = scored.answer;
     const std::string& effect = truth.effects.front().name;
     const bool leads = leads_rightly(scored);
-    const bool in_group = std::ranges::find(answer.group, effect) != answer.group.end();
+    const bool in_group = answer.names() && std::ranges::count(answer.group, effect) > 0;
     m.detected.add(answer.detected());
     m.detected_by_effect[effect].add(answer.detected());
     m.named.add(leads);
@@ -39,15 +39,17 @@ void add_effect(Merits& m, Sums& sums, const ScoredCase& scored) {
 void add_pair(Merits& m, const ScoredCase& scored) {
     const auto& group = scored.answer.group;
     m.pair_led.add(leads_rightly(scored));
-    m.pair_found.add(group.size() == 2 && is_true(*scored.truth, group[0]) &&
+    m.pair_found.add(scored.answer.names() && group.size() == 2 && is_true(*scored.truth, group[0]) &&
                      is_true(*scored.truth, group[1]));
 }
 
 }  // namespace
 
-bool leads_rightly(const ScoredCase& scored) {
-    return scored.answer.names() && is_true(*scored.truth, scored.answer.group.front());
+bool leader_is_true(const ScoredCase& scored) {
+    return scored.answer.leads() && is_true(*scored.truth, scored.answer.group.front());
 }
+
+bool leads_rightly(const ScoredCase& scored) { return scored.answer.names() && leader_is_true(scored); }
 
 std::string unknown_name(const ChallengeCase& truth) {
     return truth.struck.empty() ? truth.effects.front().name : "struck";
@@ -58,9 +60,9 @@ Merits merits_of(std::span<const ScoredCase> cases) {
     Sums sums;
     for (const ScoredCase& scored : cases) {
         const Answer& answer = scored.answer;
-        if (answer.names()) {
-            const bool right = leads_rightly(scored);
-            m.right_where_named.add(right);
+        if (answer.leads()) {
+            const bool right = leader_is_true(scored);
+            m.right_leaders.add(right);
             sums.brier += (answer.confidence - right) * (answer.confidence - right);
         }
         switch (scored.truth->kind) {
@@ -85,16 +87,15 @@ Merits merits_of(std::span<const ScoredCase> cases) {
     }
     m.group_size = sums.groups > 0 ? sums.group / sums.groups : 0;
     m.sharpness = m.detected_clear.of > 0 ? sums.sharpness / m.detected_clear.of : 0;
-    m.brier = m.right_where_named.of > 0 ? sums.brier / m.right_where_named.of : 0;
+    m.brier = m.right_leaders.of > 0 ? sums.brier / m.right_leaders.of : 0;
     return m;
 }
 
 Answer answer_of(const Findings& findings, const Limits& limits) {
     const Decision decision = decide(findings, limits);
     Answer answer{decision.verdict, {}, 0};
-    if (!answer.names()) return answer;
     for (const std::size_t candidate : decision.group) answer.group.push_back(findings.names[candidate]);
-    answer.confidence = decision.confidence[decision.group.front()];
+    if (answer.leads()) answer.confidence = decision.confidence[decision.group.front()];
     return answer;
 }
 

@@ -8,15 +8,17 @@
 
 namespace mcdem::inline challenge {
 
-/// The scored part of a diagnosis: the verdict and the named effects.
+/// The scored part of a diagnosis: the verdict and the leading effects.
 struct Answer {
     Verdict verdict = Verdict::no_gap;
     std::vector<std::string>
-        group;  ///< named effects that cannot be distinguished, or both of a pair; the leading one first
+        group;  ///< effects that cannot be distinguished, or both of a pair; the leading one first
     double confidence = 0;  ///< of the leading effect
     bool detected() const { return verdict != Verdict::no_gap; }
-    /// Whether effects are named as the cause.
+    /// Whether the effects are named as the cause.
     bool names() const { return verdict == Verdict::effect || verdict == Verdict::group; }
+    /// Whether a probability is stated for a leading effect, named or not.
+    bool leads() const { return !group.empty() && (names() || verdict == Verdict::unknown_effect); }
 };
 
 Answer answer_of(const Findings& findings, const Limits& limits);
@@ -51,8 +53,8 @@ struct Merits {
     Share suspected;            ///< a nuisance outside its prior: the calibration is suspected
     Share pair_led;             ///< two effects: the one named first is one of them
     Share pair_found;           ///< two effects: both are named, and no other
-    double brier = 0;           ///< mean square of (confidence - right) for all cases with named effects
-    Share right_where_named;    ///< all cases with named effects: the effect named first is a true one
+    double brier = 0;           ///< mean square of (confidence - right) for all cases with a leading effect
+    Share right_leaders;        ///< all cases with a leading effect, named or not: it is a true one
     std::map<std::string, Share> detected_by_effect, named_by_effect;  ///< one effect
     std::map<std::string, Share> named_by_unknown;                     ///< outside the library, by effect
 };
@@ -61,6 +63,9 @@ struct Merits {
 inline constexpr double clear = 1.5;
 
 Merits merits_of(std::span<const ScoredCase> cases);
+
+/// Whether the leading effect, named or not, is one of the true ones.
+bool leader_is_true(const ScoredCase& scored);
 
 /// Whether the effect named first is one of the true ones.
 bool leads_rightly(const ScoredCase& scored);

@@ -31,8 +31,23 @@ TEST(Merits, WithoutAnEffectAreCountedCorrectly) {
     const Merits m = merits_of(std::vector<ScoredCase>{
         {&none, {}}, {&none, {Verdict::unknown_effect, {}, 0}}, {&none, named({"friction"})}});
     expect_share(m.false_alarms, 2, 3);
-    expect_share(m.right_where_named, 0, 1);
+    expect_share(m.right_leaders, 0, 1);
     EXPECT_EQ(m.brier, 1);
+}
+
+TEST(Merits, AProbabilityCountsAlsoIfTheEffectIsNotNamed) {
+    const ChallengeCase adhesion = truth(CaseKind::effect, {"adhesion"}),
+                        soft = truth(CaseKind::unknown, {"soft_walls"});
+    const Merits m =
+        merits_of(std::vector<ScoredCase>{{&adhesion, {Verdict::unknown_effect, {"adhesion"}, 0.3}, 2},
+                                          {&soft, {Verdict::unknown_effect, {"adhesion"}, 0.1}},
+                                          {&soft, {Verdict::calibration_suspect, {"modulus"}, 0.5}},
+                                          {&adhesion, named({"adhesion"}, 0.9), 2}});
+    expect_share(m.right_leaders, 2, 3);
+    EXPECT_NEAR(m.brier, (0.49 + 0.01 + 0.01) / 3, 1e-15);
+    expect_share(m.led_by_truth, 1, 2);
+    expect_share(m.truth_in_group, 1, 2);
+    expect_share(m.named_unknown, 0, 2);
 }
 
 TEST(Merits, WithOneEffectAreCountedCorrectly) {
@@ -85,7 +100,7 @@ TEST(Merits, WithAnUnknownEffectAreCountedCorrectly) {
     expect_share(m.named_by_unknown.at("struck"), 0, 1);
     expect_share(m.named_outside_prior, 1, 2);
     expect_share(m.suspected, 1, 2);
-    expect_share(m.right_where_named, 0, 2);
+    expect_share(m.right_leaders, 0, 2);
 }
 
 /// A diagnosis of two candidates.

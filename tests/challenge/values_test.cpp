@@ -70,10 +70,12 @@ TEST(ScoreFigures, power_is_a_fraction_with_an_interval_and_omits_empty_bins) {
 }
 
 TEST(ScoreFigures, confidence_is_the_success_rate_over_the_stated_one) {
-    const auto values = figures_of({{15, {&adhesion, right}}, {5, {&no_effect, right}}})["confidence"];
-    EXPECT_EQ(values["measured"]["x"], (nlohmann::json{0.9}));
-    EXPECT_EQ(values["measured"]["part"], (nlohmann::json{0.75}));
-    EXPECT_NEAR(values["measured"]["interval"][0][0].get<double>(), 0.531, 5e-4);
+    const Answer refused{Verdict::unknown_effect, {"adhesion"}, 0.1};
+    const auto values = figures_of(
+        {{15, {&adhesion, right}}, {5, {&no_effect, right}}, {4, {&adhesion, refused}}})["confidence"];
+    EXPECT_EQ(values["measured"]["x"], (nlohmann::json{0.1, 0.9}));
+    EXPECT_EQ(values["measured"]["part"], (nlohmann::json{1.0, 0.75}));
+    EXPECT_NEAR(values["measured"]["interval"][1][0].get<double>(), 0.531, 5e-4);
 }
 
 TEST(ScoreFigures, exist_only_with_data) {

@@ -37,15 +37,18 @@ TEST(Decision, ConfidenceDecreasesWithTheReduction) {
         return all_confidence(decide(f, limits));
     };
     EXPECT_NEAR(confidence(1), limits.right_above, 1e-12);
-    EXPECT_NEAR(confidence(limits.certain), limits.right_above, 1e-12);
-    const double none = limits.reduction - limits.reduction_error;
+    const double certain = limits.reduction + limits.certain_above;
+    EXPECT_NEAR(confidence(certain), limits.right_above, 1e-12);
+    const double none = limits.reduction - limits.doubt_below;
     EXPECT_NEAR(confidence(none), limits.right_below, 1e-12);
-    EXPECT_NEAR(confidence(0.25 * limits.certain + 0.75 * none),
+    EXPECT_NEAR(confidence(0.25 * certain + 0.75 * none),
                 0.25 * limits.right_above + 0.75 * limits.right_below, 1e-12);
+    EXPECT_NEAR(confidence(limits.reduction - 0.01), limits.right_refused, 1e-12) << "not named";
+    EXPECT_GT(confidence(limits.reduction), limits.right_refused);
     EXPECT_NEAR(confidence(-1), limits.right_below, 1e-12);
     f.proposals[0].confirmed_reduction = 0.96;
     EXPECT_NEAR(confidence(-1), limits.right_above, 1e-12) << "real runs count";
-    f.placebo = 1;
+    f.placebo = 1 + limits.doubt_below;
     EXPECT_NEAR(confidence(-1), limits.right_below, 1e-12);
 }
 
@@ -189,7 +192,7 @@ TEST(Decision, ABadlyMeasuredReductionMayBeSmallerByItsNoiseIfOnlyNoiseIsLeft) {
     f.held_out_noise = 0.2;
     EXPECT_EQ(decide(f, limits).verdict, Verdict::effect);
     EXPECT_NEAR(explanation_of(f, decide(f, limits), limits)->needed, limits.reduction - 0.2, 1e-12);
-    EXPECT_LT(all_confidence(decide(f, limits)), 0.6) << "less certain than with a large reduction";
+    EXPECT_LT(all_confidence(decide(f, limits)), limits.right_above - 0.1) << "less certain than with a large reduction";
     f.proposals[0].reduction = 0.39;
     EXPECT_EQ(decide(f, limits).verdict, Verdict::unknown_effect);
     f.held_out_noise = 0.45;
@@ -220,13 +223,17 @@ TEST(Decision, UnknownIfASignificantPartOfTheGapRemains) {
     f.proposals[0].reduction = 1 - 1.01 * limits.remainder;
     f.proposals[0].misfit_p = 0.99 * limits.misfit;
     EXPECT_EQ(decide(f, limits).verdict, Verdict::unknown_effect);
-    EXPECT_NEAR(all_confidence(decide(f, limits)), limits.right_below, 1e-12);
+    EXPECT_NEAR(all_confidence(decide(f, limits)), limits.right_refused, 1e-12);
     EXPECT_EQ(explanation_of(f, decide(f, limits), limits)->needed, 1 - limits.remainder);
     f.proposals[0].misfit_p = 1.01 * limits.misfit;
     EXPECT_EQ(decide(f, limits).verdict, Verdict::effect);
     EXPECT_EQ(explanation_of(f, decide(f, limits), limits)->needed, limits.reduction);
-    f.proposals[0].misfit_p = 0;
+    f.proposals[0].misfit_p = limits.another_form;
     f.proposals[0].reduction = 1 - 0.99 * limits.remainder;
+    EXPECT_EQ(decide(f, limits).verdict, Verdict::effect);
+    f.proposals[0].misfit_p = 0.99 * limits.another_form;
+    EXPECT_EQ(decide(f, limits).verdict, Verdict::unknown_effect) << "another effect is more probable";
+    f.proposals[0].reduction = 1 - 0.99 * limits.form_remainder;
     EXPECT_EQ(decide(f, limits).verdict, Verdict::effect);
 }
 
@@ -252,7 +259,7 @@ TEST(Decision, ASmallRemainderIsStatedAndDoesNotChangeTheVerdict) {
     EXPECT_TRUE(e.leaves_more_than_noise);
     EXPECT_TRUE(e.simulated);
     EXPECT_EQ(e.placebo, 0.1);
-    EXPECT_EQ(e.needed, 1 - limits.remainder);
+    EXPECT_EQ(e.needed, 1 - limits.form_remainder);
     f.p_value = 1;
     EXPECT_FALSE(explanation_of(f, decide(f, limits), limits)) << "no gap, nothing to explain";
 }

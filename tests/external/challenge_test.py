@@ -65,6 +65,15 @@ def test_readings():
     assert read("vertical_stretch", 0.1)[0]["grains"][0][1:] == (0.03, 0.0625, 0.01 * 1.1)
     edge = 0.0625 - (1 + 0.1 * (0.0325 / 0.0625)**2) * 0.0325
     assert math.isclose(read("barrel", 0.1)[0]["grains"][0][1], edge)
+    mixed = [{"contacts": [(0, 1, None, [1, 0, 0]), (0, 2, None, [3, 0, 0])]}]
+    hidden.find("mixed_forces").reading(mixed, 0.5, None)
+    assert [force for *_, force in mixed[0]["contacts"]] == [[1.25, 0, 0], [2.75, 0, 0]]
+    tilted = read("rotated_image", 0.1)[0]["grains"]
+    assert math.isclose(math.dist(tilted[0][1:], tilted[2][1:]), 0.04), "a rotation"
+    assert math.isclose((tilted[2][3] - tilted[0][3]) / (tilted[2][1] - tilted[0][1]), -0.1)
+    moving = [{"grains": [(0.02, 0.05, 0.05, z)]} for z in (0.08, 0.04)]
+    hidden.find("slow_scan").reading(moving, 0.2, None)
+    assert math.isclose(moving[1]["grains"][0][3], 0.04 + 0.2 * 0.5 * 0.04), "half way up, by half of the fraction"
     assert all(map(math.isclose, tops(read("force_lag", 0.005)), [0, 1, 4, 3.5]))
     assert all(map(math.isclose, tops(read("guide_friction", 0.1)), [0, 2.6, 6.6, 0.4]))
     assert all(map(math.isclose, tops(read("gauge_drift", 0.3)), [0, 2.2, 7.2, 1.3]))
@@ -115,7 +124,7 @@ def test_score(challenge):
         answered("effect", [("friction", 0.05)], "effect", [("friction", 0.06, 0.9)]),
         answered("effect", [("friction", 0.05)], "effect", [("adhesion", 0.1, 0.5)]),
         answered("effect", [("friction", 0.05)], "no_gap", limit=0.04),  # not clear
-        answered("effect", [("adhesion", 0.5)], "unknown_effect"),
+        answered("effect", [("adhesion", 0.5)], "unknown_effect", [("adhesion", 0.5, 0.2)]),
         answered("pair", [("friction", 0.05), ("adhesion", 0.5)], "effect", [("adhesion", 0.5, 0.9), ("friction", 0.05, 0)]),
         answered("pair", [("friction", 0.05), ("adhesion", 0.5)], "effect", [("adhesion", 0.5, 0.9)]),
         answered("unknown", [("barrel", 0.1)], "effect", [("adhesion", 0.5, 0.8)]),
@@ -128,8 +137,10 @@ def test_score(challenge):
     assert told["two clear effects: both named"].startswith("1 of 2:")
     assert told["not in the library: an effect is named"].startswith("1 of 2: 50 % [9, 91]"), "Wilson 1927"
     assert told["an effect is named: it is right"].startswith("3 of 6:")
-    brier = (0.9**2 + 0.1**2 + 0.5**2 + 0.1**2 + 0.1**2 + 0.8**2) / 6
-    assert told["Brier score (of the base rate)"] == f"{brier:.3f} (0.250)"
+    named = 0.9**2 + 0.1**2 + 0.5**2 + 0.1**2 + 0.1**2 + 0.8**2
+    assert told["Brier score of the named ones (of the base rate)"] == f"{named / 6:.3f} (0.250)"
+    every = (named + 0.8**2) / 7
+    assert told["Brier score of all leading effects (of the base rate)"] == f"{every:.3f} ({4 / 7 * 3 / 7:.3f})"
     assert told["90 % interval of the amplitude holds it"].startswith("1 of 1:")
 
 

@@ -153,6 +153,43 @@ def swapped_labels(scans, amplitude, chance):
                             for i, j, point, force in scan["contacts"]]
 
 
+def mixed_forces(scans, amplitude, chance):
+    """Forces are not resolved within a grain: each is read as its own, less this fraction, plus this fraction of the mean
+    over the contacts of its grain."""
+    for scan in scans:
+        sizes = {}
+        for i, j, _, force in scan["contacts"]:
+            for grain in (i, j):
+                sizes.setdefault(grain, []).append(math.hypot(*force))
+        mean = {grain: statistics.fmean(of) for grain, of in sizes.items()}
+        read = lambda i, j, size: 1 - amplitude + amplitude * statistics.fmean(
+            mean[grain] for grain in (i, j) if not isinstance(grain, str)) / size if size > 0 else 1
+        change_forces([scan], read)
+
+
+def rotated_image(scans, amplitude, chance):
+    """The image is rotated about a horizontal axis, by an angle with this tangent."""
+    norm = math.hypot(1, amplitude)
+    middle = statistics.fmean(grain[3] for grain in scans[0]["grains"])
+
+    def change(point):
+        x, z = point[0] - MIDDLE[0], point[2] - middle
+        return [MIDDLE[0] + (x + amplitude * z) / norm, point[1], middle + (z - amplitude * x) / norm]
+    change_points(scans, change)
+
+
+def slow_scan(scans, amplitude, chance):
+    """The image is taken from above to below and ends with the plate's reading: centres at the top are read where they were
+    before, by this fraction of their way since the last scan, those at the floor where they are."""
+    top = max(grain[3] for grain in scans[0]["grains"])
+    before = scans[0]["grains"]
+    for scan in scans[1:]:
+        now = scan["grains"]
+        scan["grains"] = [(d, *(p + amplitude * z / top * (q - p) for p, q in zip((x, y, z), old[1:])))
+                          for (d, x, y, z), old in zip(now, before)]
+        before = now
+
+
 def plate_compliance(scans, amplitude, chance):
     for scan in scans:
         scan["height"] -= amplitude * scan["top"]
@@ -255,6 +292,9 @@ OUTSIDE = {
     "missing_contacts": Hidden(0.08, 0.25, "part of the contacts overlooked", reading=missing_contacts),
     "dim_walls": Hidden(0.08, 0.3, "part of the forces at walls that is not seen", reading=dim_walls),
     "swapped_labels": Hidden(0.03, 0.15, "part of the grains whose label a neighbour has, from the second scan on", reading=swapped_labels),
+    "mixed_forces": Hidden(0.1, 0.4, "part of the mean force of a grain in each of its forces", reading=mixed_forces),
+    "rotated_image": Hidden(0.01, 0.04, "tangent of the image's rotation", signed=True, reading=rotated_image),
+    "slow_scan": Hidden(0.05, 0.3, "part of their way since the last scan by which the topmost positions are late", reading=slow_scan),
     "backlash": Hidden(4e-4, 1.5e-3, "plate read too high on the way up [m]", signed=True, reading=backlash),
 }
 

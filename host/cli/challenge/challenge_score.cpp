@@ -75,7 +75,7 @@ void add_gap_reduction(const GapReductionScore& gap_reduction, TextTable& table)
 
 /// Mean square error of always stating the share of the other half.
 double base_rate_brier(const Merits& m, double rate) {
-    const double right = m.right_where_named.value();
+    const double right = m.right_leaders.value();
     return right * (1 - rate) * (1 - rate) + (1 - right) * rate * rate;
 }
 
@@ -103,8 +103,8 @@ TextTable table_of_merits(const ChallengeScore& score) {
     rows.share(".. : the calibration is suspected", &Merits::suspected);
     rows.share("two effects: named first is one of them", &Merits::pair_led);
     rows.share("two effects: both named", &Merits::pair_found);
-    const double base = base_rate_brier(arm.second, arm.first.right_where_named.value());
-    rows.number("Brier score of the confidence", arm.first.brier, arm.second.brier,
+    const double base = base_rate_brier(arm.second, arm.first.right_leaders.value());
+    rows.number("Brier score of the probabilities of all leading effects", arm.first.brier, arm.second.brier,
                 fmt::format("less than the base rate's {:.2f}", base), met(arm.second.brier < base));
     add_gap_reduction(score.gap_reduction, table);
     table.notes.push_back(
@@ -211,7 +211,7 @@ Json merits_json(const Merits& m) {
             {"pair_led", share_json(m.pair_led)},
             {"pair_found", share_json(m.pair_found)},
             {"brier", m.brier},
-            {"right_where_named", share_json(m.right_where_named)},
+            {"right_leaders", share_json(m.right_leaders)},
             {"detected_by_effect", shares_json(m.detected_by_effect)},
             {"named_by_effect", shares_json(m.named_by_effect)},
             {"named_by_unknown", shares_json(m.named_by_unknown)}};

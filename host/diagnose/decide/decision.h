@@ -14,28 +14,29 @@ namespace mcdem::inline diagnose {
 /// (tests/challenge/README.md), except `reduction`: in 108 gaps from an independent solver, 63 of 63 leading
 /// effects that took away 0.6 or more were right, and 41 of 45 that took away less were wrong.
 struct Limits {
-    double false_alarm = 0.01;   ///< there is a gap if p is smaller
-    double reduction = 0.6;      ///< fraction of the gap that an effect must take away to be named,
-    double min_reduction = 0.3;  ///< less by its noise, but this at least, if one effect leaves only noise,
-    double over_placebo = 0.1;   ///< and by how much this must exceed the placebo's
-    double misfit = 0.001;       ///< the remainder of one effect exceeds noise if its p is smaller;
-    double remainder = 0.1;      ///< largest fraction of the gap that a named effect may leave beyond noise
-    double only_noise = 0.05;    ///< the remainder of one effect is only noise if its p is at least this,
-    double pair_misfit = 0.02;   ///< that of a pair, which is named only then, at least this
-    double group = 2.0;          ///< largest difference in log likelihood within a group,
-    double group_share = 0.01;   ///< or this fraction of the leading effect's gain
-    double second_gain = 8.0;    ///< gain in log likelihood required of a second effect,
-    double second_share = 0.02;  ///< and this fraction of the leading effect's gain,
+    double false_alarm = 0.01;    ///< there is a gap if p is smaller
+    double reduction = 0.6;       ///< fraction of the gap that an effect must take away to be named,
+    double min_reduction = 0.3;   ///< less by its noise, but this at least, if one effect leaves only noise,
+    double over_placebo = 0.1;    ///< and by how much this must exceed the placebo's
+    double pair_reduction = 0.8;  ///< the least fraction that a pair must take away
+    double misfit = 0.001;        ///< the remainder of one effect exceeds noise if its p is smaller;
+    double remainder = 0.3;       ///< largest fraction of the gap that a named effect may leave beyond noise,
+    double another_form = 1e-10;  ///< and if p is smaller than this: another effect may be the cause, so it
+    double form_remainder = 0.1;  ///< may leave only this fraction
+    double only_noise = 0.05;     ///< the remainder of one effect is only noise if its p is at least this,
+    double pair_misfit = 0.02;    ///< that of a pair, which is named only then, at least this
+    double group = 2.0;           ///< largest difference in log likelihood within a group,
+    double group_share = 0.01;    ///< or this fraction of the leading effect's gain
+    double second_gain = 8.0;     ///< gain in log likelihood required of a second effect,
+    double second_share = 0.02;   ///< and this fraction of the leading effect's gain,
     double second_certain =
         50;  ///< but not more than this; it then counts even if one effect leaves only noise
-    double right_below =
-        0.1;  ///< probability that a leading effect is right if it takes away less than `reduction`
-    double reduction_error = 0.1;   ///< by this much;
-    double right_above = 0.97;      ///< the same if it takes away
-    double certain = 0.8;           ///< at least this much; linear in between
-    double right_pair = 0.9;        ///< the same for a pair, at most
-    double another_form = 1e-10;    ///< another effect may be the cause if the p of the remainder is smaller;
-    double right_form = 0.5;        ///< the same then, at most
+    double right_below = 0.1;    ///< probability that a leading effect is right if the fraction that it takes
+    double doubt_below = 0.4;    ///< away is less than required to name it by this much,
+    double right_above = 0.98;   ///< and if it takes away
+    double certain_above = 0.2;  ///< this much more than required; linear in between
+    double right_form = 0.4;     ///< instead of `right_above` if p is smaller than `another_form`
+    double right_refused = 0.5;  ///< largest probability of an effect that is not named
     double reduction_margin = 0.1;  ///< error of the reduction by signatures, on either side of its interval
     /// p-value of the remainder below which a proposal leaves more than noise.
     double enough(bool pair) const { return pair ? pair_misfit : misfit; }
