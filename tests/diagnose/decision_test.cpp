@@ -192,7 +192,8 @@ TEST(Decision, ABadlyMeasuredReductionMayBeSmallerByItsNoiseIfOnlyNoiseIsLeft) {
     f.held_out_noise = 0.2;
     EXPECT_EQ(decide(f, limits).verdict, Verdict::effect);
     EXPECT_NEAR(explanation_of(f, decide(f, limits), limits)->needed, limits.reduction - 0.2, 1e-12);
-    EXPECT_LT(all_confidence(decide(f, limits)), limits.right_above - 0.1) << "less certain than with a large reduction";
+    EXPECT_LT(all_confidence(decide(f, limits)), limits.right_above - 0.1)
+        << "less certain than with a large reduction";
     f.proposals[0].reduction = 0.39;
     EXPECT_EQ(decide(f, limits).verdict, Verdict::unknown_effect);
     f.held_out_noise = 0.45;

@@ -178,7 +178,8 @@ std::string needed_words(const Explanation& explanation) {
 std::string unknown_line(const Diagnosis& diagnosis) {
     auto text = "none of " + library_words(diagnosis) + " explains it";
     if (const auto* best = leader_of(diagnosis); best && diagnosis.explanation)
-        text += fmt::format("; the best of them, {}{}, {}{}", cause_words(*best), together_with(diagnosis),
+        text += fmt::format("; the best of them, {}{}, has {} of the probability: it {}{}",
+                            cause_words(*best), together_with(diagnosis), percent(best->confidence),
                             reduction_words(diagnosis), needed_words(*diagnosis.explanation));
     return text + ".";
 }
