@@ -141,7 +141,12 @@ def test_score(challenge):
     assert told["Brier score of the named ones (of the base rate)"] == f"{named / 6:.3f} (0.250)"
     every = (named + 0.8**2) / 7
     assert told["Brier score of all leading effects (of the base rate)"] == f"{every:.3f} ({4 / 7 * 3 / 7:.3f})"
+    assert told["log score of all leading effects (of the base rate)"].endswith(f" ({-(4 * math.log(4 / 7) + 3 * math.log(3 / 7)) / 7:.3f})")
     assert told["90 % interval of the amplitude holds it"].startswith("1 of 1:")
+    assert told["68 % interval of the amplitude holds it"].startswith("0 of 1:"), "one error too large"
+    assert challenge.rank_counts(cases) == [1, 0, 0, 0, 0], "16 % of the stated distribution are below"
+    assert challenge.reliability(cases)[-1][:2] == ["0.9 to 1.0", "0.90"]
+    assert challenge.reliability(cases)[-1][2].startswith("3 of 4:")
 
 
 def test_sealed(mcdem, folder):
