@@ -40,18 +40,23 @@ std::span<const Cause> changed_together(const std::vector<Cause>& causes) {
 }
 
 NextStep to_refine(const Refinement& r) {
-    return {fmt::format("set {} = {:.3g} in the scene (now {:.3g} {}), or let the diagnosis refine it with "
+    return {fmt::format("set {} = {:.3g}{} in the scene (now {:.3g}), or let the diagnosis refine it with "
                         "--refine {:.0f}, and diagnose again",
-                        r.key, r.to, r.from, r.unit, r.from / r.to),
+                        r.key, r.to, r.unit.empty() ? "" : " " + r.unit, r.from, r.from / r.to),
             {}};
 }
 
-NextStep to_check_instrument(std::span<const Cause> causes) {
-    std::vector<std::string> names;
-    for (const Cause& cause : causes) names.push_back(cause.effect);
-    return {
-        fmt::format("check the instrument for {}: no key of the scene changes it", fmt::join(names, " and ")),
-        {}};
+/// Errors of measurement have no key in the scene.
+NextStep to_check_measurement(std::span<const Cause> causes) {
+    std::vector<std::string> words;
+    for (const Cause& cause : causes) {
+        const Effect* effect = find_effect(cause.effect);
+        words.push_back(effect ? std::string(effect->words)
+                               : "the zero of the displacement ([plate] start in experiment.toml)");
+    }
+    return {fmt::format("check the measurement for {}: the scene describes no errors of measurement",
+                        fmt::join(words, " and ")),
+            {}};
 }
 
 }  // namespace
@@ -65,10 +70,11 @@ std::optional<NextStep> change_of_the_scene(const Diagnosis& diagnosis, const Mo
     Model changed = model;
     for (const Cause& cause : causes) apply(changed, cause, nuisances);
     const std::vector<std::string> settings = differing_keys(model.replica, changed.replica);
-    if (settings.empty()) return to_check_instrument(causes);
-    return NextStep{fmt::format("set {} in the scene, and see whether the gap goes away on another packing",
-                                fmt::join(settings, ", ")),
-                    {}};
+    if (settings.empty()) return to_check_measurement(causes);
+    return NextStep{
+        fmt::format("set {} in the scene, and test with another packing whether the gap disappears",
+                    fmt::join(settings, ", ")),
+        {}};
 }
 
 }  // namespace mcdem::ensemble

@@ -19,8 +19,8 @@ struct Instrument {
     double zero_drift = 0;        ///< .. and larger by zero_drift of the highest, whatever it is; grows alike
     double gauge_hysteresis = 0;  ///< on the way up the top force F is read larger by 4 gauge_hysteresis
                                   ///< F (1 - F/F_max), F_max the highest: by gauge_hysteresis F_max at most
-    double force_lag = 0;         ///< the top force is read as it was this way of the plate before [m]; it
-                                  ///< catches up where the plate rests
+    double force_lag = 0;       ///< the top force is that of an earlier plate position, this far back [m]; it
+                                ///< catches up where the plate rests
     double guide_friction = 0;  ///< as soon as the plate moves, the top force is read larger on the way down
                                 ///< and smaller on the way up, by guide_friction F_max
     double force_saturation = 0;  ///< a contact force f is read as f/(1 + force_saturation f) [1/N]

@@ -24,9 +24,10 @@ TEST_F(CliTest, AReportIsOnePageOfARun) {
     expect_done(report);
     EXPECT_EQ(report.out, "a.html\n");
     const auto page = page_at(path("a.html"));
-    for (const char* part : {"<h2>In space</h2>", "\"id\":\"top_force\"", "\"id\":\"force_distribution\"",
-                             "\"id\":\"coordination\"", "\"id\":\"scaling\"", "SHA-256 of run.h5",
-                             "packing seeds", "<h3>Top force</h3>", "<h3>Scaling law</h3>"})
+    for (const char* part :
+         {"<h2>The packing in 3D</h2>", "\"id\":\"top_force\"", "\"id\":\"force_distribution\"",
+          "\"id\":\"coordination\"", "\"id\":\"scaling\"", "SHA-256 of run.h5", "packing seeds",
+          "<h3>Top force</h3>", "<h3>Scaling law</h3>"})
         EXPECT_TRUE(page.find(part) != std::string::npos) << part;
 }
 

@@ -116,6 +116,8 @@ TEST(DiagnosisBuilder, ARearrangementBesideAnEffectIsLeftOut) {
     const Diagnosis two = with_remainder([](auto, auto place) { return place == 5 || place == 6; }, 12);
     EXPECT_EQ(two.verdict, Verdict::unknown_effect);
     EXPECT_EQ(two.explanation->without, "");
+    ASSERT_FALSE(two.next.empty());
+    EXPECT_THAT(two.next[0].what, HasSubstr("mcdem experiment check"));
     const Diagnosis one = with_remainder([](auto observable, auto) { return observable == 3; }, 12);
     EXPECT_EQ(one.explanation->without, "");
     EXPECT_TRUE(one.explanation->leaves_more_than_noise);

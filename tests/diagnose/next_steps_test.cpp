@@ -34,10 +34,13 @@ TEST(NextSteps, DistinguishTheMembersOfAGroup) {
     const Evidence evidence = two_alike(world, 0.05, 4);
     const DiagnosisBuilder draft(evidence, {});
     ASSERT_EQ(draft.decision().verdict, Verdict::group);
-    const auto steps = draft.diagnosis().next;
-    EXPECT_THAT(steps,
-                Contains(Field(&NextStep::what, AllOf(HasSubstr("3 more packings"),
-                                                      HasSubstr("tells viscoelasticity from plasticity")))));
+    const Diagnosis diagnosis = draft.diagnosis();
+    for (const Cause& cause : diagnosis.ranking)
+        EXPECT_EQ(cause.group.size(), cause.effect == "modulus" ? 1u : 2u) << cause.effect;
+    const auto& steps = diagnosis.next;
+    EXPECT_THAT(steps, Contains(Field(&NextStep::what,
+                                      AllOf(HasSubstr("3 more packings"),
+                                            HasSubstr("to distinguish viscoelasticity from plasticity")))));
     for (std::size_t k = 1; k < steps.size(); ++k)
         EXPECT_LE(steps[k].power.value_or(0), steps[k - 1].power.value_or(0)) << "the most useful first";
     // At twice the difference, more of such experiments would distinguish them.
@@ -121,7 +124,7 @@ TEST(NextSteps, AnotherSpeedChecksAnEffectThatDependsOnIt) {
     const DiagnosisBuilder draft(evidence, {});
     ASSERT_EQ(draft.decision().verdict, Verdict::effect);
     EXPECT_THAT(draft.diagnosis().next,
-                Contains(Field(&NextStep::what, HasSubstr("press at another speed"))));
+                Contains(Field(&NextStep::what, HasSubstr("repeat the experiment at another plate speed"))));
 }
 
 // Without parameters the limit is proportional to the noise.
@@ -135,7 +138,7 @@ TEST(NextSteps, HalfTheErrorOfPositionsLowersTheLimitsAsItLowersTheScatter) {
     ASSERT_EQ(draft.decision().verdict, Verdict::no_gap);
     EXPECT_THAT(draft.diagnosis().next,
                 Contains(Field(&NextStep::what, AllOf(HasSubstr("measure positions twice as accurately"),
-                                                      HasSubstr("to 60 % of now")))));
+                                                      HasSubstr("to 60 % of the present value")))));
 }
 
 TEST(NextSteps, WithoutAGapTheyLowerTheDetectionLimits) {
@@ -148,8 +151,8 @@ TEST(NextSteps, WithoutAGapTheyLowerTheDetectionLimits) {
     ASSERT_EQ(draft.decision().verdict, Verdict::no_gap);
     const auto steps = draft.diagnosis().next;
     ASSERT_FALSE(steps.empty());
-    EXPECT_THAT(steps[0].what,
-                AllOf(HasSubstr("grains.youngs_modulus 5 times better"), HasSubstr("% of now")));
+    EXPECT_THAT(steps[0].what, AllOf(HasSubstr("grains.youngs_modulus 5 times more accurately"),
+                                     HasSubstr("% of the present value")));
     EXPECT_THAT(steps, Each(Field(&NextStep::what, Not(HasSubstr("hold the plate")))));
 }
 

@@ -130,8 +130,9 @@ TEST(ChooseCandidates, AllThatTheModelAllows) {
     const CandidateChoice all = choose_candidates(model, {});
     EXPECT_EQ(all.chosen.size() + all.hindered.size(), effects().size());
     EXPECT_THAT(all.chosen, AllOf(Contains("cross_contact"), Not(Contains("bulge_contacts"))));
-    EXPECT_THAT(all.hindered, ElementsAre("bulge_contacts: independent contacts make no bulges",
-                                          StartsWith("finite_strain: only")));
+    EXPECT_THAT(all.hindered,
+                ElementsAre("bulge_contacts: independent contacts have no surface displacements",
+                            StartsWith("finite_strain: only")));
     const CandidateChoice some = choose_candidates(model, {"adhesion", "bulge_contacts"});
     EXPECT_THAT(some.chosen, ElementsAre("adhesion"));
     EXPECT_EQ(some.hindered.size(), 1u);

@@ -86,7 +86,7 @@ class Where(unittest.TestCase):
     def test_words(self):
         texts = drawn.texts_of_svg(folder / "figures/where.svg")
         for words in (*OBSERVABLES.values(), "as stated", "after recalibration", "loading →", "unloading →",
-                      "plate displacement [mm]", "measured less simulated [sigma of its noise]"):
+                      "plate displacement [mm]", "measured minus simulated [sigma of the noise]"):
             self.assertIn(words, texts)
         self.assertEqual([text.get_text() for text in self.axes[0].get_xticklabels()], ["2.5", "5", "10", "5", "2.5"])
 

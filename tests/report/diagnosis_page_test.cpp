@@ -43,7 +43,7 @@ TEST(DiagnosisPage, has_all_numbers) {
                                "18.2",  // causes
                                "0.08 mJ/m²",
                                "4 kg/m³",
-                               ">never shows<",
+                               ">not detectable<",
                                "85 %",  // limits
                                "413",
                                "140",

@@ -149,7 +149,7 @@ Diagnosis common() {
         {"seed", "17"},
         {"experiment_sha256", "5f70bf18a086007016e948b04aed3b82103a36bea41755b6cddfaf10ace3c6ef"}};
     add_calibration(d);
-    d.next = {{"measure 3 more packings and diagnose each: tells adhesion from friction", 0.83},
+    d.next = {{"measure 3 more packings and diagnose each, to distinguish adhesion from friction", 0.83},
               {"press a second cycle", {}}};
     return d;
 }

@@ -79,6 +79,18 @@ TEST(WhichValues, are_scores_with_the_named_effects_marked) {
         EXPECT_EQ(named(verdict), 0);
 }
 
+TEST(WhichValues, both_effects_of_a_pair_are_marked) {
+    auto d = samples::diagnosis(Verdict::effect);
+    d.causes.push_back(d.ranking[2]);
+    const auto values = diagnosis_figure_values(d);
+    std::vector<bool> named;
+    for (const auto& row : values["which"]["rows"]) named.push_back(row["is_named"].get<bool>());
+    std::vector<bool> expected(named.size(), false);
+    expected[0] = expected[2] = true;
+    EXPECT_EQ(named, expected);
+    EXPECT_EQ(values["how_far"]["forces"]["words_after"], "simulated with both effects");
+}
+
 TEST(WhichValues, amplitudes_are_over_their_limits_with_90_percent_intervals) {
     Diagnosis d;
     d.ranking = {{.effect = "a",

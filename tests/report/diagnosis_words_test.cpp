@@ -54,7 +54,8 @@ TEST(DiagnosisWords, percentages_and_probabilities_are_rounded) {
 TEST(DiagnosisWords, positions_are_described) {
     WhereEntry entry{"top_force", "load", {18e-3, 24e-3}, {}, {}, 6.13, 0.4, 0.1};
     EXPECT_EQ(where_words(entry),
-              "top force while loading, 18 to 24 mm: 11 % higher than simulated (6.1 sigma, 0.4 after "
+              "top force while loading, at a displacement of 18 to 24 mm: 11 % higher than simulated (6.1 "
+              "sigma, 0.4 after "
               "recalibration)");
     entry = {"mean_force", "", {0, 0}, "floor", "weak", -4, -4};
     EXPECT_EQ(where_words(entry),
@@ -76,7 +77,7 @@ TEST(DiagnosisWords, signs_are_described_as_directions) {
     EXPECT_EQ(directed_amount("modulus", std::log(0.95), 0.01, "relative"),
               "5.00 ± 0.95 % lower than stated");
     EXPECT_EQ(directed_amount("diameter_error", 2e-4, 1e-5, "m"), "0.200 ± 0.010 mm larger than stated");
-    EXPECT_EQ(directed_amount("force_bias", -0.1, 0.01, "relative"), "10.0 ± 1.0 % read too small");
+    EXPECT_EQ(directed_amount("force_bias", -0.1, 0.01, "relative"), "10.0 ± 1.0 % too low");
     EXPECT_EQ(directed_amount("adhesion", 4e-4, 5e-5, "J/m2"), "0.400 ± 0.050 mJ/m²");
     EXPECT_EQ(directed_amount("friction", 0, 0.01, ""), "0.000 ± 0.010");
     EXPECT_EQ(directed_amount("friction", 0.1, INFINITY, ""), "–");

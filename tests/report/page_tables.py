@@ -5,7 +5,7 @@ import subprocess
 
 from report import page_truth as truth
 
-ORIGIN = "Where this comes from"
+ORIGIN = "Provenance"
 
 
 def found(parts, tag, section, heading):
@@ -89,7 +89,7 @@ def check_diagnosis_origin(parts, diagnosis, run):
 def check_shrink(parts, diagnosis):
     shrink = diagnosis["shrink"]
     shown = {row[0]: row[1:] for row in found(parts, "table", "How far", "Before and after")[1:]}
-    expected = {"gap, noise taken off": [f"{shrink['before']:.3g}", f"{shrink['after']:.3g}", "0"]}
+    expected = {"gap, noise subtracted": [f"{shrink['before']:.3g}", f"{shrink['after']:.3g}", "0"]}
     for name, values in shrink["metrics"].items():
         words = "errf [N]" if name == "errf" else name
         expected[words] = [*(f"{value:.3g}" for value in values), "1" if name == "Rtop" else "0"]
@@ -100,7 +100,7 @@ def check_causes(parts, diagnosis):
     """Gains, and gains of the simulated effects, of the effects that fit."""
     rows = next(part["content"] for part in parts if part["section"] == "Which" and part["tag"] == "table")
     score = rows[0].index("gain in log likelihood")
-    assert rows[0][score + 1] == "simulated in full"
+    assert rows[0][score + 1] == "gain in full simulations"
     expected = [[f"{cause['score']:.1f}",
                  "–" if cause["confirmed_score"] is None else f"{cause['confirmed_score']:.1f}"]
                 for cause in diagnosis["causes"]]

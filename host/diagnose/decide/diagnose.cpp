@@ -97,21 +97,30 @@ public:
         std::ranges::stable_sort(order,
                                  [&](auto a, auto b) { return findings_.gain[a] > findings_.gain[b]; });
         std::vector<Cause> list;
-        for (const std::size_t candidate : order) list.push_back(of(candidate));
+        for (const std::size_t candidate : order) {
+            list.push_back(of(candidate));
+            if (leads_alone() && std::ranges::count(decision_.group, candidate) > 0)
+                list.back().group = names_of(decision_.group);
+        }
         return list;
     }
 
     /// The leading effect and its group, or both effects of a pair.
     std::vector<Cause> leading() const {
-        const Proposal& decided = chosen_proposal(findings_, decision_);
         std::vector<Cause> list;
         for (const std::size_t candidate : decision_.group) list.push_back(of(candidate));
-        if (decided.candidates.size() == 1)
+        if (leads_alone())
             for (Cause& cause : list) cause.group = names_of(decision_.group);
         return list;
     }
 
 private:
+    /// Whether the decision has a leading effect, with its group, and not a pair.
+    bool leads_alone() const {
+        return decision_.verdict != Verdict::no_gap && decision_.proposal >= 0 &&
+               !chosen_proposal(findings_, decision_).is_pair();
+    }
+
     static void take_amplitude(Cause& cause, std::size_t candidate, const Proposal& proposal) {
         const auto place = std::ranges::find(proposal.candidates, candidate) - proposal.candidates.begin();
         if (place == std::ssize(proposal.candidates)) return;

@@ -54,9 +54,9 @@ std::vector<Measurement> measurements_of(const Evidence& evidence, const GapData
     for (std::size_t k = 0; k < data.free.size(); ++k) {
         std::vector<FreeParameter> free = data.free;
         free[k].sigma /= times_better;
-        list.push_back(
-            {fmt::format("measure {} {:g} times better", key_of(evidence.nuisances[k].name), times_better),
-             GapSpace(data.noise, mean_of, data.cells, free)});
+        list.push_back({fmt::format("determine {} {:g} times more accurately",
+                                    key_of(evidence.nuisances[k].name), times_better),
+                        GapSpace(data.noise, mean_of, data.cells, free)});
     }
     const double times_more = 1 + static_cast<double>(more_packings) / data.packings;
     list.push_back({fmt::format("measure {} more packings and diagnose them together (--experiment for each)",
@@ -111,8 +111,9 @@ std::vector<NextStep> telling_apart(const std::vector<Measurement>& measurements
         const double squared = distance(m.space, data.candidates[leader], amplitude, data.candidates[*rival]);
         const double gain =
             0.5 * m.space.whiten(data.candidates[leader].signature->at(amplitude)).squaredNorm();
-        steps.push_back({fmt::format("{}: tells {} from {}", m.what, data.name(leader), data.name(*rival)),
-                         power_to_tell(squared, limits.group_margin(gain))});
+        steps.push_back(
+            {fmt::format("{}, to distinguish {} from {}", m.what, data.name(leader), data.name(*rival)),
+             power_to_tell(squared, limits.group_margin(gain))});
     }
     return steps;
 }
@@ -144,10 +145,10 @@ std::vector<NextStep> sharpening(const std::vector<Measurement>& measurements, c
             parts.push_back(1 / std::sqrt(more_information(m.space, now, data.candidates[c], amplitude)));
         }
         if (const double part = median(parts); part <= worth_saying)
-            found.push_back({part, fmt::format("{}: {} to {:.0f} % of now", m.what,
-                                               named ? "the amplitude's error falls"
-                                                     : "the smallest amplitudes that show fall",
-                                               100 * part)});
+            found.push_back(
+                {part, fmt::format("{}: {} to {:.0f} % of the present value", m.what,
+                                   named ? "the amplitude's error falls" : "the median detection limit falls",
+                                   100 * part)});
     }
     std::ranges::sort(found);
     std::vector<NextStep> steps;
@@ -234,7 +235,16 @@ std::vector<NextStep> next_measurements(const Evidence& evidence, const GapData&
     if (decision.verdict != Verdict::no_gap && !has_rivals(findings, decision) &&
         std::ranges::any_of(decision.group, [&](std::size_t c) { return depends_on_speed(data.name(c)); }))
         steps.push_back(
-            {"press at another speed: what depends on speed is no matter of geometry or friction", {}});
+            {"repeat the experiment at another plate speed: a difference that changes with speed is not "
+             "caused by geometry or elasticity",
+             {}});
+    if (decision.verdict == Verdict::unknown_effect)
+        steps.insert(
+            steps.begin(),
+            NextStep{
+                "see Where for the observables that differ, and check the data (`mcdem experiment check`), "
+                "the stated parameters and units, and the numerics (`mcdem converge`)",
+                {}});
     return steps;
 }
 

@@ -78,7 +78,7 @@ std::string_view interacting_already(const Model& m) {
     return interacting(m) ? "the contacts of the scene interact already" : "";
 }
 std::string_view independent_contacts(const Model& m) {
-    return interacting(m) ? "" : "independent contacts make no bulges";
+    return interacting(m) ? "" : "independent contacts have no surface displacements";
 }
 std::string_view not_elastic_sphere(const Model& m) {
     return m.replica.contact.model == ContactModel::elastic_sphere
@@ -104,9 +104,9 @@ std::string_view no_threshold(const Model& m) {
 
 // clang-format off
 const Effect all_effects[] = {
-    {"cross_contact", "cross-contact deformation", "", "gamma of the paper's Eq. 1: each contact moves the whole surface of its grains", "Brodu, Dijksman & Behringer 2015",
+    {"cross_contact", "cross-contact deformation", "", "gamma of the paper's Eq. 1: the force at a contact displaces the surface at all other contacts", "Brodu, Dijksman & Behringer 2015",
      0, 1.8, 0.5, 1.0, one, [](Model& m, double a) { m.replica.contact.model = ContactModel::mc_dem; m.replica.contact.gamma = a; }, interacting_already},
-    {"bulge_contacts", "contacts made by bulges", "", "part of the bulges that makes no contact where spheres do not overlap by themselves", "Brodu, Dijksman & Behringer 2015",
+    {"bulge_contacts", "contacts made by surface displacement", "", "fraction of the surface displacement that creates no contact between spheres that do not overlap undeformed", "Brodu, Dijksman & Behringer 2015",
      0, 1, 0.5, 1.0, one, [](Model& m, double a) { m.replica.effects.bulge_contacts *= 1 - a; }, independent_contacts},
     {"friction", "friction between grains", "", "change of mu between grains", "Coulomb",
      -1, 8, -0.7, 2.5, friction_scale, [](Model& m, double a) { m.replica.grains.friction = std::max(0.0, m.replica.grains.friction + a); }, nothing},
@@ -120,13 +120,13 @@ const Effect all_effects[] = {
      0, 0.03, 0.003, 0.01, adhesive_scale, [](Model& m, double a) { m.replica.effects.adhesion += a; if (a > 0) m.replica.effects.net_force_friction = 1; }, no_other_limit},
     {"cohesion", "cohesion per contact area", "J/m3", "k: attraction over the area 2 pi R* overlap of a contact", "\"SJKR\" of LIGGGHTS",
      0, 0.1, 0.005, 0.02, cohesive_scale, [](Model& m, double a) { m.replica.effects.cohesion += a; }, nothing},
-    {"viscoelasticity", "", "", "part of the Hertz force that relaxes while a contact is held", "standard linear solid",
+    {"viscoelasticity", "", "", "fraction of the Hertz force that relaxes while a contact is held", "standard linear solid",
      0, 0.8, 0.1, 0.3, one, [](Model& m, double a) { add_share(m.replica.effects.viscoelasticity, a); }, nothing},
     {"stiffening", "stiffening at large strain", "", "c in F = F_Hertz (1 + c overlap/R*)", "first correction to Hertz at large strain",
      -1.5, 4, -0.7, 1.2, one, [](Model& m, double a) { m.replica.effects.stiffening += a; }, nothing},
     {"finite_strain", "finite strain of the grains", "", "share of what finite strain adds to an elastic sphere", "finite elements of a neo-Hookean sphere",
      0, 1, 0.5, 1.0, one, [](Model& m, double a) { add_share(m.replica.effects.finite_strain, a); }, not_elastic_sphere},
-    {"plasticity", "", "", "part of the largest overlap that stays after unloading", "Walton & Braun 1986",
+    {"plasticity", "", "", "fraction of the largest overlap that remains after unloading", "Walton & Braun 1986",
      0, 0.5, 0.05, 0.15, one, [](Model& m, double a) { add_share(m.replica.effects.plasticity, a); }, nothing},
     {"buoyancy", "weight under buoyancy", "kg/m3", "change of the grains' density over the fluid's", "Archimedes",
      -8, 30, -2.5, 2.5, excess_density, [](Model& m, double a) { m.replica.grains.excess_density += a; }, nothing},
@@ -144,7 +144,7 @@ const Effect all_effects[] = {
      -0.08, 0.08, -0.015, 0.015, one, [](Model& m, double a) { m.replica.effects.plate_tilt_y += a; }, no_sides},
     {"plate_compliance", "compliance of the plate", "m/N", "deflection of the plate per newton", "linear spring",
      0, 1, 0.1, 0.3, compliance_scale, [](Model& m, double a) { m.replica.effects.plate_compliance += a; }, nothing},
-    {"force_bias", "bias of contact forces", "relative", "contact forces read too large by this part", "measurement",
+    {"force_bias", "bias of contact forces", "relative", "relative error by which contact forces are measured too large", "measurement",
      -0.5, 0.8, -0.1, 0.1, one, [](Model& m, double a) { m.instrument.force_bias += a; }, nothing},
     {"gauge_drift", "drift of the load cell's gain", "relative", "relative error of the load cell's gain at the end of the last cycle; it grows in proportion to the plate's path", "measurement",
      -0.5, 0.8, -0.1, 0.1, one, [](Model& m, double a) { m.instrument.gauge_drift += a; }, nothing},
@@ -152,7 +152,7 @@ const Effect all_effects[] = {
      -0.5, 0.5, -0.03, 0.03, one, [](Model& m, double a) { m.instrument.zero_drift += a; }, nothing},
     {"gauge_hysteresis", "hysteresis of the load cell", "relative", "excess of the top force during unloading, at half the maximum force, over the maximum force", "measurement",
      -0.3, 0.3, -0.03, 0.03, one, [](Model& m, double a) { m.instrument.gauge_hysteresis += a; }, nothing},
-    {"force_lag", "late reading of the load cell", "m", "way of the plate by which the reading of the top force is late", "measurement",
+    {"force_lag", "lag of the load cell", "m", "plate travel by which the reading of the top force lags", "measurement",
      0, 0.1, 0.01, 0.03, grain_diameter, [](Model& m, double a) { m.instrument.force_lag += a; }, nothing},
     {"guide_friction", "friction of the plate's guide", "relative", "friction of the plate's guide, which the load cell also reads, over the maximum force", "measurement",
      0, 0.3, 0.01, 0.03, one, [](Model& m, double a) { m.instrument.guide_friction += a; }, nothing},
@@ -160,13 +160,13 @@ const Effect all_effects[] = {
      0, 50, 2, 6, inverse_force, [](Model& m, double a) { m.instrument.force_saturation += a; }, nothing},
     {"force_threshold", "shifted force threshold", "N", "true less stated threshold of contact forces", "measurement",
      -1, 8, -0.5, 1.5, threshold_scale, [](Model& m, double a) { m.instrument.threshold_shift += a; }, no_threshold},
-    {"position_bias", "bias of positions", "relative", "lengths read too large by this part", "measurement",
+    {"position_bias", "bias of positions", "relative", "relative error by which lengths are measured too large", "measurement",
      -0.02, 0.02, -0.003, 0.003, one, [](Model& m, double a) { m.instrument.position_bias += a; }, no_sides},
-    {"plate_speed", "speed of the plate", "", "part by which the real plate is slower than the scene's", "numerics",
+    {"plate_speed", "speed of the plate", "", "fraction by which the real plate is slower than the scene's", "numerics",
      0, 1, 0.5, 0.75, one, [](Model& m, double a) { take_off(plate_speed(m), a); }, no_slower_plate, plate_speed},
-    {"inertia", "inertia of the grains", "", "part by which real inertia is smaller than the scene's, weight alike", "numerics",
+    {"inertia", "inertia of the grains", "", "fraction by which real inertia is smaller than the scene's, with the same weight", "numerics",
      0, 1, 0.5, 0.75, one, [](Model& m, double a) { take_off(density(m), a); }, slow_enough, density},
-    {"time_step", "", "", "part by which the time step is too long", "numerics",
+    {"time_step", "", "", "fraction by which the time step is too long", "numerics",
      0, 1, 0.3, 0.6, one, [](Model& m, double a) { take_off(time_step(m), a); }, nothing, time_step},
 };
 // clang-format on

@@ -56,7 +56,7 @@ constexpr Observable all_observables[] = {
 
     {"displacement", Needs::programme, 0.002, "plate", "", "displacement of the plate over the stroke, where the force on it is set"},
     {"relaxation", Needs::programme, 0.003, "plate", "", "log of the force on the plate at the beginning of a hold of its position, less that at the end"},
-    {"creep", Needs::programme, 0.002, "plate", "", "way of the plate down during a hold of its force, over the stroke"},
+    {"creep", Needs::programme, 0.002, "plate", "", "downward displacement of the plate during a hold of its force, over the stroke"},
 };
 // clang-format on
 constexpr std::size_t count = std::size(all_observables);

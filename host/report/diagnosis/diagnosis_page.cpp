@@ -64,9 +64,9 @@ TextTable table_of_causes(const Diagnosis& diagnosis) {
     table.columns = {{"effect", Align::left},
                      {"amplitude"},
                      {"probability"},
-                     {"of chi-square"},
+                     {"part of chi-square"},
                      {"gain in log likelihood"},
-                     {"simulated in full"},
+                     {"gain in full simulations"},
                      {"indistinguishable from", Align::left}};
     for (const auto& cause : diagnosis.causes)
         table.rows.push_back(
@@ -104,12 +104,12 @@ TextTable table_of_detection_limits(const Diagnosis& diagnosis) {
     table.columns = {{"effect", Align::left},
                      {"smallest detectable amplitude"},
                      {"absorbed by calibration"},
-                     {"at twice that, indistinguishable from", Align::left}};
+                     {"indistinguishable at twice that amplitude from", Align::left}};
     for (const auto& limit : diagnosis.detection_limits)
         table.rows.push_back({words_of(limit.effect),
                               std::isfinite(limit.minimum_amplitude)
                                   ? amount(limit.minimum_amplitude, limit.unit)
-                                  : "never shows",
+                                  : "not detectable",
                               percent(limit.absorbed_by_calibration), others(limit.group, limit.effect)});
     return table;
 }
@@ -118,14 +118,14 @@ TextTable table_of_nuisances(const Diagnosis& diagnosis) {
     TextTable table;
     table.columns = {{"parameter", Align::left},
                      {"shift from the scene"},
-                     {"known to"},
-                     {"over that"},
+                     {"uncertainty"},
+                     {"shift / uncertainty"},
                      {"remark", Align::left}};
     for (const auto& fit : diagnosis.nuisances)
         table.rows.push_back({words_of(fit.name), amount(fit.value, fit.error, fit.unit, Sign::always),
                               "± " + amount(fit.prior, fit.unit),
                               fit.prior > 0 ? number(fit.value / fit.prior, "{:+.1f}") : no_number,
-                              fit.at_bound ? "further than its stated error allows" : ""});
+                              fit.at_bound ? "more than 2.5 times its uncertainty" : ""});
     return table;
 }
 
@@ -135,8 +135,8 @@ TextTable table_of_gap_reduction(const Diagnosis& diagnosis) {
     if (!diagnosis.gap_reduction) return table;
     const auto& gap_reduction = *diagnosis.gap_reduction;
     table.columns = {{"", Align::left}, {"before"}, {"after"}, {"perfect"}};
-    add_change(table, "gap, noise taken off", {gap_reduction.before, gap_reduction.after}, "0");
-    table.notes = {"gap: squared differences on data held out, in standard deviations of the noise, summed"};
+    add_change(table, "gap, noise subtracted", {gap_reduction.before, gap_reduction.after}, "0");
+    table.notes = {"gap: sum of squared differences in held-out data, in standard deviations of the noise"};
     for (const auto& [name, values] : metrics_in_order(gap_reduction)) {
         add_change(table, name == "errf" ? "errf [N]" : name, values, perfect(name));
         if (const auto meaning = meaning_of(name); !meaning.empty())
@@ -152,9 +152,9 @@ std::string p_number(double p) { return p < 1e-4 ? "< 0.0001" : number(p, "{:.2g
 TextTable table_of_packings(const Diagnosis& diagnosis) {
     TextTable table;
     const Cause* leader = diagnosis.causes.empty() ? nullptr : &diagnosis.causes.front();
-    table.columns = {{"packing", Align::left}, {"p of its gap alone"}};
-    if (leader) table.columns.push_back({words_of(leader->effect) + " alone"});
-    table.columns.push_back({"p of what sets it apart"});
+    table.columns = {{"packing", Align::left}, {"p of its gap"}};
+    if (leader) table.columns.push_back({words_of(leader->effect) + " from this packing"});
+    table.columns.push_back({"p of its difference from the others"});
     for (const auto& packing : diagnosis.packings) {
         auto& row = table.rows.emplace_back();
         row = {packing.experiment, p_number(packing.gap_p)};
@@ -176,9 +176,9 @@ TextTable table_of_provenance(const Diagnosis& diagnosis) {
 void add_gap(Page& page, const Diagnosis& diagnosis) {
     page.section("Gap");
     page.paragraph(
-        fmt::format("Two tests, each ranked against simulated experiments without any gap: one of all "
-                    "differences together ({}), one along the known effects ({}). Corrected for there "
-                    "being two: {}.",
+        fmt::format("Two tests, each ranked against simulated experiments without a gap: one for any "
+                    "difference ({}), one for differences along the tested effects ({}). The smaller p, with "
+                    "Bonferroni correction for two tests: {}.",
                     p_words(diagnosis.p_omnibus), p_words(diagnosis.p_directed), p_words(diagnosis.p_value)));
     page.table("Packing by packing", table_of_packings(diagnosis));
 }
@@ -250,11 +250,12 @@ Chart which_chart(const Diagnosis& diagnosis, Json values) {
     return {.name = "which",
             .title = "Candidate effects",
             .caption =
-                "Left: how much better the data are explained with each effect, parameters fitted again in "
-                "both cases; diamonds: simulated in full at the fitted amplitude; candidates that share a "
-                "letter cannot be told apart by these data. Middle: amplitudes with 90 % intervals, over the "
-                "smallest that these data can detect (dashed line); without a dot: never shows. Right: "
-                "amplitude with one standard error, probability among the candidates.",
+                "Left: gain in log likelihood by each effect, with the parameters refitted in both cases; "
+                "diamonds: from full simulations at the fitted amplitude. Candidates that share a letter "
+                "cannot be distinguished by these data. Middle: amplitude with its 90 % interval, divided by "
+                "the detection limit (dashed line); no dot: not detectable. Right: amplitude with one "
+                "standard error, and the probability that the effect is the cause. Orange: named by the "
+                "verdict.",
             .values = values,
             .height = which_height + which_row * count(values["rows"]),
             .min_width = 760};
@@ -286,12 +287,12 @@ void add_diagnosis(Page& page, const Diagnosis& diagnosis, const std::string& na
     std::vector<std::string> steps;
     for (const auto& step : diagnosis.next) steps.push_back(next_words(step));
     add_list(page, "What to do next", steps);
-    add_table(page, "Parameters known only roughly", table_of_nuisances(diagnosis));
+    add_table(page, "Uncertain parameters", table_of_nuisances(diagnosis));
     add_list(page, "What was not measured", diagnosis.not_measured);
     add_list(page, "What cannot be tested", diagnosis.not_testable);
     add_table(page, "What the effects are", table_of_effects(diagnosis));
     add_table(page, "What the observables are", table_of_observables(diagnosis));
-    add_table(page, "Where this comes from", table_of_provenance(diagnosis));
+    add_table(page, "Provenance", table_of_provenance(diagnosis));
 }
 
 void write_diagnosis_page(const Diagnosis& diagnosis, const std::filesystem::path& file) {
@@ -316,8 +317,8 @@ std::vector<Chart> diagnosis_charts(const Diagnosis& diagnosis) {
                           .height = 400});
     charts.push_back({.name = "gap_left",
                       .title = "Gap that is left",
-                      .caption = "On data held out (" + diagnosis.gap_reduction->held_out +
-                                 "), with its 90 % interval; placebo: the best of many made-up effects.",
+                      .caption = "In held-out data (" + diagnosis.gap_reduction->held_out +
+                                 "), with its 90 % interval; placebo: the best of twenty random effects.",
                       .values = {{"gap_label", how_far["gap_label"]}, {"bars", how_far["bars"]}},
                       .height = gap_height + gap_row * count(how_far["bars"])});
     return charts;

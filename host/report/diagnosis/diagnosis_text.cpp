@@ -74,7 +74,7 @@ std::string refined(const Diagnosis& diagnosis) {
 /// Settings that must still be refined; empty if none are known.
 std::string to_refine(const Diagnosis& diagnosis) {
     for (const auto& refinement : diagnosis.refinements)
-        if (!refinement.done) return ": set " + refinement_words(refinement);
+        if (!refinement.done) return "; set " + refinement_words(refinement);
     return "";
 }
 
@@ -102,8 +102,9 @@ std::string gap_line(const Diagnosis& diagnosis) {
     const bool at_one_place = diagnosis.p_value > 2 * std::min(diagnosis.p_omnibus, diagnosis.p_directed);
     if (!diagnosis.detected)
         return fmt::format("none that these data show{}: {} ({}){}.", refined(diagnosis),
-                           at_one_place ? "they differ at one displacement only, as where grains rearrange"
-                                        : "noise alone gives differences like these",
+                           at_one_place
+                               ? "they differ at one displacement only, where grains may have rearranged"
+                               : "noise alone gives differences like these",
                            p_words(diagnosis.p_value), packings);
     return fmt::format(
         "yes: simulation and experiment differ by more than noise and calibration account for{} ({}){}.",
@@ -131,18 +132,19 @@ Framed framed_cells(const Diagnosis& diagnosis, bool refitted) {
 /// Without entries: single cells beyond the threshold, so that the text agrees with the figure.
 std::string framed_line(const Diagnosis& diagnosis) {
     const Framed refitted = framed_cells(diagnosis, true), stated = framed_cells(diagnosis, false);
-    if (refitted.count + stated.count == 0) return "no single part of the data stands out of the noise.";
+    if (refitted.count + stated.count == 0) return "no single value stands out from the noise.";
     const bool after = refitted.count > 0;
     const Framed& shown = after ? refitted : stated;
-    auto text = fmt::format(
-        "{} of {} parts of the data {} beyond {:.1f} sigma {} (the strongest: {}, {:.1f} sigma)", shown.count,
-        diagnosis.cells.size(), shown.count == 1 ? "is" : "are", diagnosis.where_threshold,
-        after ? "after recalibration" : "as stated", words_of(shown.strongest->observable),
-        after ? shown.strongest->z_score_refitted : shown.strongest->z_score);
+    auto text =
+        fmt::format("{} of {} values {} beyond {:.1f} sigma {} (largest: {}, {:.1f} sigma)", shown.count,
+                    diagnosis.cells.size(), shown.count == 1 ? "is" : "are", diagnosis.where_threshold,
+                    after ? "after recalibration" : "with the parameters as stated",
+                    words_of(shown.strongest->observable),
+                    after ? shown.strongest->z_score_refitted : shown.strongest->z_score);
     if (!after)
         text += ", and none after recalibration";
     else if (!diagnosis.detected)
-        text += "; all tests together, that is no more than chance allows";
+        text += "; with this many values, chance alone can give that";
     return text + ".";
 }
 
@@ -169,18 +171,19 @@ std::string where_line(const Diagnosis& diagnosis) {
 /// The reduction required to name an effect, as a continuation.
 std::string needed_words(const Explanation& explanation) {
     if (explanation.reduction < 0) return "";
-    if (explanation.placebo > 0.5) return ", but a placebo takes away " + percent(explanation.placebo);
+    if (explanation.placebo > 0.5)
+        return ", but random effects (placebo) take away up to " + percent(explanation.placebo);
     const auto needed = percent(explanation.needed);
     return needed == percent(explanation.reduction) ? ", a little less than is needed to name it"
                                                     : ", and " + needed + " would be needed to name it";
 }
 
 std::string unknown_line(const Diagnosis& diagnosis) {
-    auto text = "none of " + library_words(diagnosis) + " explains it";
+    auto text = "no tested effect explains it (" + library_words(diagnosis) + ")";
     if (const auto* best = leader_of(diagnosis); best && diagnosis.explanation)
-        text += fmt::format("; the best of them, {}{}, has {} of the probability: it {}{}",
-                            cause_words(*best), together_with(diagnosis), percent(best->confidence),
-                            reduction_words(diagnosis), needed_words(*diagnosis.explanation));
+        text += fmt::format("; the best one, {}{}, has a probability of {}: it {}{}", cause_words(*best),
+                            together_with(diagnosis), percent(best->confidence), reduction_words(diagnosis),
+                            needed_words(*diagnosis.explanation));
     return text + ".";
 }
 
@@ -191,7 +194,8 @@ std::string listed_suspects(const Diagnosis& diagnosis) {
 }
 
 std::string calibration_line(const Diagnosis& diagnosis) {
-    auto text = std::string("consistent with a wrong stated parameter, before any effect");
+    auto text = std::string(
+        "consistent with an error of a stated parameter, which must be excluded before an effect is named");
     if (const auto suspects = listed_suspects(diagnosis); !suspects.empty()) text += ": " + suspects;
     if (!diagnosis.causes.empty()) text += not_told_from(diagnosis.causes.front());
     return text + ".";
@@ -201,18 +205,20 @@ std::string which_line(const Diagnosis& diagnosis) {
     const auto* leader = leader_of(diagnosis);
     switch (diagnosis.verdict) {
         case Verdict::no_gap:
-            return "no effect is called for.";
+            return "no effect is needed.";
         case Verdict::unknown_effect:
             return unknown_line(diagnosis);
         case Verdict::not_converged:
-            return fmt::format("consistent with the simulation's own numerics, before any effect: {}{}{}.",
-                               leader ? words_of(leader->effect) : "a setting", together_with(diagnosis),
-                               to_refine(diagnosis));
+            return fmt::format(
+                "consistent with a numerical error of the simulation, which must be removed before an effect "
+                "is named: {}{}{}.",
+                leader ? words_of(leader->effect) : "a setting", together_with(diagnosis),
+                to_refine(diagnosis));
         case Verdict::calibration_suspect:
             return calibration_line(diagnosis);
         case Verdict::effect:
             if (!leader) break;
-            return fmt::format("consistent with {}{}, {} of the probability among {}.", cause_words(*leader),
+            return fmt::format("consistent with {}{}, with a probability of {} ({}).", cause_words(*leader),
                                together_with(diagnosis), percent(leader->confidence),
                                library_words(diagnosis));
         case Verdict::group:
@@ -224,18 +230,17 @@ std::string which_line(const Diagnosis& diagnosis) {
 }
 
 std::string what_is_added(const Diagnosis& diagnosis) {
-    const auto* leader = leader_of(diagnosis);
-    if (diagnosis.verdict == Verdict::calibration_suspect) return "correcting it";
-    if (diagnosis.verdict == Verdict::not_converged) return "refining it";
-    return leader ? "adding " + words_of(leader->effect) : "adding it";
+    if (diagnosis.verdict == Verdict::calibration_suspect) return "correcting the parameter";
+    if (diagnosis.verdict == Verdict::not_converged) return "refining the setting";
+    return "adding " + added_words(diagnosis);
 }
 
 std::string data_words(const Diagnosis& diagnosis) {
-    if (!diagnosis.explanation->held_out) return " (the data held out show none by themselves)";
+    if (!diagnosis.explanation->held_out) return " (of the whole gap: the held-out data alone show none)";
     const auto held_out = diagnosis.gap_reduction
                               ? shortened(one_line(diagnosis.gap_reduction->held_out), max_remark_length)
                               : "";
-    return " on data held out" + (held_out.empty() ? "" : " (" + held_out + ")");
+    return " in held-out data" + (held_out.empty() ? "" : " (" + held_out + ")");
 }
 
 std::string how_far_line(const Diagnosis& diagnosis) {
@@ -243,15 +248,15 @@ std::string how_far_line(const Diagnosis& diagnosis) {
         return diagnosis.verdict == Verdict::no_gap ? "there is nothing to explain."
                                                     : "not known: nothing was tried.";
     const auto& explanation = *diagnosis.explanation;
-    auto text = fmt::format("{} {}{}, {}; a placebo takes away {}; {}", what_is_added(diagnosis),
-                            reduction_words(diagnosis), data_words(diagnosis),
-                            explanation.simulated ? "simulated in full" : "by the signatures",
+    auto text = fmt::format("{} {}{}, {}; random effects (placebo) take away at most {}; {}",
+                            what_is_added(diagnosis), reduction_words(diagnosis), data_words(diagnosis),
+                            explanation.simulated ? "from full simulations" : "estimated from signatures",
                             percent(explanation.placebo), remainder_words(explanation));
     if (const auto& gap_reduction = diagnosis.gap_reduction;
         gap_reduction && gap_reduction->before > 0 && explanation.held_out)
-        text +=
-            fmt::format("; predicted was {} (90 % interval: {:.0f} to {})", percent(gap_reduction->fraction),
-                        gap_reduction->interval[0] * 100, percent(gap_reduction->interval[1]));
+        text += fmt::format("; the signatures had predicted {} (90 % interval: {:.0f} to {})",
+                            percent(gap_reduction->fraction), gap_reduction->interval[0] * 100,
+                            percent(gap_reduction->interval[1]));
     return text + ".";
 }
 
@@ -311,7 +316,7 @@ std::string limits_line(const Diagnosis& diagnosis) {
 }
 
 std::string next_line(const Diagnosis& diagnosis) {
-    if (diagnosis.next.empty()) return "no measurement is predicted to help.";
+    if (diagnosis.next.empty()) return "no measurement whose benefit can be predicted would help.";
     std::string text;
     for (const auto& step : diagnosis.next) text += (text.empty() ? "" : "; ") + one_line(next_words(step));
     while (text.ends_with('.')) text.pop_back();
@@ -321,7 +326,10 @@ std::string next_line(const Diagnosis& diagnosis) {
 /// The reduction of the named explanation, as a continuation.
 std::string taken_away(const Diagnosis& diagnosis) {
     if (!diagnosis.explanation) return "";
-    return fmt::format(", and {} of the gap goes away with it", percent(diagnosis.explanation->reduction));
+    const bool pair = !together_with(diagnosis).empty();
+    const auto* added = diagnosis.verdict == Verdict::group ? "the first of them" : pair ? "both" : "it";
+    return fmt::format("; adding {} takes away {} of the gap", added,
+                       percent(diagnosis.explanation->reduction));
 }
 
 }  // namespace
@@ -335,9 +343,9 @@ std::string verdict_headline(const Diagnosis& diagnosis) {
             return fmt::format("A gap; {} {}", pair ? "a pair of effects" : "one effect",
                                reduction_words(diagnosis));
         case Verdict::group:
-            return fmt::format("A gap; any of a group of effects {}", reduction_words(diagnosis));
+            return fmt::format("A gap; one of several effects {}", reduction_words(diagnosis));
         case Verdict::unknown_effect:
-            return "A gap that no known effect explains";
+            return "A gap that no tested effect explains";
         case Verdict::not_converged:
             return "The simulation is not converged";
         case Verdict::calibration_suspect:
@@ -360,17 +368,17 @@ std::string verdict_sentence(const Diagnosis& diagnosis) {
                    (leader ? listed(words_of_all(leader->group)) : "several effects") +
                    ", which these data cannot tell apart" + taken_away(diagnosis) + ".";
         case Verdict::unknown_effect:
-            return "There is a gap that none of " + library_words(diagnosis) + " explains" +
-                   (diagnosis.explanation ? ": the best " + reduction_words(diagnosis) : "") + ".";
+            return "There is a gap that no tested effect explains (" + library_words(diagnosis) + ")" +
+                   (diagnosis.explanation ? "; the best one " + reduction_words(diagnosis) : "") + ".";
         case Verdict::not_converged:
-            return "The gap is consistent with a simulation that is not converged" + to_refine(diagnosis) +
-                   ".";
+            return fmt::format("The gap is consistent with a simulation that is not converged{}.",
+                               to_refine(diagnosis));
         case Verdict::calibration_suspect:
             break;
     }
     const auto suspects = listed_suspects(diagnosis);
-    return suspects.empty() ? "The gap is consistent with a wrong stated parameter."
-                            : "The gap is consistent with calibration alone: " + suspects + ".";
+    return "The gap is consistent with an error of a stated parameter" +
+           (suspects.empty() ? "" : ": " + suspects) + ".";
 }
 
 std::array<VerdictLine, 6> verdict_lines(const Diagnosis& diagnosis) {

@@ -109,7 +109,7 @@ Json where_json(const Diagnosis& diagnosis) {
                            {"displacement_mm", column.displacement * 1e3},
                            {"x", column.x}});
     return {{"x_label", "plate displacement [mm]"},
-            {"colour_label", "measured less simulated [sigma of its noise]"},
+            {"colour_label", "measured minus simulated [sigma of the noise]"},
             {"colour_range", colour_range(diagnosis.cells)},
             {"width", map.width},
             {"observables", observables},
@@ -117,12 +117,11 @@ Json where_json(const Diagnosis& diagnosis) {
             {"panels", {panel_json(diagnosis, map, false), panel_json(diagnosis, map, true)}}};
 }
 
-/// Candidates named by the verdict: the best effect and its group; none if no effect explains the gap.
+/// Candidates named by the verdict: the causes; none if no effect explains the gap.
 std::set<std::string> named_effects(const Diagnosis& diagnosis) {
     if (diagnosis.verdict != Verdict::effect && diagnosis.verdict != Verdict::group) return {};
-    const auto& leader = diagnosis.ranking.front();
-    std::set<std::string> named(leader.group.begin(), leader.group.end());
-    named.insert(leader.effect);
+    std::set<std::string> named;
+    for (const Cause& cause : diagnosis.causes) named.insert(cause.effect);
     return named;
 }
 
@@ -165,8 +164,8 @@ Json which_json(const Diagnosis& diagnosis) {
 std::string words_after(const Diagnosis& diagnosis) {
     if (diagnosis.verdict == Verdict::calibration_suspect) return "simulated, recalibrated";
     if (diagnosis.verdict == Verdict::not_converged) return "simulated, refined";
-    const auto added = diagnosis.causes.empty() ? "the effect" : words_of(diagnosis.causes.front().effect);
-    return shortened("simulated with " + added, 40);
+    const bool pair = diagnosis.causes.size() > 1 && diagnosis.causes.front().group.size() == 1;
+    return shortened("simulated with " + (pair ? "both effects" : added_words(diagnosis)), 40);
 }
 
 /// Displacements at which all forces are known.
@@ -207,7 +206,7 @@ Json how_far_json(const Diagnosis& diagnosis) {
     if (gap.confirmed) add("after, simulated", after_colour, 1 - *gap.confirmed);
     add("placebo", faint_colour, 1 - gap.placebo);
     return {
-        {"gap_label", "gap left on data held out [%]"}, {"forces", forces_json(diagnosis)}, {"bars", bars}};
+        {"gap_label", "gap left in held-out data [%]"}, {"forces", forces_json(diagnosis)}, {"bars", bars}};
 }
 
 }  // namespace

@@ -54,7 +54,7 @@ struct Directions {
 };
 const std::map<std::string, Directions>& directions() {
     static const Directions of_the_scene{"higher than in the scene", "lower than in the scene"},
-        stated{"higher than stated", "lower than stated"}, read{"read too large", "read too small"};
+        stated{"higher than stated", "lower than stated"}, read{"too high", "too low"};
     static const std::map<std::string, Directions> all{
         {"friction", of_the_scene},
         {"wall_friction", of_the_scene},
@@ -156,7 +156,7 @@ std::string where_words(const WhereEntry& entry) {
     for (const auto& part : {entry.region, entry.force_class})
         if (part && !part->empty()) text += ", " + words_of(*part);
     const auto displacement = displacement_words(entry.displacement);
-    if (!displacement.empty()) text += ", " + displacement;
+    if (!displacement.empty()) text += ", at a displacement of " + displacement;
     return text + ": " + difference_words(entry) +
            fmt::format(" ({:.1f} sigma, {:.1f} after recalibration)", entry.z_score, entry.z_score_refitted);
 }
@@ -179,6 +179,15 @@ std::string cause_words(const Cause& cause) {
            (cause.at_limit ? ", or more: it is at the limit of the range tried)" : ")");
 }
 
+std::string added_words(const Diagnosis& diagnosis) {
+    const auto& causes = diagnosis.causes;
+    std::vector<std::string> words;
+    for (const auto& cause : causes)
+        if (words.empty() || std::ranges::count(causes.front().group, cause.effect) == 0)
+            words.push_back(words_of(cause.effect));
+    return words.empty() ? "the effect" : listed(words);
+}
+
 std::vector<std::pair<std::string, std::array<double, 2>>> metrics_in_order(
     const GapReduction& gap_reduction) {
     std::vector<std::pair<std::string, std::array<double, 2>>> metrics(gap_reduction.metrics.begin(),
@@ -193,19 +202,19 @@ std::vector<std::pair<std::string, std::array<double, 2>>> metrics_in_order(
 
 std::string library_words(const Diagnosis& diagnosis) {
     const auto count = diagnosis.detection_limits.size();
-    return count > 0 ? fmt::format("the {} known effects", count) : "the known effects";
+    if (count == 0) return "no effect could be tested";
+    return fmt::format("{} effect{} tested", count, count == 1 ? " was" : "s were");
 }
 
 std::string remainder_words(const Explanation& explanation) {
     const auto& without = explanation.without;
     if (!explanation.leaves_more_than_noise)
         return fmt::format(
-            "what remains is noise as far as these data tell{}",
-            without.empty() ? "" : ", apart from " + without + ": grains may have rearranged there");
+            "the remainder cannot be distinguished from noise{}",
+            without.empty() ? "" : ", except at " + without + ", where grains may have rearranged");
     const double left = std::max(0.0, explanation.remainder());
-    const auto what = left >= 1 ? "all of it remains, which"
-                                : percent(left) + (left < 0.015 ? " remains that" : " remain that");
-    return fmt::format("{} no effect of the library explains ({})", what, p_words(explanation.remainder_p));
+    return fmt::format("{} of the gap remains unexplained ({})", left >= 1 ? "all" : percent(left),
+                       p_words(explanation.remainder_p));
 }
 
 std::string refinement_words(const Refinement& refinement) {
@@ -214,9 +223,8 @@ std::string refinement_words(const Refinement& refinement) {
 }
 
 std::string next_words(const NextStep& step) {
-    return step.power
-               ? step.what + fmt::format(" (predicted in {} of such experiments)", percent(*step.power))
-               : step.what;
+    return step.power ? step.what + fmt::format(" (probability of success: {})", percent(*step.power))
+                      : step.what;
 }
 
 std::vector<NuisanceFit> suspects_of(const Diagnosis& diagnosis) {

@@ -33,8 +33,8 @@ std::string displacement_words(const std::array<double, 2>& displacement);
 /// "loading", "unloading", or "both phases" for an empty text.
 std::string phase_words(const std::string& phase);
 
-/// The entry as a phrase: "top force while loading, 18 to 24 mm: 12 % higher than simulated (6.1 sigma,
-/// 0.4 after recalibration)".
+/// The entry as a phrase: "top force while loading, at a displacement of 18 to 24 mm: 12 % higher than
+/// simulated (6.1 sigma, 0.4 after recalibration)".
 std::string where_words(const WhereEntry& entry);
 
 /// The amplitude, in words with its direction if the sign means one: "0.42 ± 0.05 mJ/m²", "5.0 ± 0.4 % lower
@@ -44,14 +44,17 @@ std::string directed_amount(const std::string& name, double value, double error,
 /// "adhesion (0.42 ± 0.05 mJ/m²)".
 std::string cause_words(const Cause& cause);
 
+/// The effects that the explanation adds: "adhesion", or both of a pair; of a group only the leading one.
+std::string added_words(const Diagnosis& diagnosis);
+
 /// The metrics in the paper's order, then others: name, before and after.
 std::vector<std::pair<std::string, std::array<double, 2>>> metrics_in_order(
     const GapReduction& gap_reduction);
 
-/// The effects that were tried: "the 18 known effects".
+/// "18 effects were tested".
 std::string library_words(const Diagnosis& diagnosis);
 
-/// "3 % remain that no effect of the library explains (p = 0.0004)".
+/// "3 % of the gap remains unexplained (p = 0.0004)".
 std::string remainder_words(const Explanation& explanation);
 
 /// "plate.speed = 0.025 m/s instead of 0.1".

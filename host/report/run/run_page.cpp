@@ -138,7 +138,7 @@ std::string bands_words(const RunFigure& figure) {
 /// Meaning of lines, points and bands.
 std::string phases_words(const Cast& cast, const RunFigure& figure) {
     return std::string("Solid lines: loading, dashed: unloading.") +
-           (cast.reference ? " Points: the reference, full while loading, open while unloading." : "") +
+           (cast.reference ? " Points: the reference, filled: loading, open: unloading." : "") +
            (several_replicas(figure) ? " Bands and bars: one standard error over replicas." : "");
 }
 
@@ -149,7 +149,7 @@ std::string axes_words(const RunFigure& figure) {
     };
     if (has("mean stress")) words += " p: a third of the stress tensor's trace, compression positive.";
     if (has("deviatoric stress")) words += " q = √(3/2 s:s) of its deviator s.";
-    if (has("volume strain")) words += " Volume strain: part of the volume at start that is gone.";
+    if (has("volume strain")) words += " Volume strain: decrease of the volume over the initial volume.";
     if (has("deviatoric strain"))
         words += " Deviatoric strain: √(2/3 e:e), e the deviator of the logarithmic strain.";
     return words;
@@ -163,7 +163,7 @@ Chart chart_of(const RunFigure& figure, const Cast& cast, const FigureOptions& o
         return {name,
                 fmt::format("Contact forces at {:.1f} mm, {}ing", *figure.displacement,
                             mcdem::name(figure.series.front().curves.front().phase)),
-                "How often forces between grains are how large, at one level of compression." +
+                "Probability density of the contact forces between grains, at one plate displacement." +
                     bands_words(figure),
                 {}};
     if (name == "coordination")
@@ -175,12 +175,12 @@ Chart chart_of(const RunFigure& figure, const Cast& cast, const FigureOptions& o
     if (name == "scaling")
         return {name,
                 "Scaling law F ∝ ⟨Z⟩⟨φ⟩⟨b⟩⟨f⟩",
-                "Full points: loading, open: unloading; lines through zero are fitted to both.",
+                "Filled points: loading, open: unloading; lines through the origin are fitted to both.",
                 {},
                 "xy"};
     return {name,
             figure.title,
-            "One scan after the other." + axes_words(figure) + bands_words(figure),
+            "Scans in order of time." + axes_words(figure) + bands_words(figure),
             {},
             name == "pressure_strain" ? "y" : ""};
 }
@@ -206,7 +206,7 @@ std::string species_of(const RunsOnPage& runs) {
 
 std::string head_of(const RunsOnPage& runs) {
     std::string words = what_was_simulated(runs.settings) + species_of(runs);
-    if (runs.reference) words += " Held against " + runs.reference->label + ".";
+    if (runs.reference) words += " Compared with " + runs.reference->label + ".";
     const auto result = main_result(runs.settings);
     return result.empty() ? words : words + " " + result;
 }
@@ -232,16 +232,15 @@ void add_charts(Page& page, const RunsOnPage& runs, const FigureOptions& options
 }
 
 void add_packing(Page& page, const RunsOnPage& runs) {
-    page.section("In space");
+    page.section("The packing in 3D");
     const auto view = packing_view(runs.packings, runs.limits);
     if (!view) {
         page.paragraph("No positions recorded: run with output.positions = true to see the packing here.");
         return;
     }
     std::string caption =
-        "Colours: force. A line is a contact, from centre to centre; the stronger, the thicker. Drag to "
-        "turn, "
-        "scroll to come near, point to read.";
+        "Colour: force. Each line is a contact between two centres; its thickness grows with the force. Drag "
+        "to rotate, scroll to zoom, hover for values.";
     for (const auto& note : runs.left_out) caption += " " + note;
     page.packing(*view, caption);
 }
@@ -337,7 +336,7 @@ void add_runs(Page& page, const RunsOnPage& runs) {
     add_charts(page, runs, options);
     add_packing(page, runs);
     add_tables(page, runs, options.comparisons);
-    page.section("Where this comes from");
+    page.section("Provenance");
     for (const auto& origin : runs.origins) add_origin(page, origin);
 }
 
