@@ -41,13 +41,13 @@ std::string speed_remedy(const Replica& replica) {
         return fmt::format("protocol.rate_tolerance = {:.2g} / {{0:.2g}}, runs {{0:.2g}} times as long",
                            replica.protocol.rate_tolerance);
     return fmt::format(
-        "plate.speed = {:.2g} / {{0:.2g}}{}, runs {{0:.2g}} times as long, or protocol.rate_tolerance, which "
-        "is slow only where it must be",
+        "plate.speed = {:.2g} / {{0:.2g}}{}, runs {{0:.2g}} times as long, or set protocol.rate_tolerance, "
+        "which slows the plate only when necessary",
         replica.plate.speed, replica.programme.empty() ? "" : " and the speeds of stages likewise");
 }
 
 constexpr const char* without_stops =
-    "protocol.stop_at_scans = false, with a slow plate: runs are shorter by the stops";
+    "protocol.stop_at_scans = false, with a slow plate: runs then save the time of the stops";
 
 /// Forces depend on inertia through the square root of the density. The error of Verlet is quadratic in the
 /// time step, but that of the damping is linear, which is assumed here.

@@ -76,7 +76,8 @@ TEST_F(CliTest, AllProblemsOfASceneAreListedOnePerLine) {
 TEST_F(CliTest, ValidateSummarisesTheRun) {
     const auto validated = mcdem({"validate", "small.toml", "--set", "batch.replicas=20"});
     expect_done(validated);
-    EXPECT_THAT(validated.out, HasSubstr("small.toml: good\n40 replicas of 30 grains, float precision"));
+    EXPECT_THAT(validated.out,
+                HasSubstr("small.toml: valid scene\n40 replicas of 30 grains, float precision"));
     EXPECT_THAT(validated.out, HasSubstr("\n  independent #1\n"));
     EXPECT_THAT(validated.out, HasSubstr("and 28 more"));
 }

@@ -104,7 +104,7 @@ def a_refused_read_is_not_a_missing_object(place):
     assert reads > 20, reads
     for read in range(1, reads + 1):
         done = mcdem(place, "verify", "out", fault="EIO", fault_at=read, fault_kinds="read")
-        assert "NOT GOOD" not in done.stdout, (read, done.stdout)
+        assert "DAMAGED OR CHANGED" not in done.stdout, (read, done.stdout)
         if done.returncode != 0:
             expect(done, 1, "Input/output error")
 
@@ -219,7 +219,7 @@ def digests_are_what_the_document_says(place):
 
 def a_changed_value_is_found(place):
     whole_run(place)
-    expect(mcdem(place, "verify", "out"), 0, "out/run.h5: good\nout/plate.csv: good\n", "stdout")
+    expect(mcdem(place, "verify", "out"), 0, "out/run.h5: no damage found\nout/plate.csv: no damage found\n", "stdout")
     for table in ["particles/replica_00001/position/value", "observables/replica_00000"]:
         shutil.copytree(place / "out", place / "changed")
         with h5py.File(place / "changed/run.h5", "r+") as run:
@@ -230,7 +230,7 @@ def a_changed_value_is_found(place):
                 rows[0] = 0
             run[table][:] = rows
         done = mcdem(place, "verify", "changed")
-        expect(done, 1, "changed/run.h5: NOT GOOD", "stdout")
+        expect(done, 1, "changed/run.h5: DAMAGED OR CHANGED", "stdout")
         assert f"/{table}: does not have the digest" in done.stdout, done.stdout
         expect(mcdem(place, "report", "changed", "--out", "page.html"), 2, "does not have the digest")
         if "position" in table:
@@ -241,21 +241,21 @@ def a_changed_value_is_found(place):
         shutil.rmtree(place / "changed")
     text = (place / "out/plate.csv").read_text()
     (place / "out/plate.csv").write_text(text.replace("1", "2", 1))
-    expect(mcdem(place, "verify", "out"), 1, "out/plate.csv: NOT GOOD", "stdout")
+    expect(mcdem(place, "verify", "out"), 1, "out/plate.csv: DAMAGED OR CHANGED", "stdout")
     with h5py.File(place / "out/run.h5", "r+") as run:
         del run["digests"]
-    expect(mcdem(place, "verify", "out/run.h5"), 0, "good: it carries no digests", "stdout")
+    expect(mcdem(place, "verify", "out/run.h5"), 0, "no damage found: it carries no digests", "stdout")
 
 
 def an_unfinished_run_is_verified(place):
     done = mcdem(place, *RUN, fault="KILL", fault_at=1, fault_kinds="rename", fault_name="run.h5")
     assert done.returncode == -9, done
     done = mcdem(place, "verify", "out")
-    expect(done, 0, "out/checkpoint.h5: good\nout/segment-000000.h5: good\n", "stdout")
-    expect(mcdem(place, "verify", "out/checkpoint.h5"), 0, "out/checkpoint.h5: good\n", "stdout")
+    expect(done, 0, "out/checkpoint.h5: no damage found\nout/segment-000000.h5: no damage found\n", "stdout")
+    expect(mcdem(place, "verify", "out/checkpoint.h5"), 0, "out/checkpoint.h5: no damage found\n", "stdout")
     os.truncate(place / "out/checkpoint.h5", 3000)
-    expect(mcdem(place, "verify", "out/checkpoint.h5"), 1, "out/checkpoint.h5: NOT GOOD", "stdout")
-    expect(mcdem(place, "verify", "out"), 1, "out/checkpoint.h5: NOT GOOD", "stdout")
+    expect(mcdem(place, "verify", "out/checkpoint.h5"), 1, "out/checkpoint.h5: DAMAGED OR CHANGED", "stdout")
+    expect(mcdem(place, "verify", "out"), 1, "out/checkpoint.h5: DAMAGED OR CHANGED", "stdout")
     (place / "empty").mkdir()
     expect(mcdem(place, "verify", "empty"), 2, "holds no run")
     expect(mcdem(place, "verify"), 2)
@@ -267,20 +267,20 @@ def an_experiment_carries_sums(place):
         words = ["experiment", "from-run", "out", "--replica", "mc_dem", "--out", "lab", *packed]
         expect(mcdem(place, *words), 0)
         subprocess.run(["sha256sum", "--check", "--strict", "--quiet", "SHA256SUMS"], cwd=place / "lab", check=True)
-        expect(mcdem(place, "verify", "lab"), 0, "good", "stdout")
+        expect(mcdem(place, "verify", "lab"), 0, "no damage found", "stdout")
         expect(mcdem(place, "verify", "lab/SHA256SUMS"), 2, "verified with the folder that they are in")
         sums = (place / "lab/SHA256SUMS").read_text()
         (place / "lab/SHA256SUMS").write_text("".join(line for line in sums.splitlines(True) if "plate.csv" not in line))
         done = mcdem(place, "verify", "lab")
         expect(done, 1, "SHA256SUMS does not name it", "stdout")
-        assert done.stdout.count("NOT GOOD") == 1 and "plate.csv" in done.stdout.splitlines()[-1], done.stdout
+        assert done.stdout.count("DAMAGED OR CHANGED") == 1 and "plate.csv" in done.stdout.splitlines()[-1], done.stdout
         (place / "lab/SHA256SUMS").write_text(sums)
         expect(mcdem(place, *words), 0)  # completes what was interrupted at the very end
         table = next((place / "lab").glob("plate.csv*"))
         table.write_bytes(table.read_bytes()[:-2])
         expect(mcdem(place, *words), 2, "holds another experiment, or one that was changed")
         expect(mcdem(place, *words, "--seed", "2"), 2, "holds another experiment")
-        expect(mcdem(place, "verify", "lab"), 1, "NOT GOOD", "stdout")
+        expect(mcdem(place, "verify", "lab"), 1, "DAMAGED OR CHANGED", "stdout")
         shutil.rmtree(place / "lab")
 
 

@@ -39,7 +39,7 @@ TEST(ConvergenceTables, TextNamesCauseSizeSignPositionAndRemedy) {
     EXPECT_EQ(words[1],
               "plate speed: top_force is 2 +- 0.2 % too high at 10.0 mm of loading; within the limit with "
               "plate.speed = 0.1 / 4");
-    EXPECT_EQ(words[2], "list margin: nothing beyond the limits");
+    EXPECT_EQ(words[2], "list margin: no error beyond its limit");
 }
 
 TEST(ConvergenceTables, TextSaysConvergedIfNothingExceedsItsLimit) {
@@ -55,15 +55,15 @@ TEST(ConvergenceTables, TextSaysNotDecidedIfErrorsAreTooUncertain) {
     const auto words = words_of_convergence(c);
     EXPECT_THAT(words[0],
                 HasSubstr("Not decided: no error is beyond its limit, but more replicas are needed"));
-    EXPECT_EQ(words[1], fmt::format("plate speed: nothing beyond the limits, but the standard errors of 1 of "
-                                    "{} are too large to tell",
+    EXPECT_EQ(words[1], fmt::format("plate speed: no error beyond its limit, but 1 of {} values have "
+                                    "standard errors that are too large to tell; use more --replicas",
                                     c.cells.size()));
 }
 
 TEST(ConvergenceTables, TextSaysIfACauseChangesNothing) {
     Convergence c = example();
     c.causes[1].cells.assign(c.cells.size(), {0, 0});
-    EXPECT_EQ(words_of_convergence(c)[2], "list margin: it changes nothing in these runs");
+    EXPECT_EQ(words_of_convergence(c)[2], "list margin: no influence in these runs");
 }
 
 TEST(ConvergenceTables, TableMarksErrorsBeyondTheirLimit) {

@@ -125,7 +125,7 @@ TEST(RunFigures, missing_data_are_explained) {
     const auto made = run_figures(cast, {});
     EXPECT_EQ(made.figures.size(), 1u);
     ASSERT_EQ(made.missing.size(), 3u);
-    EXPECT_THAT(made.missing[0], HasSubstr("no contacts recorded"));
+    EXPECT_THAT(made.missing[0], HasSubstr("no contacts were recorded"));
 }
 
 TEST(FigureFile, contains_its_format_and_any_label) {

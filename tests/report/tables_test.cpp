@@ -78,8 +78,8 @@ TEST(TableOfModels, marks_scans_beyond_a_models_range) {
                 Not(HasSubstr("tested")));
     run.recordings[0].scans[1].max_overlap = 0.15;
     EXPECT_THAT(to_text(table_of_models(model_table(group_by_setting(run))), TableFormat::terminal),
-                HasSubstr("Elastic sphere: from 30.00 mm on grains overlap more than the law was tested for "
-                          "(0.10 of the sum of their radii), by up to 0.15"));
+                HasSubstr("Elastic sphere: from 30.00 mm on, overlaps exceed the tested range of the contact "
+                          "model (0.10 of the sum of two radii) and reach 0.15"));
 }
 
 TEST(CsvOfModels, has_a_column_for_each_key_that_differs) {
@@ -120,7 +120,9 @@ TEST(TableOfComparisons, a_common_note_appears_once) {
     a.notes = {"shared", "its own"};
     b.notes = {"shared"};
     const auto table = table_of_comparisons({a, b});
-    EXPECT_EQ(table.notes, (std::vector<std::string>{"shared", "Independent contacts: its own"}));
+    const std::string meaning =
+        "levels: displacements used for errf, in loading and unloading, of those of the reference";
+    EXPECT_EQ(table.notes, (std::vector<std::string>{"shared", "Independent contacts: its own", meaning}));
 }
 
 TEST(TableOfScaling, has_one_row_per_phase) {

@@ -62,7 +62,7 @@ void print_scene(const SceneOptions& options, const std::string& choice) {
     const Scene scene = options.read();
     const auto device = chosen_device(choice);
     if (device) expect_runnable(*device, scene);
-    print_out("{}: good\n", options.file);
+    print_out("{}: valid scene\n", options.file);
     print_out("{}, {} precision; {}\n", size_text(scene), name(scene.precision),
               strokes_text(scene.replicas.front()));
     print_packings(scene);

@@ -64,14 +64,14 @@ std::string words_of(const Convergence& convergence, const CauseErrors& cause) {
         return !(std::abs(error.value) + error.standard_error > 0);
     };
     if (std::ranges::all_of(cause.cells, is_zero))
-        return fmt::format("{}: it changes nothing in these runs", cause.cause);
+        return fmt::format("{}: no influence in these runs", cause.cause);
     const int worst = convergence.worst_beyond(cause), uncertain = uncertain_errors(convergence, cause);
     if (worst < 0)
-        return fmt::format("{}: nothing beyond the limits{}", cause.cause,
-                           uncertain
-                               ? fmt::format(", but the standard errors of {} of {} are too large to tell",
-                                             uncertain, convergence.cells.size())
-                               : "");
+        return fmt::format("{}: no error beyond its limit{}", cause.cause,
+                           uncertain ? fmt::format(", but {} of {} values have standard errors that are too "
+                                                   "large to tell; use more --replicas",
+                                                   uncertain, convergence.cells.size())
+                                     : "");
     const auto cell = static_cast<std::size_t>(worst);
     int beyond = 0;
     for (std::size_t c = 0; c < convergence.cells.size(); ++c)
@@ -83,7 +83,7 @@ std::string words_of(const Convergence& convergence, const CauseErrors& cause) {
                        shown(convergence, cell, error.standard_error), unit(convergence, cell),
                        error.value > 0 ? "high" : "low", 1e3 * convergence.cells[cell].displacement,
                        convergence.cells[cell].phase == Phase::load ? "loading" : "unloading",
-                       beyond > 1 ? fmt::format(", {} cells beyond their limits", beyond) : "",
+                       beyond > 1 ? fmt::format(", {} values beyond their limits", beyond) : "",
                        remedy_of(convergence, cause, cell));
 }
 

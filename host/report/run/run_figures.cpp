@@ -351,7 +351,7 @@ std::vector<RunFigure> programme_figures(const Cast& cast) {
 RunFigures run_figures(const Cast& cast, const FigureOptions& options) {
     RunFigures made;
     if (cast.simulated.empty()) {
-        made.missing.push_back("all: no scans are left after the discarded cycles");
+        made.missing.push_back("any quantity: no scans are left after the discarded cycles");
         return made;
     }
     const auto take = [&](RunFigure figure, const char* missing) {
@@ -364,10 +364,10 @@ RunFigures run_figures(const Cast& cast, const FigureOptions& options) {
         for (auto& figure : programme_figures(cast)) made.figures.push_back(std::move(figure));
         if (std::ranges::all_of(cast.simulated, &is_programme)) return made;
     }
-    take(top_force_figure(cast), "the top force: not known");
-    take(distribution_figure(cast, options), "the force distribution: no contacts recorded");
-    take(coordination_figure(cast, options), "Z: contacts per grain are not known");
-    take(scaling_figure(cast), "the scaling law: averages over the packing are not known");
+    take(top_force_figure(cast), "the top force: it was not recorded");
+    take(distribution_figure(cast, options), "the force distribution: no contacts were recorded");
+    take(coordination_figure(cast, options), "Z: contacts per grain were not recorded");
+    take(scaling_figure(cast), "the scaling law: averages over the packing were not recorded");
     return made;
 }
 

@@ -69,7 +69,7 @@ struct RunFigure {
 
 struct RunFigures {
     std::vector<RunFigure> figures;
-    std::vector<std::string> missing;  ///< "the force distribution: no contacts recorded"
+    std::vector<std::string> missing;  ///< "the force distribution: no contacts were recorded"
 };
 
 /// Holds pointers to the cast, which must outlive it.

@@ -39,16 +39,17 @@ std::vector<std::string> notes_of(const std::vector<Comparison>& comparisons) {
 /// If it is large, also which key to set and how to measure it.
 std::string rate_note(const std::string& what, double rate_error) {
     constexpr double too_much = 0.02;
-    std::string note = fmt::format("{} at most {:.2g} %, estimated", what, 100 * rate_error);
-    if (rate_error > too_much) note += "; set protocol.rate_tolerance for less, `mcdem converge` measures it";
+    std::string note = fmt::format("{} at most {:.2g} % (estimate)", what, 100 * rate_error);
+    if (rate_error > too_much)
+        note += "; set protocol.rate_tolerance to reduce it; `mcdem converge` measures it";
     return note;
 }
 
 /// `from`: the displacement or scan from which on overlaps exceed the tested range.
 std::string beyond_note(const std::string& setting, const std::string& from, const BeyondLaw& beyond) {
     return fmt::format(
-        "{}: from {} on grains overlap more than the law was tested for ({:.2f} of the sum of their radii), "
-        "by up to {:.2f}; numerics.stop_beyond_law stops there",
+        "{}: from {} on, overlaps exceed the tested range of the contact model ({:.2f} of the sum of two "
+        "radii) and reach {:.2f}; numerics.stop_beyond_law = true stops the run there",
         setting, from, beyond.tested, beyond.max_overlap);
 }
 
@@ -223,7 +224,8 @@ TextTable table_of(const std::vector<Told>& told, bool cells) {
             "at start, compression positive");
     if (std::isfinite(rate_error))
         table.notes.push_back(rate_note(
-            cells ? "rate of strain: error of stresses" : "plate's speed: error of forces", rate_error));
+            cells ? "error of stresses by the strain rate:" : "error of forces by the plate's speed:",
+            rate_error));
     return table;
 }
 
@@ -263,7 +265,7 @@ TextTable table_of_models(const ModelTable& models) {
             table.notes.push_back(beyond_note(
                 words_for(row.setting), number(row.beyond->displacement * 1e3, 2) + " mm", *row.beyond));
     if (std::isfinite(models.rate_error))
-        table.notes.push_back(rate_note("plate's speed: error of forces", models.rate_error));
+        table.notes.push_back(rate_note("error of forces by the plate's speed:", models.rate_error));
     return table;
 }
 
@@ -294,6 +296,8 @@ TextTable table_of_comparisons(const std::vector<Comparison>& comparisons) {
                               fmt::format("{} of {}", c.levels_errf, c.reference_levels)});
     }
     table.notes = notes_of(comparisons);
+    table.notes.push_back(
+        "levels: displacements used for errf, in loading and unloading, of those of the reference");
     table.rows.push_back({"perfect fit", "1", "0", "0", "0", "", ""});
     return table;
 }
@@ -315,6 +319,11 @@ TextTable table_of_scaling(const std::vector<Setting>& settings) {
                                   number(fit.curvature, 3), std::to_string(fit.points)});
         }
     }
+    table.notes = {
+        "F: top force, Z: coordination number, phi: packing fraction, b: branch length, f: mean contact "
+        "force",
+        "curvature: part of F that is quadratic, at the largest Z phi b f; levels: number of displacements "
+        "fitted"};
     return table;
 }
 
