@@ -40,7 +40,7 @@ FolderLock lock_folder(const fs::path& out, FolderLock::Use use) {
     FolderLock lock(out, use);
     if (const fs::path file = file_of_a_run(out); !file.empty())
         throw InputError(
-            fmt::format("{}: holds a run ({}): give another folder for the answers to a challenge",
+            fmt::format("{}: holds a run ({}): give another folder for the diagnoses of a challenge",
                         out.string(), file.filename().string()));
     return lock;
 }

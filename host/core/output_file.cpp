@@ -91,7 +91,8 @@ void replace_own(const fs::path& file, FileKind kind, const std::function<void(N
 void expect_no_answers(const fs::path& folder) {
     std::error_code ignored;
     if (fs::is_directory(folder / answers_folder, ignored))
-        throw InputError(folder.string() + ": holds the answers to a challenge: give another folder (--out)");
+        throw InputError(folder.string() +
+                         ": holds the diagnoses of a challenge: give another folder (--out)");
 }
 
 void expect_no_experiment(const fs::path& folder) {

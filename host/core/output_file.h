@@ -39,10 +39,10 @@ void replace_own(const std::filesystem::path& file, FileKind kind, std::string_v
 void replace_own(const std::filesystem::path& file, FileKind kind,
                  const std::function<void(NewFile& out)>& write);
 
-/// A folder with the answers to a challenge contains this subfolder.
+/// A folder with the diagnoses of a challenge contains this subfolder.
 inline constexpr const char* answers_folder = "evidence";
 
-/// Throws InputError if the folder contains the answers to a challenge.
+/// Throws InputError if the folder contains the diagnoses of a challenge.
 void expect_no_answers(const std::filesystem::path& folder);
 
 /// Throws InputError if the folder is an experiment folder, where no other output is written.

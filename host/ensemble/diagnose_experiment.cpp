@@ -55,9 +55,10 @@ public:
 
     Diagnosis run() {
         if (const auto others = other_materials(model().replica, experiments_.front()); !others.empty())
-            options_.on_note(fmt::format(
-                "experiment.toml states {}: simulations have the scene's; --set gives them other values",
-                fmt::join(others, ", ")));
+            options_.on_note(
+                fmt::format("experiment.toml states {}, but simulations use the values of the scene; change "
+                            "them with --set if the experiment is right",
+                            fmt::join(others, ", ")));
         if (!options_.candidates.empty())
             for (const std::string& hindered : choice_.hindered) options_.on_note("not tested: " + hindered);
         Evidence evidence = gather();
@@ -123,7 +124,8 @@ private:
             library_is_own_ = true;
             take_baseline(evidence, evidence.library.baseline);
             if (options_.library && !write_library(*options_.library, evidence.library))
-                options_.on_note(options_.library->string() + ": another program wrote it first; it is kept");
+                options_.on_note(options_.library->string() +
+                                 ": another process wrote this library first; it is kept");
         }
         for (const std::string& name : choice_.chosen) {
             const Effect& effect = *find_effect(name);
@@ -192,8 +194,8 @@ private:
         refinement.done = true;
         refinements_.push_back(refinement);
         options_.on_note(
-            fmt::format("{} is {} instead of {} from here on: the gap is consistent with a simulation "
-                        "that is not converged",
+            fmt::format("the gap is consistent with a simulation that is not converged: continuing with {} = "
+                        "{} instead of {}",
                         refinement.key, refinement.to, refinement.from));
         take_baseline(evidence, simulated_baseline("refined baseline"));
         for (Signature& signature : evidence.library.effects)
@@ -214,8 +216,8 @@ private:
             settings += fmt::format("{}{} = {:.3g}", settings.empty() ? "" : ", ", change.key, change.to);
         }
         options_.on_note(
-            fmt::format("there is a gap, and the experiment states how its plate moves: from here "
-                        "on the plate moves so in simulations, too ({})",
+            fmt::format("there is a gap, and experiment.toml states how the plate moves: continuing with "
+                        "that motion ({})",
                         settings));
         for (Specimen& specimen : plan_.specimens) apply(specimen.model.replica, motion);
         if (evidence.candidates.size() > 1)
@@ -282,8 +284,8 @@ private:
                                                          stage(options_, "other protocols")),
                                           packings());
             };
-            next.push_back({fmt::format("{}: tells {} from {}", protocol.what, name_of(builder.decided()),
-                                        name_of(*rival)),
+            next.push_back({fmt::format("{}, to distinguish {} from {}", protocol.what,
+                                        name_of(builder.decided()), name_of(*rival)),
                             builder.power_of({runs_of(builder.decided()), runs_of(*rival)})});
         }
         std::ranges::stable_sort(next, std::greater(), [](const NextStep& s) { return s.power.value_or(0); });

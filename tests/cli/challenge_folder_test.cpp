@@ -53,7 +53,7 @@ TEST_F(ChallengeFolderTest, ASecondProcessIsRefusedWhileOneAnswers) {
     let_go_on(*one);
     expect_done(one->wait());
     for (const Words& more : {Words{}, {"--resume"}, {"--part=0"}, {"--device=all"}})
-        expect_refused(run_words("out", more), "holds the answers to a challenge");
+        expect_refused(run_words("out", more), "holds the diagnoses of a challenge");
     EXPECT_TRUE(file_of_a_run(path("out")).empty());
 }
 
@@ -129,7 +129,7 @@ TEST_F(ChallengeFolderTest, ASingleProcessIsRefusedWhileOthersShareTheChallenge)
     const auto one = held_challenge({"--part=0"});
     expect_refused(challenge_words(), shared);
     expect_refused(run_words("out"), shared);
-    expect_refused(run_words("out", {"--part=0"}), "holds the answers to a challenge");
+    expect_refused(run_words("out", {"--part=0"}), "holds the diagnoses of a challenge");
     let_go_on(*one);
     expect_done(one->wait());
     EXPECT_TRUE(fs::exists(path("out/case_0001.json")));

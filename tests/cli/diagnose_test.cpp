@@ -110,8 +110,8 @@ TEST_P(DiagnoseContainerTest, NamesOnlyThePlantedEffect) {
     std::ofstream(path("tiny.toml")) << text.replace(text.find(box), box.size(), GetParam());
     experiment({});
     const std::string check = mcdem({"experiment", "check", "e"}).out;
-    EXPECT_THAT(check, HasSubstr("also needs: nothing"));
-    EXPECT_THAT(check, HasSubstr("what looks odd: nothing"));
+    EXPECT_THAT(check, HasSubstr("in addition: nothing"));
+    EXPECT_THAT(check, HasSubstr("suspicious data: nothing"));
     const Words words{"--replicates",    "16", "--pairs",      "4",
                       "--confirmations", "4",  "--candidates", "friction,viscoelasticity,force_bias"};
     EXPECT_EQ(diagnosis(words)["verdict"], "no_gap");
@@ -130,7 +130,7 @@ INSTANTIATE_TEST_SUITE_P(
 TEST_F(DiagnoseTest, PlateAndPositionsAreSufficient) {
     experiment({});
     std::filesystem::remove(path("e/contacts.csv"));
-    EXPECT_THAT(mcdem({"experiment", "check", "e"}).out, HasSubstr("also needs: nothing"));
+    EXPECT_THAT(mcdem({"experiment", "check", "e"}).out, HasSubstr("in addition: nothing"));
     const auto told = diagnosis(few);
     EXPECT_EQ(told["verdict"], "no_gap") << told["sentence"];
     EXPECT_THAT(told["not_measured"].dump(), HasSubstr("contacts.csv"));
@@ -178,7 +178,7 @@ TEST_F(DiagnoseTest, TwoAtOnceWithANewLibraryBothGiveAVerdict) {
     let_go_on(first);
     const Finished finished = first.wait();
     expect_done(finished);
-    EXPECT_THAT(finished.err, HasSubstr("l: another program wrote it first; it is kept"));
+    EXPECT_THAT(finished.err, HasSubstr("l: another process wrote this library first; it is kept"));
     EXPECT_TRUE(fs::exists(path("first/diagnosis.json")));
     EXPECT_EQ(bytes_of_file(path("l")), written);
 }

@@ -51,10 +51,10 @@ TEST_F(ExperimentCommandTest, ARunBecomesAnExperimentWithoutWarnings) {
 
     const auto checked = mcdem({"experiment", "check", "e"});
     expect_done(checked);
-    EXPECT_THAT(checked.out, testing::StartsWith("small, elastic_sphere\n\nwhat there is\n"));
+    EXPECT_THAT(checked.out, testing::StartsWith("small, elastic_sphere\n\navailable data\n"));
     EXPECT_THAT(checked.out, HasSubstr("\n  grains.csv      30 grains of "));
     EXPECT_THAT(checked.out, HasSubstr("\n  experiment.toml [uncertainty] of grains.friction: "));
-    EXPECT_THAT(checked.out, HasSubstr("\nwhat looks odd: nothing\n"));
+    EXPECT_THAT(checked.out, HasSubstr("\nsuspicious data: nothing\n"));
     std::istringstream lines(checked.out);
     for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 110u);
 
@@ -109,7 +109,7 @@ TEST_F(ExperimentCommandTest, AProgrammeIsKeptFromTheRunThroughAnImport) {
     EXPECT_THAT(bytes_of_file(path("e/plate.csv")),
                 testing::AllOf(HasSubstr("top_force_N,set_force_N,time_s\n0,0,load,"), HasSubstr(",0.2,0.")));
     const auto checked = mcdem({"experiment", "check", "e"});
-    EXPECT_THAT(checked.out, HasSubstr("what looks odd: nothing"));
+    EXPECT_THAT(checked.out, HasSubstr("suspicious data: nothing"));
     EXPECT_THAT(checked.out, HasSubstr("a programme of 4 stages in"));
     expect_done(mcdem({"verify", "e"}));
     expect_done(mcdem({"experiment", "import", "e/contacts.csv", "e/plate.csv", "e/grains.csv", "--metadata",
@@ -228,7 +228,8 @@ TEST_F(ExperimentCommandTest, ErrorsInTablesAreReportedWithTheirLines) {
 TEST_F(ExperimentCommandTest, CheckAndDiagnoseReportTheSameMissingData) {
     run("a");
     expect_done(from_run("e", {"--replica", "0"}));
-    EXPECT_THAT(mcdem({"experiment", "check", "e"}).out, HasSubstr("`mcdem diagnose` also needs: nothing\n"));
+    EXPECT_THAT(mcdem({"experiment", "check", "e"}).out,
+                HasSubstr("required by `mcdem diagnose` in addition: nothing\n"));
     std::string toml = bytes_of_file(path("e/experiment.toml"));
     toml.erase(toml.find("[measurement]"));
     std::ofstream(path("e/experiment.toml")) << toml;
@@ -236,7 +237,7 @@ TEST_F(ExperimentCommandTest, CheckAndDiagnoseReportTheSameMissingData) {
     const auto told = [&](const std::string& words) {
         const auto checked = mcdem({"experiment", "check", "e"});
         expect_done(checked);
-        const std::string needs = checked.out.substr(checked.out.find("also needs"));
+        const std::string needs = checked.out.substr(checked.out.find("required by `mcdem diagnose`"));
         EXPECT_THAT(std::regex_replace(needs, std::regex("\\s+"), " "), HasSubstr(words));
         expect_bad_input(mcdem(diagnose), words);
         EXPECT_FALSE(fs::exists(path("out/simulations")));
@@ -333,7 +334,7 @@ TEST_F(ExperimentCommandTest, ARunWithGrainsOutsideTheBoxIsExplained) {
     forgeries().at("grain outside")(forged.recordings.at(0));
     write_run(path("forged.h5"), forged);
     const auto made = mcdem({"experiment", "from-run", "forged.h5", "--out", "e"});
-    expect_bad_input(made, "forged.h5: makes no experiment that can be read, and none is written");
+    expect_bad_input(made, "forged.h5: does not give a valid experiment, so nothing is written");
     EXPECT_THAT(made.err, HasSubstr("e/grains.csv:"));
 }
 

@@ -114,8 +114,11 @@ TEST_F(ImportCommandTest, UncertainGuessesMustBeConfirmedInTheMapping) {
             "mcdem: lab/mapping.toml:[0-9]+: length_unit must be confirmed, got \"\\?mm\": no name says it"));
     EXPECT_THAT(refused.err, HasSubstr("mcdem: --set: box.size must be the inner width and depth of the box"))
         << "all at once";
-    EXPECT_THAT(refused.err, HasSubstr("put what is right into lab/mapping.toml, without question marks, and "
-                                       "import again with --mapping"));
+    EXPECT_THAT(
+        refused.err,
+        HasSubstr(
+            "correct the entries of lab/mapping.toml that begin with a question mark, remove the marks, and "
+            "import again with --mapping"));
     EXPECT_FALSE(fs::exists(path("lab/experiment.toml")));
     EXPECT_FALSE(fs::exists(path("lab/plate.csv")));
 
@@ -160,8 +163,8 @@ TEST_F(ImportCommandTest, ReplacesOnlyItsOwnFiles) {
     fs::create_directories(path("lab.importing/kept"));
     fs::create_directories(path("old"));
     std::ofstream(path("old/contacts.csv.gz")) << "others";
-    expect_bad_input(import(lab_words("old")), "--out: old holds a table contacts.csv.gz");
-    expect_bad_input(import(lab_words("plate.csv/x")), "must be a folder, got a file in its way, plate.csv");
+    expect_bad_input(import(lab_words("old")), "--out: old already contains contacts.csv.gz");
+    expect_bad_input(import(lab_words("plate.csv/x")), "must be a folder, got a file in its path, plate.csv");
     auto words = lab_words("lab/");
     words.insert(words.end(), {"--set", "name=\"Probe 7\""});
     expect_done(import(words));

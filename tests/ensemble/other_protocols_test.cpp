@@ -136,8 +136,8 @@ TEST(OtherProtocols, GetAPowerInADiagnosis) {
     ASSERT_EQ(diagnosis.verdict, Verdict::group);
     int powers = 0;
     for (const NextStep& step : diagnosis.next)
-        for (const char* what : {"hold the plate at full stroke for 0.3 s: tells adhesion",
-                                 "press one more cycle: tells adhesion"})
+        for (const char* what : {"hold the plate at full stroke for 0.3 s, to distinguish adhesion",
+                                 "press one more cycle, to distinguish adhesion"})
             if (step.what.starts_with(what)) {
                 ASSERT_TRUE(step.power);
                 EXPECT_TRUE(*step.power >= 0 && *step.power <= 1) << *step.power;

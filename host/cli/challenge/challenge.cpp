@@ -8,14 +8,13 @@ void add_challenge(CLI::App& app, int& exit_code) {
     sub->require_subcommand(1);
     for (const auto add : {add_challenge_make, add_challenge_run, add_challenge_score}) add(*sub, exit_code);
     sub->footer(
-        "`make` simulates experiments with hidden effects and writes the answers to a file; `run` diagnoses "
-        "the\n"
-        "experiments without that file; `score` compares the diagnoses with it.\n"
+        "`make` simulates experiments with hidden effects and writes the truth to a separate file; `run`\n"
+        "diagnoses the experiments without that file; `score` compares the diagnoses with the truth.\n"
         "Example:\n"
         "  mcdem challenge make scenes/challenge.toml --out out/challenge\n"
         "  mcdem challenge run out/challenge --scene scenes/challenge.toml --library out/library.json --out "
-        "out/answers\n"
-        "  mcdem challenge score out/challenge out/answers");
+        "out/diagnoses\n"
+        "  mcdem challenge score out/challenge out/diagnoses");
 }
 
 }  // namespace mcdem::cli

@@ -59,11 +59,11 @@ void add_measurement(CLI::App& sub, Measurement& measurement) {
 
 void add_challenge_make(CLI::App& challenge, int&) {
     auto* sub = challenge.add_subcommand(
-        "make", "Simulate experiments with hidden effects, and write the answers to a file of their own");
+        "make", "Simulate experiments with hidden effects, and write the truth to a separate file");
     auto command = std::make_shared<MakeCommand>();
     add_scene_options(*sub, command->scene);
     sub->add_option("--out", command->out, "Folder for the challenge")->required()->type_name("DIR");
-    sub->add_option("--truth", command->truth, "File for the answers; default: DIR/truth.json")
+    sub->add_option("--truth", command->truth, "File for the truth; default: DIR/truth.json")
         ->type_name("FILE");
     sub->add_option("--seed", command->options.seed,
                     "Seed of all draws; default: drawn at random and not shown")

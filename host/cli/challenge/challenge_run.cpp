@@ -121,7 +121,9 @@ void add_challenge_run(CLI::App& challenge, int& exit_code) {
     sub->add_option("--set", command->overrides, "Override a scene key; may be repeated")
         ->type_name("KEY=VALUE")
         ->allow_extra_args(false);
-    sub->add_option("--library", command->library, "Signature library; made if the file does not exist")
+    sub->add_option(
+           "--library", command->library,
+           "File with the simulated changes by each effect; computed and written if it does not exist")
         ->required()
         ->type_name("FILE");
     sub->add_option("--out", command->out, "Folder for the diagnoses")->required()->type_name("DIR");
@@ -132,7 +134,7 @@ void add_challenge_run(CLI::App& challenge, int& exit_code) {
         "Many devices or nodes compute it in parts: the simulations of the library, then the cases.\n"
         "Example:\n"
         "  mpirun -n 4 mcdem challenge run out/challenge --scene scenes/challenge.toml \\\n"
-        "      --library out/library.json --out out/answers --mpi");
+        "      --library out/library.json --out out/diagnoses --mpi");
     sub->callback([command, &exit_code] { exit_code = run(*command); });
 }
 

@@ -46,17 +46,17 @@ public:
     void at_least(const std::string& name, Share Merits::*merit, double bar) {
         add(name, merit, "at least " + percent(bar), met((arm_.second.*merit).value() >= bar));
     }
-    void number(const std::string& name, double first, double second, const std::string& asked,
+    void number(const std::string& name, double first, double second, const std::string& required,
                 const std::string& is_met) {
         table_.rows.push_back(
-            {name, fmt::format("{:.2f}", second), asked, is_met, fmt::format("{:.2f}", first)});
+            {name, fmt::format("{:.2f}", second), required, is_met, fmt::format("{:.2f}", first)});
     }
 
 private:
-    void add(const std::string& name, Share Merits::*merit, const std::string& asked,
+    void add(const std::string& name, Share Merits::*merit, const std::string& required,
              const std::string& is_met) {
         const Share& second = arm_.second.*merit;
-        table_.rows.push_back({name, with_interval(second), asked, second.of > 0 ? is_met : "",
+        table_.rows.push_back({name, with_interval(second), required, second.of > 0 ? is_met : "",
                                with_interval(arm_.first.*merit)});
     }
     const ArmScore& arm_;
@@ -65,12 +65,13 @@ private:
 
 void add_gap_reduction(const GapReductionScore& gap_reduction, TextTable& table) {
     if (gap_reduction.cases == 0) return;
-    table.rows.push_back({"shrink: median |predicted - realised|",
+    table.rows.push_back({"gap reduction: median |predicted - simulated|",
                           fmt::format("{:.2f}", gap_reduction.median_error), "at most 0.10",
                           met(gap_reduction.median_error <= 0.10),
                           fmt::format("{} cases, all", gap_reduction.cases)});
-    table.rows.push_back({"shrink: realised within the 90 % interval", with_interval(gap_reduction.covered),
-                          "at least 80 %", met(gap_reduction.covered.value() >= 0.80), "all"});
+    table.rows.push_back({"gap reduction: simulated within the 90 % interval",
+                          with_interval(gap_reduction.covered), "at least 80 %",
+                          met(gap_reduction.covered.value() >= 0.80), "all"});
 }
 
 /// Mean square error of always stating the share of the other half.
@@ -86,9 +87,9 @@ TextTable table_of_merits(const ChallengeScore& score) {
     TextTable table;
     table.columns = {{"figure of merit", Align::left},
                      {"scored half", Align::left},
-                     {"asked", Align::left},
+                     {"required", Align::left},
                      {"met"},
-                     {"half for the limits", Align::left}};
+                     {"half used to set limits", Align::left}};
     MeritRows rows(arm, table);
     rows.at_most("no effect: a gap is claimed", &Merits::false_alarms, bars.false_alarms);
     rows.share("one effect: detected", &Merits::detected);
@@ -97,10 +98,11 @@ TextTable table_of_merits(const ChallengeScore& score) {
     rows.at_least(".. of these detected: in the group named", &Merits::truth_in_group, bars.truth_in_group);
     rows.number(".. of these detected: mean size of the group", arm.first.group_size, arm.second.group_size,
                 fmt::format("at most {}", bars.group_size), met(arm.second.group_size <= bars.group_size));
-    rows.at_most("unknown effect: a known one is named", &Merits::named_unknown, bars.named_unknown);
-    rows.at_most("nuisance outside its prior: an effect is named", &Merits::named_outside_prior,
+    rows.at_most("effect outside the library: an effect is named", &Merits::named_unknown,
+                 bars.named_unknown);
+    rows.at_most("parameter far outside its uncertainty: an effect is named", &Merits::named_outside_prior,
                  bars.named_outside_prior);
-    rows.share(".. : the calibration is suspected", &Merits::suspected);
+    rows.share(".. : verdict calibration_suspect", &Merits::suspected);
     rows.share("two effects: named first is one of them", &Merits::pair_led);
     rows.share("two effects: both named", &Merits::pair_found);
     const double base = base_rate_brier(arm.second, arm.first.right_leaders.value());
@@ -108,8 +110,8 @@ TextTable table_of_merits(const ChallengeScore& score) {
                 fmt::format("less than the base rate's {:.2f}", base), met(arm.second.brier < base));
     add_gap_reduction(score.gap_reduction, table);
     table.notes.push_back(
-        "95 % intervals after Wilson (1927). Limits were set on one half of the packings, the score is the "
-        "other's.");
+        "95 % intervals after Wilson (1927). Limits were set on one half of the packings and scored on the "
+        "other half.");
     return table;
 }
 
@@ -252,9 +254,9 @@ void print(const ChallengeScore& score) {
               to_text(table_of_arms(score), TableFormat::terminal));
 }
 
-void expect_folder(const std::filesystem::path& answers) {
-    if (!std::filesystem::is_directory(answers))
-        throw InputError(answers.string() + ": must be the folder of the diagnoses, got none");
+void expect_folder(const std::filesystem::path& diagnoses) {
+    if (!std::filesystem::is_directory(diagnoses))
+        throw InputError(diagnoses.string() + ": must be the folder of the diagnoses, got none");
 }
 
 void score(const ScoreCommand& command) {
@@ -285,18 +287,18 @@ void score(const ScoreCommand& command) {
 }  // namespace
 
 void add_challenge_score(CLI::App& challenge, int&) {
-    auto* sub = challenge.add_subcommand("score", "Compare the diagnoses with the answers");
+    auto* sub = challenge.add_subcommand("score", "Compare the diagnoses with the truth");
     auto command = std::make_shared<ScoreCommand>();
     sub->add_option("CHALLENGE", command->challenge, "Folder of the challenge")->required();
-    sub->add_option("ANSWERS", command->out, "Folder of the diagnoses; the score is written to it")
+    sub->add_option("DIAGNOSES", command->out, "Folder of the diagnoses; the score is written to it")
         ->required();
-    sub->add_option("--truth", command->truth, "File with the answers; default: CHALLENGE/truth.json")
+    sub->add_option("--truth", command->truth, "File with the truth; default: CHALLENGE/truth.json")
         ->type_name("FILE");
     sub->add_flag("--no-figures", command->no_figures, "Do not draw figures");
     sub->footer(
-        "Answers whose SHA-256 is not the one in challenge.json are refused.\n"
+        "A truth file whose SHA-256 is not the one in challenge.json is refused.\n"
         "Example:\n"
-        "  mcdem challenge score out/challenge out/answers");
+        "  mcdem challenge score out/challenge out/diagnoses");
     sub->callback([command] { score(*command); });
 }
 

@@ -33,11 +33,11 @@ std::string wrapped(const std::string& head, const std::string& text) {
 std::string_view title(Severity severity) {
     switch (severity) {
         case Severity::note:
-            return "what there is";
+            return "available data";
         case Severity::missing:
-            return "what is missing, and what it would allow";
+            return "missing data, and what they would show";
         case Severity::odd:
-            return "what looks odd";
+            return "suspicious data";
     }
     return "";
 }
@@ -57,20 +57,20 @@ void print_check(const std::string& folder) {
                 print_out("{}", wrapped(fmt::format("  {:<16}", finding.about), finding.text));
     }
     const auto needed = needed_to_diagnose(experiment);
-    print_out("\nwhat `mcdem diagnose` also needs{}\n", needed.empty() ? ": nothing" : "");
+    print_out("\nrequired by `mcdem diagnose` in addition{}\n", needed.empty() ? ": nothing" : "");
     for (const std::string& text : needed) print_out("{}", wrapped("  ", text));
 }
 
 void add_experiment_check(CLI::App& experiment) {
     auto* sub = experiment.add_subcommand(
-        "check", "Report what an experiment contains, what is missing and what looks wrong");
+        "check", "Report which data an experiment contains, which are missing and which are suspicious");
     auto folder = std::make_shared<std::string>();
     sub->add_option("DIR", *folder, "Experiment folder")->required();
     sub->footer(
         "The last lines say what must be added before `mcdem diagnose` accepts the folder.\n"
         "The exit code is 0 if the folder can be read, and 2 if it cannot.\n"
         "Example:\n"
-        "  mcdem experiment check data/hydrogel");
+        "  mcdem experiment check out/lab");
     sub->callback([folder] { print_check(*folder); });
 }
 
@@ -86,15 +86,15 @@ void expect_free(const std::filesystem::path& out) {
         for (const char* end : {"", ".gz"})
             if (std::filesystem::exists(out / (std::string(table) + end), ignored))
                 throw InputError(
-                    fmt::format("--out: {} holds a table {}{} that would be of this experiment "
-                                "then: name another folder, or remove it first",
+                    fmt::format("--out: {} already contains {}{}, which would become part of this "
+                                "experiment: choose another folder, or remove the file first",
                                 out.string(), table, end));
     for (auto path = std::filesystem::absolute(out); path.has_relative_path(); path = path.parent_path())
         if (std::filesystem::exists(path, ignored) && !std::filesystem::is_directory(path, ignored))
             throw InputError(fmt::format("--out: {} must be a folder, got a file{}", out.string(),
                                          path.filename() == out.filename()
                                              ? ""
-                                             : fmt::format(" in its way, {}", path.filename().string())));
+                                             : fmt::format(" in its path, {}", path.filename().string())));
 }
 
 void add_experiment(CLI::App& app, int& exit_code) {
@@ -107,9 +107,9 @@ void add_experiment(CLI::App& app, int& exit_code) {
     sub->footer(
         "An experiment's folder is described in host/experiment/README.md.\n"
         "Examples:\n"
-        "  mcdem experiment check data/hydrogel\n"
         "  mcdem experiment import data/plate.txt data/grains.txt --set 'box.size=[0.165, 0.166]' --out "
         "out/lab\n"
+        "  mcdem experiment check out/lab\n"
         "  mcdem experiment from-run out/begun --replica mc_dem --out out/reality");
 }
 

@@ -61,7 +61,7 @@ Recording read_replica(const FromRunCommand& command) {
     for (const Scan& scan : recording.scans)
         if (!std::isfinite(scan.top_force()) || !std::isfinite(scan.plate_z))
             throw InputError(
-                fmt::format("{}: frame {} of this replica has a top force or plate position that is no "
+                fmt::format("{}: frame {} of this replica has a top force or plate position that is not a "
                             "number",
                             command.run, scan.frame));
     if (recording.failure) spdlog::warn("{} stopped early: {}", recording.label, recording.failure->cause);
@@ -136,8 +136,8 @@ void expect_experiment_of(const FromRunCommand& command, const Experiment& exper
     } catch (const InputError& error) {
         std::vector<std::string> problems{
             command.run +
-            ": makes no experiment that can be read, and none is written: run the scene again, or lower the "
-            "errors of the instrument. It would have:"};
+            ": does not give a valid experiment, so nothing is written. Run the scene again, or lower the "
+            "measurement errors. Problems:"};
         for (const std::string& problem : error.problems()) problems.push_back("  " + problem);
         throw InputError(problems);
     }
@@ -208,33 +208,35 @@ void add_instrument_options(CLI::App& sub, Instrument& instrument) {
         CLI::NonNegativeNumber);
     add("--diameter-error", stated.diameter_error, "M", "Standard error of a diameter [m]",
         CLI::NonNegativeNumber);
-    add("--force-error", stated.force_error, "PART", "Relative standard error of a contact force", relative);
+    add("--force-error", stated.force_error, "FRACTION", "Relative standard error of a contact force",
+        relative);
     add("--force-threshold", stated.force_threshold, "N", "Contacts below this force are not measured [N]",
         CLI::NonNegativeNumber);
-    add("--force-bias", instrument.force_bias, "PART",
-        "Unstated error: contact forces are read too large by this fraction", bias);
+    add("--force-bias", instrument.force_bias, "FRACTION",
+        "Unstated error: contact forces are measured too large by this fraction", bias);
     add("--threshold-shift", instrument.threshold_shift, "N",
         "Unstated error: the true force threshold is higher by this [N]", CLI::Range(-1.0, 1.0));
-    add("--position-bias", instrument.position_bias, "PART",
-        "Unstated error: lengths are read too large by this fraction", CLI::Range(-0.05, 0.05));
+    add("--position-bias", instrument.position_bias, "FRACTION",
+        "Unstated error: lengths are measured too large by this fraction", CLI::Range(-0.05, 0.05));
     add("--strain-offset", instrument.strain_offset, "M",
-        "Unstated error: plate positions are read too high by this [m]", CLI::Range(-1.0, 1.0));
-    add("--gauge-drift", instrument.gauge_drift, "PART",
+        "Unstated error: plate positions are measured too high by this [m]", CLI::Range(-1.0, 1.0));
+    add("--gauge-drift", instrument.gauge_drift, "FRACTION",
         "Unstated error: relative error of the load cell's gain at the end of the last cycle; it grows in "
         "proportion to the plate's path",
         bias);
-    add("--zero-drift", instrument.zero_drift, "PART",
+    add("--zero-drift", instrument.zero_drift, "FRACTION",
         "Unstated error: offset of the load cell at the end of the last cycle, over the maximum top "
         "force; it grows in proportion to the plate's path",
         bias);
-    add("--gauge-hysteresis", instrument.gauge_hysteresis, "PART",
+    add("--gauge-hysteresis", instrument.gauge_hysteresis, "FRACTION",
         "Unstated error: excess of the top force during unloading, at half the maximum force, over the "
         "maximum force",
         bias);
     add("--force-lag", instrument.force_lag, "M",
-        "Unstated error: the top force is read as it was this way of the plate before [m]",
+        "Unstated error: the top force is that of an earlier plate position, this far back along its path "
+        "[m]",
         CLI::NonNegativeNumber);
-    add("--guide-friction", instrument.guide_friction, "PART",
+    add("--guide-friction", instrument.guide_friction, "FRACTION",
         "Unstated error: friction of the plate's guide, which the load cell also reads, over the maximum top "
         "force",
         CLI::Range(0.0, 0.5));
@@ -252,7 +254,7 @@ void add_experiment_from_run(CLI::App& experiment) {
     sub->add_option("RUN", command->run, "Result folder or file")->required();
     sub->add_option("--out", command->out, "Folder to create")->required()->type_name("DIR");
     sub->add_option("--replica", command->replica,
-                    "Label or number (from 0) of the replica; required where there are several")
+                    "Label or number (from 0) of the replica; required if the run has several")
         ->type_name("REPLICA");
     sub->add_option("--name", command->name,
                     "Name of the experiment (default: that of the run and the replica)")
@@ -265,7 +267,9 @@ void add_experiment_from_run(CLI::App& experiment) {
     sub->add_option("--seed", command->seed, "Seed of the noise")->capture_default_str();
     sub->add_flag("--gzip", command->gzip, "Compress the tables with gzip");
     sub->footer(
-        "Materials are stated as in the run; the effects it was simulated with are not.\n"
+        "Materials are stated as in the run; its effects are not. Unstated errors act on the data but are "
+        "not\n"
+        "written to experiment.toml, so that a diagnosis has to find them.\n"
         "Examples:\n"
         "  mcdem run scenes/small.toml --out out/begun --set protocol.scan_at_start=true\n"
         "  mcdem experiment from-run out/begun --replica mc_dem --out out/reality");

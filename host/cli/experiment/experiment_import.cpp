@@ -105,11 +105,11 @@ std::vector<std::string> words_of(const ImportCommand& command, const Experiment
         throw InputError(fmt::format("{}: another program has just written it", file));
     problems.push_back(
         wrong_rows
-            ? fmt::format("nothing is imported: repair the tables, remove {0}, and import again; or put what "
-                          "is right into it, where its entries are wrong, and import with --mapping {0}",
+            ? fmt::format("nothing is imported: repair the tables, remove {0} and import again; or correct "
+                          "the wrong entries of {0} and import with --mapping {0}",
                           file)
-            : fmt::format("nothing is imported: put what is right into {0}, without question marks, and "
-                          "import again with --mapping {0}",
+            : fmt::format("nothing is imported: correct the entries of {0} that begin with a question mark, "
+                          "remove the marks, and import again with --mapping {0}",
                           file));
     throw InputError(problems);
 }
@@ -119,8 +119,7 @@ Experiment read_back(const fs::path& folder, const std::string& out) {
     try {
         return read_experiment(folder);
     } catch (const InputError& error) {
-        std::vector<std::string> problems{
-            "the tables make no experiment that can be read, as they stand in the mapping; it would have:"};
+        std::vector<std::string> problems{"with this mapping the tables do not give a valid experiment:"};
         for (std::string problem : error.problems()) {
             if (problem.starts_with(folder.string())) problem.replace(0, folder.string().size(), out);
             problems.push_back(problem);
@@ -210,7 +209,7 @@ void add_experiment_import(CLI::App& experiment, int& exit_code) {
     sub->add_flag("--gzip", command->gzip, "Compress the tables with gzip");
     sub->footer(
         "Without --mapping the meaning and units of the columns are guessed, reported and written to\n"
-        "DIR/mapping.toml. Where a guess is not safe, nothing is imported (exit code 2): correct the lines "
+        "DIR/mapping.toml. If a guess is uncertain, nothing is imported (exit code 2): correct the lines "
         "with a\n"
         "question mark and repeat the import with --mapping. Tables given with --mapping replace those it "
         "names, so one\n"

@@ -327,7 +327,7 @@ void add_part_options(CLI::App& command, SharingOptions& options, std::string& d
         ->excludes("--missing");
     command
         .add_option("--workers", options.workers,
-                    "Number of processes to divide the work for, where it cannot be detected")
+                    "Number of processes among which the work is divided, if it cannot be detected")
         ->check(CLI::Range(1, 100'000))
         ->type_name("N")
         ->group(group);

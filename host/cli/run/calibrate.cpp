@@ -77,11 +77,11 @@ void print_calibration(const SceneCalibration& result) {
               result.found.converged ? "" : " (tolerance not reached: raise --rounds, or use more replicas)");
     if (!result.knows_scatter())
         print_out(
-            "the error does not contain the scatter between packings: {} a single one; if both are the same "
-            "packing, there is none\n",
-            std::isfinite(result.simulated.standard_error) ? "the reference is"
+            "the error leaves out the scatter between packings, because {} a single packing; this is correct "
+            "only if both are the same packing\n",
+            std::isfinite(result.simulated.standard_error) ? "the reference has"
             : std::isfinite(result.target.standard_error)  ? "the scene has"
-                                                           : "scene and reference have");
+                                                           : "scene and reference each have");
 }
 
 void calibrate(CalibrateCommand& command) {
@@ -111,16 +111,19 @@ void calibrate(CalibrateCommand& command) {
 }
 
 void add_search_options(CLI::App& sub, CalibrateOptions& options) {
-    sub.add_option("--low", options.bracket.low, "Smallest gamma that is tried, or E over the scene's")
+    sub.add_option("--low", options.bracket.low,
+                   "Lower end of the search: gamma, or E divided by the scene's E")
         ->capture_default_str();
-    sub.add_option("--high", options.bracket.high, "Largest gamma that is tried, or E over the scene's")
+    sub.add_option("--high", options.bracket.high,
+                   "Upper end of the search: gamma, or E divided by the scene's E")
         ->capture_default_str();
     sub.add_option("--tolerance", options.search.tolerance,
-                   "Standard error of gamma, or of E over the scene's, at which to stop")
+                   "Stop at this standard error of gamma, or of E divided by the scene's E")
         ->capture_default_str();
-    sub.add_option("--batch", options.search.batch, "Values in one round, all simulated together")
+    sub.add_option("--batch", options.search.batch,
+                   "Number of values that are simulated together in one round")
         ->capture_default_str();
-    sub.add_option("--rounds", options.search.rounds, "At most")->capture_default_str();
+    sub.add_option("--rounds", options.search.rounds, "Maximum number of rounds")->capture_default_str();
 }
 
 }  // namespace
@@ -137,7 +140,7 @@ void add_calibrate(CLI::App& app, int&) {
     sub->add_option_function<std::string>(
            "--model",
            [command](const std::string& word) { command->options.model = calibrated_model(word, "--model"); },
-           "mc_dem: gamma is searched for; another contact model: Young's modulus of the grains")
+           "mc_dem: fit gamma; any other contact model: fit Young's modulus of the grains")
         ->type_name("MODEL")
         ->default_str("mc_dem");
     sub->add_option("--out", command->out, "Folder for calibration.json")->type_name("DIR");
@@ -147,8 +150,8 @@ void add_calibrate(CLI::App& app, int&) {
         "The scene gives packings, materials and protocol; its contact.model and contact.gamma are not "
         "used.\n"
         "More packings (batch.replicas) reduce the error: single runs scatter by 1 to 3 %.\n"
-        "Examples:\n"
-        "  mcdem calibrate scenes/compression.toml --experiment data/hydrogel --discard 5 --out out/gamma\n"
+        "Examples (DIR: your experiment folder):\n"
+        "  mcdem calibrate scenes/compression.toml --experiment DIR --discard 5 --out out/gamma\n"
         "  mcdem calibrate scenes/small.toml --experiment out/small --setting mc_dem --rounds 2\n"
         "  mcdem calibrate scenes/small.toml --experiment out/small --setting mc_dem --model "
         "hyperelastic_sphere");

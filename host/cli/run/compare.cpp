@@ -75,7 +75,7 @@ void add_compare(CLI::App& app, int&) {
     sub->add_option("--out", command->out, "Folder for the four figures; without it no figures are drawn")
         ->type_name("DIR");
     sub->add_option("--touch-force", command->figures.touch_force,
-                    "Leave levels out of errf where the reference's top force is not above this [N]")
+                    "For errf, use only displacements at which the reference's top force is above this [N]")
         ->type_name("N");
     add_figure_options(*sub, command->figures);
     sub->add_flag("--markdown", command->markdown, "Print Markdown");
@@ -83,15 +83,16 @@ void add_compare(CLI::App& app, int&) {
         "Rtop: top force at maximum compression over the reference's. errf: RMS error of the top force.\n"
         "errZ: RMS error of the coordination number, contacts below tau ignored. bhat: distance of the\n"
         "distributions of contact forces. An experiment folder is described in host/experiment/README.md.\n"
-        "Examples:\n"
-        "  mcdem compare out/first --against data/hydrogel --discard 5 --out out/comparison\n"
+        "Examples (DIR: your experiment folder):\n"
+        "  mcdem compare out/first --against DIR --discard 5 --out out/comparison\n"
         "  mcdem compare out/small --against out/small --setting mc_dem");
     sub->callback([command] { print_comparison(*command); });
 }
 
 void add_figures(CLI::App& app, int&) {
-    auto* sub = app.add_subcommand(
-        "figures", "Draw the four figures of the paper from runs, or the three of a diagnosis");
+    auto* sub = app.add_subcommand("figures",
+                                   "Draw the figures of runs (top force, force distribution, Z, scaling law; "
+                                   "others for programmes) or of a diagnosis");
     auto command = std::make_shared<CompareCommand>();
     sub->add_option("RUN|DIAGNOSIS", command->runs,
                     "Result folders or files, or the folder of a diagnosis or its diagnosis.json")
@@ -101,10 +102,12 @@ void add_figures(CLI::App& app, int&) {
                           "Experiment folder or run, drawn as points; several are combined");
     add_figure_options(*sub, command->figures);
     sub->footer(
-        "PDF, PNG and SVG of the top force, the force distribution at one level, Z after thresholding and\n"
-        "the scaling law; of a diagnosis where, which and how far. 86 or 178 mm wide, without titles. Their\n"
-        "values are in figures.json, of which the Python package mcdem.figures draws each with one "
-        "function.\n"
+        "PDF, PNG and SVG, 86 or 178 mm wide, without titles. Runs: top force, force distribution at one "
+        "plate\n"
+        "displacement, Z without weak contacts, scaling law; programmes: forces, stresses and strains "
+        "against\n"
+        "each other and against time. Diagnosis: where, which, how far. The values are in figures.json; the\n"
+        "Python package mcdem.figures has one function per figure.\n"
         "Examples:\n"
         "  mcdem figures out/small --out out/figures\n"
         "  mcdem figures out/small --out out/figures --against out/small --setting mc_dem");

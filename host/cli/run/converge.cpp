@@ -85,18 +85,19 @@ void add_converge(CLI::App& app, int&) {
     sub->add_option("--seed", command->options.seed, "Seed of the jitter")->capture_default_str();
     add_device_option(*sub, command->device);
     sub->footer(
-        "Runs the scene as it stands and with the plate 2, 4 and 8 times slower, a quarter of the density, "
+        "Runs the scene as it stands and with finer numerics, all from the same jittered packings: the plate "
+        "2, 4\n"
+        "and 8 times slower (protocol.rate_tolerance is lowered with plate.speed), a quarter of the density, "
         "half\n"
-        "the time step, stricter settling, double precision and wider neighbour lists, all from the same "
-        "jittered\n"
-        "packings, and extrapolates each to its limit. Reports for every observable of the diagnosis the "
-        "error with its\n"
-        "standard error, its cause, the setting that brings it below the limit and how much longer runs "
-        "get.\n"
-        "Where jittered copies hardly differ, every replica is a new random packing. A scene with\n"
-        "protocol.rate_tolerance is also run with less of it. Simulations are kept in DIR/simulations: the "
-        "same\n"
-        "command continues an interrupted one.\n"
+        "the time step, wider neighbour lists, double precision if the scene has single precision, and, if "
+        "the\n"
+        "plate stops at scans, stricter settling and no stops. Errors are extrapolated to the limit. Reports "
+        "for\n"
+        "every observable of the diagnosis the error with its standard error, its cause, the setting that\n"
+        "brings it below the limit, and how much longer runs take. If jittered copies hardly differ, every\n"
+        "replica is a new random packing. Simulations are kept in DIR/simulations: the same command "
+        "continues\n"
+        "an interrupted one.\n"
         "Example:\n"
         "  mcdem converge scenes/small.toml --set contact.model=mc_dem --out out/converge --replicas 8");
     sub->callback([command] { run(*command); });

@@ -53,8 +53,8 @@ DiagnoseOptions options_of(const DiagnoseCommand& command) {
 void warn_of_odd_data(const Experiment& experiment) {
     const auto odd = check_experiment(experiment).of(Severity::odd);
     if (!odd.empty())
-        spdlog::warn("{} looks odd: {}{}; `mcdem experiment check` says more", experiment.name, odd.front(),
-                     odd.size() > 1 ? fmt::format("; and {} more", odd.size() - 1) : "");
+        spdlog::warn("{} has suspicious data: {}{}; `mcdem experiment check` lists them", experiment.name,
+                     odd.front(), odd.size() > 1 ? fmt::format("; and {} more", odd.size() - 1) : "");
 }
 
 /// Several packings are named by their folders.
@@ -146,8 +146,9 @@ int run(DiagnoseCommand& command) {
 }  // namespace
 
 void add_diagnose(CLI::App& app, int& exit_code) {
-    auto* sub = app.add_subcommand(
-        "diagnose", "Find where a simulation and an experiment differ, and which effect explains it");
+    auto* sub = app.add_subcommand("diagnose",
+                                   "Find where a simulation and an experiment differ, and which effect is "
+                                   "consistent with the difference");
     auto command = std::make_shared<DiagnoseCommand>();
     add_scene_options(*sub, command->scene);
     sub->add_option("--experiment", command->experiments,
@@ -165,24 +166,25 @@ void add_diagnose(CLI::App& app, int& exit_code) {
                     "Number of runs of the unchanged scene; their scatter is the noise floor")
         ->check(CLI::Range(8, 10000))
         ->capture_default_str();
-    sub->add_option("--pairs", command->pairs, "Number of runs of each effect at each of its two amplitudes")
+    sub->add_option("--pairs", command->pairs,
+                    "Number of runs of each effect at each of its two amplitudes; at most --replicates")
         ->check(CLI::Range(2, 10000))
         ->capture_default_str();
     sub->add_option("--confirmations", command->confirmations,
-                    "Number of confirming runs of each proposed cause; 0: none")
+                    "Number of runs that confirm each proposed effect at its fitted amplitude; 0: none")
         ->check(CLI::Range(0, 10000))
         ->capture_default_str();
     sub->add_option(
            "--refine", command->refine,
-           "Where the scene is not converged, the largest factor by which plate.speed, "
-           "grains.density or numerics.time_step is lowered before the diagnosis is repeated (runs "
-           "take that much longer); 1: never, and pauses of the experiment's plate are not simulated "
-           "either")
+           "If the scene is not converged: largest factor by which plate.speed, grains.density or "
+           "numerics.time_step is lowered before the diagnosis is repeated (runs take up to that much "
+           "longer); 1: never, and pauses of the experiment's plate are not simulated")
         ->check(CLI::Range(1.0, 64.0))
         ->capture_default_str();
     sub->add_option("--seed", command->seed, "Seed of all random numbers")->capture_default_str();
     sub->add_option("--library", command->library,
-                    "Signature library: read if the file exists, otherwise made and written")
+                    "File with the simulated changes by each effect, for use with further experiments; read "
+                    "if it exists, otherwise computed and written")
         ->type_name("FILE");
     add_part_options(*sub, command->sharing, command->device);
     sub->footer(
@@ -200,9 +202,13 @@ void add_diagnose(CLI::App& app, int& exit_code) {
         "Verdicts: no_gap, effect, group (effects that these data cannot tell apart), unknown_effect (none "
         "of the\n"
         "library), not_converged (the simulation's own numerics), calibration_suspect.\n"
-        "`mcdem experiment check DIR` reports beforehand what the data are sufficient for.\n"
-        "Example:\n"
-        "  mcdem diagnose scenes/small.toml --experiment out/reality --out out/diagnosis");
+        "The first entry under Next says what to do with the verdict.\n"
+        "`mcdem experiment check DIR` reports beforehand what can be diagnosed from the data.\n"
+        "Example, with a simulation as the experiment:\n"
+        "  mcdem run scenes/small.toml --set protocol.scan_at_start=true --out out/begun\n"
+        "  mcdem experiment from-run out/begun --replica mc_dem --out out/reality\n"
+        "  mcdem diagnose scenes/small.toml --set contact.model=independent --experiment out/reality --out "
+        "out/diagnosis");
     sub->callback([command, &exit_code] { exit_code = run(*command); });
 }
 

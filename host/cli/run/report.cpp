@@ -52,7 +52,7 @@ int write_report(const ReportCommand& command) {
         else
             runs.push_back(source);
     if (runs.empty() && !command.reference.paths.empty())
-        throw InputError("--against: needs a run to hold against it, got diagnoses only");
+        throw InputError("--against: needs a run to compare with it, got diagnoses only");
     Page page("mcdem report: " + command.sources.front() +
               (command.sources.size() > 1 ? fmt::format(" and {} more", command.sources.size() - 1) : ""));
     if (!runs.empty()) add_all_runs(page, runs, command);

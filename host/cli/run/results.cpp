@@ -73,7 +73,7 @@ void add_reference_options(CLI::App& command, ReferenceOptions& options, const s
     command.add_option(name, options.paths, help)->type_name("DIR")->allow_extra_args(false);
     command
         .add_option("--setting", options.setting,
-                    "Setting of the reference run to compare with, where it has several (default: mc_dem)")
+                    "Setting of the reference run to compare with, if it has several (default: mc_dem)")
         ->type_name("LABEL");
     command
         .add_option(

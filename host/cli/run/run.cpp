@@ -201,20 +201,22 @@ void add_run(CLI::App& app, int& exit_code) {
     sub->add_flag("--no-figures", command->no_figures, "Do not draw figures at the end");
     add_sharing_options(*sub, command->sharing, command->device);
     sub->add_option("--part-replicas", command->cut.part_replicas,
-                    "Replicas per part; default: enough to fill a device, with two parts per process")
+                    "Replicas per part; default: enough to fill a device, but at least two parts per process")
         ->check(CLI::Range(1, 10'000))
         ->type_name("N")
         ->group("Many devices and nodes");
     sub->footer(
         "Writes run.h5 (everything, HDF5), plate.csv (forces and averages) and figures into DIR. A replica "
         "that\n"
-        "fails is reported and recorded; the others continue. The exit code is 1 only where all failed.\n"
+        "fails is reported and recorded; the others continue. The exit code is 1 if all replicas failed.\n"
         "A run that is interrupted (Ctrl-C, crash, power cut) loses at most the time since its last "
         "checkpoint\n"
-        "(output.checkpoint_minutes); resumed, it gives the same results bit for bit.\n"
-        "So does a run computed in parts by many devices or nodes. Lost parts are computed again, and the "
-        "same command\n"
-        "continues with what is missing. `mcdem distribute` gives parts to Dask.\n"
+        "(output.checkpoint_minutes). Continue it with --resume; the results are bit-identical.\n"
+        "With --device all, --mpi, --slurm or `mcdem distribute` the run is computed in parts, with "
+        "bit-identical\n"
+        "results. Lost parts are computed again; to continue such a run give the same command again, "
+        "without\n"
+        "--resume.\n"
         "Examples:\n"
         "  mcdem run scenes/small.toml --out out/small\n"
         "  mcdem run scenes/compression.toml --out out/soft --set grains.youngs_modulus=10e3\n"

@@ -48,7 +48,7 @@ void add_table(CLI::App& app, int&) {
                   "Print CSV: top forces and ratios, for programmes scan by scan, with a column for each "
                   "scene key that varies");
     sub->footer(
-        "Ratios are paired by packing where replicas start from the same one; ± is the standard error over\n"
+        "Ratios are paired by packing if replicas start from the same one; ± is the standard error over\n"
         "replicas. *: no replica reached full stroke; the last scan and its displacement are shown.\n"
         "Examples:\n"
         "  mcdem table out/small\n"

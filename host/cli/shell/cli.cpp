@@ -27,14 +27,15 @@ const char* const first_steps =
     "  mcdem devices                                      list the devices\n"
     "  mcdem run scenes/small.toml --out out/small        a first run, takes seconds\n"
     "  mcdem run scenes/compression.toml --out out/first  the experiment, seven contact models\n"
-    "  mcdem table out/first                              the table of models again\n"
-    "  mcdem report out/small --out out/small.html        a page to read and to send\n"
+    "  mcdem table out/first                              top force of each model\n"
+    "  mcdem report out/small --out out/small.html        HTML page with charts and packings\n"
+    "  mcdem diagnose --help                              compare a scene with an experiment\n"
     "  mcdem COMMAND --help                               help on a command, with examples\n"
     "\n"
-    "Exit codes: 0 success, 1 failure (also where output cannot be written), 2 invalid input, 130 "
-    "interrupted\n"
-    "(continue with --resume).\n"
-    "Environment: MCDEM_DEVICE chooses the device where --device is not given.";
+    "Exit codes: 0 success, 1 failure (also if output cannot be written), 2 invalid input, 130 interrupted.\n"
+    "To continue after an interruption give the same command again; a plain `mcdem run` also needs "
+    "--resume.\n"
+    "Environment: MCDEM_DEVICE selects the device if --device is not given.";
 
 /// Reports an error in the command line, and which help to read.
 int report_usage(const CLI::App& app, const CLI::ParseError& error) {
@@ -91,10 +92,8 @@ int command_line(int argc, const char* const* argv) {
 
 constexpr char hint[] =
     "mcdem: ended by a defect of the program or of the OpenCL driver. If it happens again, remove the "
-    "compiled kernels (the "
-    "folder of POCL_CACHE_DIR, else ~/.cache/pocl/kcache), which may be damaged: they are made anew. A run "
-    "goes on with "
-    "--resume\n";
+    "compiled kernels (folder POCL_CACHE_DIR, or ~/.cache/pocl/kcache), which may be damaged; they are "
+    "compiled again. Continue a run with --resume.\n";
 
 void say_hint(int signal) {
     const ssize_t written = write(STDERR_FILENO, hint, sizeof hint - 1);
