@@ -121,7 +121,7 @@ Json power_values(std::vector<ScoredCase> cases, double false_alarm) {
     const double smallest = std::min(0.5, points["x"].front().get<double>()) / 1.2;
     const double largest = std::max(2.0, points["x"].back().get<double>()) * 1.2;
     Json json{{"x_label", "amplitude / predicted detection limit"},
-              {"y_label", "part that is detected"},
+              {"y_label", "fraction detected"},
               {"measured", points}};
     for (int i = 0; i <= 100; ++i) {
         const double x = smallest * std::pow(largest / smallest, i / 100.0);
@@ -141,7 +141,7 @@ Json confidence_values(std::vector<ScoredCase> cases) {
         leader_is_true);
     if (points.is_null()) return points;
     return {{"x_label", "probability stated"},
-            {"y_label", "part that is right"},
+            {"y_label", "fraction right"},
             {"measured", points},
             {"predicted", {{"x", {0, 1}}, {"part", {0, 1}}}},
             {"words_predicted", "as stated"}};

@@ -66,6 +66,6 @@ def proportions(values, axes):
                            elinewidth=0.8)
     for x, y, cases in zip(measured["x"], part, measured["cases"]):
         axes.annotate(str(cases), (x, y), (3, -6), textcoords="offset points", fontsize=5.5)
-    axes.set(ylim=(-0.02, 1.04), xlabel=values["x_label"], ylabel=values["y_label"])
+    axes.set(ylim=(-0.07, 1.04), xlabel=values["x_label"], ylabel=values["y_label"])
     key(axes, [(points, "measured, 95 % interval, cases"), (line, values["words_predicted"])])
     return axes

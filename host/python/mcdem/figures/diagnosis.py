@@ -63,7 +63,7 @@ def set_columns(axes, values, heading):
 def which(source, axes=None):
     """Candidate effects. Left: gain in likelihood of each (diamonds: from real runs); candidates that share a letter cannot be
     distinguished. Right: fitted amplitude with its 90 % interval over the detection limit of these data (dashed line), the
-    amplitude with one standard error as text, and the probability among the candidates. `axes`: two."""
+    amplitude with one standard error as text, and the probability that the effect is the cause. `axes`: two."""
     values = read(source, "which")
     rows = values["rows"]
     if axes is None:
@@ -91,7 +91,8 @@ def which(source, axes=None):
     gain.tick_params(axis="y", pad=14)
     gain.set_ylim(len(rows) - 0.4, -0.6)
     gain.margins(x=0.1)
-    for place, x, words, side in ((gain, -0.02, "group", "right"), (over_limit, 1.04, "amplitude", "left"),
+    heading = "group" if any(row["group"] for row in rows) else ""
+    for place, x, words, side in ((gain, -0.02, heading, "right"), (over_limit, 1.04, "amplitude", "left"),
                                   (over_limit, 1.95, "probability", "right")):
         column(place, x, -1.1, words, side)
     return axes
