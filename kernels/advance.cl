@@ -15,12 +15,12 @@ INLINE slots trouble_status(lanes counts) {
 #if LANES == 16
 /* Requests what the next 16 grains will gather. If the state of a batch, about 1 kB per grain, exceeds the
    caches of the processor, a gather would wait for memory; in smaller batches these instructions would only
-   take time. PoCL's `prefetch` does nothing. */
+   take time. PoCL's `prefetch` has no code. */
 #define CACHED_SLOTS (1 << 19)
 #ifdef __x86_64__
 #define PREFETCH(address) __asm__ volatile("prefetcht0 (%0)" : : "r"(address))
 #else
-#define PREFETCH(address) prefetch(address, 1)
+#define PREFETCH(address) prefetch((global const int*)(address), 1)
 #endif
 INLINE void prefetch_neighbours(Grain at, Batch batch, size_t slot_count) {
     const size_t next = at.row + LANES * SLOTS;
