@@ -59,6 +59,9 @@ def set_columns(axes, values, heading):
     axes.set_title(heading, pad=14, fontweight="bold")
 
 
+GROUP, AMPLITUDE, PROBABILITY = -3, 4, 105  # columns next to the axes of `which` [points]
+
+
 @styled
 def which(source, axes=None):
     """Candidate effects. Left: gain in likelihood of each (diamonds: from real runs); candidates that share a letter cannot be
@@ -76,9 +79,9 @@ def which(source, axes=None):
         if row.get("over_limit") is not None:
             over_limit.errorbar(row["over_limit"], place, xerr=row["half_interval"], color=colour, marker="o", capsize=1.5,
                                 elinewidth=0.8, capthick=0.8)
-        column(gain, -0.02, place, row["group"], "right")
-        column(over_limit, 1.04, place, row["amplitude"], "left")
-        column(over_limit, 1.95, place, row["probability"], "right")
+        column(gain, GROUP, place, row["group"], "right")
+        column(over_limit, AMPLITUDE, place, row["amplitude"], "left")
+        column(over_limit, PROBABILITY, place, row["probability"], "right")
     over_limit.axvline(1, color=INK, linestyle=(0, (4, 2)), linewidth=0.7)
     for place in axes:
         place.axvline(0, color=INK, linewidth=0.5)
@@ -92,8 +95,8 @@ def which(source, axes=None):
     gain.set_ylim(len(rows) - 0.4, -0.6)
     gain.margins(x=0.1)
     heading = "group" if any(row["group"] for row in rows) else ""
-    for place, x, words, side in ((gain, -0.02, heading, "right"), (over_limit, 1.04, "amplitude", "left"),
-                                  (over_limit, 1.95, "probability", "right")):
+    for place, x, words, side in ((gain, GROUP, heading, "right"), (over_limit, AMPLITUDE, "amplitude", "left"),
+                                  (over_limit, PROBABILITY, "probability", "right")):
         column(place, x, -1.1, words, side)
     return axes
 
@@ -113,8 +116,9 @@ def draw_gain(axes, place, row, colour, largest):
 
 
 def column(axes, x, row, words, side):
-    """A text of a table next to the axes: x is a fraction of their width."""
-    axes.text(x, row, plain(words), transform=axes.get_yaxis_transform(), ha=side, va="center", fontsize=6.5)
+    """A text of a table next to the axes, `x` points to the right of their right edge, or of their left edge if negative."""
+    axes.annotate(plain(words), (float(x > 0), row), (x, 0), xycoords=axes.get_yaxis_transform(), textcoords="offset points", ha=side,
+                  va="center", fontsize=6.5)
 
 
 @styled

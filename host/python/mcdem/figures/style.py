@@ -82,8 +82,5 @@ def save(axes, file):
     creator = {"png": "Software"}.get(kind, "Creator")  # `mcdem` recognises its own figures by this
     dates = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}  # so that the same figure has the same bytes
     page = io.BytesIO()
-    figure = np.ravel(axes)[0].figure
-    for _ in range(3):  # texts next to axes are placed in fractions of their width, so the layout converges in steps
-        figure.draw_without_rendering()
-    figure.savefig(page, format=kind, metadata={creator: "mcdem figure", **dates.get(kind, {})})
+    np.ravel(axes)[0].figure.savefig(page, format=kind, metadata={creator: "mcdem figure", **dates.get(kind, {})})
     write_whole(file, page.getvalue())
