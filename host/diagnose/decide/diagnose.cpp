@@ -84,9 +84,12 @@ public:
                 cause.confirmed_score = proposal.confirmed_gain;
                 if (proposal.confirmed_gain) take_amplitude(cause, candidate, proposal);
             }
-        // A named effect has a single amplitude: that of the explanation.
-        if (decision_.verdict != Verdict::no_gap && decision_.proposal >= 0)
-            take_amplitude(cause, candidate, chosen_proposal(findings_, decision_));
+        if (decision_.verdict != Verdict::no_gap && decision_.proposal >= 0) {
+            const Proposal& chosen = chosen_proposal(findings_, decision_);
+            take_amplitude(cause, candidate, chosen);  // a named effect has only that of the explanation
+            if (!chosen.is_pair() && std::ranges::count(decision_.group, candidate) > 0)
+                cause.group = names_of(decision_.group);
+        }
         cause.at_limit = at_limit(evidence_, cause);
         return cause;
     }
@@ -97,11 +100,7 @@ public:
         std::ranges::stable_sort(order,
                                  [&](auto a, auto b) { return findings_.gain[a] > findings_.gain[b]; });
         std::vector<Cause> list;
-        for (const std::size_t candidate : order) {
-            list.push_back(of(candidate));
-            if (leads_alone() && std::ranges::count(decision_.group, candidate) > 0)
-                list.back().group = names_of(decision_.group);
-        }
+        for (const std::size_t candidate : order) list.push_back(of(candidate));
         return list;
     }
 
@@ -109,18 +108,10 @@ public:
     std::vector<Cause> leading() const {
         std::vector<Cause> list;
         for (const std::size_t candidate : decision_.group) list.push_back(of(candidate));
-        if (leads_alone())
-            for (Cause& cause : list) cause.group = names_of(decision_.group);
         return list;
     }
 
 private:
-    /// Whether the decision has a leading effect, with its group, and not a pair.
-    bool leads_alone() const {
-        return decision_.verdict != Verdict::no_gap && decision_.proposal >= 0 &&
-               !chosen_proposal(findings_, decision_).is_pair();
-    }
-
     static void take_amplitude(Cause& cause, std::size_t candidate, const Proposal& proposal) {
         const auto place = std::ranges::find(proposal.candidates, candidate) - proposal.candidates.begin();
         if (place == std::ssize(proposal.candidates)) return;

@@ -46,12 +46,9 @@ std::vector<std::string> members_of(const Diagnosis& diagnosis, const Cause& lea
 /// A second effect that acts together with the leading one, as a continuation of a sentence; empty if there
 /// is none.
 std::string together_with(const Diagnosis& diagnosis) {
+    const auto added = added_causes(diagnosis);
     std::vector<std::string> parts;
-    for (std::size_t i = 1; i < diagnosis.causes.size(); ++i) {
-        const auto& group = diagnosis.causes.front().group;
-        if (std::ranges::find(group, diagnosis.causes[i].effect) == group.end())
-            parts.push_back(cause_words(diagnosis.causes[i]));
-    }
+    for (std::size_t i = 1; i < added.size(); ++i) parts.push_back(cause_words(added[i]));
     return parts.empty() ? "" : " together with " + listed(parts);
 }
 
@@ -326,7 +323,7 @@ std::string next_line(const Diagnosis& diagnosis) {
 /// The reduction of the named explanation, as a continuation.
 std::string taken_away(const Diagnosis& diagnosis) {
     if (!diagnosis.explanation) return "";
-    const bool pair = !together_with(diagnosis).empty();
+    const bool pair = added_causes(diagnosis).size() > 1;
     const auto* added = diagnosis.verdict == Verdict::group ? "the first of them" : pair ? "both" : "it";
     return fmt::format("; adding {} takes away {} of the gap", added,
                        percent(diagnosis.explanation->reduction));

@@ -164,7 +164,7 @@ Json which_json(const Diagnosis& diagnosis) {
 std::string words_after(const Diagnosis& diagnosis) {
     if (diagnosis.verdict == Verdict::calibration_suspect) return "simulated, recalibrated";
     if (diagnosis.verdict == Verdict::not_converged) return "simulated, refined";
-    const bool pair = diagnosis.causes.size() > 1 && diagnosis.causes.front().group.size() == 1;
+    const bool pair = added_causes(diagnosis).size() > 1;
     return shortened("simulated with " + (pair ? "both effects" : added_words(diagnosis)), 40);
 }
 

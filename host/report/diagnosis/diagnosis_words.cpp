@@ -179,12 +179,17 @@ std::string cause_words(const Cause& cause) {
            (cause.at_limit ? ", or more: it is at the limit of the range tried)" : ")");
 }
 
+std::vector<Cause> added_causes(const Diagnosis& diagnosis) {
+    std::vector<Cause> added;
+    for (const auto& cause : diagnosis.causes)
+        if (added.empty() || std::ranges::count(added.front().group, cause.effect) == 0)
+            added.push_back(cause);
+    return added;
+}
+
 std::string added_words(const Diagnosis& diagnosis) {
-    const auto& causes = diagnosis.causes;
     std::vector<std::string> words;
-    for (const auto& cause : causes)
-        if (words.empty() || std::ranges::count(causes.front().group, cause.effect) == 0)
-            words.push_back(words_of(cause.effect));
+    for (const auto& cause : added_causes(diagnosis)) words.push_back(words_of(cause.effect));
     return words.empty() ? "the effect" : listed(words);
 }
 

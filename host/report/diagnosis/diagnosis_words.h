@@ -44,7 +44,9 @@ std::string directed_amount(const std::string& name, double value, double error,
 /// "adhesion (0.42 ± 0.05 mJ/m²)".
 std::string cause_words(const Cause& cause);
 
-/// The effects that the explanation adds: "adhesion", or both of a pair; of a group only the leading one.
+/// The effects that the explanation adds: one, or both of a pair; of a group only the leading one.
+std::vector<Cause> added_causes(const Diagnosis& diagnosis);
+/// Their names: "adhesion", "adhesion and friction".
 std::string added_words(const Diagnosis& diagnosis);
 
 /// The metrics in the paper's order, then others: name, before and after.
