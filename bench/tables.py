@@ -120,7 +120,7 @@ def peers_table(results, grains=50_000):
             continue
         ours = ours_for_peer(results, grains, peer["processes"] == 1)
         rows.append(row + [f"{peer['contacts_per_grain']:.2f}", million(rate)] +
-                    [f"{own / rate:.{1 if own < 10 * rate else 0}f}" if own else "" for own in ours])
+                    [f"{own / rate:.3g}" if own else "" for own in ours])
     return table(head, rows)
 
 
